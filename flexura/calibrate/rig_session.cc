@@ -301,13 +301,14 @@ class Session {
       note(fmt::format("the focal length of camera {} is", name(i)), 100 * is.focal[i], 100 * wanted.focal[i],
            " %");
     note("the zoom ratio is", 100 * is.zoom_ratio, 100 * wanted.zoom_ratio, " %");
-    // Pictures of an arm that is what is believed of it fit to half of what is told of each measurement.
+    // Pictures of an arm that is what is believed of it fit to half of the stated uncertainty of each
+    // measurement.
     constexpr double suspicious_rms = 1.2;
     if (result_.found.rms > suspicious_rms)
       result_.wanted.notes.push_back(fmt::format(
           "the pictures differ from the best rig by {:.2g} standard deviations (root mean square): the "
           "arm may bend otherwise than is believed, and shapes that are seen may be wrong by more than "
-          "is told",
+          "is stated",
           result_.found.rms));
   }
 

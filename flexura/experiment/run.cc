@@ -153,6 +153,7 @@ RunResult run_experiment(const Experiment& as_read, const std::filesystem::path&
   RunResult result;
   result.folder = folder;
   Witness witness(folder, arm, watcher);
+  if (experiment.drive) witness.name_axes(experiment.drive->drive());
   if (experiment.record.scene) witness.draw_scene(experiment);
   Player player(experiment, witness, progress, watcher, make_rig);
   result.reasons = violation_lines(player.safety());

@@ -121,9 +121,13 @@ void Witness::tell_lost_steps(double time, const std::vector<double>& lost) {
       log_.event(
           time, Recorder::Level::warning, "drive",
           fmt::format("the motor of axis {} loses {:.0f} microsteps, which its controller does not know",
-                      i + 1, lost[i] - lost_[i]));
+                      axis_names_.at(i), lost[i] - lost_[i]));
     lost_[i] = lost[i];
   }
+}
+
+void Witness::name_axes(const Drive& drive) {
+  for (std::size_t i = 0; i < drive.axes.size(); ++i) axis_names_.push_back(drive.axis_name(i));
 }
 
 void Witness::write_commands(const Drive& drive, const std::filesystem::path& file) {

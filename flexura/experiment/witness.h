@@ -42,6 +42,8 @@ class Witness {
   /// What the devices of the rig say of themselves, and how its arm truly stands where that is known, once
   /// for each time of its clock.
   void readings(Rig& rig);
+  /// How events name the axes of a drive.
+  void name_axes(const Drive& drive);
   void write_commands(const Drive& drive, const std::filesystem::path& file);
   /// Takes every step, logged or not: a command list has no gaps.
   void command(double time, const ArmState& state);
@@ -71,7 +73,8 @@ class Witness {
   std::vector<ArmState> states_;
   Eigen::Vector3d commanded_tip_ = Eigen::Vector3d::Zero();
   RodRecord rod_;
-  std::vector<double> lost_;  // Microsteps of each axis, as they were told.
+  std::vector<double> lost_;             // Microsteps of each axis, as events last said.
+  std::vector<std::string> axis_names_;  // As the command list has them.
 };
 
 }  // namespace flexura

@@ -41,7 +41,7 @@ std::string input_problem(const RodStatics& statics, const RodTarget& target, co
     const Eigen::Matrix3d& R = *target.rotation;
     if (!R.allFinite() || !((R.transpose() * R).isIdentity(1e-6)) ||
         !(R.col(0).cross(R.col(1)).dot(R.col(2)) > 0))
-      return "a rotation that is none";
+      return "a matrix that is no rotation";
   }
   if (!std::isfinite(target.angle_weight) || target.angle_weight <= 0)
     return "a weight of angles that is not positive";

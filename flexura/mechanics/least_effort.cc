@@ -15,7 +15,7 @@ using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 constexpr int most_steps = 60, most_passes = 10;
 // What a constraint gives for each multiplier.
 constexpr double give = 1e-11;
-constexpr double level = 1e-7;  // A step that is none, of |x|.
+constexpr double level = 1e-7;  // Smaller steps count as zero; of |x|.
 constexpr DescentLimits back{.iterations = 8, .slope = 1e-8};
 
 // Of the Lagrangian, by a step and what its gradient changed by: stays positive definite.

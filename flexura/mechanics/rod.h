@@ -41,7 +41,7 @@ struct PointMass {
   Eigen::Vector3d offset = Eigen::Vector3d::Zero();  ///< Its centre of mass in the cross-section's frame, m.
 };
 
-/// One section of a rod: what it is made of, and how finely its strains are told apart.
+/// One section of a rod: what it is made of, and how finely its strains are resolved.
 struct RodSection {
   double length = 1;                            ///< At rest, m; > 0.
   std::array<double, 2> radius = {1e-3, 1e-3};  ///< Of the elastic rod at the section's base and end, m; > 0.

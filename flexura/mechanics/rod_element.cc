@@ -47,7 +47,7 @@ RodElement::RodElement(const RodSection& section, std::span<const TendonRoute> t
   residual = by_share = q_ = Eigen::VectorXd::Zero(n);
   tangent = Eigen::MatrixXd::Zero(n, n);
   by_base = Eigen::MatrixXd::Zero(n, 6);
-  wrench_by_modes = step_ = moved_ = Columns::Zero(6, n);
+  wrench_by_modes = step_ = moved_ = turned_ = Columns::Zero(6, n);
   tendon_lengths = Eigen::VectorXd::Zero(count);
   length_slopes = pull_slopes = Eigen::MatrixXd::Zero(n, count);
   strain_ = grid_.rest;
@@ -171,8 +171,8 @@ void RodElement::add_geometry(std::size_t interval, const Vector6d& W, std::size
   step_.noalias() = A_[interval + 1] - A_[interval];
   if (interval > from) {
     moved_.noalias() = A_[interval] - A_[from];
-    const Columns turned = bracket_form(W).transpose() * moved_;
-    tangent.noalias() += factor * step_.transpose().lazyProduct(turned);
+    turned_.noalias() = bracket_form(W).transpose().lazyProduct(moved_);
+    tangent.noalias() += factor * step_.transpose().lazyProduct(turned_);
   }
   const Vector6d local = adjoint(X_[interval]).transpose() * W;
   const Matrix6d form = exp_[interval].jacobian_form(local).transpose();
@@ -210,8 +210,8 @@ void RodElement::add_chord(std::size_t tendon, std::size_t from, std::size_t to,
       tension / distance * (Eigen::Matrix3d::Identity() - u * u.transpose()) * point;
   Matrix6d turned;
   turned << across, skew(a) * across;
-  const Columns change = turned * moved_;
-  tangent.noalias() += moved_.transpose().lazyProduct(change);
+  turned_.noalias() = turned.lazyProduct(moved_);
+  tangent.noalias() += moved_.transpose().lazyProduct(turned_);
   for (std::size_t interval = from; interval < to; ++interval) add_geometry(interval, W, from, tension);
 }
 
@@ -276,7 +276,7 @@ void RodElement::load(const RodLoads& loads, double share, const Vector6d& beyon
     // step_ is how the interval's end moves by it.
     by_share.noalias() -= step_.transpose().lazyProduct(W);
     by_base.noalias() += share * step_.transpose().lazyProduct(bracket_form(W).transpose());
-    moved_.noalias() = share * D_[k] * A_[k];
+    moved_.noalias() = Matrix6d(share * D_[k]).lazyProduct(A_[k]);
     by_base.noalias() += share * A_[k].transpose().lazyProduct(D_[k]);
     tangent.noalias() -= A_[k].transpose().lazyProduct(moved_);
     wrench_by_modes += moved_;

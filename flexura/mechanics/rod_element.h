@@ -140,7 +140,7 @@ class RodElement {
   // Of each node, what pulls there, and that by its twist.
   std::vector<Vector6d> F_;
   std::vector<Matrix6d> D_;
-  Columns step_, moved_;  // Space for columns.
+  Columns step_, moved_, turned_;  // Space for columns.
 };
 
 }  // namespace flexura

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double same_place = 1e-9;
 
-// Its modes cannot be told apart by fewer, nor can loads be told from place to place.
+// With fewer its modes cannot be distinguished, and loads are summed up too coarsely.
 int nodes_needed(const std::array<int, 6>& counts) {
   return std::max(5, *std::ranges::max_element(counts) + 2);
 }

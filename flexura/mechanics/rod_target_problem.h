@@ -55,7 +55,7 @@ class RodTargetProblem final : public BoundedProblem {
   RodElement::Columns columns_, twist_;
 };
 
-/// The node of a rod at a place, which is one; empty: it is none.
+/// The node of a rod at a place; empty: no node lies there.
 [[nodiscard]] std::optional<std::size_t> node_of(const RodChain& chain, const RodPlace& place);
 
 }  // namespace flexura

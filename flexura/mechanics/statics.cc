@@ -17,7 +17,7 @@ constexpr double settled_step = 1e-10;
 // Steps that do not shrink by this lead somewhere else.
 constexpr double contraction = 0.6;
 constexpr int max_descent = 30;
-// Of a tendon at rest: slack within it is none.
+// Less slack than this, of the rod's length, counts as zero.
 constexpr double slack_margin = 1e-12;
 // Of tendons that are said to give nothing: of what the rod gives.
 constexpr double stiff_part = 1e-8;
@@ -339,7 +339,10 @@ Equilibrium RodStatics::solve_from(const Unknowns& start, bool is_cold) {
     }
   }
   // A rod cannot pass through itself.
-  found = found && is_right_way_out();
+  if (found && !is_right_way_out()) {
+    found = false;
+    result.end = StaticsEnd::no_equilibrium;
+  }
   is_solved_ = found;
   at_ = at.q;
   if (found) {

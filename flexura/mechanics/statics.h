@@ -23,7 +23,8 @@ struct TendonInput {
 /// How a search for an equilibrium ended.
 enum class StaticsEnd {
   converged,
-  bad_input,       ///< A number that is not finite, a tension below 0, a list of another length.
+  bad_input,  ///< A number that is not finite, a tension below 0, a list of another length.
+  /// Or the rod would have to pass through itself.
   no_equilibrium,  ///< The way from no load on led past every bound before all of the load was there.
   out_of_steps,    ///< Nor was an end of it seen.
 };

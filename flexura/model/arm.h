@@ -29,7 +29,7 @@ struct Section {
   /// How its bend is spread along it (Actuation): so many arcs of equal length, bent in these proportions,
   /// each at least 0, one above. None: one arc.
   std::optional<std::vector<double>> bend_profile = {};
-  /// Of the elastic rod in it. None: it bends as it is told to.
+  /// Of the elastic rod in it. None: it bends as it is commanded.
   std::optional<MaterialConfig> material = {};
 
   /// Whether its limits leave it more than one length.

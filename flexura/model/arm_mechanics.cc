@@ -110,8 +110,8 @@ const Table<TendonRouteConfig>& fields_of(const TendonRouteConfig*) {
           .field("x", &TendonRouteConfig::x, route("x"))
           .field("y", &TendonRouteConfig::y, route("y"))
           .field("compliance", &TendonRouteConfig::compliance,
-                 {.meaning = "How much longer it is for each newton, m/N, where it is told how far it is "
-                             "pulled in.",
+                 {.meaning = "How much longer it is for each newton, m/N, where what is given is how far "
+                             "it is pulled in.",
                   .range = between(0, 1e6)})
           .field(
               "friction", &TendonRouteConfig::friction,

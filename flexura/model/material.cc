@@ -93,7 +93,7 @@ const Table<ModesConfig>& fields_of(const ModesConfig*) {
   static const auto table =
       Table<ModesConfig>(
           "modes",
-          "How finely a section's strains are told: of how many polynomials of arc length each "
+          "How finely a section's strains are resolved: of how many polynomials of arc length each "
           "is made, 1 for a constant one; 0: it stays as it is at rest.")
           .field("shear", &ModesConfig::shear, modes("the two shears, each"))
           .field("stretch", &ModesConfig::stretch, modes("the stretch"))
@@ -135,7 +135,7 @@ const Table<MaterialConfig>& fields_of(const MaterialConfig*) {
                            "straight between them.",
                 .range = between(1, 1000),
                 .default_text = "none: a continuous channel"})
-        .field("modes", &MaterialConfig::modes, {.meaning = "How finely its strains are told."})
+        .field("modes", &MaterialConfig::modes, {.meaning = "How finely its strains are resolved."})
         .field(
             "nodes", &MaterialConfig::nodes,
             {.meaning = "Places along the section at which forces are summed up, its ends among them, more "

@@ -18,7 +18,7 @@ namespace {
 constexpr double smallest = 1e-4;  // that is shown, m
 constexpr double largest = 1e6;    // more is no arm's, m
 
-InputError no_arm() { return input_error("the log", "its true arm is none"); }
+InputError no_arm() { return input_error("the log", "the poses of its true arm make no arm"); }
 
 // A log may say anything.
 Pose pose_of(const PoseMessage& message) {

@@ -18,10 +18,10 @@ using LoggedArm = std::vector<Pose>;
 [[nodiscard]] LoggedArm logged_arm(const PosesMessage& message);
 /// What lies `part` of the way from one to another; the nearer one where they have other arcs.
 [[nodiscard]] LoggedArm between(const LoggedArm& from, const LoggedArm& to, double part);
-/// One arc from each end to the next. InputError: there is none.
+/// One arc from each end to the next. InputError: these make no arm.
 [[nodiscard]] std::vector<ArmSample> samples_of(const LoggedArm& arm);
 
-/// Adds the true arm as a ghost where it can be told from the commanded one: where a sample, the tip among
+/// Adds the true arm as a ghost where it differs from the commanded one: where a sample, the tip among
 /// them, is more than 0.1 mm from the point at the same share of the commanded arm's length. Not where there
 /// is a ghost of the truth already.
 void add_true_arm(const std::vector<ArmSample>& truth, const Backbone& commanded, Extras& extras);

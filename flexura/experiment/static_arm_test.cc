@@ -92,6 +92,23 @@ TEST_F(StaticArm, GivesTheSameLogEachTime) {
   EXPECT_EQ(text_of(one, "log.mcap"), text_of(other, "log.mcap"));
 }
 
+// Its motors are too weak for the bend: events name the axes as the command list does.
+TEST_F(StaticArm, SaysWhichAxesLoseSteps) {
+  std::string text = rod_text;
+  text.erase(text.find("[[truth.arm.tendon]]"), text.find("[[task]]") - text.find("[[truth.arm.tendon]]"));
+  text += R"([drive]
+radius_mm = 10
+axes_per_controller = 2
+[truth.drive.motor]
+pull_out = [[0, 0.05]]
+)";
+  for (const char* angle : {"0", "120", "240"})
+    text += std::string("[[drive.tendon]]\nsection = 1\nangle_deg = ") + angle + "\n";
+  const RunResult result = run(text);
+  EXPECT_GT(logged<TensionsMessage>(result, arm_tensions_topic).back().lost_steps.value().front(), 0);
+  EXPECT_THAT(text_of(result, "report.html"), testing::HasSubstr("the motor of axis 1.1 loses"));
+}
+
 // What is believed to be a rod, with nothing else said of the truth, is one in truth.
 TEST_F(StaticArm, NeedsNoTruthOfItsOwn) {
   std::string text = rod_text;

@@ -168,12 +168,14 @@ int check_command(const CheckArguments& arguments, std::ostream& out, std::ostre
 }
 
 int forward_command(const std::string& arm_file, std::istream& in, std::ostream& out) {
-  answer_lines(load_experiment(arm_file).arm.arm(), answer_forward, in, out);
+  const ArmModel arm = load_experiment(arm_file).arm_model();
+  answer_lines([&](std::string_view line) { return answer_forward(arm, line); }, in, out);
   return exit_done;
 }
 
 int inverse_command(const std::string& arm_file, std::istream& in, std::ostream& out) {
-  answer_lines(load_experiment(arm_file).arm.arm(), answer_inverse, in, out);
+  const ArmModel arm = load_experiment(arm_file).arm_model();
+  answer_lines([&](std::string_view line) { return answer_inverse(arm, line); }, in, out);
   return exit_done;
 }
 

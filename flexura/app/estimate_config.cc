@@ -87,7 +87,7 @@ void hold_length(double length, ShapePrior& prior) {
 ShapePrior arm_of(const EstimateArguments& arguments) {
   const auto base = base_of(arguments);
   if (arguments.arm.empty()) return unknown_arm(base, arguments.length);
-  ShapePrior prior = described_arm(load_experiment(arguments.arm).arm.model().shaped());
+  ShapePrior prior = described_arm(load_experiment(arguments.arm).arm_model().shaped());
   if (arguments.length) hold_length(*arguments.length, prior);
   if (base) prior.arm.X_WB.position = *base;
   return prior;

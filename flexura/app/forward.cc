@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -45,8 +46,8 @@ const Table<ForwardRequest>& fields_of(const ForwardRequest*) {
   return table;
 }
 
-Node answer(const Arm& arm, const ForwardRequest& request) {
-  const Backbone backbone = ArmModel(arm).backbone(arm_state(arm, request.shape()));
+Node answer(const ArmModel& arm, const ForwardRequest& request) {
+  const Backbone backbone = arm.backbone(arm_state(arm.driven(), request.shape()));
   Node::Array bases;
   for (const Arc& arc : backbone.arcs())
     if (arc.section == bases.size()) bases.push_back(point_node(arc.X_WS.position));
@@ -60,7 +61,8 @@ Node answer(const Arm& arm, const ForwardRequest& request) {
   return {std::move(members), {}};
 }
 
-ForwardRequest read_forward_request(const Arm& arm, std::string_view line) {
+ForwardRequest read_forward_request(const ArmModel& model, std::string_view line) {
+  const Arm& arm = model.driven();
   const Node document = parse_json(line, "");
   Reader reader;
   ForwardRequest request;
@@ -73,9 +75,14 @@ ForwardRequest read_forward_request(const Arm& arm, std::string_view line) {
     }
     if (reader.problems().empty()) check_bends(arm, shape, "", reader);
   }
-  if (request.at && reader.problems().empty()) {
-    const double length = Backbone(arm, arm_state(arm, request.shape())).length();
-    for (std::size_t i = 0; i < request.at->size(); ++i) {
+  const bool may_have_no_shape = !model.actuation().is_linear();
+  if ((request.at || may_have_no_shape) && reader.problems().empty()) {
+    const ArmState shape = model.actuation().shape(arm_state(arm, request.shape()));
+    const bool has_shape =
+        std::ranges::all_of(shape.bends, [](const Eigen::Vector2d& bend) { return bend.allFinite(); });
+    if (!has_shape) reader.problem("the arm comes to no rest");
+    const double length = has_shape && request.at ? model.backbone_of_shape(shape).length() : 0;
+    for (std::size_t i = 0; has_shape && request.at && i < request.at->size(); ++i) {
       if ((*request.at)[i] <= length * (1 + 1e-12)) continue;  // as Backbone::pose
       reader.problem_at(fmt::format("at[{}]", i),
                         fmt::format("{} is beyond the tip: expected at most {} m", (*request.at)[i], length));
@@ -87,7 +94,7 @@ ForwardRequest read_forward_request(const Arm& arm, std::string_view line) {
 
 }  // namespace
 
-std::string answer_forward(const Arm& arm, std::string_view line) {
+std::string answer_forward(const ArmModel& arm, std::string_view line) {
   try {
     return write_json(answer(arm, read_forward_request(arm, line)));
   } catch (const InputError& error) {

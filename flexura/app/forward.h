@@ -4,6 +4,7 @@
 #include <string_view>
 
 #include "flexura/model/arm.h"
+#include "flexura/model/arm_model.h"
 
 namespace flexura {
 
@@ -13,6 +14,10 @@ namespace flexura {
 /// {"tip":{"position":[x,y,z],"rotation":[w,x,y,z]},"bases":[[x,y,z],...],"at":[...]} in world axes, `bases`
 /// holding each section's base point and, last, the tip; or {"error":"..."} for a line that cannot be
 /// answered. Never throws on account of the line.
-[[nodiscard]] std::string answer_forward(const Arm& arm, std::string_view line);
+[[nodiscard]] std::string answer_forward(const ArmModel& arm, std::string_view line);
+/// The same of an arm of arcs.
+[[nodiscard]] inline std::string answer_forward(const Arm& arm, std::string_view line) {
+  return answer_forward(ArmModel(arm), line);
+}
 
 }  // namespace flexura

@@ -41,7 +41,8 @@ std::string_view take_line(std::string_view& text) {
 void check_input(const flexura::Arm& arm, std::string_view input) {
   std::istringstream in{std::string(input)};
   std::ostringstream out;
-  flexura::answer_lines(arm, flexura::answer_forward, in, out, longest);
+  flexura::answer_lines([&](std::string_view line) { return flexura::answer_forward(arm, line); }, in, out,
+                        longest);
   const std::string all = out.str();
   std::string_view answers = all;
   while (!input.empty()) {

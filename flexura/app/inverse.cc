@@ -143,6 +143,8 @@ void add_state(const Arm& arm, const InverseRequest& request, const InverseResul
 }
 
 Node answer_one(const Arm& arm, const InverseRequest& request, const InverseResult& result) {
+  if (!result.tip.allFinite())
+    throw InputError(std::vector<Problem>{{{}, "the arm comes to no rest under its weight and loads"}});
   Node::Table members{{"converged", {}, {result.converged(), {}}},
                       {"reason", {}, {std::string(name_of(result.outcome)), {}}}};
   add_state(arm, request, result, members);
@@ -155,7 +157,8 @@ Node answer_one(const Arm& arm, const InverseRequest& request, const InverseResu
   return {std::move(members), {}};
 }
 
-Node answer(const Arm& arm, const InverseRequest& request) {
+Node answer(const ArmModel& model, const InverseRequest& request) {
+  const Arm& arm = model.driven();
   InverseConfig config;
   config.wish = request.wish;
   if (request.start) config.start = arm_state(arm, *request.start);
@@ -163,13 +166,13 @@ Node answer(const Arm& arm, const InverseRequest& request) {
   if (request.curve) {
     CurveTarget target;
     for (const Triple& point : *request.curve) target.points.push_back(vector(point));
-    return answer_one(arm, request, solve_inverse(ArmModel(arm), target, config));
+    return answer_one(arm, request, solve_inverse(model, target, config));
   }
   const TipTarget target = tip_target(request);
   std::vector<InverseResult> solutions;
-  if (request.all) solutions = all_inverse_solutions(ArmModel(arm), target, config);
+  if (request.all) solutions = all_inverse_solutions(model, target, config);
   if (!request.all || solutions.empty()) {
-    Node node = answer_one(arm, request, solve_inverse(ArmModel(arm), target, config));
+    Node node = answer_one(arm, request, solve_inverse(model, target, config));
     if (request.all) node.as<Node::Table>()->push_back({"solutions", {}, {Node::Array{}, {}}});
     return node;
   }
@@ -195,9 +198,9 @@ std::string inverse_problem(const Arm& arm, std::string_view line) {
   }
 }
 
-std::string answer_inverse(const Arm& arm, std::string_view line) {
+std::string answer_inverse(const ArmModel& arm, std::string_view line) {
   try {
-    return write_json(answer(arm, read_inverse_request(arm, line)));
+    return write_json(answer(arm, read_inverse_request(arm.driven(), line)));
   } catch (const InputError& error) {
     return write_json({Node::Table{{"error", {}, {joined(error.problems()), {}}}}, {}});
   }

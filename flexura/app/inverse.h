@@ -4,6 +4,7 @@
 #include <string_view>
 
 #include "flexura/model/arm.h"
+#include "flexura/model/arm_model.h"
 
 namespace flexura {
 
@@ -14,7 +15,11 @@ namespace flexura {
 /// with "archings" instead of "bends" for a planar arm, "nearest" and "distance" when not converged, or
 /// "solutions" when all are asked for; {"error":"..."} for a line that cannot be answered. Never throws on
 /// account of the line.
-[[nodiscard]] std::string answer_inverse(const Arm& arm, std::string_view line);
+[[nodiscard]] std::string answer_inverse(const ArmModel& arm, std::string_view line);
+/// The same of an arm of arcs.
+[[nodiscard]] inline std::string answer_inverse(const Arm& arm, std::string_view line) {
+  return answer_inverse(ArmModel(arm), line);
+}
 
 /// What is wrong with a line of `flexura ik`, "" for one that can be answered. Never throws on account of the
 /// line.

@@ -230,5 +230,40 @@ TEST(InverseCommand, AnswersEveryLineInOrder) {
   EXPECT_THAT(answers[2], HasSubstr("\"not_reachable\""));
 }
 
+// Two wires of 2 mm radius that carry so much a metre, and three tendons to the end of each.
+ArmModel elastic_arm(const std::string& mass) {
+  std::string text = "[arm]\nkind='spatial'\nmodel='static'\ngravity=[0,-9.81,0]\n";
+  for (int section = 1; section <= 2; ++section) {
+    text += "[[arm.section]]\nlength=0.35\nmax_bend_deg=120\n";
+    text += "material={youngs_modulus=54e9,radius_mm=2,mass_per_length=" + mass + "}\n";
+  }
+  for (int i = 0; i < 6; ++i)
+    text += fmt::format("[[arm.tendon]]\nsection={}\nradius_mm=15\nangle_deg={}\n", i / 3 + 1, 120 * (i % 3));
+  return parse_experiment(text, "x.toml").arm_model();
+}
+
+TEST(AnswerInverse, OfAnElasticArmIsUndoneByForwardKinematicsUnderItsWeight) {
+  const ArmModel arm = elastic_arm("0.2");
+  const Node answer = parsed(answer_inverse(arm, R"({"position":[0.3,0.45,0.1]})"));
+  ASSERT_TRUE(flag(answer, "converged"));
+  const Node shape{Node::Table{{"bends", {}, *answer.find("bends")}}, {}};
+  const auto tip_of = [&](const std::string& of) {
+    const Node tip = *parsed(of).find("tip");
+    const Node::Array& position = *tip.find("position")->as<Node::Array>();
+    return Eigen::Vector3d(*position[0].as<double>(), *position[1].as<double>(), *position[2].as<double>());
+  };
+  const Eigen::Vector3d wanted(0.3, 0.45, 0.1);
+  EXPECT_LE((tip_of(answer_forward(arm, write_json(shape))) - wanted).norm(), 1e-8);
+  // Arcs of these bends are elsewhere: the arm sags.
+  EXPECT_GE((tip_of(answer_forward(arm.driven(), write_json(shape))) - wanted).norm(), 0.01);
+  EXPECT_THAT(answer_forward(arm, R"({"bends":[[0,0],[0,0]],"at":[0,0.7]})"), Not(HasSubstr("error")));
+}
+
+TEST(AnswerInverse, OfAnArmThatComesToNoRestIsAnError) {
+  EXPECT_THROW((void)elastic_arm("1e5"), InputError);
+  EXPECT_THAT(answer_forward(elastic_arm("0.2"), R"({"bends":[[0,0],[0,0]],"stretches":[1,0.5]})"),
+              Not(HasSubstr("null")));
+}
+
 }  // namespace
 }  // namespace flexura

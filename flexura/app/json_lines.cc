@@ -34,13 +34,7 @@ std::string bytes_text(std::size_t bytes) {
 
 }  // namespace
 
-void answer_lines(const Arm& arm, LineAnswer answer, std::istream& in, std::ostream& out,
-                  std::size_t longest) {
-  answer_lines([&arm, answer](std::string_view line) { return answer(arm, line); }, in, out, longest);
-}
-
-void answer_lines(const std::function<std::string(std::string_view line)>& answer, std::istream& in,
-                  std::ostream& out, std::size_t longest) {
+void answer_lines(const LineAnswer& answer, std::istream& in, std::ostream& out, std::size_t longest) {
   std::string line;
   bool too_long = false;
   while (read_line(*in.rdbuf(), longest, line, too_long)) {

@@ -6,22 +6,17 @@
 #include <string>
 #include <string_view>
 
-#include "flexura/model/arm.h"
-
 namespace flexura {
 
 /// No line of input is longer, bytes.
 inline constexpr std::size_t longest_line = std::size_t{1} << 24;
 
 /// One line of output for one line of input (without its end), whatever that holds.
-using LineAnswer = std::string (*)(const Arm& arm, std::string_view line);
+using LineAnswer = std::function<std::string(std::string_view line)>;
 
 /// Answers every line of `in` by one line of `out`, in their order, each as soon as it is there. A line ends
 /// with "\n" ("\r\n" too) or with the input; one that is longer than `longest` is answered by an error.
-void answer_lines(const Arm& arm, LineAnswer answer, std::istream& in, std::ostream& out,
+void answer_lines(const LineAnswer& answer, std::istream& in, std::ostream& out,
                   std::size_t longest = longest_line);
-/// The same of what knows its arm.
-void answer_lines(const std::function<std::string(std::string_view line)>& answer, std::istream& in,
-                  std::ostream& out, std::size_t longest = longest_line);
 
 }  // namespace flexura

@@ -140,6 +140,15 @@ Node error_node(std::string problem) { return {Node::Table{{"error", {}, {std::m
 StaticsAnswers::StaticsAnswers(const ArmConfig& arm, const std::optional<DriveConfig>& drive)
     : rod_(rod_of(arm, drive)), loads_(loads_of(arm)), statics_(rod_) {}
 
+std::string StaticsAnswers::problem(std::string_view line) const {
+  try {
+    (void)read_request(rod_, line);
+    return {};
+  } catch (const InputError& error) {
+    return joined(error.problems());
+  }
+}
+
 std::string StaticsAnswers::answer(std::string_view line) {
   try {
     const StaticsRequest request = read_request(rod_, line);

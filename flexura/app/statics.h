@@ -24,6 +24,8 @@ class StaticsAnswers {
   /// "stable":..,"snapped":..,"ambiguous":.. and "at":[poses] where asked for; {"error":"..."} for a line
   /// that cannot be answered. Never throws on account of the line.
   [[nodiscard]] std::string answer(std::string_view line);
+  /// What keeps the line from being answered, in words; "": nothing does.
+  [[nodiscard]] std::string problem(std::string_view line) const;
 
  private:
   Rod rod_;

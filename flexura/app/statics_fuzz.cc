@@ -1,8 +1,10 @@
 // Any bytes as the input of `flexura statics`, on a stiff arm under its own tendons and a soft one under a
-// drive's: for each line, one line of JSON without NaN.
+// drive's: for each line, one line of JSON without NaN. Of inputs with a line that can be answered one in ten
+// is, for an equilibrium takes a hundred times as long as all else.
 #include <array>
 #include <cstdint>
 #include <cstdlib>
+#include <functional>
 #include <optional>
 #include <sstream>
 #include <string>
@@ -74,7 +76,14 @@ std::string_view take_text_line(std::string_view& text) {
   return line;
 }
 
+bool has_answer(const StaticsAnswers& answers, std::string_view input) {
+  while (!input.empty())
+    if (answers.problem(take_text_line(input)).empty()) return true;
+  return false;
+}
+
 void check_statics_input(StaticsAnswers& answers, std::string_view input) {
+  if (std::hash<std::string_view>{}(input) % 10 != 0 && has_answer(answers, input)) return;
   std::istringstream in{std::string(input)};
   std::ostringstream out;
   answer_lines([&](std::string_view line) { return answers.answer(line); }, in, out, longest);

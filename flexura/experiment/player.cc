@@ -41,7 +41,7 @@ Player::Player(const Experiment& experiment, Witness& witness, Progress& progres
       tasks_(task_runners(experiment)),
       schedule_(scheduled(0)),
       safety_(judged()),
-      believed_{.model = rig_model(experiment.arm.arm(), experiment.cameras())},
+      believed_{.model = rig_model(experiment.arm_model(), experiment.cameras())},
       played_{0, 0, schedule_.initial(), false, ""} {
   for (const auto& task : tasks_)
     if (task->way() == TaskWay::simulated) telling_.push_back(task.get());

@@ -149,7 +149,7 @@ RunResult run_experiment(const Experiment& as_read, const std::filesystem::path&
     throw InputError(std::vector<Problem>{{{}, "nothing to do: expected at least one [[task]]"}});
   write_new_file(folder / experiment_file_name, experiment_toml(experiment));
 
-  const ArmModel arm = experiment.arm.model();
+  const ArmModel arm = experiment.arm_model();
   RunResult result;
   result.folder = folder;
   Witness witness(folder, arm, watcher);

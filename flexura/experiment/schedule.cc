@@ -24,7 +24,7 @@ TaskRunners task_runners(const Experiment& experiment) {
 Schedule::Schedule(const Experiment& experiment) : Schedule(experiment, task_runners(experiment), {}) {}
 
 Schedule::Schedule(const Experiment& experiment, const TaskRunners& tasks, const DoneTasks& done)
-    : model_(experiment.arm.model()),
+    : model_(experiment.arm_model()),
       initial_(arm_state(model_.driven(), experiment.arm.initial)),
       obstacles_(obstacles(experiment.obstacle)),
       step_(experiment.clock.step) {

@@ -156,6 +156,7 @@ ReportData Witness::report_data(const Experiment& experiment, const Schedule& sc
                   .version = experiment.flexura,
                   .experiment_text = experiment_toml(experiment),
                   .arm = model_.driven(),
+                  .model = model_,
                   .times = std::move(times_),
                   .states = std::move(states_),
                   .events = std::move(marks),

@@ -1,25 +1,65 @@
 #include "flexura/kinematics/driven_problem.h"
 
+#include <algorithm>
 #include <cstddef>
+#include <limits>
+#include <vector>
 
 namespace flexura {
+namespace {
+
+// A residual above all that a shape has.
+constexpr double far_away = 1e3;
+
+// Of the variables of an arm: where each stands among three for each section (bend_x, bend_y, stretch).
+std::vector<Eigen::Index> columns_of(const ArmVariables& variables) {
+  std::vector<Eigen::Index> columns(static_cast<std::size_t>(variables.size()));
+  for (std::size_t i = 0; i < variables.parts().size(); ++i) {
+    const ArmVariables::Part& part = variables.parts()[i];
+    const auto first = 3 * static_cast<Eigen::Index>(i);
+    columns[static_cast<std::size_t>(part.at)] = first;
+    if (part.is_spatial) columns[static_cast<std::size_t>(part.at + 1)] = first + 1;
+    if (part.is_stretchable) columns[static_cast<std::size_t>(part.stretch_at())] = first + 2;
+  }
+  return columns;
+}
+
+}  // namespace
 
 DrivenVariables::DrivenVariables(const ArmModel& model)
-    : actuation_(model.actuation()),
-      driven_(model.driven()),
-      shaped_(model.shaped()),
-      by_command_(Eigen::MatrixXd::Zero(shaped_.size(), driven_.size())) {
-  for (std::size_t arc = 0; arc < actuation_.arcs(); ++arc) {
-    const ArmVariables::Part &from = driven_.parts()[actuation_.section_of()[arc]],
-                             &to = shaped_.parts()[arc];
-    by_command_(to.at, from.at) = actuation_.share_of(arc);
-    if (to.is_spatial) by_command_(to.at + 1, from.at + 1) = actuation_.share_of(arc);
-    if (to.is_stretchable) by_command_(to.stretch_at(), from.stretch_at()) = 1;
+    : actuation_(model.actuation()), driven_(model.driven()), shaped_(model.shaped()) {
+  if (!actuation_.is_linear()) return;
+  Eigen::MatrixXd all;
+  actuation_.slopes(ArmState::straight(model.driven().sections.size()), all);
+  shares_ = all(columns_of(shaped_), columns_of(driven_));
+}
+
+void DrivenVariables::shape(const Eigen::VectorXd& command, Eigen::VectorXd& shape) const {
+  if (actuation_.is_linear()) {
+    shape.noalias() = shares_ * command;
+    return;
   }
+  const ArmState made = actuation_.shape(driven_.state(command));
+  const bool is_there =
+      std::ranges::all_of(made.bends, [](const Eigen::Vector2d& bend) { return bend.allFinite(); });
+  if (is_there)
+    shaped_.pack(made, shape);
+  else
+    shape.setConstant(shaped_.size(), std::numeric_limits<double>::quiet_NaN());
 }
 
 Eigen::VectorXd DrivenVariables::command(const Eigen::VectorXd& shape) const {
   return driven_.pack(actuation_.command(shaped_.state(shape)));
+}
+
+void DrivenVariables::slopes(const Eigen::VectorXd& command, Eigen::MatrixXd& by_command) const {
+  if (actuation_.is_linear()) {
+    by_command = shares_;
+    return;
+  }
+  Eigen::MatrixXd all;
+  actuation_.slopes(driven_.state(command), all);
+  by_command = all(columns_of(shaped_), columns_of(driven_));
 }
 
 DrivenProblem::DrivenProblem(const DrivenVariables& variables, BoundedProblem& of_shape)
@@ -28,9 +68,16 @@ DrivenProblem::DrivenProblem(const DrivenVariables& variables, BoundedProblem& o
       by_shape_(Eigen::MatrixXd::Zero(of_shape.row_count(), variables.shaped().size())) {}
 
 void DrivenProblem::linearise(const Eigen::VectorXd& x, Eigen::VectorXd& r, Eigen::MatrixXd& J) {
-  shape_.noalias() = variables_.by_command() * x;
+  variables_.shape(x, shape_);
+  // Where the arm comes to no rest there is no shape: far from any that is wanted.
+  if (!shape_.allFinite()) {
+    r.setConstant(far_away);
+    J.setZero();
+    return;
+  }
   of_shape_.linearise(shape_, r, by_shape_);
-  J.noalias() = by_shape_ * variables_.by_command();
+  variables_.slopes(x, by_command_);
+  J.noalias() = by_shape_ * by_command_;
 }
 
 }  // namespace flexura

@@ -17,17 +17,23 @@ class DrivenVariables {
   /// Of commands, and of shapes.
   [[nodiscard]] const ArmVariables& driven() const { return driven_; }
   [[nodiscard]] const ArmVariables& shaped() const { return shaped_; }
-  /// The shape's variables that a command's make.
-  [[nodiscard]] Eigen::VectorXd shape(const Eigen::VectorXd& command) const { return by_command_ * command; }
+  /// The shape's variables that a command's make, into what is made to fit; NaN where it has no shape.
+  void shape(const Eigen::VectorXd& command, Eigen::VectorXd& shape) const;
+  /// The same.
+  [[nodiscard]] Eigen::VectorXd shape(const Eigen::VectorXd& command) const {
+    Eigen::VectorXd made;
+    shape(command, made);
+    return made;
+  }
   /// The command's, within their limits, whose shape is nearest to one of these.
   [[nodiscard]] Eigen::VectorXd command(const Eigen::VectorXd& shape) const;
-  /// The derivatives of a shape's by a command's.
-  [[nodiscard]] const Eigen::MatrixXd& by_command() const { return by_command_; }
+  /// The derivatives of a shape's by a command's, at that: into what is made to fit.
+  void slopes(const Eigen::VectorXd& command, Eigen::MatrixXd& by_command) const;
 
  private:
   Actuation actuation_;
   ArmVariables driven_, shaped_;
-  Eigen::MatrixXd by_command_;
+  Eigen::MatrixXd shares_;  // where shapes are linear in commands
 };
 
 /// A problem of shapes as one of the commands that make them.
@@ -44,7 +50,7 @@ class DrivenProblem final : public BoundedProblem {
   const DrivenVariables& variables_;
   BoundedProblem& of_shape_;
   Eigen::VectorXd shape_;
-  Eigen::MatrixXd by_shape_;
+  Eigen::MatrixXd by_shape_, by_command_;
 };
 
 }  // namespace flexura

@@ -219,7 +219,7 @@ InverseResult solve_inverse(const Arm& arm, const TipTarget& target, const Inver
 }
 
 InverseResult solve_inverse(const ArmModel& model, const TipTarget& target, const InverseConfig& config) {
-  if (model.actuation().is_one_to_one()) return solve_inverse(model.shaped(), target, config);
+  if (model.actuation().is_identity()) return solve_inverse(model.shaped(), target, config);
   check_question(target, config);
   return answer({model.shaped(), target, config, &model});
 }
@@ -258,7 +258,7 @@ std::vector<InverseResult> all_inverse_solutions(const Arm& arm, const TipTarget
 
 std::vector<InverseResult> all_inverse_solutions(const ArmModel& model, const TipTarget& target,
                                                  const InverseConfig& config) {
-  if (model.actuation().is_one_to_one()) return all_inverse_solutions(model.shaped(), target, config);
+  if (model.actuation().is_identity()) return all_inverse_solutions(model.shaped(), target, config);
   check_question(target, config);
   return all_solutions({model.shaped(), target, config, &model});
 }

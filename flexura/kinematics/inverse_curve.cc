@@ -175,7 +175,7 @@ InverseResult solve_inverse(const Arm& arm, const CurveTarget& target, const Inv
 }
 
 InverseResult solve_inverse(const ArmModel& model, const CurveTarget& target, const InverseConfig& config) {
-  const bool is_plain = model.actuation().is_one_to_one();
+  const bool is_plain = model.actuation().is_identity();
   return answer(model.shaped(), is_plain ? nullptr : &model, target, config);
 }
 

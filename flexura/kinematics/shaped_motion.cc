@@ -13,6 +13,7 @@ class ShapedMotion : public Motion {
   [[nodiscard]] double duration() const override { return command_->duration(); }
   [[nodiscard]] ArmState at(double time) const override { return actuation_.shape(command_->at(time)); }
   [[nodiscard]] std::optional<SectionRates> rates(std::size_t arc, double start, double end) const override {
+    if (!actuation_.is_linear()) return std::nullopt;
     auto rates = command_->rates(actuation_.section_of()[arc], start, end);
     if (rates) rates->bend *= actuation_.share_of(arc);
     return rates;
@@ -26,7 +27,7 @@ class ShapedMotion : public Motion {
 }  // namespace
 
 MotionPtr shaped_motion(const Actuation& actuation, MotionPtr command) {
-  if (actuation.is_one_to_one()) return command;
+  if (actuation.is_identity()) return command;
   return std::make_shared<ShapedMotion>(actuation, std::move(command));
 }
 

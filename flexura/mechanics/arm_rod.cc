@@ -2,12 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <memory>
 #include <numbers>
 #include <stdexcept>
 
+#include "flexura/kinematics/arc_motion.h"
 #include "flexura/math/arrays.h"
 #include "flexura/math/quadrature.h"
-#include "flexura/model/backbone.h"
+#include "flexura/mechanics/rod_response.h"
 
 namespace flexura {
 namespace {
@@ -105,44 +107,114 @@ RodLoads loads_of(const ArmConfig& arm) {
   return loads;
 }
 
-TendonDisplacements arc_displacements(const Rod& rod, const ArmState& state) {
-  require_fit(rod.sections.size(), state);
-  static const Quadrature rule = gauss_legendre(12);
-  const ArmState straight = ArmState::straight(rod.sections.size());
-  const auto length = [&](const TendonRoute& tendon, const ArmState& shape) {
-    double sum = 0, s_base = 0;
+namespace {
+
+// How long a tendon is when the sections are arcs, m, and how that changes with each section's
+// (bend_x, bend_y, stretch).
+class TendonOnArcs {
+ public:
+  TendonOnArcs(const Rod& rod, const TendonRoute& tendon, const ArmState& state)
+      : slopes(Eigen::RowVectorXd::Zero(3 * static_cast<Eigen::Index>(rod.sections.size()))),
+        tendon_(tendon) {
+    double s_base = 0;
     for (std::size_t i = 0; i <= tendon.section; ++i) {
       const RodSection& section = rod.sections[i];
-      const Eigen::Vector2d& bend = shape.bends[i];
-      const Eigen::Vector3d curvature(-bend.y() / section.length, bend.x() / section.length, 0);
-      if (section.disks == 0) {
-        sum += integrate(
-            rule,
-            [&](double s) {
-              const TendonRoute::Offset offset = tendon.at(s);
-              return (Eigen::Vector3d(0, 0, shape.stretches[i]) + curvature.cross(offset.value) +
-                      offset.slope)
-                  .norm();
-            },
-            s_base, s_base + section.length);
-      } else {
-        Eigen::Vector3d before = tendon.at(s_base).value;
-        for (int piece = 1; piece <= section.disks; ++piece) {
-          const double t = static_cast<double>(piece) / section.disks;
-          const Eigen::Vector3d hole = arc_pose(t * bend, t * section.length * shape.stretches[i]) *
-                                       tendon.at(s_base + t * section.length).value;
-          sum += (hole - before).norm();
-          before = hole;
-        }
-      }
+      const auto columns = 3 * static_cast<Eigen::Index>(i);
+      const Eigen::RowVector3d change =
+          section.disks == 0 ? in_channel(section.length, s_base, state.bends[i], state.stretches[i])
+                             : between_disks(section, s_base, state.bends[i], state.stretches[i]);
+      slopes.segment<3>(columns) = change;
       s_base += section.length;
     }
-    return sum;
-  };
+  }
+
+  double length = 0;
+  Eigen::RowVectorXd slopes;
+
+ private:
+  Eigen::RowVector3d in_channel(double of_section, double s_base, const Eigen::Vector2d& bend,
+                                double stretch) {
+    static const Quadrature rule = gauss_legendre(12);
+    const Eigen::Vector3d curvature(-bend.y() / of_section, bend.x() / of_section, 0);
+    Eigen::RowVector3d change = Eigen::RowVector3d::Zero();
+    for (std::size_t k = 0; k < rule.nodes.size(); ++k) {
+      const double weight = 0.5 * of_section * rule.weights[k];
+      const TendonRoute::Offset offset = tendon_.at(s_base + 0.5 * of_section * (1 + rule.nodes[k]));
+      const Eigen::Vector3d way =
+          Eigen::Vector3d(0, 0, stretch) + curvature.cross(offset.value) + offset.slope;
+      Eigen::Matrix3d by_state;
+      by_state.col(0) = Eigen::Vector3d(0, 1 / of_section, 0).cross(offset.value);
+      by_state.col(1) = Eigen::Vector3d(-1 / of_section, 0, 0).cross(offset.value);
+      by_state.col(2) = Eigen::Vector3d(0, 0, 1);
+      length += weight * way.norm();
+      change += weight * way.transpose() / way.norm() * by_state;
+    }
+    return change;
+  }
+
+  Eigen::RowVector3d between_disks(const RodSection& section, double s_base, const Eigen::Vector2d& bend,
+                                   double stretch) {
+    Eigen::RowVector3d change = Eigen::RowVector3d::Zero();
+    Eigen::Vector3d before = tendon_.at(s_base).value;
+    Eigen::Matrix3d before_by_state = Eigen::Matrix3d::Zero();
+    for (int piece = 1; piece <= section.disks; ++piece) {
+      const double t = static_cast<double>(piece) / section.disks;
+      const ArcMotion disk = arc_motion(t * bend, t * section.length * stretch);
+      const Eigen::Vector3d arm = disk.rotation * tendon_.at(s_base + t * section.length).value;
+      const Eigen::Vector3d hole = disk.position + arm;
+      Eigen::Matrix3d by_state;
+      for (int c = 0; c < 2; ++c)
+        by_state.col(c) = t * (disk.linear.col(c) + Eigen::Vector3d(disk.angular.col(c)).cross(arm));
+      by_state.col(2) = disk.position / stretch;
+      const Eigen::Vector3d way = hole - before;
+      length += way.norm();
+      change += way.transpose() / way.norm() * (by_state - before_by_state);
+      before = hole;
+      before_by_state = by_state;
+    }
+    return change;
+  }
+
+  const TendonRoute& tendon_;
+};
+
+}  // namespace
+
+TendonDisplacements arc_displacements(const Rod& rod, const ArmState& state) {
+  require_fit(rod.sections.size(), state);
+  const ArmState straight = ArmState::straight(rod.sections.size());
   TendonDisplacements displacements;
   for (const TendonRoute& tendon : rod.tendons)
-    displacements.pulled.push_back(length(tendon, straight) - length(tendon, state));
+    displacements.pulled.push_back(TendonOnArcs(rod, tendon, straight).length -
+                                   TendonOnArcs(rod, tendon, state).length);
   return displacements;
+}
+
+Eigen::MatrixXd arc_displacement_slopes(const Rod& rod, const ArmState& state) {
+  require_fit(rod.sections.size(), state);
+  Eigen::MatrixXd slopes(static_cast<Eigen::Index>(rod.tendons.size()),
+                         3 * static_cast<Eigen::Index>(rod.sections.size()));
+  for (std::size_t i = 0; i < rod.tendons.size(); ++i)
+    slopes.row(static_cast<Eigen::Index>(i)) = -TendonOnArcs(rod, rod.tendons[i], state).slopes;
+  return slopes;
+}
+
+std::vector<double> pretension_displacements(RodStatics& statics, double tension) {
+  const std::vector<double> tensions(statics.rest_lengths().size(), tension);
+  const Equilibrium tight = statics.solve({.tensions = tensions}, {});
+  if (!tight.converged()) throw std::invalid_argument("the arm comes to no rest under its pretension");
+  return tight.displacements;
+}
+
+ArmModel arm_model_of(const ArmConfig& arm, const std::optional<DriveConfig>& drive) {
+  Arm driven = arm.arm();
+  if (arm.mechanics != ArmMechanics::statics) return ArmModel(driven);
+  for (Section& section : driven.sections)
+    if (!section.bend_profile) section.bend_profile.emplace(arcs_of_rod_section, 1.0);
+  const Actuation actuation(
+      driven, std::make_shared<RodResponse>(driven, rod_of(arm, drive), loads_of(arm),
+                                            drive ? std::optional(drive->drive()) : std::nullopt));
+  return {driven, actuation, shaped_arm(driven, actuation)};
 }
 
 }  // namespace flexura

@@ -1,10 +1,15 @@
 #pragma once
 
+#include <Eigen/Core>
+#include <cstddef>
 #include <optional>
+#include <vector>
 
 #include "flexura/mechanics/rod.h"
+#include "flexura/mechanics/statics.h"
 #include "flexura/model/arm.h"
 #include "flexura/model/arm_config.h"
+#include "flexura/model/arm_model.h"
 #include "flexura/model/drive.h"
 #include "flexura/model/drive_config.h"
 
@@ -26,5 +31,19 @@ namespace flexura {
 /// says: what is believed of an arm whose tendons are pulled to bend it so. std::invalid_argument: a state of
 /// another number of sections.
 [[nodiscard]] TendonDisplacements arc_displacements(const Rod& rod, const ArmState& state);
+/// Their derivative by every section's (bend_x, bend_y, stretch): one row a tendon, 3 columns a section.
+/// Errors likewise.
+[[nodiscard]] Eigen::MatrixXd arc_displacement_slopes(const Rod& rod, const ArmState& state);
+
+/// How far a rod's tendons are pulled in, m, when each pulls with `tension` N and nothing else does.
+/// std::invalid_argument: the rod comes to no rest.
+[[nodiscard]] std::vector<double> pretension_displacements(RodStatics& statics, double tension);
+
+/// Arcs of a section of an arm that is believed to be a rod, where its file says no other number.
+inline constexpr std::size_t arcs_of_rod_section = 3;
+
+/// An arm and its drive as tasks believe them to be: a section is an arc, or several (Section::bend_profile);
+/// of an arm whose model is static, what its rod makes of commands (RodResponse). Errors as RodResponse.
+[[nodiscard]] ArmModel arm_model_of(const ArmConfig& arm, const std::optional<DriveConfig>& drive);
 
 }  // namespace flexura

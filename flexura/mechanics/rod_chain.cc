@@ -105,6 +105,15 @@ void RodChain::place_with_columns(const Eigen::VectorXd& q) {
   }
 }
 
+void RodChain::stretch_rest(std::span<const double> factors) {
+  if (factors.size() != elements_.size())
+    throw std::invalid_argument("expected a factor on the length of each section");
+  for (const double factor : factors)
+    if (!(factor > 0) || !std::isfinite(factor))
+      throw std::invalid_argument("expected factors above 0 on the lengths of sections");
+  for (std::size_t i = 0; i < factors.size(); ++i) elements_[i].stretch_rest(factors[i]);
+}
+
 void RodChain::balance(const Eigen::VectorXd& q, std::span<const double> tensions, const RodLoads& loads,
                        double share) {
   is_loaded_ = !is_none(loads);

@@ -43,6 +43,11 @@ class RodChain {
   /// q of element i starts here.
   [[nodiscard]] Eigen::Index first(std::size_t element) const { return first_[element]; }
 
+  /// Each section's own length at rest becomes a factor of what the rod says, one a section, each > 0: of
+  /// sections that something drives longer or shorter. Arc lengths at rest, and what is counted by them, stay
+  /// those of the rod. std::invalid_argument: another number of factors, or a factor that is not above 0.
+  void stretch_rest(std::span<const double> factors);
+
   /// Balances the rod at q under tensions, N, and a share of the loads.
   void balance(const Eigen::VectorXd& q, std::span<const double> tensions, const RodLoads& loads,
                double share);

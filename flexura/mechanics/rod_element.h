@@ -33,6 +33,8 @@ class RodElement {
   /// Whether its tendons' forces depend on how its parts lie to each other, not on its strains alone.
   [[nodiscard]] bool has_chords() const { return !grid_.disks.empty(); }
 
+  /// The section's own length at rest becomes this factor of what its description says.
+  void stretch_rest(double factor) { grid_.stretch_rest(factor); }
   /// What its modes are worth, `size()`.
   void set_modes(const Eigen::Ref<const Eigen::VectorXd>& q);
   [[nodiscard]] const Eigen::VectorXd& modes() const { return q_; }

@@ -84,6 +84,15 @@ RodGrid::RodGrid(const RodSection& section, std::span<const double> at) : count(
     disks.push_back(node_at(static_cast<double>(i) / section.disks));
 }
 
+void RodGrid::stretch_rest(double factor) {
+  constexpr int stretch = 2;
+  const double change = factor - rest.front()[stretch];
+  if (change == 0) return;
+  for (Vector6d& strain : rest) strain[stretch] = factor;
+  // The first moment is an integral over arc length: in proportion for what is constant.
+  for (auto& of_interval : rest_moments) of_interval[0][stretch] *= factor / (factor - change);
+}
+
 void RodGrid::integrate_nodes() {
   // Of the Lagrange polynomials of the nodes that count in integrals.
   const auto nodes = static_cast<Eigen::Index>(t.size());

@@ -35,6 +35,8 @@ struct RodGrid {
   std::vector<std::size_t> disks;       ///< The nodes that are disks, base and end among them; or none.
   std::vector<std::size_t> mass_nodes;  ///< Of the section's point masses.
 
+  /// The section's own length at rest becomes a factor of what it was: its stretch at rest, whatever pulls.
+  void stretch_rest(double factor);
   /// The node at t. It is one.
   [[nodiscard]] std::size_t node_at(double place) const;
   /// Where the mode j of strain c is: f(c, j) for all.

@@ -353,6 +353,11 @@ Equilibrium RodStatics::solve_from(const Unknowns& start, bool is_cold) {
   return result;
 }
 
+void RodStatics::stretch_rest(std::span<const double> factors) {
+  chain_.stretch_rest(factors);
+  is_solved_ = false;
+}
+
 Equilibrium RodStatics::solve(const TendonInput& tendons, const RodLoads& loads) {
   return solve(tendons, loads, {});
 }

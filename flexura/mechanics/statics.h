@@ -76,6 +76,9 @@ class RodStatics {
   /// As RodChain.
   explicit RodStatics(Rod rod, std::span<const RodPlace> places = {});
 
+  /// As RodChain::stretch_rest, of what is solved from now on. Displacements go on counting from the rod as
+  /// it was.
+  void stretch_rest(std::span<const double> factors);
   /// From the rod at rest.
   [[nodiscard]] Equilibrium solve(const TendonInput& tendons, const RodLoads& loads);
   /// From an equilibrium nearby, or from rest where that does not lead there directly.

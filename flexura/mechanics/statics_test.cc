@@ -5,6 +5,8 @@
 #include <Eigen/Dense>
 #include <cmath>
 #include <numbers>
+#include <stdexcept>
+#include <vector>
 
 #include "tests/support/known_rods.h"
 #include "tests/support/random_cases.h"
@@ -200,6 +202,41 @@ TEST(Statics, RefusesWhatIsNoInput) {
         "section 2: Young's modulus and shear modulus must be above 0; tendon 1: ends at a section that "
         "the rod has not");
   }
+}
+
+// A section that is driven longer is the longer section of the same substance: each strain a metre is
+// less by the factor, so the stiffness is more by it and the mass a metre less.
+TEST(Statics, ASectionThatIsDrivenLongerIsALongerOne) {
+  for_random_cases(10, [](TestRandom& random) {
+    Rod rod = two_section_robot();
+    Rod longer = rod;
+    const std::vector<double> factors = {random.uniform(0.7, 1.5), random.uniform(0.7, 1.5)};
+    double base = 0;
+    for (std::size_t i = 0; i < 2; ++i) {
+      RodSection &one = rod.sections[i], &other = longer.sections[i];
+      one.mass_per_length = 0.3;
+      other.length *= factors[i];
+      other.stiffness = factors[i] * one.stiffness_at(0);
+      other.mass_per_length = 0.3 / factors[i];
+      base += one.length;
+    }
+    const RodLoads loads{.gravity = {9.81 * random.uniform(-1, 1), 0, -9.81},
+                         .ends = {{.section = 1, .force = random.vector<3>(-0.1, 0.1)}}};
+    const TendonInput pulls{.tensions = {random.uniform(0, 3), 0, 0, 0, random.uniform(0, 3), 0}};
+    RodStatics driven(rod);
+    driven.stretch_rest(factors);
+    const Equilibrium a = driven.solve(pulls, loads), b = RodStatics(longer).solve(pulls, loads);
+    ASSERT_TRUE(a.converged());
+    ASSERT_TRUE(b.converged());
+    EXPECT_LE((a.tip.position - b.tip.position).norm(), 1e-9 * base);
+    EXPECT_NEAR(a.strain_energy, b.strain_energy, 1e-9 * b.strain_energy);
+    // And back again.
+    driven.stretch_rest(std::vector<double>{1, 1});
+    const Equilibrium before = driven.solve(pulls, loads), fresh = RodStatics(rod).solve(pulls, loads);
+    EXPECT_LE((before.tip.position - fresh.tip.position).norm(), 1e-12 * base);
+    EXPECT_THROW(driven.stretch_rest(std::vector<double>{1}), std::invalid_argument);
+    EXPECT_THROW(driven.stretch_rest(std::vector<double>{1, 0}), std::invalid_argument);
+  });
 }
 
 }  // namespace

@@ -6,17 +6,31 @@
 #include <cmath>
 #include <limits>
 #include <stdexcept>
+#include <utility>
+
+#include "flexura/model/arm_way.h"
 
 namespace flexura {
 namespace {
 
-std::vector<double> shares_of(const Section& section, std::size_t index) {
+// From a shape to its command. Each gains a factor of about ten.
+constexpr int max_steps = 20;
+
+// The section's profile, checked.
+std::vector<double> profile_of(const Section& section, std::size_t index) {
   std::vector<double> shares = section.bend_profile.value_or(std::vector<double>{1});
   double sum = 0;
   for (const double part : shares) sum += part >= 0 ? part : std::nan("");
   if (!(sum > 0) || !std::isfinite(sum))
     throw std::invalid_argument(
         fmt::format("section {}: a bend profile is of numbers from 0 on, one of them above", index + 1));
+  return shares;
+}
+
+std::vector<double> shares_of(const Section& section, std::size_t index) {
+  std::vector<double> shares = profile_of(section, index);
+  double sum = 0;
+  for (const double part : shares) sum += part;
   // One arc has all of the bend, to the last bit.
   for (double& part : shares) part = shares.size() == 1 ? 1 : part / sum;
   return shares;
@@ -24,14 +38,15 @@ std::vector<double> shares_of(const Section& section, std::size_t index) {
 
 // Arc `i` of the `count` that a section is cut into.
 Section arc_of(const Section& section, std::size_t i, std::size_t count) {
-  if (count == 1) return section;
   const auto [from, to] = section.radius;
   const auto radius = [from, to, count](std::size_t end) {
     return from + (to - from) * static_cast<double>(end) / static_cast<double>(count);
   };
   Section arc = section;
-  arc.length = section.length / static_cast<double>(count);
-  arc.radius = {radius(i), radius(i + 1)};
+  if (count > 1) {
+    arc.length = section.length / static_cast<double>(count);
+    arc.radius = {radius(i), radius(i + 1)};
+  }
   arc.max_bend = arc.max_bend_rate = std::numeric_limits<double>::infinity();
   arc.bend_profile.reset();
   return arc;
@@ -48,6 +63,16 @@ Actuation::Actuation(const Arm& driven) : sections_(driven.sections.size()) {
   }
 }
 
+Actuation::Actuation(const Arm& driven, std::shared_ptr<const ArmResponse> response)
+    : sections_(driven.sections.size()), response_(std::move(response)) {
+  for (std::size_t i = 0; i < sections_; ++i) {
+    for (const double factor : profile_of(driven.sections[i], i)) {
+      section_of_.push_back(i);
+      shares_.push_back(factor);
+    }
+  }
+}
+
 Actuation Actuation::with_gains(const std::vector<double>& gains) const {
   Actuation actuation = *this;
   if (gains.empty()) return actuation;
@@ -58,7 +83,12 @@ Actuation Actuation::with_gains(const std::vector<double>& gains) const {
 
 ArmState Actuation::shape(const ArmState& command) const {
   if (sections_ > 0) require_fit(sections_, command);
-  if (is_one_to_one()) return command;
+  if (is_identity()) return command;
+  if (response_) {
+    ArmState shape = response_->shape(command);
+    for (std::size_t k = 0; k < arcs(); ++k) shape.bends[k] *= shares_[k];
+    return shape;
+  }
   ArmState shape = ArmState::straight(arcs());
   for (std::size_t k = 0; k < arcs(); ++k) {
     shape.bends[k] = shares_[k] * command.bends[section_of_[k]];
@@ -69,7 +99,30 @@ ArmState Actuation::shape(const ArmState& command) const {
 
 ArmState Actuation::command(const ArmState& shape) const {
   if (sections_ > 0) require_fit(arcs(), shape);
-  if (is_one_to_one()) return shape;
+  if (is_identity()) return shape;
+  if (!response_) return linear_command(shape);
+  ArmState command = ArmState::straight(sections_);
+  for (std::size_t k = 0; k < arcs(); ++k) {
+    command.bends[section_of_[k]] += shape.bends[k];
+    command.stretches[section_of_[k]] = shape.stretches[k];
+  }
+  ArmState best = command;
+  double least = std::numeric_limits<double>::infinity();
+  for (int step = 0; step < max_steps; ++step) {
+    const ArmState made = this->shape(command);
+    std::vector<Eigen::Vector2d> missed(sections_, Eigen::Vector2d::Zero());
+    double square = 0;
+    for (std::size_t k = 0; k < arcs(); ++k) missed[section_of_[k]] += shape.bends[k] - made.bends[k];
+    for (const Eigen::Vector2d& bend : missed) square += bend.squaredNorm();
+    if (square < least) best = command, least = square;
+    if (!(square > 1e-24 && square < 100 * least)) break;
+    for (std::size_t i = 0; i < sections_; ++i) command.bends[i] += missed[i];
+  }
+  return best;
+}
+
+// By shares alone.
+ArmState Actuation::linear_command(const ArmState& shape) const {
   ArmState command = ArmState::straight(sections_);
   std::vector<double> squares(sections_, 0), counts(sections_, 0);
   command.stretches.assign(sections_, 0);
@@ -83,15 +136,38 @@ ArmState Actuation::command(const ArmState& shape) const {
   return command;
 }
 
-void Actuation::by_command(const Eigen::MatrixXd& by_shape, Eigen::MatrixXd& by_command) const {
+void Actuation::slopes(const ArmState& command, Eigen::MatrixXd& by_command) const {
+  require_fit(sections_, command);
+  if (response_) {
+    response_->slopes(command, by_command);
+    for (std::size_t k = 0; k < arcs(); ++k)
+      by_command.middleRows<2>(3 * static_cast<Eigen::Index>(k)) *= shares_[k];
+    return;
+  }
+  by_command.setZero(3 * static_cast<Eigen::Index>(arcs()), 3 * static_cast<Eigen::Index>(sections_));
+  for (std::size_t k = 0; k < arcs(); ++k) {
+    const auto to = 3 * static_cast<Eigen::Index>(k), from = 3 * static_cast<Eigen::Index>(section_of_[k]);
+    by_command(to, from) = by_command(to + 1, from + 1) = shares_[k];
+    by_command(to + 2, from + 2) = 1;
+  }
+}
+
+void Actuation::by_command(const Eigen::MatrixXd& by_shape, const ArmState& command,
+                           Eigen::MatrixXd& by_command) const {
   if (sections_ == 0) {
     by_command = by_shape;
     return;
   }
   if (by_shape.cols() != 3 * static_cast<Eigen::Index>(arcs()))
     throw std::invalid_argument("a derivative by a shape has three columns an arc");
-  by_command.resize(by_shape.rows(), 3 * static_cast<Eigen::Index>(sections_));
-  by_command.setZero();
+  if (response_) {
+    Eigen::MatrixXd slopes_here;
+    slopes(command, slopes_here);
+    by_command.noalias() = by_shape * slopes_here;
+    return;
+  }
+  // The same without a matrix that is mostly zeros.
+  by_command.setZero(by_shape.rows(), 3 * static_cast<Eigen::Index>(sections_));
   for (std::size_t k = 0; k < arcs(); ++k) {
     const auto from = 3 * static_cast<Eigen::Index>(k), to = 3 * static_cast<Eigen::Index>(section_of_[k]);
     by_command.middleCols<2>(to) += shares_[k] * by_shape.middleCols<2>(from);
@@ -101,7 +177,7 @@ void Actuation::by_command(const Eigen::MatrixXd& by_shape, Eigen::MatrixXd& by_
 
 Arm shaped_arm(const Arm& driven, const Actuation& actuation) {
   Arm shaped = driven;
-  if (actuation.is_one_to_one()) return shaped;
+  if (actuation.is_identity()) return shaped;
   shaped.sections.clear();
   const auto& section_of = actuation.section_of();
   for (std::size_t k = 0; k < section_of.size(); ++k) {

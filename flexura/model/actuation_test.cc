@@ -100,7 +100,10 @@ TEST(Actuation, TakesDerivativesByShapesToThoseByCommands) {
         Eigen::MatrixXd::NullaryExpr(4, 3 * static_cast<Eigen::Index>(model.shaped().sections.size()),
                                      [&] { return random.uniform(-1, 1); });
     Eigen::MatrixXd by_command;
-    model.actuation().by_command(by_shape, by_command);
+    model.actuation().by_command(by_shape, state_of(command), by_command);
+    Eigen::MatrixXd slopes;
+    model.actuation().slopes(state_of(command), slopes);
+    EXPECT_LE((by_shape * slopes - by_command).norm(), 1e-14 * by_command.norm());
     ASSERT_EQ(by_command.cols(), command.size());
     const auto value = [&](const Eigen::VectorXd& x) -> Eigen::VectorXd {
       return by_shape * packed(model.actuation().shape(state_of(x)));
@@ -115,7 +118,7 @@ TEST(Actuation, OfSingleArcsIsNoneAtAll) {
     const Arm arm = random_arm(random);
     const ArmModel model(arm);
     const ArmState state = random_state(random, arm);
-    EXPECT_TRUE(model.actuation().is_one_to_one());
+    EXPECT_TRUE(model.actuation().is_identity());
     EXPECT_EQ(model.actuation().shape(state), state);
     EXPECT_EQ(model.actuation().command(state), state);
     const Backbone one = model.backbone(state), other(arm, state);
@@ -154,7 +157,8 @@ TEST(Actuation, RefusesWhatIsNoProfile) {
   EXPECT_THROW((void)actuation.command(ArmState::straight(9)), std::invalid_argument);
   EXPECT_THROW((void)actuation.with_gains({1, 2}), std::invalid_argument);
   Eigen::MatrixXd out;
-  EXPECT_THROW(actuation.by_command(Eigen::MatrixXd::Zero(2, 9), out), std::invalid_argument);
+  EXPECT_THROW(actuation.by_command(Eigen::MatrixXd::Zero(2, 9), ArmState::straight(8), out),
+               std::invalid_argument);
 }
 
 TEST(Actuation, OfNothingIsTheIdentity) {
@@ -163,7 +167,7 @@ TEST(Actuation, OfNothingIsTheIdentity) {
   EXPECT_EQ(Actuation().command(state), state);
   const Eigen::MatrixXd by_shape = Eigen::MatrixXd::Random(2, 6);
   Eigen::MatrixXd by_command;
-  Actuation().by_command(by_shape, by_command);
+  Actuation().by_command(by_shape, state, by_command);
   EXPECT_EQ(by_command, by_shape);
 }
 

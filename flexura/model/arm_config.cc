@@ -83,10 +83,11 @@ const Table<Section>& fields_of(const Section*) {
                   .default_text = "no limit"})
           .field("bend_profile", &Section::bend_profile,
                  {.meaning = "How the bend is spread along the section: it is so many arcs of equal length, "
-                             "bent in these proportions.",
+                             "bent in these proportions. Where the arm's model is static, so many arcs stand "
+                             "for the rod, each bent by this factor more than computed.",
                   .range = between(0, 1e6),
                   .count = {1, max_arcs},
-                  .default_text = "one arc"})
+                  .default_text = "one arc; static: three"})
           .field("material", &Section::material,
                  {.meaning = "What the elastic rod in the section is made of.", .default_text = "none"})
           .check([](const Section& section, Reader& reader) {
@@ -168,10 +169,12 @@ const Table<ArmConfig>& fields_of(const ArmConfig*) {
                   .count = {1, max_sections},
                   .required = true})
           .field("look", &ArmConfig::look, {.meaning = "What a camera sees of it beside its shape."})
-          .field(
-              "model", &ArmConfig::mechanics,
-              {.meaning = "kinematic: the arm's shape is as commands say. static: its sections are elastic "
-                          "rods, at rest under their tendons, gravity and loads; each needs a material."})
+          .field("model", &ArmConfig::mechanics,
+                 {.meaning =
+                      "kinematic: the arm's shape is as commands say. static: its sections are elastic "
+                      "rods, at rest under their tendons, gravity and loads; each needs a material. Under "
+                      "[truth.arm] the simulated arm is such a rod while the tasks go on believing what "
+                      "[arm] says."})
           .field("gravity", &ArmConfig::gravity,
                  {.meaning = "Gravity in the world's frame, X, Y, Z: [0, -9.81, 0] where +Y is up. It bends "
                              "elastic rods alone.",

@@ -13,16 +13,15 @@ ArmState RigModel::bent(const ArmState& command) const {
 }
 
 ArmModel RigModel::arm_model() const {
-  if (actuation.is_one_to_one()) return ArmModel(arm);
+  if (actuation.is_identity()) return ArmModel(arm);
   return {driven, actuation.with_gains(bend_gains), arm};
 }
 
-RigModel rig_model(const Arm& driven, const std::vector<CameraConfig>& cameras) {
+RigModel rig_model(const ArmModel& arm, const std::vector<CameraConfig>& cameras) {
   RigModel model;
-  const Actuation actuation(driven);
-  model.arm = shaped_arm(driven, actuation);
-  if (!actuation.is_one_to_one()) model.driven = driven, model.actuation = actuation;
-  model.bend_gains.assign(actuation.arcs(), 1.0);
+  model.arm = arm.shaped();
+  if (!arm.actuation().is_identity()) model.driven = arm.driven(), model.actuation = arm.actuation();
+  model.bend_gains.assign(arm.actuation().arcs(), 1.0);
   model.cameras = cameras;
   return model;
 }

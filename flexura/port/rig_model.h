@@ -32,8 +32,12 @@ struct RigModel {
   [[nodiscard]] ArmModel arm_model() const;
 };
 
-/// A model of that arm, as its drives see it, and these cameras, nothing of which is known to be wrong.
-[[nodiscard]] RigModel rig_model(const Arm& driven, const std::vector<CameraConfig>& cameras);
+/// A model of that arm and these cameras, nothing of which is known to be wrong.
+[[nodiscard]] RigModel rig_model(const ArmModel& arm, const std::vector<CameraConfig>& cameras);
+/// The same of an arm of arcs, as its drives see it.
+[[nodiscard]] inline RigModel rig_model(const Arm& driven, const std::vector<CameraConfig>& cameras) {
+  return rig_model(ArmModel(driven), cameras);
+}
 
 /// A way in which one camera stood, as its head and stage say.
 struct RigStance {

@@ -119,9 +119,10 @@ std::string ReportMotion::tip_text(std::size_t i) const {
 
 ReportMotion motion_of(const ReportData& data) {
   require_usable(data);
-  const ArmModel model(data.arm);
+  const ArmModel model = data.model.value_or(ArmModel(data.arm));
   ReportMotion motion;
   motion.arm = data.arm;
+  motion.model = model;
   if (data.safety) motion.violations = data.safety->violations;
   motion.obstacles = data.obstacles;
   motion.curve = data.curve;

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "flexura/model/arm_model.h"
 #include "flexura/model/backbone.h"
 #include "flexura/model/obstacle.h"
 #include "flexura/report/report.h"
@@ -29,6 +30,7 @@ struct UnsafeMoment {
 /// The part of a run that its report shows.
 struct ReportMotion {
   Arm arm;
+  ArmModel model = ArmModel(arm);
   std::vector<double> times;        ///< s
   std::vector<ArmState> states;     ///< One a time.
   std::vector<Backbone> backbones;  ///< One a time.

@@ -99,7 +99,7 @@ std::string figure_html(const ReportFigure& figure) {
 std::string motion_json(const ReportMotion& motion) {
   const Pose& X_WB = motion.arm.X_WB;
   std::vector<double> lengths, radii, states;
-  const ArmModel model(motion.arm);
+  const ArmModel& model = motion.model;
   for (const Section& section : model.shaped().sections) {
     lengths.push_back(section.length);
     radii.insert(radii.end(), section.radius.begin(), section.radius.end());

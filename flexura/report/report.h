@@ -8,6 +8,7 @@
 
 #include "flexura/kinematics/curves.h"
 #include "flexura/model/arm.h"
+#include "flexura/model/arm_model.h"
 #include "flexura/model/obstacle.h"
 #include "flexura/report/chart.h"
 
@@ -56,6 +57,7 @@ struct ReportData {
   std::string version;          ///< Flexura's.
   std::string experiment_text;  ///< The experiment file as run, shown as it is.
   Arm arm;
+  std::optional<ArmModel> model = {};  ///< What commands make of it. None: its sections' arcs.
   std::vector<double> times;     ///< s, ascending; one a state, at least one.
   std::vector<ArmState> states;  ///< As run; finite.
   std::vector<Mark> events;      ///< In the order of time.

@@ -22,7 +22,7 @@ struct IdealCamera {
 }  // namespace
 
 std::function<Image<std::uint8_t>(const View&, const ArmState&)> ideal_pictures(const Setup& setup) {
-  const ArmModel arm = setup.arm.model();
+  const ArmModel arm = setup.arm_model();
   auto ideal = std::make_shared<IdealCamera>(IdealCamera{
       arm, SceneMaker(arm.driven(), setup.arm.look, setup.stand, setup.obstacle), Renderer(), {}});
   return [ideal](const View& view, const ArmState& state) {

@@ -5,9 +5,12 @@
 #include <algorithm>
 #include <cstddef>
 #include <set>
+#include <stdexcept>
+#include <vector>
 
 #include "flexura/base/table.h"
 #include "flexura/kinematics/shape.h"
+#include "flexura/mechanics/arm_rod.h"
 #include "flexura/rig/setup_fields.h"
 
 namespace flexura {
@@ -111,6 +114,14 @@ const Table<TruthConfig>& fields_of(const TruthConfig*) {
           .field("stand", &TruthConfig::stand,
                  {.meaning = "What stands around the arm.", .partial = true, .default_text = "as believed"});
   return table;
+}
+
+ArmModel Setup::arm_model() const {
+  try {
+    return arm_model_of(arm, drive);
+  } catch (const std::invalid_argument& error) {
+    throw InputError(std::vector<Problem>{{{}, fmt::format("arm: {}", error.what())}});
+  }
 }
 
 RigConfig Setup::model_rig() const { return {arm, drive, cameras()}; }

@@ -57,6 +57,8 @@ struct Setup {
   std::optional<TruthConfig> truth;  ///< None: the world is as it is believed to be.
   std::filesystem::path folder;      ///< In which the file is; not a part of it.
 
+  /// The arm as tasks believe it to be. InputError: an elastic arm that comes to no rest.
+  [[nodiscard]] ArmModel arm_model() const;
   /// The rig as tasks believe it to be, and as it is.
   [[nodiscard]] RigConfig model_rig() const;
   [[nodiscard]] RigConfig true_rig() const;

@@ -112,7 +112,7 @@ SafetyReport check_motions(const ArmModel& model, const std::vector<Obstacle>& o
                            const ArmState& initial, const std::vector<TimedMotion>& motions, double step,
                            Progress* progress) {
   const Actuation& actuation = model.actuation();
-  if (actuation.is_one_to_one())
+  if (actuation.is_identity())
     return check_motions(model.shaped(), obstacles, initial, motions, step, progress);
   SafetyReport report = check_with(model.driven(), {}, initial, motions, step, progress);
   if (!report.is_complete) return report;

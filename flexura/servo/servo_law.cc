@@ -38,12 +38,12 @@ void ServoLaw::pack(const ArmState& state, Eigen::VectorXd& x) const {
   }
 }
 
-void ServoLaw::by_variables(const Eigen::MatrixXd& by_shape, Eigen::MatrixXd& J) {
-  if (actuation_.is_one_to_one()) {
+void ServoLaw::by_variables(const Eigen::MatrixXd& by_shape, const ArmState& command, Eigen::MatrixXd& J) {
+  if (actuation_.is_identity()) {
     law_.by_variables(by_shape, J);
     return;
   }
-  actuation_.by_command(by_shape, by_command_);
+  actuation_.by_command(by_shape, command, by_command_);
   law_.by_variables(by_command_, J);
 }
 
@@ -84,10 +84,10 @@ ServoLaw::Wish ServoLaw::step(const Input& input) {
       pack(input.said, x_), pack(actuation_.command(estimate), y_);
       response_.learn(x_, y_);
     }
-    by_variables(is_.by_state, by_shape_);
+    by_variables(is_.by_state, input.sent, by_shape_);
     J_.noalias() = by_shape_ * response_.matrix();
   } else {
-    by_variables(is_.by_state, J_);
+    by_variables(is_.by_state, input.sent, J_);
   }
   // What was sent since the pictures were taken is on its way.
   if (config_.predict) {

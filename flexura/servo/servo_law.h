@@ -40,8 +40,8 @@ class ServoLaw {
   [[nodiscard]] Wish step(const Input& input);
 
  private:
-  // The derivatives by what the law varies, from those by the shape.
-  void by_variables(const Eigen::MatrixXd& by_shape, Eigen::MatrixXd& J);
+  // The derivatives by what the law varies, at a command, from those by the shape.
+  void by_variables(const Eigen::MatrixXd& by_shape, const ArmState& command, Eigen::MatrixXd& J);
   // The variables of a command, within the limits or not.
   void pack(const ArmState& state, Eigen::VectorXd& x) const;
   // Of what is seen, in seen_.

@@ -68,12 +68,7 @@ StaticPlant::StaticPlant(const PlantSetup& setup)
   }
   const std::size_t tendons = fine_.rod().tendons.size();
   tight_.assign(tendons, 0.0);
-  if (drive_ && drive_->pretension > 0) {
-    const Equilibrium tight =
-        statics_.solve({.tensions = std::vector<double>(tendons, drive_->pretension)}, {});
-    if (!tight.converged()) throw std::invalid_argument("the arm comes to no rest under its pretension");
-    tight_ = tight.displacements;
-  }
+  if (drive_ && drive_->pretension > 0) tight_ = pretension_displacements(statics_, drive_->pretension);
   snapshots_.push_back(settled(0, {0, {}, std::vector<double>(drive_ ? tendons : 0, 0.0)}));
 }
 
@@ -154,9 +149,16 @@ std::vector<double> StaticPlant::displacements(double time, const std::vector<do
   return pulled;
 }
 
+// How long its sections are by themselves; behind a drive, as their description says.
+std::vector<double> StaticPlant::rest_stretches(double time) const {
+  if (bends_) return bends_->at(time).stretches;
+  return std::vector<double>(arm_.sections.size(), 1.0);
+}
+
 Equilibrium StaticPlant::solved(double time, const Equilibrium& near, const std::vector<double>& lost) const {
   const TendonInput input{.displacements = displacements(time, lost)};
   const std::lock_guard lock(mutex_);
+  statics_.stretch_rest(rest_stretches(time));
   Equilibrium at = statics_.solve(input, loads_, near);
   if (!at.converged())
     throw std::runtime_error(fmt::format(
@@ -164,10 +166,11 @@ Equilibrium StaticPlant::solved(double time, const Equilibrium& near, const std:
   return at;
 }
 
-Backbone StaticPlant::backbone_of(const Equilibrium& at) const {
+Backbone StaticPlant::backbone_of(double time, const Equilibrium& at) const {
   std::vector<BackboneSample> samples;
   {
     const std::lock_guard lock(mutex_);
+    fine_.stretch_rest(rest_stretches(time));
     fine_.place(at.q);
     double s_rest = 0;
     for (std::size_t i = 0; i < fine_.elements().size(); ++i) {

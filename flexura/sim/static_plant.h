@@ -22,8 +22,8 @@ namespace flexura {
 ///
 /// Behind a drive its spools pull the tendons in, from the pretension on; a motor that would have to turn
 /// against more than its pull-out torque loses steps, a turn of its field at a time. Without a drive, what
-/// commands call bends pulls each tendon in as far as arcs of these bends would. std::runtime_error: the arm
-/// has no equilibrium.
+/// commands call bends pulls each tendon in as far as arcs of these bends would, and what they call stretches
+/// are factors on the sections' own lengths. std::runtime_error: the arm has no equilibrium.
 class StaticPlant : public Plant {
  public:
   static constexpr double step = 0.02;
@@ -35,7 +35,7 @@ class StaticPlant : public Plant {
   void command(double time, const Eigen::VectorXd& u, double duration) override;
   void halt(double time) override;
   void advance(double time) override;
-  [[nodiscard]] Backbone backbone(double time) const override { return backbone_of(equilibrium(time)); }
+  [[nodiscard]] Backbone backbone(double time) const override { return backbone_of(time, equilibrium(time)); }
   [[nodiscard]] std::optional<ArmState> commanded(double time) const override;
   [[nodiscard]] std::vector<double> tensions(double time) const override {
     return equilibrium(time).tensions;
@@ -58,7 +58,8 @@ class StaticPlant : public Plant {
                                    const std::vector<double>& lost) const;
   [[nodiscard]] Snapshot settled(long index, Snapshot from) const;
   [[nodiscard]] bool lose_steps(double time, const Equilibrium& at, std::vector<double>& lost) const;
-  [[nodiscard]] Backbone backbone_of(const Equilibrium& at) const;
+  [[nodiscard]] std::vector<double> rest_stretches(double time) const;
+  [[nodiscard]] Backbone backbone_of(double time, const Equilibrium& at) const;
 
   Arm arm_;
   RodLoads loads_;

@@ -100,7 +100,7 @@ Backbone backbone_at(const ViewedRig& rig, const std::vector<Instant>& instants,
 
 ViewedRig::ViewedRig(Experiment read)
     : experiment(std::move(read)),
-      model(experiment.arm.model()),
+      model(experiment.arm_model()),
       truth(experiment.true_rig().arm.model()),
       initial(ArmSetup(experiment.true_rig()).initial),
       is_rod(experiment.true_rig().arm.mechanics == ArmMechanics::statics),

@@ -278,7 +278,7 @@ std::string found_rig_toml(const Setup& setup, const CalibrationRun& run) {
   file.arm = setup.arm;
   const RigModel& found = run.result.found.model;
   // Markers stay where they are on each section, as these are longer or shorter than believed.
-  const Arm believed = setup.arm.model().shaped();
+  const Arm believed = setup.arm_model().shaped();
   const auto moved = [&](double s) {
     const ArmState straight = ArmState::straight(found.arm.sections.size());
     return arc_length_of(found.arm, straight, material_point(believed, s));

@@ -185,7 +185,7 @@ CalibrationRun run_calibration(const CalibrateTask& task, const std::string& nam
   CalibrationRun run;
   run.name = name;
   run.is_before_etalon = is_before_etalon(task);
-  run.believed = rig_model(setup.arm.arm(), cameras);
+  run.believed = rig_model(setup.arm_model(), cameras);
   for (std::size_t i = 0; i < 2; ++i) run.cameras[i] = cameras[session.cameras[i]].name;
   RecordedPorts recorded(stage.rig.ports(), from, stage.record_steps);
   LoggedSession log(run, session.images, stage, recorded.motion());

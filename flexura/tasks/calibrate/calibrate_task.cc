@@ -46,7 +46,7 @@ class CalibrateRunner : public TaskRunner {
 
   [[nodiscard]] TaskWay way() const override { return TaskWay::by_rig; }
   [[nodiscard]] TaskPlan plan(const ArmState& from, const MotionPtr& done) const override {
-    return {.motion = done ? done : tour_of(task_, setup().arm.model(), from)};
+    return {.motion = done ? done : tour_of(task_, setup().arm_model(), from)};
   }
   [[nodiscard]] TaskEnd perform(const ArmState& from, TaskStage& stage) override {
     run_ = run_calibration(task_, name(), setup(), from, stage);

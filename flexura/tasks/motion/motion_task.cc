@@ -185,7 +185,7 @@ class MotionRunner : public TaskRunner {
       : TaskRunner(setup, std::move(label)), task_(task) {}
 
   [[nodiscard]] TaskPlan plan(const ArmState& from, const MotionPtr& /*done*/) const override {
-    const ArmModel arm = setup().arm.model();
+    const ArmModel arm = setup().arm_model();
     TaskPlan plan{.motion = motion_of(task_, arm, from)};
     if constexpr (std::is_same_v<Task, MoveTask>) add_missed(arm, plan);
     return plan;

@@ -116,7 +116,7 @@ void add_true_remaining(ServoRun& run) {
 }  // namespace
 
 std::vector<double> band_places(const Setup& setup, const Arm& believed) {
-  const ArmModel model = setup.arm.model();
+  const ArmModel model = setup.arm_model();
   const Arm& arm = model.shaped();
   std::vector<double> places;
   for (const Marker& marker : setup.arm.look.markers(model.driven())) {

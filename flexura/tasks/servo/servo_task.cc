@@ -59,7 +59,7 @@ class ServoRunner : public TaskRunner {
 
   // With those of its targets of which the nearest shape of the arm stays farther away than it may.
   [[nodiscard]] TaskPlan plan(const ArmState& from, const MotionPtr& done) const override {
-    const ArmModel arm = setup().arm.model();
+    const ArmModel arm = setup().arm_model();
     const auto shapes = servo_target_shapes(task_, arm, from);
     TaskPlan plan{.motion = done ? done : way_to(shapes, arm.driven(), from),
                   .is_steered = true,

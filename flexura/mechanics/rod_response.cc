@@ -1,0 +1,264 @@
+#include "flexura/mechanics/rod_response.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <utility>
+
+#include "flexura/kinematics/tendons.h"
+#include "flexura/mechanics/arm_rod.h"
+#include "flexura/model/actuation.h"
+#include "flexura/model/backbone.h"
+
+namespace flexura {
+namespace {
+
+// Of Gauss and Newton's steps that bring arcs to a rod.
+constexpr int max_fit_steps = 20;
+constexpr double stretch_secant = 0.005;
+
+std::size_t arcs_of(const Section& section) {
+  return section.bend_profile ? section.bend_profile->size() : 1;
+}
+
+// Of each arc: enough that even a single one sees what its section is.
+std::size_t samples_an_arc(const Section& section) {
+  return std::max<std::size_t>(4, (12 + arcs_of(section) - 1) / arcs_of(section));
+}
+
+// Where arc `arc` of a section has its sample `k`, as a part of the section's length.
+double place_of(const Section& section, std::size_t arc, std::size_t k) {
+  const std::size_t count = samples_an_arc(section);
+  return static_cast<double>(arc * count + k + 1) / static_cast<double>(arcs_of(section) * count);
+}
+
+template <typename Function>
+void for_places(const Arm& driven, Function&& f) {
+  for (std::size_t i = 0; i < driven.sections.size(); ++i)
+    for (std::size_t arc = 0; arc < arcs_of(driven.sections[i]); ++arc)
+      for (std::size_t k = 0; k < samples_an_arc(driven.sections[i]); ++k) f(i, arc, k);
+}
+
+std::vector<RodPlace> rod_places(const Arm& driven) {
+  std::vector<RodPlace> places;
+  for_places(driven, [&](std::size_t i, std::size_t arc, std::size_t k) {
+    places.push_back({i, place_of(driven.sections[i], arc, k)});
+  });
+  return places;
+}
+
+Arm in_its_frame(Arm arm) {
+  arm.X_WB = Pose();
+  return arm;
+}
+
+const Rod& fitting(const Arm& driven, const Rod& rod, const std::optional<Drive>& drive) {
+  if (rod.sections.size() != driven.sections.size())
+    throw std::invalid_argument("a rod of another number of sections than its arm");
+  if (drive && drive->tendons.size() != rod.tendons.size())
+    throw std::invalid_argument("a drive of another number of tendons than its rod");
+  return rod;
+}
+
+}  // namespace
+
+RodResponse::RodResponse(const Arm& driven, const Rod& rod, RodLoads loads, std::optional<Drive> drive)
+    : driven_(in_its_frame(driven)),
+      shaped_(shaped_arm(driven_, Actuation(driven_, nullptr))),
+      loads_(std::move(loads)),
+      drive_(std::move(drive)),
+      variables_(shaped_),
+      statics_(fitting(driven, rod, drive_)),
+      fine_(rod, rod_places(driven)) {
+  std::size_t first = 0;
+  for_places(driven_, [&](std::size_t i, std::size_t arc, std::size_t k) {
+    const std::size_t count = samples_an_arc(driven_.sections[i]);
+    const RodGrid& grid = fine_.elements()[i].grid();
+    if (arc == 0 && k == 0 && i > 0) first += arcs_of(driven_.sections[i - 1]);
+    places_.push_back({i,
+                       grid.node_at(place_of(driven_.sections[i], arc, k)),
+                       {first + arc, static_cast<double>(k + 1) / static_cast<double>(count)}});
+    if (k + 1 == count) ends_.push_back(places_.size() - 1);
+  });
+  has_driven_lengths_ = !drive_ && std::ranges::any_of(driven_.sections, &Section::can_stretch);
+  J_.resize(3 * static_cast<Eigen::Index>(places_.size()), variables_.size());
+  tight_.assign(rod.tendons.size(), 0.0);
+  if (drive_ && drive_->pretension > 0) tight_ = pretension_displacements(statics_, drive_->pretension);
+  const ArmState straight = ArmState::straight(driven_.sections.size());
+  straight_ = solved(straight, {});
+  if (!straight_.converged())
+    throw std::invalid_argument("the arm comes to no rest under its weight and loads");
+}
+
+std::vector<double> RodResponse::displacements(const ArmState& command) const {
+  std::vector<double> pulled = drive_ ? tendon_displacements(driven_, *drive_, command).pulled
+                                      : arc_displacements(fine_.rod(), command).pulled;
+  for (std::size_t i = 0; i < pulled.size(); ++i) pulled[i] += tight_[i];
+  return pulled;
+}
+
+Eigen::MatrixXd RodResponse::displacement_slopes(const ArmState& command) const {
+  return drive_ ? tendon_jacobian(driven_, *drive_, command) : arc_displacement_slopes(fine_.rod(), command);
+}
+
+Equilibrium RodResponse::solved(const ArmState& command, const Equilibrium& near) const {
+  const auto is_length = [](double stretch) { return stretch > 0 && std::isfinite(stretch); };
+  if (!std::ranges::all_of(command.stretches, is_length)) {
+    Equilibrium none;
+    none.end = StaticsEnd::bad_input;
+    return none;
+  }
+  if (!drive_) statics_.stretch_rest(command.stretches);
+  return statics_.solve({.displacements = displacements(command)}, loads_, near);
+}
+
+const RodResponse::Answer& RodResponse::answer(const ArmState& command) const {
+  require_fit(driven_, command);
+  if (last_ && last_->command == command) return *last_;
+  Answer next{command, solved(command, straight_), {}};
+  next.shape = fitted(next.at, command);
+  last_ = std::move(next);
+  return *last_;
+}
+
+// Arcs whose ends have the rod's tangents: where the fit begins. The rod is placed.
+ArmState RodResponse::along_tangents(const ArmState& command) const {
+  ArmState shape = ArmState::straight(ends_.size());
+  Eigen::Matrix3d R = Eigen::Matrix3d::Identity();
+  for (std::size_t k = 0; k < ends_.size(); ++k) {
+    const Place& end = places_[ends_[k]];
+    const Eigen::Vector3d z = R.transpose() * fine_.elements()[end.element].poses()[end.node].rotation.col(2);
+    const double across = z.head<2>().norm();
+    shape.bends[k] = across > 0 ? Eigen::Vector2d(z.head<2>() * (std::atan2(across, z.z()) / across))
+                                : Eigen::Vector2d::Zero();
+    if (driven_.kind == ArmKind::planar) shape.bends[k].y() = 0;
+    shape.stretches[k] = command.stretches[end.element];
+    R = R * arc_pose(shape.bends[k], 1).rotation;
+  }
+  return shape;
+}
+
+ArmState RodResponse::fitted(const Equilibrium& at, const ArmState& command) const {
+  if (!at.converged()) {
+    ArmState none = ArmState::straight(ends_.size());
+    none.bends.assign(ends_.size(), Eigen::Vector2d::Constant(std::numeric_limits<double>::quiet_NaN()));
+    return none;
+  }
+  if (!drive_) fine_.stretch_rest(command.stretches);
+  fine_.place(at.q);
+  ArmState shape = along_tangents(command);
+  const double length = driven_.length();
+  Eigen::VectorXd r(J_.rows());
+  Jacobian columns(6, 3 * static_cast<Eigen::Index>(ends_.size()));
+  for (int step = 0; step < max_fit_steps; ++step) {
+    jacobian_.set(shaped_, shape);
+    for (std::size_t p = 0; p < places_.size(); ++p) {
+      const Place& place = places_[p];
+      const auto row = 3 * static_cast<Eigen::Index>(p);
+      r.segment<3>(row) = fine_.elements()[place.element].poses()[place.node].position -
+                          jacobian_.pose(place.on_arcs).position;
+      jacobian_.at(place.on_arcs, columns);
+      for (std::size_t k = 0; k < ends_.size(); ++k) {
+        const ArmVariables::Part& part = variables_.parts()[k];
+        const auto from = 3 * static_cast<Eigen::Index>(k);
+        J_.block<3, 1>(row, part.at) = columns.block<3, 1>(0, from);
+        if (part.is_spatial) J_.block<3, 1>(row, part.at + 1) = columns.block<3, 1>(0, from + 1);
+        if (part.is_stretchable) J_.block<3, 1>(row, part.stretch_at()) = columns.block<3, 1>(0, from + 2);
+      }
+    }
+    fit_.compute(J_.transpose() * J_);
+    const Eigen::VectorXd change = fit_.solve(J_.transpose() * r);
+    for (std::size_t k = 0; k < ends_.size(); ++k) {
+      const ArmVariables::Part& part = variables_.parts()[k];
+      shape.bends[k] += part.bend(change);
+      if (part.is_stretchable) shape.stretches[k] += change[part.stretch_at()];
+    }
+    if (change.norm() < 1e-12 || (J_ * change).norm() < 1e-13 * length) break;
+  }
+  return shape;
+}
+
+ArmState RodResponse::shape(const ArmState& command) const {
+  const std::lock_guard lock(mutex_);
+  return answer(command).shape;
+}
+
+Equilibrium RodResponse::equilibrium(const ArmState& command) const {
+  const std::lock_guard lock(mutex_);
+  return answer(command).at;
+}
+
+void RodResponse::slopes(const ArmState& command, Eigen::MatrixXd& by_command) const {
+  const std::lock_guard lock(mutex_);
+  by_command.setZero(3 * static_cast<Eigen::Index>(ends_.size()),
+                     3 * static_cast<Eigen::Index>(driven_.sections.size()));
+  const Answer& here = answer(command);
+  if (!here.at.converged()) {
+    by_command.setConstant(std::numeric_limits<double>::quiet_NaN());
+  } else if (!has_driven_lengths_ &&
+             std::ranges::all_of(here.at.tensions, [](double tension) { return tension > 0; })) {
+    // The solver and the fit are where this was answered.
+    analytic_slopes(by_command);
+  } else {
+    secant_slopes(here, by_command);
+  }
+}
+
+// Of the rod's places by the command, and of the arcs nearest to them by these.
+void RodResponse::analytic_slopes(Eigen::MatrixXd& by_command) const {
+  // What was answered last may have been asked of another thread's command since: not with mutex_ held.
+  const ArmState& command = last_->command;
+  const Eigen::MatrixXd q_by_command = statics_.slopes().q_by_input * displacement_slopes(command);
+  fine_.place_with_columns(last_->at.q);
+  Eigen::MatrixXd places(J_.rows(), q_by_command.cols());
+  RodElement::Columns twists(6, fine_.size());
+  for (std::size_t p = 0; p < places_.size(); ++p) {
+    const Place& place = places_[p];
+    fine_.columns_at(place.element, place.node, twists);
+    const Eigen::Vector3d at = fine_.elements()[place.element].poses()[place.node].position;
+    const Eigen::MatrixXd moved = twists * q_by_command;
+    for (Eigen::Index c = 0; c < moved.cols(); ++c)
+      places.block<3, 1>(3 * static_cast<Eigen::Index>(p), c) =
+          moved.col(c).head<3>() + moved.col(c).tail<3>().cross(at);
+  }
+  const Eigen::MatrixXd arcs = fit_.solve(J_.transpose() * places);
+  for (std::size_t k = 0; k < ends_.size(); ++k) {
+    const ArmVariables::Part& part = variables_.parts()[k];
+    const auto row = 3 * static_cast<Eigen::Index>(k);
+    by_command.row(row) = arcs.row(part.at);
+    if (part.is_spatial) by_command.row(row + 1) = arcs.row(part.at + 1);
+    if (part.is_stretchable) by_command.row(row + 2) = arcs.row(part.stretch_at());
+  }
+}
+
+void RodResponse::secant_slopes(const Answer& here, Eigen::MatrixXd& by_command) const {
+  const Answer kept = here;
+  const ArmVariables varied(driven_);
+  const auto column = [&](Eigen::Index c, double step, auto&& moved) {
+    ArmState sides[2];
+    for (int side = 0; side < 2; ++side) {
+      ArmState command = kept.command;
+      moved(command) += side == 0 ? step : -step;
+      sides[side] = fitted(solved(command, kept.at), command);
+    }
+    for (std::size_t k = 0; k < ends_.size(); ++k) {
+      const auto row = 3 * static_cast<Eigen::Index>(k);
+      by_command.block<2, 1>(row, c) = (sides[0].bends[k] - sides[1].bends[k]) / (2 * step);
+      by_command(row + 2, c) = (sides[0].stretches[k] - sides[1].stretches[k]) / (2 * step);
+    }
+  };
+  for (std::size_t i = 0; i < driven_.sections.size(); ++i) {
+    const ArmVariables::Part& part = varied.parts()[i];
+    const auto c = 3 * static_cast<Eigen::Index>(i);
+    column(c, secant, [i](ArmState& state) -> double& { return state.bends[i].x(); });
+    if (part.is_spatial)
+      column(c + 1, secant, [i](ArmState& state) -> double& { return state.bends[i].y(); });
+    if (part.is_stretchable)
+      column(c + 2, stretch_secant, [i](ArmState& state) -> double& { return state.stretches[i]; });
+  }
+  // The solver and the fit are elsewhere now.
+  last_.reset();
+}
+
+}  // namespace flexura

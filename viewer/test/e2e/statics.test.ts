@@ -99,3 +99,39 @@ describe.skipIf(!program)('an arm that sags', () => {
     expect(complaints).toEqual([]);
   });
 });
+
+describe.skipIf(!program)('a watched run of an elastic arm', () => {
+  const opened = opened_before(
+    () => started(['run', example('11_helical_tendon'), '--set', 'task.0.duration=500', '--view']), 'live');
+
+  test('shows how it truly lies, and its tensions', async () => {
+    const { page, complaints } = opened;
+    const seen = async () => {
+      const state = await server_state(page);
+      return { ...state, bend: Math.hypot(...state.bends), force: state.actuators[0]?.[1] ?? 0 };
+    };
+    await until(async () => (await seen()).bend > 0.3, 20000, 'the run did not go on');
+    const { actuators, force, tip, bend, is_running } = await seen();
+    expect(is_running).toBe(true);
+    expect(actuators).toHaveLength(2);
+    expect(force).toBeGreaterThan(0);
+    // Of an arc that is bent so the tip would be in one plane with the base's axis, at this height.
+    const height = (0.5 * Math.sin(bend)) / bend;
+    expect(Math.abs(tip[1] - height) + Math.abs(tip[0])).toBeGreaterThan(2e-3);
+    await page.getByRole('button', { name: 'Tendons' }).click();
+    await until(async () => / N$/.test((await page.locator('.pull .force').allTextContents())[0] ?? ''), 4000, 'no tension is shown');
+    expect(await page.locator('#actuator-0').isDisabled()).toBe(true);
+    expect(await page.locator('#weight').isDisabled()).toBe(true);
+    // So has the history: what is plotted is of the rod.
+    const legend = async (): Promise<number[]> => {
+      const texts = await page.locator('.plot').first().locator('.legend li').allTextContents();
+      return texts.map((text) => Number(/[−\d.]+$/.exec(text)?.[0].replace('−', '-')));
+    };
+    await page.getByLabel('Plot 1 shows').selectOption('tip');
+    const now = (await seen()).tip;
+    expect(distance(await legend(), now)).toBeLessThan(0.02);
+    await page.getByLabel('Plot 1 shows').selectOption('tensions');
+    await until(async () => (await legend())[0] > 0, 4000, 'no tension is plotted');
+    expect(complaints).toEqual([]);
+  });
+});

@@ -140,11 +140,21 @@ void Player::step(double time, const ArmState& state) {
     if (is_rig_played()) witness_.readings(*rig_);
   }
   witness_.command(time, state);
-  if (watcher_ != nullptr)
-    watcher_->state(time, state,
-                    is_rig_played() ? camera_readings(rig_->ports(), optics_) : std::vector<CameraReading>());
+  tell_watcher(time, state);
   ++step_;
   played_ = {step_, time, state, false, ""};
+}
+
+void Player::tell_watcher(double time, const ArmState& state) {
+  if (watcher_ == nullptr) return;
+  watcher_->state(time, state,
+                  is_rig_played() ? camera_readings(rig_->ports(), optics_) : std::vector<CameraReading>());
+  RigTruth* truth = is_rig_played() ? rig_->truth() : nullptr;
+  if (truth == nullptr || !watcher_->wants_truth()) return;
+  // While a task waits for the rig, several steps of the clock are at one time of the rig's.
+  const double now = rig_->ports().clock->now();
+  watcher_->truth(time,
+                  {truth->backbone(now), truth->pulled(now), truth->tensions(now), truth->lost_steps(now)});
 }
 
 void Player::tell_tasks(double time) {

@@ -56,6 +56,7 @@ class Player {
   void step(double time, const ArmState& state);
   [[nodiscard]] bool is_rig_played() const;
   void play_to(double time, const ArmState& state);
+  void tell_watcher(double time, const ArmState& state);
   void tell_tasks(double time);
   [[nodiscard]] bool ends_with_simulated(double time);
   void stop_after(const Leg& leg, const std::string& failure);

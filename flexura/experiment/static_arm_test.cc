@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "flexura/experiment/experiment.h"
@@ -74,6 +76,41 @@ TEST_F(StaticArm, IsPlayedAndLogsItsTensionsAndItsSag) {
   EXPECT_LT(tip.y, up.y - 5e-4);
   EXPECT_GT(tip.x, up.x + 5e-4);
   EXPECT_LT(pulls.back().tensions[0], logged<TensionsMessage>(light, arm_tensions_topic).back().tensions[0]);
+}
+
+// Wants the truth at every other step.
+class SeesTheTruth : public RunWatcher {
+ public:
+  void state(double time, const ArmState&, std::span<const CameraReading>) override { time_ = time; }
+  bool wants_truth() override { return wants_ = !wants_; }
+  void truth(double time, TrueArm arm) override {
+    EXPECT_EQ(time, time_);
+    seen.push_back(std::move(arm));
+  }
+  std::vector<TrueArm> seen;
+
+ private:
+  double time_ = -1;
+  bool wants_ = false;
+};
+
+TEST_F(StaticArm, IsToldToAWatcherAsItTrulyLies) {
+  SeesTheTruth watcher;
+  const RunResult result = run(parse_experiment(rod_text, "x.toml"), &watcher);
+  ASSERT_EQ(watcher.seen.size(), 6U) << "of 11 steps";
+  const auto truth = logged<PosesMessage>(result, arm_truth_topic);
+  const auto pulls = logged<TensionsMessage>(result, arm_tensions_topic);
+  for (std::size_t i = 0; i < 6; ++i) {
+    const VectorMessage tip = truth[2 * i].poses.back().position;
+    const TrueArm& seen = watcher.seen[i];
+    EXPECT_LT((seen.backbone.tip().position - Eigen::Vector3d(tip.x, tip.y, tip.z)).norm(), 1e-9);
+    EXPECT_EQ(seen.tensions, pulls[2 * i].tensions);
+    EXPECT_EQ(seen.pulled.size(), 3U);
+    EXPECT_TRUE(seen.lost_steps.empty()) << "it has no motors";
+  }
+  EXPECT_NEAR(watcher.seen.back().pulled[0], 1.2 * 0.01, 1e-9);
+  // Who watches changes nothing.
+  EXPECT_EQ(files_in(run(rod_text).folder), files_in(result.folder));
 }
 
 TEST_F(StaticArm, IsInTheReportAndInTheTables) {

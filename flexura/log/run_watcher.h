@@ -2,14 +2,24 @@
 
 #include <span>
 #include <string>
+#include <vector>
 
 #include "flexura/camera/head.h"
 #include "flexura/camera/mount.h"
 #include "flexura/model/arm.h"
+#include "flexura/model/backbone.h"
 
 namespace flexura {
 
 class LoggedMessage;
+
+/// How the arm of a run truly stands, which its ports do not say.
+struct TrueArm {
+  Backbone backbone;
+  std::vector<double> pulled;      ///< How far its drives have each tendon pulled in, m; empty: not known.
+  std::vector<double> tensions;    ///< N; empty: of an arm without forces.
+  std::vector<double> lost_steps;  ///< Microsteps of each motor; empty: none ever.
+};
 
 /// Where a camera's head and stage say that they stand.
 struct CameraReading {
@@ -28,6 +38,10 @@ class RunWatcher {
   /// The arm's state at every step of the clock, s, and what is read from the cameras then, in their order:
   /// of none where the run plays no rig, whose cameras stand still.
   virtual void state(double time, const ArmState& state, std::span<const CameraReading> cameras) = 0;
+  /// Whether it wants to be told the truth at the next step: to find that out takes a while.
+  [[nodiscard]] virtual bool wants_truth() { return false; }
+  /// How the arm truly stands at a step of the clock, where that is known: after its state.
+  virtual void truth(double /*time*/, TrueArm /*arm*/) {}
   /// An event of the log: at `time` s, "info", "warning" or "error", of whom, and what.
   virtual void happened(double /*time*/, const std::string& /*level*/, const std::string& /*name*/,
                         const std::string& /*text*/) {}

@@ -88,7 +88,13 @@ DrivenArm::DrivenArm(DrivePort& port, const Arm& arm, const Drive& drive, const 
 CommandOutcome DrivenArm::command(const ArmState& state, double duration) {
   if (const std::string problem = command_problem(arm_, state, duration); !problem.empty())
     return arm_refuses(problem);
-  const TendonDisplacements wanted = tendon_displacements(arm_, drive_, state);
+  return pull(tendon_displacements(arm_, drive_, state).pulled, duration);
+}
+
+CommandOutcome DrivenArm::pull(const std::vector<double>& displacements, double duration) {
+  const TendonDisplacements wanted{displacements};
+  if (wanted.pulled.size() != drive_.axes.size() || !all_finite(wanted.pulled))
+    return arm_refuses(fmt::format("expected {} finite displacements of tendons", drive_.axes.size()));
   if (!counts_motors()) return port_.command(wanted.pulled, duration);
   constexpr double most_microsteps = 1e15;
   for (std::size_t i = 0; i < wanted.pulled.size(); ++i)

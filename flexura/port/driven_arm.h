@@ -40,6 +40,11 @@ class DrivenArm : public ArmPort {
   CommandOutcome halt() override { return port_.halt(); }
   Outcome<ArmReading> read() override;
 
+  /// Sends each tendon to be pulled in so far, m, with the play that it knows taken up, whatever shape they
+  /// make; `duration` as command() says. Refused: not one finite displacement a tendon, or one so far that a
+  /// motor cannot count it.
+  CommandOutcome pull(const std::vector<double>& displacements, double duration);
+
  private:
   [[nodiscard]] bool counts_motors() const { return port_.quantity() == DriveQuantity::motor_positions; }
   // Why the reading is none; "": it is one.

@@ -78,6 +78,29 @@ double half_step(const Drive& drive) {
   return 2 * 0.5 / (drive.axes[0].microsteps_a_metre() * drive.tendons[0].radius);
 }
 
+TEST(DrivenArm, PullsEachTendonWhateverShapeThatMakes) {
+  const double play = 0.05;
+  SentDrive drive;
+  DrivenArm arm(drive, one_section(), three_tendons(play), ArmState::straight(1));
+  const std::vector<double> wanted = {0.004, 0.001, -0.002};
+  ASSERT_TRUE(arm.pull(wanted, 2));
+  EXPECT_EQ(drive.lasts, 2);
+  const Drive believed = three_tendons(play);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const double sense = believed.axes[i].reversed ? -1 : 1;
+    // What lets out goes on by the play.
+    const double motor =
+        wanted[i] * believed.axes[i].microsteps_a_metre() - (i == 2 ? believed.axes[i].play() : 0);
+    EXPECT_NEAR(sense * drive.at[i], motor, 1) << i;
+  }
+  const std::vector<double> before = drive.at;
+  const double none = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_FALSE(arm.pull({0, 0}, 1));
+  EXPECT_FALSE(arm.pull({0, 0, none}, 1));
+  EXPECT_FALSE(arm.pull({0, 0, 1e30}, 1));
+  EXPECT_EQ(drive.at, before);
+}
+
 TEST(DrivenArm, MakesMicrostepsOfShapesAndShapesOfMicrosteps) {
   const Drive drive = three_tendons();
   for_random_cases(30, [&](TestRandom& random) {

@@ -46,6 +46,7 @@ class Filming : public Rig, private RigTruth {
   [[nodiscard]] std::vector<double> tensions(double time) override {
     return rig_.arm().plant().tensions(time);
   }
+  [[nodiscard]] std::vector<double> pulled(double time) override { return rig_.arm().plant().pulled(time); }
   [[nodiscard]] std::vector<double> lost_steps(double time) override {
     return rig_.arm().plant().lost_steps(time);
   }

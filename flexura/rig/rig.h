@@ -37,6 +37,8 @@ class RigTruth {
   [[nodiscard]] virtual Backbone backbone(double time) = 0;
   /// By which each of its tendons pulled then, N; empty: of an arm without forces.
   [[nodiscard]] virtual std::vector<double> tensions(double /*time*/) { return {}; }
+  /// How far its drives had each tendon pulled in then, m; empty: not known.
+  [[nodiscard]] virtual std::vector<double> pulled(double /*time*/) { return {}; }
   /// How many microsteps each motor had lost by then, unknown to its controller; empty: none ever.
   [[nodiscard]] virtual std::vector<double> lost_steps(double /*time*/) { return {}; }
 };

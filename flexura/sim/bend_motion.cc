@@ -33,9 +33,11 @@ ArmState BendMotion::at(double time) const {
   return at(after == plans_.begin() ? plans_.front() : *(after - 1), time);
 }
 
-bool BendMotion::is_moving(double time) const {
+bool BendMotion::is_moving(double time) const { return end() > time; }
+
+double BendMotion::end() const {
   const Plan& plan = plans_.back();
-  return std::ranges::any_of(plan.durations, [&](double duration) { return plan.start + duration > time; });
+  return plan.start + std::ranges::max(plan.durations);
 }
 
 void BendMotion::command(double time, const ArmState& target, double duration) {

@@ -22,6 +22,8 @@ class BendMotion {
 
   [[nodiscard]] ArmState at(double time) const;
   [[nodiscard]] bool is_moving(double time) const;
+  /// When the last commanded motion ends, s; minus infinity: none was.
+  [[nodiscard]] double end() const;
 
  private:
   struct Plan {

@@ -4,6 +4,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "flexura/model/arm_model.h"
@@ -40,6 +41,24 @@ class Plant {
   /// What its sections are bent to, as the drives see it. None: it has no sections that drives bend. Times as
   /// backbone(), and what is to come as far as commanded.
   [[nodiscard]] virtual std::optional<ArmState> commanded(double /*time*/) const { return std::nullopt; }
+  /// At `time` s, not before the last command: each tendon goes to be pulled in so far, m, as command() says,
+  /// whatever bends were commanded; the next command takes over again. It gives the bends to which arcs would
+  /// come nearest to that. None: it has no tendons that are pulled one by one beside commands, and does
+  /// nothing. std::invalid_argument: not one finite number a tendon.
+  virtual std::optional<ArmState> pull(double /*time*/, const std::vector<double>& /*displacements*/,
+                                       double /*duration*/) {
+    return std::nullopt;
+  }
+  /// From `time` s on, not before the last such call: with or without the weight and the loads that it was
+  /// given. false: it has none, and does nothing.
+  virtual bool weigh(double /*time*/, bool /*on*/) { return false; }
+  /// Whether these pull then.
+  [[nodiscard]] virtual bool is_weighed(double /*time*/) const { return true; }
+  /// How far its drives have each tendon pulled in, m, from the straight arm on (a pretension and lost steps
+  /// are not in that). Empty: it has no tendons that are known one by one. Times as backbone().
+  [[nodiscard]] virtual std::vector<double> pulled(double /*time*/) const { return {}; }
+  /// What is out of the ordinary in how it rests, one line; "": nothing. Times as backbone().
+  [[nodiscard]] virtual std::string warning(double /*time*/) const { return {}; }
   /// By which each tendon pulls at the arm's base, N. Empty: nobody knows. Times as backbone().
   [[nodiscard]] virtual std::vector<double> tensions(double /*time*/) const { return {}; }
   /// How many microsteps each motor has lost up to then, of which its controller knows nothing. Empty: none

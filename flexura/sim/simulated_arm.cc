@@ -1,5 +1,8 @@
 #include "flexura/sim/simulated_arm.h"
 
+#include <fmt/format.h>
+
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -50,6 +53,21 @@ Outcome<ArmReading> SimulatedBends::read() {
   return ArmReading{now, plus(bends_.at(now), offset_, -1), {}, bends_.is_moving(now)};
 }
 
+CommandOutcome SimulatedBends::pull(const std::vector<double>& displacements, double duration) {
+  if (auto fault = link_.fault()) return *fault;
+  if (!std::isfinite(duration) || duration < 0)
+    return link_.refusal(fmt::format("a motion cannot take {} s", duration));
+  std::optional<ArmState> target;
+  try {
+    target = plant_.pull(link_.now(), displacements, duration);
+  } catch (const std::invalid_argument& error) {
+    return link_.refusal(error.what());
+  }
+  if (!target) return link_.refusal("it has no tendons to pull");
+  bends_.command(link_.now(), *target, duration);
+  return Accepted{};
+}
+
 SimulatedArm::SimulatedArm(const ArmSetup& model, const ArmSetup& truth, const ClockPort& clock,
                            double horizon, const MakePlant& make_plant) {
   require_same_kind(model, truth);
@@ -69,6 +87,10 @@ SimulatedArm::SimulatedArm(const ArmSetup& model, const ArmSetup& truth, const C
 
 CommandOutcome SimulatedArm::command(const ArmState& state, double duration) {
   return port_->command(state, duration);
+}
+
+CommandOutcome SimulatedArm::pull(const std::vector<double>& displacements, double duration) {
+  return driven_ ? driven_->pull(displacements, duration) : bends_->pull(displacements, duration);
 }
 
 CommandOutcome SimulatedArm::halt() { return port_->halt(); }

@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "flexura/model/arm_way.h"
 #include "flexura/model/backbone.h"
@@ -11,7 +12,7 @@
 #include "flexura/sim/rig_config.h"
 #include "flexura/sim/simulated_drive.h"
 #include "flexura/sim/simulated_link.h"
-#include "flexura/sim/static_plant.h"
+#include "flexura/sim/true_plant.h"
 
 namespace flexura {
 
@@ -25,6 +26,8 @@ class SimulatedBends : public ArmPort {
   CommandOutcome command(const ArmState& state, double duration) override;
   CommandOutcome halt() override;
   Outcome<ArmReading> read() override;
+  /// As SimulatedArm's.
+  CommandOutcome pull(const std::vector<double>& displacements, double duration);
   /// What connects it: it can be lost for a time.
   [[nodiscard]] SimulatedLink& link() { return link_; }
 
@@ -49,6 +52,11 @@ class SimulatedArm : public ArmPort {
   CommandOutcome command(const ArmState& state, double duration) override;
   CommandOutcome halt() override;
   Outcome<ArmReading> read() override;
+
+  /// Sends each tendon to be pulled in so far, m: behind a drive by its axes, else of a plant that takes that
+  /// (Plant::pull). `duration` as command() says. Refused: of another arm, or not one finite displacement a
+  /// tendon.
+  CommandOutcome pull(const std::vector<double>& displacements, double duration);
 
   /// What the true arm is commanded to by its drives as they are, from `horizon` s before the last command
   /// on: not for algorithms. std::logic_error: the plant has none (Plant::commanded).

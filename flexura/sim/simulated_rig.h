@@ -12,7 +12,7 @@
 #include "flexura/sim/simulated_camera.h"
 #include "flexura/sim/simulated_clock.h"
 #include "flexura/sim/simulated_head.h"
-#include "flexura/sim/static_plant.h"
+#include "flexura/sim/true_plant.h"
 
 namespace flexura {
 

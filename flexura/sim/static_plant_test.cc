@@ -9,7 +9,9 @@
 #include <thread>
 #include <vector>
 
+#include "flexura/mechanics/arm_rod.h"
 #include "flexura/sim/simulated_rig.h"
+#include "flexura/sim/tendon_pull.h"
 #include "tests/support/rigs.h"
 
 namespace flexura {
@@ -146,6 +148,111 @@ TEST(StaticPlant, LosesStepsUnderMoreThanThePullOutTorque) {
   ASSERT_TRUE(rig.ports().arm->command(ArmState::straight(2), 0));
   rig.clock().wait_until(16);
   for (std::size_t i = 0; i < 6; ++i) EXPECT_GE(plant_of(rig).lost_steps(16)[i], lost[i]);
+}
+
+// Six tendons of the arm's own, and nothing that drives them.
+RigConfig free_rig(double gravity = 0) {
+  RigConfig config = elastic_rig(gravity);
+  for (int i = 0; i < 6; ++i)
+    config.arm.tendon.push_back({.section = i < 3 ? 1 : 2,
+                                 .radius = 0.01,
+                                 .angle = 2 * std::numbers::pi * i / 3 + (i < 3 ? 0 : 0.5)});
+  config.drive.reset();
+  return config;
+}
+
+void expect_near(const std::vector<double>& a, const std::vector<double>& b, double most) {
+  ASSERT_EQ(a.size(), b.size());
+  for (std::size_t i = 0; i < a.size(); ++i) EXPECT_NEAR(a[i], b[i], most) << i;
+}
+
+TEST(StaticPlant, PullsTendonsWhateverBendsWereCommanded) {
+  RigConfig config = free_rig();
+  for (Section& section : config.arm.section) section.max_bend_rate = 1;
+  SimulatedRig rig(config, config, numbers_renderer, 1);
+  ASSERT_TRUE(rig.ports().arm->command(bent(), 0));
+  rig.clock().wait_until(2);
+  const std::vector<double> wanted = {0.004, -0.001, -0.002, 0.001, 0.0005, 0.002};
+  ASSERT_TRUE(rig.arm().pull(wanted, 0.5));
+  EXPECT_TRUE(rig.ports().arm->read().value().moving);
+  rig.clock().wait_until(4);
+  EXPECT_FALSE(rig.ports().arm->read().value().moving);
+  expect_near(plant_of(rig).pulled(4), wanted, 1e-12);
+  const Equilibrium at = plant_of(rig).equilibrium(4);
+  for (std::size_t i = 0; i < wanted.size(); ++i)
+    EXPECT_TRUE(at.tensions[i] == 0 || std::abs(at.displacements[i] - wanted[i]) < 1e-9) << i;
+  // What is believed are the nearest arcs, and bends take over again.
+  const ArmState nearest = nearest_arcs(ArmSetup(config).rod->rod, config.arm.arm(), wanted);
+  EXPECT_LT((rig.ports().arm->read().value().state.bends[0] - nearest.bends[0]).norm(), 1e-9);
+  ASSERT_TRUE(rig.ports().arm->command(bent(), 0));
+  rig.clock().wait_until(8);
+  const std::vector<double> arcs = arc_displacements(ArmSetup(config).rod->rod, bent()).pulled;
+  expect_near(plant_of(rig).pulled(8), arcs, 1e-12);
+}
+
+TEST(StaticPlant, StopsATendonOnItsWay) {
+  RigConfig config = free_rig();
+  SimulatedRig rig(config, config, numbers_renderer, 1);
+  // All of a section against each other: no bend, so that it takes the time it is given.
+  ASSERT_TRUE(rig.arm().pull({2e-6, 2e-6, 2e-6, 0, 0, 0}, 1));
+  rig.clock().wait_until(0.5);
+  ASSERT_TRUE(rig.ports().arm->halt());
+  rig.clock().wait_until(1);
+  EXPECT_NEAR(plant_of(rig).pulled(1)[0], 1e-6, 1e-9);
+  EXPECT_EQ(plant_of(rig).pulled(0.25)[1], plant_of(rig).pulled(0.25)[0]);
+}
+
+TEST(StaticPlant, PullsTendonsByTheirAxes) {
+  RigConfig config = elastic_rig();
+  SimulatedRig rig(config, config, numbers_renderer, 1);
+  const std::vector<double> wanted = {0.004, -0.002, -0.002, 0.002, 0, 0.001};
+  ASSERT_TRUE(rig.arm().pull(wanted, 0));
+  EXPECT_TRUE(rig.ports().arm->read().value().moving);
+  rig.clock().wait_until(8);
+  const double microstep = 1 / config.drive->drive().axes[0].microsteps_a_metre();
+  expect_near(plant_of(rig).pulled(8), wanted, microstep);
+  ASSERT_TRUE(rig.ports().arm->command(ArmState::straight(2), 0));
+  rig.clock().wait_until(16);
+  expect_near(plant_of(rig).pulled(16), std::vector<double>(6, 0.0), microstep);
+}
+
+TEST(StaticPlant, RefusesPullsOfNoTendons) {
+  const RigConfig driven = elastic_rig(), free = free_rig(), arcs = two_section_rig();
+  const double none = std::numeric_limits<double>::quiet_NaN();
+  for (const RigConfig& config : {driven, free}) {
+    SimulatedRig rig(config, config, numbers_renderer, 1);
+    EXPECT_FALSE(rig.arm().pull({0, 0, 0, 0, 0}, 0));
+    EXPECT_FALSE(rig.arm().pull({0, 0, 0, 0, 0, none}, 0));
+    EXPECT_FALSE(rig.arm().pull({0, 0, 0, 0, 0, 0}, -1));
+    EXPECT_FALSE(rig.arm().pull({0, 0, 0, 0, 0, 0}, none));
+    EXPECT_TRUE(rig.arm().pull({0, 0, 0, 0, 0, 0}, 0));
+  }
+  RigConfig bends = arcs;
+  bends.drive.reset();
+  SimulatedRig rig(bends, bends, numbers_renderer, 1);
+  EXPECT_FALSE(rig.arm().pull({0, 0, 0, 0, 0, 0}, 0));
+}
+
+TEST(StaticPlant, IsWithoutWeightFromATimeOn) {
+  const RigConfig heavy = free_rig(9.81), light = free_rig();
+  SimulatedRig rig(heavy, heavy, numbers_renderer, 1), none(light, light, numbers_renderer, 1);
+  for (SimulatedRig* one : {&rig, &none}) {
+    ASSERT_TRUE(one->ports().arm->command(bent(), 0));
+    one->clock().wait_until(8.013);
+  }
+  const auto tip = [](SimulatedRig& one, double time) { return one.arm().backbone(time).tip().position; };
+  const Eigen::Vector3d sagged = tip(rig, 8.013), before = tip(rig, 8.005);
+  EXPECT_FALSE(plant_of(none).weigh(8.013, false)) << "nothing to switch off";
+  ASSERT_TRUE(plant_of(rig).weigh(8.013, false));
+  EXPECT_FALSE(plant_of(rig).is_weighed(8.013));
+  EXPECT_TRUE(plant_of(rig).is_weighed(8.012));
+  EXPECT_LT((tip(rig, 8.013) - tip(none, 8.013)).norm(), 1e-7) << "at once";
+  EXPECT_EQ(tip(rig, 8.005), before) << "what was stays as it was";
+  rig.clock().wait_until(8.5);
+  EXPECT_LT((tip(rig, 8.5) - tip(none, 8.013)).norm(), 1e-7);
+  ASSERT_TRUE(plant_of(rig).weigh(8.5, true));
+  EXPECT_LT((tip(rig, 8.5) - sagged).norm(), 1e-7);
+  EXPECT_EQ(plant_of(rig).warning(8.5), "");
 }
 
 TEST(StaticPlant, APullOutTorqueIsBetweenItsPoints) {

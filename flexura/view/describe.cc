@@ -1,5 +1,7 @@
 #include "flexura/view/describe.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -145,6 +147,20 @@ Node tendon_nodes(const ViewedRig& rig) {
   return {std::move(list), {}};
 }
 
+Node actuator_nodes(const ViewedRig& rig) {
+  Node::Array list;
+  for (std::size_t i = 0; i < rig.actuators.size(); ++i) {
+    const PulledTendon& tendon = rig.actuators[i];
+    list.push_back({Node::Table{{"name", {}, text_node(fmt::format("Tendon {}", i + 1))},
+                                {"section", {}, {static_cast<std::int64_t>(tendon.section), {}}},
+                                {"range", {}, numbers(tendon.range)},
+                                {"together", {}, numbers(tendon.together)},
+                                {"motor", {}, {rig.drive.has_value(), {}}}},
+                    {}});
+  }
+  return {std::move(list), {}};
+}
+
 // The limits of a camera's three axes under their names.
 Node axes_node(const Camera& camera, const std::array<AxisConfig, 3>& axes,
                const std::array<const char*, 3>& names) {
@@ -236,6 +252,17 @@ Node controls_node(const ViewedRig& rig) {
                       {"stages", {}, {std::move(stages), {}}},
                       {"tasks", {}, task_nodes(rig.experiment)}},
           {}};
+}
+
+Node live_controls_node(const ViewedRig& rig) {
+  Node controls = controls_node(rig);
+  auto& table = std::get<Node::Table>(controls.value);
+  if (!rig.actuators.empty()) {
+    std::ranges::find(table, "tendons", &Node::Member::key)->node = {};
+    table.push_back({"actuators", {}, actuator_nodes(rig)});
+  }
+  table.push_back({"weight", {}, {rig.has_weight, {}}});
+  return controls;
 }
 
 }  // namespace flexura

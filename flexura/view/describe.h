@@ -39,5 +39,8 @@ const Table<Quantity>& fields_of(const Quantity*);
 /// CONTROLS: what can be moved how far, as it is believed to be, and the tasks. The range of a tendon is what
 /// its sections' limits let it have, where a section without a limit bends by a whole turn.
 [[nodiscard]] Node controls_node(const ViewedRig& rig);
+/// The same of a live rig: with what a client can move one by one and switch, where there is such a thing,
+/// and then without tendons that hang together.
+[[nodiscard]] Node live_controls_node(const ViewedRig& rig);
 
 }  // namespace flexura

@@ -13,7 +13,7 @@
 #include "flexura/model/arm_way.h"
 #include "flexura/sim/plant.h"
 #include "flexura/sim/rig_config.h"
-#include "flexura/sim/static_plant.h"
+#include "flexura/sim/true_plant.h"
 
 namespace flexura {
 namespace {
@@ -32,6 +32,15 @@ bool are_alike(const ArmState& a, const ArmState& b) {
   const ArmWay way = minus(a, b);
   return std::ranges::all_of(way.bends, [](const auto& bend) { return bend.norm() <= rounding; }) &&
          std::ranges::all_of(way.stretches, [](double stretch) { return std::abs(stretch) <= rounding; });
+}
+
+std::vector<ActuatorSample> actuator_samples(const std::vector<double>& pulled,
+                                             const std::vector<double>& tensions,
+                                             const std::vector<double>& lost) {
+  std::vector<ActuatorSample> samples;
+  for (std::size_t i = 0; i < pulled.size(); ++i)
+    samples.push_back({pulled[i], i < tensions.size() ? tensions[i] : 0, i < lost.size() ? lost[i] : 0});
+  return samples;
 }
 
 }  // namespace
@@ -59,6 +68,7 @@ Backbone LiveRig::at_rest(const ArmState& state) {
   if (are_alike(state, truth(now()))) return backbone(now());
   ArmSetup setup(rig_->experiment.true_rig());
   setup.initial = state;
+  if (setup.rod && !simulated_->arm().plant().is_weighed(rig_time(now()))) setup.rod->loads = {};
   // Where motors count from is all the same.
   const Eigen::VectorXd start =
       setup.drive ? Eigen::VectorXd::Zero(static_cast<Eigen::Index>(setup.drive->axes.size()))
@@ -75,6 +85,34 @@ std::shared_ptr<const Backbone> LiveRig::rod_at_rest(const ArmState& state) {
   }
 }
 
+ArmState nearest_arcs(const ViewedRig& rig, const TendonPull& pull) {
+  if (rig.drive) return fit_state(rig.model.driven(), *rig.drive, {pull.displacements}).state;
+  const ArmSetup setup(rig.experiment.true_rig());
+  if (!setup.rod) throw std::logic_error("an arm without tendons that are pulled one by one");
+  return nearest_arcs(setup.rod->rod, setup.arm, pull.displacements);
+}
+
+void LiveRig::weigh(bool on) {
+  Plant& plant = simulated_->arm().plant();
+  const double time = rig_time(now());
+  const bool was = plant.is_weighed(time);
+  plant.weigh(time, on);
+  try {
+    (void)plant.backbone(time);
+  } catch (const std::runtime_error&) {
+    plant.weigh(time, was);
+    throw;
+  }
+}
+
+// Whether what moves an arm says that it lies the same at two times.
+bool LiveRig::lie_alike(double time, double other) {
+  const Plant& plant = simulated_->arm().plant();
+  const double at = rig_time(time), then = rig_time(other);
+  return truth(time) == truth(other) && plant.is_weighed(at) == plant.is_weighed(then) &&
+         plant.pulled(at) == plant.pulled(then);
+}
+
 StateMessage LiveRig::state() {
   StateMessage message;
   message.time = now();
@@ -86,6 +124,10 @@ StateMessage LiveRig::state() {
     const CameraStance stance = simulated_->camera(i).stance(rig_time(message.time));
     message.cameras.push_back(camera_sample(rig_->cameras[i], stance));
   }
+  const Plant& plant = simulated_->arm().plant();
+  const double time = rig_time(message.time);
+  message.is_weightless = !plant.is_weighed(time);
+  message.actuators = actuator_samples(plant.pulled(time), plant.tensions(time), plant.lost_steps(time));
   if (rig_->drive) {
     const std::vector<double> positions(reading.positions.begin(), reading.positions.end());
     message.displacements = displacements_at(*rig_->drive, positions).pulled;
@@ -111,7 +153,7 @@ ValueShot LiveRig::shot(std::size_t camera, std::int64_t frame) {
       continue;
     Instant instant{time, truth(time), view.stance(rig_time(time))};
     // If its drives rest it does so, too.
-    if (rig_->is_rod && !instants.empty() && instants.back().arm == instant.arm) {
+    if (rig_->is_rod && !instants.empty() && lie_alike(instants.back().time, time)) {
       instant.shape = instants.back().shape;
     } else if (rig_->is_rod) {
       instant.shape = std::make_shared<const Backbone>(backbone(time));
@@ -122,11 +164,13 @@ ValueShot LiveRig::shot(std::size_t camera, std::int64_t frame) {
 }
 
 StateMessage still_state(const ViewedRig& rig, double time, const ArmState& state,
-                         const std::vector<CameraStance>& stances) {
+                         const std::vector<CameraStance>& stances, const TrueArm* truth) {
   StateMessage message;
   message.time = time;
   message.arm = state;
-  message.samples = arm_samples(rig.model.backbone(state));
+  message.samples = arm_samples(truth != nullptr ? truth->backbone : rig.model.backbone(state));
+  if (truth != nullptr)
+    message.actuators = actuator_samples(truth->pulled, truth->tensions, truth->lost_steps);
   for (std::size_t i = 0; i < rig.cameras.size(); ++i)
     message.cameras.push_back(camera_sample(rig.cameras[i], stances.at(i)));
   if (rig.drive) message.displacements = tendon_displacements(rig.model.driven(), *rig.drive, state).pulled;

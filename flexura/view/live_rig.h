@@ -3,11 +3,14 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <string>
 #include <vector>
 
+#include "flexura/log/run_watcher.h"
 #include "flexura/model/backbone.h"
 #include "flexura/port/rig_ports.h"
 #include "flexura/sim/simulated_rig.h"
+#include "flexura/view/moves.h"
 #include "flexura/view/state_message.h"
 #include "flexura/view/viewed_rig.h"
 
@@ -44,6 +47,16 @@ class LiveRig {
   [[nodiscard]] std::shared_ptr<const Backbone> rod_at_rest(const ArmState& state);
   [[nodiscard]] bool is_arm_moving();
 
+  /// Sends each tendon to be pulled in so far, m (SimulatedArm::pull).
+  CommandOutcome pull(const TendonPull& pull, double duration) {
+    return simulated_->arm().pull(pull.displacements, duration);
+  }
+  /// From now on the arm is with or without its weight and loads, until a restart. std::runtime_error: then
+  /// it would find no rest; all stays as it was.
+  void weigh(bool on);
+  /// What is out of the ordinary in how the arm rests now, one line; "": nothing.
+  [[nodiscard]] std::string warning() { return simulated_->arm().plant().warning(rig_time(now())); }
+
   /// All that moves, as it stands now; its flags but for the arm's motion, and its sequence, are others' to
   /// fill.
   [[nodiscard]] StateMessage state();
@@ -54,15 +67,21 @@ class LiveRig {
 
  private:
   [[nodiscard]] double rig_time(double time) const { return time - start_; }
+  [[nodiscard]] bool lie_alike(double time, double other);
 
   ViewedRigPtr rig_;
   double start_ = 0;  // when the simulated rig's time is 0, s
   std::unique_ptr<SimulatedRig> simulated_;
 };
 
+/// The shape of arcs that comes nearest to tendons that are pulled in so. std::logic_error: the rig has none
+/// that are pulled one by one.
+[[nodiscard]] ArmState nearest_arcs(const ViewedRig& rig, const TendonPull& pull);
+
 /// The state message of the arm as tasks command it: in `state` at `time` s, with the cameras at their
-/// `stances`.
+/// `stances`; lying as `truth` says, where that is not null.
 [[nodiscard]] StateMessage still_state(const ViewedRig& rig, double time, const ArmState& state,
-                                       const std::vector<CameraStance>& stances);
+                                       const std::vector<CameraStance>& stances,
+                                       const TrueArm* truth = nullptr);
 
 }  // namespace flexura

@@ -14,6 +14,18 @@
 #include "flexura/view/answers.h"
 
 namespace flexura {
+namespace {
+
+Node::Table event_table(double time, const std::string& level, const std::string& name,
+                        const std::string& text) {
+  return {{"type", {}, {std::string("event"), {}}},
+          {"time", {}, {time, {}}},
+          {"level", {}, {level, {}}},
+          {"name", {}, {name, {}}},
+          {"text", {}, {text, {}}}};
+}
+
+}  // namespace
 
 // What is done with each request.
 struct LiveSession::Taker : PictureSession::Taker {
@@ -23,7 +35,11 @@ struct LiveSession::Taker : PictureSession::Taker {
   void operator()(const ArmRequest& arm) const {
     session.require_free();
     const ViewedRig& rig = *session.viewed();
-    session.move({shape_wanted(rig.model.driven(), rig.drive, arm), arm.duration, std::move(reply)});
+    if (arm.tendons && !rig.actuators.empty()) {
+      session.move({pull_wanted(rig.actuators, *arm.tendons), arm.duration, std::move(reply)});
+    } else {
+      session.move({shape_wanted(rig.model.driven(), rig.drive, arm), arm.duration, std::move(reply)});
+    }
   }
   void operator()(const TipRequest& tip) const {
     session.require_free();
@@ -63,6 +79,11 @@ struct LiveSession::Taker : PictureSession::Taker {
   void operator()(const ResetRequest&) const {
     session.require_free();
     session.reset();
+    done();
+  }
+  void operator()(const WeightRequest& weight) const {
+    session.require_free();
+    session.weigh(weight.on);
     done();
   }
   void operator()(const RunRequest& run) const {
@@ -108,7 +129,7 @@ Hello LiveSession::hello() const {
   hello.mode = "live";
   hello.title = viewed()->experiment.title;
   hello.scene = scene_node(*viewed());
-  hello.controls = controls_node(*viewed());
+  hello.controls = live_controls_node(*viewed());
   hello.readonly = is_watched_run();
   return hello;
 }
@@ -140,123 +161,6 @@ void LiveSession::require_free() const {
   if (run_ != nullptr) throw ViewRefusal("a run of tasks is going on");
 }
 
-// Looks at one wish at a time; of those that come meanwhile the newest counts.
-void LiveSession::move(Move move) {
-  if (!is_looking_) {
-    look_at(std::move(move));
-    return;
-  }
-  std::optional<Move> overtaken = std::exchange(waiting_, std::move(move));
-  if (!overtaken) return;
-  InverseResult unknown;
-  const bool is_tip = std::holds_alternative<TipRequest>(overtaken->target);
-  overtaken->reply({is_tip ? tip_answer(unknown, "overtaken by a newer one") : nothing(), ""});
-}
-
-LiveSession::Judged LiveSession::judge(const ViewedRig& rig, const ArmState& from, const Move& move) {
-  Judged judged;
-  if (const auto* tip = std::get_if<TipRequest>(&move.target)) {
-    judged.found = shape_for_tip(rig.model, from, *tip);
-    judged.state = judged.found->state;
-  } else {
-    judged.state = std::get<ArmState>(move.target);
-  }
-  judged.danger = danger_on_way(rig.model, rig.obstacles, from, judged.state);
-  return judged;
-}
-
-void LiveSession::look_at(Move move) {
-  is_looking_ = true;
-  background().run(Lane::checks,
-                   [this, rig = viewed(), from = rig_.believed(), move = std::move(move),
-                    generation = generation_, alive = this->alive()]() -> Background::After {
-                     Judged judged;
-                     try {
-                       judged = judge(*rig, from, move);
-                     } catch (const std::exception& error) {
-                       judged.danger = error.what();
-                     }
-                     return [this, move, judged, generation, alive] {
-                       if (alive.expired()) return;
-                       is_looking_ = false;
-                       if (generation == generation_) {
-                         finish(move, judged);
-                       } else {
-                         move.reply({nothing(), "something else has stopped it"});
-                       }
-                       if (waiting_ && !is_looking_) look_at(*std::exchange(waiting_, std::nullopt));
-                     };
-                   });
-}
-
-void LiveSession::finish(const Move& move, const Judged& judged) {
-  if (!judged.danger.empty()) {
-    warn("does not go there: " + judged.danger);
-    move.reply(judged.found ? ViewAnswer{tip_answer(*judged.found, judged.danger), ""}
-                            : ViewAnswer{nothing(), "unsafe: " + judged.danger});
-    return;
-  }
-  double duration = move.duration;
-  if (judged.found) {
-    // Follows a hand at once, and swings over where it has to go far.
-    constexpr double shortest = 0.05, rate = 4;  // s, rad/s
-    const ArmState from = rig_.believed();
-    duration = shortest;
-    for (std::size_t i = 0; i < from.bends.size(); ++i)
-      duration = std::max(duration, (judged.state.bends[i] - from.bends[i]).norm() / rate);
-  }
-  const auto fault = rig_.ports().arm->command(judged.state, duration).fault();
-  move.reply({judged.found ? tip_answer(*judged.found, "") : nothing(), fault ? text(*fault) : ""});
-}
-
-// A hand that drags against something is told twice a second at most.
-void LiveSession::warn(const std::string& text) {
-  constexpr double between = 0.5;  // s
-  if (rig_.now() - warned_ < between) return;
-  warned_ = rig_.now();
-  event("warning", "safety", text);
-}
-
-void LiveSession::halt() {
-  cancel();
-  ++generation_;
-  if (waiting_) std::exchange(waiting_, std::nullopt)->reply({nothing(), "something else has stopped it"});
-  const RigPorts ports = rig_.ports();
-  // The simulated rig has no links that are lost: a fault here is a fault of the program.
-  (void)ports.arm->halt().value();
-  for (std::size_t i = 0; i < ports.cameras.size(); ++i) {
-    (void)halt_camera(ports.cameras[i]).value();
-    const CameraStance stands = said_stance(ports.cameras[i], viewed()->cameras[i]).value();
-    head_targets_[i] = stands.head, stage_targets_[i] = stands.stage;
-  }
-}
-
-void LiveSession::reset() {
-  ++generation_;
-  if (waiting_) std::exchange(waiting_, std::nullopt)->reply({nothing(), "something else has stopped it"});
-  ++leaps_;
-  rig_.restart(clock_ - config_.start);
-  head_targets_.clear();
-  stage_targets_.clear();
-  for (const Camera& camera : viewed()->cameras) {
-    head_targets_.push_back(camera.initial_head());
-    stage_targets_.push_back(camera.initial_stage());
-  }
-  is_touching_ = !touched(rig_.backbone(rig_.now()), viewed()->obstacles).empty();
-}
-
-// Stops the arm before a step that would bring it to touch something.
-void LiveSession::keep_clear(double next) {
-  if (!rig_.is_arm_moving()) return;
-  const std::string text = touched(rig_.backbone(next), viewed()->obstacles);
-  const bool was_touching = std::exchange(is_touching_, !text.empty());
-  if (text.empty() || was_touching) return;
-  ++generation_;
-  (void)rig_.ports().arm->halt().value();
-  is_touching_ = false;
-  event("error", "safety", "stopped before " + text);
-}
-
 void LiveSession::start_run(const RunRequest& request, const Reply& reply) {
   Experiment experiment = viewed()->experiment;
   if (experiment.task.empty()) throw ViewRefusal("the experiment has no tasks");
@@ -286,6 +190,7 @@ void LiveSession::start_run(const RunRequest& request, const Reply& reply) {
 void LiveSession::follow_run() {
   if (run_ == nullptr) return;
   const bool was_shown = news_.time.has_value();
+  if (viewed()->is_rod) run_->want_truth();
   news_ = run_->news();
   // From the rig to the run's start, and from its end to the rig.
   if (news_.time && (!was_shown || news_.end)) ++leaps_;
@@ -297,22 +202,11 @@ void LiveSession::follow_run() {
   run_.reset();
 }
 
-// A rod may come to where it finds no rest.
-void LiveSession::move_on(double next) {
-  rig_.skip_to(next);
-  try {
-    keep_clear(next);
-    rig_.go_to(next);
-  } catch (const std::runtime_error& error) {
-    event("error", "safety", std::string("everything is put back: ") + error.what());
-    reset();
-  }
-}
-
 void LiveSession::advance(double now) {
   clock_ = std::max(clock_, now);
   const double next = clock_ - config_.start;
   move_on(next);
+  tell_warning();
   follow_run();
   if (clients_.empty()) return;
   send_states();
@@ -320,8 +214,12 @@ void LiveSession::advance(double now) {
 }
 
 Backbone LiveSession::shown_backbone() {
-  return is_run_shown() ? viewed()->truth.backbone(news_.state) : rig_.backbone(rig_.now());
+  if (!is_run_shown()) return rig_.backbone(rig_.now());
+  return run_truth() != nullptr ? run_truth()->backbone : viewed()->truth.backbone(news_.state);
 }
+
+// How the arm of a run lies; null: as it is commanded, as far as anybody has said.
+const TrueArm* LiveSession::run_truth() const { return news_.truth.get(); }
 
 // Where the run's cameras stand, as far as it says so.
 std::vector<CameraStance> LiveSession::run_stances() const {
@@ -336,7 +234,7 @@ std::vector<CameraStance> LiveSession::run_stances() const {
 void LiveSession::send_states() {
   const bool is_running = run_ != nullptr;
   StateMessage state = is_running && news_.time
-                           ? still_state(*viewed(), *news_.time, news_.state, run_stances())
+                           ? still_state(*viewed(), *news_.time, news_.state, run_stances(), run_truth())
                            : rig_.state();
   // A page's time goes on; that of a run which it watches from the start to the end is the run's.
   if (!is_watched_run()) state.time = rig_.now();
@@ -358,7 +256,10 @@ ValueShot LiveSession::newest_shot(std::size_t camera) {
   // So a picture's exposure has its middle at the time of the state that it shows.
   const double start = is_watched_run() ? *news_.time - times_of_frame_at(sensor, 0).middle
                                         : frame_times(sensor, number).start;
-  Instant shown{start, news_.state, stance, rig_.rod_at_rest(news_.state)};
+  Instant shown{start, news_.state, stance, {}};
+  shown.shape = viewed()->is_rod && news_.truth
+                    ? std::shared_ptr<const Backbone>(news_.truth, &news_.truth->backbone)
+                    : rig_.rod_at_rest(news_.state);
   return with_covers(value_shot(viewed(), camera, number, start, {std::move(shown)}), *news_.time);
 }
 
@@ -372,12 +273,14 @@ void LiveSession::send_images() {
 }
 
 void LiveSession::event(const char* level, const std::string& name, const std::string& text) {
-  tell_all({Node::Table{{"type", {}, {std::string("event"), {}}},
-                        {"time", {}, {rig_.now(), {}}},
-                        {"level", {}, {std::string(level), {}}},
-                        {"name", {}, {name, {}}},
-                        {"text", {}, {text, {}}}},
-            {}});
+  tell_all({event_table(rig_.now(), level, name, text), {}});
+}
+
+// Nobody asked for what it tells of, and so it is shown at once.
+void LiveSession::notice(const char* level, const std::string& name, const std::string& text) {
+  Node::Table table = event_table(rig_.now(), level, name, text);
+  table.push_back({"notice", {}, {true, {}}});
+  tell_all({std::move(table), {}});
 }
 
 void LiveSession::tell_all(const Node& message) {

@@ -52,7 +52,7 @@ class LiveSession : public PictureSession {
   struct Taker;
   // A wish that is being looked at, or waits for that.
   struct Move {
-    std::variant<ArmState, TipRequest> target;
+    std::variant<ArmState, TipRequest, TendonPull> target;
     double duration = 0;
     Reply reply;
   };
@@ -74,15 +74,19 @@ class LiveSession : public PictureSession {
   void follow_run();
   void halt();
   void reset();
+  void weigh(bool on);
   void keep_clear(double next);
   void move_on(double next);
+  void tell_warning();
   void send_states();
   void send_images();
   [[nodiscard]] bool is_run_shown() const { return run_ != nullptr && news_.time; }
   [[nodiscard]] Backbone shown_backbone();
   [[nodiscard]] std::vector<CameraStance> run_stances() const;
   [[nodiscard]] ValueShot newest_shot(std::size_t camera);
+  [[nodiscard]] const TrueArm* run_truth() const;
   void event(const char* level, const std::string& name, const std::string& text);
+  void notice(const char* level, const std::string& name, const std::string& text);
   void warn(const std::string& text);
   void tell_all(const Node& message);
 
@@ -98,7 +102,8 @@ class LiveSession : public PictureSession {
   std::optional<Move> waiting_;
   std::uint64_t generation_ = 0;  // Moves of an older one are forgotten.
   bool is_touching_ = false;
-  double warned_ = -1;  // s
+  double warned_ = -1;   // s
+  std::string warning_;  // of the arm's rest, as told
   std::shared_ptr<RunLink> run_;
   RunLink::News news_;  // of the run
   RunTeller teller_;

@@ -114,6 +114,22 @@ ArmState shape_wanted(const Arm& arm, const std::optional<Drive>& drive, const A
   return within_limits(arm, fit_state(arm, *drive, {*request.tendons}).state);
 }
 
+TendonPull pull_wanted(const std::vector<PulledTendon>& actuators, const std::vector<double>& displacements) {
+  if (displacements.size() != actuators.size())
+    throw ViewRefusal(fmt::format("tendons: expected {} displacements", actuators.size()));
+  // A page's numbers are rounded.
+  constexpr double rounding = 1e-7;  // m
+  TendonPull pull{displacements};
+  for (std::size_t i = 0; i < actuators.size(); ++i) {
+    const auto [least, most] = actuators[i].range;
+    if (!(displacements[i] >= least - rounding && displacements[i] <= most + rounding))
+      throw ViewRefusal(
+          fmt::format("tendons[{}] = {}: expected {:.4g} to {:.4g} m", i, displacements[i], least, most));
+    pull.displacements[i] = std::clamp(displacements[i], least, most);
+  }
+  return pull;
+}
+
 InverseResult shape_for_tip(const ArmModel& arm, const ArmState& from, const TipRequest& request) {
   TipTarget target;
   target.position = vector(request.position);

@@ -9,6 +9,7 @@
 #include "flexura/model/backbone.h"
 #include "flexura/model/drive.h"
 #include "flexura/model/obstacle.h"
+#include "flexura/sim/tendon_pull.h"
 #include "flexura/view/request.h"
 
 // What becomes of wishes where the arm shall go: pure functions, which other threads call.
@@ -19,6 +20,15 @@ namespace flexura {
 [[nodiscard]] ArmState shape_wanted(const Arm& arm, const std::optional<Drive>& drive,
                                     const ArmRequest& request);
 [[nodiscard]] ArmState shape_wanted(const Arm& arm, const ShapeConfig& shape);
+
+/// Tendons that are pulled in one by one.
+struct TendonPull {
+  std::vector<double> displacements;  ///< m
+};
+/// What a client asks of a rig's actuators; a ViewRefusal where these are not as many, or one is beyond its
+/// range.
+[[nodiscard]] TendonPull pull_wanted(const std::vector<PulledTendon>& actuators,
+                                     const std::vector<double>& displacements);
 
 /// A ViewRefusal where the camera has no stage, or one that does not move along what is asked for.
 void require_travel(const Camera& camera, const StageRequest& request);

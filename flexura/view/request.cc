@@ -153,6 +153,12 @@ const Table<StageRequest>& fields_of(const StageRequest*) {
 
 const Table<HaltRequest>& fields_of(const HaltRequest*) { return bare<HaltRequest>("halt"); }
 const Table<ResetRequest>& fields_of(const ResetRequest*) { return bare<ResetRequest>("reset"); }
+const Table<WeightRequest>& fields_of(const WeightRequest*) {
+  static const auto table =
+      Table<WeightRequest>("weight", "The simulated arm is with or without its weight and loads.")
+          .field("on", &WeightRequest::on, {.required = true});
+  return table;
+}
 const Table<RunRequest>& fields_of(const RunRequest*) {
   static const auto table =
       Table<RunRequest>("run", "The experiment's tasks run.")

@@ -14,7 +14,8 @@
 // What clients ask (docs/viewer-protocol.md, "From the page").
 namespace flexura {
 
-/// Arms go to shapes by their bends, or by their tendons' displacements.
+/// Arms go to shapes by their bends, or by their tendons' displacements; of an arm with actuators these go
+/// there one by one, whatever shape that makes.
 struct ArmRequest : ShapeConfig {
   std::optional<std::vector<double>> tendons;  ///< m
   double duration = 0;                         ///< s
@@ -33,6 +34,9 @@ struct StageRequest {
 };
 struct HaltRequest {};
 struct ResetRequest {};
+struct WeightRequest {
+  bool on = true;
+};
 struct RunRequest {
   std::optional<std::int64_t> task;  ///< Its place, from 0; all of them where it is left out.
 };
@@ -72,6 +76,7 @@ const Table<HeadRequest>& fields_of(const HeadRequest*);
 const Table<StageRequest>& fields_of(const StageRequest*);
 const Table<HaltRequest>& fields_of(const HaltRequest*);
 const Table<ResetRequest>& fields_of(const ResetRequest*);
+const Table<WeightRequest>& fields_of(const WeightRequest*);
 const Table<RunRequest>& fields_of(const RunRequest*);
 const Table<CancelRequest>& fields_of(const CancelRequest*);
 const Table<OpenRequest>& fields_of(const OpenRequest*);
@@ -87,9 +92,9 @@ const Table<BackboneRequest>& fields_of(const BackboneRequest*);
 const Table<PingRequest>& fields_of(const PingRequest*);
 
 using Ask =
-    std::variant<ArmRequest, TipRequest, HeadRequest, StageRequest, HaltRequest, ResetRequest, RunRequest,
-                 CancelRequest, OpenRequest, LiveRequest, AtRequest, ImagesRequest, AckRequest, PixelRequest,
-                 MeasureRequest, ShapeRequest, PointRequest, BackboneRequest, PingRequest>;
+    std::variant<ArmRequest, TipRequest, HeadRequest, StageRequest, HaltRequest, ResetRequest, WeightRequest,
+                 RunRequest, CancelRequest, OpenRequest, LiveRequest, AtRequest, ImagesRequest, AckRequest,
+                 PixelRequest, MeasureRequest, ShapeRequest, PointRequest, BackboneRequest, PingRequest>;
 
 /// What one message asks, or why it asks nothing.
 struct Request {

@@ -34,6 +34,7 @@ TEST(Request, ReadsEverythingThatAPageCanAsk) {
   EXPECT_EQ(read_as_ask<StageRequest>(R"({"id":7,"do":"stage","camera":"front","y":0.1})").y, 0.1);
   (void)read_as_ask<HaltRequest>(R"({"id":7,"do":"halt"})");
   (void)read_as_ask<ResetRequest>(R"({"id":7,"do":"reset"})");
+  EXPECT_FALSE(read_as_ask<WeightRequest>(R"({"id":7,"do":"weight","on":false})").on);
   EXPECT_FALSE(read_as_ask<RunRequest>(R"({"id":7,"do":"run"})").task);
   EXPECT_EQ(read_as_ask<RunRequest>(R"({"id":7,"do":"run","task":2})").task, 2);
   (void)read_as_ask<CancelRequest>(R"({"id":7,"do":"cancel"})");

@@ -39,6 +39,12 @@ void RunLink::state(double time, const ArmState& state, std::span<const CameraRe
   news_.cameras.assign(cameras.begin(), cameras.end());
 }
 
+void RunLink::truth(double /*time*/, TrueArm arm) {
+  auto told = std::make_shared<const TrueArm>(std::move(arm));
+  const std::lock_guard lock(mutex_);
+  news_.truth = std::move(told);
+}
+
 void RunLink::happened(double time, const std::string& level, const std::string& name,
                        const std::string& text) {
   constexpr std::size_t most = 50;

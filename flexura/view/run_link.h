@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <deque>
 #include <filesystem>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <span>
@@ -40,6 +41,7 @@ class RunLink : public Progress, public RunWatcher {
     std::string what;
     std::optional<double> time;  ///< Of `state`, s; none before the first one.
     ArmState state;
+    std::shared_ptr<const TrueArm> truth;  ///< The newest that was told since truth was wanted; or null.
     std::vector<CameraReading> cameras;  ///< As read then, by camera; empty where they stand as at the start.
     std::optional<ShownServo> servo;     ///< While one steers the arm.
     std::optional<ShownCalibration> calibration;  ///< While one goes on.
@@ -54,12 +56,16 @@ class RunLink : public Progress, public RunWatcher {
   [[nodiscard]] bool is_cancelled() const override { return cancelled_; }
   void state(double time, const ArmState& state, std::span<const CameraReading> cameras) override;
 
+  [[nodiscard]] bool wants_truth() override { return is_truth_wanted_.exchange(false); }
+  void truth(double time, TrueArm arm) override;
   void happened(double time, const std::string& level, const std::string& name,
                 const std::string& text) override;
   void logged(const LoggedMessage& message) override;
   void task_ended() override;
 
   void cancel() { cancelled_ = true; }
+  /// The next news is to have how the arm truly stands: once, for each call.
+  void want_truth() { is_truth_wanted_ = true; }
   void finish(End end);
   [[nodiscard]] News news() const;
   /// The oldest events that nobody took yet, so many at most. Of a great many the last are kept.
@@ -69,7 +75,7 @@ class RunLink : public Progress, public RunWatcher {
   void decided(const CalibrationDecisionMessage& decision);
 
   Progress* also_;
-  std::atomic<bool> cancelled_ = false;
+  std::atomic<bool> cancelled_ = false, is_truth_wanted_ = false;
   mutable std::mutex mutex_;
   News news_;
   std::vector<ServoPicture> pictures_;  // of a servo, the newest of each camera

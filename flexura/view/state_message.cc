@@ -14,7 +14,8 @@ namespace flexura {
 namespace {
 
 constexpr std::uint8_t state_kind = 1, image_kind = 2;
-constexpr std::uint8_t moving_flag = 1, running_flag = 2, recording_flag = 4, unsafe_flag = 8;
+constexpr std::uint8_t moving_flag = 1, running_flag = 2, recording_flag = 4, unsafe_flag = 8,
+                       weightless_flag = 16;
 
 // Little-endian numbers into a text.
 class Writer {
@@ -75,7 +76,8 @@ class BytesReader {
 std::uint8_t flags_of(const StateMessage& state) {
   return static_cast<std::uint8_t>(
       (state.is_moving ? moving_flag : 0) | (state.is_running ? running_flag : 0) |
-      (state.is_recording ? recording_flag : 0) | (state.is_unsafe ? unsafe_flag : 0));
+      (state.is_recording ? recording_flag : 0) | (state.is_unsafe ? unsafe_flag : 0) |
+      (state.is_weightless ? weightless_flag : 0));
 }
 
 void put_camera(const CameraSample& camera, Writer& out) {
@@ -97,10 +99,11 @@ CameraSample take_camera(BytesReader& in) {
   return camera;
 }
 
-constexpr std::size_t head_size = 24;
+constexpr std::size_t head_size = 28;
 
-std::size_t body_size(std::size_t sections, std::size_t samples, std::size_t cameras, std::size_t tendons) {
-  return 4 * (3 * sections + 8 * samples + 18 * cameras + tendons);
+std::size_t body_size(std::size_t sections, std::size_t samples, std::size_t cameras, std::size_t tendons,
+                      std::size_t actuators) {
+  return 4 * (3 * sections + 8 * samples + 18 * cameras + tendons + 3 * actuators);
 }
 
 }  // namespace
@@ -128,8 +131,8 @@ std::vector<ArmSample> arm_samples(std::span<const Arc> arcs, const Pose& tip) {
 std::string state_message(const StateMessage& state) {
   Writer out;
   const std::size_t sections = state.arm.bends.size();
-  out.reserve(head_size +
-              body_size(sections, state.samples.size(), state.cameras.size(), state.displacements.size()));
+  out.reserve(head_size + body_size(sections, state.samples.size(), state.cameras.size(),
+                                    state.displacements.size(), state.actuators.size()));
   out.put(state_kind);
   out.put(flags_of(state));
   out.count(sections);
@@ -139,11 +142,15 @@ std::string state_message(const StateMessage& state) {
   out.put(state.leaps);
   out.put(state.sequence);
   out.put(state.time);
+  out.count(state.actuators.size());
+  out.put(std::uint16_t{0});
   for (const Eigen::Vector2d& bend : state.arm.bends) out.single(bend.x()), out.single(bend.y());
   for (const double stretch : state.arm.stretches) out.single(stretch);
   for (const ArmSample& sample : state.samples) out.single(sample.s), out.pose(sample.X_WS);
   for (const CameraSample& camera : state.cameras) put_camera(camera, out);
   for (const double displacement : state.displacements) out.single(displacement);
+  for (const ActuatorSample& each : state.actuators)
+    out.single(each.value), out.single(each.force), out.single(each.lost);
   return std::move(out).text();
 }
 
@@ -156,12 +163,15 @@ std::optional<StateMessage> read_state_message(std::string_view bytes) {
   state.is_running = (flags & running_flag) != 0;
   state.is_recording = (flags & recording_flag) != 0;
   state.is_unsafe = (flags & unsafe_flag) != 0;
+  state.is_weightless = (flags & weightless_flag) != 0;
   std::array<std::uint16_t, 4> counts{};
   for (std::uint16_t& count : counts) count = in.take<std::uint16_t>();
   state.leaps = in.take<std::uint16_t>();
   state.sequence = in.take<std::uint32_t>();
   state.time = in.number();
-  if (in.size() != body_size(counts[0], counts[1], counts[2], counts[3])) return std::nullopt;
+  const auto actuators = in.take<std::uint16_t>();
+  (void)in.take<std::uint16_t>();
+  if (in.size() != body_size(counts[0], counts[1], counts[2], counts[3], actuators)) return std::nullopt;
   for (int i = 0; i < counts[0]; ++i) {
     const double x = in.single();
     state.arm.bends.emplace_back(x, in.single());
@@ -173,6 +183,10 @@ std::optional<StateMessage> read_state_message(std::string_view bytes) {
   }
   for (int i = 0; i < counts[2]; ++i) state.cameras.push_back(take_camera(in));
   for (int i = 0; i < counts[3]; ++i) state.displacements.push_back(in.single());
+  for (int i = 0; i < actuators; ++i) {
+    const double value = in.single(), force = in.single();
+    state.actuators.push_back({value, force, in.single()});
+  }
   return state;
 }
 

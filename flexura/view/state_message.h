@@ -30,12 +30,20 @@ struct CameraSample {
   double fx = 0, fy = 0, cx = 0, cy = 0;            ///< px
 };
 
+/// Something that a client can move by itself, as it is: a tendon that is pulled in.
+struct ActuatorSample {
+  double value = 0;  ///< How far it is, as commanded, m.
+  double force = 0;  ///< By which it pulls, N; 0: it hangs slack.
+  double lost = 0;   ///< Steps that its motor has lost.
+};
+
 /// What moves, at one time.
 struct StateMessage {
   bool is_moving = false;
   bool is_running = false;  ///< A run of tasks is going on.
   bool is_recording = false;
   bool is_unsafe = false;
+  bool is_weightless = false;  ///< Weight and loads are switched off.
   /// How often everything was put elsewhere, with no way between: counts up when it is, and wraps.
   std::uint16_t leaps = 0;
   std::uint32_t sequence = 0;
@@ -44,6 +52,7 @@ struct StateMessage {
   std::vector<ArmSample> samples;  ///< Base first, the tip last.
   std::vector<CameraSample> cameras;
   std::vector<double> displacements;  ///< m, of the tendons.
+  std::vector<ActuatorSample> actuators;
 };
 
 /// The samples of a state message: the ends of every arc, and so many points between that from one to the

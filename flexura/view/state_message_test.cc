@@ -50,6 +50,10 @@ StateMessage random_message(TestRandom& random) {
                                240});
   }
   for (int i = random.integer(0, 9); i > 0; --i) message.displacements.push_back(random.uniform(-0.1, 0.1));
+  for (int i = random.integer(0, 9); i > 0; --i)
+    message.actuators.push_back(
+        {random.uniform(-0.1, 0.1), random.uniform(0, 99), 10.0 * random.integer(0, 9)});
+  message.is_weightless = random.integer(0, 1) == 1;
   return message;
 }
 
@@ -82,6 +86,13 @@ TEST(StateMessage, ReadsBackInSinglePrecision) {
       EXPECT_EQ(back->cameras[i].fy, 810);
     }
     ASSERT_EQ(back->displacements.size(), message.displacements.size());
+    EXPECT_EQ(back->is_weightless, message.is_weightless);
+    ASSERT_EQ(back->actuators.size(), message.actuators.size());
+    for (std::size_t i = 0; i < message.actuators.size(); ++i) {
+      EXPECT_EQ(back->actuators[i].value, static_cast<float>(message.actuators[i].value));
+      EXPECT_EQ(back->actuators[i].force, static_cast<float>(message.actuators[i].force));
+      EXPECT_EQ(back->actuators[i].lost, message.actuators[i].lost);
+    }
   });
 }
 
@@ -93,13 +104,16 @@ TEST(StateMessage, LiesAsTheProtocolSays) {
   message.arm = {{{0.25, -0.5}}, {1.0}};
   message.samples = {{0, Pose{}}, {0.5, Pose{Eigen::Matrix3d::Identity(), {1, 2, 3}}}};
   message.displacements = {0.125};
+  message.actuators = {{0.5, 2, 1}};
   const std::string bytes = state_message(message);
-  ASSERT_EQ(bytes.size(), 24 + 4 * (3 + 2 * 8 + 1));
+  ASSERT_EQ(bytes.size(), 28 + 4 * (3 + 2 * 8 + 1 + 3));
   EXPECT_EQ(bytes.substr(0, 16), std::string("\x01\x09\x01\0\x02\0\0\0\x01\0\0\0\x04\x03\x02\x01", 16));
   EXPECT_EQ(bytes.substr(16, 8), std::string("\0\0\0\0\0\0\xf8\x3f", 8));
-  EXPECT_EQ(bytes.substr(24, 8), std::string("\0\0\x80\x3e\0\0\0\xbf", 8));
+  EXPECT_EQ(bytes.substr(24, 4), std::string("\x01\0\0\0", 4));
+  EXPECT_EQ(bytes.substr(28, 8), std::string("\0\0\x80\x3e\0\0\0\xbf", 8));
+  EXPECT_EQ(bytes.substr(bytes.size() - 12), std::string("\0\0\0\x3f\0\0\0\x40\0\0\x80\x3f", 12));
   // The second sample: s, then x.
-  EXPECT_EQ(bytes.substr(24 + 12 + 32, 8), std::string("\0\0\0\x3f\0\0\x80\x3f", 8));
+  EXPECT_EQ(bytes.substr(28 + 12 + 32, 8), std::string("\0\0\0\x3f\0\0\x80\x3f", 8));
 }
 
 TEST(StateMessage, IsNoneWhenAByteIsMissingOrTooMany) {

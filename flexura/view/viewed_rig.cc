@@ -105,6 +105,10 @@ ViewedRig::ViewedRig(Experiment read)
       initial(ArmSetup(experiment.true_rig()).initial),
       is_rod(experiment.true_rig().arm.mechanics == ArmMechanics::statics),
       obstacles(flexura::obstacles(experiment.obstacle)) {
+  if (const ArmSetup setup(experiment.true_rig()); setup.rod) {
+    actuators = pulled_tendons(setup);
+    has_weight = has_loads(setup.rod->loads);
+  }
   if (experiment.drive) drive = experiment.drive->drive();
   for (const CameraConfig& config : experiment.true_rig().cameras) {
     cameras.emplace_back(config);

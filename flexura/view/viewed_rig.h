@@ -16,6 +16,7 @@
 #include "flexura/model/drive.h"
 #include "flexura/model/obstacle.h"
 #include "flexura/sim/simulated_camera.h"
+#include "flexura/sim/tendon_pull.h"
 #include "flexura/view/state_message.h"
 
 namespace flexura {
@@ -40,6 +41,8 @@ class ViewedRig {
   ArmModel model, truth;  ///< The arm as it is believed to be, and as it is.
   ArmState initial;       ///< As it is.
   bool is_rod;            ///< The arm as it is: it lies as its plant says, which `truth` does not know.
+  std::vector<PulledTendon> actuators;  ///< Tendons that can be pulled in one by one.
+  bool has_weight = false;              ///< Weight or loads pull at the arm as it is.
   std::vector<Obstacle> obstacles;
   std::optional<Drive> drive;    ///< As it is believed to be.
   std::vector<Camera> cameras;   ///< As they are.

@@ -2,12 +2,14 @@ import type { State } from '../protocol/state';
 import type { Range } from '../protocol/types';
 import { preferences, type ArmMode } from '../state/preferences';
 import { use_app } from '../ui/app';
+import { ActuatorPanel } from './ActuatorPanel';
 import { degree } from '../ui/format';
 import { changed, command_of, mode_names, modes_of, reach_of, slots_of, span_of, start_tangent, values_of, type Shape } from './arm_model';
 import { use_draft } from './draft';
 import { Slider } from './Slider';
 import { pull, tendon_reach } from './tendons';
 import { TipPanel } from './TipPanel';
+import { WeightSwitch } from './WeightSwitch';
 
 export function ArmPanel() {
   const { viewer } = use_app();
@@ -67,7 +69,9 @@ export function ArmPanel() {
           ))}
         </div>
       )}
-      {controls.sections.map((control, section) => (
+      {controls.weight && <WeightSwitch />}
+      {mode === 'tendons' && controls.actuators && <ActuatorPanel actuators={controls.actuators} />}
+      {!(mode === 'tendons' && controls.actuators) && controls.sections.map((control, section) => (
         <fieldset key={section} class="section" data-plain={plain}>
           <legend class={plain ? 'sr' : ''}>Section {section + 1}</legend>
           {slots.map((slot, i) => slot.section === section && (

@@ -26,7 +26,7 @@ export const mode_names: Record<ArmMode, string> = {
 
 export function modes_of(kind: 'planar' | 'spatial', controls: Controls): ArmMode[] {
   const shapes: ArmMode[] = kind === 'planar' ? ['archings', 'cord_angles', 'bends'] : ['bends'];
-  return controls.tendons ? [...shapes, 'tendons'] : shapes;
+  return controls.tendons || controls.actuators ? [...shapes, 'tendons'] : shapes;
 }
 
 /** The sliders of a mode, in the order of `Shape.values`. */

@@ -71,6 +71,8 @@ export function series_color(i: number, theme: 'dark' | 'light'): string {
 }
 
 export function fill(chart: uPlot, columns: Columns, range: [number, number]): void {
+  // Other series were chosen, and the chart of these is yet to be made.
+  if (columns.length !== chart.series.length) return;
   chart.batch(() => {
     chart.setData(columns as unknown as uPlot.AlignedData, false);
     chart.setScale('x', { min: range[0], max: range[1] });

@@ -1,5 +1,5 @@
 // What can be plotted of a live rig: taken from the states that the page remembers.
-import { camera_pan, camera_stride, camera_tilt, sample_stride, type State } from '../protocol/state';
+import { actuator_force, actuator_stride, camera_pan, camera_stride, camera_tilt, sample_stride, type State } from '../protocol/state';
 import type { Hello, Scene } from '../protocol/types';
 
 export interface Source {
@@ -18,6 +18,9 @@ const degree = 180 / Math.PI;
 export function live_sources(hello: Hello, scene: Scene): Source[] {
   const sections = scene.arm.sections.length;
   const planar = scene.arm.kind === 'planar';
+  const { actuators } = hello.controls;
+  // Where tendons pull at an arm that also yields to its weight, its bends are what it is told.
+  const bends = actuators ? 'Bends, commanded' : 'Bends';
   const sources: Source[] = [
     {
       id: 'tip', label: 'Tip', unit: 'm', names: ['x', 'y', 'z'],
@@ -25,11 +28,11 @@ export function live_sources(hello: Hello, scene: Scene): Source[] {
     },
     planar
       ? {
-          id: 'bends', label: 'Bends', unit: '°', names: numbered('section', sections),
+          id: 'bends', label: bends, unit: '°', names: numbered('section', sections),
           value: ({ bends }, i) => bends[2 * i] * degree,
         }
       : {
-          id: 'bends', label: 'Bends', unit: '°',
+          id: 'bends', label: bends, unit: '°',
           names: Array.from({ length: 2 * sections }, (_, i) => `${(i >> 1) + 1}${'xy'[i & 1]}`),
           value: ({ bends }, i) => bends[i] * degree,
         },
@@ -44,6 +47,14 @@ export function live_sources(hello: Hello, scene: Scene): Source[] {
     sources.push({
       id: 'tendons', label: 'Tendons', unit: 'mm', names: numbered('tendon', hello.controls.tendons.length),
       value: ({ displacements }, i) => displacements[i] * 1000,
+    });
+  }
+  if (actuators) {
+    const names = actuators.map(({ name }) => name.toLowerCase());
+    sources.push({
+      id: 'tendons', label: 'Tendons, pulled in', unit: 'mm', names, value: (state, i) => state.actuators[actuator_stride * i] * 1000,
+    }, {
+      id: 'tensions', label: 'Tensions', unit: 'N', names, value: (state, i) => state.actuators[actuator_stride * i + actuator_force],
     });
   }
   if (scene.cameras.length) {

@@ -9,11 +9,17 @@ export const flag_moving = 1;
 export const flag_running = 2;
 export const flag_recording = 4;
 export const flag_unsafe = 8;
+export const flag_weightless = 16;
 
 /** Numbers in a row of `samples`: s, x, y, z, qw, qx, qy, qz. */
 export const sample_stride = 8;
 /** Numbers in a row of `cameras`. */
 export const camera_stride = 18;
+
+/** Numbers in a row of `actuators`. */
+export const actuator_stride = 3;
+export const actuator_force = 1;
+export const actuator_lost = 2;
 
 /** Where what stands in a camera's row. */
 export const camera_pan = 7;
@@ -37,6 +43,8 @@ export interface State {
   samples: Float32Array;
   cameras: Float32Array;
   displacements: Float32Array;
+  /** Rows of what can be moved one by one: how far it is, m, by which it pulls, N, and the steps that its motor has lost. */
+  actuators: Float32Array;
   /** What was drawn beside it when it came. */
   extras?: Extras | null;
 }
@@ -50,7 +58,7 @@ export interface ImageMessage {
   file: Uint8Array;
 }
 
-const state_header = 24;
+const state_header = 28;
 const image_header = 16;
 const image_types = ['image/jpeg', 'image/png'] as const;
 
@@ -67,7 +75,8 @@ export function decode_state(buffer: ArrayBuffer): State {
   const samples = view.getUint16(4, true);
   const cameras = view.getUint16(6, true);
   const tendons = view.getUint16(8, true);
-  const numbers = 3 * sections + sample_stride * samples + camera_stride * cameras + tendons;
+  const actuators = view.getUint16(24, true);
+  const numbers = 3 * sections + sample_stride * samples + camera_stride * cameras + tendons + actuator_stride * actuators;
   if (buffer.byteLength !== state_header + 4 * numbers) {
     throw new Error(`a state of ${buffer.byteLength} bytes, expected ${state_header + 4 * numbers}`);
   }
@@ -87,6 +96,7 @@ export function decode_state(buffer: ArrayBuffer): State {
     samples: take(sample_stride * samples),
     cameras: take(camera_stride * cameras),
     displacements: take(tendons),
+    actuators: take(actuator_stride * actuators),
   };
 }
 

@@ -106,9 +106,23 @@ export interface TendonControl {
   angle: number;
 }
 
+/** What can be moved by itself: a tendon that ends with a section, pulled in so far, m. */
+export interface ActuatorControl {
+  name: string;
+  section: number;
+  range: Range;
+  /** How far each of all goes for a metre of this one so that none pulls against it. */
+  together: number[];
+  /** Its motor may lose steps. */
+  motor: boolean;
+}
+
 export interface Controls {
   sections: SectionControl[];
   tendons: null | TendonControl[];
+  actuators?: ActuatorControl[];
+  /** Weight and loads pull at the arm, and can be switched off. */
+  weight?: boolean;
   heads: HeadControl[];
   stages: StageControl[];
   tasks: { name: string; kind: string }[];
@@ -156,6 +170,8 @@ export interface EventMessage {
   level: Level;
   name: string;
   text: string;
+  /** To be shown at once. */
+  notice?: boolean;
 }
 
 export type Outcome = 'done' | 'unsafe' | 'cancelled' | 'failed';

@@ -58,6 +58,12 @@ export class Commander {
     this.tip_result.value = null;
   }
 
+  /** The simulated arm is with or without its weight and loads. True when it was taken. */
+  weight(on: boolean): Promise<boolean> {
+    this.playback.go_live();
+    return this.ask('weight', { on });
+  }
+
   /** Moves a head or a stage: `what` is the request's name. */
   axis(what: 'head' | 'stage', camera: string, values: Record<string, number>): void {
     const key = `${what} ${camera} ${Object.keys(values).join()}`;

@@ -32,6 +32,8 @@ export const preferences = {
   hidden: kept<string[]>('hidden', []),
   /** Until someone chose: the first that the arm has. */
   arm_mode: kept<ArmMode | null>('arm_mode', null),
+  /** The other tendons go along with the one that is moved. */
+  tendons_together: kept('tendons_together', true),
   plots: kept<[string, string]>('plots', ['tip', 'bends']),
   recording_plots: kept<[string, string]>('recording_plots', ['', '']),
   show_plots: kept('show_plots', true),

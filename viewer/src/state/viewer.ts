@@ -15,6 +15,7 @@ import { Playback } from './playback';
 import { preferences } from './preferences';
 import { extra_ghosts } from '../overlays/extras';
 import { shape } from '../overlays/measures';
+import { capital } from '../ui/format';
 
 /** What one can believe of what is on the screen. */
 export type Freshness = 'live' | 'held' | 'recording' | 'stale' | 'lost' | 'none' | 'refused';
@@ -111,6 +112,7 @@ export class Viewer implements LinkListener {
         return;
       case 'event':
         this.events.value = [...this.events.value.slice(1 - kept_events), message];
+        if (message.notice) this.notices.error(capital(message.text));
         return;
       case 'progress':
         return this.take_progress(message);

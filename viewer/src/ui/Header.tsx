@@ -1,5 +1,5 @@
 import { useSignal } from '@preact/signals';
-import { flag_unsafe } from '../protocol/state';
+import { flag_unsafe, flag_weightless } from '../protocol/state';
 import { theme_now, toggle_theme } from '../state/preferences';
 import { use_app } from './app';
 import { Icon } from './Icon';
@@ -30,6 +30,9 @@ export function Header() {
       <h1 class="title">{teaching ? 'The planar arm, by its equations' : (hello?.title ?? '')}</h1>
       {!teaching && <span class="badge" data-kind={freshness} role="status" title={meaning}>{badge}</span>}
       {!teaching && (viewer.flags.value & flag_unsafe) !== 0 && <span class="badge" data-kind="unsafe" role="status">UNSAFE</span>}
+      {!teaching && (viewer.flags.value & flag_weightless) !== 0 && (
+        <span class="badge" data-kind="weightless" role="status" title="Weight and loads are switched off in this simulation.">NO WEIGHT</span>
+      )}
       <span class="spacer" />
       {!teaching && hello && <Rig />}
       <nav class="tools" aria-label="Page">

@@ -35,3 +35,8 @@ export function angle(radians: number, places = 1): string {
 export function vector(values: ArrayLike<number>, places: number): string {
   return Array.from(values, (value) => fixed(value, places)).join(', ');
 }
+
+/** A line as a sentence begins. */
+export function capital(text: string): string {
+  return text.charAt(0).toUpperCase() + text.slice(1);
+}

@@ -156,6 +156,9 @@ export interface ServerState {
   camera: number[];
   /** Of the tendons. */
   displacements: number[];
+  /** Value, force and lost steps of each. */
+  actuators: number[][];
+  is_weightless: boolean;
   is_running: boolean;
 }
 
@@ -171,14 +174,18 @@ export async function server_state(page: Page): Promise<ServerState> {
       const view = new DataView(data as ArrayBuffer);
       const sections = view.getUint16(2, true);
       const samples = view.getUint16(4, true);
-      const numbers = new Float32Array(data as ArrayBuffer, 24);
+      const numbers = new Float32Array(data as ArrayBuffer, 28);
       const last = 3 * sections + 8 * (samples - 1);
+      const tendons = last + 8 + 18 * view.getUint16(6, true);
+      const actuators = tendons + view.getUint16(8, true);
       resolve({
         time: view.getFloat64(16, true),
         bends: Array.from(numbers.subarray(0, 2 * sections)),
         tip: Array.from(numbers.subarray(last + 1, last + 4)),
         camera: Array.from(numbers.subarray(last + 8, last + 26)),
-        displacements: Array.from(numbers.subarray(last + 8 + 18 * view.getUint16(6, true))),
+        displacements: Array.from(numbers.subarray(tendons, actuators)),
+        actuators: Array.from({ length: view.getUint16(24, true) }, (_, i) => Array.from(numbers.subarray(actuators + 3 * i, actuators + 3 * i + 3))),
+        is_weightless: (view.getUint8(1) & 16) !== 0,
         is_running: (view.getUint8(1) & 2) !== 0,
       });
     };

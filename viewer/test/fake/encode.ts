@@ -9,11 +9,13 @@ export interface StateRows {
   samples: ArrayLike<number>;
   cameras: ArrayLike<number>;
   displacements: ArrayLike<number>;
+  /** Three a row. */
+  actuators?: ArrayLike<number>;
 }
 
 export function encode_state(state: StateRows): Buffer {
-  const parts = [state.bends, state.stretches, state.samples, state.cameras, state.displacements];
-  const bytes = Buffer.alloc(24 + 4 * parts.reduce((sum, { length }) => sum + length, 0));
+  const parts = [state.bends, state.stretches, state.samples, state.cameras, state.displacements, state.actuators ?? []];
+  const bytes = Buffer.alloc(28 + 4 * parts.reduce((sum, { length }) => sum + length, 0));
   bytes.writeUInt8(1, 0);
   bytes.writeUInt8(state.flags, 1);
   bytes.writeUInt16LE(state.stretches.length, 2);
@@ -23,7 +25,8 @@ export function encode_state(state: StateRows): Buffer {
   bytes.writeUInt16LE(state.leaps ?? 0, 10);
   bytes.writeUInt32LE(state.sequence, 12);
   bytes.writeDoubleLE(state.time, 16);
-  let at = 24;
+  bytes.writeUInt16LE((state.actuators?.length ?? 0) / 3, 24);
+  let at = 28;
   for (const part of parts) for (let i = 0; i < part.length; ++i) at = bytes.writeFloatLE(part[i], at);
   return bytes;
 }

@@ -13,7 +13,7 @@ const spatial = spatial_rig();
 function state(bends: [number, number][], displacements: number[] = []): State {
   return {
     flags: 0, leaps: 0, sequence: 0, time: 0, bends: Float32Array.from(bends.flat()), stretches: new Float32Array(bends.length).fill(1),
-    samples: new Float32Array(0), cameras: new Float32Array(0), displacements: Float32Array.from(displacements),
+    samples: new Float32Array(0), cameras: new Float32Array(0), displacements: Float32Array.from(displacements), actuators: new Float32Array(0),
   };
 }
 

@@ -8,7 +8,7 @@ import type { Hello } from '../../src/protocol/types';
 
 const none = new Float32Array(0);
 function state(time: number, sequence = 0): State {
-  return { flags: 0, leaps: 0, sequence, time, bends: none, stretches: none, samples: none, cameras: none, displacements: none };
+  return { flags: 0, leaps: 0, sequence, time, bends: none, stretches: none, samples: none, cameras: none, displacements: none, actuators: none };
 }
 
 function filled(seconds: number, kept = 60): History {

@@ -222,7 +222,7 @@ function default_stand(): { scene: typeof rig.scene; state: State; span: number 
   ]);
   const state = {
     flags: 0, leaps: 0, sequence: 0, time: 0, bends: new Float32Array(), stretches: new Float32Array(), samples: new FakeArm(rig).samples(),
-    cameras, displacements: new Float32Array(),
+    cameras, displacements: new Float32Array(), actuators: new Float32Array(),
   };
   return { scene: rig.scene, state, span };
 }
@@ -279,7 +279,7 @@ test('through a camera one sees as near and as far wherever the world’s origin
     const cameras = Float32Array.from([shift, 0.4, 2.2, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 760, 760, 319.5, 239.5, 0]);
     const state = {
       flags: 0, leaps: 0, sequence: 0, time: 0, bends: new Float32Array(), stretches: new Float32Array(), samples: new Float32Array(),
-      cameras, displacements: new Float32Array(),
+      cameras, displacements: new Float32Array(), actuators: new Float32Array(),
     };
     expect(see_through(camera, moved, state, 'front', 4 / 3)).toBe(true);
     return camera.near;

@@ -1,0 +1,160 @@
+#include "flexura/sim/rod_inputs.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <numbers>
+#include <stdexcept>
+#include <utility>
+
+#include "flexura/mechanics/arm_rod.h"
+#include "flexura/port/driven_arm.h"
+#include "flexura/sim/tendon_pull.h"
+
+namespace flexura {
+namespace {
+
+std::vector<std::int64_t> microsteps(const Eigen::VectorXd& u) {
+  std::vector<std::int64_t> positions;
+  for (const double position : u) positions.push_back(std::llround(position));
+  return positions;
+}
+
+const ArmRod& rod_in(const PlantSetup& setup) {
+  if (!setup.truth.rod) throw std::invalid_argument("the true arm is no rod");
+  if (setup.truth.drive && setup.truth.drive->axes.size() != setup.truth.rod->rod.tendons.size())
+    throw std::invalid_argument(
+        fmt::format("the arm has {} tendons: expected {}, one for each axis of its drive",
+                    setup.truth.rod->rod.tendons.size(), setup.truth.drive->axes.size()));
+  return *setup.truth.rod;
+}
+
+}  // namespace
+
+RodInputs::RodInputs(const PlantSetup& setup)
+    : arm_(setup.truth.arm),
+      rod_(rod_in(setup).rod),
+      loads_(setup.truth.rod->loads),
+      drive_(setup.truth.drive),
+      tight_(rod_.tendons.size(), 0.0) {
+  if (drive_) {
+    motors_.emplace(*drive_, *drive_, microsteps(setup.start), setup.horizon);
+    zero_ = displacements_at_zero(arm_, *drive_, setup.truth.initial, microsteps(setup.start));
+  } else {
+    bends_.emplace(arm_, setup.truth.initial, setup.horizon);
+    beside_.emplace(rod_.tendons.size(), setup.horizon);
+  }
+  if (!drive_ || drive_->pretension == 0) return;
+  RodStatics statics(rod_);
+  tight_ = pretension_displacements(statics, drive_->pretension);
+}
+
+void RodInputs::command(double time, const Eigen::VectorXd& u, double duration) {
+  if (motors_) {
+    motors_->command(time, {u.data(), static_cast<std::size_t>(u.size())}, duration);
+  } else {
+    bends_->command(time, commanded_state(u), duration);
+    beside_->back(time, bends_->end());
+  }
+}
+
+void RodInputs::halt(double time) {
+  if (motors_) {
+    motors_->halt(time);
+  } else {
+    bends_->halt(time);
+    beside_->halt(time);
+  }
+}
+
+std::optional<ArmState> RodInputs::pull(double time, const std::vector<double>& displacements,
+                                        double duration) {
+  if (!bends_) return std::nullopt;
+  ArmState nearest = nearest_arcs(rod_, arm_, displacements);
+  bends_->command(time, nearest, duration);
+  // Drawn to the limits of its sections, arcs may end elsewhere.
+  const ArmState end = bends_->at(std::numeric_limits<double>::max());
+  std::vector<double> beside = displacements;
+  const std::vector<double> by_arcs = arc_displacements(rod_, end).pulled;
+  for (std::size_t i = 0; i < beside.size(); ++i) beside[i] -= by_arcs[i];
+  beside_->command(time, std::move(beside), bends_->end());
+  return nearest;
+}
+
+bool RodInputs::weigh(double time, bool on) {
+  if (!has_loads(loads_)) return false;
+  weighings_.push_back({time, on});
+  return true;
+}
+
+bool RodInputs::is_weighed(double time) const {
+  const auto last = std::ranges::find_if(weighings_.rbegin(), weighings_.rend(),
+                                         [time](const Weighing& each) { return each.time <= time; });
+  return last == weighings_.rend() || last->on;
+}
+
+bool RodInputs::is_weighed_anew(double start, double end) const {
+  return std::ranges::any_of(weighings_,
+                             [&](const Weighing& each) { return each.time > start && each.time <= end; });
+}
+
+void RodInputs::forget_before(double time) {
+  // The last one before it counts.
+  while (weighings_.size() > 1 && weighings_[1].time < time) weighings_.erase(weighings_.begin());
+}
+
+std::optional<ArmState> RodInputs::commanded(double time) const {
+  if (motors_) return shape_carried(arm_, *drive_, zero_, motors_->carried(time));
+  return bends_->at(time);
+}
+
+std::vector<double> RodInputs::pulled(double time) const {
+  if (motors_) return displacements_carried(*drive_, zero_, motors_->carried(time)).pulled;
+  std::vector<double> pulled = arc_displacements(rod_, bends_->at(time)).pulled;
+  beside_->add_to(pulled, time);
+  return pulled;
+}
+
+std::vector<double> RodInputs::nothing_lost() const {
+  return std::vector<double>(drive_ ? rod_.tendons.size() : 0, 0.0);
+}
+
+std::vector<double> RodInputs::displacements(double time, const std::vector<double>& lost) const {
+  std::vector<double> given = pulled(time);
+  for (std::size_t i = 0; i < given.size(); ++i) {
+    given[i] += tight_[i];
+    if (drive_) given[i] -= lost[i] / drive_->axes[i].microsteps_a_metre();
+  }
+  return given;
+}
+
+std::vector<double> RodInputs::rest_stretches(double time) const {
+  if (bends_) return bends_->at(time).stretches;
+  return std::vector<double>(arm_.sections.size(), 1.0);
+}
+
+const RodLoads& RodInputs::loads(double time) const {
+  static const RodLoads none;
+  return is_weighed(time) ? loads_ : none;
+}
+
+bool RodInputs::lose_steps(double time, const std::vector<double>& tensions,
+                           std::vector<double>& lost) const {
+  if (!drive_) return false;
+  bool any = false;
+  const std::vector<double> rates = motors_->rates(time);
+  for (std::size_t i = 0; i < lost.size(); ++i) {
+    const Axis& axis = drive_->axes[i];
+    const double speed = std::abs(rates[i]) * 2 * std::numbers::pi / axis.motor.resolution();
+    if (axis.torque(tensions[i]) <= axis.motor.pull_out_torque(speed)) continue;
+    lost[i] += axis.motor.field_turn();
+    any = true;
+  }
+  return any;
+}
+
+}  // namespace flexura

@@ -1,0 +1,76 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <vector>
+
+#include "flexura/mechanics/rod.h"
+#include "flexura/model/arm.h"
+#include "flexura/model/drive.h"
+#include "flexura/sim/bend_motion.h"
+#include "flexura/sim/drive_motors.h"
+#include "flexura/sim/plant.h"
+#include "flexura/sim/pull_motion.h"
+
+namespace flexura {
+
+/// What moves a rod and what pulls at it, over time: its motors, or the bends that are commanded; its weight
+/// and loads, which may be switched off. A function of time and of the commands up to then.
+///
+/// Behind a drive its spools pull the tendons in, from the pretension on; a motor that would have to turn
+/// against more than its pull-out torque loses steps, a turn of its field at a time. Without a drive, what
+/// commands call bends pulls each tendon in as far as arcs of these bends would, pull() lets each differ from
+/// that, and what commands call stretches are factors on the sections' own lengths.
+class RodInputs {
+ public:
+  /// The truth has a rod, with a tendon for each axis of its drive if it has one. std::invalid_argument: not
+  /// so, or no rest under the pretension.
+  explicit RodInputs(const PlantSetup& setup);
+
+  /// As Plant's.
+  void command(double time, const Eigen::VectorXd& u, double duration);
+  void halt(double time);
+  std::optional<ArmState> pull(double time, const std::vector<double>& displacements, double duration);
+  bool weigh(double time, bool on);
+  [[nodiscard]] bool is_weighed(double time) const;
+  [[nodiscard]] std::optional<ArmState> commanded(double time) const;
+  [[nodiscard]] std::vector<double> pulled(double time) const;
+  /// What was so before `time` is asked for no more.
+  void forget_before(double time);
+
+  [[nodiscard]] const Rod& rod() const { return rod_; }
+  /// What its axes have lost when nothing has moved yet, microsteps; none without a drive.
+  [[nodiscard]] std::vector<double> nothing_lost() const;
+  /// How far each tendon is pulled in, m, from the rod at rest on: with the pretension, and less what its
+  /// motor has lost, microsteps.
+  [[nodiscard]] std::vector<double> displacements(double time, const std::vector<double>& lost) const;
+  /// How long its sections are by themselves: factors on their lengths.
+  [[nodiscard]] std::vector<double> rest_stretches(double time) const;
+  [[nodiscard]] const RodLoads& loads(double time) const;
+  /// Whether the weight was switched after `start` and up to `end`, s.
+  [[nodiscard]] bool is_weighed_anew(double start, double end) const;
+  /// Adds a turn of the field to what each motor has lost that would have to turn against more than it can,
+  /// under these tensions, N. Whether any has.
+  [[nodiscard]] bool lose_steps(double time, const std::vector<double>& tensions,
+                                std::vector<double>& lost) const;
+
+ private:
+  Arm arm_;
+  Rod rod_;
+  RodLoads loads_;
+  // What moves it: one of the two.
+  std::optional<DriveMotors> motors_;
+  std::optional<Drive> drive_;
+  std::vector<double> zero_;   // displacements where the motors are at 0, m, of an arm of arcs,
+  std::vector<double> tight_;  // and what the pretension adds to them
+  std::optional<BendMotion> bends_;
+  std::optional<PullMotion> beside_;  // beside what the bends pull in
+
+  struct Weighing {
+    double time = 0;  // from which on
+    bool on = true;
+  };
+  std::vector<Weighing> weighings_;  // by time; before the first one: on
+};
+
+}  // namespace flexura

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "flexura/sim/plant.h"
+#include "flexura/sim/rod_inputs.h"
+#include "flexura/sim/rod_tube.h"
+
+namespace flexura {
+
+/// An arm that is an elastic rod, moved by RodInputs; how it follows is for those who derive to say.
+class RodPlant : public Plant {
+ public:
+  void command(double time, const Eigen::VectorXd& u, double duration) override;
+  void halt(double time) override;
+  /// Without a drive: behind one the motors take commands, and this does nothing.
+  std::optional<ArmState> pull(double time, const std::vector<double>& displacements,
+                               double duration) override;
+  bool weigh(double time, bool on) override;
+  [[nodiscard]] bool is_weighed(double time) const override { return inputs_.is_weighed(time); }
+  [[nodiscard]] std::optional<ArmState> commanded(double time) const override {
+    return inputs_.commanded(time);
+  }
+  [[nodiscard]] std::vector<double> pulled(double time) const override { return inputs_.pulled(time); }
+
+ protected:
+  /// Errors as RodInputs.
+  explicit RodPlant(const PlantSetup& setup) : inputs_(setup), tube_(setup.truth.arm, inputs_.rod()) {}
+
+  /// Something was commanded: what was found for times from then on is so no more.
+  virtual void forget() = 0;
+  [[nodiscard]] const RodInputs& inputs() const { return inputs_; }
+  [[nodiscard]] RodInputs& inputs() { return inputs_; }
+  [[nodiscard]] const RodTube& tube() const { return tube_; }
+
+ private:
+  RodInputs inputs_;
+  RodTube tube_;
+};
+
+}  // namespace flexura

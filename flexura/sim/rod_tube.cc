@@ -1,0 +1,57 @@
+#include "flexura/sim/rod_tube.h"
+
+#include <span>
+
+namespace flexura {
+namespace {
+
+// Of the backbone, for each section.
+constexpr std::size_t samples_a_section = 12;
+
+double part_of(std::size_t sample) {
+  return static_cast<double>(sample) / static_cast<double>(samples_a_section);
+}
+
+std::vector<RodPlace> sampled_places(const Rod& rod) {
+  std::vector<RodPlace> places;
+  for (std::size_t i = 0; i < rod.sections.size(); ++i)
+    for (std::size_t k = 0; k <= samples_a_section; ++k) places.push_back({i, part_of(k)});
+  return places;
+}
+
+}  // namespace
+
+RodTube::RodTube(const Arm& arm, const Rod& rod) : arm_(arm), chain_(rod, sampled_places(rod)) {
+  for (const RodElement& element : chain_.elements()) {
+    std::vector<std::size_t>& nodes = nodes_.emplace_back();
+    for (std::size_t k = 0; k <= samples_a_section; ++k) nodes.push_back(element.grid().node_at(part_of(k)));
+  }
+}
+
+Backbone RodTube::backbone(const Eigen::VectorXd& q, const std::vector<double>& rest_stretches) const {
+  std::vector<BackboneSample> samples;
+  {
+    const std::lock_guard lock(mutex_);
+    chain_.stretch_rest(rest_stretches);
+    chain_.place(q);
+    double s_rest = 0;
+    for (std::size_t i = 0; i < chain_.elements().size(); ++i) {
+      const RodElement& element = chain_.elements()[i];
+      const auto& radius = arm_.sections[i].radius;
+      const std::vector<double>& t = element.grid().t;
+      // A section's end is the next one's base.
+      const std::size_t count = samples_a_section + (i + 1 == chain_.elements().size() ? 1 : 0);
+      for (std::size_t k = 0; k < count; ++k) {
+        const std::size_t node = nodes_[i][k];
+        samples.push_back({.X_WS = arm_.X_WB * element.poses()[node],
+                           .s_rest = s_rest + t[node] * element.length(),
+                           .radius = radius[0] + t[node] * (radius[1] - radius[0]),
+                           .section = i});
+      }
+      s_rest += element.length();
+    }
+  }
+  return Backbone::through(samples);
+}
+
+}  // namespace flexura

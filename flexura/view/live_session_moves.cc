@@ -1,0 +1,172 @@
+// What clients move in a live session, and what keeps that safe.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <exception>
+#include <stdexcept>
+#include <utility>
+
+#include "flexura/port/camera_moves.h"
+#include "flexura/view/answers.h"
+#include "flexura/view/live_session.h"
+
+namespace flexura {
+
+// Looks at one wish at a time; of those that come meanwhile the newest counts.
+void LiveSession::move(Move move) {
+  if (!is_looking_) {
+    look_at(std::move(move));
+    return;
+  }
+  std::optional<Move> overtaken = std::exchange(waiting_, std::move(move));
+  if (!overtaken) return;
+  InverseResult unknown;
+  const bool is_tip = std::holds_alternative<TipRequest>(overtaken->target);
+  overtaken->reply({is_tip ? tip_answer(unknown, "overtaken by a newer one") : nothing(), ""});
+}
+
+LiveSession::Judged LiveSession::judge(const ViewedRig& rig, const ArmState& from, const Move& move) {
+  Judged judged;
+  if (const auto* tip = std::get_if<TipRequest>(&move.target)) {
+    judged.found = shape_for_tip(rig.model, from, *tip);
+    judged.state = judged.found->state;
+  } else if (const auto* pull = std::get_if<TendonPull>(&move.target)) {
+    judged.state = nearest_arcs(rig, *pull);
+  } else {
+    judged.state = std::get<ArmState>(move.target);
+  }
+  judged.danger = danger_on_way(rig.model, rig.obstacles, from, judged.state);
+  return judged;
+}
+
+void LiveSession::look_at(Move move) {
+  is_looking_ = true;
+  background().run(Lane::checks,
+                   [this, rig = viewed(), from = rig_.believed(), move = std::move(move),
+                    generation = generation_, alive = this->alive()]() -> Background::After {
+                     Judged judged;
+                     try {
+                       judged = judge(*rig, from, move);
+                     } catch (const std::exception& error) {
+                       judged.danger = error.what();
+                     }
+                     return [this, move, judged, generation, alive] {
+                       if (alive.expired()) return;
+                       is_looking_ = false;
+                       if (generation == generation_) {
+                         finish(move, judged);
+                       } else {
+                         move.reply({nothing(), "something else has stopped it"});
+                       }
+                       if (waiting_ && !is_looking_) look_at(*std::exchange(waiting_, std::nullopt));
+                     };
+                   });
+}
+
+void LiveSession::finish(const Move& move, const Judged& judged) {
+  if (!judged.danger.empty()) {
+    warn("does not go there: " + judged.danger);
+    move.reply(judged.found ? ViewAnswer{tip_answer(*judged.found, judged.danger), ""}
+                            : ViewAnswer{nothing(), "unsafe: " + judged.danger});
+    return;
+  }
+  double duration = move.duration;
+  if (judged.found) {
+    // Follows a hand at once, and swings over where it has to go far.
+    constexpr double shortest = 0.05, rate = 4;  // s, rad/s
+    const ArmState from = rig_.believed();
+    duration = shortest;
+    for (std::size_t i = 0; i < from.bends.size(); ++i)
+      duration = std::max(duration, (judged.state.bends[i] - from.bends[i]).norm() / rate);
+  }
+  const auto* pull = std::get_if<TendonPull>(&move.target);
+  const CommandOutcome sent =
+      pull != nullptr ? rig_.pull(*pull, duration) : rig_.ports().arm->command(judged.state, duration);
+  const auto fault = sent.fault();
+  move.reply({judged.found ? tip_answer(*judged.found, "") : nothing(), fault ? text(*fault) : ""});
+}
+
+// A hand that drags against something is told twice a second at most.
+void LiveSession::warn(const std::string& text) {
+  constexpr double between = 0.5;  // s
+  if (rig_.now() - warned_ < between) return;
+  warned_ = rig_.now();
+  event("warning", "safety", text);
+}
+
+void LiveSession::halt() {
+  cancel();
+  ++generation_;
+  if (waiting_) std::exchange(waiting_, std::nullopt)->reply({nothing(), "something else has stopped it"});
+  const RigPorts ports = rig_.ports();
+  // The simulated rig has no links that are lost: a fault here is a fault of the program.
+  (void)ports.arm->halt().value();
+  for (std::size_t i = 0; i < ports.cameras.size(); ++i) {
+    (void)halt_camera(ports.cameras[i]).value();
+    const CameraStance stands = said_stance(ports.cameras[i], viewed()->cameras[i]).value();
+    head_targets_[i] = stands.head, stage_targets_[i] = stands.stage;
+  }
+}
+
+void LiveSession::reset() {
+  ++generation_;
+  warning_.clear();
+  if (waiting_) std::exchange(waiting_, std::nullopt)->reply({nothing(), "something else has stopped it"});
+  ++leaps_;
+  rig_.restart(clock_ - config_.start);
+  head_targets_.clear();
+  stage_targets_.clear();
+  for (const Camera& camera : viewed()->cameras) {
+    head_targets_.push_back(camera.initial_head());
+    stage_targets_.push_back(camera.initial_stage());
+  }
+  is_touching_ = !touched(rig_.backbone(rig_.now()), viewed()->obstacles).empty();
+}
+
+// With or without weight and loads: at once, for they have no inertia either.
+void LiveSession::weigh(bool on) {
+  if (!viewed()->has_weight)
+    throw ViewRefusal("weight: nothing pulls at this arm that could be switched off");
+  try {
+    rig_.weigh(on);
+  } catch (const std::runtime_error& error) {
+    throw ViewRefusal(fmt::format("weight: the arm stays as it is: {}", error.what()));
+  }
+  const std::string text = touched(rig_.backbone(rig_.now()), viewed()->obstacles);
+  if (!text.empty() && !is_touching_) notice("error", "safety", text);
+  is_touching_ = !text.empty();
+}
+
+// Once, when it becomes so.
+void LiveSession::tell_warning() {
+  if (!viewed()->is_rod) return;
+  std::string warning = rig_.warning();
+  if (!warning.empty() && warning != warning_) notice("warning", "statics", warning);
+  warning_ = std::move(warning);
+}
+
+// Stops the arm before a step that would bring it to touch something.
+void LiveSession::keep_clear(double next) {
+  if (!rig_.is_arm_moving()) return;
+  const std::string text = touched(rig_.backbone(next), viewed()->obstacles);
+  const bool was_touching = std::exchange(is_touching_, !text.empty());
+  if (text.empty() || was_touching) return;
+  ++generation_;
+  (void)rig_.ports().arm->halt().value();
+  is_touching_ = false;
+  event("error", "safety", "stopped before " + text);
+}
+
+// A rod may come to where it finds no rest.
+void LiveSession::move_on(double next) {
+  rig_.skip_to(next);
+  try {
+    keep_clear(next);
+    rig_.go_to(next);
+  } catch (const std::runtime_error& error) {
+    notice("error", "safety", std::string("everything is put back: ") + error.what());
+    reset();
+  }
+}
+
+}  // namespace flexura

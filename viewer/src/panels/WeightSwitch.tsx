@@ -1,0 +1,24 @@
+import { flag_weightless } from '../protocol/state';
+import { use_app } from '../ui/app';
+
+/** Weight and loads of the simulated arm, on and off. */
+export function WeightSwitch() {
+  const { viewer } = use_app();
+  const off = (viewer.flags.value & flag_weightless) !== 0;
+  return (
+    <div class="weight">
+      <label class="check" title="In this simulation. Reset brings them back, and a run of tasks has them.">
+        <input type="checkbox" role="switch" id="weight" checked={!off} disabled={viewer.still}
+          onChange={(event) => {
+            const box = event.currentTarget;
+            const on = box.checked;
+            // The rig says what holds.
+            box.checked = !off;
+            void viewer.commander.weight(on);
+          }} />
+        Weight and loads pull at the arm
+      </label>
+      {off && <p role="status">Switched off in this simulation, until Reset. A run of tasks has them.</p>}
+    </div>
+  );
+}

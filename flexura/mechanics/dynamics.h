@@ -1,0 +1,158 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "flexura/math/se3.h"
+#include "flexura/mechanics/rod.h"
+#include "flexura/mechanics/rod_chain.h"
+#include "flexura/mechanics/rod_surroundings.h"
+#include "flexura/mechanics/statics.h"
+
+namespace flexura {
+
+/// How a rod's motion is integrated.
+struct RodDynamicsConfig {
+  /// What is left after each step of what moves too fast for it, from 0 to 1; 1: numerical damping is none,
+  /// and the step is the implicit midpoint rule.
+  double spectral_radius = 0.8;
+  /// How exactly a step's equations are solved: of the rates of strain times a section's length, rad/s (bends
+  /// and twist) and 1/s.
+  double tolerance = 1e-7;
+  int most_iterations = 30;
+  /// Whether cross-sections resist to turning. Without, a rod must not twist.
+  bool rotary_inertia = true;
+};
+
+/// How a step ended.
+enum class DynamicsEnd {
+  converged,
+  bad_input,  ///< A number that is not finite, a tension below 0, a list of another length, a step of 0.
+  did_not_converge,  ///< Too long a step for what pulls.
+};
+/// That, for people.
+[[nodiscard]] const char* words(DynamicsEnd end);
+
+/// A rod in motion. Time, q and momentum are its state; the rest is what the integrator remembers.
+struct RodState {
+  double time = 0;               ///< s
+  Eigen::VectorXd q;             ///< The strain modes, as of RodChain.
+  Eigen::VectorXd momentum;      ///< p = M(q) v.
+  std::vector<double> tensions;  ///< Of the last step, N, at the base.
+
+  Eigen::VectorXd rate;  ///< dq/dt and dp/dt as the integrator has them.
+  Eigen::VectorXd force;
+  std::array<Eigen::VectorXd, 3>
+      middle;                ///< The last steps' rates, newest first, from which the next begins.
+  int middles = 0;           ///< How many there are.
+  double step = 0;           ///< Of how long a step, s.
+  double contraction = 0.1;  ///< By which an iteration of the last step gained.
+};
+
+/// What a step was.
+struct RodStep {
+  DynamicsEnd end = DynamicsEnd::converged;
+  std::string problem = {};  ///< Of bad input, in words.
+  int iterations = 0;        ///< Linear systems solved.
+
+  [[nodiscard]] bool converged() const { return end == DynamicsEnd::converged; }
+};
+
+/// J
+struct RodEnergy {
+  double kinetic = 0, strain = 0;
+  double gravity = 0;  ///< Of weight and of the force along the rod; 0 at the height of the base.
+
+  [[nodiscard]] double total() const { return kinetic + strain + gravity; }
+};
+
+/// Derivatives of a rod's motion. Its equations are p = M(q) v and dp/dt = f(q, v) - G tensions, so that M
+/// dv/dt = f - G tensions - (dp/dq) v. Of displacements the tensions follow from the shape: by_q then has
+/// their part.
+struct RodDynamicsSlopes {
+  Eigen::MatrixXd mass;           ///< M = dp/dv
+  Eigen::MatrixXd momentum_by_q;  ///< dp/dq at constant v.
+  Eigen::MatrixXd force_by_q, force_by_v;
+  /// By each tension; of displacements, by each of those. Columns of slack tendons are 0.
+  Eigen::MatrixXd force_by_input;
+};
+
+/// The same of a motion that is written x' = A x + B u around a state, x = (q, p).
+struct RodLinear {
+  Eigen::MatrixXd A, B;
+  /// And what it is in (q, v) around a rod at rest: v = M^-1 p.
+  Eigen::MatrixXd A_rest, B_rest;
+};
+
+/// Derivatives of a step: q and p after it by q, p, what the integrator remembers (rate, force) before it,
+/// and by the input.
+struct RodStepSlopes {
+  Eigen::MatrixXd state;  ///< Of (q, p, rate, force) by the same.
+  Eigen::MatrixXd input;  ///< Of that by the input.
+};
+
+/// Rods in motion: Lagrange's equations in the strain modes of RodStatics, with the same nodes, so that what
+/// is at rest there is so here. In the frame of the base. A step costs as much for each section however many
+/// there are, and allocates nothing.
+class RodDynamics {
+ public:
+  /// As RodChain. std::invalid_argument: the problems of the rod, no mass, tendons with friction, a setting
+  /// out of bounds.
+  explicit RodDynamics(Rod rod, const RodDynamicsConfig& config = {}, std::span<const RodPlace> places = {});
+  ~RodDynamics();
+  RodDynamics(RodDynamics&&) noexcept;
+  RodDynamics& operator=(RodDynamics&&) noexcept;
+
+  /// What pulls beside tendons and loads; is kept by reference. Null: nothing.
+  void set_surroundings(const RodSurroundings* surroundings);
+
+  /// The rod at rest when nothing pulls.
+  [[nodiscard]] RodState rest() const;
+  /// At rest in an equilibrium of RodStatics.
+  [[nodiscard]] RodState rest(const Equilibrium& at) const;
+  /// In motion: by its modes and their rates, under what pulls from now on.
+  [[nodiscard]] RodState start(const Eigen::VectorXd& q, const Eigen::VectorXd& v, const TendonInput& tendons,
+                               const RodLoads& loads);
+
+  /// Goes on by h seconds. Tendons and loads are those after h / (1 + spectral radius), as good as constant
+  /// in the step. Where it does not converge the state is what it was.
+  RodStep step(RodState& state, const TendonInput& tendons, const RodLoads& loads, double h);
+
+  /// Of a state that was stepped at least three times with one h: how far the last step's error in time moves
+  /// the tip, m, to first order; else 0.
+  [[nodiscard]] double step_error(const RodState& state);
+  /// The rates of the modes.
+  [[nodiscard]] Eigen::VectorXd velocity(const RodState& state);
+  [[nodiscard]] RodEnergy energy(const RodState& state, const RodLoads& loads);
+  /// What damping takes from it, W.
+  [[nodiscard]] double dissipation(const RodState& state);
+  /// Of all of the rod: linear, and angular about the base's origin.
+  [[nodiscard]] Vector6d momentum(const RodState& state);
+  /// Of a place that is a node: the section's ends and what was asked for.
+  [[nodiscard]] NodeMotion motion(const RodState& state, const RodPlace& place);
+  [[nodiscard]] Pose tip(const RodState& state);
+  /// How long the tendons are, m.
+  [[nodiscard]] std::vector<double> tendon_lengths(const RodState& state);
+  /// M(q), dense.
+  [[nodiscard]] Eigen::MatrixXd mass_matrix(const Eigen::VectorXd& q);
+  /// dv/dt under what pulls: M^-1 of all forces, at linear cost.
+  [[nodiscard]] Eigen::VectorXd acceleration(const Eigen::VectorXd& q, const Eigen::VectorXd& v,
+                                             const TendonInput& tendons, const RodLoads& loads);
+
+  /// Derivatives at a state, under what pulls. They cost as the square of the number of sections.
+  [[nodiscard]] RodDynamicsSlopes slopes(const RodState& state, const TendonInput& tendons,
+                                         const RodLoads& loads);
+  [[nodiscard]] RodLinear linearize(const RodState& state, const TendonInput& tendons, const RodLoads& loads);
+
+  [[nodiscard]] const RodChain& chain() const;
+
+ private:
+  struct Work;
+  std::unique_ptr<Work> work_;
+};
+
+}  // namespace flexura

@@ -90,7 +90,6 @@ class RodMotion {
   std::vector<NodePull> pulls_;
 };
 
-extern template class RodMotion<double>;
-extern template class RodMotion<Dual<Lanes>>;
+// Instantiated for double and Dual<Lanes> in its sources.
 
 }  // namespace flexura

@@ -43,6 +43,9 @@ std::string section_problem(const RodSection& section) {
   }
   if (!is_at_least_0(section.density) || !is_at_least_0(section.mass_per_length.value_or(0)))
     return "density and mass must be at least 0";
+  if (!is_at_least_0(section.damping_time) ||
+      !std::ranges::all_of(section.damping.value_or(Vector6d::Zero()), is_at_least_0))
+    return "damping must be at least 0";
   for (const auto& coefficient : section.rest_curvature)
     if (!coefficient.allFinite()) return "the curvature at rest is not finite";
   for (const PointMass& mass : section.masses) {
@@ -89,6 +92,16 @@ double RodSection::mass_per_length_at(double t) const {
   if (mass_per_length) return *mass_per_length;
   const double outer = between(radius, t), inner = between(inner_radius, t);
   return density * std::numbers::pi * (outer * outer - inner * inner);
+}
+
+Vector6d RodSection::damping_at(double t) const {
+  return damping ? *damping : Vector6d(damping_time * stiffness_at(t));
+}
+
+Eigen::Vector3d RodSection::slice_inertia_at(double t) const {
+  const double outer = between(radius, t), inner = between(inner_radius, t);
+  const double square = mass_per_length_at(t) * (outer * outer + inner * inner);
+  return {square / 4, square / 4, square / 2};
 }
 
 Vector6d RodSection::rest_strain_at(double t) const {

@@ -52,6 +52,11 @@ struct RodSection {
   /// Given directly, of the six strains: GA twice and EA, N, EI about x and y and GJ, N m^2; each > 0.
   std::optional<Vector6d> stiffness = {};
   std::optional<double> mass_per_length = {};  ///< Given directly, kg/m.
+  /// Viscosity (W. Voigt): of the time in which a strain that nothing holds falls to 1/e against the
+  /// stiffness; the damping is the stiffness times it, s. For dynamics alone, as the next.
+  double damping_time = 0;
+  /// Given directly, of the six strains, N s and N m^2 s; each >= 0.
+  std::optional<Vector6d> damping = {};
   /// Curvature about x and y and twist of the rod when nothing pulls, 1/m: the coefficients of powers of
   /// t = s/length. None: straight.
   std::vector<Eigen::Vector3d> rest_curvature = {};
@@ -68,6 +73,11 @@ struct RodSection {
   [[nodiscard]] Vector6d stiffness_at(double t) const;
   /// kg/m there.
   [[nodiscard]] double mass_per_length_at(double t) const;
+  /// The diagonal of the damping there, N s and N m^2 s.
+  [[nodiscard]] Vector6d damping_at(double t) const;
+  /// The moments of inertia about x, y and z of a slice there, for each metre, kg m: those of the round
+  /// cross-section, of which `mass_per_length_at` is the mass.
+  [[nodiscard]] Eigen::Vector3d slice_inertia_at(double t) const;
   /// The strain at rest there.
   [[nodiscard]] Vector6d rest_strain_at(double t) const;
   /// And that by arc length, 1/m and 1/m^2.

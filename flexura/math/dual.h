@@ -1,0 +1,30 @@
+#pragma once
+
+namespace flexura {
+
+/// A number with a derivative: arithmetic on it differentiates what is computed, exactly (forward mode). T
+/// may be double, several doubles in an instruction (math/lanes.h), or itself a Dual, for second derivatives.
+template <typename T>
+struct Dual {
+  T value;
+  T slope;
+
+  Dual& operator+=(const Dual& b) { return *this = *this + b; }
+  Dual& operator-=(const Dual& b) { return *this = *this - b; }
+
+  friend Dual operator+(const Dual& a, const Dual& b) { return {a.value + b.value, a.slope + b.slope}; }
+  friend Dual operator-(const Dual& a, const Dual& b) { return {a.value - b.value, a.slope - b.slope}; }
+  friend Dual operator-(const Dual& a) { return {-a.value, -a.slope}; }
+  friend Dual operator*(const Dual& a, const Dual& b) {
+    return {a.value * b.value, a.value * b.slope + a.slope * b.value};
+  }
+  friend Dual operator/(const Dual& a, const Dual& b) {
+    const T quotient = a.value / b.value;
+    return {quotient, (a.slope - quotient * b.slope) / b.value};
+  }
+  friend Dual operator+(double a, const Dual& b) { return {a + b.value, b.slope}; }
+  friend Dual operator-(double a, const Dual& b) { return {a - b.value, -b.slope}; }
+  friend Dual operator*(double a, const Dual& b) { return {a * b.value, a * b.slope}; }
+};
+
+}  // namespace flexura

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+#include "flexura/math/dual.h"
+
+namespace flexura {
+
+/// Two doubles in one instruction, on every processor of the architecture.
+using Lanes = double __attribute__((vector_size(16)));
+
+/// How many numbers one holds.
+template <typename T>
+inline constexpr std::size_t lanes_of = 1;
+template <>
+inline constexpr std::size_t lanes_of<Lanes> = 2;
+
+/// What works on several numbers of this kind at once, where there is such a thing.
+template <typename T>
+struct Wide {
+  using type = T;
+};
+template <>
+struct Wide<double> {
+  using type = Lanes;
+};
+
+/// From and to consecutive numbers in memory.
+template <typename T>
+[[nodiscard]] inline T load_lanes(const T* from) {
+  return *from;
+}
+[[nodiscard]] inline Lanes load_lanes(const double* from) { return Lanes{from[0], from[1]}; }
+template <typename T>
+inline void store_lanes(const T& value, T* to) {
+  *to = value;
+}
+inline void store_lanes(const Lanes& value, double* to) {
+  to[0] = value[0];
+  to[1] = value[1];
+}
+
+/// The greatest of the values.
+[[nodiscard]] inline double greatest(double value) { return value; }
+[[nodiscard]] inline double greatest(const Lanes& value) { return std::max(value[0], value[1]); }
+template <typename T>
+[[nodiscard]] double greatest(const Dual<T>& dual) {
+  return greatest(dual.value);
+}
+
+[[nodiscard]] inline Lanes square_root(const Lanes& value) {
+  return Lanes{std::sqrt(value[0]), std::sqrt(value[1])};
+}
+[[nodiscard]] inline double square_root(double value) { return std::sqrt(value); }
+template <typename T>
+[[nodiscard]] Dual<T> square_root(const Dual<T>& dual) {
+  const T root = square_root(dual.value);
+  return {root, 0.5 * dual.slope / root};
+}
+
+}  // namespace flexura

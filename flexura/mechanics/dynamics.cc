@@ -1,0 +1,317 @@
+#include "flexura/mechanics/dynamics.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+#include "flexura/mechanics/dynamics_work.h"
+
+namespace flexura {
+namespace {
+
+// Of tendons that are said to give nothing: of what the rod gives (RodStatics).
+constexpr double stiff_part = 1e-8;
+
+bool all_finite(const std::vector<double>& values) {
+  return std::ranges::all_of(values, [](double value) { return std::isfinite(value); });
+}
+
+std::vector<RodGrid> grids_of(const RodChain& chain) {
+  std::vector<RodGrid> grids;
+  grids.reserve(chain.elements().size());
+  for (const RodElement& element : chain.elements()) grids.push_back(element.grid());
+  return grids;
+}
+
+Eigen::Vector3d vector(const Triple<double>& a) { return {a.x, a.y, a.z}; }
+Vector6d vector(const Screw<double>& a) {
+  return (Vector6d() << vector(a.linear), vector(a.angular)).finished();
+}
+Pose pose(const Placement<double>& at) {
+  Pose X;
+  X.rotation << vector(at.x).transpose(), vector(at.y).transpose(), vector(at.z).transpose();
+  X.position = vector(at.position);
+  return X;
+}
+
+void require_dynamics(const Rod& rod, const RodDynamicsConfig& config) {
+  if (!(config.spectral_radius >= 0 && config.spectral_radius <= 1))
+    throw std::invalid_argument("the spectral radius must be from 0 to 1");
+  if (!(config.tolerance > 0) || config.most_iterations < 1 || config.most_pieces < 1)
+    throw std::invalid_argument("the tolerance must be above 0, iterations and pieces at least 1");
+  for (std::size_t i = 0; i < rod.sections.size(); ++i) {
+    const RodSection& section = rod.sections[i];
+    if (!(section.mass_per_length_at(0) > 0) || !(section.mass_per_length_at(1) > 0))
+      throw std::invalid_argument(
+          fmt::format("section {}: a rod in motion must have a density or a mass for each metre", i + 1));
+    if (!config.rotary_inertia && section.modes.counts()[5] > 0)
+      throw std::invalid_argument(
+          fmt::format("section {}: without rotary inertia a rod must not twist", i + 1));
+  }
+  for (std::size_t i = 0; i < rod.tendons.size(); ++i)
+    if (rod.tendons[i].friction > 0)
+      throw std::invalid_argument(fmt::format("tendon {}: friction is known at rest alone", i + 1));
+}
+
+}  // namespace
+
+const char* words(DynamicsEnd end) {
+  switch (end) {
+    case DynamicsEnd::converged:
+      return "converged";
+    case DynamicsEnd::bad_input:
+      return "bad input";
+    case DynamicsEnd::did_not_converge:
+      break;
+  }
+  return "did not converge: too long a step";
+}
+
+RodDynamics::Work::Work(Rod rod, const RodDynamicsConfig& given, std::span<const RodPlace> places)
+    : config(given),
+      scheme(given.spectral_radius),
+      chain(std::move(rod), places),
+      layout(chain.rod(), grids_of(chain), given.rotary_inertia),
+      motion(layout),
+      matrix(layout) {
+  require_dynamics(chain.rod(), config);
+  const Eigen::Index n = chain.size();
+  const auto count = static_cast<Eigen::Index>(chain.tendons());
+  for (Eigen::VectorXd* vector : {&velocity, &q_from_, &p_from_, &q_, &momentum_, &force_, &change_, &left_})
+    vector->setZero(n);
+  length_slopes_.setZero(n, count);
+  answers_.setZero(n, count);
+  give_.setZero(count, count);
+  pivot_.setZero(count, count);
+  for (Eigen::VectorXd* vector : {&lengths_, &wanted_, &found_, &pull_change_}) vector->setZero(count);
+  taut_.resize(chain.tendons());
+  tensions.resize(chain.tendons());
+
+  double mass = 0;
+  for (const RodLayout::Body& body : layout.bodies) mass += body.mass;
+  turning_inertia_ = mass * chain.rod().length() * chain.rod().length() / 3;
+
+  chain.balance(velocity, tensions, {}, 0);
+  rest_lengths.assign(chain.tendon_lengths().begin(), chain.tendon_lengths().end());
+  double give = 0;
+  if (count > 0 && n > 0 && chain.factor()) {
+    answers_ = chain.pull_slopes();
+    chain.solve(answers_);
+    give = (chain.length_slopes().transpose() * answers_).diagonal().cwiseAbs().maxCoeff();
+  }
+  const double least = give > 0 ? stiff_part * give : stiff_part * chain.rod().length();
+  for (const TendonRoute& tendon : chain.rod().tendons)
+    compliance.push_back(std::max(tendon.compliance, least));
+}
+
+std::string RodDynamics::Work::input_problem(const TendonInput& tendons, const RodLoads& loads) const {
+  const std::size_t count = chain.tendons();
+  if (!tendons.tensions.empty() && !tendons.displacements.empty())
+    return "tensions and displacements: expected one of them";
+  const auto list_problem = [&](const char* name, const std::vector<double>& list) -> std::string {
+    if (list.empty()) return "";
+    if (list.size() != count)
+      return fmt::format("{} {} given: expected {}, one a tendon", list.size(), name, count);
+    return all_finite(list) ? "" : fmt::format("{} that are not finite", name);
+  };
+  std::string problem = list_problem("tensions", tendons.tensions);
+  if (problem.empty()) problem = list_problem("displacements", tendons.displacements);
+  if (!problem.empty()) return problem;
+  if (std::ranges::any_of(tendons.tensions, [](double tension) { return tension < 0; }))
+    return "a tension below 0: a tendon does not push";
+  if (!loads.gravity.allFinite() || !loads.per_length.allFinite())
+    return "gravity or a load that is not finite";
+  for (const EndLoad& end : loads.ends) {
+    if (!end.force.allFinite() || !end.moment.allFinite()) return "a load that is not finite";
+    if (end.section >= chain.rod().sections.size()) return "a load at a section that the rod has not";
+  }
+  return "";
+}
+
+void RodDynamics::Work::set_tensions(const TendonInput& tendons) {
+  std::fill(tensions.begin(), tensions.end(), 0.0);
+  if (!tendons.tensions.empty())
+    std::copy(tendons.tensions.begin(), tendons.tensions.end(), tensions.begin());
+  if (tendons.displacements.empty()) return;
+  motion.find_lengths(lengths_.data());
+  for (std::size_t i = 0; i < tensions.size(); ++i) {
+    const double excess = lengths_[static_cast<Eigen::Index>(i)] - rest_lengths[i] + tendons.displacements[i];
+    tensions[i] = std::max(0.0, excess / compliance[i]);
+  }
+}
+
+bool RodDynamics::Work::find_velocity(const RodState& state) {
+  velocity.setZero();
+  motion.place(state.q.data(), velocity.data());
+  matrix.find_columns(motion);
+  if (!matrix.factor(motion, {}, nullptr, false)) return false;
+  velocity = state.momentum;
+  matrix.solve(velocity.data());
+  return true;
+}
+
+RodDynamics::RodDynamics(Rod rod, const RodDynamicsConfig& config, std::span<const RodPlace> places)
+    : work_(std::make_unique<Work>(std::move(rod), config, places)) {}
+RodDynamics::~RodDynamics() = default;
+RodDynamics::RodDynamics(RodDynamics&&) noexcept = default;
+RodDynamics& RodDynamics::operator=(RodDynamics&&) noexcept = default;
+
+void RodDynamics::set_surroundings(const RodSurroundings* surroundings) {
+  work_->surroundings = surroundings;
+}
+const RodChain& RodDynamics::chain() const { return work_->chain; }
+
+RodState RodDynamics::rest() const {
+  RodState state;
+  const Eigen::VectorXd none = Eigen::VectorXd::Zero(work_->chain.size());
+  state.q = state.momentum = state.rate = state.force = none;
+  state.middle = {none, none, none};
+  state.tensions.assign(work_->chain.tendons(), 0.0);
+  return state;
+}
+
+RodState RodDynamics::rest(const Equilibrium& at) const {
+  RodState state = rest();
+  if (at.q.size() != state.q.size()) throw std::invalid_argument("an equilibrium of another rod");
+  state.q = at.q;
+  state.tensions = at.tensions;
+  return state;
+}
+
+RodState RodDynamics::start(const Eigen::VectorXd& q, const Eigen::VectorXd& v, const TendonInput& tendons,
+                            const RodLoads& loads) {
+  RodState state = rest();
+  if (q.size() != state.q.size() || v.size() != state.q.size())
+    throw std::invalid_argument(fmt::format("expected {} modes and rates", state.q.size()));
+  if (!q.allFinite() || !v.allFinite()) throw std::invalid_argument("modes or rates that are not finite");
+  const std::string problem = work_->input_problem(tendons, loads);
+  if (!problem.empty()) throw std::invalid_argument(problem);
+  state.q = q;
+  state.rate = v;
+  work_->motion.place(q.data(), v.data());
+  work_->set_tensions(tendons);
+  work_->motion.pull(loads, work_->tensions.data(), work_->surroundings);
+  work_->motion.balance(state.momentum.data(), state.force.data());
+  state.tensions = work_->tensions;
+  return state;
+}
+
+RodStep RodDynamics::step(RodState& state, const TendonInput& tendons, const RodLoads& loads, double h) {
+  std::string problem = work_->input_problem(tendons, loads);
+  if (!(h > 0) || !std::isfinite(h)) problem = "a step must be above 0 and finite";
+  if (state.q.size() != work_->chain.size() || state.momentum.size() != work_->chain.size())
+    problem = "a state of another rod";
+  else if (!state.q.allFinite() || !state.momentum.allFinite())
+    problem = "a state that is not finite";
+  if (!problem.empty()) return {.end = DynamicsEnd::bad_input, .problem = problem};
+  return work_->step(state, tendons, loads, h);
+}
+
+double RodDynamics::step_error(const RodState& state) {
+  if (state.middles < 3) return 0;
+  work_->velocity.setZero();
+  work_->motion.place(state.q.data(), work_->velocity.data());
+  work_->matrix.find_columns(work_->motion);
+  const Eigen::VectorXd error =
+      work_->scheme.error * state.step * (state.middle[0] - 2 * state.middle[1] + state.middle[2]);
+  const Vector6d twist = work_->matrix.tip_change(error.data());
+  const Eigen::Vector3d tip = vector(work_->motion.nodes().back().position);
+  return (twist.head<3>() + twist.tail<3>().cross(tip)).norm();
+}
+
+Eigen::VectorXd RodDynamics::velocity(const RodState& state) {
+  if (!work_->find_velocity(state)) throw std::invalid_argument("a state without a mass matrix");
+  return work_->velocity;
+}
+
+RodEnergy RodDynamics::energy(const RodState& state, const RodLoads& loads) {
+  RodEnergy energy{.kinetic = 0.5 * velocity(state).dot(state.momentum)};
+  const RodLayout& layout = work_->layout;
+  for (const RodLayout::Section& section : layout.sections) {
+    const auto q = state.q.segment(static_cast<Eigen::Index>(section.first_mode),
+                                   static_cast<Eigen::Index>(section.modes));
+    energy.strain += 0.5 * q.dot(section.stiffness * q);
+  }
+  for (std::size_t k = 0; k < layout.nodes; ++k) {
+    const Pose X = pose(work_->motion.nodes()[k]);
+    energy.gravity -= layout.bodies[k].mass * loads.gravity.dot(X * vector(layout.bodies[k].centre)) +
+                      layout.run[k] * loads.per_length.dot(X.position);
+  }
+  return energy;
+}
+
+double RodDynamics::dissipation(const RodState& state) {
+  const Eigen::VectorXd v = velocity(state);
+  double power = 0;
+  for (const RodLayout::Section& section : work_->layout.sections) {
+    const auto part =
+        v.segment(static_cast<Eigen::Index>(section.first_mode), static_cast<Eigen::Index>(section.modes));
+    power += part.dot(section.damping * part);
+  }
+  return power;
+}
+
+Vector6d RodDynamics::momentum(const RodState& state) {
+  const Eigen::VectorXd v = velocity(state);
+  work_->motion.place(state.q.data(), v.data());
+  Vector6d sum = Vector6d::Zero();
+  for (const Screw<double>& part : work_->motion.momenta()) sum += vector(part);
+  return sum;
+}
+
+NodeMotion RodDynamics::motion(const RodState& state, const RodPlace& place) {
+  if (place.section >= work_->layout.sections.size()) throw std::invalid_argument("a place outside the rod");
+  const RodLayout::Section& section = work_->layout.sections[place.section];
+  const std::size_t at = section.grid.node_at(place.at), node = section.first_node + at;
+  constexpr double same_place = 1e-9;
+  if (!(std::abs(section.grid.t[at] - place.at) <= same_place))
+    throw std::invalid_argument("a place that was not asked for");
+  const Eigen::VectorXd v = velocity(state);
+  work_->motion.place(state.q.data(), v.data());
+  return {.pose = pose(work_->motion.nodes()[node]), .twist = vector(work_->motion.velocities()[node])};
+}
+
+Pose RodDynamics::tip(const RodState& state) {
+  work_->velocity.setZero();
+  work_->motion.place(state.q.data(), work_->velocity.data());
+  return pose(work_->motion.nodes().back());
+}
+
+std::vector<double> RodDynamics::tendon_lengths(const RodState& state) {
+  work_->velocity.setZero();
+  work_->motion.place(state.q.data(), work_->velocity.data());
+  std::vector<double> lengths(work_->chain.tendons());
+  work_->motion.find_lengths(lengths.data());
+  return lengths;
+}
+
+Eigen::MatrixXd RodDynamics::mass_matrix(const Eigen::VectorXd& q) {
+  if (q.size() != work_->chain.size()) throw std::invalid_argument("modes of another rod");
+  work_->velocity.setZero();
+  work_->motion.place(q.data(), work_->velocity.data());
+  work_->matrix.find_columns(work_->motion);
+  return work_->matrix.dense_mass(work_->motion);
+}
+
+Eigen::VectorXd RodDynamics::acceleration(const Eigen::VectorXd& q, const Eigen::VectorXd& v,
+                                          const TendonInput& tendons, const RodLoads& loads) {
+  const std::string problem = work_->input_problem(tendons, loads);
+  if (!problem.empty()) throw std::invalid_argument(problem);
+  if (q.size() != work_->chain.size() || v.size() != q.size())
+    throw std::invalid_argument("modes of another rod");
+  Eigen::VectorXd force(q.size());
+  work_->motion.place(q.data(), v.data());
+  work_->set_tensions(tendons);
+  work_->motion.pull(loads, work_->tensions.data(), work_->surroundings);
+  work_->motion.find_acceleration_forces(force.data());
+  work_->matrix.find_columns(work_->motion);
+  if (!work_->matrix.factor(work_->motion, {}, nullptr, false))
+    throw std::invalid_argument("a shape without a mass matrix");
+  work_->matrix.solve(force.data());
+  return force;
+}
+
+}  // namespace flexura

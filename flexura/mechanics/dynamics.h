@@ -1,0 +1,164 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "flexura/math/se3.h"
+#include "flexura/mechanics/rod.h"
+#include "flexura/mechanics/rod_chain.h"
+#include "flexura/mechanics/rod_surroundings.h"
+#include "flexura/mechanics/statics.h"
+
+namespace flexura {
+
+/// How a rod's motion is integrated.
+struct RodDynamicsConfig {
+  /// What is left after each step of what moves too fast for it, from 0 to 1; 1: no numerical damping, the
+  /// step is the implicit midpoint rule. With much above 0.3, steps that are longer than the periods of a rod
+  /// without damping of its own may gain energy.
+  double spectral_radius = 0.3;
+  /// How exactly a step's equations are solved, rad/s: errors of the rates have at most the energy, stiffness
+  /// included, of the rod that turns so fast as a whole.
+  double tolerance = 1e-7;
+  int most_iterations = 30;
+  /// A step that does not converge is made in pieces, halves of halves; so many at most.
+  int most_pieces = 64;
+  /// Whether cross-sections resist to turning. Without, a rod must not twist.
+  bool rotary_inertia = true;
+};
+
+/// How a step ended.
+enum class DynamicsEnd {
+  converged,
+  bad_input,  ///< A number that is not finite, a tension below 0, a list of another length, a step of 0.
+  did_not_converge,  ///< Too long a step for what pulls.
+};
+/// That, for people.
+[[nodiscard]] const char* words(DynamicsEnd end);
+
+/// A rod in motion. Time, q and momentum are its state; the rest is what the integrator remembers.
+struct RodState {
+  double time = 0;               ///< s
+  Eigen::VectorXd q;             ///< The strain modes, as of RodChain.
+  Eigen::VectorXd momentum;      ///< p = M(q) v.
+  std::vector<double> tensions;  ///< Of the last step, N, at the base.
+
+  Eigen::VectorXd rate;  ///< dq/dt and dp/dt as the integrator has them.
+  Eigen::VectorXd force;
+  std::array<Eigen::VectorXd, 3>
+      middle;                ///< The last steps' rates, newest first, from which the next begins.
+  int middles = 0;           ///< How many there are.
+  double step = 0;           ///< Of how long a step, s.
+  double contraction = 0.1;  ///< By which an iteration of the last step gained.
+};
+
+/// What a step was.
+struct RodStep {
+  DynamicsEnd end = DynamicsEnd::converged;
+  std::string problem = {};  ///< Of bad input, in words.
+  int iterations = 0;        ///< Linear systems solved.
+  int pieces = 1;            ///< That the step was made in.
+
+  [[nodiscard]] bool converged() const { return end == DynamicsEnd::converged; }
+};
+
+/// J
+struct RodEnergy {
+  double kinetic = 0, strain = 0;
+  double gravity = 0;  ///< Of weight and of the force along the rod; 0 at the height of the base.
+
+  [[nodiscard]] double total() const { return kinetic + strain + gravity; }
+};
+
+/// Derivatives of a rod's motion. Its equations are p = M(q) v and dp/dt = f(q, v, input); all are matrices
+/// with a row for each mode. The input are tensions, or displacements where those are given; columns of slack
+/// tendons are 0 then.
+struct RodDynamicsSlopes {
+  Eigen::MatrixXd mass;           ///< M = dp/dv
+  Eigen::MatrixXd momentum_by_q;  ///< dp/dq at constant v.
+  Eigen::MatrixXd force_by_q, force_by_v, force_by_input;
+};
+
+/// Motion around a state: x' = A x + B u.
+struct RodLinear {
+  Eigen::MatrixXd A, B;            ///< Of x = (q, p).
+  Eigen::MatrixXd A_rest, B_rest;  ///< Of x = (q, v), which is so around a rod at rest.
+  /// Of the tip, 6 x modes: velocity of its origin and angular velocity by v, in the base's frame.
+  Eigen::MatrixXd tip_by_q;
+  Eigen::MatrixXd lengths_by_q;  ///< Of the tendons, tendons x modes.
+};
+
+/// Derivatives of a step: of (q, p, rate, force) after it, all that the integrator remembers.
+struct RodStepSlopes {
+  Eigen::MatrixXd by_state;  ///< By the same before it.
+  Eigen::MatrixXd by_input;
+};
+
+/// Rods in motion: Lagrange's equations in the strain modes of RodStatics, with the same nodes, so that what
+/// is at rest there is so here. In the frame of the base. A step costs as much for each section however many
+/// there are, and allocates nothing.
+class RodDynamics {
+ public:
+  /// As RodChain. std::invalid_argument: the problems of the rod, no mass, tendons with friction, a setting
+  /// out of bounds.
+  explicit RodDynamics(Rod rod, const RodDynamicsConfig& config = {}, std::span<const RodPlace> places = {});
+  ~RodDynamics();
+  RodDynamics(RodDynamics&&) noexcept;
+  RodDynamics& operator=(RodDynamics&&) noexcept;
+
+  /// What pulls beside tendons and loads; is kept by reference. Null: nothing.
+  void set_surroundings(const RodSurroundings* surroundings);
+
+  /// The rod at rest when nothing pulls.
+  [[nodiscard]] RodState rest() const;
+  /// At rest in an equilibrium of RodStatics.
+  [[nodiscard]] RodState rest(const Equilibrium& at) const;
+  /// In motion: by its modes and their rates, under what pulls from now on.
+  [[nodiscard]] RodState start(const Eigen::VectorXd& q, const Eigen::VectorXd& v, const TendonInput& tendons,
+                               const RodLoads& loads);
+
+  /// Goes on by h seconds. Tendons and loads are those after h / (1 + spectral radius), as good as constant
+  /// in the step. Where it does not converge the state is what it was.
+  RodStep step(RodState& state, const TendonInput& tendons, const RodLoads& loads, double h);
+
+  /// Of a state that was stepped at least three times with one h: how far the last step's error in time moves
+  /// the tip, m, to first order; else 0.
+  [[nodiscard]] double step_error(const RodState& state);
+  /// The rates of the modes.
+  [[nodiscard]] Eigen::VectorXd velocity(const RodState& state);
+  [[nodiscard]] RodEnergy energy(const RodState& state, const RodLoads& loads);
+  /// What damping takes from it, W.
+  [[nodiscard]] double dissipation(const RodState& state);
+  /// Of all of the rod: linear, and angular about the base's origin.
+  [[nodiscard]] Vector6d momentum(const RodState& state);
+  /// Of a place that is a node: the section's ends and what was asked for.
+  [[nodiscard]] NodeMotion motion(const RodState& state, const RodPlace& place);
+  [[nodiscard]] Pose tip(const RodState& state);
+  /// How long the tendons are, m.
+  [[nodiscard]] std::vector<double> tendon_lengths(const RodState& state);
+  /// M(q), dense.
+  [[nodiscard]] Eigen::MatrixXd mass_matrix(const Eigen::VectorXd& q);
+  /// dv/dt under what pulls: M^-1 of all forces, at linear cost.
+  [[nodiscard]] Eigen::VectorXd acceleration(const Eigen::VectorXd& q, const Eigen::VectorXd& v,
+                                             const TendonInput& tendons, const RodLoads& loads);
+
+  /// Derivatives at a state, under what pulls. They cost as the square of the number of sections.
+  [[nodiscard]] RodDynamicsSlopes slopes(const RodState& state, const TendonInput& tendons,
+                                         const RodLoads& loads);
+  [[nodiscard]] RodLinear linearize(const RodState& state, const TendonInput& tendons, const RodLoads& loads);
+  /// Of a step that is made in one piece. std::runtime_error: it does not converge.
+  [[nodiscard]] RodStepSlopes step_slopes(const RodState& state, const TendonInput& tendons,
+                                          const RodLoads& loads, double h);
+
+  [[nodiscard]] const RodChain& chain() const;
+
+ private:
+  struct Work;
+  std::unique_ptr<Work> work_;
+};
+
+}  // namespace flexura

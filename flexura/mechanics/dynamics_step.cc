@@ -1,0 +1,329 @@
+#include <algorithm>
+#include <cmath>
+
+#include "flexura/mechanics/dynamics_work.h"
+
+namespace flexura {
+namespace {
+
+// An iteration that gains less than this goes nowhere.
+constexpr double least_gain = 0.95;
+constexpr int patience = 6;
+
+double greatest_change(const Eigen::VectorXd& change, const Eigen::VectorXd& scales) {
+  double most = 0;
+  for (Eigen::Index j = 0; j < change.size(); ++j) {
+    const double size = std::abs(change[j] * scales[j]);
+    if (!(size <= most)) most = size;  // Not a number stays.
+    if (std::isnan(most)) return most;
+  }
+  return most;
+}
+
+}  // namespace
+
+// The rates at the step's stage, from those of the steps before: a parabola through them.
+void RodDynamics::Work::guess(const RodState& state, double h) {
+  const bool is_same = state.step == h;
+  if (is_same && state.middles >= 3) {
+    velocity = 3 * (state.middle[0] - state.middle[1]) + state.middle[2];
+  } else if (is_same && state.middles == 2) {
+    velocity = 2 * state.middle[0] - state.middle[1];
+  } else if (state.middles >= 1) {
+    velocity = state.middle[0];
+  } else {
+    velocity = state.rate;
+  }
+}
+
+// What is the sum of x_i answers_i along what pulls tight, of a small positive definite matrix: tensions of
+// at least 0, by changing one at a time what is slack (principal pivots).
+bool RodDynamics::Work::pull_tight() {
+  const Eigen::Index count = found_.size();
+  const double rounding = 1e-13 * chain.rod().length();
+  for (int round = 0; round < 50 + 10 * static_cast<int>(count); ++round) {
+    // Cholesky's, of the rows that are taut.
+    found_.setZero();
+    for (Eigen::Index i = 0; i < count; ++i) {
+      if (taut_[static_cast<std::size_t>(i)] == 0) continue;
+      double right = wanted_[i], diagonal = give_(i, i);
+      for (Eigen::Index j = 0; j < i; ++j) {
+        if (taut_[static_cast<std::size_t>(j)] == 0) continue;
+        double sum = give_(i, j);
+        for (Eigen::Index k = 0; k < j; ++k)
+          if (taut_[static_cast<std::size_t>(k)] != 0) sum -= pivot_(i, k) * pivot_(j, k);
+        pivot_(i, j) = sum / pivot_(j, j);
+        diagonal -= pivot_(i, j) * pivot_(i, j);
+        right -= pivot_(i, j) * found_[j];
+      }
+      if (!(diagonal > 0)) return false;
+      pivot_(i, i) = std::sqrt(diagonal);
+      found_[i] = right / pivot_(i, i);
+    }
+    for (Eigen::Index i = count; i-- > 0;) {
+      if (taut_[static_cast<std::size_t>(i)] == 0) continue;
+      found_[i] /= pivot_(i, i);
+      for (Eigen::Index k = 0; k < i; ++k)
+        if (taut_[static_cast<std::size_t>(k)] != 0) found_[k] -= pivot_(i, k) * found_[i];
+    }
+    Eigen::Index worst = -1;
+    double least = 0;
+    for (Eigen::Index i = 0; i < count; ++i)
+      if (taut_[static_cast<std::size_t>(i)] != 0 && found_[i] < least) worst = i, least = found_[i];
+    if (worst >= 0) {
+      taut_[static_cast<std::size_t>(worst)] = 0;
+      continue;
+    }
+    least = -rounding;
+    for (Eigen::Index i = 0; i < count; ++i) {
+      if (taut_[static_cast<std::size_t>(i)] != 0) continue;
+      double left = -wanted_[i];
+      for (Eigen::Index j = 0; j < count; ++j) left += give_(i, j) * found_[j];
+      if (!std::isfinite(left)) return false;
+      if (left < least) worst = i, least = left;
+    }
+    if (worst < 0) return true;
+    taut_[static_cast<std::size_t>(worst)] = 1;
+  }
+  return false;
+}
+
+// change_ is what is left at the stage, with the tensions as they are. It becomes the step without tendons;
+// then tensions are found with which they are as long as they shall be, and it has those.
+template <typename Solve>
+bool RodDynamics::Work::solve_with_tendons(const Stage& stage, Solve&& solve) {
+  const Eigen::Index count = found_.size();
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const double tension = tensions[static_cast<std::size_t>(i)];
+    if (tension != 0) change_ += stage.stretch * tension * length_slopes_.col(i);
+  }
+  left_ = change_;
+  solve(change_.data());
+  for (Eigen::Index i = 0; i < count; ++i) {
+    answers_.col(i) = length_slopes_.col(i);
+    solve(answers_.col(i).data());
+  }
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const auto tendon = static_cast<std::size_t>(i);
+    for (Eigen::Index j = 0; j < count; ++j)
+      give_(i, j) = stage.stretch * stage.stretch * length_slopes_.col(i).dot(answers_.col(j));
+    give_(i, i) += compliance[tendon];
+    wanted_[i] = lengths_[i] - rest_lengths[tendon] + stage.tendons.displacements[tendon] +
+                 stage.stretch * length_slopes_.col(i).dot(change_);
+  }
+  if (!pull_tight()) return false;
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const auto tendon = static_cast<std::size_t>(i);
+    change_ -= stage.stretch * found_[i] * answers_.col(i);
+    left_ -= stage.stretch * found_[i] * length_slopes_.col(i);
+    pull_change_[i] = found_[i] - tensions[tendon];
+    tensions[tendon] = found_[i];
+  }
+  return true;
+}
+
+// Of the change of the rates: by the energy that it has in the quadratic form of the stage's equations,
+// stiffness included, as if the rod were turned as a whole; rad/s.
+double RodDynamics::Work::change_size() const {
+  return std::sqrt(std::abs(change_.dot(left_)) / turning_inertia_);
+}
+
+void RodDynamics::Work::evaluate(const Stage& stage) {
+  q_ = q_from_ + stage.stretch * velocity;
+  motion.place(q_.data(), velocity.data());
+  motion.pull(stage.loads, tensions.data(), surroundings);
+  motion.balance(momentum_.data(), force_.data());
+  change_ = p_from_ - momentum_ + stage.stretch * force_;
+  if (!stage.by_displacement()) return;
+  motion.find_lengths(lengths_.data());
+  for (std::size_t i = 0; i < tensions.size(); ++i)
+    motion.find_length_slopes(i, length_slopes_.col(static_cast<Eigen::Index>(i)).data());
+}
+
+bool RodDynamics::Work::solve_quickly(const Stage& stage) {
+  if (stage.by_displacement()) return solve_with_tendons(stage, [this](double* x) { matrix.solve(x); });
+  left_ = change_;
+  matrix.solve(change_.data());
+  return true;
+}
+
+bool RodDynamics::Work::solve_exactly(const Stage& stage) {
+  const auto solve = [this](double* x) {
+    Eigen::Map<Eigen::VectorXd> rhs(x, change_.size());
+    rhs = derivative_.solve(rhs).eval();
+  };
+  if (stage.by_displacement()) return solve_with_tendons(stage, solve);
+  left_ = change_;
+  solve(change_.data());
+  return true;
+}
+
+void RodDynamics::Work::begin(const RodState& state, const Stage& stage, double h) {
+  std::fill(tensions.begin(), tensions.end(), 0.0);
+  if (stage.by_displacement()) {
+    std::copy(state.tensions.begin(), state.tensions.end(), tensions.begin());
+    for (std::size_t i = 0; i < tensions.size(); ++i) taut_[i] = tensions[i] > 0 ? 1 : 0;
+  } else if (!stage.tendons.tensions.empty()) {
+    std::copy(stage.tendons.tensions.begin(), stage.tendons.tensions.end(), tensions.begin());
+  }
+  guess(state, h);
+}
+
+// By the matrix of the stage's first shape, which leaves out how inertia turns with the rod, and loads.
+bool RodDynamics::Work::iterate_quickly(const Stage& stage, double contraction, RodStep& result,
+                                        double& worst_gain) {
+  double before = 0;
+  while (result.iterations < config.most_iterations) {
+    evaluate(stage);
+    if (result.iterations == 0) {
+      matrix.find_columns(motion);
+      const bool is_pulled = std::ranges::any_of(tensions, [](double tension) { return tension != 0; });
+      if (!matrix.factor(motion, {.damping = stage.stretch, .stiffness = stage.stretch * stage.stretch},
+                         is_pulled ? tensions.data() : nullptr, surroundings != nullptr))
+        return false;
+    }
+    if (!solve_quickly(stage)) return false;
+    ++result.iterations;
+    const double size = change_size();
+    if (!std::isfinite(size)) return false;
+    velocity += change_;
+    if (before > 0) {
+      contraction = size / before;
+      worst_gain = std::max(worst_gain, contraction);
+      if (result.iterations > patience && contraction > least_gain && size > config.tolerance) return false;
+    }
+    if (size <= config.tolerance || (contraction < 0.5 && 2 * size * contraction <= config.tolerance))
+      return true;
+    before = size;
+  }
+  return false;
+}
+
+bool RodDynamics::Work::factor_exactly(const Stage& stage) {
+  Eigen::MatrixXd momentum, force;
+  differentiate(q_, velocity, stage.loads, stage.stretch, 1, momentum, force);
+  momentum -= stage.stretch * force;
+  if (!momentum.allFinite()) return false;
+  derivative_.compute(momentum);
+  return true;
+}
+
+// Newton's method with the derivative, each step of it as long as makes what the next one would be shorter
+// (P. Deuflhard's natural monotonicity test).
+bool RodDynamics::Work::iterate_exactly(const Stage& stage, RodStep& result) {
+  evaluate(stage);
+  if (!change_.allFinite() || !factor_exactly(stage) || !solve_exactly(stage)) return false;
+  const int most = result.iterations + config.most_iterations;
+  Eigen::VectorXd step = change_, from = velocity;
+  double size = change_size();
+  while (result.iterations < most && std::isfinite(size)) {
+    double part = 1, next = 0;
+    for (; part > 1e-4; part /= 2) {
+      velocity = from + part * step;
+      evaluate(stage);
+      ++result.iterations;
+      if (!change_.allFinite() || !solve_exactly(stage)) continue;
+      next = change_size();
+      if (next <= (1 - part / 4) * size || next <= config.tolerance) break;
+    }
+    if (!(part > 1e-4) || !std::isfinite(next)) return false;
+    if (next <= config.tolerance) {
+      velocity += change_;
+      return true;
+    }
+    from = velocity;
+    evaluate(stage);
+    if (!factor_exactly(stage) || !solve_exactly(stage)) return false;
+    step = change_;
+    size = change_size();
+  }
+  return false;
+}
+
+// The stage's force, with the last change of the rates; and from the stage to the step's end.
+bool RodDynamics::Work::finish(const Stage& stage, RodState& state, double h) {
+  for (const RodLayout::Section& section : layout.sections) {
+    const auto first = static_cast<Eigen::Index>(section.first_mode),
+               size = static_cast<Eigen::Index>(section.modes);
+    for (Eigen::Index j = 0; j < size; ++j) {
+      const std::size_t strain = section.strain[static_cast<std::size_t>(j)];
+      const Eigen::Index begin = section.grid.first[strain], end = begin + section.grid.count[strain];
+      double sum = 0;
+      for (Eigen::Index l = begin; l < end; ++l)
+        sum += (section.damping(l, j) + stage.stretch * section.stiffness(l, j)) * change_[first + l];
+      force_[first + j] -= sum;
+    }
+  }
+  for (Eigen::Index i = 0; stage.by_displacement() && i < pull_change_.size(); ++i)
+    if (pull_change_[i] != 0) force_ -= pull_change_[i] * length_slopes_.col(i);
+  if (!force_.allFinite() || !velocity.allFinite()) return false;
+  const Scheme& use = stage.scheme;
+  const double now = 1 / use.alpha_m, old = (1 - use.alpha_m) / use.alpha_m;
+  state.q += h * (1 - use.gamma) * state.rate;
+  state.momentum += h * (1 - use.gamma) * state.force;
+  state.rate = now * velocity - old * state.rate;
+  state.force = now * force_ - old * state.force;
+  state.q += h * use.gamma * state.rate;
+  state.momentum += h * use.gamma * state.force;
+  state.time += h;
+  std::copy(tensions.begin(), tensions.end(), state.tensions.begin());
+  state.middles = state.step == h ? std::min(3, state.middles + 1) : 1;
+  state.step = h;
+  state.middle[2].swap(state.middle[1]);
+  state.middle[1].swap(state.middle[0]);
+  state.middle[0] = velocity;
+  return true;
+}
+
+// With x = (q, p): the stage's x = from + stretch dx/dt, in which dq/dt = v and p = M(q) v. What is sought is
+// v.
+RodStep RodDynamics::Work::step_once(const Scheme& use, RodState& state, const TendonInput& tendons,
+                                     const RodLoads& loads, double h) {
+  const Stage stage{.scheme = use, .tendons = tendons, .loads = loads, .stretch = use.stage * h};
+  RodStep result{.end = DynamicsEnd::did_not_converge};
+  q_from_ = state.q + use.memory * h * state.rate;
+  p_from_ = state.momentum + use.memory * h * state.force;
+  begin(state, stage, h);
+  const double turn = stage.stretch * greatest_change(velocity, chain.scales());
+  double worst_gain = 0;
+  if (!iterate_quickly(stage, std::max(state.contraction, turn), result, worst_gain)) {
+    begin(state, stage, h);
+    velocity.setZero();
+    if (!iterate_exactly(stage, result)) return result;
+  }
+  if (!finish(stage, state, h)) return result;
+  if (worst_gain > 0) state.contraction = std::min(worst_gain, 0.5);
+  result.end = DynamicsEnd::converged;
+  return result;
+}
+
+RodStep RodDynamics::Work::step(RodState& state, const TendonInput& tendons, const RodLoads& loads,
+                                double h) {
+  RodStep result = step_once(scheme, state, tendons, loads, h);
+  if (result.converged() || config.most_pieces < 2) return result;
+  // In pieces, in halves of halves, with all the damping that there is.
+  const Scheme damped(0);
+  const RodState before = state;
+  int parts = 1, left = 1;
+  result.pieces = 0;
+  while (left > 0) {
+    if (!result.converged()) {
+      parts *= 2;
+      left *= 2;
+      if (parts > config.most_pieces) break;
+    }
+    const RodStep piece = step_once(damped, state, tendons, loads, h / parts);
+    result.end = piece.end;
+    result.iterations += piece.iterations;
+    if (!piece.converged()) continue;
+    --left;
+    ++result.pieces;
+  }
+  if (result.converged())
+    state.time = before.time + h;
+  else
+    state = before;
+  return result;
+}
+
+}  // namespace flexura

@@ -1,0 +1,106 @@
+#include "flexura/mechanics/rod_layout.h"
+
+#include "flexura/math/lanes.h"
+
+namespace flexura {
+namespace {
+
+constexpr std::size_t widest = lanes_of<Lanes>;
+
+Triple<double> triple(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
+
+// A slice of the rod and the point masses on it as one body.
+RodLayout::Body body_of(const RodSection& section, const RodGrid& grid, std::size_t node,
+                        bool rotary_inertia) {
+  struct Part {
+    double mass;
+    Eigen::Vector3d centre;
+  };
+  const double run = grid.weight[node] * section.length;
+  std::vector<Part> parts = {{run * grid.mass_per_length[node], Eigen::Vector3d::Zero()}};
+  for (std::size_t i = 0; i < section.masses.size(); ++i)
+    if (grid.mass_nodes[i] == node) parts.push_back({section.masses[i].mass, section.masses[i].offset});
+  double mass = 0;
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();
+  for (const Part& part : parts) {
+    mass += part.mass;
+    centre += part.mass * part.centre;
+  }
+  if (mass > 0) centre /= mass;
+  Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();
+  if (rotary_inertia) inertia.diagonal() = run * section.slice_inertia_at(grid.t[node]);
+  for (const Part& part : parts) {
+    const Eigen::Vector3d off = part.centre - centre;
+    inertia += part.mass * (off.squaredNorm() * Eigen::Matrix3d::Identity() - off * off.transpose());
+  }
+  return {.mass = mass,
+          .centre = triple(centre),
+          .inertia = {triple(inertia.row(0)), triple(inertia.row(1)), triple(inertia.row(2))}};
+}
+
+}  // namespace
+
+RodLayout::RodLayout(const Rod& rod, const std::vector<RodGrid>& grids, bool rotary_inertia)
+    : tendons(rod.tendons.size()) {
+  double s_base = 0;
+  for (std::size_t index = 0; index < rod.sections.size(); ++index) {
+    const RodSection& from = rod.sections[index];
+    Section& section = sections.emplace_back(Section{.grid = grids[index], .length = from.length});
+    const RodGrid& grid = section.grid;
+    section.first_mode = modes;
+    section.first_interval = intervals;
+    section.first_node = nodes;
+    section.modes = static_cast<std::size_t>(grid.size);
+    section.intervals = grid.t.size() - 1;
+    section.disks = grid.disks;
+    section.strain.resize(section.modes);
+    section.stiffness.setZero(grid.size, grid.size);
+    section.damping.setZero(grid.size, grid.size);
+    grid.for_modes(
+        [&](int c, int j) { section.strain[static_cast<std::size_t>(j)] = static_cast<std::size_t>(c); });
+    for (std::size_t k = 0; k < grid.t.size(); ++k) {
+      const double length = grid.weight[k] * from.length;
+      const Vector6d damping = from.damping_at(grid.t[k]);
+      run.push_back(length);
+      bodies.push_back(body_of(from, grid, k, rotary_inertia));
+      const auto at = grid.at_node.col(static_cast<Eigen::Index>(k));
+      for (int j = 0; j < grid.size; ++j) {
+        for (int l = 0; l < grid.size; ++l) {
+          const std::size_t c = section.strain[static_cast<std::size_t>(j)];
+          if (section.strain[static_cast<std::size_t>(l)] != c) continue;
+          const double both = length * at[j] * at[l];
+          section.stiffness(j, l) += grid.stiffness[k][static_cast<Eigen::Index>(c)] * both;
+          section.damping(j, l) += damping[static_cast<Eigen::Index>(c)] * both;
+        }
+      }
+    }
+    for (std::size_t i = 0; i < rod.tendons.size(); ++i) {
+      if (rod.tendons[i].section < index) continue;
+      section.tendons.push_back(i);
+      for (const double t : grid.t) {
+        const TendonRoute::Offset offset = rod.tendons[i].at(s_base + t * from.length);
+        section.passages.push_back({triple(offset.value), triple(offset.slope)});
+      }
+    }
+    for (std::size_t m = 0; m < 3; ++m) {
+      section.first_moment = m == 0 ? moments[0].size() : section.first_moment;
+      for (int j = 0; j < grid.size; ++j)
+        for (std::size_t i = 0; i < section.intervals; ++i)
+          moments[m].push_back(grid.moments[m](j, static_cast<Eigen::Index>(i)));
+    }
+    modes += section.modes;
+    intervals += section.intervals;
+    nodes += grid.t.size();
+    s_base += from.length;
+  }
+  padded = (intervals + widest - 1) / widest * widest;
+  rest.assign(18 * padded, 0.0);
+  for (const Section& section : sections)
+    for (std::size_t i = 0; i < section.intervals; ++i)
+      for (std::size_t m = 0; m < 3; ++m)
+        for (std::size_t c = 0; c < 6; ++c)
+          rest[(6 * m + c) * padded + section.first_interval + i] =
+              section.grid.rest_moments[i][m][static_cast<Eigen::Index>(c)];
+}
+
+}  // namespace flexura

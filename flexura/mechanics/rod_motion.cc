@@ -1,0 +1,309 @@
+#include "flexura/mechanics/rod_motion.h"
+
+#include <algorithm>
+
+#include "flexura/mechanics/rod_numbers.h"
+
+namespace flexura {
+namespace {
+
+// Six numbers, `stride` apart.
+template <typename N, typename S>
+Screw<N> load_screw(const S* from, std::size_t stride) {
+  return {{load_lanes(from), load_lanes(from + stride), load_lanes(from + 2 * stride)},
+          {load_lanes(from + 3 * stride), load_lanes(from + 4 * stride), load_lanes(from + 5 * stride)}};
+}
+template <typename N, typename S>
+void store_triple(const Triple<N>& a, S* to, std::size_t stride) {
+  store_lanes(a.x, to);
+  store_lanes(a.y, to + stride);
+  store_lanes(a.z, to + 2 * stride);
+}
+template <typename N, typename S>
+void store_screw(const Screw<N>& a, S* to, std::size_t stride) {
+  store_triple(a.linear, to, stride);
+  store_triple(a.angular, to + 3 * stride, stride);
+}
+template <typename S>
+Triple<S> read_triple(const S* from, std::size_t stride) {
+  return {from[0], from[stride], from[2 * stride]};
+}
+template <typename S>
+void write_screw(const Screw<S>& a, S* to, std::size_t stride) {
+  to[0] = a.linear.x, to[stride] = a.linear.y, to[2 * stride] = a.linear.z;
+  to[3 * stride] = a.angular.x, to[4 * stride] = a.angular.y, to[5 * stride] = a.angular.z;
+}
+Screw<double> screw(const Vector6d& a) { return {{a[0], a[1], a[2]}, {a[3], a[4], a[5]}}; }
+
+// The wrench with the slopes that the node's motion gives it.
+Screw<double> with_slopes(const NodePull& pull, const Placement<double>&, const Screw<double>&) {
+  return screw(pull.wrench);
+}
+Screw<Dual<Lanes>> with_slopes(const NodePull& pull, const Placement<Dual<Lanes>>& X,
+                               const Screw<Dual<Lanes>>& V) {
+  Screw<Dual<Lanes>> result{};
+  for (std::size_t lane = 0; lane < lanes_of<Lanes>; ++lane) {
+    const auto slope = [&](const Triple<Dual<Lanes>>& a) {
+      return Eigen::Vector3d(a.x.slope[lane], a.y.slope[lane], a.z.slope[lane]);
+    };
+    Eigen::Matrix3d R, dR;
+    R << plain(X.x).transpose(), plain(X.y).transpose(), plain(X.z).transpose();
+    dR << slope(X.x).transpose(), slope(X.y).transpose(), slope(X.z).transpose();
+    const Eigen::Matrix3d turning = dR * R.transpose();
+    const Eigen::Vector3d angular(turning(2, 1), turning(0, 2), turning(1, 0));
+    Vector6d moved, faster;
+    moved << slope(X.position) - angular.cross(plain(X.position)), angular;
+    faster << slope(V.linear), slope(V.angular);
+    const Vector6d change = pull.by_pose * moved + pull.by_twist * faster;
+    for (std::size_t c = 0; c < 6; ++c) {
+      component(result, c).value[lane] = pull.wrench[static_cast<Eigen::Index>(c)];
+      component(result, c).slope[lane] = change[static_cast<Eigen::Index>(c)];
+    }
+  }
+  return result;
+}
+
+}  // namespace
+
+template <typename S>
+RodMotion<S>::RodMotion(const RodLayout& layout) : layout_(layout) {
+  const std::size_t padded = layout.padded;
+  moments_.resize(18 * padded);
+  rates_.resize(18 * padded);
+  intervals_.resize(padded / lanes_of<Number>);
+  steps_.resize(12 * padded);
+  speeds_.resize(6 * padded);
+  seeds_.resize(6 * padded);
+  changes_.resize(6 * padded);
+  collected_.resize(18 * padded);
+  changed_.resize(18 * padded);
+  X_.resize(layout.nodes);
+  for (auto* screws : {&V_, &P_, &W_, &along_, &spare_}) screws->resize(layout.nodes);
+  motions_.resize(layout.nodes);
+  pulls_.resize(layout.nodes);
+}
+
+template <typename S>
+void RodMotion<S>::place(const S* q, const S* v) {
+  q_ = q;
+  v_ = v;
+  const std::size_t padded = layout_.padded;
+  for (std::size_t i = 0; i < moments_.size(); ++i) moments_[i] = layout_.rest[i] + S{};
+  std::fill(rates_.begin(), rates_.end(), S{});
+  for (const RodLayout::Section& section : layout_.sections) {
+    for (std::size_t m = 0; m < 3; ++m) {
+      const double* of_mode = layout_.moments[m].data() + section.first_moment;
+      for (std::size_t j = 0; j < section.modes; ++j, of_mode += section.intervals) {
+        const std::size_t at = (6 * m + section.strain[j]) * padded + section.first_interval;
+        const S q_j = q[section.first_mode + j], v_j = v[section.first_mode + j];
+        for (std::size_t i = 0; i < section.intervals; ++i) {
+          moments_[at + i] += of_mode[i] * q_j;
+          rates_[at + i] += of_mode[i] * v_j;
+        }
+      }
+    }
+  }
+  for (std::size_t i = 0; i < intervals_.size(); ++i) {
+    const std::size_t at = i * lanes_of<Number>;
+    const auto moment = [&](std::size_t m) {
+      return dual_of(load_screw<Number>(&moments_[6 * m * padded + at], padded),
+                     load_screw<Number>(&rates_[6 * m * padded + at], padded));
+    };
+    intervals_[i] = RodInterval<Dual<Number>>(moment(0), moment(1), moment(2));
+    const RodInterval<Number> now = still(intervals_[i]);
+    const Placement<Number> step = now.placement();
+    store_triple(step.x, &steps_[at], padded);
+    store_triple(step.y, &steps_[3 * padded + at], padded);
+    store_triple(step.z, &steps_[6 * padded + at], padded);
+    store_triple(step.position, &steps_[9 * padded + at], padded);
+    store_screw(now.moved(slope_of(intervals_[i].twist())), &speeds_[at], padded);
+  }
+  const S zero{}, one = 1.0 + zero;
+  Placement<S> X = {.x = {one, zero, zero}, .y = {zero, one, zero}, .z = {zero, zero, one}, .position = {}};
+  Screw<S> V{};
+  for (const RodLayout::Section& section : layout_.sections) {
+    std::size_t node = section.first_node;
+    X_[node] = X;
+    V_[node] = V;
+    for (std::size_t i = 0; i < section.intervals; ++i) {
+      const std::size_t at = section.first_interval + i;
+      const Screw<S> speed = {read_triple(&speeds_[at], padded),
+                              read_triple(&speeds_[3 * padded + at], padded)};
+      V += X.carry(speed);
+      const Placement<S> step = {
+          read_triple(&steps_[at], padded), read_triple(&steps_[3 * padded + at], padded),
+          read_triple(&steps_[6 * padded + at], padded), read_triple(&steps_[9 * padded + at], padded)};
+      X = X * step;
+      ++node;
+      X_[node] = X;
+      V_[node] = V;
+    }
+  }
+  for (std::size_t k = 0; k < layout_.nodes; ++k) P_[k] = momentum_of(k, V_[k]);
+}
+
+template <typename S>
+Screw<S> RodMotion<S>::momentum_of(std::size_t node, const Screw<S>& twist) const {
+  const RodLayout::Body& body = layout_.bodies[node];
+  const Placement<S>& at = X_[node];
+  const Triple<S> centre = at.position + at.turn(constant<S>(body.centre));
+  const Triple<S> push = body.mass * (twist.linear + cross(twist.angular, centre));
+  const Triple<S> w = at.turn_back(twist.angular);
+  const auto row = [&](const Triple<double>& r) { return r.x * w.x + r.y * w.y + r.z * w.z; };
+  const Triple<S> spin = {row(body.inertia[0]), row(body.inertia[1]), row(body.inertia[2])};
+  return {push, at.turn(spin) + cross(centre, push)};
+}
+
+template <typename S>
+void RodMotion<S>::pull(const RodLoads& loads, const S* tensions, const RodSurroundings* surroundings) {
+  const Triple<double> gravity{loads.gravity.x(), loads.gravity.y(), loads.gravity.z()};
+  const Triple<S> per_length = constant<S>(loads.per_length);
+  const bool is_spread = !loads.per_length.isZero(0);
+  for (std::size_t k = 0; k < layout_.nodes; ++k) {
+    const RodLayout::Body& body = layout_.bodies[k];
+    const Triple<S> weight = constant<S>(body.mass * gravity);
+    W_[k] = wrench_at(X_[k].position + X_[k].turn(constant<S>(body.centre)), weight);
+    if (is_spread) W_[k] += wrench_at(X_[k].position, layout_.run[k] * per_length);
+  }
+  for (const EndLoad& end : loads.ends) {
+    const RodLayout::Section& section = layout_.sections[end.section];
+    const std::size_t node = section.first_node + section.intervals;
+    const Placement<S>& X = X_[node];
+    Triple<S> force = constant<S>(end.force), moment = constant<S>(end.moment);
+    if (end.following) {
+      force = X.turn(force);
+      moment = X.turn(moment);
+    }
+    W_[node] += {force, cross(X.position, force) + moment};
+  }
+  add_tendons(tensions);
+  if (surroundings != nullptr) add_surroundings(*surroundings);
+}
+
+template <typename S>
+void RodMotion<S>::add_surroundings(const RodSurroundings& surroundings) {
+  for (std::size_t k = 0; k < layout_.nodes; ++k) {
+    Pose& pose = motions_[k].pose;
+    pose.rotation << plain(X_[k].x).transpose(), plain(X_[k].y).transpose(), plain(X_[k].z).transpose();
+    pose.position = plain(X_[k].position);
+    motions_[k].twist = plain(V_[k]);
+  }
+  surroundings.pull(motions_, layout_.run, pulls_);
+  for (std::size_t k = 0; k < layout_.nodes; ++k) W_[k] += with_slopes(pulls_[k], X_[k], V_[k]);
+}
+
+template <typename S>
+void RodMotion<S>::add_modes(const std::vector<S>& of_moments, S* sums) const {
+  for (const RodLayout::Section& section : layout_.sections) {
+    for (std::size_t m = 0; m < 3; ++m) {
+      const double* of_mode = layout_.moments[m].data() + section.first_moment;
+      for (std::size_t j = 0; j < section.modes; ++j, of_mode += section.intervals) {
+        const S* from = &of_moments[(6 * m + section.strain[j]) * layout_.padded + section.first_interval];
+        S sum{};
+        for (std::size_t i = 0; i < section.intervals; ++i) sum += of_mode[i] * from[i];
+        sums[section.first_mode + j] += sum;
+      }
+    }
+  }
+}
+
+template <typename S>
+void RodMotion<S>::balance(S* momentum, S* force) {
+  const std::size_t padded = layout_.padded;
+  Screw<S> P{}, W{};  // Of all that lies beyond.
+  for (std::size_t s = layout_.sections.size(); s-- > 0;) {
+    const RodLayout::Section& section = layout_.sections[s];
+    for (std::size_t i = section.intervals; i-- > 0;) {
+      const std::size_t node = section.first_node + i, at = section.first_interval + i;
+      P += P_[node + 1];
+      W += W_[node + 1];
+      // The columns of an interval move with its beginning.
+      write_screw(X_[node].fetch(P), &seeds_[at], padded);
+      write_screw(X_[node].fetch(W + transposed_bracket(V_[node], P)), &changes_[at], padded);
+    }
+    P += P_[section.first_node];
+    W += W_[section.first_node];
+  }
+  for (std::size_t i = 0; i < intervals_.size(); ++i) {
+    const std::size_t at = i * lanes_of<Number>;
+    const auto along = intervals_[i].along_moments(
+        dual_of(load_screw<Number>(&seeds_[at], padded), load_screw<Number>(&changes_[at], padded)));
+    for (std::size_t m = 0; m < 3; ++m) {
+      store_screw(value_of(along[m]), &collected_[6 * m * padded + at], padded);
+      store_screw(slope_of(along[m]), &changed_[6 * m * padded + at], padded);
+    }
+  }
+  std::fill(momentum, momentum + layout_.modes, S{});
+  set_inner_forces(force);
+  add_modes(collected_, momentum);
+  add_modes(changed_, force);
+}
+
+template <typename S>
+void RodMotion<S>::set_inner_forces(S* force) const {
+  for (const RodLayout::Section& section : layout_.sections) {
+    S* part = force + section.first_mode;
+    const S *q = q_ + section.first_mode, *v = v_ + section.first_mode;
+    const RodGrid& grid = section.grid;
+    for (std::size_t j = 0; j < section.modes; ++j) {
+      const auto first = static_cast<std::size_t>(grid.first[section.strain[j]]),
+                 count = static_cast<std::size_t>(grid.count[section.strain[j]]);
+      const double *K = section.stiffness.data() + j * section.modes,
+                   *D = section.damping.data() + j * section.modes;
+      S sum{};
+      for (std::size_t l = first; l < first + count; ++l) sum += K[l] * q[l] + D[l] * v[l];
+      part[j] = S{} - sum;
+    }
+    if (!is_pulled_ || !section.disks.empty()) continue;
+    for (std::size_t k = 0; k <= section.intervals; ++k) {
+      const std::size_t node = section.first_node + k;
+      if (layout_.run[node] != 0) add_strain_force(section, k, -layout_.run[node] * along_[node], force);
+    }
+  }
+}
+
+template <typename S>
+void RodMotion<S>::find_acceleration_forces(S* force) {
+  const std::size_t padded = layout_.padded;
+  for (std::size_t i = 0; i < intervals_.size(); ++i)
+    store_screw(drift_of(intervals_[i]), &changes_[i * lanes_of<Number>], padded);
+  Screw<S> drift{};
+  for (const RodLayout::Section& section : layout_.sections) {
+    for (std::size_t i = 0; i <= section.intervals; ++i) {
+      const std::size_t node = section.first_node + i, at = section.first_interval + i;
+      spare_[node] = W_[node] + transposed_bracket(V_[node], P_[node]) - momentum_of(node, drift);
+      if (i == section.intervals) continue;
+      const auto read = [&](const std::vector<S>& from) {
+        return Screw<S>{read_triple(&from[at], padded), read_triple(&from[3 * padded + at], padded)};
+      };
+      drift += bracket(V_[node], X_[node].carry(read(speeds_))) + X_[node].carry(read(changes_));
+    }
+  }
+  set_inner_forces(force);
+  collect(spare_, force);
+}
+
+template <typename S>
+void RodMotion<S>::collect(const std::vector<Screw<S>>& wrenches, S* force) {
+  const std::size_t padded = layout_.padded;
+  Screw<S> W{};
+  for (std::size_t s = layout_.sections.size(); s-- > 0;) {
+    const RodLayout::Section& section = layout_.sections[s];
+    for (std::size_t i = section.intervals; i-- > 0;) {
+      W += wrenches[section.first_node + i + 1];
+      write_screw(X_[section.first_node + i].fetch(W), &seeds_[section.first_interval + i], padded);
+    }
+    W += wrenches[section.first_node];
+  }
+  for (std::size_t i = 0; i < intervals_.size(); ++i) {
+    const std::size_t at = i * lanes_of<Number>;
+    const auto along = still(intervals_[i]).along_moments(load_screw<Number>(&seeds_[at], padded));
+    for (std::size_t m = 0; m < 3; ++m) store_screw(along[m], &collected_[6 * m * padded + at], padded);
+  }
+  add_modes(collected_, force);
+}
+
+template class RodMotion<double>;
+template class RodMotion<Dual<Lanes>>;
+
+}  // namespace flexura

@@ -1,0 +1,95 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "flexura/math/lanes.h"
+#include "flexura/math/screw.h"
+#include "flexura/mechanics/rod.h"
+#include "flexura/mechanics/rod_interval.h"
+#include "flexura/mechanics/rod_layout.h"
+#include "flexura/mechanics/rod_surroundings.h"
+
+namespace flexura {
+
+/// A rod in motion, by its modes q and their rates v: where its nodes are, the momenta p = dT/dv of the modes
+/// and the generalized forces dL/dq + Q, so that dp/dt = force (Lagrange). In the frame of the base; twists
+/// and wrenches are about its origin. S is double, or numbers with slopes, for derivatives. Nothing is
+/// allocated after the constructor.
+template <typename S>
+class RodMotion {
+ public:
+  using Number = typename Wide<S>::type;
+
+  explicit RodMotion(const RodLayout& layout);
+
+  /// Where the nodes are, and how fast.
+  void place(const S* q, const S* v);
+  /// What pulls at them, there. `tensions`: of all tendons, N.
+  void pull(const RodLoads& loads, const S* tensions, const RodSurroundings* surroundings);
+  /// The momenta and the forces, of all modes.
+  void balance(S* momentum, S* force);
+  /// What is left of the forces when the rates stay as they are: the mass matrix times the modes'
+  /// accelerations (Newton, Euler).
+  void find_acceleration_forces(S* force);
+  /// How long the tendons are, m.
+  void find_lengths(S* lengths) const;
+
+  [[nodiscard]] const std::vector<Placement<S>>& nodes() const { return X_; }
+  [[nodiscard]] const std::vector<Screw<S>>& velocities() const { return V_; }
+  /// Of the bodies at the nodes.
+  [[nodiscard]] const std::vector<Screw<S>>& momenta() const { return P_; }
+  /// The slopes of the last surroundings' wrenches; none without.
+  [[nodiscard]] const std::vector<NodePull>& pulls() const { return pulls_; }
+  /// Of the intervals, side by side.
+  [[nodiscard]] const std::vector<RodInterval<Dual<Number>>>& intervals() const { return intervals_; }
+
+  /// The generalized forces of wrenches at the nodes, of one for each; after place().
+  void collect(const std::vector<Screw<S>>& wrenches, S* force);
+  /// The change of a tendon's length by the modes, all of them; after place().
+  void find_length_slopes(std::size_t tendon, S* slopes);
+
+  /// At a node, under tensions in channels: the second derivative by its strains of what is for each metre
+  /// the sum of the tensions times the tendons' lengths.
+  [[nodiscard]] Matrix6d tendon_stiffness(const RodLayout::Section& section, std::size_t node,
+                                          const double* tensions) const;
+
+ private:
+  struct Pull {
+    Screw<S> along;  // What a unit of tension does to the strains of a node.
+    S length;        // Of the tendon, for each metre of the rod.
+  };
+  [[nodiscard]] Screw<S> strain_at(const RodLayout::Section& section, std::size_t node) const;
+  [[nodiscard]] static Pull pull_of(const RodLayout::Passage& passage, const Screw<S>& strain);
+  void add_tendons(const S* tensions);
+  void add_surroundings(const RodSurroundings& surroundings);
+  template <typename Add>
+  void for_chords(const RodLayout::Section& section, std::size_t tendon, Add&& add) const;
+  void add_strain_force(const RodLayout::Section& section, std::size_t node, const Screw<S>& along,
+                        S* force) const;
+  [[nodiscard]] Screw<S> momentum_of(std::size_t node, const Screw<S>& twist) const;
+  // Of stiffness, damping, and tendons along the strains.
+  void set_inner_forces(S* force) const;
+  void add_modes(const std::vector<S>& of_moments, S* sums) const;
+
+  const RodLayout& layout_;
+  const S* q_ = nullptr;
+  const S* v_ = nullptr;
+  std::vector<S> moments_, rates_;  // 18 x padded.
+  std::vector<RodInterval<Dual<Number>>> intervals_;
+  std::vector<S> steps_, speeds_;       // Of the intervals: 12 x padded, 6 x padded.
+  std::vector<S> seeds_, changes_;      // 6 x padded: wrenches beyond, in the intervals' frames.
+  std::vector<S> collected_, changed_;  // 18 x padded.
+  std::vector<Placement<S>> X_;         // Of the nodes.
+  std::vector<Screw<S>> V_, P_, W_;
+  std::vector<Screw<S>> along_;  // Of the tendons, of the nodes: forces on the strains.
+  std::vector<Screw<S>> spare_;
+  bool is_pulled_ = false;  // By tendons along its strains.
+  std::vector<NodeMotion> motions_;
+  std::vector<NodePull> pulls_;
+};
+
+// Instantiated for double and Dual<Lanes> in its sources.
+
+}  // namespace flexura

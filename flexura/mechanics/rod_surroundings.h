@@ -1,0 +1,37 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+
+#include "flexura/math/pose.h"
+#include "flexura/math/se3.h"
+
+namespace flexura {
+
+/// Where a node of a rod is, and its twist [v; w] about the origin of the rod's base, in the base's axes: the
+/// velocity of a point p of it is v + w x p.
+struct NodeMotion {
+  Pose pose;
+  Vector6d twist = Vector6d::Zero();
+};
+
+/// What pulls at a node: a wrench [f; m] about the same origin, and its derivatives by a small twist of the
+/// node and by its twist.
+struct NodePull {
+  Vector6d wrench = Vector6d::Zero();
+  Matrix6d by_pose = Matrix6d::Zero();
+  Matrix6d by_twist = Matrix6d::Zero();
+};
+
+/// What else pulls at a rod in motion, as it moves: contact, drag, springs.
+class RodSurroundings {
+ public:
+  virtual ~RodSurroundings() = default;
+  /// Of all nodes, from the base on: the last node of a section and the first of the next lie in one place,
+  /// and are both there. `run`: metres of rod for each node in an integral along it. Sets all of `pulls`, and
+  /// allocates nothing if steps are not to.
+  virtual void pull(std::span<const NodeMotion> nodes, std::span<const double> run,
+                    std::span<NodePull> pulls) const = 0;
+};
+
+}  // namespace flexura

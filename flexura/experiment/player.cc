@@ -47,7 +47,7 @@ Player::Player(const Experiment& experiment, Witness& witness, Progress& progres
     if (task->way() == TaskWay::simulated) telling_.push_back(task.get());
   const auto is_by_rig = [](const auto& task) { return task->way() == TaskWay::by_rig; };
   // Where an arm comes that is not what is believed is known of its rig alone.
-  const bool is_other = experiment.true_rig().arm.mechanics == ArmMechanics::statics ||
+  const bool is_other = experiment.true_rig().arm.mechanics != ArmMechanics::kinematic ||
                         (experiment.truth && experiment.truth->arm);
   if (experiment.record.cameras || is_other || std::ranges::any_of(tasks_, is_by_rig))
     rig_ = make_rig(experiment);

@@ -42,6 +42,7 @@ RodSection section_of(const Section& section, ArmKind kind) {
   result.density = material.density;
   if (material.stiffness) result.stiffness = diagonal(*material.stiffness);
   result.mass_per_length = material.mass_per_length;
+  result.damping_time = material.damping_time;
   const Eigen::Vector3d turn(-material.rest_bend[1], material.rest_bend[0], material.rest_twist);
   if (!turn.isZero(0)) result.rest_curvature = {turn / section.length};
   for (const BodyConfig& body : material.mass)
@@ -208,7 +209,7 @@ std::vector<double> pretension_displacements(RodStatics& statics, double tension
 
 ArmModel arm_model_of(const ArmConfig& arm, const std::optional<DriveConfig>& drive) {
   Arm driven = arm.arm();
-  if (arm.mechanics != ArmMechanics::statics) return ArmModel(driven);
+  if (arm.mechanics == ArmMechanics::kinematic) return ArmModel(driven);
   for (Section& section : driven.sections)
     if (!section.bend_profile) section.bend_profile.emplace(arcs_of_rod_section, 1.0);
   const Actuation actuation(

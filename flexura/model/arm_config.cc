@@ -169,12 +169,13 @@ const Table<ArmConfig>& fields_of(const ArmConfig*) {
                   .count = {1, max_sections},
                   .required = true})
           .field("look", &ArmConfig::look, {.meaning = "What a camera sees of it beside its shape."})
-          .field("model", &ArmConfig::mechanics,
-                 {.meaning =
-                      "kinematic: the arm's shape is as commands say. static: its sections are elastic "
-                      "rods, at rest under their tendons, gravity and loads; each needs a material. Under "
-                      "[truth.arm] the simulated arm is such a rod while the tasks go on believing what "
-                      "[arm] says."})
+          .field(
+              "model", &ArmConfig::mechanics,
+              {.meaning = "kinematic: the arm's shape is as commands say. static: its sections are elastic "
+                          "rods, at rest under their tendons, gravity and loads; each needs a material. "
+                          "dynamic: these rods in motion, which swing; tasks believe them at rest. Under "
+                          "[truth.arm] the simulated arm is such a rod while the tasks go on believing what "
+                          "[arm] says."})
           .field("gravity", &ArmConfig::gravity,
                  {.meaning = "Gravity in the world's frame, X, Y, Z: [0, -9.81, 0] where +Y is up. It bends "
                              "elastic rods alone.",
@@ -188,6 +189,11 @@ const Table<ArmConfig>& fields_of(const ArmConfig*) {
                  {.meaning = "What pulls at the ends of sections, as tables [[arm.load]].",
                   .count = {0, max_loads},
                   .default_text = "none"})
+          .field(
+              "time_step", &ArmConfig::time_step,
+              {.meaning = "Time from one step to the next in which the motion of a dynamic arm is computed.",
+               .unit = Unit::second,
+               .range = between(1e-6, 0.1)})
           .check(check_arm);
   return table;
 }

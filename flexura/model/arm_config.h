@@ -49,6 +49,7 @@ struct ArmConfig {
   std::array<double, 3> gravity = {0, 0, 0};  ///< In the world's frame, m/s^2.
   std::vector<TendonRouteConfig> tendon;      ///< None: the drive's, if there is one.
   std::vector<LoadConfig> load;
+  double time_step = 0.005;  ///< Of rods in motion, s.
 
   /// The arm it describes, as its drives see it.
   [[nodiscard]] Arm arm() const;

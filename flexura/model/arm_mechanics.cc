@@ -67,6 +67,24 @@ void check_in_tube(const TendonRouteConfig& tendon, const ArmConfig& arm, const 
   }
 }
 
+// What moves has a mass; and what is known at rest alone.
+void check_motion(const ArmConfig& arm, Reader& reader) {
+  for (std::size_t i = 0; i < arm.section.size(); ++i) {
+    const MaterialConfig& material = *arm.section[i].material;
+    if (material.mass_per_length.value_or(material.density) == 0)
+      reader.problem_at(fmt::format("section[{}].material", i),
+                        "has no mass: expected density or mass_per_length, for the arm's model is "
+                        "\"dynamic\"");
+    if (arm.section[i].can_stretch())
+      reader.problem_at(fmt::format("section[{}].stretch_limits", i),
+                        "let it be driven longer: expected none, for the arm's model is \"dynamic\"");
+  }
+  for (std::size_t i = 0; i < arm.tendon.size(); ++i)
+    if (arm.tendon[i].friction > 0)
+      reader.problem_at(fmt::format("tendon[{}].friction", i),
+                        "is known of arms at rest alone: expected 0, for the arm's model is \"dynamic\"");
+}
+
 }  // namespace
 
 Eigen::Vector2d TendonRouteConfig::offset(double s, double end) const {
@@ -76,7 +94,7 @@ Eigen::Vector2d TendonRouteConfig::offset(double s, double end) const {
 }
 
 const std::vector<std::string>& names_of(const ArmMechanics*) {
-  static const std::vector<std::string> names = {"kinematic", "static"};
+  static const std::vector<std::string> names = {"kinematic", "static", "dynamic"};
   return names;
 }
 
@@ -147,15 +165,17 @@ void check_mechanics(const ArmConfig& arm, Reader& reader) {
   }
   for (std::size_t i = 0; i < arm.load.size(); ++i)
     ends_on_arm(arm.load[i].section, arm, fmt::format("load[{}].section", i), reader);
-  if (arm.mechanics != ArmMechanics::statics) return;
+  if (arm.mechanics == ArmMechanics::kinematic) return;
+  const std::string& model = names_of(&arm.mechanics)[static_cast<std::size_t>(arm.mechanics)];
   for (std::size_t i = 0; i < arm.section.size(); ++i) {
     if (arm.section[i].material) continue;
-    reader.problem_at(
-        fmt::format("section[{}]", i),
-        "has no material: expected material.youngs_modulus or material.stiffness, for the arm's "
-        "model is \"static\"");
+    reader.problem_at(fmt::format("section[{}]", i),
+                      fmt::format("has no material: expected material.youngs_modulus or "
+                                  "material.stiffness, for the arm's model is \"{}\"",
+                                  model));
     return;
   }
+  if (arm.mechanics == ArmMechanics::dynamics) check_motion(arm, reader);
 }
 
 }  // namespace flexura

@@ -14,8 +14,8 @@ namespace flexura {
 struct ArmConfig;
 
 /// How an arm's shape comes about. kinematic: as commands say. statics: its sections are elastic rods, at
-/// rest under their tendons, gravity and loads.
-enum class ArmMechanics { kinematic, statics };
+/// rest under their tendons, gravity and loads. dynamics: the same rods in motion, with their inertia.
+enum class ArmMechanics { kinematic, statics, dynamics };
 
 /// Where a tendon runs in the arm's cross-sections, from its base to the end of one section,
 /// `[[arm.tendon]]`: at s m of arc length from the base, at rest, it is off the backbone by (x(s), y(s)) +
@@ -47,8 +47,8 @@ const Table<TendonRouteConfig>& fields_of(const TendonRouteConfig*);
 const Table<LoadConfig>& fields_of(const LoadConfig*);
 
 /// Reports to `reader`, at whose current place the arm stands, what of its tendons, loads and materials does
-/// not fit together: an end at a section that it has not, a tendon outside the tube, statics of a section
-/// without a material.
+/// not fit together: an end at a section that it has not, a tendon outside the tube, a rod's section without
+/// a material, a moving one without a mass.
 void check_mechanics(const ArmConfig& arm, Reader& reader);
 
 }  // namespace flexura

@@ -6,8 +6,8 @@
 
 namespace flexura {
 
-/// What commands make of an arm whose sections do not simply share their bends out: a rod that tendons, weight
-/// and loads bend. A function of the command alone, which several threads may ask.
+/// What commands make of an arm whose sections do not simply share their bends out: a rod that tendons,
+/// weight and loads bend. A function of the command alone, which several threads may ask.
 class ArmResponse {
  public:
   ArmResponse() = default;

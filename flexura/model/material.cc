@@ -72,7 +72,12 @@ Table<MaterialConfig>& add_moduli(Table<MaterialConfig>& table) {
       .field("mass_per_length", &MaterialConfig::mass_per_length,
              {.meaning = "Mass of a metre of it, kg/m, instead of the density.",
               .range = between(0, 1e6),
-              .default_text = "that of the density and radii"});
+              .default_text = "that of the density and radii"})
+      .field("damping_time", &MaterialConfig::damping_time,
+             {.meaning = "Viscosity (Kelvin and Voigt): damping over stiffness, the time in which a strain "
+                         "that nothing holds falls to 1/e. Of dynamic arms.",
+              .unit = Unit::second,
+              .range = between(0, 1e3)});
 }
 
 }  // namespace

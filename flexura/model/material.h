@@ -47,6 +47,7 @@ struct MaterialConfig {
   std::array<double, 2> inner_radius = {0, 0};       ///< Of its bore, m.
   std::optional<StiffnessConfig> stiffness = {};     ///< Instead of the moduli.
   std::optional<double> mass_per_length = {};        ///< Instead of the density, kg/m.
+  double damping_time = 0;                           ///< Of its viscosity: damping over stiffness, s.
   std::array<double, 2> rest_bend = {0, 0};          ///< The bend of the section when nothing pulls, rad.
   double rest_twist = 0;                             ///< Of its end against its base then, rad.
   std::optional<std::int64_t> disks = {};            ///< Tendons run straight between so many equal pieces.

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "flexura/mechanics/dynamics.h"
 #include "flexura/model/arm_model.h"
 #include "flexura/model/backbone.h"
 #include "flexura/sim/bend_motion.h"
@@ -61,6 +62,8 @@ class Plant {
   [[nodiscard]] virtual std::string warning(double /*time*/) const { return {}; }
   /// By which each tendon pulls at the arm's base, N. Empty: nobody knows. Times as backbone().
   [[nodiscard]] virtual std::vector<double> tensions(double /*time*/) const { return {}; }
+  /// Kinetic, of its strains, and of its weight and loads. None: it has no inertia. Times as backbone().
+  [[nodiscard]] virtual std::optional<RodEnergy> energy(double /*time*/) const { return std::nullopt; }
   /// How many microsteps each motor has lost up to then, of which its controller knows nothing. Empty: none
   /// ever.
   [[nodiscard]] virtual std::vector<double> lost_steps(double /*time*/) const { return {}; }

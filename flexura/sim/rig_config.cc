@@ -115,8 +115,9 @@ void lay(Node& under, Node over, std::string_view path) {
 ArmSetup::ArmSetup(const RigConfig& config) : arm(config.arm.arm()) {
   initial = arm_state(arm, config.arm.initial);
   if (config.drive) drive = config.drive->drive();
-  if (config.arm.mechanics == ArmMechanics::statics)
-    rod = {.rod = rod_of(config.arm, config.drive), .loads = loads_of(config.arm)};
+  if (config.arm.mechanics == ArmMechanics::kinematic) return;
+  rod = {.rod = rod_of(config.arm, config.drive), .loads = loads_of(config.arm)};
+  if (config.arm.mechanics == ArmMechanics::dynamics) rod->time_step = config.arm.time_step;
 }
 
 Node truth_of(Node document) {
@@ -146,7 +147,7 @@ std::string truth_problem(const RigConfig& model, const RigConfig& truth) {
     return fmt::format("the true drive has {} tendons: expected {}, as the model's",
                        truth.drive->tendon.size(), model.drive->tendon.size());
   }
-  if (truth.arm.mechanics == ArmMechanics::statics && truth.drive && !truth.arm.tendon.empty() &&
+  if (truth.arm.mechanics != ArmMechanics::kinematic && truth.drive && !truth.arm.tendon.empty() &&
       truth.arm.tendon.size() != truth.drive->tendon.size())
     return fmt::format("the true arm has {} tendons: expected {}, one for each of the drive's",
                        truth.arm.tendon.size(), truth.drive->tendon.size());

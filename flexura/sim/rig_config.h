@@ -25,6 +25,7 @@ struct RigConfig {
 struct ArmRod {
   Rod rod;
   RodLoads loads;
+  std::optional<double> time_step = {};  ///< Of its motion, s. None: it has no inertia.
 };
 
 /// What a simulation needs to know of an arm and what moves it.
@@ -35,7 +36,7 @@ struct ArmSetup {
   Arm arm;
   ArmState initial;            ///< Where it starts, as the model or the truth has it.
   std::optional<Drive> drive;  ///< None: bends are moved as their own rates allow.
-  std::optional<ArmRod> rod;   ///< Of an arm whose model is static. None: its sections are arcs.
+  std::optional<ArmRod> rod;   ///< Of an arm whose model is static or dynamic. None: its sections are arcs.
 };
 
 /// The document with its table [truth] laid upon the rest: the simulated world as the file describes it, to

@@ -12,29 +12,11 @@
 #include "flexura/mechanics/arm_rod.h"
 #include "flexura/sim/simulated_rig.h"
 #include "flexura/sim/tendon_pull.h"
+#include "tests/support/elastic_rigs.h"
 #include "tests/support/rigs.h"
 
 namespace flexura {
 namespace {
-
-// The rig of two sections as a thin steel rod, its world's -Y downwards; light: without weight.
-RigConfig elastic_rig(double gravity = 0) {
-  RigConfig rig = two_section_rig();
-  for (Section& section : rig.arm.section) {
-    MaterialConfig& material = section.material.emplace();
-    material.youngs_modulus = 54e9, material.density = 6500, material.radius = {7e-4, 7e-4};
-  }
-  rig.arm.mechanics = ArmMechanics::statics;
-  rig.arm.gravity = {gravity, 0, 0};
-  for (TendonConfig& tendon : rig.drive->tendon) tendon.radius = 0.01;
-  return rig;
-}
-
-ArmState bent() {
-  ArmState state = ArmState::straight(2);
-  state.bends = {{0.5, 0.2}, {-0.3, 0.4}};
-  return state;
-}
 
 StaticPlant& plant_of(SimulatedRig& rig) { return dynamic_cast<StaticPlant&>(rig.arm().plant()); }
 
@@ -44,7 +26,7 @@ TEST(StaticPlant, WithoutWeightIsTheArcsThatAreBelieved) {
   RigConfig config = elastic_rig();
   config.drive->spool.backlash = 0;
   SimulatedRig rig(config, config, numbers_renderer, 1);
-  ASSERT_TRUE(rig.ports().arm->command(bent(), 0));
+  ASSERT_TRUE(rig.ports().arm->command(bent_state(), 0));
   rig.clock().wait_until(8);
   const ArmState read = rig.ports().arm->read().value().state;
   EXPECT_NEAR(read.bends[0].x(), 0.5, 1e-3);
@@ -56,7 +38,7 @@ TEST(StaticPlant, WithoutWeightIsTheArcsThatAreBelieved) {
 TEST(StaticPlant, SagsUnderItsWeightWhereThePortSaysThatItDoesNot) {
   const RigConfig believed = elastic_rig(), heavy = elastic_rig(9.81);
   SimulatedRig rig(believed, heavy, numbers_renderer, 1);
-  ASSERT_TRUE(rig.ports().arm->command(bent(), 0));
+  ASSERT_TRUE(rig.ports().arm->command(bent_state(), 0));
   rig.clock().wait_until(8);
   const Backbone arcs = ArmModel(believed.arm.arm()).backbone(rig.ports().arm->read().value().state);
   const Eigen::Vector3d sag = rig.arm().backbone(8).tip().position - arcs.tip().position;
@@ -70,7 +52,7 @@ TEST(StaticPlant, SagsUnderItsWeightWhereThePortSaysThatItDoesNot) {
 TEST(StaticPlant, AnswersTheSameHoweverItIsAsked) {
   const RigConfig config = elastic_rig(9.81);
   SimulatedRig slow(config, config, numbers_renderer, 1), quick(config, config, numbers_renderer, 1);
-  for (SimulatedRig* rig : {&slow, &quick}) ASSERT_TRUE(rig->ports().arm->command(bent(), 0));
+  for (SimulatedRig* rig : {&slow, &quick}) ASSERT_TRUE(rig->ports().arm->command(bent_state(), 0));
   for (int i = 1; i <= 100; ++i) {
     slow.clock().wait_until(0.011 * i);
     (void)slow.arm().backbone(0.011 * i);
@@ -100,9 +82,9 @@ TEST(StaticPlant, WithoutADriveIsPulledAsArcsWouldBe) {
   }
   config.drive.reset();
   SimulatedRig rig(config, config, numbers_renderer, 1);
-  ASSERT_TRUE(rig.ports().arm->command(bent(), 0));
+  ASSERT_TRUE(rig.ports().arm->command(bent_state(), 0));
   rig.clock().wait_until(8);
-  const Backbone believed = ArmModel(config.arm.arm()).backbone(bent()), truth = rig.arm().backbone(8);
+  const Backbone believed = ArmModel(config.arm.arm()).backbone(bent_state()), truth = rig.arm().backbone(8);
   EXPECT_LE((believed.tip().position - truth.tip().position).norm(), 1e-3);
 }
 
@@ -127,7 +109,7 @@ TEST(StaticPlant, LosesStepsUnderMoreThanThePullOutTorque) {
   weak.drive->motor.pull_out = {{{0, most * 0.01}, {100, 0.5 * most * 0.01}}};
   SimulatedRig strong(config, config, numbers_renderer, 1), rig(config, weak, numbers_renderer, 1);
   for (SimulatedRig* one : {&strong, &rig}) {
-    ASSERT_TRUE(one->ports().arm->command(bent(), 0));
+    ASSERT_TRUE(one->ports().arm->command(bent_state(), 0));
     one->clock().wait_until(8);
   }
   const std::vector<double> tensions = plant_of(strong).tensions(8), held = plant_of(rig).tensions(8),
@@ -170,7 +152,7 @@ TEST(StaticPlant, PullsTendonsWhateverBendsWereCommanded) {
   RigConfig config = free_rig();
   for (Section& section : config.arm.section) section.max_bend_rate = 1;
   SimulatedRig rig(config, config, numbers_renderer, 1);
-  ASSERT_TRUE(rig.ports().arm->command(bent(), 0));
+  ASSERT_TRUE(rig.ports().arm->command(bent_state(), 0));
   rig.clock().wait_until(2);
   const std::vector<double> wanted = {0.004, -0.001, -0.002, 0.001, 0.0005, 0.002};
   ASSERT_TRUE(rig.arm().pull(wanted, 0.5));
@@ -184,9 +166,9 @@ TEST(StaticPlant, PullsTendonsWhateverBendsWereCommanded) {
   // What is believed are the nearest arcs, and bends take over again.
   const ArmState nearest = nearest_arcs(ArmSetup(config).rod->rod, config.arm.arm(), wanted);
   EXPECT_LT((rig.ports().arm->read().value().state.bends[0] - nearest.bends[0]).norm(), 1e-9);
-  ASSERT_TRUE(rig.ports().arm->command(bent(), 0));
+  ASSERT_TRUE(rig.ports().arm->command(bent_state(), 0));
   rig.clock().wait_until(8);
-  const std::vector<double> arcs = arc_displacements(ArmSetup(config).rod->rod, bent()).pulled;
+  const std::vector<double> arcs = arc_displacements(ArmSetup(config).rod->rod, bent_state()).pulled;
   expect_near(plant_of(rig).pulled(8), arcs, 1e-12);
 }
 
@@ -237,7 +219,7 @@ TEST(StaticPlant, IsWithoutWeightFromATimeOn) {
   const RigConfig heavy = free_rig(9.81), light = free_rig();
   SimulatedRig rig(heavy, heavy, numbers_renderer, 1), none(light, light, numbers_renderer, 1);
   for (SimulatedRig* one : {&rig, &none}) {
-    ASSERT_TRUE(one->ports().arm->command(bent(), 0));
+    ASSERT_TRUE(one->ports().arm->command(bent_state(), 0));
     one->clock().wait_until(8.013);
   }
   const auto tip = [](SimulatedRig& one, double time) { return one.arm().backbone(time).tip().position; };

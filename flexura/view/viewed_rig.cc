@@ -103,7 +103,7 @@ ViewedRig::ViewedRig(Experiment read)
       model(experiment.arm_model()),
       truth(experiment.true_rig().arm.model()),
       initial(ArmSetup(experiment.true_rig()).initial),
-      is_rod(experiment.true_rig().arm.mechanics == ArmMechanics::statics),
+      is_rod(experiment.true_rig().arm.mechanics != ArmMechanics::kinematic),
       obstacles(flexura::obstacles(experiment.obstacle)) {
   if (const ArmSetup setup(experiment.true_rig()); setup.rod) {
     actuators = pulled_tendons(setup);

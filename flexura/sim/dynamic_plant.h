@@ -1,0 +1,60 @@
+#pragma once
+
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "flexura/mechanics/dynamics.h"
+#include "flexura/mechanics/statics.h"
+#include "flexura/sim/rod_plant.h"
+
+namespace flexura {
+
+/// An arm that is an elastic rod in motion (docs/mechanics.md, "In time"): its tendons are pulled in, weight
+/// and loads pull at it, and it swings. It begins at rest, and is computed in steps of ArmRod::time_step from
+/// time 0 on, with commands as they are in each step; between two steps by a shorter one. So what it answers
+/// depends on time and commands alone. std::runtime_error: a step does not converge, however short.
+class DynamicPlant : public RodPlant {
+ public:
+  /// Errors as RodInputs and RodDynamics. std::invalid_argument: the arm comes to no rest to begin with.
+  explicit DynamicPlant(const PlantSetup& setup);
+  ~DynamicPlant() override;
+
+  void advance(double time) override;
+  [[nodiscard]] Backbone backbone(double time) const override;
+  [[nodiscard]] std::vector<double> tensions(double time) const override;
+  [[nodiscard]] std::vector<double> lost_steps(double time) const override { return snapshot(time).lost; }
+  [[nodiscard]] std::optional<RodEnergy> energy(double time) const override;
+
+ protected:
+  void forget() override;
+
+ private:
+  struct Snapshot {
+    long index = 0;  // Of steps.
+    RodState state;
+    std::vector<double> lost;  // Microsteps of each axis, since the start.
+  };
+  // The last one at or before a time.
+  [[nodiscard]] const Snapshot& snapshot(double time) const;
+  [[nodiscard]] double time_of(long index) const { return static_cast<double>(index) * step_; }
+  // With mutex_ held.
+  void go_on(RodState& state, double from, double h, const std::vector<double>& lost, int halvings) const;
+  // How the rod moves at a time.
+  [[nodiscard]] RodState state_at(double time) const;
+
+  double step_, horizon_;
+  std::vector<Snapshot> snapshots_;  // back to the horizon
+  // Asked by several threads; what they get depends on none of what was computed before.
+  mutable std::mutex mutex_;
+  struct Answer {
+    double time = 0;
+    RodState state;
+  };
+  mutable std::optional<Answer> answer_;  // the last one; none after a change
+  mutable RodDynamics dynamics_;
+};
+
+}  // namespace flexura

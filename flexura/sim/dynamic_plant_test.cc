@@ -1,0 +1,115 @@
+#include "flexura/sim/dynamic_plant.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <stdexcept>
+#include <thread>
+#include <vector>
+
+#include "flexura/sim/simulated_rig.h"
+#include "flexura/sim/static_plant.h"
+#include "tests/support/elastic_rigs.h"
+
+namespace flexura {
+namespace {
+
+RigConfig moving_rig(double gravity, double damping_time = 0.02) {
+  RigConfig rig = elastic_rig(gravity);
+  rig.arm.mechanics = ArmMechanics::dynamics;
+  for (Section& section : rig.arm.section) section.material->damping_time = damping_time;
+  return rig;
+}
+
+DynamicPlant& moving_plant(SimulatedRig& rig) { return dynamic_cast<DynamicPlant&>(rig.arm().plant()); }
+
+Eigen::Vector3d moving_tip(SimulatedRig& rig, double time) { return rig.arm().backbone(time).tip().position; }
+
+TEST(DynamicPlant, StaysWhereItIsAtRest) {
+  const RigConfig config = moving_rig(9.81), still = elastic_rig(9.81);
+  SimulatedRig rig(config, config, numbers_renderer, 1), witness(still, still, numbers_renderer, 1);
+  const Eigen::Vector3d rest = moving_tip(witness, 0);
+  EXPECT_LE((moving_tip(rig, 0) - rest).norm(), 1e-9);
+  rig.clock().wait_until(0.5);
+  EXPECT_LE((moving_tip(rig, 0.5) - rest).norm(), 1e-8);
+  EXPECT_LE(moving_plant(rig).energy(0.5).value().kinetic, 1e-12);
+}
+
+TEST(DynamicPlant, SwingsAndSettlesWhereTheArmIsAtRest) {
+  const RigConfig config = moving_rig(9.81), still = elastic_rig(9.81);
+  SimulatedRig rig(config, config, numbers_renderer, 1), witness(still, still, numbers_renderer, 1);
+  for (SimulatedRig* each : {&rig, &witness}) {
+    ASSERT_TRUE(each->ports().arm->command(bent_state(), 0));
+    each->clock().wait_until(12);
+  }
+  EXPECT_LE((moving_tip(rig, 12) - moving_tip(witness, 12)).norm(), 1e-4);
+  EXPECT_EQ(moving_plant(rig).tensions(12).size(), 6U);
+}
+
+// Without damping it swings on after the weight is taken away, with all of its energy.
+TEST(DynamicPlant, KeepsItsEnergyWhereNothingTakesIt) {
+  RigConfig config = moving_rig(9.81, 0);
+  config.arm.time_step = 0.001;
+  SimulatedRig rig(config, config, numbers_renderer, 1);
+  const Eigen::Vector3d start = moving_tip(rig, 0);
+  DynamicPlant& plant = moving_plant(rig);
+  ASSERT_TRUE(plant.weigh(0, false));
+  rig.clock().wait_until(0.3);
+  double farthest = 0, greatest = 0;
+  for (int i = 1; i <= 30; ++i) {
+    farthest = std::max(farthest, (moving_tip(rig, 0.01 * i) - start).norm());
+    greatest = std::max(greatest, plant.energy(0.01 * i).value().kinetic);
+  }
+  EXPECT_GT(farthest, 2e-3);
+  EXPECT_GT(greatest, 0);
+}
+
+// What it answers does not depend on who asked before, nor on how the rig's time passed.
+TEST(DynamicPlant, AnswersTheSameHoweverItIsAsked) {
+  const RigConfig config = moving_rig(9.81);
+  SimulatedRig slow(config, config, numbers_renderer, 1), quick(config, config, numbers_renderer, 1);
+  for (SimulatedRig* rig : {&slow, &quick}) ASSERT_TRUE(rig->ports().arm->command(bent_state(), 0));
+  for (int i = 1; i <= 100; ++i) {
+    slow.clock().wait_until(0.011 * i);
+    (void)slow.arm().backbone(0.011 * i);
+  }
+  quick.clock().wait_until(1.1);
+  const double time = 1.0933;
+  const Eigen::Vector3d there = moving_tip(slow, time);
+  EXPECT_EQ(there, moving_tip(quick, time));
+  std::vector<Eigen::Vector3d> asked(4);
+  {
+    std::vector<std::jthread> threads;
+    for (std::size_t i = 0; i < 4; ++i)
+      threads.emplace_back([&, i] {
+        (void)moving_tip(quick, 1.0 + 0.02 * static_cast<double>(i));
+        asked[i] = moving_tip(quick, time);
+      });
+  }
+  for (const Eigen::Vector3d& same : asked) EXPECT_EQ(same, there);
+}
+
+// Half the step, a quarter of the error.
+TEST(DynamicPlant, ConvergesWithItsStep) {
+  const auto tip = [](double step) {
+    RigConfig config = moving_rig(9.81);
+    config.arm.time_step = step;
+    SimulatedRig rig(config, config, numbers_renderer, 1);
+    EXPECT_TRUE(rig.ports().arm->command(bent_state(), 0));
+    rig.clock().wait_until(0.4);
+    return moving_tip(rig, 0.4);
+  };
+  const Eigen::Vector3d fine = tip(0.0005);
+  const double coarse = (tip(0.008) - fine).norm(), half = (tip(0.004) - fine).norm();
+  EXPECT_LE(half, coarse / 2);
+  EXPECT_LE(half, 1e-3);
+}
+
+TEST(DynamicPlant, RefusesToBeginWhereThereIsNoRest) {
+  RigConfig config = moving_rig(9.81);
+  config.arm.load.push_back({.section = 2, .force = {0, -1e9, 0}, .following = true});
+  EXPECT_THROW(SimulatedRig(config, config, numbers_renderer, 1), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace flexura

@@ -19,6 +19,25 @@ namespace {
 // The log has every state; the report draws no more than this, and a long run should not fill the memory.
 constexpr std::size_t max_kept_states = 10000;
 
+LineChart energy_chart(const std::vector<double>& times, const std::vector<RodEnergy>& energies) {
+  LineChart chart{.heading = "energy of the true arm",
+                  .x_label = "t (s)",
+                  .value_label = "energy (J)",
+                  .least = 1e-6,
+                  .x = times,
+                  .legend = "of"};
+  ChartSeries kinetic{.name = "motion"}, strain{.name = "strain"}, gravity{.name = "weight"},
+      total{.name = "all"};
+  for (const RodEnergy& energy : energies) {
+    kinetic.values.push_back(energy.kinetic);
+    strain.values.push_back(energy.strain);
+    gravity.values.push_back(energy.gravity);
+    total.values.push_back(energy.total());
+  }
+  chart.series = {std::move(kinetic), std::move(strain), std::move(gravity), std::move(total)};
+  return chart;
+}
+
 }  // namespace
 
 std::optional<Chapter> RodRecord::chapter(const Arm& arm, const Backbone& commanded) const {
@@ -41,16 +60,20 @@ std::optional<Chapter> RodRecord::chapter(const Arm& arm, const Backbone& comman
                 .x = times};
   ChartSeries& distance = tip.series.emplace_back();
   for (const double metres : off) distance.values.push_back(1000 * metres);
-  return Chapter{
+  const bool is_moving = !energies.empty();
+  Chapter chapter{
       .heading = "The true arm",
       .text =
-          "The simulated arm is an elastic rod, at rest under its tendons, its weight and its loads. "
-          "The pictures above show the arm as it was commanded.",
+          fmt::format("The simulated arm is an elastic rod, {} under its tendons, its weight and its loads. "
+                      "The pictures above show the arm as it was commanded.",
+                      is_moving ? "in motion" : "at rest"),
       .figures = {{"true-arm", two_shapes_picture(arm, *last, commanded,
-                                                  "the true arm at the end, and as commanded (line)")},
-                  {"tensions", std::move(pulls)},
-                  {"tip-off", std::move(tip)}},
+                                                  "the true arm at the end, and as commanded (line)")}},
       .is_first_tall = false};
+  if (!pulls.series.empty()) chapter.figures.push_back({"tensions", std::move(pulls)});
+  chapter.figures.push_back({"tip-off", std::move(tip)});
+  if (is_moving) chapter.figures.push_back({"energy", energy_chart(times, energies)});
+  return chapter;
 }
 
 Witness::Witness(const std::filesystem::path& folder, const ArmModel& model, RunWatcher* watcher)
@@ -82,6 +105,32 @@ void Witness::state(std::size_t step, double time, const ArmState& state) {
   states_.push_back(state);
 }
 
+// What a rod has beside its shape.
+void Witness::rod_readings(RigTruth& truth, double now, const Backbone& backbone) {
+  std::vector<double> tensions = truth.tensions(now);
+  const std::optional<RodEnergy> energy = truth.energy(now);
+  if (tensions.empty() && !energy) return;
+  Recorder& recorder = log_.recorder();
+  const std::vector<double> lost = truth.lost_steps(now);
+  if (!tensions.empty()) {
+    TensionsMessage message{now, tensions, {}};
+    if (!lost.empty()) message.lost_steps = lost;
+    recorder.write({arm_tensions_topic, now, message});
+  }
+  if (energy) {
+    const EnergyMessage message{now, energy->kinetic, energy->strain, energy->gravity};
+    recorder.write({arm_energy_topic, now, message});
+  }
+  tell_lost_steps(now, lost);
+  if (readings_++ % kept_every_ == 0) {
+    rod_.times.push_back(now);
+    rod_.off.push_back((backbone.tip().position - commanded_tip_).norm());
+    rod_.tensions.push_back(std::move(tensions));
+    if (energy) rod_.energies.push_back(*energy);
+  }
+  rod_.last = backbone;
+}
+
 void Witness::readings(Rig& rig) {
   // While a task waits for the rig, several steps of the clock are recorded at one time of the rig's.
   // Times that the log cannot tell apart are one.
@@ -93,19 +142,7 @@ void Witness::readings(Rig& rig) {
   if (RigTruth* truth = rig.truth()) {
     const Backbone backbone = truth->backbone(now);
     recorder.truth(now, backbone);
-    if (std::vector<double> tensions = truth->tensions(now); !tensions.empty()) {
-      const std::vector<double> lost = truth->lost_steps(now);
-      TensionsMessage message{now, tensions, {}};
-      if (!lost.empty()) message.lost_steps = lost;
-      recorder.write({arm_tensions_topic, now, message});
-      tell_lost_steps(now, lost);
-      if (readings_++ % kept_every_ == 0) {
-        rod_.times.push_back(now);
-        rod_.off.push_back((backbone.tip().position - commanded_tip_).norm());
-        rod_.tensions.push_back(std::move(tensions));
-      }
-      rod_.last = backbone;
-    }
+    rod_readings(*truth, now, backbone);
   }
   recorder.reading(ports.arm->read().value());
   for (const CameraPorts& camera : ports.cameras) {

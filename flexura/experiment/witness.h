@@ -22,6 +22,7 @@ struct RodRecord {
   std::vector<double> times;                  ///< s
   std::vector<std::vector<double>> tensions;  ///< N, one list a time.
   std::vector<double> off;                    ///< How far its tip is from the commanded one, m.
+  std::vector<RodEnergy> energies;            ///< Of a rod in motion, one a time; of others none.
   std::optional<Backbone> last;               ///< As it is at the last of these times.
 
   /// None of an arm that is no rod; with `commanded`, how `arm` was to stand at last.
@@ -57,6 +58,7 @@ class Witness {
                                        const SafetyReport& safety) &&;
 
  private:
+  void rod_readings(RigTruth& truth, double now, const Backbone& backbone);
   // What motors have lost since the last time.
   void tell_lost_steps(double time, const std::vector<double>& lost);
 

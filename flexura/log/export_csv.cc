@@ -158,6 +158,28 @@ class TensionsTable : public LogTable {
   std::optional<std::size_t> tendons_;
 };
 
+// /arm/energy: of the true arm in motion.
+class EnergyTable : public LogTable {
+ public:
+  [[nodiscard]] std::string file_name() const override { return "energy.csv"; }
+  [[nodiscard]] bool takes(std::string_view topic) const override { return topic == arm_energy_topic; }
+  void add(std::string_view /*topic*/, double time, const Node& message) override {
+    const auto energy = read_as<EnergyMessage>(message);
+    if (!has_head_) {
+      for (const char* title : {"time", "kinetic", "strain", "gravity"}) csv_.cell(std::string_view(title));
+      csv_.end_row();
+      has_head_ = true;
+    }
+    for (const double value : {time, energy.kinetic, energy.strain, energy.gravity}) csv_.cell(value);
+    csv_.end_row();
+  }
+  [[nodiscard]] std::string text() const override { return csv_.text(); }
+
+ private:
+  CsvText csv_;
+  bool has_head_ = false;
+};
+
 class EventsTable : public LogTable {
  public:
   EventsTable() {
@@ -198,6 +220,7 @@ ExportResult export_csv(const std::filesystem::path& results, LogTables more) {
   tables.push_back(std::make_unique<StatesTable>());
   tables.push_back(std::make_unique<TruthTable>());
   tables.push_back(std::make_unique<TensionsTable>());
+  tables.push_back(std::make_unique<EnergyTable>());
   tables.push_back(std::make_unique<EventsTable>());
   std::ranges::move(more, std::back_inserter(tables));
   from_log([&] { fill(tables, log, (results / log_file_name).string()); });

@@ -111,6 +111,17 @@ const Table<TensionsMessage>& fields_of(const TensionsMessage*) {
   return table;
 }
 
+const Table<EnergyMessage>& fields_of(const EnergyMessage*) {
+  static const auto table =
+      Table<EnergyMessage>("flexura.Energy", "The energy of the true arm in motion.")
+          .field("time", &EnergyMessage::time, {.meaning = "Time since the experiment's start, s."})
+          .field("kinetic", &EnergyMessage::kinetic, {.meaning = "Of its motion, J."})
+          .field("strain", &EnergyMessage::strain, {.meaning = "Of its strains, J."})
+          .field("gravity", &EnergyMessage::gravity,
+                 {.meaning = "Of its weight, J; 0 at the height of the arm's base."});
+  return table;
+}
+
 const Table<HeadReadingMessage>& fields_of(const HeadReadingMessage*) {
   static const auto table =
       Table<HeadReadingMessage>("flexura.HeadReading", "Where a camera's head says that it stands.")

@@ -95,6 +95,14 @@ struct TensionsMessage {
   std::optional<std::vector<double>> lost_steps;
 };
 
+/// flexura.Energy, on /arm/energy beside the true arm, where that is an elastic rod in motion.
+struct EnergyMessage {
+  double time = 0;     ///< s
+  double kinetic = 0;  ///< J
+  double strain = 0;   ///< J
+  double gravity = 0;  ///< Of its weight and of loads along it, J; 0 at the height of the arm's base.
+};
+
 /// flexura.HeadReading, on /head/NAME where a run plays the rig: where a camera's head says that it stands.
 struct HeadReadingMessage {
   double time = 0;           ///< s
@@ -129,6 +137,7 @@ inline constexpr std::string_view arm_state_topic = "/arm/state";
 inline constexpr std::string_view arm_poses_topic = "/arm/poses";
 inline constexpr std::string_view arm_truth_topic = "/arm/truth";
 inline constexpr std::string_view arm_tensions_topic = "/arm/tensions";
+inline constexpr std::string_view arm_energy_topic = "/arm/energy";
 inline constexpr std::string_view arm_reading_topic = "/arm/reading";
 inline constexpr std::string_view drive_commands_topic = "/drive/commands";
 inline constexpr std::string_view events_topic = "/events";
@@ -143,6 +152,7 @@ const Table<EventMessage>& fields_of(const EventMessage*);
 const Table<DriveCommandsMessage>& fields_of(const DriveCommandsMessage*);
 const Table<ArmReadingMessage>& fields_of(const ArmReadingMessage*);
 const Table<TensionsMessage>& fields_of(const TensionsMessage*);
+const Table<EnergyMessage>& fields_of(const EnergyMessage*);
 const Table<HeadReadingMessage>& fields_of(const HeadReadingMessage*);
 const Table<StageReadingMessage>& fields_of(const StageReadingMessage*);
 const Table<ImageMessage>& fields_of(const ImageMessage*);

@@ -13,9 +13,9 @@ namespace flexura {
 namespace {
 
 // Of tendons that are said to give nothing: of what the rod gives (RodStatics).
-constexpr double stiff_tendon_part = 1e-8;
+constexpr double stiff_part = 1e-8;
 
-bool are_finite(const std::vector<double>& values) {
+bool all_finite(const std::vector<double>& values) {
   return std::ranges::all_of(values, [](double value) { return std::isfinite(value); });
 }
 
@@ -102,7 +102,7 @@ RodDynamics::Work::Work(Rod rod, const RodDynamicsConfig& given, std::span<const
     chain.solve(answers_);
     give = (chain.length_slopes().transpose() * answers_).diagonal().cwiseAbs().maxCoeff();
   }
-  const double least = give > 0 ? stiff_tendon_part * give : stiff_tendon_part * chain.rod().length();
+  const double least = give > 0 ? stiff_part * give : stiff_part * chain.rod().length();
   for (const TendonRoute& tendon : chain.rod().tendons)
     compliance.push_back(std::max(tendon.compliance, least));
 }
@@ -115,7 +115,7 @@ std::string RodDynamics::Work::input_problem(const TendonInput& tendons, const R
     if (list.empty()) return "";
     if (list.size() != count)
       return fmt::format("{} {} given: expected {}, one a tendon", list.size(), name, count);
-    return are_finite(list) ? "" : fmt::format("{} that are not finite", name);
+    return all_finite(list) ? "" : fmt::format("{} that are not finite", name);
   };
   std::string problem = list_problem("tensions", tendons.tensions);
   if (problem.empty()) problem = list_problem("displacements", tendons.displacements);

@@ -47,6 +47,9 @@ class Filming : public Rig, private RigTruth {
     return rig_.arm().plant().tensions(time);
   }
   [[nodiscard]] std::vector<double> pulled(double time) override { return rig_.arm().plant().pulled(time); }
+  [[nodiscard]] std::optional<RodEnergy> energy(double time) override {
+    return rig_.arm().plant().energy(time);
+  }
   [[nodiscard]] std::vector<double> lost_steps(double time) override {
     return rig_.arm().plant().lost_steps(time);
   }

@@ -3,11 +3,13 @@
 #include <cstddef>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "flexura/camera/camera.h"
 #include "flexura/log/run_watcher.h"
+#include "flexura/mechanics/dynamics.h"
 #include "flexura/model/backbone.h"
 #include "flexura/port/camera_port.h"
 #include "flexura/port/rig_model.h"
@@ -39,6 +41,8 @@ class RigTruth {
   [[nodiscard]] virtual std::vector<double> tensions(double /*time*/) { return {}; }
   /// How far its drives had each tendon pulled in then, m; empty: not known.
   [[nodiscard]] virtual std::vector<double> pulled(double /*time*/) { return {}; }
+  /// Of its motion, its strains and its weight then; none: it has no inertia, or nobody knows.
+  [[nodiscard]] virtual std::optional<RodEnergy> energy(double /*time*/) { return std::nullopt; }
   /// How many microsteps each motor had lost by then, unknown to its controller; empty: none ever.
   [[nodiscard]] virtual std::vector<double> lost_steps(double /*time*/) { return {}; }
 };

@@ -30,12 +30,20 @@ class Variables {
     const Place& place = places_[static_cast<std::size_t>(k)];
     return place.section == section && place.part < 2;
   }
-  static double& at(ArmState& state, std::size_t section, int part) {
-    return part < 2 ? state.bends[section][part] : state.stretches[section];
-  }
   double& at(ArmState& state, Eigen::Index k) const {
     const Place& place = places_[static_cast<std::size_t>(k)];
-    return at(state, place.section, place.part);
+    return place.part < 2 ? state.bends[place.section][place.part] : state.stretches[place.section];
+  }
+  // Of each, so that tendons are pulled in about as far by one unit of any.
+  [[nodiscard]] Eigen::VectorXd units(const Rod& rod, const Arm& arm) const {
+    double radius = 0;
+    for (const TendonRoute& tendon : rod.tendons) radius = std::max(radius, tendon.at(0).value.norm());
+    Eigen::VectorXd units = Eigen::VectorXd::Ones(count());
+    for (Eigen::Index k = 0; k < count(); ++k) {
+      const Place& place = places_[static_cast<std::size_t>(k)];
+      if (place.part == 2 && radius > 0) units[k] = radius / arm.sections[place.section].length;
+    }
+    return units;
   }
 
  private:
@@ -87,6 +95,17 @@ std::array<double, 2> range_by_bends(const TendonRoute& tendon, const Arm& arm) 
   return range;
 }
 
+// The least step that meets `wanted` best, but for ways of which it says next to nothing.
+Eigen::VectorXd least_step(const Eigen::MatrixXd& J, const Eigen::VectorXd& wanted) {
+  constexpr double next_to_nothing = 0.01;
+  const SymmetricEigen normal = symmetric_eigen(J.transpose() * J);
+  const double least = next_to_nothing * next_to_nothing * normal.values[normal.values.size() - 1];
+  Eigen::VectorXd along = normal.vectors.transpose() * (J.transpose() * wanted);
+  for (Eigen::Index i = 0; i < along.size(); ++i)
+    along[i] = normal.values[i] > least ? along[i] / normal.values[i] : 0;
+  return normal.vectors * along;
+}
+
 }  // namespace
 
 ArmState nearest_arcs(const Rod& rod, const Arm& arm, const std::vector<double>& displacements) {
@@ -99,15 +118,11 @@ ArmState nearest_arcs(const Rod& rod, const Arm& arm, const std::vector<double>&
   const Eigen::Map<const Eigen::VectorXd> wanted(displacements.data(),
                                                  static_cast<Eigen::Index>(displacements.size()));
   const Variables variables(arm);
+  const Eigen::VectorXd units = variables.units(rod, arm);
   ArmState state = ArmState::straight(arm.sections.size());
   for (int turn = 0; turn < most_steps; ++turn) {
-    const Eigen::MatrixXd J = slopes(rod, state, variables);
-    Eigen::MatrixXd normal = J.transpose() * J;
-    // So little that it only decides where the tendons do not.
-    const double damping = 1e-9 * normal.trace() / static_cast<double>(normal.rows());
-    if (!(damping > 0)) break;
-    normal.diagonal().array() += damping;
-    const Eigen::VectorXd change = Cholesky(normal).solve(J.transpose() * (wanted - pulled_by(rod, state)));
+    const Eigen::MatrixXd J = slopes(rod, state, variables) * units.asDiagonal();
+    const Eigen::VectorXd change = units.cwiseProduct(least_step(J, wanted - pulled_by(rod, state)));
     if (!change.allFinite()) break;
     for (Eigen::Index k = 0; k < variables.count(); ++k) variables.at(state, k) += change[k];
     if (change.cwiseAbs().maxCoeff() < rounding) break;

@@ -12,8 +12,9 @@
 namespace flexura {
 
 /// The bends, and the stretch of sections whose limits let them stretch, of which arc_displacements() come
-/// nearest to these, by least squares; where they do not determine it, the least step from straight. It is
-/// drawn to no limits. std::invalid_argument: not one finite displacement a tendon.
+/// nearest to these, by least squares; of what they determine not at all, or a hundred times less well than
+/// the rest, the least step from straight. It is drawn to no limits. std::invalid_argument: not one finite
+/// displacement a tendon.
 [[nodiscard]] ArmState nearest_arcs(const Rod& rod, const Arm& arm, const std::vector<double>& displacements);
 
 /// A tendon that can be pulled in by itself.

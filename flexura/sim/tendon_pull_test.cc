@@ -76,6 +76,32 @@ TEST(NearestArcs, StayStraightWhereTendonsDoNotSay) {
   EXPECT_LT(found.bends[1].norm(), 1e-9);
 }
 
+// Half around the arm a tendon says next to nothing of bends across its middle.
+TEST(NearestArcs, OfAHelicalTendonStayInItsPlane) {
+  RigConfig config = config_of();
+  config.arm.section.resize(1);
+  config.arm.tendon = {{.section = 1, .radius = radius, .turns = 0.5}};
+  const ArmSetup setup(config);
+  for (const double pulled : {-0.01, 0.005, 0.03}) {
+    const ArmState found = nearest_arcs(setup.rod->rod, setup.arm, {pulled});
+    EXPECT_NEAR(found.bends[0].x(), 0, 1e-6);
+    EXPECT_NEAR(arc_displacements(setup.rod->rod, found).pulled[0], pulled, 1e-9);
+  }
+}
+
+TEST(NearestArcs, StretchWhatMayStretch) {
+  RigConfig config = config_of();
+  config.arm.section[1].stretch_limits = {0.9, 1.1};
+  const ArmSetup setup(config);
+  const ArmState state{{{0.3, -0.4}, {0.2, 0.7}}, {1, 1.02}};
+  const ArmState found =
+      nearest_arcs(setup.rod->rod, setup.arm, arc_displacements(setup.rod->rod, state).pulled);
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_LT((found.bends[i] - state.bends[i]).norm(), 1e-8);
+    EXPECT_NEAR(found.stretches[i], state.stretches[i], 1e-8);
+  }
+}
+
 TEST(NearestArcs, RefuseWhatAreNoDisplacements) {
   const ArmSetup setup(config_of());
   const double none = std::numeric_limits<double>::quiet_NaN();

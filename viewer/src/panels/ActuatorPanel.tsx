@@ -55,7 +55,9 @@ function Pull({ name, state: { force, slack, lost }, scale }: { name: string; st
   const text = slack ? 'slack' : force_text(force);
   return (
     <div class="pull" data-slack={slack} title={`${name}: ${slack ? 'hangs slack' : `pulls by ${text}; the bar ends at ${scale} N`}`}>
-      {lost > 0 && <span class="lost" title="Its motor had to pull by more than it can, and lost microsteps, which its controller does not know">lost {Math.round(lost)} steps</span>}
+      <span class="lost" title="Its motor had to pull by more than it can, and lost microsteps, of which its controller does not know">
+        {lost > 0 && <>lost {Math.round(lost)}<span class="sr"> microsteps</span></>}
+      </span>
       <span class="bar" aria-hidden="true"><span style={{ width: `${Math.min(100, (100 * force) / scale)}%` }} /></span>
       <span class="force">{text}</span>
     </div>

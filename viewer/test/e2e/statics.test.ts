@@ -2,12 +2,23 @@
 import { fileURLToPath } from 'node:url';
 import { describe, expect, test } from 'vitest';
 import { server_state, slide, until } from './browser';
-import { opened_before, started } from './opened';
+import { faked, opened_before, started, visit } from './opened';
 import { program } from './program';
 
 const example = (name: string): string => fileURLToPath(new URL(`../../../examples/${name}/experiment.toml`, import.meta.url));
 
 const distance = (a: number[], b: number[]): number => Math.hypot(...a.map((x, i) => x - b[i]));
+
+test('what nobody asked for is told at once', async () => {
+  const server = await faked();
+  const { page } = await visit(server.url);
+  await page.waitForSelector('.badge[data-kind="live"]');
+  server.tell_all({ type: 'event', time: 1, level: 'info', name: 'reach', text: 'of the log alone' });
+  server.tell_all({ type: 'event', time: 1, level: 'warning', name: 'statics', text: 'the arm snaps', notice: true });
+  await page.waitForSelector('.notice');
+  expect(await page.locator('.notice').allTextContents()).toEqual(['The arm snaps']);
+  await server.stop();
+});
 
 describe.skipIf(!program)('an arm under its tendons', () => {
   const opened = opened_before(() => started(example('09_tendon_statics')), 'live');

@@ -6,7 +6,6 @@
 #include <filesystem>
 #include <span>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "flexura/experiment/experiment.h"
@@ -83,9 +82,9 @@ class SeesTheTruth : public RunWatcher {
  public:
   void state(double time, const ArmState&, std::span<const CameraReading>) override { time_ = time; }
   bool wants_truth() override { return wants_ = !wants_; }
-  void truth(double time, TrueArm arm) override {
+  void truth(double time, const TrueArm& arm) override {
     EXPECT_EQ(time, time_);
-    seen.push_back(std::move(arm));
+    seen.push_back(arm);
   }
   std::vector<TrueArm> seen;
 

@@ -41,7 +41,7 @@ class RunWatcher {
   /// Whether it wants to be told the truth at the next step: to find that out takes a while.
   [[nodiscard]] virtual bool wants_truth() { return false; }
   /// How the arm truly stands at a step of the clock, where that is known: after its state.
-  virtual void truth(double /*time*/, TrueArm /*arm*/) {}
+  virtual void truth(double /*time*/, const TrueArm& /*arm*/) {}
   /// An event of the log: at `time` s, "info", "warning" or "error", of whom, and what.
   virtual void happened(double /*time*/, const std::string& /*level*/, const std::string& /*name*/,
                         const std::string& /*text*/) {}

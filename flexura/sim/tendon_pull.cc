@@ -95,6 +95,19 @@ std::array<double, 2> range_by_bends(const TendonRoute& tendon, const Arm& arm) 
   return range;
 }
 
+std::vector<std::array<double, 3>> route_of(const TendonRoute& tendon, const Rod& rod) {
+  constexpr int pieces = 24;
+  double end = 0;
+  for (std::size_t i = 0; i <= tendon.section; ++i) end += rod.sections[i].length;
+  std::vector<std::array<double, 3>> route;
+  for (int i = 0; i <= pieces; ++i) {
+    const double s = end * i / pieces;
+    const Eigen::Vector3d offset = tendon.at(s).value;
+    route.push_back({s, offset.x(), offset.y()});
+  }
+  return route;
+}
+
 // The least step that meets `wanted` best, but for ways of which it says next to nothing.
 Eigen::VectorXd least_step(const Eigen::MatrixXd& J, const Eigen::VectorXd& wanted) {
   constexpr double next_to_nothing = 0.01;
@@ -138,7 +151,7 @@ std::vector<PulledTendon> pulled_tendons(const ArmSetup& setup) {
   std::vector<PulledTendon> tendons;
   for (std::size_t i = 0; i < rod.tendons.size(); ++i) {
     PulledTendon tendon{rod.tendons[i].section, range_by_bends(rod.tendons[i], setup.arm),
-                        std::vector<double>(rod.tendons.size(), 0.0)};
+                        std::vector<double>(rod.tendons.size(), 0.0), route_of(rod.tendons[i], rod)};
     if (setup.drive) {
       const Axis& axis = setup.drive->axes.at(i);
       const double most = axis.motor.max_position / axis.microsteps_a_metre();

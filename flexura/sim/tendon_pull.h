@@ -26,6 +26,9 @@ struct PulledTendon {
   /// How far each tendon goes for a metre of this one so that none pulls against it: 1 of itself. Of arcs
   /// that bend the section where it ends, from straight.
   std::vector<double> together;
+  /// Where it runs, from the base to its end: arc length of the rod at rest, and offset in the cross-section,
+  /// m.
+  std::vector<std::array<double, 3>> route;
 };
 
 /// Those of a rod; none of another arm.

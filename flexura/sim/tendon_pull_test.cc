@@ -163,6 +163,16 @@ TEST(PulledTendons, OfAPlaneGoAlongInIt) {
   EXPECT_EQ(tendons[2].together, (std::vector<double>{0, 0, 1}));
 }
 
+TEST(PulledTendons, SayWhereTheyRun) {
+  const auto tendons = pulled_tendons(ArmSetup(config_of()));
+  const auto& [s, x, y] = tendons[1].route.back();
+  EXPECT_NEAR(s, 0.2, 1e-12);
+  EXPECT_NEAR(x, -radius / 2, 1e-12);
+  EXPECT_NEAR(y, radius * std::sqrt(0.75), 1e-12);
+  EXPECT_EQ(tendons[5].route.front()[0], 0);
+  EXPECT_NEAR(tendons[5].route.back()[0], 0.4, 1e-12);
+}
+
 TEST(PulledTendons, AreNoneOfAnArmOfArcs) {
   RigConfig config = config_of();
   config.arm.mechanics = ArmMechanics::kinematic;

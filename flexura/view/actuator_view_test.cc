@@ -264,9 +264,9 @@ TEST(WatchedRod, OfATrueRunIsTold) {
   class WantsAll : public RunLink {
    public:
     bool wants_truth() override { return true; }
-    void truth(double time, TrueArm arm) override {
+    void truth(double time, const TrueArm& arm) override {
       times.push_back(time);
-      last = std::make_shared<const TrueArm>(std::move(arm));
+      last = std::make_shared<const TrueArm>(arm);
     }
     std::vector<double> times;
     std::shared_ptr<const TrueArm> last;

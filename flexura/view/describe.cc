@@ -58,6 +58,16 @@ Node disk_nodes(const LookConfig& look) {
   return {std::move(list), {}};
 }
 
+Node route_nodes(const ViewedRig& rig) {
+  Node::Array list;
+  for (const PulledTendon& tendon : rig.actuators) {
+    Node::Array route;
+    for (const auto& point : tendon.route) route.push_back(numbers(point));
+    list.push_back({std::move(route), {}});
+  }
+  return {std::move(list), {}};
+}
+
 Node arm_node(const ViewedRig& rig, bool is_visible) {
   const LookConfig look = rig.experiment.true_rig().arm.look;
   return {Node::Table{{"kind", {}, Codec<ArmKind>::write(rig.truth.driven().kind)},
@@ -68,6 +78,7 @@ Node arm_node(const ViewedRig& rig, bool is_visible) {
                       {"disks", {}, disk_nodes(look)},
                       {"disk_color", {}, numbers(look.disk_color)},
                       {"base", {}, flat_pose_node(rig.truth.driven().X_WB)},
+                      {"tendons", {}, route_nodes(rig)},
                       {"visible", {}, {is_visible, {}}}},
           {}};
 }

@@ -39,8 +39,8 @@ void RunLink::state(double time, const ArmState& state, std::span<const CameraRe
   news_.cameras.assign(cameras.begin(), cameras.end());
 }
 
-void RunLink::truth(double /*time*/, TrueArm arm) {
-  auto told = std::make_shared<const TrueArm>(std::move(arm));
+void RunLink::truth(double /*time*/, const TrueArm& arm) {
+  auto told = std::make_shared<const TrueArm>(arm);
   const std::lock_guard lock(mutex_);
   news_.truth = std::move(told);
 }

@@ -57,7 +57,7 @@ class RunLink : public Progress, public RunWatcher {
   void state(double time, const ArmState& state, std::span<const CameraReading> cameras) override;
 
   [[nodiscard]] bool wants_truth() override { return is_truth_wanted_.exchange(false); }
-  void truth(double time, TrueArm arm) override;
+  void truth(double time, const TrueArm& arm) override;
   void happened(double time, const std::string& level, const std::string& name,
                 const std::string& text) override;
   void logged(const LoggedMessage& message) override;

@@ -34,6 +34,8 @@ export interface SceneArm {
   disks: SceneDisk[];
   disk_color: Vector3;
   base: Pose;
+  /** The way of each actuator: s, x and y of the cross-section. */
+  tendons?: Vector3[][];
   visible: boolean;
 }
 

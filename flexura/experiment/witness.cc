@@ -26,15 +26,13 @@ LineChart energy_chart(const std::vector<double>& times, const std::vector<RodEn
                   .least = 1e-6,
                   .x = times,
                   .legend = "of"};
-  ChartSeries kinetic{.name = "motion"}, strain{.name = "strain"}, gravity{.name = "weight"},
-      total{.name = "all"};
+  for (const char* name : {"motion", "strain", "weight", "all"}) chart.series.emplace_back().name = name;
   for (const RodEnergy& energy : energies) {
-    kinetic.values.push_back(energy.kinetic);
-    strain.values.push_back(energy.strain);
-    gravity.values.push_back(energy.gravity);
-    total.values.push_back(energy.total());
+    chart.series[0].values.push_back(energy.kinetic);
+    chart.series[1].values.push_back(energy.strain);
+    chart.series[2].values.push_back(energy.gravity);
+    chart.series[3].values.push_back(energy.total());
   }
-  chart.series = {std::move(kinetic), std::move(strain), std::move(gravity), std::move(total)};
   return chart;
 }
 

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "flexura/mechanics/dynamics.h"
@@ -49,6 +50,8 @@ struct RodDynamics::Work {
   std::vector<double> rest_lengths, compliance;  // m, m/N
   std::vector<double> tensions;
   Eigen::VectorXd velocity;
+  /// Bodies of nodes that carry payloads, as they are without.
+  std::vector<std::pair<std::size_t, RodLayout::Body>> bare = {};
 
  private:
   struct Stage {

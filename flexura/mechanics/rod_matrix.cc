@@ -206,9 +206,13 @@ bool RodMatrix::factor(const RodMotion<double>& motion, const Factors& factors, 
     for (std::size_t k = section.intervals + 1; k-- > 0;) {
       const std::size_t node = section.first_node + k;
       Block H = block_of(layout_.bodies[node], motion.nodes()[node]);
-      if (is_surrounded) {
+      if (is_surrounded && !motion.pulls()[node].is_idle) {
         const NodePull& pull = motion.pulls()[node];
-        const Matrix6d more = factors.stiffness * pull.by_pose + factors.damping * pull.by_twist;
+        Matrix6d more;
+        if (pull.is_held)
+          more = -factors.stiffness * pull.stiffness - factors.damping * pull.damping;
+        else
+          more = factors.stiffness * pull.by_pose + factors.damping * pull.by_twist;
         for (std::size_t r = 0; r < 6; ++r)
           for (std::size_t c = 0; c < 6; ++c) {
             const auto row = static_cast<Eigen::Index>(r), column = static_cast<Eigen::Index>(c);

@@ -21,6 +21,23 @@ struct NodePull {
   Vector6d wrench = Vector6d::Zero();
   Matrix6d by_pose = Matrix6d::Zero();
   Matrix6d by_twist = Matrix6d::Zero();
+  /// Nothing pulls: all above is 0, and need not be read.
+  bool is_idle = false;
+  /// The symmetric parts of -by_pose and -by_twist may have negative eigenvalues (friction, geometry), with
+  /// which a step's matrix may have no factor. Where `is_held` it is made of these instead, which have none:
+  /// it then solves the step's equations in more iterations, and the solution is the same.
+  bool is_held = false;
+  Matrix6d stiffness = Matrix6d::Zero();
+  Matrix6d damping = Matrix6d::Zero();
+
+  /// Nothing pulls.
+  void clear() {
+    if (is_idle) return;
+    *this = NodePull{};
+    is_idle = true;
+  }
+  /// Both pull.
+  NodePull& operator+=(const NodePull& other);
 };
 
 /// What else pulls at a rod in motion, as it moves: contact, drag, springs.

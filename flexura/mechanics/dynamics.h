@@ -62,20 +62,20 @@ struct RodStep {
   [[nodiscard]] bool converged() const { return end == DynamicsEnd::converged; }
 };
 
-/// J
-struct RodEnergy {
-  double kinetic = 0, strain = 0;
-  double gravity = 0;  ///< Of weight and of the force along the rod; 0 at the height of the base.
-
-  [[nodiscard]] double total() const { return kinetic + strain + gravity; }
-};
-
 /// A point mass that a rod in motion picks up.
 struct RodPayload {
   RodPlace place = {};
   double mass = 0;                                     ///< kg; >= 0
   Eigen::Vector3d offset = Eigen::Vector3d::Zero();    ///< In the frame of the place, m.
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< Before, in the base's frame, m/s.
+};
+
+/// J
+struct RodEnergy {
+  double kinetic = 0, strain = 0;
+  double gravity = 0;  ///< Of weight and of the force along the rod; 0 at the height of the base.
+
+  [[nodiscard]] double total() const { return kinetic + strain + gravity; }
 };
 
 /// Derivatives of a rod's motion. Its equations are p = M(q) v and dp/dt = f(q, v) - G tensions, so that M

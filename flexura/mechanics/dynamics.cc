@@ -40,8 +40,8 @@ Pose pose(const Placement<double>& at) {
 void require_dynamics(const Rod& rod, const RodDynamicsConfig& config) {
   if (!(config.spectral_radius >= 0 && config.spectral_radius <= 1))
     throw std::invalid_argument("the spectral radius must be from 0 to 1");
-  if (!(config.tolerance > 0) || config.most_iterations < 1)
-    throw std::invalid_argument("the tolerance must be above 0, and iterations at least 1");
+  if (!(config.tolerance > 0) || config.most_iterations < 1 || config.most_pieces < 1)
+    throw std::invalid_argument("the tolerance must be above 0, iterations and pieces at least 1");
   for (std::size_t i = 0; i < rod.sections.size(); ++i) {
     const RodSection& section = rod.sections[i];
     if (!(section.mass_per_length_at(0) > 0) || !(section.mass_per_length_at(1) > 0))
@@ -80,7 +80,7 @@ RodDynamics::Work::Work(Rod rod, const RodDynamicsConfig& given, std::span<const
   require_dynamics(chain.rod(), config);
   const Eigen::Index n = chain.size();
   const auto count = static_cast<Eigen::Index>(chain.tendons());
-  for (Eigen::VectorXd* vector : {&velocity, &q_from_, &p_from_, &q_, &momentum_, &force_, &change_, &total_})
+  for (Eigen::VectorXd* vector : {&velocity, &q_from_, &p_from_, &q_, &momentum_, &force_, &change_, &left_})
     vector->setZero(n);
   length_slopes_.setZero(n, count);
   answers_.setZero(n, count);
@@ -89,6 +89,10 @@ RodDynamics::Work::Work(Rod rod, const RodDynamicsConfig& given, std::span<const
   for (Eigen::VectorXd* vector : {&lengths_, &wanted_, &found_, &pull_change_}) vector->setZero(count);
   taut_.resize(chain.tendons());
   tensions.resize(chain.tendons());
+
+  double mass = 0;
+  for (const RodLayout::Body& body : layout.bodies) mass += body.mass;
+  turning_inertia_ = mass * chain.rod().length() * chain.rod().length() / 3;
 
   chain.balance(velocity, tensions, {}, 0);
   rest_lengths.assign(chain.tendon_lengths().begin(), chain.tendon_lengths().end());
@@ -127,10 +131,14 @@ std::string RodDynamics::Work::input_problem(const TendonInput& tendons, const R
   return "";
 }
 
-void RodDynamics::Work::find_tensions(const std::vector<double>& displacements) {
+void RodDynamics::Work::set_tensions(const TendonInput& tendons) {
+  std::fill(tensions.begin(), tensions.end(), 0.0);
+  if (!tendons.tensions.empty())
+    std::copy(tendons.tensions.begin(), tendons.tensions.end(), tensions.begin());
+  if (tendons.displacements.empty()) return;
   motion.find_lengths(lengths_.data());
   for (std::size_t i = 0; i < tensions.size(); ++i) {
-    const double excess = lengths_[static_cast<Eigen::Index>(i)] - rest_lengths[i] + displacements[i];
+    const double excess = lengths_[static_cast<Eigen::Index>(i)] - rest_lengths[i] + tendons.displacements[i];
     tensions[i] = std::max(0.0, excess / compliance[i]);
   }
 }
@@ -184,11 +192,7 @@ RodState RodDynamics::start(const Eigen::VectorXd& q, const Eigen::VectorXd& v, 
   state.q = q;
   state.rate = v;
   work_->motion.place(q.data(), v.data());
-  work_->tensions.assign(work_->chain.tendons(), 0.0);
-  if (!tendons.displacements.empty())
-    work_->find_tensions(tendons.displacements);
-  else if (!tendons.tensions.empty())
-    work_->tensions = tendons.tensions;
+  work_->set_tensions(tendons);
   work_->motion.pull(loads, work_->tensions.data(), work_->surroundings);
   work_->motion.balance(state.momentum.data(), state.force.data());
   state.tensions = work_->tensions;
@@ -290,6 +294,24 @@ Eigen::MatrixXd RodDynamics::mass_matrix(const Eigen::VectorXd& q) {
   work_->motion.place(q.data(), work_->velocity.data());
   work_->matrix.find_columns(work_->motion);
   return work_->matrix.dense_mass(work_->motion);
+}
+
+Eigen::VectorXd RodDynamics::acceleration(const Eigen::VectorXd& q, const Eigen::VectorXd& v,
+                                          const TendonInput& tendons, const RodLoads& loads) {
+  const std::string problem = work_->input_problem(tendons, loads);
+  if (!problem.empty()) throw std::invalid_argument(problem);
+  if (q.size() != work_->chain.size() || v.size() != q.size())
+    throw std::invalid_argument("modes of another rod");
+  Eigen::VectorXd force(q.size());
+  work_->motion.place(q.data(), v.data());
+  work_->set_tensions(tendons);
+  work_->motion.pull(loads, work_->tensions.data(), work_->surroundings);
+  work_->motion.find_acceleration_forces(force.data());
+  work_->matrix.find_columns(work_->motion);
+  if (!work_->matrix.factor(work_->motion, {}, nullptr, false))
+    throw std::invalid_argument("a shape without a mass matrix");
+  work_->matrix.solve(force.data());
+  return force;
 }
 
 }  // namespace flexura

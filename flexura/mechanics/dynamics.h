@@ -17,13 +17,16 @@ namespace flexura {
 
 /// How a rod's motion is integrated.
 struct RodDynamicsConfig {
-  /// What is left after each step of what moves too fast for it, from 0 to 1; 1: numerical damping is none,
-  /// and the step is the implicit midpoint rule.
-  double spectral_radius = 0.8;
-  /// How exactly a step's equations are solved: of the rates of strain times a section's length, rad/s (bends
-  /// and twist) and 1/s.
+  /// What is left after each step of what moves too fast for it, from 0 to 1; 1: no numerical damping, the
+  /// step is the implicit midpoint rule. With much above 0.3, steps that are longer than the periods of a rod
+  /// without damping of its own may gain energy.
+  double spectral_radius = 0.3;
+  /// How exactly a step's equations are solved, rad/s: errors of the rates have at most the energy, stiffness
+  /// included, of the rod that turns so fast as a whole.
   double tolerance = 1e-7;
   int most_iterations = 30;
+  /// A step that does not converge is made in pieces, halves of halves; so many at most.
+  int most_pieces = 64;
   /// Whether cross-sections resist to turning. Without, a rod must not twist.
   bool rotary_inertia = true;
 };
@@ -58,6 +61,7 @@ struct RodStep {
   DynamicsEnd end = DynamicsEnd::converged;
   std::string problem = {};  ///< Of bad input, in words.
   int iterations = 0;        ///< Linear systems solved.
+  int pieces = 1;            ///< That the step was made in.
 
   [[nodiscard]] bool converged() const { return end == DynamicsEnd::converged; }
 };
@@ -78,29 +82,28 @@ struct RodEnergy {
   [[nodiscard]] double total() const { return kinetic + strain + gravity; }
 };
 
-/// Derivatives of a rod's motion. Its equations are p = M(q) v and dp/dt = f(q, v) - G tensions, so that M
-/// dv/dt = f - G tensions - (dp/dq) v. Of displacements the tensions follow from the shape: by_q then has
-/// their part.
+/// Derivatives of a rod's motion. Its equations are p = M(q) v and dp/dt = f(q, v, input); all are matrices
+/// with a row for each mode. The input are tensions, or displacements where those are given; columns of slack
+/// tendons are 0 then.
 struct RodDynamicsSlopes {
   Eigen::MatrixXd mass;           ///< M = dp/dv
   Eigen::MatrixXd momentum_by_q;  ///< dp/dq at constant v.
-  Eigen::MatrixXd force_by_q, force_by_v;
-  /// By each tension; of displacements, by each of those. Columns of slack tendons are 0.
-  Eigen::MatrixXd force_by_input;
+  Eigen::MatrixXd force_by_q, force_by_v, force_by_input;
 };
 
-/// The same of a motion that is written x' = A x + B u around a state, x = (q, p).
+/// Motion around a state: x' = A x + B u.
 struct RodLinear {
-  Eigen::MatrixXd A, B;
-  /// And what it is in (q, v) around a rod at rest: v = M^-1 p.
-  Eigen::MatrixXd A_rest, B_rest;
+  Eigen::MatrixXd A, B;            ///< Of x = (q, p).
+  Eigen::MatrixXd A_rest, B_rest;  ///< Of x = (q, v), which is so around a rod at rest.
+  /// Of the tip, 6 x modes: velocity of its origin and angular velocity by v, in the base's frame.
+  Eigen::MatrixXd tip_by_q;
+  Eigen::MatrixXd lengths_by_q;  ///< Of the tendons, tendons x modes.
 };
 
-/// Derivatives of a step: q and p after it by q, p, what the integrator remembers (rate, force) before it,
-/// and by the input.
+/// Derivatives of a step: of (q, p, rate, force) after it, all that the integrator remembers.
 struct RodStepSlopes {
-  Eigen::MatrixXd state;  ///< Of (q, p, rate, force) by the same.
-  Eigen::MatrixXd input;  ///< Of that by the input.
+  Eigen::MatrixXd by_state;  ///< By the same before it.
+  Eigen::MatrixXd by_input;
 };
 
 /// Rods in motion: Lagrange's equations in the strain modes of RodStatics, with the same nodes, so that what
@@ -169,6 +172,9 @@ class RodDynamics {
   [[nodiscard]] RodDynamicsSlopes slopes(const RodState& state, const TendonInput& tendons,
                                          const RodLoads& loads);
   [[nodiscard]] RodLinear linearize(const RodState& state, const TendonInput& tendons, const RodLoads& loads);
+  /// Of a step that is made in one piece. std::runtime_error: it does not converge.
+  [[nodiscard]] RodStepSlopes step_slopes(const RodState& state, const TendonInput& tendons,
+                                          const RodLoads& loads, double h);
 
   [[nodiscard]] const RodChain& chain() const;
 

@@ -88,128 +88,241 @@ bool RodDynamics::Work::pull_tight() {
   return false;
 }
 
-// change_ is the residual, with the tensions as they are. It becomes the step without tendons; then tensions
-// are found with which they are as long as they shall be, and it has those.
-bool RodDynamics::Work::solve_with_tendons(const TendonInput& tendons, double stretch) {
+// change_ is what is left at the stage, with the tensions as they are. It becomes the step without tendons;
+// then tensions are found with which they are as long as they shall be, and it has those.
+template <typename Solve>
+bool RodDynamics::Work::solve_with_tendons(const Stage& stage, Solve&& solve) {
   const Eigen::Index count = found_.size();
   for (Eigen::Index i = 0; i < count; ++i) {
     const double tension = tensions[static_cast<std::size_t>(i)];
-    if (tension != 0) change_ += stretch * tension * length_slopes_.col(i);
+    if (tension != 0) change_ += stage.stretch * tension * length_slopes_.col(i);
   }
-  matrix.solve(change_.data());
+  left_ = change_;
+  solve(change_.data());
   for (Eigen::Index i = 0; i < count; ++i) {
     answers_.col(i) = length_slopes_.col(i);
-    matrix.solve(answers_.col(i).data());
+    solve(answers_.col(i).data());
   }
   for (Eigen::Index i = 0; i < count; ++i) {
     const auto tendon = static_cast<std::size_t>(i);
     for (Eigen::Index j = 0; j < count; ++j)
-      give_(i, j) = stretch * stretch * length_slopes_.col(i).dot(answers_.col(j));
+      give_(i, j) = stage.stretch * stage.stretch * length_slopes_.col(i).dot(answers_.col(j));
     give_(i, i) += compliance[tendon];
-    wanted_[i] = lengths_[i] - rest_lengths[tendon] + tendons.displacements[tendon] +
-                 stretch * length_slopes_.col(i).dot(change_);
+    wanted_[i] = lengths_[i] - rest_lengths[tendon] + stage.tendons.displacements[tendon] +
+                 stage.stretch * length_slopes_.col(i).dot(change_);
   }
   if (!pull_tight()) return false;
   for (Eigen::Index i = 0; i < count; ++i) {
     const auto tendon = static_cast<std::size_t>(i);
-    change_ -= stretch * found_[i] * answers_.col(i);
+    change_ -= stage.stretch * found_[i] * answers_.col(i);
+    left_ -= stage.stretch * found_[i] * length_slopes_.col(i);
     pull_change_[i] = found_[i] - tensions[tendon];
     tensions[tendon] = found_[i];
   }
   return true;
 }
 
-// With x = (q, p): the stage's x = from + stretch dx/dt, in which dq/dt = v and p = M(q) v. What is sought is
-// v.
-RodStep RodDynamics::Work::step(RodState& state, const TendonInput& tendons, const RodLoads& loads,
-                                double h) {
-  RodStep result;
-  const double stretch = scheme.stage * h;
-  const bool by_displacement = !tendons.displacements.empty();
-  q_from_ = state.q + scheme.memory * h * state.rate;
-  p_from_ = state.momentum + scheme.memory * h * state.force;
+// Of the change of the rates: by the energy that it has in the quadratic form of the stage's equations,
+// stiffness included, as if the rod were turned as a whole; rad/s.
+double RodDynamics::Work::change_size() const {
+  return std::sqrt(std::abs(change_.dot(left_)) / turning_inertia_);
+}
+
+void RodDynamics::Work::evaluate(const Stage& stage) {
+  q_ = q_from_ + stage.stretch * velocity;
+  motion.place(q_.data(), velocity.data());
+  motion.pull(stage.loads, tensions.data(), surroundings);
+  motion.balance(momentum_.data(), force_.data());
+  change_ = p_from_ - momentum_ + stage.stretch * force_;
+  if (!stage.by_displacement()) return;
+  motion.find_lengths(lengths_.data());
+  for (std::size_t i = 0; i < tensions.size(); ++i)
+    motion.find_length_slopes(i, length_slopes_.col(static_cast<Eigen::Index>(i)).data());
+}
+
+bool RodDynamics::Work::solve_quickly(const Stage& stage) {
+  if (stage.by_displacement()) return solve_with_tendons(stage, [this](double* x) { matrix.solve(x); });
+  left_ = change_;
+  matrix.solve(change_.data());
+  return true;
+}
+
+bool RodDynamics::Work::solve_exactly(const Stage& stage) {
+  const auto solve = [this](double* x) {
+    Eigen::Map<Eigen::VectorXd> rhs(x, change_.size());
+    rhs = derivative_.solve(rhs).eval();
+  };
+  if (stage.by_displacement()) return solve_with_tendons(stage, solve);
+  left_ = change_;
+  solve(change_.data());
+  return true;
+}
+
+void RodDynamics::Work::begin(const RodState& state, const Stage& stage, double h) {
   std::fill(tensions.begin(), tensions.end(), 0.0);
-  if (by_displacement) {
+  if (stage.by_displacement()) {
     std::copy(state.tensions.begin(), state.tensions.end(), tensions.begin());
     for (std::size_t i = 0; i < tensions.size(); ++i) taut_[i] = tensions[i] > 0 ? 1 : 0;
-  } else if (!tendons.tensions.empty()) {
-    std::copy(tendons.tensions.begin(), tendons.tensions.end(), tensions.begin());
+  } else if (!stage.tendons.tensions.empty()) {
+    std::copy(stage.tendons.tensions.begin(), stage.tendons.tensions.end(), tensions.begin());
   }
   guess(state, h);
-  const Eigen::VectorXd& scales = chain.scales();
-  double before = 0, worst_gain = 0;
-  // The matrix leaves out how inertia turns with the rod: an iteration gains about the angle of a step's
-  // turn.
-  double contraction = std::max(state.contraction, stretch * greatest_change(velocity, scales));
-  bool is_there = false;
-  result.end = DynamicsEnd::did_not_converge;
-  while (!is_there) {
-    if (result.iterations == config.most_iterations) return result;
-    q_ = q_from_ + stretch * velocity;
-    motion.place(q_.data(), velocity.data());
-    motion.pull(loads, tensions.data(), surroundings);
-    motion.balance(momentum_.data(), force_.data());
+}
+
+// By the matrix of the stage's first shape, which leaves out how inertia turns with the rod, and loads.
+bool RodDynamics::Work::iterate_quickly(const Stage& stage, double contraction, RodStep& result,
+                                        double& worst_gain) {
+  double before = 0;
+  while (result.iterations < config.most_iterations) {
+    evaluate(stage);
     if (result.iterations == 0) {
       matrix.find_columns(motion);
       const bool is_pulled = std::ranges::any_of(tensions, [](double tension) { return tension != 0; });
-      if (!matrix.factor(motion, {.damping = stretch, .stiffness = stretch * stretch},
+      if (!matrix.factor(motion, {.damping = stage.stretch, .stiffness = stage.stretch * stage.stretch},
                          is_pulled ? tensions.data() : nullptr, surroundings != nullptr))
-        return result;
+        return false;
     }
-    change_ = p_from_ - momentum_ + stretch * force_;
-    if (by_displacement) {
-      motion.find_lengths(lengths_.data());
-      for (std::size_t i = 0; i < tensions.size(); ++i)
-        motion.find_length_slopes(i, length_slopes_.col(static_cast<Eigen::Index>(i)).data());
-      if (!solve_with_tendons(tendons, stretch)) return result;
-    } else {
-      matrix.solve(change_.data());
-    }
+    if (!solve_quickly(stage)) return false;
     ++result.iterations;
-    const double size = greatest_change(change_, scales);
-    if (!std::isfinite(size)) return result;
+    const double size = change_size();
+    if (!std::isfinite(size)) return false;
     velocity += change_;
     if (before > 0) {
       contraction = size / before;
       worst_gain = std::max(worst_gain, contraction);
-      if (result.iterations > patience && contraction > least_gain && size > config.tolerance) return result;
+      if (result.iterations > patience && contraction > least_gain && size > config.tolerance) return false;
     }
-    is_there = size <= config.tolerance || (contraction < 0.5 && 2 * size * contraction <= config.tolerance);
+    if (size <= config.tolerance || (contraction < 0.5 && 2 * size * contraction <= config.tolerance))
+      return true;
     before = size;
   }
-  // The stage's force, with the last change of the rates.
+  return false;
+}
+
+bool RodDynamics::Work::factor_exactly(const Stage& stage) {
+  Eigen::MatrixXd momentum, force;
+  differentiate(q_, velocity, stage.loads, stage.stretch, 1, momentum, force);
+  momentum -= stage.stretch * force;
+  if (!momentum.allFinite()) return false;
+  derivative_.compute(momentum);
+  return true;
+}
+
+// Newton's method with the derivative, each step of it as long as makes what the next one would be shorter
+// (P. Deuflhard's natural monotonicity test).
+bool RodDynamics::Work::iterate_exactly(const Stage& stage, RodStep& result) {
+  evaluate(stage);
+  if (!change_.allFinite() || !factor_exactly(stage) || !solve_exactly(stage)) return false;
+  const int most = result.iterations + config.most_iterations;
+  Eigen::VectorXd step = change_, from = velocity;
+  double size = change_size();
+  while (result.iterations < most && std::isfinite(size)) {
+    double part = 1, next = 0;
+    for (; part > 1e-4; part /= 2) {
+      velocity = from + part * step;
+      evaluate(stage);
+      ++result.iterations;
+      if (!change_.allFinite() || !solve_exactly(stage)) continue;
+      next = change_size();
+      if (next <= (1 - part / 4) * size || next <= config.tolerance) break;
+    }
+    if (!(part > 1e-4) || !std::isfinite(next)) return false;
+    if (next <= config.tolerance) {
+      velocity += change_;
+      return true;
+    }
+    from = velocity;
+    evaluate(stage);
+    if (!factor_exactly(stage) || !solve_exactly(stage)) return false;
+    step = change_;
+    size = change_size();
+  }
+  return false;
+}
+
+// The stage's force, with the last change of the rates; and from the stage to the step's end.
+bool RodDynamics::Work::finish(const Stage& stage, RodState& state, double h) {
   for (const RodLayout::Section& section : layout.sections) {
     const auto first = static_cast<Eigen::Index>(section.first_mode),
                size = static_cast<Eigen::Index>(section.modes);
     for (Eigen::Index j = 0; j < size; ++j) {
       const std::size_t strain = section.strain[static_cast<std::size_t>(j)];
+      const Eigen::Index begin = section.grid.first[strain], end = begin + section.grid.count[strain];
       double sum = 0;
-      for (Eigen::Index l = section.grid.first[strain];
-           l < section.grid.first[strain] + section.grid.count[strain]; ++l)
-        sum += (section.damping(l, j) + stretch * section.stiffness(l, j)) * change_[first + l];
+      for (Eigen::Index l = begin; l < end; ++l)
+        sum += (section.damping(l, j) + stage.stretch * section.stiffness(l, j)) * change_[first + l];
       force_[first + j] -= sum;
     }
   }
-  if (by_displacement)
-    for (Eigen::Index i = 0; i < pull_change_.size(); ++i)
-      if (pull_change_[i] != 0) force_ -= pull_change_[i] * length_slopes_.col(i);
-  if (!force_.allFinite() || !velocity.allFinite()) return result;
-  const double now = 1 / scheme.alpha_m, old = (1 - scheme.alpha_m) / scheme.alpha_m;
-  state.q += h * (1 - scheme.gamma) * state.rate;
-  state.momentum += h * (1 - scheme.gamma) * state.force;
+  for (Eigen::Index i = 0; stage.by_displacement() && i < pull_change_.size(); ++i)
+    if (pull_change_[i] != 0) force_ -= pull_change_[i] * length_slopes_.col(i);
+  if (!force_.allFinite() || !velocity.allFinite()) return false;
+  const Scheme& use = stage.scheme;
+  const double now = 1 / use.alpha_m, old = (1 - use.alpha_m) / use.alpha_m;
+  state.q += h * (1 - use.gamma) * state.rate;
+  state.momentum += h * (1 - use.gamma) * state.force;
   state.rate = now * velocity - old * state.rate;
   state.force = now * force_ - old * state.force;
-  state.q += h * scheme.gamma * state.rate;
-  state.momentum += h * scheme.gamma * state.force;
+  state.q += h * use.gamma * state.rate;
+  state.momentum += h * use.gamma * state.force;
   state.time += h;
-  state.tensions = tensions;
+  std::copy(tensions.begin(), tensions.end(), state.tensions.begin());
   state.middles = state.step == h ? std::min(3, state.middles + 1) : 1;
   state.step = h;
   state.middle[2].swap(state.middle[1]);
   state.middle[1].swap(state.middle[0]);
   state.middle[0] = velocity;
+  return true;
+}
+
+// With x = (q, p): the stage's x = from + stretch dx/dt, in which dq/dt = v and p = M(q) v. What is sought is
+// v.
+RodStep RodDynamics::Work::step_once(const Scheme& use, RodState& state, const TendonInput& tendons,
+                                     const RodLoads& loads, double h) {
+  const Stage stage{.scheme = use, .tendons = tendons, .loads = loads, .stretch = use.stage * h};
+  RodStep result{.end = DynamicsEnd::did_not_converge};
+  q_from_ = state.q + use.memory * h * state.rate;
+  p_from_ = state.momentum + use.memory * h * state.force;
+  begin(state, stage, h);
+  const double turn = stage.stretch * greatest_change(velocity, chain.scales());
+  double worst_gain = 0;
+  if (!iterate_quickly(stage, std::max(state.contraction, turn), result, worst_gain)) {
+    begin(state, stage, h);
+    velocity.setZero();
+    if (!iterate_exactly(stage, result)) return result;
+  }
+  if (!finish(stage, state, h)) return result;
   if (worst_gain > 0) state.contraction = std::min(worst_gain, 0.5);
   result.end = DynamicsEnd::converged;
+  return result;
+}
+
+RodStep RodDynamics::Work::step(RodState& state, const TendonInput& tendons, const RodLoads& loads,
+                                double h) {
+  RodStep result = step_once(scheme, state, tendons, loads, h);
+  if (result.converged() || config.most_pieces < 2) return result;
+  // In pieces, in halves of halves, with all the damping that there is.
+  const Scheme damped(0);
+  const RodState before = state;
+  int parts = 1, left = 1;
+  result.pieces = 0;
+  while (left > 0) {
+    if (!result.converged()) {
+      parts *= 2;
+      left *= 2;
+      if (parts > config.most_pieces) break;
+    }
+    const RodStep piece = step_once(damped, state, tendons, loads, h / parts);
+    result.end = piece.end;
+    result.iterations += piece.iterations;
+    if (!piece.converged()) continue;
+    --left;
+    ++result.pieces;
+  }
+  if (result.converged())
+    state.time = before.time + h;
+  else
+    state = before;
   return result;
 }
 

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/LU>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
@@ -33,12 +35,14 @@ struct RodDynamics::Work {
 
   [[nodiscard]] std::string input_problem(const TendonInput& tendons, const RodLoads& loads) const;
   RodStep step(RodState& state, const TendonInput& tendons, const RodLoads& loads, double h);
-  /// Tensions of tendons that are pulled in by so much, where the rod was placed.
-  void find_tensions(const std::vector<double>& displacements);
+  /// Tensions as they are given, or by displacements, where the rod was placed.
+  void set_tensions(const TendonInput& tendons);
   /// The rod placed at a state, mass matrix factored, velocity_ there.
   bool find_velocity(const RodState& state);
-  [[nodiscard]] RodDynamicsSlopes slopes(const RodState& state, const TendonInput& tendons,
-                                         const RodLoads& loads);
+  /// Of momenta and forces at q and v under `tensions`: a column for each mode, of whose amount and rate the
+  /// changes are by_q and by_v.
+  void differentiate(const Eigen::VectorXd& q, const Eigen::VectorXd& v, const RodLoads& loads, double by_q,
+                     double by_v, Eigen::MatrixXd& by_mode_of_momentum, Eigen::MatrixXd& by_mode_of_force);
 
   RodDynamicsConfig config;
   Scheme scheme;
@@ -53,21 +57,48 @@ struct RodDynamics::Work {
   /// Bodies of nodes that carry payloads, as they are without.
   std::vector<std::pair<std::size_t, RodLayout::Body>> bare = {};
 
+  /// The same where they are, with the input; tensions are those of the input.
+  [[nodiscard]] RodDynamicsSlopes slopes_at(const Eigen::VectorXd& q, const Eigen::VectorXd& v,
+                                            const TendonInput& tendons, const RodLoads& loads);
+  /// Makes the step with the state as it is; where its stage is.
+  [[nodiscard]] bool find_stage(const RodState& state, const TendonInput& tendons, const RodLoads& loads,
+                                double h, Eigen::VectorXd& q, Eigen::VectorXd& v);
+
  private:
   struct Stage {
-    double stretch;  // h times scheme.stage.
-    bool by_displacement;
+    const Scheme& scheme;
+    const TendonInput& tendons;
+    const RodLoads& loads;
+    double stretch;  // The step's length times scheme.stage.
+    [[nodiscard]] bool by_displacement() const { return !tendons.displacements.empty(); }
   };
+  RodStep step_once(const Scheme& use, RodState& state, const TendonInput& tendons, const RodLoads& loads,
+                    double h);
+  [[nodiscard]] double change_size() const;
+  void begin(const RodState& state, const Stage& stage, double h);
   void guess(const RodState& state, double h);
-  bool solve_with_tendons(const TendonInput& tendons, double stretch);
+  // The stage's momenta and forces at `velocity`; change_ is what is left of them.
+  void evaluate(const Stage& stage);
+  // change_ becomes the change of the rates, by the quick matrix and by the derivative.
+  bool solve_quickly(const Stage& stage);
+  bool solve_exactly(const Stage& stage);
+  bool iterate_quickly(const Stage& stage, double contraction, RodStep& result, double& worst_gain);
+  bool iterate_exactly(const Stage& stage, RodStep& result);
+  bool factor_exactly(const Stage& stage);
+  template <typename Solve>
+  bool solve_with_tendons(const Stage& stage, Solve&& solve);
   bool pull_tight();
+  bool finish(const Stage& stage, RodState& state, double h);
 
-  Eigen::VectorXd q_from_, p_from_, q_, momentum_, force_, change_, total_;
+  Eigen::VectorXd q_from_, p_from_, q_, momentum_, force_, change_, left_;
+  double turning_inertia_ = 1;  // kg m^2
   // Of displacements: by tendon.
   Eigen::MatrixXd length_slopes_, answers_, give_, pivot_;
   Eigen::VectorXd lengths_, wanted_, found_, pull_change_;
   std::vector<char> taut_;
-  bool is_pulled_ = false;
+  // Of iterations with the derivative, which few steps need; made when the first does.
+  std::unique_ptr<RodMotion<Dual<Lanes>>> differential_;
+  Eigen::PartialPivLU<Eigen::MatrixXd> derivative_;
 };
 
 }  // namespace flexura

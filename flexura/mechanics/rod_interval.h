@@ -69,6 +69,10 @@ class RodInterval {
   /// Of the first part of numbers with slopes.
   template <typename Q>
   friend RodInterval<Q> still(const RodInterval<Dual<Q>>& moving);
+  /// How fast the twist of its end, by which it moves against its beginning, changes while the rates of the
+  /// moments stay.
+  template <typename Q>
+  friend Screw<Q> drift_of(const RodInterval<Dual<Q>>& moving);
 
  private:
   template <typename Q>
@@ -129,6 +133,17 @@ template <typename Q>
 [[nodiscard]] Screw<Dual<Q>> dual_of(const Screw<Q>& a, const Screw<Q>& b) {
   return {{{a.linear.x, b.linear.x}, {a.linear.y, b.linear.y}, {a.linear.z, b.linear.z}},
           {{a.angular.x, b.angular.x}, {a.angular.y, b.angular.y}, {a.angular.z, b.angular.z}}};
+}
+
+template <typename Q>
+[[nodiscard]] Screw<Q> drift_of(const RodInterval<Dual<Q>>& moving) {
+  const Screw<Q> a1 = slope_of(moving.a1_), a2 = slope_of(moving.a2_), E = slope_of(moving.E_),
+                 U = slope_of(moving.U_), V = slope_of(moving.V_);
+  const Screw<Q> C = 2.0 * bracket(a1, a2);  // Second derivatives from here on; of E less that, of U that.
+  const Screw<Q> of_V = (1.0 / 60) * (2.0 * bracket(a1, E) - bracket(value_of(moving.a1_), C));
+  const Screw<Q> of_twist = (1.0 / 240) * (2.0 * bracket(U, V) + bracket(C, value_of(moving.V_)) +
+                                           bracket(value_of(moving.U_), of_V));
+  return slope_of(moving.moved(dual_of(slope_of(moving.twist_), of_twist)));
 }
 
 template <typename Q>

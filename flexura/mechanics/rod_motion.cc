@@ -202,16 +202,19 @@ void RodMotion<S>::place(const S* q, const S* v) {
       V_[node] = V;
     }
   }
-  for (std::size_t k = 0; k < layout_.nodes; ++k) {
-    const RodLayout::Body& body = layout_.bodies[k];
-    const Placement<S>& at = X_[k];
-    const Triple<S> centre = at.position + at.turn(constant<S>(body.centre));
-    const Triple<S> push = body.mass * (V_[k].linear + cross(V_[k].angular, centre));
-    const Triple<S> w = at.turn_back(V_[k].angular);
-    const auto row = [&](const Triple<double>& r) { return r.x * w.x + r.y * w.y + r.z * w.z; };
-    const Triple<S> spin = {row(body.inertia[0]), row(body.inertia[1]), row(body.inertia[2])};
-    P_[k] = {push, at.turn(spin) + cross(centre, push)};
-  }
+  for (std::size_t k = 0; k < layout_.nodes; ++k) P_[k] = momentum_of(k, V_[k]);
+}
+
+template <typename S>
+Screw<S> RodMotion<S>::momentum_of(std::size_t node, const Screw<S>& twist) const {
+  const RodLayout::Body& body = layout_.bodies[node];
+  const Placement<S>& at = X_[node];
+  const Triple<S> centre = at.position + at.turn(constant<S>(body.centre));
+  const Triple<S> push = body.mass * (twist.linear + cross(twist.angular, centre));
+  const Triple<S> w = at.turn_back(twist.angular);
+  const auto row = [&](const Triple<double>& r) { return r.x * w.x + r.y * w.y + r.z * w.z; };
+  const Triple<S> spin = {row(body.inertia[0]), row(body.inertia[1]), row(body.inertia[2])};
+  return {push, at.turn(spin) + cross(centre, push)};
 }
 
 template <typename S>
@@ -367,6 +370,13 @@ void RodMotion<S>::balance(S* momentum, S* force) {
     }
   }
   std::fill(momentum, momentum + layout_.modes, S{});
+  set_inner_forces(force);
+  add_modes(collected_, momentum);
+  add_modes(changed_, force);
+}
+
+template <typename S>
+void RodMotion<S>::set_inner_forces(S* force) const {
   for (const RodLayout::Section& section : layout_.sections) {
     S* part = force + section.first_mode;
     const S *q = q_ + section.first_mode, *v = v_ + section.first_mode;
@@ -386,8 +396,27 @@ void RodMotion<S>::balance(S* momentum, S* force) {
       if (layout_.run[node] != 0) add_strain_force(section, k, -layout_.run[node] * along_[node], force);
     }
   }
-  add_modes(collected_, momentum);
-  add_modes(changed_, force);
+}
+
+template <typename S>
+void RodMotion<S>::find_acceleration_forces(S* force) {
+  const std::size_t padded = layout_.padded;
+  for (std::size_t i = 0; i < intervals_.size(); ++i)
+    store_screw(drift_of(intervals_[i]), &changes_[i * lanes_of<Number>], padded);
+  Screw<S> drift{};
+  for (const RodLayout::Section& section : layout_.sections) {
+    for (std::size_t i = 0; i <= section.intervals; ++i) {
+      const std::size_t node = section.first_node + i, at = section.first_interval + i;
+      spare_[node] = W_[node] + transposed_bracket(V_[node], P_[node]) - momentum_of(node, drift);
+      if (i == section.intervals) continue;
+      const auto read = [&](const std::vector<S>& from) {
+        return Screw<S>{read_triple(&from[at], padded), read_triple(&from[3 * padded + at], padded)};
+      };
+      drift += bracket(V_[node], X_[node].carry(read(speeds_))) + X_[node].carry(read(changes_));
+    }
+  }
+  set_inner_forces(force);
+  collect(spare_, force);
 }
 
 template <typename S>

@@ -30,6 +30,9 @@ class RodMotion {
   void pull(const RodLoads& loads, const S* tensions, const RodSurroundings* surroundings);
   /// The momenta and the forces, of all modes.
   void balance(S* momentum, S* force);
+  /// What is left of the forces when the rates stay as they are: the mass matrix times the modes'
+  /// accelerations (Newton, Euler).
+  void find_acceleration_forces(S* force);
   /// How long the tendons are, m.
   void find_lengths(S* lengths) const;
 
@@ -65,6 +68,9 @@ class RodMotion {
   void for_chords(const RodLayout::Section& section, std::size_t tendon, Add&& add) const;
   void add_strain_force(const RodLayout::Section& section, std::size_t node, const Screw<S>& along,
                         S* force) const;
+  [[nodiscard]] Screw<S> momentum_of(std::size_t node, const Screw<S>& twist) const;
+  // Of stiffness, damping, and tendons along the strains.
+  void set_inner_forces(S* force) const;
   void add_modes(const std::vector<S>& of_moments, S* sums) const;
 
   const RodLayout& layout_;

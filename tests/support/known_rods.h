@@ -30,6 +30,21 @@ inline Rod heavy_rod() {
           .tendons = {{.section = 0, .radius = 15.06e-3}}};
 }
 
+/// A soft tentacle of 0.6 m that its own viscosity slows, and its weight when it is clamped at the side: its
+/// z is level and its x points up.
+inline Rod soft_tentacle() {
+  const double inertia = std::numbers::pi / 4 * std::pow(0.03, 4);
+  RodSection section{.length = 0.6,
+                     .radius = {0.03, 0.03},
+                     .youngs_modulus = 1e6,
+                     .shear_modulus = 1e6 / 3,
+                     .density = 1000,
+                     .damping_time = 0.02 / (1e6 * inertia)};
+  section.modes = {.shear = 0, .stretch = 0, .bend = 4, .twist = 0};
+  return {.sections = {section}, .tendons = {}};
+}
+inline RodLoads soft_tentacle_weight() { return {.gravity = {-9.81, 0, 0}}; }
+
 /// A rod of length 1 and EI = 1 that bends alone.
 inline Rod elastica(int modes) {
   RodSection section{.length = 1, .stiffness = Vector6d::Ones(), .mass_per_length = 1};

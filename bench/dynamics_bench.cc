@@ -1,0 +1,247 @@
+#include <benchmark/benchmark.h>
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <map>
+#include <numbers>
+#include <vector>
+
+#include "bench/mujoco_rod.h"
+#include "flexura/mechanics/dynamics.h"
+#include "flexura/mechanics/rod.h"
+#include "tests/support/known_rods.h"
+
+// How fast a rod moves: half a second of a soft tentacle that falls from where it is straight and level.
+// `error_mm` is how far the tip is off after 0.25 and 0.5 s, the greater of the two; `times_real` by how much
+// faster than time it goes, of CPU time. Of bends alone the tip is known (an independent solver's,
+// tests/support/known_rods.h); else it is that of the same rod with more modes in shorter steps.
+namespace flexura {
+namespace {
+
+constexpr double until = 0.5;  // s
+
+using Tips = std::array<Eigen::Vector3d, 2>;
+
+const Tips falling_tips = {Eigen::Vector3d(-0.352721, 0, 0.467438), Eigen::Vector3d(-0.519303, 0, 0.078858)};
+
+void count(benchmark::State& state, double seconds, const Tips& found, const Tips& known) {
+  state.counters["error_mm"] = 1e3 * std::max((found[0] - known[0]).norm(), (found[1] - known[1]).norm());
+  state.counters["times_real"] = benchmark::Counter(seconds, benchmark::Counter::kIsIterationInvariantRate);
+}
+
+// Half a second, from the start on; the tip in its middle and at its end.
+struct Fall {
+  Rod rod;
+  RodDynamicsConfig config;
+  TendonInput tendons;
+  double step = 0.01;
+
+  void run(RodDynamics& dynamics, Tips& tips) const {
+    const RodLoads weight = soft_tentacle_weight();
+    const Eigen::VectorXd none = Eigen::VectorXd::Zero(dynamics.chain().size());
+    RodState state = dynamics.start(none, none, tendons, weight);
+    const long steps = std::lround(until / step);
+    for (long i = 0; i < steps; ++i) {
+      if (i == steps / 2) tips[0] = dynamics.tip(state).position;
+      benchmark::DoNotOptimize(dynamics.step(state, tendons, weight, step));
+    }
+    tips[1] = dynamics.tip(state).position;
+  }
+  [[nodiscard]] Tips tips() const {
+    RodDynamics dynamics(rod, config);
+    Tips result;
+    run(dynamics, result);
+    return result;
+  }
+};
+
+void bench_fall(benchmark::State& state, const Fall& fall, const Tips& known) {
+  RodDynamics dynamics(fall.rod, fall.config);
+  Tips tips;
+  for (auto _ : state) fall.run(dynamics, tips);
+  count(state, until, tips, known);
+}
+
+// Of so many microseconds a step, and so many nodes.
+Fall falling_tentacle(std::int64_t microseconds, std::int64_t nodes) {
+  Fall fall{.rod = soft_tentacle(), .config = {.spectral_radius = 0.8, .tolerance = 1e-3}, .tendons = {}};
+  fall.rod.sections[0].nodes = static_cast<int>(nodes);
+  fall.step = 1e-6 * static_cast<double>(microseconds);
+  return fall;
+}
+
+void fall_bends(benchmark::State& state) {
+  bench_fall(state, falling_tentacle(state.range(0), state.range(1)), falling_tips);
+}
+BENCHMARK(fall_bends)
+    ->ArgNames({"us", "nodes"})
+    ->Args({12500, 4})
+    ->Args({12500, 5})
+    ->Args({10000, 5})
+    ->Args({5000, 5})
+    ->Args({2500, 6})
+    ->Unit(benchmark::kMicrosecond);
+
+// The same by 24 joints of MuJoCo's, in each direction.
+void fall_mujoco(benchmark::State& state) {
+  const Rod rod = soft_tentacle();
+  const double step = 1e-6 * static_cast<double>(state.range(1));
+  MujocoRod peer(rod.sections[0], soft_tentacle_weight().gravity, 24,
+                 static_cast<MujocoIntegrator>(state.range(0)), step);
+  const long steps = std::lround(until / step);
+  Tips tips;
+  for (auto _ : state) {
+    peer.reset();
+    for (long i = 0; i < steps; ++i) {
+      if (i == steps / 2) tips[0] = peer.tip();
+      peer.step();
+    }
+    tips[1] = peer.tip();
+  }
+  count(state, until, tips, falling_tips);
+}
+BENCHMARK(fall_mujoco)
+    ->ArgNames({"integrator", "us"})
+    ->Args({0, 5000})
+    ->Args({0, 2500})
+    ->Args({0, 1000})
+    ->Args({0, 500})
+    ->Args({1, 5000})
+    ->Args({1, 2500})
+    ->Args({1, 1000})
+    ->Args({1, 500})
+    ->Unit(benchmark::kMicrosecond);
+
+const Tips& converged(const Fall& fall, int extra) {
+  static std::map<int, Tips> known;
+  if (const auto found = known.find(extra); found != known.end()) return found->second;
+  Fall fine = fall;
+  RodSection& section = fine.rod.sections[0];
+  section.nodes = 14;
+  section.modes.bend = 10;
+  if (section.modes.shear > 0) section.modes.shear = section.modes.stretch = 6;
+  if (section.modes.twist > 0) section.modes.twist = 3;
+  fine.config.tolerance = 1e-8;
+  fine.step = 5e-4;
+  return known[extra] = fine.tips();
+}
+
+Fall with_all_strains(Fall fall) {
+  fall.rod.sections[0].modes.shear = fall.rod.sections[0].modes.stretch = 2;
+  fall.rod.sections[0].modes.twist = 1;
+  return fall;
+}
+
+void fall_all_strains(benchmark::State& state) {
+  const Fall fall = with_all_strains(falling_tentacle(state.range(0), state.range(1)));
+  bench_fall(state, fall, converged(fall, 0));
+}
+BENCHMARK(fall_all_strains)
+    ->ArgNames({"us", "nodes"})
+    ->Args({10000, 5})
+    ->Args({5000, 5})
+    ->Args({5000, 6})
+    ->Args({2500, 6})
+    ->Unit(benchmark::kMicrosecond);
+
+Fall with_tendons(Fall fall, bool by_displacement) {
+  for (const double angle : {0.0, 120.0, 240.0})
+    fall.rod.tendons.push_back({.section = 0, .radius = 0.02, .angle = angle * std::numbers::pi / 180});
+  if (by_displacement) {
+    for (TendonRoute& tendon : fall.rod.tendons) tendon.compliance = 1e-3;
+    fall.tendons.displacements = {0.01, -0.005, -0.005};
+  } else {
+    fall.tendons.tensions = {20, 5, 5};
+  }
+  return fall;
+}
+
+// With three tendons: by tensions (0), by displacements (1); bends alone (0), all strains (1).
+void fall_tendons(benchmark::State& state) {
+  Fall fall = with_tendons(falling_tentacle(state.range(2), 5), state.range(0) != 0);
+  if (state.range(1) != 0) fall = with_all_strains(fall);
+  bench_fall(state, fall, converged(fall, static_cast<int>(1 + 2 * state.range(0) + state.range(1))));
+}
+BENCHMARK(fall_tendons)
+    ->ArgNames({"displacements", "strains", "us"})
+    ->ArgsProduct({{0, 1}, {0, 1}, {10000, 5000, 2500}})
+    ->Unit(benchmark::kMicrosecond);
+
+// The heavy steel rod with all strains, no damping, whose tendon lets go of 5 of its 15 N.
+void heavy_rod_released(benchmark::State& state) {
+  const RodLoads weight{.gravity = {9.81, 0, 0}};
+  const auto tip = [&](double step, int bend, double tolerance) {
+    Rod rod = heavy_rod();
+    rod.sections[0].modes = {.shear = 1, .stretch = 1, .bend = bend, .twist = 1};
+    const RodDynamicsConfig config{.spectral_radius = 0.5, .tolerance = tolerance};
+    RodDynamics dynamics(rod, config);
+    RodState moving = dynamics.rest(RodStatics(rod).solve({.tensions = {15}}, weight));
+    const long steps = std::lround(0.2 / step);
+    for (long i = 0; i < steps; ++i)
+      benchmark::DoNotOptimize(dynamics.step(moving, {.tensions = {10}}, weight, step));
+    return dynamics.tip(moving).position;
+  };
+  static const Eigen::Vector3d known = tip(2.5e-5, 10, 1e-7);
+  const double step = 1e-6 * static_cast<double>(state.range(0));
+  Eigen::Vector3d found;
+  for (auto _ : state) found = tip(step, 6, 1e-3);
+  count(state, 0.2, {found, found}, {known, known});
+}
+BENCHMARK(heavy_rod_released)
+    ->ArgName("us")
+    ->Arg(4000)
+    ->Arg(2000)
+    ->Arg(1000)
+    ->Arg(100)
+    ->Unit(benchmark::kMicrosecond);
+
+// Mass matrix, all forces, and accelerations of three sections with six constant strains each.
+void accelerations_of_3_sections(benchmark::State& state) {
+  RodSection section{
+      .length = 0.2, .radius = {5e-3, 5e-3}, .youngs_modulus = 1e9, .shear_modulus = 4e8, .density = 1000};
+  section.modes = {.shear = 1, .stretch = 1, .bend = 1, .twist = 1};
+  section.nodes = 5;
+  RodDynamics dynamics({.sections = {section, section, section}, .tendons = {}});
+  Eigen::VectorXd q = Eigen::VectorXd::Constant(dynamics.chain().size(), 0.1), v = q;
+  const RodLoads weight{.gravity = {1, 2, -9}};
+  for (auto _ : state) {
+    q[0] += 1e-9;
+    benchmark::DoNotOptimize(dynamics.acceleration(q, v, {}, weight));
+  }
+}
+BENCHMARK(accelerations_of_3_sections)->Unit(benchmark::kMicrosecond);
+
+// A step of an arm of so many sections.
+void step_of_sections(benchmark::State& state) {
+  const auto sections = static_cast<std::size_t>(state.range(0));
+  RodSection section{.length = 1.0 / static_cast<double>(sections),
+                     .radius = {1e-2, 1e-2},
+                     .youngs_modulus = 1e8,
+                     .shear_modulus = 4e7,
+                     .density = 1000,
+                     .damping_time = 0.01};
+  section.modes = {.shear = 1, .stretch = 1, .bend = 2, .twist = 1};
+  section.nodes = 4;
+  Rod rod;
+  rod.sections.assign(sections, section);
+  RodDynamics dynamics(rod, {.tolerance = 1e-3});
+  const RodLoads weight{.gravity = {0, -9.81, 0}};
+  RodState moving = dynamics.rest();
+  double iterations = 0;
+  for (auto _ : state) {
+    const RodStep step = dynamics.step(moving, {}, weight, 0.01);
+    iterations += step.iterations;
+    benchmark::DoNotOptimize(step);
+  }
+  state.counters["iterations"] = benchmark::Counter(iterations, benchmark::Counter::kAvgIterations);
+  state.counters["us_a_section"] =
+      benchmark::Counter(static_cast<double>(sections) * 1e-6,
+                         benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+}
+BENCHMARK(step_of_sections)->RangeMultiplier(10)->Range(1, 100)->Unit(benchmark::kMicrosecond);
+
+}  // namespace
+}  // namespace flexura

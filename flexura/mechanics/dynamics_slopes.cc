@@ -1,0 +1,157 @@
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+#include <algorithm>
+#include <stdexcept>
+
+#include "flexura/mechanics/dynamics_work.h"
+
+namespace flexura {
+
+// By numbers with slopes: so many directions in each evaluation as an instruction takes.
+void RodDynamics::Work::differentiate(const Eigen::VectorXd& q, const Eigen::VectorXd& v,
+                                      const RodLoads& loads, double by_q, double by_v,
+                                      Eigen::MatrixXd& momentum, Eigen::MatrixXd& force) {
+  using Number = Dual<Lanes>;
+  if (!differential_) differential_ = std::make_unique<RodMotion<Number>>(layout);
+  const Eigen::Index n = q.size();
+  momentum.resize(n, n);
+  force.resize(n, n);
+  const auto number = [](double value) { return value + Number{}; };
+  std::vector<Number> q_dual, v_dual, pulls;
+  for (const double value : q) q_dual.push_back(number(value));
+  for (const double value : v) v_dual.push_back(number(value));
+  for (const double value : tensions) pulls.push_back(number(value));
+  std::vector<Number> p_dual(q_dual.size()), f_dual(q_dual.size());
+  constexpr auto width = static_cast<Eigen::Index>(lanes_of<Lanes>);
+  for (Eigen::Index first = 0; first < n; first += width) {
+    const Eigen::Index count = std::min(width, n - first);
+    const auto set = [&](double q_slope, double v_slope) {
+      for (Eigen::Index lane = 0; lane < count; ++lane) {
+        const auto j = static_cast<std::size_t>(first + lane);
+        q_dual[j].slope[lane] = q_slope;
+        v_dual[j].slope[lane] = v_slope;
+      }
+    };
+    set(by_q, by_v);
+    differential_->place(q_dual.data(), v_dual.data());
+    differential_->pull(loads, pulls.data(), surroundings);
+    differential_->balance(p_dual.data(), f_dual.data());
+    set(0, 0);
+    for (Eigen::Index lane = 0; lane < count; ++lane) {
+      for (Eigen::Index j = 0; j < n; ++j) {
+        momentum(j, first + lane) = p_dual[static_cast<std::size_t>(j)].slope[lane];
+        force(j, first + lane) = f_dual[static_cast<std::size_t>(j)].slope[lane];
+      }
+    }
+  }
+}
+
+RodDynamicsSlopes RodDynamics::Work::slopes_at(const Eigen::VectorXd& q, const Eigen::VectorXd& v,
+                                               const TendonInput& tendons, const RodLoads& loads) {
+  RodDynamicsSlopes slopes;
+  differentiate(q, v, loads, 1, 0, slopes.momentum_by_q, slopes.force_by_q);
+  differentiate(q, v, loads, 0, 1, slopes.mass, slopes.force_by_v);
+  motion.place(q.data(), v.data());
+  const auto count = static_cast<Eigen::Index>(chain.tendons());
+  slopes.force_by_input.setZero(q.size(), count);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const auto tendon = static_cast<std::size_t>(i);
+    motion.find_length_slopes(tendon, slopes.force_by_input.col(i).data());
+    slopes.force_by_input.col(i) *= -1;
+    if (tendons.displacements.empty()) continue;
+    // Its tension follows its length.
+    if (tensions[tendon] == 0) {
+      slopes.force_by_input.col(i).setZero();
+      continue;
+    }
+    slopes.force_by_q -=
+        slopes.force_by_input.col(i) * slopes.force_by_input.col(i).transpose() / compliance[tendon];
+    slopes.force_by_input.col(i) /= compliance[tendon];
+  }
+  return slopes;
+}
+
+bool RodDynamics::Work::find_stage(const RodState& state, const TendonInput& tendons, const RodLoads& loads,
+                                   double h, Eigen::VectorXd& q, Eigen::VectorXd& v) {
+  RodState after = state;
+  if (!step_once(scheme, after, tendons, loads, h).converged()) return false;
+  q = q_from_ + scheme.stage * h * velocity;
+  v = velocity;
+  return true;
+}
+
+RodDynamicsSlopes RodDynamics::slopes(const RodState& state, const TendonInput& tendons,
+                                      const RodLoads& loads) {
+  const RodState started = start(state.q, velocity(state), tendons, loads);  // Checks; sets the tensions.
+  return work_->slopes_at(started.q, started.rate, tendons, loads);
+}
+
+RodLinear RodDynamics::linearize(const RodState& state, const TendonInput& tendons, const RodLoads& loads) {
+  const RodDynamicsSlopes by = slopes(state, tendons, loads);
+  const Eigen::Index n = state.q.size(), inputs = by.force_by_input.cols();
+  const Eigen::LDLT<Eigen::MatrixXd> mass(by.mass);
+  const Eigen::MatrixXd by_p = mass.solve(Eigen::MatrixXd::Identity(n, n)),
+                        by_q = -mass.solve(by.momentum_by_q);
+  RodLinear linear;
+  linear.A.resize(2 * n, 2 * n);
+  linear.A << by_q, by_p, by.force_by_q + by.force_by_v * by_q, by.force_by_v * by_p;
+  linear.B.setZero(2 * n, inputs);
+  linear.B.bottomRows(n) = by.force_by_input;
+  linear.A_rest.setZero(2 * n, 2 * n);
+  linear.A_rest.topRightCorner(n, n).setIdentity();
+  linear.A_rest.bottomRows(n) << mass.solve(by.force_by_q), mass.solve(by.force_by_v);
+  linear.B_rest.setZero(2 * n, inputs);
+  linear.B_rest.bottomRows(n) = mass.solve(by.force_by_input);
+  work_->matrix.find_columns(work_->motion);
+  linear.tip_by_q = work_->matrix.node_columns(work_->layout.nodes - 1);
+  const Triple<double>& p = work_->motion.nodes().back().position;
+  for (Eigen::Index j = 0; j < n; ++j)
+    linear.tip_by_q.col(j).head<3>() +=
+        linear.tip_by_q.col(j).tail<3>().cross(Eigen::Vector3d(p.x, p.y, p.z));
+  linear.lengths_by_q.setZero(inputs, n);
+  Eigen::VectorXd row(n);
+  for (Eigen::Index i = 0; i < inputs; ++i) {
+    work_->motion.find_length_slopes(static_cast<std::size_t>(i), row.data());
+    linear.lengths_by_q.row(i) = row.transpose();
+  }
+  return linear;
+}
+
+RodStepSlopes RodDynamics::step_slopes(const RodState& state, const TendonInput& tendons,
+                                       const RodLoads& loads, double h) {
+  Eigen::VectorXd q, v;
+  if (!(h > 0) || !work_->input_problem(tendons, loads).empty() ||
+      !work_->find_stage(state, tendons, loads, h, q, v))
+    throw std::runtime_error("derivatives of a step that does not converge");
+  const RodDynamicsSlopes by = work_->slopes_at(q, v, tendons, loads);
+  const Work::Scheme& scheme = work_->scheme;
+  const Eigen::Index n = q.size(), inputs = by.force_by_input.cols();
+  const double stretch = scheme.stage * h, memory = scheme.memory * h;
+  const Eigen::MatrixXd shape = by.momentum_by_q - stretch * by.force_by_q;
+  const Eigen::PartialPivLU<Eigen::MatrixXd> derivative(by.mass - stretch * by.force_by_v + stretch * shape);
+  // Columns: q, p, rate, force, input. What the stage begins with, then the stage, then the step's end.
+  const Eigen::Index columns = 4 * n + inputs;
+  const auto none = Eigen::MatrixXd::Zero(n, columns);
+  const Eigen::MatrixXd one = Eigen::MatrixXd::Identity(n, n);
+  Eigen::MatrixXd q_from = none, p_from = none, u = none, rate = none, force = none;
+  q_from.leftCols(n) = one;
+  q_from.middleCols(2 * n, n) = memory * one;
+  p_from.middleCols(n, n) = one;
+  p_from.middleCols(3 * n, n) = memory * one;
+  u.rightCols(inputs) = by.force_by_input;
+  const Eigen::MatrixXd v_by = derivative.solve(p_from + stretch * u - shape * q_from);
+  const Eigen::MatrixXd f_by = by.force_by_q * (q_from + stretch * v_by) + by.force_by_v * v_by + u;
+  const double now = 1 / scheme.alpha_m, old = (1 - scheme.alpha_m) / scheme.alpha_m;
+  rate.middleCols(2 * n, n) = one;
+  force.middleCols(3 * n, n) = one;
+  Eigen::MatrixXd after(4 * n, columns);
+  after.middleRows(2 * n, n) = now * v_by - old * rate;
+  after.middleRows(3 * n, n) = now * f_by - old * force;
+  after.topRows(n) = h * (1 - scheme.gamma) * rate + h * scheme.gamma * after.middleRows(2 * n, n);
+  after.middleRows(n, n) = h * (1 - scheme.gamma) * force + h * scheme.gamma * after.middleRows(3 * n, n);
+  after.topLeftCorner(n, n) += one;
+  after.block(n, n, n, n) += one;
+  return {.by_state = after.leftCols(4 * n), .by_input = after.rightCols(inputs)};
+}
+
+}  // namespace flexura

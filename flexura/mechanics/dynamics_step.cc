@@ -8,6 +8,8 @@ namespace {
 
 // An iteration that gains less than this goes nowhere.
 constexpr double least_gain = 0.95;
+// One that gains less than this gets a new matrix, where surroundings pull.
+constexpr double slow_gain = 0.2;
 constexpr int patience = 6;
 
 double greatest_change(const Eigen::VectorXd& change, const Eigen::VectorXd& scales) {
@@ -173,14 +175,16 @@ void RodDynamics::Work::begin(const RodState& state, const Stage& stage, double 
 bool RodDynamics::Work::iterate_quickly(const Stage& stage, double contraction, RodStep& result,
                                         double& worst_gain) {
   double before = 0;
+  bool is_stale = true;
   while (result.iterations < config.most_iterations) {
     evaluate(stage);
-    if (result.iterations == 0) {
+    if (is_stale) {
       matrix.find_columns(motion);
       const bool is_pulled = std::ranges::any_of(tensions, [](double tension) { return tension != 0; });
       if (!matrix.factor(motion, {.damping = stage.stretch, .stiffness = stage.stretch * stage.stretch},
                          is_pulled ? tensions.data() : nullptr, surroundings != nullptr))
         return false;
+      is_stale = false;
     }
     if (!solve_quickly(stage)) return false;
     ++result.iterations;
@@ -190,6 +194,8 @@ bool RodDynamics::Work::iterate_quickly(const Stage& stage, double contraction, 
     if (before > 0) {
       contraction = size / before;
       worst_gain = std::max(worst_gain, contraction);
+      // What touches changes as the rod moves.
+      is_stale = surroundings != nullptr && contraction > slow_gain;
       if (result.iterations > patience && contraction > least_gain && size > config.tolerance) return false;
     }
     if (size <= config.tolerance || (contraction < 0.5 && 2 * size * contraction <= config.tolerance))
@@ -256,6 +262,8 @@ bool RodDynamics::Work::finish(const Stage& stage, RodState& state, double h) {
   }
   for (Eigen::Index i = 0; stage.by_displacement() && i < pull_change_.size(); ++i)
     if (pull_change_[i] != 0) force_ -= pull_change_[i] * length_slopes_.col(i);
+  if (surroundings != nullptr)
+    matrix.add_pull_change(motion, stage.stretch, change_.data(), force_.data());
   if (!force_.allFinite() || !velocity.allFinite()) return false;
   const Scheme& use = stage.scheme;
   const double now = 1 / use.alpha_m, old = (1 - use.alpha_m) / use.alpha_m;

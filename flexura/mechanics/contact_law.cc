@@ -24,26 +24,25 @@ void positive_part(double x, double& value, double& slope) {
 }
 
 struct Sliding {
-  double depth_rate = 0, normal_speed = 0, speed = 0;
-  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  // Of the ball's surface.
+  double normal_speed = 0, speed = 0;                  // Of the latter, that of slip, made smooth.
+  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  // Of the ball's surface against the body.
   ContactPress press;
 };
 
-TouchForce evaluate(const ContactLaw& law, const Touch& touch, Sliding& sliding) {
-  const Eigen::Vector3d& n = touch.nearest.normal;
-  TouchForce result;
-  result.depth = touch.radius - touch.nearest.distance;
-  result.point = touch.center - touch.radius * n;
-  if (!(result.depth > 0)) return result;
-  sliding.velocity = touch.twist.head<3>() + touch.twist.tail<3>().cross(result.point);
-  sliding.normal_speed = n.dot(sliding.velocity);
-  sliding.depth_rate = -sliding.normal_speed;
-  sliding.press = press(law, result.depth, sliding.depth_rate);
-  result.normal_force = touch.run * sliding.press.force;
-  result.slip = sliding.velocity - sliding.normal_speed * n;
-  sliding.speed = std::sqrt(result.slip.squaredNorm() + law.slip_speed * law.slip_speed);
-  result.force = result.normal_force * (n - law.friction / sliding.speed * result.slip);
-  return result;
+Sliding sliding_of(const ContactLaw& law, const Touch& touch, const TouchForce& at) {
+  Sliding sliding;
+  sliding.velocity = touch.twist.head<3>() + touch.twist.tail<3>().cross(at.point);
+  sliding.normal_speed = touch.nearest.normal.dot(sliding.velocity);
+  sliding.press = press(law, at.depth, -sliding.normal_speed);
+  const Eigen::Vector3d slip = sliding.velocity - sliding.normal_speed * touch.nearest.normal;
+  sliding.speed = std::sqrt(slip.squaredNorm() + law.slip_speed * law.slip_speed);
+  return sliding;
+}
+
+// Friction for each newton of normal force, by the slip, negative.
+Eigen::Matrix3d rub_by_slip(const ContactLaw& law, const Sliding& sliding, const Eigen::Vector3d& slip) {
+  const Eigen::Vector3d part = slip / sliding.speed;
+  return law.friction / sliding.speed * (Eigen::Matrix3d::Identity() - part * part.transpose());
 }
 
 }  // namespace
@@ -60,6 +59,19 @@ std::string law_problem(const ContactLaw& law) {
   return "";
 }
 
+TouchForce touch_force(const ContactLaw& law, const Touch& touch) {
+  const Eigen::Vector3d& n = touch.nearest.normal;
+  TouchForce result;
+  result.depth = touch.radius - touch.nearest.distance;
+  result.point = touch.center - touch.radius * n;
+  if (!(result.depth > 0)) return result;
+  const Sliding sliding = sliding_of(law, touch, result);
+  result.normal_force = touch.run * sliding.press.force;
+  result.slip = sliding.velocity - sliding.normal_speed * n;
+  result.force = result.normal_force * (n - law.friction / sliding.speed * result.slip);
+  return result;
+}
+
 ContactPress press(const ContactLaw& law, double depth, double rate) {
   if (!(depth > 0)) return {};
   double spring = 0, slope = 0, share = 0, share_slope = 0;
@@ -74,57 +86,59 @@ ContactPress press(const ContactLaw& law, double depth, double rate) {
   return {.force = spring * share, .by_depth = slope * share, .by_rate = spring * share_slope * law.damping};
 }
 
-TouchForce touch_force(const ContactLaw& law, const Touch& touch) {
-  Sliding sliding;
-  return evaluate(law, touch, sliding);
+// The wrench is [f; c x f]. Its force is normal_force along, with along = n - friction slip / speed.
+Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::ColMajor, 6, 18> wrench_change(const ContactLaw& law,
+                                                                               const Touch& touch,
+                                                                               const TouchForce& at,
+                                                                               const TouchChange& change) {
+  const Sliding sliding = sliding_of(law, touch, at);
+  const Eigen::Vector3d& n = touch.nearest.normal;
+  const Eigen::Vector3d along = n - law.friction / sliding.speed * at.slip;
+  const TouchChange::Row speed =
+      sliding.velocity.transpose() * change.normal + n.transpose() * change.velocity;
+  const TouchChange::Row press =
+      touch.run * (sliding.press.by_depth * change.depth - sliding.press.by_rate * speed);
+  const TouchChange::Rows slip = change.velocity - sliding.normal_speed * change.normal - n * speed;
+  const TouchChange::Rows force =
+      along * press + at.normal_force * (change.normal - rub_by_slip(law, sliding, at.slip) * slip);
+  Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::ColMajor, 6, 18> result(6, force.cols());
+  result.topRows<3>() = force;
+  result.bottomRows<3>() = skew(at.point) * force - skew(at.force) * change.point;
+  return result;
 }
 
-// The wrench is [f; c x f] with c = p - r n, of the centre p and the normal n(p). A small twist moves p by
-// Jp, and n by H Jp, where H is the derivative of the normal.
+// A small twist moves the centre p by Jp, and the normal n(p) by H Jp, where H is its derivative; the
+// touching point is p - r n.
 TouchForce touch_force(const ContactLaw& law, const Touch& touch, NodePull& pull) {
   using Rows = Eigen::Matrix<double, 3, 6>;
-  Sliding sliding;
-  const TouchForce result = evaluate(law, touch, sliding);
+  const TouchForce result = touch_force(law, touch);
   pull = NodePull{};
   if (!(result.depth > 0)) return result;
-  const Eigen::Vector3d &n = touch.nearest.normal, &c = result.point, &slip = result.slip;
-  const Eigen::Matrix3d across = Eigen::Matrix3d::Identity() - n * n.transpose();
+  const Sliding sliding = sliding_of(law, touch, result);
+  const Eigen::Vector3d& n = touch.nearest.normal;
   Rows at_center, at_point;
   at_center << Eigen::Matrix3d::Identity(), -skew(touch.center);
-  at_point << Eigen::Matrix3d::Identity(), -skew(c);
+  at_point << Eigen::Matrix3d::Identity(), -skew(result.point);
 
-  const double run = touch.run, rub = law.friction / sliding.speed;
-  const Eigen::Vector3d along = n - rub * slip;  // f = normal_force along.
-  // d along = dn - rub_by_slip d slip.
-  const Eigen::Matrix3d rub_by_slip =
-      rub * (Eigen::Matrix3d::Identity() - slip * slip.transpose() / (sliding.speed * sliding.speed));
-
-  // By twist: the surface's velocity alone changes.
-  const Eigen::Matrix<double, 1, 6> rate_by_twist = -n.transpose() * at_point;
-  const Rows force_by_twist = run * sliding.press.by_rate * along * rate_by_twist -
-                              result.normal_force * rub_by_slip * (across * at_point);
-  pull.by_twist << force_by_twist, skew(c) * force_by_twist;
-
-  // By pose.
-  const Rows normal_by_pose = touch.nearest.curvature * at_center;
-  const Rows point_by_pose = at_center - touch.radius * normal_by_pose;
-  const Rows velocity_by_pose = skew(touch.twist.tail<3>()) * point_by_pose;
-  const Eigen::Matrix<double, 1, 6> speed_by_pose =
-      sliding.velocity.transpose() * normal_by_pose + n.transpose() * velocity_by_pose;
-  const Rows slip_by_pose = velocity_by_pose - sliding.normal_speed * normal_by_pose - n * speed_by_pose;
-  const Eigen::Matrix<double, 1, 6> press_by_pose =
-      -run * (sliding.press.by_depth * n.transpose() * at_center + sliding.press.by_rate * speed_by_pose);
-  const Rows force_by_pose =
-      along * press_by_pose + result.normal_force * (normal_by_pose - rub_by_slip * slip_by_pose);
-  pull.by_pose << force_by_pose, skew(c) * force_by_pose - skew(result.force) * point_by_pose;
+  TouchChange change;
+  change.depth.setZero(6);
+  change.normal.setZero(3, 6);
+  change.point.setZero(3, 6);
+  change.velocity = at_point;
+  pull.by_twist = wrench_change(law, touch, result, change);
+  change.depth = -n.transpose() * at_center;
+  change.normal = touch.nearest.curvature * at_center;
+  change.point = at_center - touch.radius * change.normal;
+  change.velocity = skew(touch.twist.tail<3>()) * change.point;
+  pull.by_pose = wrench_change(law, touch, result, change);
 
   // What holds: the spring and the damper along the normal, friction across.
   const Eigen::Matrix<double, 1, 6> row = n.transpose() * at_point;
-  const Rows slide = across * at_point;
+  const Rows slide = at_point - n * row;
   pull.is_held = true;
-  pull.stiffness = run * sliding.press.by_depth * row.transpose() * row;
-  pull.damping = run * sliding.press.by_rate * row.transpose() * row +
-                 result.normal_force * slide.transpose() * rub_by_slip * slide;
+  pull.stiffness = touch.run * sliding.press.by_depth * row.transpose() * row;
+  pull.damping = touch.run * sliding.press.by_rate * row.transpose() * row +
+                 result.normal_force * slide.transpose() * rub_by_slip(law, sliding, result.slip) * slide;
   pull.wrench = result.wrench();
   return result;
 }

@@ -50,7 +50,20 @@ struct TouchForce {
 };
 /// Normal force and friction. That is -friction normal_force slip / sqrt(|slip|^2 + slip_speed^2).
 [[nodiscard]] TouchForce touch_force(const ContactLaw& law, const Touch& touch);
-/// The same, with its derivatives by the node's motion.
+/// How a touch changes, by so many numbers as there are columns.
+struct TouchChange {
+  using Row = Eigen::Matrix<double, 1, Eigen::Dynamic, Eigen::RowMajor, 1, 18>;
+  using Rows = Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::ColMajor, 3, 18>;
+
+  Row depth;           ///< Of the depth.
+  Rows normal, point;  ///< Of the normal and the touching point.
+  Rows velocity;       ///< Of the velocity there of the ball against the body.
+};
+/// How the wrench changes then.
+[[nodiscard]] Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::ColMajor, 6, 18> wrench_change(
+    const ContactLaw& law, const Touch& touch, const TouchForce& at, const TouchChange& change);
+
+/// The same, with its derivatives by the node's motion, where the body lies still.
 TouchForce touch_force(const ContactLaw& law, const Touch& touch, NodePull& pull);
 
 }  // namespace flexura

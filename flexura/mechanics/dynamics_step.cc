@@ -234,6 +234,7 @@ bool RodDynamics::Work::iterate_exactly(const Stage& stage, RodStep& result) {
     }
     if (!(part > 1e-4) || !std::isfinite(next)) return false;
     if (next <= config.tolerance) {
+      matrix.find_columns(motion);
       velocity += change_;
       return true;
     }
@@ -246,8 +247,13 @@ bool RodDynamics::Work::iterate_exactly(const Stage& stage, RodStep& result) {
   return false;
 }
 
-// The stage's force, with the last change of the rates; and from the stage to the step's end.
-bool RodDynamics::Work::finish(const Stage& stage, RodState& state, double h) {
+// The stage's force, with the last change of the rates.
+void RodDynamics::Work::finish_force(const Stage& stage) {
+  if (surroundings != nullptr &&
+      std::ranges::any_of(motion.pulls(), [](const NodePull& pull) { return pull.is_coupled; })) {
+    evaluate(stage);
+    return;
+  }
   for (const RodLayout::Section& section : layout.sections) {
     const auto first = static_cast<Eigen::Index>(section.first_mode),
                size = static_cast<Eigen::Index>(section.modes);
@@ -262,8 +268,12 @@ bool RodDynamics::Work::finish(const Stage& stage, RodState& state, double h) {
   }
   for (Eigen::Index i = 0; stage.by_displacement() && i < pull_change_.size(); ++i)
     if (pull_change_[i] != 0) force_ -= pull_change_[i] * length_slopes_.col(i);
-  if (surroundings != nullptr)
-    matrix.add_pull_change(motion, stage.stretch, change_.data(), force_.data());
+  if (surroundings != nullptr) matrix.add_pull_change(motion, stage.stretch, change_.data(), force_.data());
+}
+
+// From the stage to the step's end.
+bool RodDynamics::Work::finish(const Stage& stage, RodState& state, double h) {
+  finish_force(stage);
   if (!force_.allFinite() || !velocity.allFinite()) return false;
   const Scheme& use = stage.scheme;
   const double now = 1 / use.alpha_m, old = (1 - use.alpha_m) / use.alpha_m;

@@ -88,6 +88,7 @@ struct RodDynamics::Work {
   template <typename Solve>
   bool solve_with_tendons(const Stage& stage, Solve&& solve);
   bool pull_tight();
+  void finish_force(const Stage& stage);
   bool finish(const Stage& stage, RodState& state, double h);
 
   Eigen::VectorXd q_from_, p_from_, q_, momentum_, force_, change_, left_;

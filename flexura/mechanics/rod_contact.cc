@@ -4,7 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
+
+#include "flexura/math/so3.h"
 
 namespace flexura {
 namespace {
@@ -16,6 +19,7 @@ constexpr double most_places = 10'000;
 
 struct Between {
   double share = 0;
+  bool slides = false;  // Inside the segment.
   NearestPoint nearest;
 };
 
@@ -26,6 +30,7 @@ Between nearest_on(const Eigen::Vector3d& from, const Eigen::Vector3d& to, const
   Between result;
   const double raw = squared > 0 ? off_from.dot(along) / squared : 0;
   result.share = std::clamp(raw, 0.0, 1.0);
+  result.slides = raw > 0 && raw < 1;
   const Eigen::Vector3d off = off_from - result.share * along;
   const double norm = off.norm();
   result.nearest.distance = norm;
@@ -127,7 +132,7 @@ void RodContact::for_meetings(std::span<const NodeMotion> nodes, Found&& found) 
       const double gap = between.nearest.distance - other - nodes_[k].radius;
       if (!(gap < 0) || !(gap < nearest)) continue;
       nearest = gap;
-      best = {.from = j, .share = between.share, .touch = {}};
+      best = {.from = j, .share = between.share, .slides = between.slides, .touch = {}};
       best.touch.nearest = between.nearest;
       best.touch.nearest.distance -= other;
     }
@@ -150,25 +155,105 @@ void RodContact::pull(std::span<const NodeMotion> nodes, std::span<const double>
     touch_force(law_, touch, one);
     pulls[k] += one;
   });
-  // What one node does to the other is not in the derivatives. Twice what holds each holds both.
+  // Twice what holds each holds both, whatever one does to the other.
   for_meetings(nodes, [&](std::size_t k, const Meeting& meeting) {
-    touch_force(law_, meeting.touch, one);
-    one.stiffness *= 2;
-    one.damping *= 2;
-    pulls[k] += one;
-    const auto answer = [&](std::size_t j, double share) {
-      if (share == 0) return;
-      NodePull other = one;
-      other.wrench *= -share;
-      other.by_pose *= share * share;
-      other.by_twist *= share * share;
-      other.stiffness *= share;
-      other.damping *= share;
-      pulls[j] += other;
-    };
-    answer(meeting.from, 1 - meeting.share);
-    answer(meeting.from + 1, meeting.share);
+    const TouchForce at = touch_force(law_, meeting.touch, one);
+    const MeetingSlopes slopes = slopes_of(nodes, meeting, at);
+    const NodePull held = one;
+    const std::array<double, 3> shares = {1, 1 - meeting.share, meeting.share};
+    const std::array<std::size_t, 3> of = {k, meeting.from, meeting.from + 1};
+    for (int i = 0; i < 3; ++i) {
+      const double share = shares[static_cast<std::size_t>(i)];
+      const Blocks own = blocks(slopes, meeting, held.wrench, i, i);
+      one.by_pose = own.by_pose;
+      one.by_twist = own.by_twist;
+      one.wrench = (i == 0 ? 1 : -share) * held.wrench;
+      one.stiffness = 2 * share * held.stiffness;
+      one.damping = 2 * share * held.damping;
+      one.is_coupled = true;
+      pulls[of[static_cast<std::size_t>(i)]] += one;
+    }
   });
+}
+
+void RodContact::couple(std::span<const NodeMotion> nodes, std::span<const double> /*run*/,
+                        std::vector<NodeCoupling>& couplings) const {
+  for_meetings(nodes, [&](std::size_t k, const Meeting& meeting) {
+    const TouchForce at = touch_force(law_, meeting.touch);
+    const MeetingSlopes slopes = slopes_of(nodes, meeting, at);
+    const std::array<std::size_t, 3> node = {k, meeting.from, meeting.from + 1};
+    for (int i = 0; i < 3; ++i) {
+      for (int j = 0; j < 3; ++j) {
+        if (i == j) continue;
+        const Blocks block = blocks(slopes, meeting, at.wrench(), i, j);
+        couplings.push_back({.of = node[static_cast<std::size_t>(j)],
+                             .at = node[static_cast<std::size_t>(i)],
+                             .by_pose = block.by_pose,
+                             .by_twist = block.by_twist});
+      }
+    }
+  });
+}
+
+// With p the node, a and b the segment's ends, u the share, e = b - a and off = p - a - u e: off is
+// perpendicular to e as long as u is inside, so that |e|^2 du = e . (dp - (1 - u) da - u db) + off . (db -
+// da).
+RodContact::MeetingSlopes RodContact::slopes_of(std::span<const NodeMotion> nodes, const Meeting& meeting,
+                                                const TouchForce& at) const {
+  using Rows = Eigen::Matrix<double, 3, 18>;
+  const Touch& touch = meeting.touch;
+  const std::size_t from = meeting.from;
+  const double u = meeting.share;
+  const Eigen::Vector3d &a = nodes[from].pose.position, &b = nodes[from + 1].pose.position;
+  const Eigen::Vector3d& n = touch.nearest.normal;
+  const Eigen::Vector3d e = b - a, off = touch.center - a - u * e;
+  const double distance = off.norm();
+  const auto moved = [](const Eigen::Vector3d& p) {
+    Eigen::Matrix<double, 3, 6> rows;
+    rows << Eigen::Matrix3d::Identity(), -skew(p);
+    return rows;
+  };
+  Rows apart, stretched = Rows::Zero(), center = Rows::Zero(), twisted;
+  apart << moved(touch.center), -(1 - u) * moved(a), -u * moved(b);
+  stretched.middleCols<6>(6) = -moved(a);
+  stretched.rightCols<6>() = moved(b);
+  center.leftCols<6>() = moved(touch.center);
+  const Eigen::Matrix<double, 3, 6> at_point = moved(at.point);
+  twisted << at_point, -(1 - u) * at_point, -u * at_point;
+
+  MeetingSlopes slopes;
+  slopes.share_by_pose.setZero();
+  if (meeting.slides)
+    slopes.share_by_pose = (e.transpose() * apart + off.transpose() * stretched) / e.squaredNorm();
+  TouchChange change;
+  change.depth.setZero(18);
+  change.normal.setZero(3, 18);
+  change.point.setZero(3, 18);
+  change.velocity = twisted;
+  slopes.by_twist = wrench_change(law_, touch, at, change);
+  const Rows moves = apart - e * slopes.share_by_pose;
+  if (distance > no_direction) change.normal = (moves - n * (n.transpose() * moves)) / distance;
+  change.depth =
+      -n.transpose() * moves + (nodes_[from + 1].radius - nodes_[from].radius) * slopes.share_by_pose;
+  change.point = center - touch.radius * change.normal;
+  const Vector6d between = nodes[from + 1].twist - nodes[from].twist;
+  const Eigen::Vector3d faster = between.head<3>() + between.tail<3>().cross(at.point);
+  change.velocity = skew(touch.twist.tail<3>()) * change.point - faster * slopes.share_by_pose;
+  slopes.by_pose = wrench_change(law_, touch, at, change);
+  return slopes;
+}
+
+RodContact::Blocks RodContact::blocks(const MeetingSlopes& slopes, const Meeting& meeting,
+                                      const Vector6d& wrench, int at, int of) {
+  const double share = at == 0   ? 1
+                       : at == 1 ? meeting.share - 1
+                                 : -meeting.share,
+               by_share = at == 0   ? 0
+                          : at == 1 ? 1
+                                    : -1;
+  return {.by_pose = share * slopes.by_pose.middleCols<6>(6 * of) +
+                     by_share * wrench * slopes.share_by_pose.middleCols<6>(6 * of),
+          .by_twist = share * slopes.by_twist.middleCols<6>(6 * of)};
 }
 
 void RodContact::find(std::span<const NodeMotion> nodes, std::vector<ContactForce>& found) const {

@@ -58,6 +58,8 @@ class RodContact final : public RodSurroundings {
 
   void pull(std::span<const NodeMotion> nodes, std::span<const double> run,
             std::span<NodePull> pulls) const override;
+  void couple(std::span<const NodeMotion> nodes, std::span<const double> run,
+              std::vector<NodeCoupling>& couplings) const override;
   /// What touches where the nodes are so, from the base on. `found` is emptied first.
   void find(std::span<const NodeMotion> nodes, std::vector<ContactForce>& found) const;
   [[nodiscard]] std::vector<ContactForce> find(std::span<const NodeMotion> nodes) const;
@@ -72,13 +74,28 @@ class RodContact final : public RodSurroundings {
   // Where a node touches the rod itself: between the nodes `from` and from + 1.
   struct Meeting {
     std::size_t from = 0;
-    double share = 0;  // Of from + 1.
+    double share = 0;     // Of from + 1.
+    bool slides = false;  // The share changes as they move.
     Touch touch;
+  };
+  // The wrench on a node that meets the rod, and the share: by small twists of it, of `from` and of from + 1,
+  // side by side, and the wrench by their twists.
+  struct MeetingSlopes {
+    Eigen::Matrix<double, 6, 18> by_pose, by_twist;
+    Eigen::Matrix<double, 1, 18> share_by_pose;
   };
   template <typename Found>
   void for_obstacles(std::span<const NodeMotion> nodes, Found&& found) const;
   template <typename Found>
   void for_meetings(std::span<const NodeMotion> nodes, Found&& found) const;
+  [[nodiscard]] MeetingSlopes slopes_of(std::span<const NodeMotion> nodes, const Meeting& meeting,
+                                        const TouchForce& at) const;
+  // Block of the wrench at one of the three by the motion of another.
+  struct Blocks {
+    Matrix6d by_pose, by_twist;
+  };
+  [[nodiscard]] static Blocks blocks(const MeetingSlopes& slopes, const Meeting& meeting,
+                                     const Vector6d& wrench, int at, int of);
   void require_nodes(std::size_t nodes, std::size_t pulls) const;
 
   ContactLaw law_;

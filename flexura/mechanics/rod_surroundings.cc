@@ -13,6 +13,7 @@ NodePull& NodePull::operator+=(const NodePull& other) {
     damping = hold(*this, damping, by_twist) + hold(other, other.damping, other.by_twist);
     is_held = true;
   }
+  is_coupled = is_coupled || other.is_coupled;
   wrench += other.wrench;
   by_pose += other.by_pose;
   by_twist += other.by_twist;

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
 #include <span>
+#include <vector>
 
 #include "flexura/math/pose.h"
 #include "flexura/math/se3.h"
@@ -29,6 +31,8 @@ struct NodePull {
   bool is_held = false;
   Matrix6d stiffness = Matrix6d::Zero();
   Matrix6d damping = Matrix6d::Zero();
+  /// Another node's motion changes the wrench, too: couple() says how.
+  bool is_coupled = false;
 
   /// Nothing pulls.
   void clear() {
@@ -40,6 +44,12 @@ struct NodePull {
   NodePull& operator+=(const NodePull& other);
 };
 
+/// What the motion of a node changes of the wrench at another.
+struct NodeCoupling {
+  std::size_t of = 0, at = 0;  ///< Of all nodes.
+  Matrix6d by_pose = Matrix6d::Zero(), by_twist = Matrix6d::Zero();
+};
+
 /// What else pulls at a rod in motion, as it moves: contact, drag, springs.
 class RodSurroundings {
  public:
@@ -49,6 +59,9 @@ class RodSurroundings {
   /// allocates nothing if steps are not to.
   virtual void pull(std::span<const NodeMotion> nodes, std::span<const double> run,
                     std::span<NodePull> pulls) const = 0;
+  /// Of nodes whose pulls are coupled: adds what each does to the other.
+  virtual void couple(std::span<const NodeMotion> /*nodes*/, std::span<const double> /*run*/,
+                      std::vector<NodeCoupling>& /*couplings*/) const {}
 };
 
 }  // namespace flexura

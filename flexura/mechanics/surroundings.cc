@@ -33,6 +33,11 @@ void Surroundings::pull(std::span<const NodeMotion> nodes, std::span<const doubl
   }
 }
 
+void Surroundings::couple(std::span<const NodeMotion> nodes, std::span<const double> run,
+                          std::vector<NodeCoupling>& couplings) const {
+  for (const RodSurroundings* part : parts_) part->couple(nodes, run, couplings);
+}
+
 TendonInput after_breaks(TendonInput input, std::span<const TendonBreak> breaks, double time) {
   for (const TendonBreak& each : breaks) {
     if (!(time >= each.time)) continue;

@@ -16,6 +16,8 @@ class Surroundings final : public RodSurroundings {
   /// Not from two threads at once.
   void pull(std::span<const NodeMotion> nodes, std::span<const double> run,
             std::span<NodePull> pulls) const override;
+  void couple(std::span<const NodeMotion> nodes, std::span<const double> run,
+              std::vector<NodeCoupling>& couplings) const override;
 
  private:
   std::vector<const RodSurroundings*> parts_;

@@ -110,40 +110,57 @@ void RodContact::for_obstacles(std::span<const NodeMotion> nodes, Found&& found)
   }
 }
 
-// found(node, meeting): where a node's ball is in another part of the rod, of all such the nearest.
+// found(node, meeting): where a node's ball is in other parts of the rod: of each part, segment after
+// segment, the nearest place.
 template <typename Found>
 void RodContact::for_meetings(std::span<const NodeMotion> nodes, Found&& found) const {
   if (!itself_) return;
   for (std::size_t k = 0; k < nodes_.size(); ++k) {
-    const Eigen::Vector3d& p = nodes[k].pose.position;
     Meeting best;
-    double nearest = std::numeric_limits<double>::infinity();
+    double nearest = 0;
+    const auto finish = [&] {
+      if (nearest < 0) found(k, best);
+      nearest = 0;
+    };
     for (std::size_t j = 0; j + 1 < nodes_.size(); ++j) {
-      const Node &from = nodes_[j], &to = nodes_[j + 1];
-      if (from.place.section != to.place.section) continue;
-      if (!(from.s - nodes_[k].s > apart_ || nodes_[k].s - to.s > apart_)) continue;
-      const Eigen::Vector3d &a = nodes[j].pose.position, &b = nodes[j + 1].pose.position;
-      const double reach = nodes_[k].radius + std::max(from.radius, to.radius);
-      // Out of reach of a ball around the segment.
-      const double half = 0.5 * (b - a).norm() + reach;
-      if (!((p - 0.5 * (a + b)).squaredNorm() < half * half)) continue;
-      const Between between = nearest_on(a, b, p);
-      const double other = from.radius + between.share * (to.radius - from.radius);
-      const double gap = between.nearest.distance - other - nodes_[k].radius;
-      if (!(gap < 0) || !(gap < nearest)) continue;
-      nearest = gap;
-      best = {.from = j, .share = between.share, .slides = between.slides, .touch = {}};
-      best.touch.nearest = between.nearest;
-      best.touch.nearest.distance -= other;
+      if (nodes_[j].place.section != nodes_[j + 1].place.section) continue;
+      Meeting meeting;
+      const double gap = meet(nodes, k, j, meeting);
+      if (!(gap < 0)) {
+        finish();
+      } else if (gap < nearest) {
+        nearest = gap;
+        best = meeting;
+      }
     }
-    if (!std::isfinite(nearest)) continue;
-    best.touch.center = p;
-    best.touch.radius = nodes_[k].radius;
-    best.touch.twist =
-        nodes[k].twist - (1 - best.share) * nodes[best.from].twist - best.share * nodes[best.from + 1].twist;
-    best.touch.run = of_both_sides * nodes_[k].run;
-    found(k, best);
+    finish();
   }
+}
+
+// How far a node's ball is from a segment, which is where it meets it; not below 0 where it does not.
+double RodContact::meet(std::span<const NodeMotion> nodes, std::size_t k, std::size_t j,
+                        Meeting& meeting) const {
+  constexpr double none = std::numeric_limits<double>::infinity();
+  const Node &from = nodes_[j], &to = nodes_[j + 1], &node = nodes_[k];
+  if (!(from.s - node.s > apart_ || node.s - to.s > apart_)) return none;
+  const Eigen::Vector3d &a = nodes[j].pose.position, &b = nodes[j + 1].pose.position,
+                        &p = nodes[k].pose.position;
+  // Out of reach of a ball around the segment.
+  const double reach = 0.5 * (b - a).norm() + node.radius + std::max(from.radius, to.radius);
+  if (!((p - 0.5 * (a + b)).squaredNorm() < reach * reach)) return none;
+  const Between between = nearest_on(a, b, p);
+  const double other = from.radius + between.share * (to.radius - from.radius);
+  const double gap = between.nearest.distance - other - node.radius;
+  if (!(gap < 0)) return none;
+  meeting = {.from = j, .share = between.share, .slides = between.slides, .touch = {}};
+  meeting.touch.nearest = between.nearest;
+  meeting.touch.nearest.distance -= other;
+  meeting.touch.center = p;
+  meeting.touch.radius = node.radius;
+  meeting.touch.twist =
+      nodes[k].twist - (1 - between.share) * nodes[j].twist - between.share * nodes[j + 1].twist;
+  meeting.touch.run = of_both_sides * node.run;
+  return gap;
 }
 
 void RodContact::pull(std::span<const NodeMotion> nodes, std::span<const double> /*run*/,

@@ -86,6 +86,8 @@ class RodContact final : public RodSurroundings {
   };
   template <typename Found>
   void for_obstacles(std::span<const NodeMotion> nodes, Found&& found) const;
+  [[nodiscard]] double meet(std::span<const NodeMotion> nodes, std::size_t node, std::size_t from,
+                            Meeting& meeting) const;
   template <typename Found>
   void for_meetings(std::span<const NodeMotion> nodes, Found&& found) const;
   [[nodiscard]] MeetingSlopes slopes_of(std::span<const NodeMotion> nodes, const Meeting& meeting,

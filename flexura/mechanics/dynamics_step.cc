@@ -277,6 +277,10 @@ bool RodDynamics::Work::finish(const Stage& stage, RodState& state, double h) {
   if (!force_.allFinite() || !velocity.allFinite()) return false;
   const Scheme& use = stage.scheme;
   const double now = 1 / use.alpha_m, old = (1 - use.alpha_m) / use.alpha_m;
+  left_ =
+      state.momentum + h * ((1 - use.gamma) * state.force + use.gamma * (now * force_ - old * state.force));
+  change_ = state.q + h * ((1 - use.gamma) * state.rate + use.gamma * (now * velocity - old * state.rate));
+  if (!left_.allFinite() || !change_.allFinite()) return false;
   state.q += h * (1 - use.gamma) * state.rate;
   state.momentum += h * (1 - use.gamma) * state.force;
   state.rate = now * velocity - old * state.rate;

@@ -65,11 +65,11 @@ void bench_fall(benchmark::State& state, const Fall& fall, const Tips& known) {
   count(state, until, tips, known);
 }
 
-// Of so many microseconds a step, and so many nodes.
-Fall falling_tentacle(std::int64_t microseconds, std::int64_t nodes) {
+// In so many steps, with so many nodes.
+Fall falling_tentacle(std::int64_t steps, std::int64_t nodes) {
   Fall fall{.rod = soft_tentacle(), .config = {.spectral_radius = 0.8, .tolerance = 1e-3}, .tendons = {}};
   fall.rod.sections[0].nodes = static_cast<int>(nodes);
-  fall.step = 1e-6 * static_cast<double>(microseconds);
+  fall.step = until / static_cast<double>(steps);
   return fall;
 }
 
@@ -77,18 +77,18 @@ void fall_bends(benchmark::State& state) {
   bench_fall(state, falling_tentacle(state.range(0), state.range(1)), falling_tips);
 }
 BENCHMARK(fall_bends)
-    ->ArgNames({"us", "nodes"})
-    ->Args({12500, 4})
-    ->Args({12500, 5})
-    ->Args({10000, 5})
-    ->Args({5000, 5})
-    ->Args({2500, 6})
+    ->ArgNames({"steps", "nodes"})
+    ->Args({24, 4})
+    ->Args({40, 5})
+    ->Args({50, 5})
+    ->Args({100, 5})
+    ->Args({200, 6})
     ->Unit(benchmark::kMicrosecond);
 
 // The same by 24 joints of MuJoCo's, in each direction.
 void fall_mujoco(benchmark::State& state) {
   const Rod rod = soft_tentacle();
-  const double step = 1e-6 * static_cast<double>(state.range(1));
+  const double step = until / static_cast<double>(state.range(1));
   MujocoRod peer(rod.sections[0], soft_tentacle_weight().gravity, 24,
                  static_cast<MujocoIntegrator>(state.range(0)), step);
   const long steps = std::lround(until / step);
@@ -104,15 +104,13 @@ void fall_mujoco(benchmark::State& state) {
   count(state, until, tips, falling_tips);
 }
 BENCHMARK(fall_mujoco)
-    ->ArgNames({"integrator", "us"})
-    ->Args({0, 5000})
-    ->Args({0, 2500})
+    ->ArgNames({"integrator", "steps"})
+    ->Args({0, 100})
+    ->Args({0, 300})
     ->Args({0, 1000})
-    ->Args({0, 500})
-    ->Args({1, 5000})
-    ->Args({1, 2500})
+    ->Args({1, 100})
+    ->Args({1, 300})
     ->Args({1, 1000})
-    ->Args({1, 500})
     ->Unit(benchmark::kMicrosecond);
 
 const Tips& converged(const Fall& fall, int extra) {
@@ -140,11 +138,10 @@ void fall_all_strains(benchmark::State& state) {
   bench_fall(state, fall, converged(fall, 0));
 }
 BENCHMARK(fall_all_strains)
-    ->ArgNames({"us", "nodes"})
-    ->Args({10000, 5})
-    ->Args({5000, 5})
-    ->Args({5000, 6})
-    ->Args({2500, 6})
+    ->ArgNames({"steps", "nodes"})
+    ->Args({50, 5})
+    ->Args({100, 5})
+    ->Args({200, 6})
     ->Unit(benchmark::kMicrosecond);
 
 Fall with_tendons(Fall fall, bool by_displacement) {
@@ -166,8 +163,8 @@ void fall_tendons(benchmark::State& state) {
   bench_fall(state, fall, converged(fall, static_cast<int>(1 + 2 * state.range(0) + state.range(1))));
 }
 BENCHMARK(fall_tendons)
-    ->ArgNames({"displacements", "strains", "us"})
-    ->ArgsProduct({{0, 1}, {0, 1}, {10000, 5000, 2500}})
+    ->ArgNames({"displacements", "strains", "steps"})
+    ->ArgsProduct({{0, 1}, {0, 1}, {50, 200}})
     ->Unit(benchmark::kMicrosecond);
 
 // The heavy steel rod with all strains, no damping, whose tendon lets go of 5 of its 15 N.

@@ -13,9 +13,9 @@ namespace flexura {
 namespace {
 
 // Of tendons that are said to give nothing: of what the rod gives (RodStatics).
-constexpr double stiff_part = 1e-8;
+constexpr double least_give = 1e-8;
 
-bool all_finite(const std::vector<double>& values) {
+bool every_finite(const std::vector<double>& values) {
   return std::ranges::all_of(values, [](double value) { return std::isfinite(value); });
 }
 
@@ -26,14 +26,14 @@ std::vector<RodGrid> grids_of(const RodChain& chain) {
   return grids;
 }
 
-Eigen::Vector3d vector(const Triple<double>& a) { return {a.x, a.y, a.z}; }
-Vector6d vector(const Screw<double>& a) {
-  return (Vector6d() << vector(a.linear), vector(a.angular)).finished();
+Eigen::Vector3d eigen_of(const Triple<double>& a) { return {a.x, a.y, a.z}; }
+Vector6d eigen_of(const Screw<double>& a) {
+  return (Vector6d() << eigen_of(a.linear), eigen_of(a.angular)).finished();
 }
-Pose pose(const Placement<double>& at) {
+Pose pose_of(const Placement<double>& at) {
   Pose X;
-  X.rotation << vector(at.x).transpose(), vector(at.y).transpose(), vector(at.z).transpose();
-  X.position = vector(at.position);
+  X.rotation << eigen_of(at.x).transpose(), eigen_of(at.y).transpose(), eigen_of(at.z).transpose();
+  X.position = eigen_of(at.position);
   return X;
 }
 
@@ -102,7 +102,7 @@ RodDynamics::Work::Work(Rod rod, const RodDynamicsConfig& given, std::span<const
     chain.solve(answers_);
     give = (chain.length_slopes().transpose() * answers_).diagonal().cwiseAbs().maxCoeff();
   }
-  const double least = give > 0 ? stiff_part * give : stiff_part * chain.rod().length();
+  const double least = give > 0 ? least_give * give : least_give * chain.rod().length();
   for (const TendonRoute& tendon : chain.rod().tendons)
     compliance.push_back(std::max(tendon.compliance, least));
 }
@@ -115,7 +115,7 @@ std::string RodDynamics::Work::input_problem(const TendonInput& tendons, const R
     if (list.empty()) return "";
     if (list.size() != count)
       return fmt::format("{} {} given: expected {}, one a tendon", list.size(), name, count);
-    return all_finite(list) ? "" : fmt::format("{} that are not finite", name);
+    return every_finite(list) ? "" : fmt::format("{} that are not finite", name);
   };
   std::string problem = list_problem("tensions", tendons.tensions);
   if (problem.empty()) problem = list_problem("displacements", tendons.displacements);
@@ -220,7 +220,7 @@ double RodDynamics::step_error(const RodState& state) {
   const Eigen::VectorXd error =
       work_->scheme.error * state.step * (state.middle[0] - 2 * state.middle[1] + state.middle[2]);
   const Vector6d twist = work_->matrix.tip_change(error.data());
-  const Eigen::Vector3d tip = vector(work_->motion.nodes().back().position);
+  const Eigen::Vector3d tip = eigen_of(work_->motion.nodes().back().position);
   return (twist.head<3>() + twist.tail<3>().cross(tip)).norm();
 }
 
@@ -238,8 +238,8 @@ RodEnergy RodDynamics::energy(const RodState& state, const RodLoads& loads) {
     energy.strain += 0.5 * q.dot(section.stiffness * q);
   }
   for (std::size_t k = 0; k < layout.nodes; ++k) {
-    const Pose X = pose(work_->motion.nodes()[k]);
-    energy.gravity -= layout.bodies[k].mass * loads.gravity.dot(X * vector(layout.bodies[k].centre)) +
+    const Pose X = pose_of(work_->motion.nodes()[k]);
+    energy.gravity -= layout.bodies[k].mass * loads.gravity.dot(X * eigen_of(layout.bodies[k].centre)) +
                       layout.run[k] * loads.per_length.dot(X.position);
   }
   return energy;
@@ -260,7 +260,7 @@ Vector6d RodDynamics::momentum(const RodState& state) {
   const Eigen::VectorXd v = velocity(state);
   work_->motion.place(state.q.data(), v.data());
   Vector6d sum = Vector6d::Zero();
-  for (const Screw<double>& part : work_->motion.momenta()) sum += vector(part);
+  for (const Screw<double>& part : work_->motion.momenta()) sum += eigen_of(part);
   return sum;
 }
 
@@ -273,13 +273,13 @@ NodeMotion RodDynamics::motion(const RodState& state, const RodPlace& place) {
     throw std::invalid_argument("a place that was not asked for");
   const Eigen::VectorXd v = velocity(state);
   work_->motion.place(state.q.data(), v.data());
-  return {.pose = pose(work_->motion.nodes()[node]), .twist = vector(work_->motion.velocities()[node])};
+  return {.pose = pose_of(work_->motion.nodes()[node]), .twist = eigen_of(work_->motion.velocities()[node])};
 }
 
 Pose RodDynamics::tip(const RodState& state) {
   work_->velocity.setZero();
   work_->motion.place(state.q.data(), work_->velocity.data());
-  return pose(work_->motion.nodes().back());
+  return pose_of(work_->motion.nodes().back());
 }
 
 std::vector<double> RodDynamics::tendon_lengths(const RodState& state) {

@@ -18,14 +18,15 @@ namespace flexura {
 /// How a rod's motion is integrated.
 struct RodDynamicsConfig {
   /// What is left after each step of what moves too fast for it, from 0 to 1; 1: no numerical damping, the
-  /// step is the implicit midpoint rule. With much above 0.3, steps that are longer than the periods of a rod
-  /// without damping of its own may gain energy.
-  double spectral_radius = 0.3;
+  /// step is the implicit midpoint rule. Nearer to 1 steps are more exact; but where they are longer than a
+  /// rod's periods and the rod has no damping of its own, motion may gain energy from much above 0.1 on.
+  double spectral_radius = 0.1;
   /// How exactly a step's equations are solved, rad/s: errors of the rates have at most the energy, stiffness
   /// included, of the rod that turns so fast as a whole.
   double tolerance = 1e-7;
   int most_iterations = 30;
-  /// A step that does not converge is made in pieces, halves of halves; so many at most.
+  /// A step that does not converge is made anew with the radius 0, in halves of halves; so many at most. 1:
+  /// it is not.
   int most_pieces = 64;
   /// Whether cross-sections resist to turning. Without, a rod must not twist.
   bool rotary_inertia = true;
@@ -61,7 +62,8 @@ struct RodStep {
   DynamicsEnd end = DynamicsEnd::converged;
   std::string problem = {};  ///< Of bad input, in words.
   int iterations = 0;        ///< Linear systems solved.
-  int pieces = 1;            ///< That the step was made in.
+  int pieces = 1;            ///< That the step was made in, if it converged.
+  bool is_anew = false;      ///< It did not converge at first (RodDynamicsConfig::most_pieces).
 
   [[nodiscard]] bool converged() const { return end == DynamicsEnd::converged; }
 };

@@ -221,7 +221,7 @@ bool RodDynamics::Work::iterate_exactly(const Stage& stage, RodStep& result) {
   if (!change_.allFinite() || !factor_exactly(stage) || !solve_exactly(stage)) return false;
   const int most = result.iterations + config.most_iterations;
   Eigen::VectorXd step = change_, from = velocity;
-  double size = change_size();
+  double size = greatest_change(step, chain.scales());
   while (result.iterations < most && std::isfinite(size)) {
     double part = 1, next = 0;
     for (; part > 1e-4; part /= 2) {
@@ -229,11 +229,11 @@ bool RodDynamics::Work::iterate_exactly(const Stage& stage, RodStep& result) {
       evaluate(stage);
       ++result.iterations;
       if (!change_.allFinite() || !solve_exactly(stage)) continue;
-      next = change_size();
-      if (next <= (1 - part / 4) * size || next <= config.tolerance) break;
+      next = greatest_change(change_, chain.scales());
+      if (next <= (1 - part / 4) * size || change_size() <= config.tolerance) break;
     }
     if (!(part > 1e-4) || !std::isfinite(next)) return false;
-    if (next <= config.tolerance) {
+    if (change_size() <= config.tolerance) {
       matrix.find_columns(motion);
       velocity += change_;
       return true;
@@ -242,7 +242,7 @@ bool RodDynamics::Work::iterate_exactly(const Stage& stage, RodStep& result) {
     evaluate(stage);
     if (!factor_exactly(stage) || !solve_exactly(stage)) return false;
     step = change_;
-    size = change_size();
+    size = greatest_change(step, chain.scales());
   }
   return false;
 }
@@ -319,27 +319,43 @@ RodStep RodDynamics::Work::step_once(const Scheme& use, RodState& state, const T
   return result;
 }
 
+// The same shape, with the rates that the last steps had.
+void RodDynamics::Work::restart(RodState& state, const TendonInput& tendons, const RodLoads& loads) {
+  if (state.middles >= 2)
+    state.rate = state.middle[0] + (1 - scheme.alpha_f) * (state.middle[0] - state.middle[1]);
+  else if (state.middles == 1)
+    state.rate = state.middle[0];
+  motion.place(state.q.data(), state.rate.data());
+  set_tensions(tendons);
+  motion.pull(loads, tensions.data(), surroundings);
+  motion.balance(state.momentum.data(), state.force.data());
+  state.middles = 0;
+}
+
 RodStep RodDynamics::Work::step(RodState& state, const TendonInput& tendons, const RodLoads& loads,
                                 double h) {
   RodStep result = step_once(scheme, state, tendons, loads, h);
   if (result.converged() || config.most_pieces < 2) return result;
-  // In pieces, in halves of halves, with all the damping that there is.
+  // Anew, from the rates that the last steps had, with all the damping that there is; in halves of halves.
+  // (What long steps leave in the momenta of stiff strains would be a blow in short ones.)
   const Scheme damped(0);
   const RodState before = state;
+  restart(state, tendons, loads);
   int parts = 1, left = 1;
   result.pieces = 0;
+  result.is_anew = true;
   while (left > 0) {
-    if (!result.converged()) {
-      parts *= 2;
-      left *= 2;
-      if (parts > config.most_pieces) break;
-    }
     const RodStep piece = step_once(damped, state, tendons, loads, h / parts);
     result.end = piece.end;
     result.iterations += piece.iterations;
-    if (!piece.converged()) continue;
-    --left;
-    ++result.pieces;
+    if (piece.converged()) {
+      --left;
+      ++result.pieces;
+      continue;
+    }
+    parts *= 2;
+    left *= 2;
+    if (parts > config.most_pieces) break;
   }
   if (result.converged())
     state.time = before.time + h;

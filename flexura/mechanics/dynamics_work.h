@@ -74,6 +74,7 @@ struct RodDynamics::Work {
   };
   RodStep step_once(const Scheme& use, RodState& state, const TendonInput& tendons, const RodLoads& loads,
                     double h);
+  void restart(RodState& state, const TendonInput& tendons, const RodLoads& loads);
   [[nodiscard]] double change_size() const;
   void begin(const RodState& state, const Stage& stage, double h);
   void guess(const RodState& state, double h);

@@ -3,23 +3,10 @@
 #include <algorithm>
 #include <type_traits>
 
-#include "flexura/math/so3.h"
+#include "flexura/mechanics/rod_numbers.h"
 
 namespace flexura {
 namespace {
-
-template <typename S>
-Triple<S> constant(const Triple<double>& a) {
-  return {a.x + S{}, a.y + S{}, a.z + S{}};
-}
-template <>
-Triple<double> constant(const Triple<double>& a) {
-  return a;
-}
-template <typename S>
-Triple<S> constant(const Eigen::Vector3d& a) {
-  return constant<S>(Triple<double>{a.x(), a.y(), a.z()});
-}
 
 // Six numbers, `stride` apart.
 template <typename N, typename S>
@@ -46,56 +33,6 @@ template <typename S>
 void write_screw(const Screw<S>& a, S* to, std::size_t stride) {
   to[0] = a.linear.x, to[stride] = a.linear.y, to[2 * stride] = a.linear.z;
   to[3 * stride] = a.angular.x, to[4 * stride] = a.angular.y, to[5 * stride] = a.angular.z;
-}
-template <typename S>
-S component(const Screw<S>& a, std::size_t c) {
-  switch (c) {
-    case 0:
-      return a.linear.x;
-    case 1:
-      return a.linear.y;
-    case 2:
-      return a.linear.z;
-    case 3:
-      return a.angular.x;
-    case 4:
-      return a.angular.y;
-    default:
-      return a.angular.z;
-  }
-}
-template <typename S>
-S& component(Screw<S>& a, std::size_t c) {
-  switch (c) {
-    case 0:
-      return a.linear.x;
-    case 1:
-      return a.linear.y;
-    case 2:
-      return a.linear.z;
-    case 3:
-      return a.angular.x;
-    case 4:
-      return a.angular.y;
-    default:
-      return a.angular.z;
-  }
-}
-
-template <typename S>
-Screw<S> wrench_at(const Triple<S>& p, const Triple<S>& f) {
-  return {f, cross(p, f)};
-}
-
-double plain(double value) { return value; }
-double plain(const Dual<Lanes>& value) { return value.value[0]; }
-template <typename S>
-Eigen::Vector3d plain(const Triple<S>& a) {
-  return {plain(a.x), plain(a.y), plain(a.z)};
-}
-template <typename S>
-Vector6d plain(const Screw<S>& a) {
-  return (Vector6d() << plain(a.linear), plain(a.angular)).finished();
 }
 
 // How a node's motion changes a wrench.
@@ -271,79 +208,6 @@ void RodMotion<S>::add_surroundings(const RodSurroundings& surroundings) {
 }
 
 template <typename S>
-Screw<S> RodMotion<S>::strain_at(const RodLayout::Section& section, std::size_t node) const {
-  const Vector6d& rest = section.grid.rest[node];
-  Screw<S> strain{};
-  for (std::size_t c = 0; c < 6; ++c) component(strain, c) = rest[static_cast<Eigen::Index>(c)] + S{};
-  const auto modes = section.grid.at_node.col(static_cast<Eigen::Index>(node));
-  for (std::size_t j = 0; j < section.modes; ++j)
-    component(strain, section.strain[j]) += modes[static_cast<Eigen::Index>(j)] * q_[section.first_mode + j];
-  return strain;
-}
-
-template <typename S>
-typename RodMotion<S>::Pull RodMotion<S>::pull_of(const RodLayout::Passage& passage, const Screw<S>& strain) {
-  const Triple<S> offset = constant<S>(passage.offset);
-  const Triple<S> way = strain.linear + cross(strain.angular, offset) + constant<S>(passage.slope);
-  const S length = square_root(dot(way, way));
-  const Triple<S> u = ((1.0 + S{}) / length) * way;
-  return {.along = {u, cross(offset, u)}, .length = length};
-}
-
-// add(from, to, along, length): the straight pieces of a tendon, from node to node, where a unit of tension
-// is that wrench.
-template <typename S>
-template <typename Add>
-void RodMotion<S>::for_chords(const RodLayout::Section& section, std::size_t tendon, Add&& add) const {
-  const RodLayout::Passage* passages = section.passages.data() + tendon * (section.intervals + 1);
-  for (std::size_t piece = 0; piece + 1 < section.disks.size(); ++piece) {
-    const std::size_t from = section.disks[piece], to = section.disks[piece + 1];
-    const Placement<S>&A = X_[section.first_node + from], &B = X_[section.first_node + to];
-    const Triple<S> a = A.position + A.turn(constant<S>(passages[from].offset));
-    const Triple<S> b = B.position + B.turn(constant<S>(passages[to].offset));
-    const S length = square_root(dot(b - a, b - a));
-    add(section.first_node + from, section.first_node + to, wrench_at(a, ((1.0 + S{}) / length) * (b - a)),
-        length);
-  }
-}
-
-template <typename S>
-void RodMotion<S>::add_tendons(const S* tensions) {
-  is_pulled_ = false;
-  for (std::size_t i = 0; i < layout_.tendons; ++i) is_pulled_ = is_pulled_ || plain(tensions[i]) != 0;
-  if (!is_pulled_) return;
-  for (const RodLayout::Section& section : layout_.sections) {
-    for (std::size_t k = 0; k <= section.intervals && section.disks.empty(); ++k) {
-      Screw<S>& along = along_[section.first_node + k];
-      along = Screw<S>{};
-      if (layout_.run[section.first_node + k] == 0) continue;
-      const Screw<S> strain = strain_at(section, k);
-      for (std::size_t i = 0; i < section.tendons.size(); ++i) {
-        const S& tension = tensions[section.tendons[i]];
-        if (plain(tension) == 0) continue;
-        along += tension * pull_of(section.passages[i * (section.intervals + 1) + k], strain).along;
-      }
-    }
-    for (std::size_t i = 0; i < section.tendons.size(); ++i) {
-      const S& tension = tensions[section.tendons[i]];
-      for_chords(section, i, [&](std::size_t from, std::size_t to, const Screw<S>& unit, const S&) {
-        W_[from] += tension * unit;
-        W_[to] -= tension * unit;
-      });
-    }
-  }
-}
-
-template <typename S>
-void RodMotion<S>::add_strain_force(const RodLayout::Section& section, std::size_t node,
-                                    const Screw<S>& along, S* force) const {
-  const auto modes = section.grid.at_node.col(static_cast<Eigen::Index>(node));
-  for (std::size_t j = 0; j < section.modes; ++j)
-    force[section.first_mode + j] +=
-        modes[static_cast<Eigen::Index>(j)] * component(along, section.strain[j]);
-}
-
-template <typename S>
 void RodMotion<S>::add_modes(const std::vector<S>& of_moments, S* sums) const {
   for (const RodLayout::Section& section : layout_.sections) {
     for (std::size_t m = 0; m < 3; ++m) {
@@ -452,72 +316,6 @@ void RodMotion<S>::collect(const std::vector<Screw<S>>& wrenches, S* force) {
     for (std::size_t m = 0; m < 3; ++m) store_screw(along[m], &collected_[6 * m * padded + at], padded);
   }
   add_modes(collected_, force);
-}
-
-template <typename S>
-void RodMotion<S>::find_lengths(S* lengths) const {
-  std::fill(lengths, lengths + layout_.tendons, S{});
-  for (const RodLayout::Section& section : layout_.sections) {
-    for (std::size_t k = 0; k <= section.intervals && section.disks.empty(); ++k) {
-      const double run = layout_.run[section.first_node + k];
-      if (run == 0 || section.tendons.empty()) continue;
-      const Screw<S> strain = strain_at(section, k);
-      for (std::size_t i = 0; i < section.tendons.size(); ++i)
-        lengths[section.tendons[i]] +=
-            run * pull_of(section.passages[i * (section.intervals + 1) + k], strain).length;
-    }
-    for (std::size_t i = 0; i < section.tendons.size(); ++i)
-      for_chords(section, i, [&](std::size_t, std::size_t, const Screw<S>&, const S& length) {
-        lengths[section.tendons[i]] += length;
-      });
-  }
-}
-
-template <typename S>
-void RodMotion<S>::find_length_slopes(std::size_t tendon, S* slopes) {
-  std::fill(slopes, slopes + layout_.modes, S{});
-  bool has_chords = false;
-  for (const RodLayout::Section& section : layout_.sections) {
-    const auto found = std::find(section.tendons.begin(), section.tendons.end(), tendon);
-    if (found == section.tendons.end()) break;
-    const auto i = static_cast<std::size_t>(found - section.tendons.begin());
-    for (std::size_t k = 0; k <= section.intervals && section.disks.empty(); ++k) {
-      const double run = layout_.run[section.first_node + k];
-      if (run == 0) continue;
-      const Pull pull = pull_of(section.passages[i * (section.intervals + 1) + k], strain_at(section, k));
-      add_strain_force(section, k, run * pull.along, slopes);
-    }
-    if (section.disks.empty()) continue;
-    if (!has_chords) std::fill(spare_.begin(), spare_.end(), Screw<S>{});
-    has_chords = true;
-    for_chords(section, i, [&](std::size_t from, std::size_t to, const Screw<S>& unit, const S&) {
-      spare_[from] -= unit;
-      spare_[to] += unit;
-    });
-  }
-  if (has_chords) collect(spare_, slopes);
-}
-
-template <typename S>
-Matrix6d RodMotion<S>::tendon_stiffness(const RodLayout::Section& section, std::size_t node,
-                                        const double* tensions) const {
-  Matrix6d sum = Matrix6d::Zero();
-  const Screw<S> strain = strain_at(section, node);
-  for (std::size_t i = 0; i < section.tendons.size(); ++i) {
-    const double tension = tensions[section.tendons[i]];
-    if (tension == 0) continue;
-    const RodLayout::Passage& passage = section.passages[i * (section.intervals + 1) + node];
-    const Pull pull = pull_of(passage, strain);
-    const Eigen::Vector3d u = plain(pull.along.linear);
-    const Eigen::Matrix3d across =
-        tension / plain(pull.length) * (Eigen::Matrix3d::Identity() - u * u.transpose());
-    const Eigen::Matrix3d offset = skew(plain(constant<S>(passage.offset))), mixed = across * offset;
-    sum.topLeftCorner<3, 3>() += across;
-    sum.topRightCorner<3, 3>() -= mixed;
-    sum.bottomLeftCorner<3, 3>() -= mixed.transpose();
-    sum.bottomRightCorner<3, 3>() -= offset * mixed;
-  }
-  return sum;
 }
 
 template class RodMotion<double>;

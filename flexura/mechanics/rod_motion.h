@@ -91,7 +91,6 @@ class RodMotion {
   std::vector<NodeCoupling> couplings_;
 };
 
-extern template class RodMotion<double>;
-extern template class RodMotion<Dual<Lanes>>;
+// Instantiated for double and Dual<Lanes> in its sources.
 
 }  // namespace flexura

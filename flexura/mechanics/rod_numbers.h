@@ -1,0 +1,59 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+
+#include "flexura/math/lanes.h"
+#include "flexura/math/screw.h"
+#include "flexura/math/se3.h"
+
+// What the motion of rods is written with, for numbers of any kind: with slopes or without.
+namespace flexura {
+
+/// Without a slope.
+template <typename S>
+[[nodiscard]] Triple<S> constant(const Triple<double>& a) {
+  return {a.x + S{}, a.y + S{}, a.z + S{}};
+}
+template <>
+[[nodiscard]] inline Triple<double> constant(const Triple<double>& a) {
+  return a;
+}
+template <typename S>
+[[nodiscard]] Triple<S> constant(const Eigen::Vector3d& a) {
+  return constant<S>(Triple<double>{a.x(), a.y(), a.z()});
+}
+
+/// The value alone; of several that are the same, one.
+[[nodiscard]] inline double plain(double value) { return value; }
+[[nodiscard]] inline double plain(const Dual<Lanes>& value) { return value.value[0]; }
+template <typename S>
+[[nodiscard]] Eigen::Vector3d plain(const Triple<S>& a) {
+  return {plain(a.x), plain(a.y), plain(a.z)};
+}
+template <typename S>
+[[nodiscard]] Vector6d plain(const Screw<S>& a) {
+  return (Vector6d() << plain(a.linear), plain(a.angular)).finished();
+}
+
+/// One of the six numbers.
+template <typename S>
+[[nodiscard]] S& component(Screw<S>& a, std::size_t c) {
+  Triple<S>& half = c < 3 ? a.linear : a.angular;
+  const std::size_t i = c < 3 ? c : c - 3;
+  return i == 0 ? half.x : i == 1 ? half.y : half.z;
+}
+template <typename S>
+[[nodiscard]] const S& component(const Screw<S>& a, std::size_t c) {
+  const Triple<S>& half = c < 3 ? a.linear : a.angular;
+  const std::size_t i = c < 3 ? c : c - 3;
+  return i == 0 ? half.x : i == 1 ? half.y : half.z;
+}
+
+/// Of a force f at p.
+template <typename S>
+[[nodiscard]] Screw<S> wrench_at(const Triple<S>& p, const Triple<S>& f) {
+  return {f, cross(p, f)};
+}
+
+}  // namespace flexura

@@ -292,7 +292,8 @@ void RodMatrix::add_pull_change(const RodMotion<double>& motion, double stretch,
                                 double* force) const {
   // How far the rod's sections move each other; then what changes, from the tip on.
   Vector6d moved = Vector6d::Zero(), beyond = Vector6d::Zero();
-  for (std::size_t s = 0; s + 1 < parts_.size(); ++s) moved += node_twist(s, layout_.sections[s].intervals, x);
+  for (std::size_t s = 0; s + 1 < parts_.size(); ++s)
+    moved += node_twist(s, layout_.sections[s].intervals, x);
   for (std::size_t s = parts_.size(); s-- > 0;) {
     const RodLayout::Section& section = layout_.sections[s];
     const std::size_t stride = parts_[s].stride;

@@ -12,6 +12,7 @@
 #include "bench/mujoco_rod.h"
 #include "flexura/mechanics/dynamics.h"
 #include "flexura/mechanics/rod.h"
+#include "flexura/mechanics/rod_contact.h"
 #include "tests/support/known_rods.h"
 
 // How fast a rod moves: half a second of a soft tentacle that falls from where it is straight and level.
@@ -166,6 +167,33 @@ BENCHMARK(fall_tendons)
     ->ArgNames({"displacements", "strains", "steps"})
     ->ArgsProduct({{0, 1}, {0, 1}, {50, 200}})
     ->Unit(benchmark::kMicrosecond);
+
+// The soft tentacle falls on a post, with three tendons (2); what that takes without either: with as many
+// nodes (1), and with as few as that needs (0). `contacts`: at the end.
+void fall_on_a_post(benchmark::State& state) {
+  Fall fall = falling_tentacle(10000, 5);
+  const bool touches = state.range(0) == 2;
+  if (touches) fall = with_tendons(fall, false);
+  std::vector<RodPlace> places;
+  if (state.range(0) > 0) places = contact_places(fall.rod, 0.06);
+  RodDynamics dynamics(fall.rod, fall.config, places);
+  const RodContact contact(
+      dynamics.chain(),
+      {.law = {.stiffness = 1e5, .slip_speed = 0.01},
+       .obstacles = {CapsuleConfig{.from = {-0.25, -0.2, 0.35}, .to = {-0.25, 0.2, 0.35}, .radius = 0.03}}});
+  if (touches) dynamics.set_surroundings(&contact);
+  const RodLoads weight = soft_tentacle_weight();
+  RodState moving;
+  for (auto _ : state) {
+    moving = dynamics.rest();
+    for (long i = 0; i < std::lround(until / fall.step); ++i)
+      benchmark::DoNotOptimize(dynamics.step(moving, fall.tendons, weight, fall.step));
+  }
+  state.counters["contacts"] =
+      touches ? static_cast<double>(contact.find(dynamics.motions(moving)).size()) : 0;
+  state.counters["times_real"] = benchmark::Counter(until, benchmark::Counter::kIsIterationInvariantRate);
+}
+BENCHMARK(fall_on_a_post)->ArgName("case")->DenseRange(0, 2)->Unit(benchmark::kMicrosecond);
 
 // The heavy steel rod with all strains, no damping, whose tendon lets go of 5 of its 15 N.
 void heavy_rod_released(benchmark::State& state) {

@@ -195,6 +195,8 @@ RodState RodDynamics::start(const Eigen::VectorXd& q, const Eigen::VectorXd& v, 
   work_->set_tensions(tendons);
   work_->motion.pull(loads, work_->tensions.data(), work_->surroundings);
   work_->motion.balance(state.momentum.data(), state.force.data());
+  if (!state.momentum.allFinite() || !state.force.allFinite())
+    throw std::invalid_argument("momenta or forces that are not finite");
   state.tensions = work_->tensions;
   return state;
 }

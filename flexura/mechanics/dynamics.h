@@ -68,6 +68,14 @@ struct RodStep {
   [[nodiscard]] bool converged() const { return end == DynamicsEnd::converged; }
 };
 
+/// A point mass that a rod in motion picks up.
+struct RodPayload {
+  RodPlace place = {};
+  double mass = 0;                                     ///< kg; >= 0
+  Eigen::Vector3d offset = Eigen::Vector3d::Zero();    ///< In the frame of the place, m.
+  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< Before, in the base's frame, m/s.
+};
+
 /// J
 struct RodEnergy {
   double kinetic = 0, strain = 0;
@@ -123,6 +131,17 @@ class RodDynamics {
   [[nodiscard]] RodState start(const Eigen::VectorXd& q, const Eigen::VectorXd& v, const TendonInput& tendons,
                                const RodLoads& loads);
 
+  /// From now on, until it is dropped, it carries the mass: the state after a jolt, with the generalized
+  /// momentum of both as they were before. Energy is lost as they become one (none where both move alike).
+  /// What pulls from now on is given. The chain does not have the mass. std::invalid_argument: a place that
+  /// is no node, a mass below 0, numbers that are not finite.
+  [[nodiscard]] RodState pick_up(const RodState& state, const RodPayload& payload, const TendonInput& tendons,
+                                 const RodLoads& loads);
+  /// Lets go of all that it picked up there. The mass leaves with the velocity that it has, and the rod keeps
+  /// its own.
+  [[nodiscard]] RodState drop(const RodState& state, const RodPlace& place, const TendonInput& tendons,
+                              const RodLoads& loads);
+
   /// Goes on by h seconds. Tendons and loads are those after h / (1 + spectral radius), as good as constant
   /// in the step. Where it does not converge the state is what it was.
   RodStep step(RodState& state, const TendonInput& tendons, const RodLoads& loads, double h);
@@ -139,6 +158,9 @@ class RodDynamics {
   [[nodiscard]] Vector6d momentum(const RodState& state);
   /// Of a place that is a node: the section's ends and what was asked for.
   [[nodiscard]] NodeMotion motion(const RodState& state, const RodPlace& place);
+  /// Of all nodes, and metres of rod for each in an integral along it: as RodSurroundings has them.
+  [[nodiscard]] std::vector<NodeMotion> motions(const RodState& state);
+  [[nodiscard]] std::span<const double> node_runs() const;
   [[nodiscard]] Pose tip(const RodState& state);
   /// How long the tendons are, m.
   [[nodiscard]] std::vector<double> tendon_lengths(const RodState& state);

@@ -8,6 +8,8 @@ namespace {
 
 // An iteration that gains less than this goes nowhere.
 constexpr double least_gain = 0.95;
+// One that gains less than this gets a new matrix, where surroundings pull.
+constexpr double slow_gain = 0.2;
 constexpr int patience = 6;
 
 double greatest_change(const Eigen::VectorXd& change, const Eigen::VectorXd& scales) {
@@ -173,14 +175,16 @@ void RodDynamics::Work::begin(const RodState& state, const Stage& stage, double 
 bool RodDynamics::Work::iterate_quickly(const Stage& stage, double contraction, RodStep& result,
                                         double& worst_gain) {
   double before = 0;
+  bool is_stale = true;
   while (result.iterations < config.most_iterations) {
     evaluate(stage);
-    if (result.iterations == 0) {
+    if (is_stale) {
       matrix.find_columns(motion);
       const bool is_pulled = std::ranges::any_of(tensions, [](double tension) { return tension != 0; });
       if (!matrix.factor(motion, {.damping = stage.stretch, .stiffness = stage.stretch * stage.stretch},
                          is_pulled ? tensions.data() : nullptr, surroundings != nullptr))
         return false;
+      is_stale = false;
     }
     if (!solve_quickly(stage)) return false;
     ++result.iterations;
@@ -190,6 +194,8 @@ bool RodDynamics::Work::iterate_quickly(const Stage& stage, double contraction, 
     if (before > 0) {
       contraction = size / before;
       worst_gain = std::max(worst_gain, contraction);
+      // What touches changes as the rod moves.
+      is_stale = surroundings != nullptr && contraction > slow_gain;
       if (result.iterations > patience && contraction > least_gain && size > config.tolerance) return false;
     }
     if (size <= config.tolerance || (contraction < 0.5 && 2 * size * contraction <= config.tolerance))
@@ -228,6 +234,7 @@ bool RodDynamics::Work::iterate_exactly(const Stage& stage, RodStep& result) {
     }
     if (!(part > 1e-4) || !std::isfinite(next)) return false;
     if (change_size() <= config.tolerance) {
+      matrix.find_columns(motion);
       velocity += change_;
       return true;
     }
@@ -240,8 +247,13 @@ bool RodDynamics::Work::iterate_exactly(const Stage& stage, RodStep& result) {
   return false;
 }
 
-// The stage's force, with the last change of the rates; and from the stage to the step's end.
-bool RodDynamics::Work::finish(const Stage& stage, RodState& state, double h) {
+// The stage's force, with the last change of the rates.
+void RodDynamics::Work::finish_force(const Stage& stage) {
+  if (surroundings != nullptr &&
+      std::ranges::any_of(motion.pulls(), [](const NodePull& pull) { return pull.is_coupled; })) {
+    evaluate(stage);
+    return;
+  }
   for (const RodLayout::Section& section : layout.sections) {
     const auto first = static_cast<Eigen::Index>(section.first_mode),
                size = static_cast<Eigen::Index>(section.modes);
@@ -256,9 +268,19 @@ bool RodDynamics::Work::finish(const Stage& stage, RodState& state, double h) {
   }
   for (Eigen::Index i = 0; stage.by_displacement() && i < pull_change_.size(); ++i)
     if (pull_change_[i] != 0) force_ -= pull_change_[i] * length_slopes_.col(i);
+  if (surroundings != nullptr) matrix.add_pull_change(motion, stage.stretch, change_.data(), force_.data());
+}
+
+// From the stage to the step's end.
+bool RodDynamics::Work::finish(const Stage& stage, RodState& state, double h) {
+  finish_force(stage);
   if (!force_.allFinite() || !velocity.allFinite()) return false;
   const Scheme& use = stage.scheme;
   const double now = 1 / use.alpha_m, old = (1 - use.alpha_m) / use.alpha_m;
+  left_ =
+      state.momentum + h * ((1 - use.gamma) * state.force + use.gamma * (now * force_ - old * state.force));
+  change_ = state.q + h * ((1 - use.gamma) * state.rate + use.gamma * (now * velocity - old * state.rate));
+  if (!left_.allFinite() || !change_.allFinite()) return false;
   state.q += h * (1 - use.gamma) * state.rate;
   state.momentum += h * (1 - use.gamma) * state.force;
   state.rate = now * velocity - old * state.rate;

@@ -4,6 +4,7 @@
 #include <Eigen/LU>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "flexura/mechanics/dynamics.h"
@@ -53,6 +54,8 @@ struct RodDynamics::Work {
   std::vector<double> rest_lengths, compliance;  // m, m/N
   std::vector<double> tensions;
   Eigen::VectorXd velocity;
+  /// Bodies of nodes that carry payloads, as they are without.
+  std::vector<std::pair<std::size_t, RodLayout::Body>> bare = {};
 
   /// The same where they are, with the input; tensions are those of the input.
   [[nodiscard]] RodDynamicsSlopes slopes_at(const Eigen::VectorXd& q, const Eigen::VectorXd& v,
@@ -86,6 +89,7 @@ struct RodDynamics::Work {
   template <typename Solve>
   bool solve_with_tendons(const Stage& stage, Solve&& solve);
   bool pull_tight();
+  void finish_force(const Stage& stage);
   bool finish(const Stage& stage, RodState& state, double h);
 
   Eigen::VectorXd q_from_, p_from_, q_, momentum_, force_, change_, left_;

@@ -32,6 +32,9 @@ class RodMatrix {
   /// Adds up and factors it. False: it is not positive definite. `tensions`: of tendons in channels; or null.
   [[nodiscard]] bool factor(const RodMotion<double>& motion, const Factors& factors, const double* tensions,
                             bool is_surrounded);
+  /// Adds to the forces of the modes what surroundings, as they pulled last, change by changes x of the rates
+  /// and `stretch` x of the modes.
+  void add_pull_change(const RodMotion<double>& motion, double stretch, const double* x, double* force) const;
   /// x becomes what the matrix makes to x.
   void solve(double* x) const;
   /// The same for the triangular matrices of what was factored, for energies: x^T M^-1 x is |y|^2.
@@ -56,6 +59,8 @@ class RodMatrix {
   static Block block_of(const RodLayout::Body& body, const Placement<double>& at);
   static void add_product(Part& part, const double* A, const Block& H, bool has_base);
   void add_tendons(std::size_t s, const RodMotion<double>& motion, const double* tensions, double factor);
+  // A node's twist by changes x of the modes of its section.
+  [[nodiscard]] Vector6d node_twist(std::size_t section, std::size_t node, const double* x) const;
   static bool factor_part(Part& part, std::size_t modes, bool has_base);
 
   const RodLayout& layout_;

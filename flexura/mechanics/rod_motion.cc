@@ -1,6 +1,7 @@
 #include "flexura/mechanics/rod_motion.h"
 
 #include <algorithm>
+#include <type_traits>
 
 #include "flexura/mechanics/rod_numbers.h"
 
@@ -33,14 +34,13 @@ void write_screw(const Screw<S>& a, S* to, std::size_t stride) {
   to[0] = a.linear.x, to[stride] = a.linear.y, to[2 * stride] = a.linear.z;
   to[3 * stride] = a.angular.x, to[4 * stride] = a.angular.y, to[5 * stride] = a.angular.z;
 }
-Screw<double> screw(const Vector6d& a) { return {{a[0], a[1], a[2]}, {a[3], a[4], a[5]}}; }
 
-// The wrench with the slopes that the node's motion gives it.
-Screw<double> with_slopes(const NodePull& pull, const Placement<double>&, const Screw<double>&) {
-  return screw(pull.wrench);
+// How a node's motion changes a wrench.
+Screw<double> change_of(const Matrix6d&, const Matrix6d&, const Placement<double>&, const Screw<double>&) {
+  return {};
 }
-Screw<Dual<Lanes>> with_slopes(const NodePull& pull, const Placement<Dual<Lanes>>& X,
-                               const Screw<Dual<Lanes>>& V) {
+Screw<Dual<Lanes>> change_of(const Matrix6d& by_pose, const Matrix6d& by_twist,
+                             const Placement<Dual<Lanes>>& X, const Screw<Dual<Lanes>>& V) {
   Screw<Dual<Lanes>> result{};
   for (std::size_t lane = 0; lane < lanes_of<Lanes>; ++lane) {
     const auto slope = [&](const Triple<Dual<Lanes>>& a) {
@@ -54,13 +54,15 @@ Screw<Dual<Lanes>> with_slopes(const NodePull& pull, const Placement<Dual<Lanes>
     Vector6d moved, faster;
     moved << slope(X.position) - angular.cross(plain(X.position)), angular;
     faster << slope(V.linear), slope(V.angular);
-    const Vector6d change = pull.by_pose * moved + pull.by_twist * faster;
-    for (std::size_t c = 0; c < 6; ++c) {
-      component(result, c).value[lane] = pull.wrench[static_cast<Eigen::Index>(c)];
+    const Vector6d change = by_pose * moved + by_twist * faster;
+    for (std::size_t c = 0; c < 6; ++c)
       component(result, c).slope[lane] = change[static_cast<Eigen::Index>(c)];
-    }
   }
   return result;
+}
+template <typename S>
+Screw<S> constant_screw(const Vector6d& a) {
+  return {constant<S>(Eigen::Vector3d(a.head<3>())), constant<S>(Eigen::Vector3d(a.tail<3>()))};
 }
 
 }  // namespace
@@ -182,6 +184,7 @@ void RodMotion<S>::pull(const RodLoads& loads, const S* tensions, const RodSurro
 
 template <typename S>
 void RodMotion<S>::add_surroundings(const RodSurroundings& surroundings) {
+  constexpr bool has_slopes = !std::is_same_v<S, double>;
   for (std::size_t k = 0; k < layout_.nodes; ++k) {
     Pose& pose = motions_[k].pose;
     pose.rotation << plain(X_[k].x).transpose(), plain(X_[k].y).transpose(), plain(X_[k].z).transpose();
@@ -189,7 +192,19 @@ void RodMotion<S>::add_surroundings(const RodSurroundings& surroundings) {
     motions_[k].twist = plain(V_[k]);
   }
   surroundings.pull(motions_, layout_.run, pulls_);
-  for (std::size_t k = 0; k < layout_.nodes; ++k) W_[k] += with_slopes(pulls_[k], X_[k], V_[k]);
+  bool is_coupled = false;
+  for (std::size_t k = 0; k < layout_.nodes; ++k) {
+    const NodePull& pull = pulls_[k];
+    if (pull.is_idle) continue;
+    W_[k] += constant_screw<S>(pull.wrench);
+    if constexpr (has_slopes) W_[k] += change_of(pull.by_pose, pull.by_twist, X_[k], V_[k]);
+    is_coupled = is_coupled || pull.is_coupled;
+  }
+  if (!has_slopes || !is_coupled) return;
+  couplings_.clear();
+  surroundings.couple(motions_, layout_.run, couplings_);
+  for (const NodeCoupling& each : couplings_)
+    W_[each.at] += change_of(each.by_pose, each.by_twist, X_[each.of], V_[each.of]);
 }
 
 template <typename S>

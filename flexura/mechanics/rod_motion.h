@@ -88,6 +88,7 @@ class RodMotion {
   bool is_pulled_ = false;  // By tendons along its strains.
   std::vector<NodeMotion> motions_;
   std::vector<NodePull> pulls_;
+  std::vector<NodeCoupling> couplings_;
 };
 
 // Instantiated for double and Dual<Lanes> in its sources.

@@ -45,6 +45,23 @@ inline Rod soft_tentacle() {
 }
 inline RodLoads soft_tentacle_weight() { return {.gravity = {-9.81, 0, 0}}; }
 
+/// A soft arm of 0.3 m, 8 mm thick to each side; and the same with a tendon towards x.
+inline Rod soft_arm(double youngs_modulus = 5e6, int bend = 4) {
+  RodSection section{.length = 0.3,
+                     .radius = {0.008, 0.008},
+                     .youngs_modulus = youngs_modulus,
+                     .shear_modulus = youngs_modulus / 3,
+                     .density = 1100,
+                     .damping_time = 0.01};
+  section.modes = {.shear = 1, .stretch = 1, .bend = bend, .twist = 1};
+  return {.sections = {section}, .tendons = {}};
+}
+inline Rod soft_arm_with_tendon(double youngs_modulus) {
+  Rod rod = soft_arm(youngs_modulus, 8);
+  rod.tendons = {{.section = 0, .radius = 0.007, .angle = 0}};
+  return rod;
+}
+
 /// A rod of length 1 and EI = 1 that bends alone.
 inline Rod elastica(int modes) {
   RodSection section{.length = 1, .stiffness = Vector6d::Ones(), .mass_per_length = 1};

@@ -1,0 +1,146 @@
+#include "flexura/mechanics/contact_law.h"
+
+#include <cmath>
+
+#include "flexura/math/so3.h"
+
+namespace flexura {
+namespace {
+
+// Below this part of the force at rest, a contact that comes apart fades out.
+constexpr double fading = 0.1;
+
+// x where it is above `fading`, 0 below -fading, with a slope between.
+void positive_part(double x, double& value, double& slope) {
+  if (x >= fading) {
+    value = x;
+    slope = 1;
+  } else if (x <= -fading) {
+    value = slope = 0;
+  } else {
+    value = (x + fading) * (x + fading) / (4 * fading);
+    slope = (x + fading) / (2 * fading);
+  }
+}
+
+struct Sliding {
+  double normal_speed = 0, speed = 0;                  // Of the latter, that of slip, made smooth.
+  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  // Of the ball's surface against the body.
+  ContactPress press;
+};
+
+Sliding sliding_of(const ContactLaw& law, const Touch& touch, const TouchForce& at) {
+  Sliding sliding;
+  sliding.velocity = touch.twist.head<3>() + touch.twist.tail<3>().cross(at.point);
+  sliding.normal_speed = touch.nearest.normal.dot(sliding.velocity);
+  sliding.press = press(law, at.depth, -sliding.normal_speed);
+  const Eigen::Vector3d slip = sliding.velocity - sliding.normal_speed * touch.nearest.normal;
+  sliding.speed = std::sqrt(slip.squaredNorm() + law.slip_speed * law.slip_speed);
+  return sliding;
+}
+
+// Friction for each newton of normal force, by the slip, negative.
+Eigen::Matrix3d rub_by_slip(const ContactLaw& law, const Sliding& sliding, const Eigen::Vector3d& slip) {
+  const Eigen::Vector3d part = slip / sliding.speed;
+  return law.friction / sliding.speed * (Eigen::Matrix3d::Identity() - part * part.transpose());
+}
+
+}  // namespace
+
+std::string law_problem(const ContactLaw& law) {
+  const auto is_above = [](double value) { return value > 0 && std::isfinite(value); };
+  if (!is_above(law.stiffness)) return "the stiffness of contacts must be above 0 and finite";
+  if (!(law.damping >= 0) || !std::isfinite(law.damping))
+    return "the damping of contacts must be at least 0 and finite";
+  if (!(law.friction >= 0) || !std::isfinite(law.friction))
+    return "the friction of contacts must be at least 0 and finite";
+  if (!is_above(law.slip_speed)) return "the slip speed of contacts must be above 0 and finite";
+  if (!is_above(law.transition)) return "the transition of contacts must be above 0 and finite";
+  return "";
+}
+
+TouchForce touch_force(const ContactLaw& law, const Touch& touch) {
+  const Eigen::Vector3d& n = touch.nearest.normal;
+  TouchForce result;
+  result.depth = touch.radius - touch.nearest.distance;
+  result.point = touch.center - touch.radius * n;
+  if (!(result.depth > 0)) return result;
+  const Sliding sliding = sliding_of(law, touch, result);
+  result.normal_force = touch.run * sliding.press.force;
+  result.slip = sliding.velocity - sliding.normal_speed * n;
+  result.force = result.normal_force * (n - law.friction / sliding.speed * result.slip);
+  return result;
+}
+
+ContactPress press(const ContactLaw& law, double depth, double rate) {
+  if (!(depth > 0)) return {};
+  double spring = 0, slope = 0, share = 0, share_slope = 0;
+  if (depth < law.transition) {
+    spring = law.stiffness * depth * depth / (2 * law.transition);
+    slope = law.stiffness * depth / law.transition;
+  } else {
+    spring = law.stiffness * (depth - 0.5 * law.transition);
+    slope = law.stiffness;
+  }
+  positive_part(1 + law.damping * rate, share, share_slope);
+  return {.force = spring * share, .by_depth = slope * share, .by_rate = spring * share_slope * law.damping};
+}
+
+// The wrench is [f; c x f]. Its force is normal_force along, with along = n - friction slip / speed.
+Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::ColMajor, 6, 18> wrench_change(const ContactLaw& law,
+                                                                               const Touch& touch,
+                                                                               const TouchForce& at,
+                                                                               const TouchChange& change) {
+  const Sliding sliding = sliding_of(law, touch, at);
+  const Eigen::Vector3d& n = touch.nearest.normal;
+  const Eigen::Vector3d along = n - law.friction / sliding.speed * at.slip;
+  const TouchChange::Row speed =
+      sliding.velocity.transpose() * change.normal + n.transpose() * change.velocity;
+  const TouchChange::Row press =
+      touch.run * (sliding.press.by_depth * change.depth - sliding.press.by_rate * speed);
+  const TouchChange::Rows slip = change.velocity - sliding.normal_speed * change.normal - n * speed;
+  const TouchChange::Rows force =
+      along * press + at.normal_force * (change.normal - rub_by_slip(law, sliding, at.slip) * slip);
+  Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::ColMajor, 6, 18> result(6, force.cols());
+  result.topRows<3>() = force;
+  result.bottomRows<3>() = skew(at.point) * force - skew(at.force) * change.point;
+  return result;
+}
+
+// A small twist moves the centre p by Jp, and the normal n(p) by H Jp, where H is its derivative; the
+// touching point is p - r n.
+TouchForce touch_force(const ContactLaw& law, const Touch& touch, NodePull& pull) {
+  using Rows = Eigen::Matrix<double, 3, 6>;
+  const TouchForce result = touch_force(law, touch);
+  pull = NodePull{};
+  if (!(result.depth > 0)) return result;
+  const Sliding sliding = sliding_of(law, touch, result);
+  const Eigen::Vector3d& n = touch.nearest.normal;
+  Rows at_center, at_point;
+  at_center << Eigen::Matrix3d::Identity(), -skew(touch.center);
+  at_point << Eigen::Matrix3d::Identity(), -skew(result.point);
+
+  TouchChange change;
+  change.depth.setZero(6);
+  change.normal.setZero(3, 6);
+  change.point.setZero(3, 6);
+  change.velocity = at_point;
+  pull.by_twist = wrench_change(law, touch, result, change);
+  change.depth = -n.transpose() * at_center;
+  change.normal = touch.nearest.curvature * at_center;
+  change.point = at_center - touch.radius * change.normal;
+  change.velocity = skew(touch.twist.tail<3>()) * change.point;
+  pull.by_pose = wrench_change(law, touch, result, change);
+
+  // What holds: the spring and the damper along the normal, friction across.
+  const Eigen::Matrix<double, 1, 6> row = n.transpose() * at_point;
+  const Rows slide = at_point - n * row;
+  pull.is_held = true;
+  pull.stiffness = touch.run * sliding.press.by_depth * row.transpose() * row;
+  pull.damping = touch.run * sliding.press.by_rate * row.transpose() * row +
+                 result.normal_force * slide.transpose() * rub_by_slip(law, sliding, result.slip) * slide;
+  pull.wrench = result.wrench();
+  return result;
+}
+
+}  // namespace flexura

@@ -10,6 +10,7 @@
 #include "flexura/math/se3.h"
 #include "flexura/mechanics/rod.h"
 #include "flexura/mechanics/rod_chain.h"
+#include "flexura/mechanics/rod_energy.h"
 #include "flexura/mechanics/rod_surroundings.h"
 #include "flexura/mechanics/statics.h"
 
@@ -74,14 +75,6 @@ struct RodPayload {
   double mass = 0;                                     ///< kg; >= 0
   Eigen::Vector3d offset = Eigen::Vector3d::Zero();    ///< In the frame of the place, m.
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< Before, in the base's frame, m/s.
-};
-
-/// J
-struct RodEnergy {
-  double kinetic = 0, strain = 0;
-  double gravity = 0;  ///< Of weight and of the force along the rod; 0 at the height of the base.
-
-  [[nodiscard]] double total() const { return kinetic + strain + gravity; }
 };
 
 /// Derivatives of a rod's motion. Its equations are p = M(q) v and dp/dt = f(q, v, input); all are matrices

@@ -194,6 +194,15 @@ const Table<ArmConfig>& fields_of(const ArmConfig*) {
               {.meaning = "Time from one step to the next in which the motion of a dynamic arm is computed.",
                .unit = Unit::second,
                .range = between(1e-6, 0.1)})
+          .field("contact", &ArmConfig::contact,
+                 {.meaning = "How a dynamic arm touches the obstacles, and itself.",
+                  .default_text = "it touches nothing"})
+          .field("drag", &ArmConfig::drag,
+                 {.meaning = "The fluid in which a dynamic arm moves.", .default_text = "none"})
+          .field("payload", &ArmConfig::payload,
+                 {.meaning = "What a dynamic arm carries for a time, as tables [[arm.payload]].",
+                  .count = {0, max_loads},
+                  .default_text = "none"})
           .check(check_arm);
   return table;
 }

@@ -12,6 +12,7 @@
 #include "flexura/model/arm_mechanics.h"
 #include "flexura/model/arm_model.h"
 #include "flexura/model/look.h"
+#include "flexura/model/surroundings_config.h"
 
 namespace flexura {
 
@@ -49,7 +50,10 @@ struct ArmConfig {
   std::array<double, 3> gravity = {0, 0, 0};  ///< In the world's frame, m/s^2.
   std::vector<TendonRouteConfig> tendon;      ///< None: the drive's, if there is one.
   std::vector<LoadConfig> load;
-  double time_step = 0.005;  ///< Of rods in motion, s.
+  double time_step = 0.005;              ///< Of rods in motion, s; so the next.
+  std::optional<ContactConfig> contact;  ///< None: it touches nothing.
+  std::optional<DragConfig> drag;        ///< None: it moves in nothing.
+  std::vector<PayloadConfig> payload;
 
   /// The arm it describes, as its drives see it.
   [[nodiscard]] Arm arm() const;

@@ -135,7 +135,12 @@ const Table<TendonRouteConfig>& fields_of(const TendonRouteConfig*) {
               "friction", &TendonRouteConfig::friction,
               {.meaning = "Coulomb friction along its way: exp(-friction angle) is left of a tension where "
                           "the tendon has turned by an angle, in radians, since its base.",
-               .range = between(0, 10)});
+               .range = between(0, 10)})
+          .field("breaks_at", &TendonRouteConfig::breaks_at,
+                 {.meaning = "When it breaks: from then on it pulls at nothing.",
+                  .unit = Unit::second,
+                  .range = between(0, 1e9),
+                  .default_text = "never"});
   return table;
 }
 
@@ -165,6 +170,8 @@ void check_mechanics(const ArmConfig& arm, Reader& reader) {
   }
   for (std::size_t i = 0; i < arm.load.size(); ++i)
     ends_on_arm(arm.load[i].section, arm, fmt::format("load[{}].section", i), reader);
+  for (std::size_t i = 0; i < arm.payload.size(); ++i)
+    ends_on_arm(arm.payload[i].section, arm, fmt::format("payload[{}].section", i), reader);
   if (arm.mechanics == ArmMechanics::kinematic) return;
   const std::string& model = names_of(&arm.mechanics)[static_cast<std::size_t>(arm.mechanics)];
   for (std::size_t i = 0; i < arm.section.size(); ++i) {

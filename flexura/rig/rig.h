@@ -9,7 +9,7 @@
 
 #include "flexura/camera/camera.h"
 #include "flexura/log/run_watcher.h"
-#include "flexura/mechanics/dynamics.h"
+#include "flexura/mechanics/rod_energy.h"
 #include "flexura/model/backbone.h"
 #include "flexura/port/camera_port.h"
 #include "flexura/port/rig_model.h"

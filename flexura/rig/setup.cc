@@ -124,7 +124,7 @@ ArmModel Setup::arm_model() const {
   }
 }
 
-RigConfig Setup::model_rig() const { return {arm, drive, cameras()}; }
+RigConfig Setup::model_rig() const { return {arm, drive, cameras(), obstacle}; }
 
 RigConfig Setup::true_rig() const {
   RigConfig rig = model_rig();

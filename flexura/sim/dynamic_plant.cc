@@ -16,13 +16,41 @@ constexpr int most_halvings = 8;
 // Of a step, what counts as none.
 constexpr double no_time = 1e-9;
 
+const ArmRod& moving_rod(const PlantSetup& setup) {
+  if (!setup.truth.rod || !setup.truth.rod->time_step)
+    throw std::invalid_argument("the true arm is no rod in motion");
+  return *setup.truth.rod;
+}
+
+// That are nodes: what touches, and what carries.
+std::vector<RodPlace> places_of(const ArmRod& rod) {
+  std::vector<RodPlace> places = rod.contact_places;
+  for (const ArmRod::Payload& payload : rod.payloads) places.push_back(payload.payload.place);
+  return places;
+}
+
 }  // namespace
 
 DynamicPlant::DynamicPlant(const PlantSetup& setup)
     : RodPlant(setup),
+      rod_(moving_rod(setup)),
+      X_WB_(setup.truth.arm.X_WB),
       step_(setup.truth.rod->time_step.value()),
       horizon_(setup.horizon),
-      dynamics_(inputs().rod(), plant_config) {
+      dynamics_(inputs().rod(), plant_config, places_of(rod_)),
+      carried_(rod_.payloads.size(), 0) {
+  std::vector<const RodSurroundings*> around;
+  if (rod_.contact) {
+    around.push_back(&contact_.emplace(dynamics_.chain(), *rod_.contact));
+    for (const Obstacle& obstacle : obstacles(rod_.contact->obstacles)) names_.push_back(obstacle.name);
+  }
+  if (rod_.drag) around.push_back(&drag_.emplace(dynamics_.chain(), *rod_.drag));
+  if (!around.empty()) dynamics_.set_surroundings(&surroundings_.emplace(around));
+  double base = 0;
+  for (const RodSection& section : inputs().rod().sections) {
+    bases_.push_back(base);
+    base += section.length;
+  }
   const std::vector<double> lost = inputs().nothing_lost();
   RodStatics statics(inputs().rod());
   const Equilibrium rest =
@@ -30,7 +58,8 @@ DynamicPlant::DynamicPlant(const PlantSetup& setup)
   if (!rest.converged())
     throw std::invalid_argument(
         fmt::format("the arm comes to no rest from which it could begin: {}", words(rest.end)));
-  snapshots_.push_back({0, dynamics_.rest(rest), lost});
+  snapshots_.push_back({0, dynamics_.rest(rest), lost, carried_});
+  hand_over(snapshots_.back(), 0);
 }
 
 DynamicPlant::~DynamicPlant() = default;
@@ -47,7 +76,9 @@ void DynamicPlant::advance(double time) {
     Snapshot then = snapshots_.back();
     {
       const std::lock_guard lock(mutex_);
+      carry(then.carried);
       go_on(then.state, time_of(then.index), step_, then.lost, 0);
+      hand_over(then, time_of(next));
     }
     then.index = next;
     // What a motor loses lets its tendon out from the next step on.
@@ -85,6 +116,7 @@ RodState DynamicPlant::state_at(double time) const {
   if (answer_ && answer_->time == time) return answer_->state;
   const Snapshot& from = snapshot(time);
   RodState state = from.state;
+  carry(from.carried);
   const double start = time_of(from.index);
   if (time - start > no_time * step_) go_on(state, start, time - start, from.lost, 0);
   answer_ = {time, state};
@@ -100,7 +132,86 @@ std::vector<double> DynamicPlant::tensions(double time) const { return state_at(
 std::optional<RodEnergy> DynamicPlant::energy(double time) const {
   const RodState state = state_at(time);
   const std::lock_guard lock(mutex_);
+  carry(snapshot(time).carried);
   return dynamics_.energy(state, inputs().loads(time));
+}
+
+std::vector<char> DynamicPlant::carried_at(double time) const {
+  std::vector<char> carried;
+  for (const ArmRod::Payload& payload : rod_.payloads)
+    carried.push_back(payload.from <= time && time < payload.until ? 1 : 0);
+  return carried;
+}
+
+// The rod gets the masses of these payloads, whatever its state.
+void DynamicPlant::carry(const std::vector<char>& wanted) const {
+  if (carried_ == wanted) return;
+  const RodState any = dynamics_.rest();
+  for (std::size_t i = 0; i < wanted.size(); ++i)
+    if (carried_[i] != 0) (void)dynamics_.drop(any, rod_.payloads[i].payload.place, {}, {});
+  for (std::size_t i = 0; i < wanted.size(); ++i)
+    if (wanted[i] != 0) (void)dynamics_.pick_up(any, rod_.payloads[i].payload, {}, {});
+  carried_ = wanted;
+}
+
+// Payloads are picked up and dropped: a state of what was carried becomes one of what is from now on.
+void DynamicPlant::hand_over(Snapshot& at, double time) const {
+  const std::vector<char> wanted = carried_at(time);
+  if (at.carried == wanted) return;
+  const TendonInput input{.displacements = inputs().displacements(time, at.lost)};
+  const RodLoads& loads = inputs().loads(time);
+  std::vector<char> left = at.carried;
+  for (std::size_t i = 0; i < wanted.size(); ++i) {
+    const RodPlace& place = rod_.payloads[i].payload.place;
+    if (left[i] == 0 || wanted[i] != 0) continue;
+    at.state = dynamics_.drop(at.state, place, input, loads);
+    // All that was carried there is dropped.
+    for (std::size_t k = 0; k < left.size(); ++k) {
+      const RodPlace& other = rod_.payloads[k].payload.place;
+      if (other.section == place.section && other.at == place.at) left[k] = 0;
+    }
+  }
+  for (std::size_t i = 0; i < wanted.size(); ++i) {
+    if (wanted[i] == 0 || left[i] != 0) continue;
+    RodPayload payload = rod_.payloads[i].payload;
+    if (at.carried[i] != 0) {
+      // It is held on, and moves as its place does.
+      const NodeMotion motion = dynamics_.motion(at.state, payload.place);
+      const Eigen::Vector3d p = motion.pose * payload.offset;
+      payload.velocity = motion.twist.head<3>() + motion.twist.tail<3>().cross(p);
+    }
+    at.state = dynamics_.pick_up(at.state, payload, input, loads);
+  }
+  at.carried = carried_ = wanted;
+}
+
+std::vector<PlantContact> DynamicPlant::contacts(double time) const {
+  std::vector<PlantContact> result;
+  if (!contact_) return result;
+  const RodState state = state_at(time);
+  std::vector<ContactForce> found;
+  {
+    const std::lock_guard lock(mutex_);
+    carry(snapshot(time).carried);
+    contact_->find(dynamics_.motions(state), found);
+  }
+  for (const ContactForce& each : found) {
+    const RodSection& section = inputs().rod().sections[each.place.section];
+    result.push_back({.s_rest = bases_[each.place.section] + each.place.at * section.length,
+                      .with = each.obstacle ? names_[*each.obstacle] : "the arm",
+                      .point = X_WB_ * each.point,
+                      .force = X_WB_.rotation * each.force,
+                      .depth = each.depth,
+                      .is_deep = each.is_deep});
+  }
+  return result;
+}
+
+std::string DynamicPlant::warning(double time) const {
+  for (const PlantContact& contact : contacts(time))
+    if (contact.is_deep)
+      return fmt::format("the arm is deep inside {}: what that pushes means nothing", contact.with);
+  return {};
 }
 
 }  // namespace flexura

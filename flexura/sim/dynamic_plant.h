@@ -7,7 +7,10 @@
 #include <vector>
 
 #include "flexura/mechanics/dynamics.h"
+#include "flexura/mechanics/rod_contact.h"
+#include "flexura/mechanics/rod_drag.h"
 #include "flexura/mechanics/statics.h"
+#include "flexura/mechanics/surroundings.h"
 #include "flexura/sim/rod_plant.h"
 
 namespace flexura {
@@ -15,7 +18,9 @@ namespace flexura {
 /// An arm that is an elastic rod in motion (docs/mechanics.md, "In time"): its tendons are pulled in, weight
 /// and loads pull at it, and it swings. It begins at rest, and is computed in steps of ArmRod::time_step from
 /// time 0 on, with commands as they are in each step; between two steps by a shorter one. So what it answers
-/// depends on time and commands alone. std::runtime_error: a step does not converge, however short.
+/// depends on time and commands alone. It touches obstacles and moves in a fluid as its ArmRod says, and
+/// picks payloads up and drops them at the ends of steps. std::runtime_error: a step does not converge,
+/// however short.
 class DynamicPlant : public RodPlant {
  public:
   /// Errors as RodInputs and RodDynamics. std::invalid_argument: the arm comes to no rest to begin with.
@@ -27,6 +32,8 @@ class DynamicPlant : public RodPlant {
   [[nodiscard]] std::vector<double> tensions(double time) const override;
   [[nodiscard]] std::vector<double> lost_steps(double time) const override { return snapshot(time).lost; }
   [[nodiscard]] std::optional<RodEnergy> energy(double time) const override;
+  [[nodiscard]] std::vector<PlantContact> contacts(double time) const override;
+  [[nodiscard]] std::string warning(double time) const override;
 
  protected:
   void forget() override;
@@ -35,16 +42,24 @@ class DynamicPlant : public RodPlant {
   struct Snapshot {
     long index = 0;  // Of steps.
     RodState state;
-    std::vector<double> lost;  // Microsteps of each axis, since the start.
+    std::vector<double> lost;   // Microsteps of each axis, since the start.
+    std::vector<char> carried;  // Which of the payloads.
   };
   // The last one at or before a time.
   [[nodiscard]] const Snapshot& snapshot(double time) const;
   [[nodiscard]] double time_of(long index) const { return static_cast<double>(index) * step_; }
   // With mutex_ held.
   void go_on(RodState& state, double from, double h, const std::vector<double>& lost, int halvings) const;
+  void hand_over(Snapshot& at, double time) const;
+  void carry(const std::vector<char>& wanted) const;
+  [[nodiscard]] std::vector<char> carried_at(double time) const;
   // How the rod moves at a time.
   [[nodiscard]] RodState state_at(double time) const;
 
+  ArmRod rod_;
+  Pose X_WB_;
+  std::vector<std::string> names_;  // of the obstacles
+  std::vector<double> bases_;       // of the sections, m
   double step_, horizon_;
   std::vector<Snapshot> snapshots_;  // back to the horizon
   // Asked by several threads; what they get depends on none of what was computed before.
@@ -55,6 +70,10 @@ class DynamicPlant : public RodPlant {
   };
   mutable std::optional<Answer> answer_;  // the last one; none after a change
   mutable RodDynamics dynamics_;
+  mutable std::vector<char> carried_;  // by dynamics_
+  std::optional<RodContact> contact_;
+  std::optional<RodDrag> drag_;
+  std::optional<Surroundings> surroundings_;
 };
 
 }  // namespace flexura

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "flexura/mechanics/dynamics.h"
+#include "flexura/mechanics/rod_energy.h"
 #include "flexura/model/arm_model.h"
 #include "flexura/model/backbone.h"
 #include "flexura/sim/bend_motion.h"
@@ -15,6 +15,16 @@
 #include "flexura/sim/rig_config.h"
 
 namespace flexura {
+
+/// Where an arm touches something.
+struct PlantContact {
+  double s_rest = 0;  ///< Place on the arm: arc length from its base at rest, m.
+  std::string with;   ///< The obstacle's name, or "the arm".
+  Eigen::Vector3d point = Eigen::Vector3d::Zero();  ///< In the world, m.
+  Eigen::Vector3d force = Eigen::Vector3d::Zero();  ///< On the arm there, N.
+  double depth = 0;                                 ///< m
+  bool is_deep = false;  ///< The arm's middle is inside: the force may push anywhere.
+};
 
 /// The arm of the simulated world, as it truly is: what commands make of it over time.
 ///
@@ -64,6 +74,8 @@ class Plant {
   [[nodiscard]] virtual std::vector<double> tensions(double /*time*/) const { return {}; }
   /// Kinetic, of its strains, and of its weight and loads. None: it has no inertia. Times as backbone().
   [[nodiscard]] virtual std::optional<RodEnergy> energy(double /*time*/) const { return std::nullopt; }
+  /// Where it touches obstacles and itself. Times as backbone().
+  [[nodiscard]] virtual std::vector<PlantContact> contacts(double /*time*/) const { return {}; }
   /// How many microsteps each motor has lost up to then, of which its controller knows nothing. Empty: none
   /// ever.
   [[nodiscard]] virtual std::vector<double> lost_steps(double /*time*/) const { return {}; }

@@ -40,7 +40,8 @@ RodInputs::RodInputs(const PlantSetup& setup)
       rod_(rod_in(setup).rod),
       loads_(setup.truth.rod->loads),
       drive_(setup.truth.drive),
-      tight_(rod_.tendons.size(), 0.0) {
+      tight_(rod_.tendons.size(), 0.0),
+      breaks_(setup.truth.rod->breaks) {
   if (drive_) {
     motors_.emplace(*drive_, *drive_, microsteps(setup.start), setup.horizon);
     zero_ = displacements_at_zero(arm_, *drive_, setup.truth.initial, microsteps(setup.start));
@@ -129,7 +130,7 @@ std::vector<double> RodInputs::displacements(double time, const std::vector<doub
     given[i] += tight_[i];
     if (drive_) given[i] -= lost[i] / drive_->axes[i].microsteps_a_metre();
   }
-  return given;
+  return after_breaks({.displacements = std::move(given)}, breaks_, time).displacements;
 }
 
 std::vector<double> RodInputs::rest_stretches(double time) const {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "flexura/mechanics/rod.h"
+#include "flexura/mechanics/surroundings.h"
 #include "flexura/model/arm.h"
 #include "flexura/model/drive.h"
 #include "flexura/sim/bend_motion.h"
@@ -65,6 +66,7 @@ class RodInputs {
   std::vector<double> tight_;  // and what the pretension adds to them
   std::optional<BendMotion> bends_;
   std::optional<PullMotion> beside_;  // beside what the bends pull in
+  std::vector<TendonBreak> breaks_;
 
   struct Weighing {
     double time = 0;  // from which on

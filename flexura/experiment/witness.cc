@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <string>
@@ -71,6 +72,15 @@ std::optional<Chapter> RodRecord::chapter(const Arm& arm, const Backbone& comman
   if (!pulls.series.empty()) chapter.figures.push_back({"tensions", std::move(pulls)});
   chapter.figures.push_back({"tip-off", std::move(tip)});
   if (is_moving) chapter.figures.push_back({"energy", energy_chart(times, energies)});
+  if (std::ranges::any_of(contact_forces, [](double force) { return force > 0; })) {
+    LineChart contacts{.heading = "contact forces on the true arm",
+                       .x_label = "t (s)",
+                       .value_label = "sum of their sizes (N)",
+                       .least = 1e-3,
+                       .x = times};
+    contacts.series.emplace_back().values = contact_forces;
+    chapter.figures.push_back({"contacts", std::move(contacts)});
+  }
   return chapter;
 }
 
@@ -103,6 +113,24 @@ void Witness::state(std::size_t step, double time, const ArmState& state) {
   states_.push_back(state);
 }
 
+// The sum of all contact forces' sizes, N.
+double Witness::contact_readings(RigTruth& truth, double now) {
+  ContactsMessage message{now, {}};
+  double sum = 0;
+  for (const PlantContact& contact : truth.contacts(now)) {
+    message.contacts.push_back({.s = contact.s_rest,
+                                .with = contact.with,
+                                .point = {contact.point.x(), contact.point.y(), contact.point.z()},
+                                .force = {contact.force.x(), contact.force.y(), contact.force.z()},
+                                .depth = contact.depth});
+    sum += contact.force.norm();
+  }
+  const bool touches = !message.contacts.empty();
+  if (touches || touched_) log_.recorder().write({arm_contacts_topic, now, message});
+  touched_ = touches;
+  return sum;
+}
+
 // What a rod has beside its shape.
 void Witness::rod_readings(RigTruth& truth, double now, const Backbone& backbone) {
   std::vector<double> tensions = truth.tensions(now);
@@ -119,12 +147,16 @@ void Witness::rod_readings(RigTruth& truth, double now, const Backbone& backbone
     const EnergyMessage message{now, energy->kinetic, energy->strain, energy->gravity};
     recorder.write({arm_energy_topic, now, message});
   }
+  const double contact_force = energy ? contact_readings(truth, now) : 0;
   tell_lost_steps(now, lost);
   if (readings_++ % kept_every_ == 0) {
     rod_.times.push_back(now);
     rod_.off.push_back((backbone.tip().position - commanded_tip_).norm());
     rod_.tensions.push_back(std::move(tensions));
-    if (energy) rod_.energies.push_back(*energy);
+    if (energy) {
+      rod_.energies.push_back(*energy);
+      rod_.contact_forces.push_back(contact_force);
+    }
   }
   rod_.last = backbone;
 }

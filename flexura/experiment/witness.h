@@ -23,6 +23,7 @@ struct RodRecord {
   std::vector<std::vector<double>> tensions;  ///< N, one list a time.
   std::vector<double> off;                    ///< How far its tip is from the commanded one, m.
   std::vector<RodEnergy> energies;            ///< Of a rod in motion, one a time; of others none.
+  std::vector<double> contact_forces;         ///< Of all contacts, the sum of their sizes, N; likewise.
   std::optional<Backbone> last;               ///< As it is at the last of these times.
 
   /// None of an arm that is no rod; with `commanded`, how `arm` was to stand at last.
@@ -58,6 +59,7 @@ class Witness {
                                        const SafetyReport& safety) &&;
 
  private:
+  [[nodiscard]] double contact_readings(RigTruth& truth, double now);
   void rod_readings(RigTruth& truth, double now, const Backbone& backbone);
   // What motors have lost since the last time.
   void tell_lost_steps(double time, const std::vector<double>& lost);
@@ -71,6 +73,7 @@ class Witness {
   std::size_t last_step_ = 0;
   std::size_t kept_every_ = 1;
   std::size_t recorded_ = 0, readings_ = 0;
+  bool touched_ = false;  // At the last of the readings.
   std::vector<double> times_;
   std::vector<ArmState> states_;
   Eigen::Vector3d commanded_tip_ = Eigen::Vector3d::Zero();

@@ -122,6 +122,26 @@ const Table<EnergyMessage>& fields_of(const EnergyMessage*) {
   return table;
 }
 
+const Table<ContactMessage>& fields_of(const ContactMessage*) {
+  static const auto table =
+      Table<ContactMessage>("flexura.Contact", "Where the true arm touches something.")
+          .field("s", &ContactMessage::s,
+                 {.meaning = "Place on the arm: arc length from its base at rest, m."})
+          .field("with", &ContactMessage::with, {.meaning = "The obstacle's name, or \"the arm\"."})
+          .field("point", &ContactMessage::point, {.meaning = "In the world, m."})
+          .field("force", &ContactMessage::force, {.meaning = "On the arm there, N."})
+          .field("depth", &ContactMessage::depth, {.meaning = "How deep the arm is in it, m."});
+  return table;
+}
+
+const Table<ContactsMessage>& fields_of(const ContactsMessage*) {
+  static const auto table =
+      Table<ContactsMessage>("flexura.Contacts", "What the true arm in motion touches.")
+          .field("time", &ContactsMessage::time, {.meaning = "Time since the experiment's start, s."})
+          .field("contacts", &ContactsMessage::contacts, {.meaning = "None: it touches nothing any more."});
+  return table;
+}
+
 const Table<HeadReadingMessage>& fields_of(const HeadReadingMessage*) {
   static const auto table =
       Table<HeadReadingMessage>("flexura.HeadReading", "Where a camera's head says that it stands.")

@@ -103,6 +103,21 @@ struct EnergyMessage {
   double gravity = 0;  ///< Of its weight and of loads along it, J; 0 at the height of the arm's base.
 };
 
+/// flexura.Contact: where the true arm touches something.
+struct ContactMessage {
+  double s = 0;         ///< Place on the arm: arc length from its base at rest, m.
+  std::string with;     ///< The obstacle's name, or "the arm".
+  VectorMessage point;  ///< In the world, m.
+  VectorMessage force;  ///< On the arm there, N.
+  double depth = 0;     ///< m
+};
+/// flexura.Contacts, on /arm/contacts beside the true arm, where that is an elastic rod in motion that
+/// touches something or did so at the time before.
+struct ContactsMessage {
+  double time = 0;  ///< s
+  std::vector<ContactMessage> contacts;
+};
+
 /// flexura.HeadReading, on /head/NAME where a run plays the rig: where a camera's head says that it stands.
 struct HeadReadingMessage {
   double time = 0;           ///< s
@@ -138,6 +153,7 @@ inline constexpr std::string_view arm_poses_topic = "/arm/poses";
 inline constexpr std::string_view arm_truth_topic = "/arm/truth";
 inline constexpr std::string_view arm_tensions_topic = "/arm/tensions";
 inline constexpr std::string_view arm_energy_topic = "/arm/energy";
+inline constexpr std::string_view arm_contacts_topic = "/arm/contacts";
 inline constexpr std::string_view arm_reading_topic = "/arm/reading";
 inline constexpr std::string_view drive_commands_topic = "/drive/commands";
 inline constexpr std::string_view events_topic = "/events";
@@ -153,6 +169,8 @@ const Table<DriveCommandsMessage>& fields_of(const DriveCommandsMessage*);
 const Table<ArmReadingMessage>& fields_of(const ArmReadingMessage*);
 const Table<TensionsMessage>& fields_of(const TensionsMessage*);
 const Table<EnergyMessage>& fields_of(const EnergyMessage*);
+const Table<ContactMessage>& fields_of(const ContactMessage*);
+const Table<ContactsMessage>& fields_of(const ContactsMessage*);
 const Table<HeadReadingMessage>& fields_of(const HeadReadingMessage*);
 const Table<StageReadingMessage>& fields_of(const StageReadingMessage*);
 const Table<ImageMessage>& fields_of(const ImageMessage*);

@@ -10,10 +10,10 @@
 namespace flexura {
 namespace {
 
-constexpr double same_place = 1e-9;
+constexpr double one_node = 1e-9;
 
 Eigen::Vector3d vector(const Triple<double>& a) { return {a.x, a.y, a.z}; }
-Triple<double> triple(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
+Triple<double> as_triple(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
 Vector6d vector(const Screw<double>& a) {
   return (Vector6d() << vector(a.linear), vector(a.angular)).finished();
 }
@@ -22,7 +22,7 @@ std::size_t node_of(const RodLayout& layout, const RodPlace& place) {
   if (place.section >= layout.sections.size()) throw std::invalid_argument("a place outside the rod");
   const RodLayout::Section& section = layout.sections[place.section];
   const std::size_t at = section.grid.node_at(place.at);
-  if (!(std::abs(section.grid.t[at] - place.at) <= same_place))
+  if (!(std::abs(section.grid.t[at] - place.at) <= one_node))
     throw std::invalid_argument("a place that was not asked for");
   return section.first_node + at;
 }
@@ -36,9 +36,9 @@ RodLayout::Body with_point(const RodLayout::Body& body, double mass, const Eigen
   const Eigen::Matrix3d more =
       body.mass / all * mass *
       (apart.squaredNorm() * Eigen::Matrix3d::Identity() - apart * apart.transpose());
-  RodLayout::Body result{.mass = all, .centre = triple(both), .inertia = body.inertia};
+  RodLayout::Body result{.mass = all, .centre = as_triple(both), .inertia = body.inertia};
   for (std::size_t row = 0; row < 3; ++row)
-    result.inertia[row] += triple(more.row(static_cast<Eigen::Index>(row)));
+    result.inertia[row] += as_triple(more.row(static_cast<Eigen::Index>(row)));
   return result;
 }
 
@@ -57,9 +57,9 @@ RodState RodDynamics::pick_up(const RodState& state, const RodPayload& payload, 
   work.velocity.setZero();
   work.motion.place(state.q.data(), work.velocity.data());
   const Placement<double>& X = work.motion.nodes()[node];
-  const Triple<double> push = triple(payload.mass * payload.velocity);
+  const Triple<double> push = as_triple(payload.mass * payload.velocity);
   std::vector<Screw<double>> wrenches(work.layout.nodes);
-  wrenches[node] = {push, cross(X.position + X.turn(triple(payload.offset)), push)};
+  wrenches[node] = {push, cross(X.position + X.turn(as_triple(payload.offset)), push)};
   Eigen::VectorXd brought = Eigen::VectorXd::Zero(work.chain.size());
   work.motion.collect(wrenches, brought.data());
 

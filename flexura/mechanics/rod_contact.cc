@@ -14,7 +14,7 @@ namespace {
 
 // Of a contact of the rod with itself both sides tell: each node that is near another part.
 constexpr double of_both_sides = 0.5;
-constexpr double no_direction = 1e-12;
+constexpr double no_length = 1e-12;
 constexpr double most_places = 10'000;
 
 struct Between {
@@ -34,7 +34,7 @@ Between nearest_on(const Eigen::Vector3d& from, const Eigen::Vector3d& to, const
   const Eigen::Vector3d off = off_from - result.share * along;
   const double norm = off.norm();
   result.nearest.distance = norm;
-  if (!(norm > no_direction)) {
+  if (!(norm > no_length)) {
     Eigen::Index least = 0;
     along.cwiseAbs().minCoeff(&least);
     const Eigen::Vector3d across = along.cross(Eigen::Vector3d::Unit(least));
@@ -249,7 +249,7 @@ RodContact::MeetingSlopes RodContact::slopes_of(std::span<const NodeMotion> node
   change.velocity = twisted;
   slopes.by_twist = wrench_change(law_, touch, at, change);
   const Rows moves = apart - e * slopes.share_by_pose;
-  if (distance > no_direction) change.normal = (moves - n * (n.transpose() * moves)) / distance;
+  if (distance > no_length) change.normal = (moves - n * (n.transpose() * moves)) / distance;
   change.depth =
       -n.transpose() * moves + (nodes_[from + 1].radius - nodes_[from].radius) * slopes.share_by_pose;
   change.point = center - touch.radius * change.normal;

@@ -29,7 +29,7 @@ struct TendonRouteConfig {
   std::vector<double> x = {}, y = {};     ///< Coefficients of powers of s: m, m/m, ...
   double compliance = 0;                  ///< How much longer it is for each newton, m/N.
   double friction = 0;                    ///< Coulomb's, along its way.
-  std::optional<double> breaks_at;        ///< When it breaks, s; none: never.
+  std::optional<double> breaks_at = {};   ///< When it breaks, s; none: never.
 
   /// (x, y) at arc length `s` of a tendon that ends at `end`, m.
   [[nodiscard]] Eigen::Vector2d offset(double s, double end) const;

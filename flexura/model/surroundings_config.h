@@ -10,12 +10,12 @@ namespace flexura {
 
 /// How a moving arm touches obstacles and itself, `[arm.contact]` (docs/mechanics.md, "Contact").
 struct ContactConfig {
-  double stiffness = 1e5;         ///< N for each metre of depth and each metre of the arm.
-  double damping = 5;             ///< The force grows by this part of it for each m/s of approach, s/m.
-  double friction = 0.3;          ///< Coulomb's coefficient.
-  double slip_speed = 1e-3;       ///< Slower than this a contact sticks, m/s.
-  std::optional<double> spacing;  ///< Of the places that touch, m; none: the tube's least radius.
-  bool itself = false;            ///< The arm touches itself, too.
+  double stiffness = 1e5;              ///< N for each metre of depth and each metre of the arm.
+  double damping = 5;                  ///< The force grows by this part of it for each m/s of approach, s/m.
+  double friction = 0.3;               ///< Coulomb's coefficient.
+  double slip_speed = 1e-3;            ///< Slower than this a contact sticks, m/s.
+  std::optional<double> spacing = {};  ///< Of the places that touch, m; none: the tube's least radius.
+  bool itself = false;                 ///< The arm touches itself, too.
 };
 
 /// The fluid in which an arm moves, `[arm.drag]` (docs/mechanics.md, "Drag").
@@ -35,7 +35,7 @@ struct PayloadConfig {
   double mass = 0;                           ///< kg
   std::array<double, 3> offset = {0, 0, 0};  ///< Of its centre in the cross-section's frame, m.
   double from = 0;                           ///< When it is picked up, s; it is at rest then.
-  std::optional<double> until;               ///< When it is dropped, s; none: never.
+  std::optional<double> until = {};          ///< When it is dropped, s; none: never.
 };
 
 const Table<ContactConfig>& fields_of(const ContactConfig*);

@@ -50,6 +50,9 @@ class Filming : public Rig, private RigTruth {
   [[nodiscard]] std::optional<RodEnergy> energy(double time) override {
     return rig_.arm().plant().energy(time);
   }
+  [[nodiscard]] std::vector<PlantContact> contacts(double time) override {
+    return rig_.arm().plant().contacts(time);
+  }
   [[nodiscard]] std::vector<double> lost_steps(double time) override {
     return rig_.arm().plant().lost_steps(time);
   }

@@ -9,12 +9,12 @@
 
 #include "flexura/camera/camera.h"
 #include "flexura/log/run_watcher.h"
-#include "flexura/mechanics/rod_energy.h"
 #include "flexura/model/backbone.h"
 #include "flexura/port/camera_port.h"
 #include "flexura/port/rig_model.h"
 #include "flexura/port/rig_ports.h"
 #include "flexura/rig/setup.h"
+#include "flexura/sim/plant.h"
 
 namespace flexura {
 
@@ -43,6 +43,8 @@ class RigTruth {
   [[nodiscard]] virtual std::vector<double> pulled(double /*time*/) { return {}; }
   /// Of its motion, its strains and its weight then; none: it has no inertia, or nobody knows.
   [[nodiscard]] virtual std::optional<RodEnergy> energy(double /*time*/) { return std::nullopt; }
+  /// Where it touched something then.
+  [[nodiscard]] virtual std::vector<PlantContact> contacts(double /*time*/) { return {}; }
   /// How many microsteps each motor had lost by then, unknown to its controller; empty: none ever.
   [[nodiscard]] virtual std::vector<double> lost_steps(double /*time*/) { return {}; }
 };

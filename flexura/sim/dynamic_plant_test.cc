@@ -105,6 +105,66 @@ TEST(DynamicPlant, ConvergesWithItsStep) {
   EXPECT_LE(half, 1e-3);
 }
 
+// It falls on a floor below it: what it touches carries its weight, with the drive's tendons.
+TEST(DynamicPlant, RestsOnWhatItTouches) {
+  RigConfig config = moving_rig(9.81, 0.05);
+  SimulatedRig free(config, config, numbers_renderer, 1);
+  const Eigen::Vector3d hanging = moving_tip(free, 0);
+  config.arm.contact = ContactConfig{.stiffness = 1e4, .spacing = 0.02};
+  // Just above where the tip would hang; its world's weight pulls along +X.
+  config.obstacles = {
+      PlaneConfig{.name = "wall", .point = {hanging.x() + 0.018, 0, 0}, .normal = {-1, 0, 0}}};
+  SimulatedRig rig(config, config, numbers_renderer, 1);
+  rig.clock().wait_until(3);
+  const std::vector<PlantContact> contacts = moving_plant(rig).contacts(3);
+  ASSERT_FALSE(contacts.empty());
+  Eigen::Vector3d force = Eigen::Vector3d::Zero();
+  for (const PlantContact& contact : contacts) {
+    EXPECT_EQ(contact.with, "wall");
+    EXPECT_FALSE(contact.is_deep);
+    force += contact.force;
+  }
+  EXPECT_LT(force.x(), 0);
+  EXPECT_LT(moving_tip(rig, 3).x(), hanging.x());
+  EXPECT_EQ(moving_plant(rig).warning(3), "");
+}
+
+TEST(DynamicPlant, CarriesAPayloadForATime) {
+  RigConfig config = moving_rig(9.81, 0.2);
+  config.arm.payload = {{.section = 2, .mass = 0.02, .from = 0.5, .until = 3}};
+  SimulatedRig rig(config, config, numbers_renderer, 1);
+  const double before = moving_tip(rig, 0).x();
+  rig.clock().wait_until(2.99);
+  const double loaded = moving_tip(rig, 2.99).x();
+  EXPECT_GT(loaded, before + 1e-3);
+  rig.clock().wait_until(6);
+  EXPECT_NEAR(moving_tip(rig, 6).x(), before, 2e-4);
+  // Another rig that is asked at other times says the same.
+  SimulatedRig other(config, config, numbers_renderer, 1);
+  other.clock().wait_until(3.3);
+  (void)moving_tip(other, 2.5);
+  SimulatedRig again(config, config, numbers_renderer, 1);
+  again.clock().wait_until(3.3);
+  EXPECT_EQ(moving_tip(other, 3.1), moving_tip(again, 3.1));
+}
+
+TEST(DynamicPlant, IsLetGoByATendonThatBreaks) {
+  RigConfig config = moving_rig(0, 0.05);
+  for (const TendonConfig& tendon : config.drive->tendon)
+    config.arm.tendon.push_back({.section = tendon.section, .radius = 0.01, .angle = tendon.angle});
+  RigConfig broken = config;
+  for (TendonRouteConfig& tendon : broken.arm.tendon) tendon.breaks_at = 4.0;
+  SimulatedRig rig(config, broken, numbers_renderer, 1);
+  ASSERT_TRUE(rig.ports().arm->command(bent_state(), 0));
+  rig.clock().wait_until(3.9);
+  const Eigen::Vector3d bent = moving_tip(rig, 3.9);
+  rig.clock().wait_until(12);
+  const Eigen::Vector3d straight = ArmModel(config.arm.arm()).backbone(ArmState::straight(2)).tip().position;
+  EXPECT_GT((bent - straight).norm(), 0.03);
+  EXPECT_LE((moving_tip(rig, 12) - straight).norm(), 1e-3);
+  for (const double tension : moving_plant(rig).tensions(12)) EXPECT_EQ(tension, 0);
+}
+
 TEST(DynamicPlant, RefusesToBeginWhereThereIsNoRest) {
   RigConfig config = moving_rig(9.81);
   config.arm.load.push_back({.section = 2, .force = {0, -1e9, 0}, .following = true});

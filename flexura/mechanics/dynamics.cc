@@ -195,8 +195,9 @@ RodState RodDynamics::start(const Eigen::VectorXd& q, const Eigen::VectorXd& v, 
   work_->set_tensions(tendons);
   work_->motion.pull(loads, work_->tensions.data(), work_->surroundings);
   work_->motion.balance(state.momentum.data(), state.force.data());
-  if (!state.momentum.allFinite() || !state.force.allFinite())
-    throw std::invalid_argument("momenta or forces that are not finite");
+  if (!Work::is_of_this_world(state.momentum) || !Work::is_of_this_world(state.force) ||
+      !Work::is_of_this_world(q) || !Work::is_of_this_world(v))
+    throw std::invalid_argument("a motion or forces of more than 1e100, or not finite");
   state.tensions = work_->tensions;
   return state;
 }

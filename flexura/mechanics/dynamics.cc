@@ -47,6 +47,14 @@ void require_dynamics(const Rod& rod, const RodDynamicsConfig& config) {
     if (!(section.mass_per_length_at(0) > 0) || !(section.mass_per_length_at(1) > 0))
       throw std::invalid_argument(
           fmt::format("section {}: a rod in motion must have a density or a mass for each metre", i + 1));
+    double most = 0;
+    for (const double t : {0.0, 1.0})
+      most = std::max({most, section.mass_per_length_at(t), section.stiffness_at(t).maxCoeff(),
+                       section.damping_at(t).maxCoeff()});
+    for (const PointMass& mass : section.masses) most = std::max({most, mass.mass, mass.offset.norm()});
+    if (!(most < 1e100))
+      throw std::invalid_argument(
+          fmt::format("section {}: a mass, a stiffness or a damping of more than 1e100", i + 1));
     if (!config.rotary_inertia && section.modes.counts()[5] > 0)
       throw std::invalid_argument(
           fmt::format("section {}: without rotary inertia a rod must not twist", i + 1));

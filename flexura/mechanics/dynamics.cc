@@ -47,6 +47,14 @@ void require_dynamics(const Rod& rod, const RodDynamicsConfig& config) {
     if (!(section.mass_per_length_at(0) > 0) || !(section.mass_per_length_at(1) > 0))
       throw std::invalid_argument(
           fmt::format("section {}: a rod in motion must have a density or a mass for each metre", i + 1));
+    double most = 0;
+    for (const double t : {0.0, 1.0})
+      most = std::max({most, section.mass_per_length_at(t), section.stiffness_at(t).maxCoeff(),
+                       section.damping_at(t).maxCoeff()});
+    for (const PointMass& mass : section.masses) most = std::max({most, mass.mass, mass.offset.norm()});
+    if (!(most < 1e100))
+      throw std::invalid_argument(
+          fmt::format("section {}: a mass, a stiffness or a damping of more than 1e100", i + 1));
     if (!config.rotary_inertia && section.modes.counts()[5] > 0)
       throw std::invalid_argument(
           fmt::format("section {}: without rotary inertia a rod must not twist", i + 1));
@@ -195,8 +203,9 @@ RodState RodDynamics::start(const Eigen::VectorXd& q, const Eigen::VectorXd& v, 
   work_->set_tensions(tendons);
   work_->motion.pull(loads, work_->tensions.data(), work_->surroundings);
   work_->motion.balance(state.momentum.data(), state.force.data());
-  if (!state.momentum.allFinite() || !state.force.allFinite())
-    throw std::invalid_argument("momenta or forces that are not finite");
+  if (!Work::is_of_this_world(state.momentum) || !Work::is_of_this_world(state.force) ||
+      !Work::is_of_this_world(q) || !Work::is_of_this_world(v))
+    throw std::invalid_argument("a motion or forces of more than 1e100, or not finite");
   state.tensions = work_->tensions;
   return state;
 }

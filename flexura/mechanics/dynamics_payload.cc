@@ -46,7 +46,7 @@ RodLayout::Body with_point(const RodLayout::Body& body, double mass, const Eigen
 
 RodState RodDynamics::pick_up(const RodState& state, const RodPayload& payload, const TendonInput& tendons,
                               const RodLoads& loads) {
-  if (!(payload.mass >= 0) || !std::isfinite(payload.mass) || !payload.offset.allFinite() ||
+  if (!(payload.mass >= 0) || !(payload.mass < 1e100) || !payload.offset.allFinite() ||
       !payload.velocity.allFinite())
     throw std::invalid_argument("a payload must have a mass of at least 0 and finite numbers");
   Work& work = *work_;

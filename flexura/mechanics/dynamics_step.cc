@@ -280,7 +280,7 @@ bool RodDynamics::Work::finish(const Stage& stage, RodState& state, double h) {
   left_ =
       state.momentum + h * ((1 - use.gamma) * state.force + use.gamma * (now * force_ - old * state.force));
   change_ = state.q + h * ((1 - use.gamma) * state.rate + use.gamma * (now * velocity - old * state.rate));
-  if (!left_.allFinite() || !change_.allFinite()) return false;
+  if (!is_of_this_world(left_) || !is_of_this_world(change_)) return false;
   state.q += h * (1 - use.gamma) * state.rate;
   state.momentum += h * (1 - use.gamma) * state.force;
   state.rate = now * velocity - old * state.rate;

@@ -33,6 +33,10 @@ struct RodDynamics::Work {
     double error;   ///< Times h^3 x''': the error of a step.
   };
 
+  /// Whether the numbers are so small that energies and velocities made of them are finite.
+  [[nodiscard]] static bool is_of_this_world(const Eigen::VectorXd& numbers) {
+    return (numbers.array().abs() < 1e100).all();
+  }
   [[nodiscard]] std::string input_problem(const TendonInput& tendons, const RodLoads& loads) const;
   RodStep step(RodState& state, const TendonInput& tendons, const RodLoads& loads, double h);
   /// Tensions as they are given, or by displacements, where the rod was placed.

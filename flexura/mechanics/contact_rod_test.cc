@@ -79,12 +79,12 @@ TEST(ContactRod, ItsDerivativesAreThoseByDifferencesWhereItTouchesItself) {
   EXPECT_GT(touched, 15 / one_case_of);
 }
 
-struct Moving {
+struct TouchingRod {
   Rod rod;
   RodDynamics dynamics;
   RodContact contact;
 
-  Moving(const Rod& given, const RodContactConfig& config, double spacing = 0.01)
+  TouchingRod(const Rod& given, const RodContactConfig& config, double spacing = 0.01)
       : rod(given), dynamics(rod, {}, contact_places(rod, spacing)), contact(dynamics.chain(), config) {
     dynamics.set_surroundings(&contact);
   }
@@ -125,7 +125,7 @@ Eigen::Vector3d clamp_force(const Rod& rod, const RodChain& chain, const Eigen::
 // A level rod falls on a floor 5 cm below, and comes to rest on it.
 TEST(ContactRod, ARodThatFallsOnAFloorComesToRest) {
   for (const double stiffness : {1e5, 1e6}) {
-    Moving moving(soft_arm(), {.law = {.stiffness = stiffness}, .obstacles = {floor_at(-0.05)}});
+    TouchingRod moving(soft_arm(), {.law = {.stiffness = stiffness}, .obstacles = {floor_at(-0.05)}});
     RodState state = moving.dynamics.rest();
     double energy = 0, most_slip = 0;
     moving.go(state, {}, weight, 1e-3, 1.0, [&](const RodState& now) {
@@ -162,7 +162,7 @@ TEST(ContactRod, ARodThatFallsOnAFloorComesToRest) {
 TEST(ContactRod, TheMomentumChangesByWeightFloorAndClamp) {
   Rod rod = soft_arm();
   rod.sections[0].modes = {.shear = 8, .stretch = 4, .bend = 9, .twist = 1};
-  Moving moving(rod, {.law = {.stiffness = 1e5}, .obstacles = {floor_at(-0.05)}}, 0.01);
+  TouchingRod moving(rod, {.law = {.stiffness = 1e5}, .obstacles = {floor_at(-0.05)}}, 0.01);
   RodState state = moving.dynamics.rest();
   const double mass = rod.sections[0].mass_per_length_at(0) * 0.3;
   Eigen::Vector3d impulse = Eigen::Vector3d::Zero(), touched = impulse;
@@ -192,7 +192,7 @@ TEST(ContactRod, TheMomentumChangesByWeightFloorAndClamp) {
 TEST(ContactRod, ForcesConvergeWithTheNodes) {
   std::vector<double> forces;
   for (const double spacing : {0.02, 0.01, 0.005}) {
-    Moving moving(soft_arm(5e5, 6), {.law = {.stiffness = 1e4}, .obstacles = {floor_at(-0.03)}}, spacing);
+    TouchingRod moving(soft_arm(5e5, 6), {.law = {.stiffness = 1e4}, .obstacles = {floor_at(-0.03)}}, spacing);
     RodState state = moving.dynamics.rest();
     moving.go(state, {}, weight, 2e-3, 1.0);
     EXPECT_GT(moving.touching(state).size(), 4u);
@@ -208,7 +208,7 @@ RodContactConfig beside_a_post(double stiffness) {
 }
 
 TEST(ContactRod, ATentacleGraspsAPost) {
-  Moving moving(soft_arm_with_tendon(1e6), beside_a_post(1e5));
+  TouchingRod moving(soft_arm_with_tendon(1e6), beside_a_post(1e5));
   RodState state = moving.dynamics.rest();
   double deepest = 0;
   for (int i = 1; i <= 20; ++i)
@@ -242,7 +242,7 @@ TEST(ContactRod, ARodThatCurlsUpDoesNotPassThroughItself) {
   ghost.itself = false;
   double nearest[2] = {1, 1};
   for (const bool is_ghost : {false, true}) {
-    Moving moving(soft_arm_with_tendon(1e6), is_ghost ? ghost : touches);
+    TouchingRod moving(soft_arm_with_tendon(1e6), is_ghost ? ghost : touches);
     RodState state = moving.dynamics.rest();
     for (int i = 1; i <= 24; ++i) moving.go(state, {.tensions = {0.5 * i}}, {}, 2e-3, 0.04 * i);
     moving.go(state, {.tensions = {12}}, {}, 2e-3, 1.2);
@@ -277,7 +277,7 @@ TEST(ContactRod, TurnedWithItsFrameNothingChanges) {
   turned.X_WB = X_WB;
   Eigen::Vector3d tips[2];
   for (const bool is_turned : {false, true}) {
-    Moving moving(soft_arm_with_tendon(1e6), is_turned ? turned : config);
+    TouchingRod moving(soft_arm_with_tendon(1e6), is_turned ? turned : config);
     RodState state = moving.dynamics.rest();
     moving.go(state, {.tensions = {4}}, {}, 2e-3, 0.3);
     EXPECT_FALSE(moving.touching(state).empty());
@@ -287,7 +287,7 @@ TEST(ContactRod, TurnedWithItsFrameNothingChanges) {
 }
 
 TEST(ContactRod, AnObstacleInsideTheArmIsSaidToBeDeep) {
-  Moving moving(soft_arm(), {.obstacles = {SphereConfig{.center = {0.001, 0, 0.2}, .radius = 0.02}}});
+  TouchingRod moving(soft_arm(), {.obstacles = {SphereConfig{.center = {0.001, 0, 0.2}, .radius = 0.02}}});
   RodState state = moving.dynamics.rest();
   const std::vector<ContactForce> contacts = moving.touching(state);
   ASSERT_FALSE(contacts.empty());

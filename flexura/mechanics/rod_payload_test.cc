@@ -14,7 +14,7 @@
 namespace flexura {
 namespace {
 
-const RodLoads weight{.gravity = {-9.81, 0, 0}};
+const RodLoads pull_of_earth{.gravity = {-9.81, 0, 0}};
 
 TEST(RodDrag, ASwingDecaysAndDragTakesItsEnergy) {
   Rod rod = soft_arm();
@@ -25,9 +25,9 @@ TEST(RodDrag, ASwingDecaysAndDragTakesItsEnergy) {
   RodState state = dynamics.rest();
   const double h = 1e-3;
   double work = 0, power = 0, swing[2] = {0, 0};
-  const double start = dynamics.energy(state, weight).total();
+  const double start = dynamics.energy(state, pull_of_earth).total();
   for (int i = 0; i < 1500; ++i) {
-    ASSERT_TRUE(dynamics.step(state, {}, weight, h).converged());
+    ASSERT_TRUE(dynamics.step(state, {}, pull_of_earth, h).converged());
     const double now = drag.power(dynamics.motions(state), dynamics.node_runs());
     EXPECT_LE(now, 0);
     work += 0.5 * h * (now + power);
@@ -36,7 +36,7 @@ TEST(RodDrag, ASwingDecaysAndDragTakesItsEnergy) {
     most = std::max(most, std::abs(now));
   }
   EXPECT_LT(swing[1], 0.1 * swing[0]);
-  EXPECT_NEAR(dynamics.energy(state, weight).total() - start, work, 0.02 * std::abs(work));
+  EXPECT_NEAR(dynamics.energy(state, pull_of_earth).total() - start, work, 0.02 * std::abs(work));
 }
 
 TEST(RodPayload, APayloadThatFallsOffLetsTheTipJumpUp) {
@@ -44,25 +44,25 @@ TEST(RodPayload, APayloadThatFallsOffLetsTheTipJumpUp) {
   const RodPayload load{.place = {.section = 0, .at = 1}, .mass = 0.03, .offset = {0, 0, 0.01}};
   RodState state = dynamics.rest();
   const double height = dynamics.tip(state).position.x();
-  state = dynamics.pick_up(state, load, {}, weight);
-  for (int i = 0; i < 2000; ++i) ASSERT_TRUE(dynamics.step(state, {}, weight, 2e-3).converged());
-  const double low = dynamics.tip(state).position.x(), energy = dynamics.energy(state, weight).total();
+  state = dynamics.pick_up(state, load, {}, pull_of_earth);
+  for (int i = 0; i < 2000; ++i) ASSERT_TRUE(dynamics.step(state, {}, pull_of_earth, 2e-3).converged());
+  const double low = dynamics.tip(state).position.x(), energy = dynamics.energy(state, pull_of_earth).total();
   EXPECT_LT(low, height - 0.01);
   const Pose tip = dynamics.tip(state);
-  state = dynamics.drop(state, load.place, {}, weight);
+  state = dynamics.drop(state, load.place, {}, pull_of_earth);
   // What left was at rest: the energy that is less is that of its height alone.
-  EXPECT_NEAR(dynamics.energy(state, weight).total() - energy, 0.03 * weight.gravity.dot(tip * load.offset),
+  EXPECT_NEAR(dynamics.energy(state, pull_of_earth).total() - energy, 0.03 * pull_of_earth.gravity.dot(tip * load.offset),
               2e-6);
-  const double dropped = dynamics.energy(state, weight).total();
+  const double dropped = dynamics.energy(state, pull_of_earth).total();
   double highest = low;
   for (int i = 0; i < 100; ++i) {
-    ASSERT_TRUE(dynamics.step(state, {}, weight, 2e-3).converged());
+    ASSERT_TRUE(dynamics.step(state, {}, pull_of_earth, 2e-3).converged());
     highest = std::max(highest, dynamics.tip(state).position.x());
-    EXPECT_LE(dynamics.energy(state, weight).total(), dropped + 1e-7);
+    EXPECT_LE(dynamics.energy(state, pull_of_earth).total(), dropped + 1e-7);
   }
   EXPECT_GT(highest, low + 0.01);
-  EXPECT_THROW((void)dynamics.pick_up(state, {.mass = -1}, {}, weight), std::invalid_argument);
-  EXPECT_THROW((void)dynamics.pick_up(state, {.place = {.section = 0, .at = 0.123}, .mass = 1}, {}, weight),
+  EXPECT_THROW((void)dynamics.pick_up(state, {.mass = -1}, {}, pull_of_earth), std::invalid_argument);
+  EXPECT_THROW((void)dynamics.pick_up(state, {.place = {.section = 0, .at = 0.123}, .mass = 1}, {}, pull_of_earth),
                std::invalid_argument);
 }
 

@@ -172,6 +172,11 @@ void check_mechanics(const ArmConfig& arm, Reader& reader) {
     ends_on_arm(arm.load[i].section, arm, fmt::format("load[{}].section", i), reader);
   for (std::size_t i = 0; i < arm.payload.size(); ++i)
     ends_on_arm(arm.payload[i].section, arm, fmt::format("payload[{}].section", i), reader);
+  if (arm.mechanics != ArmMechanics::dynamics) {
+    const char* what = arm.contact ? "contact" : arm.drag ? "drag" : arm.payload.empty() ? "" : "payload";
+    if (*what != '\0')
+      reader.problem_at(what, "is of arms in motion: expected model = \"dynamic\" beside it, or none");
+  }
   if (arm.mechanics == ArmMechanics::kinematic) return;
   const std::string& model = names_of(&arm.mechanics)[static_cast<std::size_t>(arm.mechanics)];
   for (std::size_t i = 0; i < arm.section.size(); ++i) {

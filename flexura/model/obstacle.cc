@@ -25,6 +25,8 @@ Table<S> obstacle_table(const char* kind, const char* meaning) {
                   "on.",
               .unit = Unit::metre,
               .range = between(0, 1e6)})
+      .field("may_touch", &S::may_touch,
+             {.meaning = "The arm may touch it, with all of its length: what is to be grasped or leaned on."})
       .field("color", &S::color,
              {.meaning =
                   "Shares of red, green and blue light that it gives back. Cameras that look for a dark arm "
@@ -147,8 +149,10 @@ std::vector<Obstacle> obstacles(const std::vector<ObstacleConfig>& configs) {
     std::visit(
         [&]<class One>(const One& one) {
           const std::string called = fmt::format("{} {}", Codec<One>::table().info().name, result.size() + 1);
-          result.push_back({one.name.empty() ? called : one.name, one.ignore_base, distance_of(one),
-                            normal_of(one), sides_of(one)});
+          // What may be touched is ignored along all of the arm.
+          constexpr double all = 1e9;
+          result.push_back({one.name.empty() ? called : one.name, one.may_touch ? all : one.ignore_base,
+                            distance_of(one), normal_of(one), sides_of(one)});
         },
         config);
   }

@@ -37,6 +37,7 @@ inline constexpr std::array<double, 3> obstacle_color = {0.4, 0.45, 0.4};
 struct PlaneConfig {
   std::string name = {};   ///< What messages call it; "": its kind and place in the list. Of all kinds.
   double ignore_base = 0;  ///< As Obstacle::ignore_base, m. Of all kinds.
+  bool may_touch = false;  ///< The arm may touch it: what is grasped. Of all kinds.
   std::array<double, 3> point = {0, 0, 0};       ///< Of the plane, in W, m.
   std::array<double, 3> normal = {0, 1, 0};      ///< Out of it, in W; of any length above 0.
   std::array<double, 3> color = obstacle_color;  ///< Of all kinds.
@@ -46,6 +47,7 @@ struct PlaneConfig {
 struct SphereConfig {
   std::string name = {};
   double ignore_base = 0;
+  bool may_touch = false;
   std::array<double, 3> center = {0, 0, 0};  ///< In W, m.
   double radius = 0;                         ///< m
   std::array<double, 3> color = obstacle_color;
@@ -55,6 +57,7 @@ struct SphereConfig {
 struct CapsuleConfig {
   std::string name = {};
   double ignore_base = 0;
+  bool may_touch = false;
   std::array<double, 3> from = {0, 0, 0};  ///< The segment's ends, in W, m; they may be one point.
   std::array<double, 3> to = {0, 0, 0};
   double radius = 0;  ///< m
@@ -65,6 +68,7 @@ struct CapsuleConfig {
 struct BoxConfig {
   std::string name = {};
   double ignore_base = 0;
+  bool may_touch = false;
   std::array<double, 3> center = {0, 0, 0};       ///< In W, m.
   std::array<double, 3> half_sizes = {0, 0, 0};   ///< Half its edges along its own axes, m.
   std::array<double, 4> rotation = {1, 0, 0, 0};  ///< Of norm 1.

@@ -1,0 +1,132 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "flexura/experiment/experiment.h"
+#include "flexura/experiment/run.h"
+#include "flexura/log/export_csv.h"
+#include "flexura/log/logged_message.h"
+#include "flexura/log/messages.h"
+#include "flexura/store/text_file.h"
+#include "flexura/tasks/task_kinds.h"
+#include "tests/support/checkout.h"
+#include "tests/support/experiment_files.h"
+#include "tests/support/runs.h"
+
+// Runs whose true arm is an elastic rod in motion.
+namespace flexura {
+namespace {
+
+using ::testing::HasSubstr;
+
+class DynamicArm : public Runs, public testing::Test {
+ protected:
+  RunResult example(const std::string& name) {
+    return run(load_experiment(checkout_file("examples/" + name + "/experiment.toml"), {{}, {}}));
+  }
+};
+
+TEST_F(DynamicArm, SwingsWhenItIsLetGoAndComesToRest) {
+  const RunResult result = example("12_hanging_tentacle");
+  ASSERT_EQ(result.outcome, RunOutcome::done);
+  const auto energy = logged<EnergyMessage>(result, arm_energy_topic);
+  const auto truth = logged<PosesMessage>(result, arm_truth_topic);
+  ASSERT_EQ(energy.size(), truth.size());
+  const auto total = [](const EnergyMessage& at) { return at.kinetic + at.strain + at.gravity; };
+  const auto side = [&](std::size_t i) { return truth[i].poses.back().position.x; };
+  EXPECT_EQ(energy.front().kinetic, 0);
+  double greatest = 0, least = 0, most = 0;
+  for (std::size_t i = 0; i < energy.size(); ++i) {
+    greatest = std::max(greatest, energy[i].kinetic);
+    least = std::min(least, side(i)), most = std::max(most, side(i));
+    // The tendons take energy while they are let out, and nothing gives it any afterwards.
+    if (energy[i].time > 0.35) EXPECT_LE(total(energy[i]), total(energy[i - 1]) + 1e-5) << energy[i].time;
+  }
+  EXPECT_GT(greatest, 0.02);
+  EXPECT_LT(least, -0.05);
+  EXPECT_GT(most, 0.05);
+  EXPECT_LT(energy.back().kinetic, greatest / 4);
+  const ExportResult exported = export_csv(result.folder, task_tables());
+  EXPECT_THAT(read_text_file(exported.folder / "energy.csv", 1 << 20),
+              HasSubstr("time,kinetic,strain,gravity\n"));
+}
+
+TEST_F(DynamicArm, GraspsAPostAndHoldsOnToIt) {
+  const RunResult result = example("13_grasp");
+  ASSERT_EQ(result.outcome, RunOutcome::done);
+  const auto contacts = logged<ContactsMessage>(result, arm_contacts_topic);
+  ASSERT_FALSE(contacts.empty());
+  EXPECT_GT(contacts.front().time, 0.3);
+  ASSERT_GE(contacts.back().contacts.size(), 3U);
+  // It curls half around the post, which pushes back from its sides.
+  double left = 0, right = 0;
+  for (const ContactMessage& contact : contacts.back().contacts) {
+    EXPECT_EQ(contact.with, "post");
+    EXPECT_LT(contact.depth, 0.003);
+    left = std::min(left, contact.force.x), right = std::max(right, contact.force.x);
+  }
+  EXPECT_LT(left, -0.05);
+  EXPECT_GT(right, 0.05);
+  EXPECT_THAT(read_text_file(result.folder / "report.html", 1 << 26), HasSubstr("contact forces"));
+}
+
+TEST_F(DynamicArm, GivesTheSameBytesAgain) {
+  const RunResult one = example("13_grasp"), other = example("13_grasp");
+  EXPECT_EQ(read_text_file(one.folder / "log.mcap", 1 << 28),
+            read_text_file(other.folder / "log.mcap", 1 << 28));
+}
+
+constexpr const char* moving_rod = R"([arm]
+kind = "spatial"
+model = "dynamic"
+[[arm.section]]
+length = 0.3
+radius = 0.02
+[arm.section.material]
+youngs_modulus = 1e6
+density = 1000
+damping_time = 0.01
+[[arm.tendon]]
+section = 1
+radius = 0.01
+[arm.contact]
+friction = 0.4
+[arm.drag]
+density = 1000
+[[arm.payload]]
+section = 1
+mass = 0.1
+from = 1
+until = 2
+)";
+
+std::string moving_with(const std::string& from, const std::string& to) {
+  return replaced(moving_rod, from, to);
+}
+
+TEST(BadDynamicFiles, EachGetsALineWithPlaceValueAndExpectation) {
+  EXPECT_EQ(error_of_file(moving_rod), "no error");
+  EXPECT_THAT(error_of_file(moving_with("density = 1000\ndamping", "damping")),
+              HasSubstr("arm.section[0].material: has no mass: expected density or mass_per_length"));
+  EXPECT_THAT(error_of_file(moving_with("radius = 0.01\n", "radius = 0.01\nfriction = 0.1\n")),
+              HasSubstr("arm.tendon[0].friction: is known of arms at rest alone"));
+  EXPECT_THAT(error_of_file(moving_with("\"dynamic\"", "\"static\"")),
+              HasSubstr("arm.contact: is of arms in motion: expected model = \"dynamic\""));
+  EXPECT_THAT(error_of_file(moving_with("radius = 0.02\n", "radius = 0.02\nstretch_limits = [1, 2]\n")),
+              HasSubstr("arm.section[0].stretch_limits: let it be driven longer"));
+  EXPECT_THAT(error_of_file(moving_with("until = 2", "until = 0.5")),
+              HasSubstr("arm.payload[0].until: is not after from"));
+  EXPECT_THAT(error_of_file(moving_with("section = 1\nmass", "section = 2\nmass")),
+              HasSubstr("arm.payload[0].section: is section 2 of an arm of 1"));
+  EXPECT_THAT(error_of_file(moving_with("friction = 0.4", "stiffness = 0")),
+              HasSubstr("arm.contact.stiffness = 0"));
+  EXPECT_THAT(error_of_file(moving_with("model = \"dynamic\"", "model = \"dynamic\"\ntime_step = 0")),
+              HasSubstr("arm.time_step"));
+}
+
+}  // namespace
+}  // namespace flexura

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "flexura/sim/arm_setup.h"
 #include "flexura/sim/static_plant.h"
 #include "tests/support/estimate_bench.h"
 #include "tests/support/random_cases.h"

@@ -44,7 +44,9 @@ TEST_F(DynamicArm, SwingsWhenItIsLetGoAndComesToRest) {
     greatest = std::max(greatest, energy[i].kinetic);
     least = std::min(least, side(i)), most = std::max(most, side(i));
     // The tendons take energy while they are let out, and nothing gives it any afterwards.
-    if (energy[i].time > 0.35) EXPECT_LE(total(energy[i]), total(energy[i - 1]) + 1e-5) << energy[i].time;
+    if (energy[i].time > 0.35) {
+      EXPECT_LE(total(energy[i]), total(energy[i - 1]) + 1e-5) << energy[i].time;
+    }
   }
   EXPECT_GT(greatest, 0.02);
   EXPECT_LT(least, -0.05);
@@ -62,15 +64,15 @@ TEST_F(DynamicArm, GraspsAPostAndHoldsOnToIt) {
   ASSERT_FALSE(contacts.empty());
   EXPECT_GT(contacts.front().time, 0.3);
   ASSERT_GE(contacts.back().contacts.size(), 3U);
-  // It curls half around the post, which pushes back from its sides.
-  double left = 0, right = 0;
+  // It lies around the post, which pushes back from the side and from above.
+  double left = 0, up = 0;
   for (const ContactMessage& contact : contacts.back().contacts) {
     EXPECT_EQ(contact.with, "post");
-    EXPECT_LT(contact.depth, 0.003);
-    left = std::min(left, contact.force.x), right = std::max(right, contact.force.x);
+    EXPECT_LT(contact.depth, 0.006);
+    left = std::min(left, contact.force.x), up = std::max(up, contact.force.y);
   }
   EXPECT_LT(left, -0.05);
-  EXPECT_GT(right, 0.05);
+  EXPECT_GT(up, 0.05);
   EXPECT_THAT(read_text_file(result.folder / "report.html", 1 << 26), HasSubstr("contact forces"));
 }
 

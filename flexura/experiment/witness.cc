@@ -39,7 +39,8 @@ LineChart energy_chart(const std::vector<double>& times, const std::vector<RodEn
 
 }  // namespace
 
-std::optional<Chapter> RodRecord::chapter(const Arm& arm, const Backbone& commanded) const {
+std::optional<Chapter> RodRecord::chapter(const Arm& arm, const std::vector<ObstacleConfig>& obstacles,
+                                          const Backbone& commanded) const {
   if (times.empty()) return std::nullopt;
   LineChart pulls{.heading = "tension of each tendon",
                   .x_label = "t (s)",
@@ -66,7 +67,7 @@ std::optional<Chapter> RodRecord::chapter(const Arm& arm, const Backbone& comman
           fmt::format("The simulated arm is an elastic rod, {} under its tendons, its weight and its loads. "
                       "The pictures above show the arm as it was commanded.",
                       is_moving ? "in motion" : "at rest"),
-      .figures = {{"true-arm", two_shapes_picture(arm, *last, commanded,
+      .figures = {{"true-arm", two_shapes_picture(arm, obstacles, *last, commanded,
                                                   "the true arm at the end, and as commanded (line)")}},
       .is_first_tall = false};
   if (!pulls.series.empty()) chapter.figures.push_back({"tensions", std::move(pulls)});
@@ -233,7 +234,7 @@ ReportData Witness::report_data(const Experiment& experiment, const Schedule& sc
                   .curve = experiment.record.curve,
                   .tension = experiment.record.tension,
                   .chapters = {}};
-  if (auto chapter = rod_.chapter(data.arm, model_.backbone(data.states.back())))
+  if (auto chapter = rod_.chapter(data.arm, data.obstacles, model_.backbone(data.states.back())))
     data.chapters.push_back(std::move(*chapter));
   add_safety(safety, schedule, data);
   // However few states are recorded, the picture in the middle is of the middle.

@@ -27,7 +27,8 @@ struct RodRecord {
   std::optional<Backbone> last;               ///< As it is at the last of these times.
 
   /// None of an arm that is no rod; with `commanded`, how `arm` was to stand at last.
-  [[nodiscard]] std::optional<Chapter> chapter(const Arm& arm, const Backbone& commanded) const;
+  [[nodiscard]] std::optional<Chapter> chapter(const Arm& arm, const std::vector<ObstacleConfig>& obstacles,
+                                               const Backbone& commanded) const;
 };
 
 /// Everything that a run leaves behind while it plays: the log, and what the report will show.

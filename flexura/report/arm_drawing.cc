@@ -214,15 +214,20 @@ Drawing unsafe_picture(const ReportMotion& motion, const PlotScene& scene, const
   return drawing;
 }
 
-Drawing two_shapes_picture(const Arm& arm, const Backbone& shape, const Backbone& ghost,
-                           std::string_view heading) {
+Drawing two_shapes_picture(const Arm& arm, const std::vector<ObstacleConfig>& obstacles,
+                           const Backbone& shape, const Backbone& ghost, std::string_view heading) {
   Eigen::AlignedBox3d box;
   extend_by_tube(box, shape);
   extend_by_tube(box, ghost);
-  const PlotScene scene = scene_of(box, lies_in_xoy(arm), 0.1 * arm.length());
+  ReportMotion around;
+  around.arm = arm;
+  around.obstacles = obstacles;
+  around.in_plane = lies_in_xoy(arm);
+  const PlotScene scene = scene_of(with_obstacles(box, obstacles), around.in_plane, 0.1 * arm.length());
   XmlWriter svg;
   draw_scene_axes(svg, scene, heading);
   for (std::size_t v = 0; v < scene.views.size(); ++v) {
+    draw_obstacles(svg, scene, v, around);
     svg.leaf("path", {{"class", "ghost"}, {"d", backbone_path(scene, v, ghost)}});
     draw_base(svg, scene.frames[v], scene.views[v], arm);
     for (const std::size_t k : back_to_front(scene.views[v], shape))

@@ -14,8 +14,9 @@ namespace flexura {
 [[nodiscard]] Drawing arm_picture(const ReportMotion& motion, const PlotScene& scene, std::size_t i,
                                   std::string_view when);
 
-/// Two shapes of one arm at once: as it is, and the other one behind it as a line, "ghost".
-[[nodiscard]] Drawing two_shapes_picture(const Arm& arm, const Backbone& shape, const Backbone& ghost,
+/// Two shapes of one arm at once, among obstacles: as it is, and the other one behind it as a line, "ghost".
+[[nodiscard]] Drawing two_shapes_picture(const Arm& arm, const std::vector<ObstacleConfig>& obstacles,
+                                         const Backbone& shape, const Backbone& ghost,
                                          std::string_view heading);
 
 /// What is wrong at a moment: "0 s to 2 s: section 1: bend 62 deg, limit 60 deg; ...", at most four of it.

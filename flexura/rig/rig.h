@@ -9,12 +9,13 @@
 
 #include "flexura/camera/camera.h"
 #include "flexura/log/run_watcher.h"
+#include "flexura/mechanics/rod_energy.h"
 #include "flexura/model/backbone.h"
 #include "flexura/port/camera_port.h"
 #include "flexura/port/rig_model.h"
 #include "flexura/port/rig_ports.h"
 #include "flexura/rig/setup.h"
-#include "flexura/sim/plant.h"
+#include "flexura/sim/plant_contact.h"
 
 namespace flexura {
 

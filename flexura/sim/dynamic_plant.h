@@ -11,6 +11,7 @@
 #include "flexura/mechanics/rod_drag.h"
 #include "flexura/mechanics/statics.h"
 #include "flexura/mechanics/surroundings.h"
+#include "flexura/sim/arm_setup.h"
 #include "flexura/sim/rod_plant.h"
 
 namespace flexura {

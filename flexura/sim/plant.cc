@@ -6,6 +6,7 @@
 #include <span>
 
 #include "flexura/port/driven_arm.h"
+#include "flexura/sim/arm_setup.h"
 
 namespace flexura {
 namespace {

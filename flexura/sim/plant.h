@@ -10,21 +10,12 @@
 #include "flexura/mechanics/rod_energy.h"
 #include "flexura/model/arm_model.h"
 #include "flexura/model/backbone.h"
+#include "flexura/sim/arm_setup.h"
 #include "flexura/sim/bend_motion.h"
 #include "flexura/sim/drive_motors.h"
-#include "flexura/sim/rig_config.h"
+#include "flexura/sim/plant_contact.h"
 
 namespace flexura {
-
-/// Where an arm touches something.
-struct PlantContact {
-  double s_rest = 0;  ///< Place on the arm: arc length from its base at rest, m.
-  std::string with;   ///< The obstacle's name, or "the arm".
-  Eigen::Vector3d point = Eigen::Vector3d::Zero();  ///< In the world, m.
-  Eigen::Vector3d force = Eigen::Vector3d::Zero();  ///< On the arm there, N.
-  double depth = 0;                                 ///< m
-  bool is_deep = false;  ///< The arm's middle is inside: the force may push anywhere.
-};
 
 /// The arm of the simulated world, as it truly is: what commands make of it over time.
 ///

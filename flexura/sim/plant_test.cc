@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "flexura/sim/arm_setup.h"
 #include "flexura/sim/simulated_rig.h"
 #include "tests/support/random_cases.h"
 #include "tests/support/rigs.h"

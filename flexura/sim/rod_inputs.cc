@@ -13,6 +13,7 @@
 
 #include "flexura/mechanics/arm_rod.h"
 #include "flexura/port/driven_arm.h"
+#include "flexura/sim/arm_setup.h"
 #include "flexura/sim/tendon_pull.h"
 
 namespace flexura {

@@ -3,6 +3,7 @@
 #include <optional>
 #include <vector>
 
+#include "flexura/sim/arm_setup.h"
 #include "flexura/sim/plant.h"
 #include "flexura/sim/rod_inputs.h"
 #include "flexura/sim/rod_tube.h"

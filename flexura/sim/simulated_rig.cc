@@ -5,6 +5,8 @@
 #include <string>
 #include <utility>
 
+#include "flexura/sim/arm_setup.h"
+
 namespace flexura {
 namespace {
 

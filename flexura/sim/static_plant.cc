@@ -8,6 +8,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "flexura/sim/arm_setup.h"
+
 namespace flexura {
 namespace {
 

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "flexura/mechanics/arm_rod.h"
+#include "flexura/sim/arm_setup.h"
 #include "flexura/sim/simulated_rig.h"
 #include "flexura/sim/tendon_pull.h"
 #include "tests/support/elastic_rigs.h"

@@ -6,7 +6,7 @@
 
 #include "flexura/mechanics/rod.h"
 #include "flexura/model/arm.h"
-#include "flexura/sim/rig_config.h"
+#include "flexura/sim/arm_setup.h"
 
 // Tendons of a rod that are pulled in one by one: how far, and what arcs would make of that.
 namespace flexura {

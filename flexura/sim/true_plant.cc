@@ -1,5 +1,6 @@
 #include "flexura/sim/true_plant.h"
 
+#include "flexura/sim/arm_setup.h"
 #include "flexura/sim/dynamic_plant.h"
 #include "flexura/sim/static_plant.h"
 

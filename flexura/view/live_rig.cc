@@ -11,6 +11,7 @@
 #include "flexura/kinematics/motors.h"
 #include "flexura/kinematics/tendons.h"
 #include "flexura/model/arm_way.h"
+#include "flexura/sim/arm_setup.h"
 #include "flexura/sim/plant.h"
 #include "flexura/sim/rig_config.h"
 #include "flexura/sim/true_plant.h"

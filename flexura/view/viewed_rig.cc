@@ -9,6 +9,7 @@
 #include "flexura/math/so3.h"
 #include "flexura/model/arm_way.h"
 #include "flexura/model/backbone.h"
+#include "flexura/sim/arm_setup.h"
 #include "flexura/sim/rig_config.h"
 
 namespace flexura {

@@ -19,6 +19,7 @@
 #include "flexura/base/node.h"
 #include "flexura/experiment/experiment.h"
 #include "flexura/model/backbone.h"
+#include "flexura/sim/arm_setup.h"
 #include "flexura/sim/rig_config.h"
 #include "flexura/store/json.h"
 #include "flexura/store/text_file.h"

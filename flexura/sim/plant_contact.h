@@ -1,0 +1,18 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+
+namespace flexura {
+
+/// Where an arm touches something.
+struct PlantContact {
+  double s_rest = 0;  ///< Place on the arm: arc length from its base at rest, m.
+  std::string with;   ///< The obstacle's name, or "the arm".
+  Eigen::Vector3d point = Eigen::Vector3d::Zero();  ///< In the world, m.
+  Eigen::Vector3d force = Eigen::Vector3d::Zero();  ///< On the arm there, N.
+  double depth = 0;                                 ///< m
+  bool is_deep = false;  ///< The arm's middle is inside: the force may push anywhere.
+};
+
+}  // namespace flexura

@@ -13,37 +13,34 @@ namespace {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXcd;
 
-// Of M x'' + D x' + K x = 0 by the inverse of the linear system, whose greatest eigenvalues are the slowest;
-// time in units in which that is about 1. Not finite where K has no inverse.
-VectorXcd eigenvalues_by_inverse(const MatrixXd& L, const MatrixXd& K, const MatrixXd& D) {
-  const Index n = K.rows();
-  const Eigen::PartialPivLU<MatrixXd> stiffness(K);
-  // By unit masses: L^T K^-1 L and L^T K^-1 D L^-T.
-  const MatrixXd give = L.transpose() * stiffness.solve(L);
-  const MatrixXd damp =
-      L.transpose() * stiffness.solve(L.triangularView<Eigen::Lower>().solve(D.transpose()).transpose());
-  const double unit = std::sqrt(give.norm());
-  MatrixXd inverse = MatrixXd::Zero(2 * n, 2 * n);
-  inverse.topLeftCorner(n, n) = -damp / unit;
-  inverse.topRightCorner(n, n) = -give / (unit * unit);
-  inverse.bottomLeftCorner(n, n).setIdentity();
-  return (unit * general_eigen(inverse).values).cwiseInverse();
+// Of matrices by unit masses, mass = L L^T.
+MatrixXd by_unit_mass(const MatrixXd& L, const MatrixXd& A) {
+  const MatrixXd half = L.triangularView<Eigen::Lower>().solve(A);
+  return L.triangularView<Eigen::Lower>().solve(half.transpose()).transpose();
 }
 
-VectorXcd eigenvalues_directly(const MatrixXd& L, const MatrixXd& K, const MatrixXd& D) {
+// A rate, 1/s, about that of the slower of the modes.
+double slow_rate(const MatrixXd& L, const MatrixXd& K) {
+  const Eigen::VectorXd squares = symmetric_eigen(by_unit_mass(L, 0.5 * (K + K.transpose()))).values;
+  std::vector<double> sizes;
+  for (const double square : squares) sizes.push_back(std::abs(square));
+  std::ranges::sort(sizes);
+  const double square = sizes[sizes.size() / 4];
+  return square > 0 && std::isfinite(square) ? std::sqrt(square) : 1;
+}
+
+// Of M x'' + D x' + K x = 0: those of (A - shift)^-1, of which the greatest are those next to the shift. Time
+// in units of 1/shift.
+VectorXcd eigenvalues_near(double shift, const MatrixXd& L, const MatrixXd& K, const MatrixXd& D) {
   const Index n = K.rows();
-  const auto by_mass = [&](const MatrixXd& A) {
-    const MatrixXd half = L.triangularView<Eigen::Lower>().solve(A);
-    return MatrixXd(L.triangularView<Eigen::Lower>().solve(half.transpose()).transpose());
-  };
-  const MatrixXd stiff = by_mass(K);
-  const double norm = stiff.norm(), unit = norm > 0 ? std::sqrt(norm) : 1;
-  MatrixXd A = MatrixXd::Zero(2 * n, 2 * n);
-  A.topRightCorner(n, n).setIdentity();
-  A.topRightCorner(n, n) *= unit;
-  A.bottomLeftCorner(n, n) = -stiff / unit;
-  A.bottomRightCorner(n, n) = -by_mass(D);
-  return general_eigen(A).values;
+  const MatrixXd mass = L * L.transpose();
+  const Eigen::PartialPivLU<MatrixXd> shifted(K + shift * D + shift * shift * mass);
+  const MatrixXd speed = L.transpose() * shifted.solve(L) * (shift * shift);
+  const MatrixXd damp = L.triangularView<Eigen::Lower>().solve(D.transpose()).transpose();
+  const MatrixXd place = L.transpose() * shifted.solve(damp) * shift + speed;
+  MatrixXd inverse(2 * n, 2 * n);
+  inverse << -place, -speed, MatrixXd::Identity(n, n) - place, -speed;
+  return shift * (1 + general_eigen(inverse).values.array().inverse());
 }
 
 }  // namespace
@@ -58,8 +55,7 @@ RodModes rod_modes(const RodDynamicsSlopes& at_rest) {
   const MatrixXd L = mass.solve_lower(MatrixXd::Identity(n, n))
                          .triangularView<Eigen::Lower>()
                          .solve(MatrixXd::Identity(n, n));
-  modes.eigenvalues = eigenvalues_by_inverse(L, K, D);
-  if (!modes.eigenvalues.allFinite()) modes.eigenvalues = eigenvalues_directly(L, K, D);
+  modes.eigenvalues = eigenvalues_near(slow_rate(L, K), L, K, D);
   // Of conjugates the amounts are the same but for rounding, or not: by pairs.
   using Number = std::complex<double>;
   std::vector<Number> upper;

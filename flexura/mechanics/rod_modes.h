@@ -17,9 +17,10 @@ struct RodModes {
   std::vector<double> frequencies, damping_ratios;
 };
 
-/// Those of derivatives at rest (RodDynamics::slopes). The slow ones are exact to rounding: they come from
-/// the inverse of A, where there is one, for tendons that are held are very stiff. Fast ones are to about
-/// 1e-16 times the square of their ratio to the slowest.
+/// Those of derivatives at rest (RodDynamics::slopes). Slow ones are exact to rounding although tendons that
+/// are held are very stiff: they come from the inverse of A, shifted. Of fast ones about 1e-16 times the
+/// square of the ratio to the slow is wrong. Not finite where that inverse does not exist, for a shift in
+/// general.
 [[nodiscard]] RodModes rod_modes(const RodDynamicsSlopes& at_rest);
 
 }  // namespace flexura

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <complex>
+#include <stdexcept>
 #include <utility>
 #include <vector>
 
@@ -111,6 +112,7 @@ Node state_names(const RodChain& chain) {
 
 Node input_names(std::size_t tendons, bool by_displacement) {
   std::vector<std::string> names;
+  names.reserve(tendons);
   for (std::size_t i = 0; i < tendons; ++i)
     names.push_back(fmt::format("{}.{}", by_displacement ? "displacement" : "tension", i + 1));
   return texts_node(names);
@@ -173,6 +175,9 @@ std::string LineariseAnswers::answer(std::string_view line) {
          {}});
   } catch (const InputError& error) {
     return write_json(linearise_refusal(joined(error.problems())));
+  } catch (const std::invalid_argument&) {
+    // An equilibrium that RodDynamics does not take.
+    return write_json({not_linearised("out_of_steps"), {}});
   }
 }
 

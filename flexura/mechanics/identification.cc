@@ -96,8 +96,8 @@ MatrixXd inverse_covariance(const IdentificationEquations& equations, const Vect
 
 }  // namespace
 
-Identification identify(const Rod& rod, const std::vector<RodParameter>& parameters, const RodRecord& record,
-                        const IdentificationConfig& config) {
+Identification identify(const Rod& rod, const std::vector<RodParameter>& parameters,
+                        const RodMotionRecord& record, const IdentificationConfig& config) {
   const IdentificationEquations equations(rod, parameters, record, config);
   const auto count = static_cast<Index>(parameters.size());
   const Index rows = equations.fixed.size();

@@ -26,7 +26,7 @@ struct RodParameter {
 };
 
 /// What was measured of a rod at a time.
-struct RodRecordSample {
+struct RodMotionRecordSample {
   double time = 0;                        ///< s, above that of the one before.
   Eigen::VectorXd q;                      ///< The strain modes, as of RodChain.
   std::optional<Eigen::VectorXd> v = {};  ///< dq/dt; of all samples or of none: then by differences of q.
@@ -34,8 +34,9 @@ struct RodRecordSample {
 };
 
 /// How a rod moved.
-struct RodRecord {
-  std::vector<RodRecordSample> samples;  ///< At least 20. A jump of tensions counts as half-way between two.
+struct RodMotionRecord {
+  std::vector<RodMotionRecordSample>
+      samples;  ///< At least 20. A jump of tensions counts as half-way between two.
   RodLoads loads = {};
   /// Standard deviations of each mode's errors, and of its rate's, which are independent. Both empty: not
   /// known, and small.
@@ -69,6 +70,6 @@ struct Identification {
 /// coefficients makes. std::invalid_argument: the problems of the rod, parameters that overlap or none,
 /// samples that do not fit.
 [[nodiscard]] Identification identify(const Rod& rod, const std::vector<RodParameter>& parameters,
-                                      const RodRecord& record, const IdentificationConfig& config = {});
+                                      const RodMotionRecord& record, const IdentificationConfig& config = {});
 
 }  // namespace flexura

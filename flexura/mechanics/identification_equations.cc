@@ -25,12 +25,12 @@ void require_list(const VectorXd& list, Index count, const std::string& name) {
   if (!list.allFinite()) throw std::invalid_argument(fmt::format("{}: not finite", name));
 }
 
-void require_record(const RodRecord& record, Index modes) {
+void require_record(const RodMotionRecord& record, Index modes) {
   if (record.samples.size() < least_samples)
     throw std::invalid_argument(
         fmt::format("{} samples of a motion: expected at least {}", record.samples.size(), least_samples));
   for (std::size_t k = 0; k < record.samples.size(); ++k) {
-    const RodRecordSample& sample = record.samples[k];
+    const RodMotionRecordSample& sample = record.samples[k];
     require_list(sample.q, modes, fmt::format("modes of sample {}", k));
     if (sample.v.has_value() != record.samples[0].v.has_value())
       throw std::invalid_argument("rates are known of all samples, or of none");
@@ -54,7 +54,7 @@ struct RateStencil {
   std::array<double, 5> weights{};
 };
 
-RateStencil rate_stencil(const std::vector<RodRecordSample>& samples, std::size_t k) {
+RateStencil rate_stencil(const std::vector<RodMotionRecordSample>& samples, std::size_t k) {
   RateStencil stencil{.first = std::min(k < 2 ? 0 : k - 2, samples.size() - 5)};
   const auto time = [&](std::size_t i) { return samples[stencil.first + i].time; };
   const std::size_t here = k - stencil.first;
@@ -162,7 +162,7 @@ struct Shares {
 };
 
 // The terms of `fixed` and of all parameters at a sample.
-std::vector<Term> terms_at(RodDynamics& dynamics, const Shares& shares, const RodRecordSample& sample,
+std::vector<Term> terms_at(RodDynamics& dynamics, const Shares& shares, const RodMotionRecordSample& sample,
                            const VectorXd& v, const RodLoads& loads, bool with_slopes) {
   const MatrixXd K = dynamics.stiffness_matrix(), D = dynamics.damping_matrix();
   const TendonInput tendons{.tensions = sample.tensions};
@@ -221,7 +221,7 @@ struct Window {
   VectorXd bump = {}, slope = {};  // From `first` on.
 };
 
-std::vector<Window> windows_of(const std::vector<RodRecordSample>& samples, double given, Index modes) {
+std::vector<Window> windows_of(const std::vector<RodMotionRecordSample>& samples, double given, Index modes) {
   const double begin = samples.front().time, length = samples.back().time - begin;
   const double wide = given == 0 ? length / default_windows : given;
   if (!(wide > 0) || !(wide <= length))
@@ -284,12 +284,12 @@ MatrixXd covariance_of(const std::vector<Window>& windows, const std::vector<Noi
 }  // namespace
 
 IdentificationEquations::IdentificationEquations(const Rod& rod, const std::vector<RodParameter>& parameters,
-                                                 const RodRecord& record,
+                                                 const RodMotionRecord& record,
                                                  const IdentificationConfig& config) {
   if (parameters.empty()) throw std::invalid_argument("no parameters to identify");
   RodDynamics dynamics(rod);
   const Index n = dynamics.chain().size(), count = static_cast<Index>(parameters.size());
-  const std::vector<RodRecordSample>& samples = record.samples;
+  const std::vector<RodMotionRecordSample>& samples = record.samples;
   require_record(record, n);
   const Shares shares(dynamics, parameters);
   nominal = shares.nominal;

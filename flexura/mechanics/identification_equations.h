@@ -12,7 +12,7 @@ namespace flexura {
 struct IdentificationEquations {
   /// std::invalid_argument: as identify().
   IdentificationEquations(const Rod& rod, const std::vector<RodParameter>& parameters,
-                          const RodRecord& record, const IdentificationConfig& config);
+                          const RodMotionRecord& record, const IdentificationConfig& config);
 
   Eigen::MatrixXd by_parameter;  ///< Equations x parameters.
   Eigen::VectorXd fixed;

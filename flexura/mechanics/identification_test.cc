@@ -45,15 +45,15 @@ Rod true_tentacle(Rod rod, const TrueTentacle& truth) {
 constexpr double sample_time = 8e-3;
 
 // Tendons pull from rest on, and another way after a second.
-RodRecord step_response(const Rod& rod, bool with_rates, const RodLoads& loads = soft_tentacle_weight(),
-                        const std::vector<double>& pull = {4, 0, 3, 0, 5, 0},
-                        const std::vector<double>& back = {0, 5, 0, 3, 0, 4}) {
+RodMotionRecord step_response(const Rod& rod, bool with_rates, const RodLoads& loads = soft_tentacle_weight(),
+                              const std::vector<double>& pull = {4, 0, 3, 0, 5, 0},
+                              const std::vector<double>& back = {0, 5, 0, 3, 0, 4}) {
   RodDynamics dynamics(rod, {.spectral_radius = 1, .tolerance = 1e-10});
   RodState state = dynamics.rest();
-  RodRecord record{.samples = {}, .loads = loads};
+  RodMotionRecord record{.samples = {}, .loads = loads};
   for (int k = 0; k <= 250; ++k) {
     const bool is_second = k * sample_time > 1 - 1e-9;
-    RodRecordSample sample{.time = state.time, .q = state.q, .tensions = is_second ? back : pull};
+    RodMotionRecordSample sample{.time = state.time, .q = state.q, .tensions = is_second ? back : pull};
     if (with_rates) sample.v = dynamics.velocity(state);
     record.samples.push_back(sample);
     for (int i = 0; i < 8; ++i) {
@@ -67,11 +67,11 @@ RodRecord step_response(const Rod& rod, bool with_rates, const RodLoads& loads =
 }
 
 // Errors of each mode, 1/m, and of its rate.
-RodRecord noisy(RodRecord record, double q_noise, double v_noise, TestRandom& random) {
+RodMotionRecord noisy(RodMotionRecord record, double q_noise, double v_noise, TestRandom& random) {
   const Eigen::Index n = record.samples[0].q.size();
   record.q_noise = Eigen::VectorXd::Constant(n, q_noise);
   if (record.samples[0].v) record.v_noise = Eigen::VectorXd::Constant(n, v_noise);
-  for (RodRecordSample& sample : record.samples) {
+  for (RodMotionRecordSample& sample : record.samples) {
     for (double& value : sample.q) value += q_noise * normal_number(random);
     if (sample.v)
       for (double& value : *sample.v) value += v_noise * normal_number(random);
@@ -87,7 +87,7 @@ const Eigen::Vector4d known_values(1.25, 0.8, 0.05, 1.1);
 
 TEST(Identification, OfAnExactRecordGivesTheRodBack) {
   for (const bool with_rates : {true, false}) {
-    const RodRecord record = step_response(true_tentacle(believed_tentacle(), {}), with_rates);
+    const RodMotionRecord record = step_response(true_tentacle(believed_tentacle(), {}), with_rates);
     const Identification found = identify(believed_tentacle(), all_of_it, record);
     for (Eigen::Index g = 0; g < 4; ++g) {
       EXPECT_TRUE(found.is_observable[static_cast<std::size_t>(g)]);
@@ -101,7 +101,7 @@ TEST(Identification, OfAnExactRecordGivesTheRodBack) {
 // Values within three standard deviations, and those of many seeds as wide as is told.
 TEST(Identification, TellsHowWrongItIsUnderNoise) {
   for (const bool with_rates : {false, true}) {
-    const RodRecord exact = step_response(true_tentacle(believed_tentacle(), {}), with_rates);
+    const RodMotionRecord exact = step_response(true_tentacle(believed_tentacle(), {}), with_rates);
     TestRandom random(case_seed(with_rates ? 1 : 0));
     const int seeds = 16;
     Eigen::Vector4d squares = Eigen::Vector4d::Zero(), sum = Eigen::Vector4d::Zero();
@@ -134,7 +134,7 @@ TEST(Identification, TellsHowWrongItIsUnderNoise) {
 TEST(Identification, FlagsWhatTheRecordDoesNotTell) {
   const Rod believed = believed_tentacle({.shear = 0, .stretch = 0, .bend = 2, .twist = 1});
   const RodLoads down{.gravity = {-9.81, 0, 0}};
-  const RodRecord exact =
+  const RodMotionRecord exact =
       step_response(true_tentacle(believed, {}), false, down, {4, 0, 0, 3, 0, 0}, {1, 0, 0, 5, 0, 0});
   std::vector<RodParameter> parameters = all_of_it;
   parameters.push_back({.kind = Kind::twist});
@@ -164,7 +164,7 @@ TEST(Identification, FlagsFactorsThatOnlyTheirRatiosTell) {
   const Rod truth = true_tentacle(believed_tentacle(), {});
   RodDynamics dynamics(truth, {.spectral_radius = 1});
   RodState state = dynamics.start(Eigen::VectorXd::Constant(8, 1.0), Eigen::VectorXd::Zero(8), {}, {});
-  RodRecord record;
+  RodMotionRecord record;
   for (int k = 0; k < 250; ++k) {
     record.samples.push_back({.time = state.time, .q = state.q});
     for (int i = 0; i < 8; ++i) ASSERT_TRUE(dynamics.step(state, {}, {}, sample_time / 8).converged());
@@ -182,7 +182,7 @@ TEST(Identification, FlagsFactorsThatOnlyTheirRatiosTell) {
 }
 
 TEST(Identification, OfARodThatDoesNotMoveNothingIsKnown) {
-  RodRecord record;
+  RodMotionRecord record;
   for (int k = 0; k < 100; ++k) record.samples.push_back({.time = 0.01 * k, .q = Eigen::VectorXd::Zero(8)});
   const Identification found = identify(believed_tentacle(), all_of_it, record);
   EXPECT_TRUE(found.values.allFinite());
@@ -193,10 +193,11 @@ TEST(Identification, OfARodThatDoesNotMoveNothingIsKnown) {
 
 TEST(Identification, RefusesWhatIsNoRecord) {
   const Rod rod = believed_tentacle();
-  RodRecord record;
+  RodMotionRecord record;
   for (int k = 0; k < 100; ++k)
     record.samples.push_back({.time = 0.01 * k, .q = Eigen::VectorXd::Constant(8, 0.1 * k)});
-  const auto refuses = [&](const RodRecord& bad, const std::vector<RodParameter>& parameters = all_of_it,
+  const auto refuses = [&](const RodMotionRecord& bad,
+                           const std::vector<RodParameter>& parameters = all_of_it,
                            const IdentificationConfig& config = {}) {
     EXPECT_THROW((void)identify(rod, parameters, bad, config), std::invalid_argument);
   };
@@ -208,7 +209,7 @@ TEST(Identification, RefusesWhatIsNoRecord) {
   refuses(record, all_of_it, {.window = 5});
   refuses(record, all_of_it, {.window = -1});
   refuses(record, all_of_it, {.window = 0.02});
-  RodRecord bad = record;
+  RodMotionRecord bad = record;
   bad.samples.resize(10);
   refuses(bad);
   bad = record;

@@ -309,6 +309,7 @@ int parse_and_run(int argc, const char* const* argv) {
   add_answers(app, chosen, "fk", "Forward kinematics", forward_command);
   add_answers(app, chosen, "ik", "Inverse kinematics", inverse_command);
   add_answers(app, chosen, "statics", "Equilibrium of an elastic arm", statics_command);
+  add_answers(app, chosen, "linearise", "Motion of an elastic arm around its equilibrium", linearise_command);
   add_render(app, chosen);
   add_measure(app, chosen);
   add_estimate(app, chosen);

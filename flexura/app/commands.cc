@@ -14,6 +14,7 @@
 #include "flexura/app/forward.h"
 #include "flexura/app/inverse.h"
 #include "flexura/app/json_lines.h"
+#include "flexura/app/linearise.h"
 #include "flexura/app/statics.h"
 #include "flexura/app/stop_signal.h"
 #include "flexura/app/terminal_progress.h"
@@ -101,6 +102,20 @@ ExportResult export_films(const std::filesystem::path& results) {
   return export_mp4(results, experiment.true_rig().cameras);
 }
 
+// By answers about the elastic arm of a file; whether there is one that they can be given about.
+template <typename Answers>
+int answer_about_rod(const std::string& arm_file, std::istream& in, std::ostream& out) {
+  const Experiment experiment = load_experiment(arm_file);
+  std::optional<Answers> answers;
+  try {
+    answers.emplace(experiment.arm, experiment.drive);
+  } catch (const std::invalid_argument& error) {
+    throw input_error(arm_file, error.what());
+  }
+  answer_lines([&](std::string_view line) { return answers->answer(line); }, in, out);
+  return exit_done;
+}
+
 }  // namespace
 
 int run_command(const RunArguments& arguments, std::ostream& out, std::ostream& err) {
@@ -180,15 +195,11 @@ int inverse_command(const std::string& arm_file, std::istream& in, std::ostream&
 }
 
 int statics_command(const std::string& arm_file, std::istream& in, std::ostream& out) {
-  const Experiment experiment = load_experiment(arm_file);
-  std::optional<StaticsAnswers> answers;
-  try {
-    answers.emplace(experiment.arm, experiment.drive);
-  } catch (const std::invalid_argument& error) {
-    throw input_error(arm_file, error.what());
-  }
-  answer_lines([&](std::string_view line) { return answers->answer(line); }, in, out);
-  return exit_done;
+  return answer_about_rod<StaticsAnswers>(arm_file, in, out);
+}
+
+int linearise_command(const std::string& arm_file, std::istream& in, std::ostream& out) {
+  return answer_about_rod<LineariseAnswers>(arm_file, in, out);
 }
 
 int export_command(const std::string& results, const std::string& format, std::ostream& out,

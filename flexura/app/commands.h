@@ -40,6 +40,7 @@ int check_command(const CheckArguments& arguments, std::ostream& out, std::ostre
 int forward_command(const std::string& arm_file, std::istream& in, std::ostream& out);
 int inverse_command(const std::string& arm_file, std::istream& in, std::ostream& out);
 int statics_command(const std::string& arm_file, std::istream& in, std::ostream& out);
+int linearise_command(const std::string& arm_file, std::istream& in, std::ostream& out);
 int export_command(const std::string& results, const std::string& format, std::ostream& out,
                    std::ostream& err);
 int schema_command(const std::string& format, std::ostream& out);

@@ -163,6 +163,17 @@ class RodDynamics {
   [[nodiscard]] Eigen::VectorXd acceleration(const Eigen::VectorXd& q, const Eigen::VectorXd& v,
                                              const TendonInput& tendons, const RodLoads& loads);
 
+  /// The generalized forces that the acceleration `a` needs beside weight, loads, stiffness, damping and
+  /// surroundings: what tendons or others have to make. At linear cost. std::invalid_argument: as start().
+  [[nodiscard]] Eigen::VectorXd needed_forces(const Eigen::VectorXd& q, const Eigen::VectorXd& v,
+                                              const Eigen::VectorXd& a, const RodLoads& loads);
+  /// The tendons' lengths by the modes, tendons x modes: tensions make the generalized forces -
+  /// lengths_by_q^T tensions. std::invalid_argument: as start().
+  [[nodiscard]] Eigen::MatrixXd lengths_by_q(const Eigen::VectorXd& q);
+  /// K of the strains' energy q^T K q / 2, and D of the viscosity's forces - D v; modes x modes.
+  [[nodiscard]] Eigen::MatrixXd stiffness_matrix() const;
+  [[nodiscard]] Eigen::MatrixXd damping_matrix() const;
+
   /// Derivatives at a state, under what pulls. They cost as the square of the number of sections.
   [[nodiscard]] RodDynamicsSlopes slopes(const RodState& state, const TendonInput& tendons,
                                          const RodLoads& loads);

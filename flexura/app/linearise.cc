@@ -1,0 +1,184 @@
+#include "flexura/app/linearise.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <complex>
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
+#include "flexura/base/problems.h"
+#include "flexura/base/table.h"
+#include "flexura/log/messages.h"
+#include "flexura/math/arrays.h"
+#include "flexura/mechanics/arm_rod.h"
+#include "flexura/mechanics/rod_modes.h"
+#include "flexura/store/json.h"
+
+namespace flexura {
+namespace {
+
+constexpr NumberRange pull_range = {.min = -1e9, .max = 1e9};
+
+/// A line of input, in the frame of the arm's base.
+struct LineariseRequest {
+  std::optional<std::vector<double>> tensions;       ///< N
+  std::optional<std::vector<double>> displacements;  ///< m
+  std::array<double, 3> tip_force = {0, 0, 0};       ///< N
+  std::array<double, 3> tip_moment = {0, 0, 0};      ///< N m
+  std::optional<std::array<double, 3>> gravity;      ///< m/s^2; none: the arm's.
+};
+
+const Table<LineariseRequest>& fields_of(const LineariseRequest*) {
+  static const auto table =
+      Table<LineariseRequest>("linearise request", "What pulls at the arm where its motion is linearised.")
+          .field("tensions", &LineariseRequest::tensions,
+                 {.meaning = "tendons' tensions at the base, N", .range = between(0, 1e9)})
+          .field(
+              "displacements", &LineariseRequest::displacements,
+              {.meaning = "how far tendons are pulled in", .unit = Unit::metre, .range = between(-1e6, 1e6)})
+          .field("tip_force", &LineariseRequest::tip_force,
+                 {.meaning = "force at the tip, N", .range = pull_range})
+          .field("tip_moment", &LineariseRequest::tip_moment,
+                 {.meaning = "moment at the tip, N m", .range = pull_range})
+          .field("gravity", &LineariseRequest::gravity,
+                 {.meaning = "gravity, instead of the file's",
+                  .unit = Unit::metre_per_second_squared,
+                  .range = between(-1e6, 1e6)});
+  return table;
+}
+
+LineariseRequest read_linearise_request(const Rod& rod, std::string_view line) {
+  const Node document = parse_json(line, "");
+  Reader reader;
+  LineariseRequest request;
+  if (fields_of(static_cast<const LineariseRequest*>(nullptr)).read(document, reader, request)) {
+    const auto check_tendons = [&](const std::optional<std::vector<double>>& given, const char* name) {
+      if (!given || given->size() == rod.tendons.size()) return;
+      reader.problem_at(
+          name, fmt::format("{} given: expected {}, one for each tendon", given->size(), rod.tendons.size()));
+    };
+    check_tendons(request.tensions, "tensions");
+    check_tendons(request.displacements, "displacements");
+    if (request.tensions && request.displacements)
+      reader.problem_at("displacements", "are given beside tensions: expected one of them");
+  }
+  reader.throw_if_any();
+  return request;
+}
+
+Node matrix_node(const Eigen::MatrixXd& matrix) {
+  Node::Array rows;
+  for (Eigen::Index i = 0; i < matrix.rows(); ++i) {
+    Node::Array row;
+    for (const double value : matrix.row(i)) row.push_back(number_node(value + 0.0));  // No -0.
+    rows.push_back({std::move(row), {}});
+  }
+  return {std::move(rows), {}};
+}
+
+Node list_node(const std::vector<double>& values) {
+  Node::Array entries;
+  for (const double value : values) entries.push_back(number_node(value));
+  return {std::move(entries), {}};
+}
+
+Node eigenvalues_node(const Eigen::VectorXcd& values) {
+  Node::Array entries;
+  for (const std::complex<double>& value : values)
+    entries.push_back({Node::Array{number_node(value.real() + 0.0), number_node(value.imag() + 0.0)}, {}});
+  return {std::move(entries), {}};
+}
+
+// "q.1.bend_x.0": the constant part of the first section's bend about x; "v..." its rate.
+Node state_names(const RodChain& chain) {
+  constexpr std::array strains = {"shear_x", "shear_y", "stretch", "bend_x", "bend_y", "twist"};
+  std::vector<std::string> modes(static_cast<std::size_t>(chain.size()));
+  for (std::size_t section = 0; section < chain.elements().size(); ++section) {
+    int order = 0, before = -1;
+    chain.elements()[section].grid().for_modes([&](int strain, int mode) {
+      order = strain == before ? order + 1 : 0;
+      before = strain;
+      modes[static_cast<std::size_t>(chain.first(section) + mode)] =
+          fmt::format("{}.{}.{}", section + 1, strains[static_cast<std::size_t>(strain)], order);
+    });
+  }
+  std::vector<std::string> names;
+  for (const char* kind : {"q", "v"})
+    for (const std::string& mode : modes) names.push_back(fmt::format("{}.{}", kind, mode));
+  return texts_node(names);
+}
+
+Node input_names(std::size_t tendons, bool by_displacement) {
+  std::vector<std::string> names;
+  names.reserve(tendons);
+  for (std::size_t i = 0; i < tendons; ++i)
+    names.push_back(fmt::format("{}.{}", by_displacement ? "displacement" : "tension", i + 1));
+  return texts_node(names);
+}
+
+Node output_names() {
+  return texts_node({"tip.x", "tip.y", "tip.z", "tip.rotation_x", "tip.rotation_y", "tip.rotation_z"});
+}
+
+Node::Table not_linearised(const char* reason) {
+  return {{"converged", {}, {false, {}}}, {"reason", {}, text_node(reason)}};
+}
+
+Node linearise_refusal(std::string problem) {
+  return {Node::Table{{"error", {}, text_node(std::move(problem))}}, {}};
+}
+
+}  // namespace
+
+LineariseAnswers::LineariseAnswers(const ArmConfig& arm, const std::optional<DriveConfig>& drive)
+    : rod_(rod_of(arm, drive)), loads_(loads_of(arm)), statics_(rod_), dynamics_(rod_) {}
+
+std::string LineariseAnswers::answer(std::string_view line) {
+  try {
+    const LineariseRequest request = read_linearise_request(rod_, line);
+    RodLoads loads = loads_;
+    if (request.gravity) loads.gravity = vector(*request.gravity);
+    const EndLoad tip{.section = rod_.sections.size() - 1,
+                      .force = vector(request.tip_force),
+                      .moment = vector(request.tip_moment)};
+    if (!tip.force.isZero(0) || !tip.moment.isZero(0)) loads.ends.push_back(tip);
+    const TendonInput tendons{.tensions = request.tensions.value_or(std::vector<double>{}),
+                              .displacements = request.displacements.value_or(std::vector<double>{})};
+    const Equilibrium found = statics_.solve(tendons, loads);
+    if (found.end == StaticsEnd::bad_input) return write_json(linearise_refusal(found.problem));
+    if (found.end == StaticsEnd::no_equilibrium) return write_json({not_linearised("no_equilibrium"), {}});
+    if (!found.converged() || !found.q.allFinite()) return write_json({not_linearised("out_of_steps"), {}});
+    const RodState state = dynamics_.rest(found);
+    const RodLinear linear = dynamics_.linearize(state, tendons, loads);
+    const RodModes modes = rod_modes(dynamics_.slopes(state, tendons, loads));
+    // Numbers beyond what doubles hold are as far from an answer.
+    if (!linear.A_rest.allFinite() || !linear.B_rest.allFinite() || !modes.eigenvalues.allFinite())
+      return write_json({not_linearised("out_of_steps"), {}});
+    Eigen::MatrixXd C = Eigen::MatrixXd::Zero(6, linear.A_rest.rows());
+    C.leftCols(linear.tip_by_q.cols()) = linear.tip_by_q;
+    return write_json(
+        {Node::Table{{"converged", {}, {true, {}}},
+                     {"reason", {}, text_node("converged")},
+                     {"stable", {}, {found.stable, {}}},
+                     {"tip", {}, pose_node(found.tip)},
+                     {"frequencies_hz", {}, list_node(modes.frequencies)},
+                     {"damping_ratios", {}, list_node(modes.damping_ratios)},
+                     {"eigenvalues", {}, eigenvalues_node(modes.eigenvalues)},
+                     {"states", {}, state_names(dynamics_.chain())},
+                     {"inputs", {}, input_names(rod_.tendons.size(), request.displacements.has_value())},
+                     {"outputs", {}, output_names()},
+                     {"A", {}, matrix_node(linear.A_rest)},
+                     {"B", {}, matrix_node(linear.B_rest)},
+                     {"C", {}, matrix_node(C)}},
+         {}});
+  } catch (const InputError& error) {
+    return write_json(linearise_refusal(joined(error.problems())));
+  } catch (const std::invalid_argument&) {
+    // An equilibrium that RodDynamics does not take.
+    return write_json({not_linearised("out_of_steps"), {}});
+  }
+}
+
+}  // namespace flexura

@@ -1,0 +1,154 @@
+#include "flexura/mechanics/identification.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include "flexura/math/dense.h"
+#include "flexura/mechanics/identification_equations.h"
+
+namespace flexura {
+namespace {
+
+using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
+
+constexpr int weightings = 8;
+// Beside the variances of equations that are correlated: of rounding.
+constexpr double ridge = 1e-9;
+// Of what a coefficient is, the part that noise may make before it tells nothing.
+constexpr double most_noise = 0.5;
+// Of scaled information: less is none.
+constexpr double least_information = 1e-9;
+
+double trace_of(const MatrixXd& A, const MatrixXd& B) { return A.cwiseProduct(B).sum(); }
+
+// Which parameters the information tells: none that a direction without information has a part in.
+std::vector<char> observable(const MatrixXd& information, const MatrixXd& by_noise) {
+  const Index count = information.rows();
+  std::vector<char> is(static_cast<std::size_t>(count), 0);
+  std::vector<Index> seen;
+  for (Index g = 0; g < count; ++g)
+    if (information(g, g) > 0 && by_noise(g, g) < most_noise * information(g, g)) seen.push_back(g);
+  if (seen.empty()) return is;
+  MatrixXd scaled = (information - by_noise)(seen, seen);
+  const VectorXd size = scaled.diagonal().cwiseSqrt().cwiseInverse();
+  scaled = (size.asDiagonal() * scaled * size.asDiagonal()).eval();
+  const SymmetricEigen eigen = symmetric_eigen(scaled);
+  for (std::size_t i = 0; i < seen.size(); ++i) {
+    double part = 0;
+    for (Index k = 0; k < eigen.values.size(); ++k)
+      if (!(eigen.values[k] > least_information))
+        part += std::pow(eigen.vectors(static_cast<Index>(i), k), 2);
+    is[static_cast<std::size_t>(seen[i])] = part < 1e-6 ? 1 : 0;
+  }
+  return is;
+}
+
+// Weighted least squares of A x + c by the inverse covariance W, less what noise makes of them.
+struct Fit {
+  MatrixXd information, by_noise;  // Of all parameters; by_noise of what noise makes of the coefficients.
+  VectorXd slope;                  // Of half the sum of squares at the values, without that of noise.
+};
+
+Fit fit_at(const IdentificationEquations& equations, const MatrixXd& W, const VectorXd& values) {
+  const Index count = values.size();
+  const MatrixXd& A = equations.by_parameter;
+  const VectorXd left = A * values + equations.fixed;
+  Fit fit{.information = A.transpose() * W * A,
+          .by_noise = MatrixXd::Zero(count, count),
+          .slope = A.transpose() * (W * left)};
+  if (!equations.has_noise()) return fit;
+  for (Index g = 0; g < count; ++g) {
+    fit.slope[g] -= trace_of(W, equations.noise(g + 1, 0));
+    for (Index h = 0; h < count; ++h) {
+      fit.by_noise(g, h) = trace_of(W, equations.noise(g + 1, h + 1));
+      fit.slope[g] -= fit.by_noise(g, h) * values[h];
+    }
+  }
+  return fit;
+}
+
+MatrixXd inverse_covariance(const IdentificationEquations& equations, const VectorXd& values) {
+  const Index rows = equations.fixed.size();
+  if (!equations.has_noise()) {
+    // Of the same scale, and no more is known.
+    return equations.scales.cwiseAbs2().cwiseInverse().asDiagonal();
+  }
+  MatrixXd C = MatrixXd::Zero(rows, rows);
+  const Index count = values.size();
+  for (Index g = 0; g <= count; ++g)
+    for (Index h = 0; h <= count; ++h)
+      C += (g == 0 ? 1 : values[g - 1]) * (h == 0 ? 1 : values[h - 1]) * equations.noise(g, h);
+  VectorXd size = C.diagonal();
+  const double greatest = size.maxCoeff();
+  for (Index i = 0; i < rows; ++i) {
+    if (!(size[i] > 1e-20 * greatest)) size[i] = greatest > 0 ? 1e-20 * greatest : 1;
+  }
+  size = size.cwiseSqrt().cwiseInverse().eval();
+  C = (size.asDiagonal() * C * size.asDiagonal()).eval();
+  C.diagonal().array() += ridge;
+  return size.asDiagonal() * Cholesky(0.5 * (C + C.transpose())).inverse() * size.asDiagonal();
+}
+
+}  // namespace
+
+Identification identify(const Rod& rod, const std::vector<RodParameter>& parameters,
+                        const RodMotionRecord& record, const IdentificationConfig& config) {
+  const IdentificationEquations equations(rod, parameters, record, config);
+  const auto count = static_cast<Index>(parameters.size());
+  const Index rows = equations.fixed.size();
+  Identification result{.values = equations.nominal,
+                        .sigma = VectorXd::Constant(count, std::numeric_limits<double>::infinity()),
+                        .covariance = MatrixXd::Zero(count, count),
+                        .is_observable = std::vector<char>(parameters.size(), 0),
+                        .equations = static_cast<int>(rows)};
+  MatrixXd W = inverse_covariance(equations, result.values);
+  std::vector<Index> seen;
+  for (int pass = 0; pass < weightings; ++pass) {
+    const Fit fit = fit_at(equations, W, result.values);
+    if (!fit.information.allFinite() || !fit.slope.allFinite())
+      throw std::invalid_argument("a record whose equations are beyond what numbers hold");
+    if (pass == 0 || pass + 1 == weightings) {
+      result.is_observable = observable(fit.information, fit.by_noise);
+      seen.clear();
+      for (Index g = 0; g < count; ++g)
+        if (result.is_observable[static_cast<std::size_t>(g)] != 0) seen.push_back(g);
+    }
+    if (seen.empty()) break;
+    const MatrixXd clear = (fit.information - fit.by_noise)(seen, seen);
+    const VectorXd scale = clear.diagonal().cwiseAbs().cwiseSqrt().cwiseInverse();
+    const Cholesky factors(scale.asDiagonal() * clear * scale.asDiagonal());
+    if (!factors.is_definite()) {
+      // Noise hides what they tell.
+      std::ranges::fill(result.is_observable, char{0});
+      result.values = equations.nominal;
+      seen.clear();
+      break;
+    }
+    const MatrixXd inverse = scale.asDiagonal() * factors.inverse() * scale.asDiagonal();
+    result.values(seen) -= inverse * fit.slope(seen);
+    result.covariance(seen, seen) = inverse * fit.information(seen, seen) * inverse;
+    if (equations.has_noise()) W = inverse_covariance(equations, result.values);
+  }
+  for (Index g = 0; g < count; ++g) {
+    if (result.is_observable[static_cast<std::size_t>(g)] != 0) continue;
+    result.values[g] = equations.nominal[g];
+    result.covariance.row(g).setZero();
+    result.covariance.col(g).setZero();
+  }
+  const VectorXd left = equations.by_parameter * result.values + equations.fixed;
+  const Index freedom = std::max<Index>(1, rows - static_cast<Index>(seen.size()));
+  result.misfit = left.dot(W * left) / static_cast<double>(freedom);
+  if (!equations.has_noise()) {
+    result.covariance *= result.misfit;
+    result.misfit = 1;
+  }
+  for (const Index g : seen) result.sigma[g] = std::sqrt(result.covariance(g, g));
+  return result;
+}
+
+}  // namespace flexura

@@ -1,0 +1,360 @@
+#include "flexura/mechanics/identification_equations.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+#include "flexura/mechanics/dynamics.h"
+
+namespace flexura {
+namespace {
+
+using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
+
+constexpr std::size_t least_samples = 20, least_in_window = 9;
+constexpr double default_windows = 8, windows_overlap = 4;
+constexpr Index most_equations = 480;
+
+void require_list(const VectorXd& list, Index count, const std::string& name) {
+  if (list.size() != count)
+    throw std::invalid_argument(fmt::format("{}: {} given: expected {}", name, list.size(), count));
+  if (!list.allFinite()) throw std::invalid_argument(fmt::format("{}: not finite", name));
+}
+
+void require_record(const RodMotionRecord& record, Index modes) {
+  if (record.samples.size() < least_samples)
+    throw std::invalid_argument(
+        fmt::format("{} samples of a motion: expected at least {}", record.samples.size(), least_samples));
+  for (std::size_t k = 0; k < record.samples.size(); ++k) {
+    const RodMotionRecordSample& sample = record.samples[k];
+    require_list(sample.q, modes, fmt::format("modes of sample {}", k));
+    if (sample.v.has_value() != record.samples[0].v.has_value())
+      throw std::invalid_argument("rates are known of all samples, or of none");
+    if (sample.v) require_list(*sample.v, modes, fmt::format("rates of sample {}", k));
+    if (!std::isfinite(sample.time) || (k > 0 && !(sample.time > record.samples[k - 1].time)))
+      throw std::invalid_argument(fmt::format("sample {}: expected a later time than before", k));
+  }
+  for (const auto& [noise, name] :
+       {std::pair{&record.q_noise, "noise of modes"}, std::pair{&record.v_noise, "noise of rates"}}) {
+    if (noise->size() == 0) continue;
+    require_list(*noise, modes, name);
+    if (noise->minCoeff() < 0) throw std::invalid_argument(fmt::format("{}: below 0", name));
+  }
+  if (record.v_noise.size() > 0 && (!record.samples[0].v || record.q_noise.size() == 0))
+    throw std::invalid_argument("noise of rates is that of rates that are known, beside that of modes");
+}
+
+// Rates by differences: of the polynomial through five samples.
+struct RateStencil {
+  std::size_t first = 0;
+  std::array<double, 5> weights{};
+};
+
+RateStencil rate_stencil(const std::vector<RodMotionRecordSample>& samples, std::size_t k) {
+  RateStencil stencil{.first = std::min(k < 2 ? 0 : k - 2, samples.size() - 5)};
+  const auto time = [&](std::size_t i) { return samples[stencil.first + i].time; };
+  const std::size_t here = k - stencil.first;
+  for (std::size_t i = 0; i < 5; ++i) {
+    if (i == here) continue;
+    double weight = 1 / (time(i) - time(here));
+    for (std::size_t m = 0; m < 5; ++m)
+      if (m != i && m != here) weight *= (time(here) - time(m)) / (time(i) - time(m));
+    stencil.weights[i] = weight;
+    stencil.weights[here] += 1 / (time(here) - time(i));
+  }
+  return stencil;
+}
+
+// A column of the equations of one sample: (what is multiplied by the bump) and by its slope, and both by q
+// and v.
+struct Term {
+  VectorXd bump = {}, slope = {};
+  MatrixXd bump_by_q = {}, bump_by_v = {}, slope_by_q = {}, slope_by_v = {};  // Empty: none.
+};
+
+// What a parameter multiplies: part of the stiffness or damping; neither: the mass.
+struct ParameterPart {
+  MatrixXd stiffness, damping;
+};
+
+std::array<bool, 6> strains_of(RodParameter::Kind kind) {
+  switch (kind) {
+    case RodParameter::Kind::shear:
+      return {true, true, false, false, false, false};
+    case RodParameter::Kind::stretch:
+      return {false, false, true, false, false, false};
+    case RodParameter::Kind::bends:
+      return {false, false, false, true, true, false};
+    case RodParameter::Kind::twist:
+      return {false, false, false, false, false, true};
+    case RodParameter::Kind::damping:
+      return {true, true, true, true, true, true};
+    case RodParameter::Kind::mass:
+      break;
+  }
+  return {};
+}
+
+// Which modes a parameter is of.
+std::vector<Index> parameter_modes(const RodChain& chain, const RodParameter& parameter) {
+  if (parameter.section && *parameter.section >= chain.elements().size())
+    throw std::invalid_argument("a parameter of a section that the rod has not");
+  if (parameter.kind == RodParameter::Kind::mass && parameter.section)
+    throw std::invalid_argument("a mass is that of all of the rod");
+  std::vector<Index> modes;
+  const std::array<bool, 6> strains = strains_of(parameter.kind);
+  for (std::size_t section = 0; section < chain.elements().size(); ++section) {
+    if (parameter.section && *parameter.section != section) continue;
+    chain.elements()[section].grid().for_modes([&](int strain, int mode) {
+      if (strains[static_cast<std::size_t>(strain)]) modes.push_back(chain.first(section) + mode);
+    });
+  }
+  return modes;
+}
+
+MatrixXd part_of(const MatrixXd& whole, const std::vector<Index>& modes) {
+  MatrixXd part = MatrixXd::Zero(whole.rows(), whole.cols());
+  part(modes, modes) = whole(modes, modes);
+  return part;
+}
+
+// What moves as the parameters say, and what as the rod says.
+struct Shares {
+  Shares(const RodDynamics& dynamics, const std::vector<RodParameter>& parameters)
+      : stiffness(dynamics.stiffness_matrix()), damping(dynamics.damping_matrix()) {
+    const Index n = stiffness.rows();
+    const MatrixXd K = stiffness, D = damping;
+    std::vector<char> stiffness_taken(static_cast<std::size_t>(n), 0), damping_taken = stiffness_taken;
+    nominal = VectorXd::Ones(static_cast<Index>(parameters.size()));
+    for (std::size_t g = 0; g < parameters.size(); ++g) {
+      ParameterPart& part = parts.emplace_back();
+      const std::vector<Index> modes = parameter_modes(dynamics.chain(), parameters[g]);
+      if (parameters[g].kind == RodParameter::Kind::mass) {
+        if (has_mass) throw std::invalid_argument("parameters that overlap");
+        has_mass = true;
+        continue;
+      }
+      const bool is_damping = parameters[g].kind == RodParameter::Kind::damping;
+      std::vector<char>& taken = is_damping ? damping_taken : stiffness_taken;
+      double time = 0;
+      for (const Index mode : modes) {
+        if (std::exchange(taken[static_cast<std::size_t>(mode)], char{1}) != 0)
+          throw std::invalid_argument("parameters that overlap");
+        time += D(mode, mode) / K(mode, mode) / static_cast<double>(modes.size());
+      }
+      if (is_damping) {
+        nominal[static_cast<Index>(g)] = time;
+        damping -= part_of(D, modes);
+      } else {
+        stiffness -= part_of(K, modes);
+      }
+      (is_damping ? part.damping : part.stiffness) = part_of(K, modes);
+    }
+  }
+  MatrixXd stiffness, damping;  // As the rod says.
+  std::vector<ParameterPart> parts;
+  VectorXd nominal;
+  bool has_mass = false;
+};
+
+// The terms of `fixed` and of all parameters at a sample.
+std::vector<Term> terms_at(RodDynamics& dynamics, const Shares& shares, const RodMotionRecordSample& sample,
+                           const VectorXd& v, const RodLoads& loads, bool with_slopes) {
+  const MatrixXd K = dynamics.stiffness_matrix(), D = dynamics.damping_matrix();
+  const TendonInput tendons{.tensions = sample.tensions};
+  const RodLoads weight{.gravity = loads.gravity};
+  const RodState all = dynamics.start(sample.q, v, tendons, loads);
+  const RodState heavy = dynamics.start(sample.q, v, {}, weight);
+  const VectorXd inner = K * sample.q + D * v;
+  Term mass{.bump = heavy.force + inner, .slope = heavy.momentum};
+  Term fixed{.bump = all.force - heavy.force - shares.stiffness * sample.q - shares.damping * v,
+             .slope = VectorXd::Zero(v.size())};
+  if (with_slopes) {
+    const RodDynamicsSlopes by = dynamics.slopes(all, tendons, loads);
+    const RodDynamicsSlopes heavy_by = dynamics.slopes(heavy, {}, weight);
+    mass.bump_by_q = heavy_by.force_by_q + K;
+    mass.bump_by_v = heavy_by.force_by_v + D;
+    mass.slope_by_q = heavy_by.momentum_by_q;
+    mass.slope_by_v = heavy_by.mass;
+    fixed.bump_by_q = by.force_by_q - heavy_by.force_by_q - shares.stiffness;
+    fixed.bump_by_v = -shares.damping;
+    fixed.slope_by_q = fixed.slope_by_v = MatrixXd::Zero(v.size(), v.size());
+  }
+  if (!shares.has_mass) {
+    fixed.bump += mass.bump;
+    fixed.slope += mass.slope;
+    if (with_slopes) {
+      fixed.bump_by_q += mass.bump_by_q;
+      fixed.bump_by_v += mass.bump_by_v;
+      fixed.slope_by_q += mass.slope_by_q;
+      fixed.slope_by_v += mass.slope_by_v;
+    }
+  }
+  std::vector<Term> terms = {fixed};
+  const MatrixXd none = with_slopes ? MatrixXd::Zero(v.size(), v.size()) : MatrixXd();
+  for (const ParameterPart& part : shares.parts) {
+    if (part.stiffness.size() == 0 && part.damping.size() == 0) {
+      terms.push_back(mass);
+      continue;
+    }
+    Term& term = terms.emplace_back(Term{.slope = VectorXd::Zero(v.size()),
+                                         .bump_by_q = none,
+                                         .bump_by_v = none,
+                                         .slope_by_q = none,
+                                         .slope_by_v = none});
+    const bool is_stiff = part.stiffness.size() > 0;
+    const MatrixXd& matrix = is_stiff ? part.stiffness : part.damping;
+    term.bump = -(matrix * (is_stiff ? sample.q : v));
+    if (with_slopes) (is_stiff ? term.bump_by_q : term.bump_by_v) = -matrix;
+  }
+  return terms;
+}
+
+// A window: the bump (1 - s^2)^4 in time, times what each sample counts in an integral.
+struct Window {
+  std::size_t first = 0;  // Of the samples whose noise has a part.
+  std::size_t count = 0;
+  VectorXd bump = {}, slope = {};  // From `first` on.
+};
+
+std::vector<Window> windows_of(const std::vector<RodMotionRecordSample>& samples, double given, Index modes) {
+  const double begin = samples.front().time, length = samples.back().time - begin;
+  const double wide = given == 0 ? length / default_windows : given;
+  if (!(wide > 0) || !(wide <= length))
+    throw std::invalid_argument("a window must be above 0 and no longer than the record");
+  const auto most = std::max<Index>(4, most_equations / std::max<Index>(1, modes));
+  const double wanted = std::floor((length - wide) / (wide / windows_overlap)) + 1;
+  const auto count = static_cast<std::size_t>(std::min(static_cast<double>(most), wanted));
+  std::vector<Window> windows;
+  for (std::size_t w = 0; w < count; ++w) {
+    const double part = count > 1 ? static_cast<double>(w) / static_cast<double>(count - 1) : 0.5;
+    const double middle = begin + wide / 2 + part * (length - wide);
+    std::size_t low = 0, high = samples.size();
+    while (low < samples.size() && samples[low].time <= middle - wide / 2) ++low;
+    while (high > low && samples[high - 1].time >= middle + wide / 2) --high;
+    if (high - low < least_in_window)
+      throw std::invalid_argument(
+          fmt::format("a window of {} samples: expected at least {}", high - low, least_in_window));
+    Window window{.first = low < 4 ? 0 : low - 4};
+    window.count = std::min(samples.size(), high + 4) - window.first;
+    window.bump = window.slope = VectorXd::Zero(static_cast<Index>(window.count));
+    for (std::size_t k = low; k < high; ++k) {
+      const double s = (samples[k].time - middle) / (wide / 2), rest = 1 - s * s;
+      const double before = samples[k == 0 ? 0 : k - 1].time,
+                   after = samples[std::min(k + 1, samples.size() - 1)].time;
+      const double run = (after - before) / 2;
+      const auto at = static_cast<Index>(k - window.first);
+      window.bump[at] = run * std::pow(rest, 4);
+      window.slope[at] = -run * 8 * s * std::pow(rest, 3) / (wide / 2);
+    }
+    windows.push_back(std::move(window));
+  }
+  return windows;
+}
+
+// How the noise of samples comes into a column of a window: modes x (samples x directions of noise), in
+// standard deviations.
+using NoiseWay = MatrixXd;
+
+MatrixXd covariance_of(const std::vector<Window>& windows, const std::vector<NoiseWay>& a,
+                       const std::vector<NoiseWay>& b, Index modes, Index directions) {
+  const auto count = static_cast<Index>(windows.size());
+  MatrixXd C = MatrixXd::Zero(count * modes, count * modes);
+  for (std::size_t i = 0; i < windows.size(); ++i) {
+    for (std::size_t j = 0; j < windows.size(); ++j) {
+      const std::size_t first = std::max(windows[i].first, windows[j].first),
+                        end = std::min(windows[i].first + windows[i].count,
+                                       windows[j].first + windows[j].count);
+      if (end <= first) continue;
+      const auto columns = [&](const NoiseWay& way, const Window& window) {
+        return way.middleCols(static_cast<Index>(first - window.first) * directions,
+                              static_cast<Index>(end - first) * directions);
+      };
+      C.block(static_cast<Index>(i) * modes, static_cast<Index>(j) * modes, modes, modes) =
+          columns(a[i], windows[i]) * columns(b[j], windows[j]).transpose();
+    }
+  }
+  return C;
+}
+
+}  // namespace
+
+IdentificationEquations::IdentificationEquations(const Rod& rod, const std::vector<RodParameter>& parameters,
+                                                 const RodMotionRecord& record,
+                                                 const IdentificationConfig& config) {
+  if (parameters.empty()) throw std::invalid_argument("no parameters to identify");
+  RodDynamics dynamics(rod);
+  const Index n = dynamics.chain().size(), count = static_cast<Index>(parameters.size());
+  const std::vector<RodMotionRecordSample>& samples = record.samples;
+  require_record(record, n);
+  const Shares shares(dynamics, parameters);
+  nominal = shares.nominal;
+  const std::vector<Window> windows = windows_of(samples, config.window, n);
+  const Index rows = n * static_cast<Index>(windows.size());
+  by_parameter.setZero(rows, count);
+  fixed.setZero(rows);
+  scales =
+      dynamics.stiffness_matrix().diagonal().cwiseSqrt().replicate(static_cast<Index>(windows.size()), 1);
+  const bool is_noisy = record.q_noise.size() > 0 && !record.q_noise.isZero(0),
+             has_rates = samples[0].v.has_value();
+  const Index directions = has_rates ? 2 * n : n;
+  const VectorXd v_noise = record.v_noise.size() > 0 ? record.v_noise : VectorXd::Zero(n);
+  std::vector<std::vector<NoiseWay>> ways(is_noisy ? static_cast<std::size_t>(count) + 1 : 0);
+  for (std::vector<NoiseWay>& way : ways)
+    for (const Window& window : windows)
+      way.emplace_back(NoiseWay::Zero(n, static_cast<Index>(window.count) * directions));
+
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    const auto has_sample = [&](const Window& window) {
+      if (k < window.first || k >= window.first + window.count) return false;
+      const auto at = static_cast<Index>(k - window.first);
+      return window.bump[at] != 0 || window.slope[at] != 0;
+    };
+    if (std::ranges::none_of(windows, has_sample)) continue;
+    const RateStencil stencil = rate_stencil(samples, k);
+    VectorXd v = VectorXd::Zero(n);
+    if (has_rates) {
+      v = *samples[k].v;
+    } else {
+      for (std::size_t i = 0; i < 5; ++i) v += stencil.weights[i] * samples[stencil.first + i].q;
+    }
+    const std::vector<Term> terms = terms_at(dynamics, shares, samples[k], v, record.loads, is_noisy);
+    for (std::size_t w = 0; w < windows.size(); ++w) {
+      const Window& window = windows[w];
+      if (!has_sample(window)) continue;
+      const auto at = static_cast<Index>(k - window.first), row = static_cast<Index>(w) * n;
+      const double bump = window.bump[at], slope = window.slope[at];
+      for (std::size_t f = 0; f < terms.size(); ++f) {
+        const Term& term = terms[f];
+        const VectorXd value = bump * term.bump + slope * term.slope;
+        if (f == 0) {
+          fixed.segment(row, n) += value;
+        } else {
+          by_parameter.block(row, static_cast<Index>(f) - 1, n, 1) += value;
+        }
+        if (!is_noisy) continue;
+        NoiseWay& way = ways[f][w];
+        const MatrixXd by_v = bump * term.bump_by_v + slope * term.slope_by_v;
+        way.middleCols(at * directions, n) +=
+            (bump * term.bump_by_q + slope * term.slope_by_q) * record.q_noise.asDiagonal();
+        if (has_rates) {
+          way.middleCols(at * directions + n, n) += by_v * v_noise.asDiagonal();
+          continue;
+        }
+        for (std::size_t i = 0; i < 5; ++i) {
+          const auto there = static_cast<Index>(stencil.first + i - window.first);
+          way.middleCols(there * directions, n) += stencil.weights[i] * by_v * record.q_noise.asDiagonal();
+        }
+      }
+    }
+  }
+  for (const std::vector<NoiseWay>& a : ways)
+    for (const std::vector<NoiseWay>& b : ways)
+      covariances_.push_back(covariance_of(windows, a, b, n, directions));
+}
+
+}  // namespace flexura

@@ -26,6 +26,7 @@
 #include "flexura/base/one_line.h"
 #include "flexura/base/source.h"
 #include "flexura/base/version.h"
+#include "flexura/sim/simulation_error.h"
 
 namespace flexura {
 namespace {
@@ -340,6 +341,9 @@ int run_app(int argc, const char* const* argv) noexcept {
   } catch (const InputError& error) {
     std::cerr << error.what() << '\n';
     return exit_bad_input;
+  } catch (const SimulationError& error) {
+    std::cerr << "flexura: " << one_line(error.what()) << '\n';
+    return exit_missed;
   } catch (const std::exception& error) {
     std::cerr << "flexura: " << one_line(error.what()) << '\n';
     return exit_system_failure;

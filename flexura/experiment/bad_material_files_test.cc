@@ -93,7 +93,8 @@ TEST(BadMaterialFiles, EachGetsALineWithPlaceValueAndExpectation) {
       {"no disks", rods_with("density = 6450", "disks = 0"),
        "arm.section[0].material.disks = 0: expected a whole number from 1 to 1000"},
       {"another model", rods_with("\"static\"", "\"statics\""),
-       "x.toml:3:9: arm.model = \"statics\": expected one of \"kinematic\", \"static\", \"dynamic\"; did you mean "
+       "x.toml:3:9: arm.model = \"statics\": expected one of \"kinematic\", \"static\", \"dynamic\"; did you "
+       "mean "
        "\"static\"?"},
       {"gravity that is no number", rods_with("-9.81", "nan"), "x.toml:4:15: arm.gravity[1] = nan: expected"},
       {"a section without a material",

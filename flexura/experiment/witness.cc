@@ -150,6 +150,9 @@ void Witness::rod_readings(RigTruth& truth, double now, const Backbone& backbone
   }
   const double contact_force = energy ? contact_readings(truth, now) : 0;
   tell_lost_steps(now, lost);
+  std::string warning = truth.warning(now);
+  if (warning != warned_ && !warning.empty()) log_.event(now, Recorder::Level::warning, "arm", warning);
+  warned_ = std::move(warning);
   if (readings_++ % kept_every_ == 0) {
     rod_.times.push_back(now);
     rod_.off.push_back((backbone.tip().position - commanded_tip_).norm());

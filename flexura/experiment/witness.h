@@ -74,6 +74,7 @@ class Witness {
   std::size_t last_step_ = 0;
   std::size_t kept_every_ = 1;
   std::size_t recorded_ = 0, readings_ = 0;
+  std::string warned_;    // Of the arm, at the last of the readings.
   bool touched_ = false;  // At the last of the readings.
   std::vector<double> times_;
   std::vector<ArmState> states_;

@@ -178,7 +178,7 @@ Descent BoundedDescent::descend(const DescentLimits& limits, VectorXd& x) {
   };
   const auto leave = [&](const TriedStep&, double) { return is_level(); };
   const Damping damping{.start = 1e-2, .most = 1e15, .rise = 2, .growth = 2, .eased = eased};
-  const DescentEnd end = levenberg_marquardt(square, damping, limits.iterations, tried, keep, leave);
+  const DescentEnd end = levenberg_marquardt(square, damping, affordable(limits), tried, keep, leave);
   if (problem.is_met(r)) return Descent::met;
   return end == DescentEnd::exhausted ? Descent::exhausted : Descent::stationary;
 }
@@ -195,7 +195,7 @@ Descent BoundedDescent::descend_gradient(const DescentLimits& limits, VectorXd& 
   VectorXd best = x;
   double length = 1.0 / std::max(1.0, gradient.norm());
   Descent ended = Descent::exhausted;
-  for (int i = 0; i < limits.iterations; ++i) {
+  for (int i = 0, most = affordable(limits); i < most; ++i) {
     if (problem.is_met(r)) {
       ended = Descent::met;
       break;

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <cstddef>
+#include <limits>
 #include <vector>
 
 #include "flexura/kinematics/bounds.h"
@@ -64,6 +66,13 @@ struct BoundedDescent {
   std::vector<char> is_held;
   double square = 0;   ///< |r|^2
   int iterations = 0;  ///< Linearisations so far, over all descents.
+  /// Descents end as exhausted when there are so many.
+  int most_iterations = std::numeric_limits<int>::max();
+
+ private:
+  [[nodiscard]] int affordable(const DescentLimits& limits) const {
+    return std::clamp(most_iterations - iterations, 0, limits.iterations);
+  }
 };
 
 }  // namespace flexura

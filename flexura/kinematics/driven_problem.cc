@@ -77,6 +77,11 @@ void DrivenProblem::linearise(const Eigen::VectorXd& x, Eigen::VectorXd& r, Eige
   }
   of_shape_.linearise(shape_, r, by_shape_);
   variables_.slopes(x, by_command_);
+  if (!by_command_.allFinite()) {
+    r.setConstant(far_away);
+    J.setZero();
+    return;
+  }
   J.noalias() = by_shape_ * by_command_;
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 #include <utility>
 #include <vector>
@@ -45,6 +46,11 @@ struct Question {
     if (config.start) start = variables.pack(*config.start);
   }
 
+  // Each look at a rod with derivatives is several equilibria: a thousand times as long as of arcs.
+  [[nodiscard]] int most_iterations() const {
+    constexpr int of_rods = 400;
+    return model != nullptr && !model->actuation().is_linear() ? of_rods : std::numeric_limits<int>::max();
+  }
   [[nodiscard]] InverseStarts starts() const { return {variables, X_BT.position, start, config.seed}; }
   [[nodiscard]] bool is_position_out_of_reach() const {
     // Rounding leaves the bounds a few units in the last place of the arm's length and the target's distance.
@@ -118,6 +124,7 @@ InverseResult describe(const Question& q, const Found& found) {
 InverseResult answer_out_of_reach(const Question& q, TipRows rows) {
   VariedTip problem(q, rows);
   BoundedDescent descent(problem.problem(), q.variables.bounds(), q.variables.size());
+  descent.most_iterations = q.most_iterations();
   InverseStarts starts = q.starts();
   const Found found = nearest(descent, starts, std::min(nearest_starts, q.config.max_starts));
   InverseResult result = describe(q, found);
@@ -131,6 +138,7 @@ InverseResult answer(const Question& q) {
   const TipRows rows = rows_of(q.target);
   VariedTip problem(q, rows);
   BoundedDescent descent(problem.problem(), q.variables.bounds(), q.variables.size());
+  descent.most_iterations = q.most_iterations();
   InverseStarts starts = q.starts();
   Found found;
   search(descent, starts, std::min(starts_before_proof, q.config.max_starts), found);
@@ -231,6 +239,7 @@ std::vector<InverseResult> all_solutions(const Question& q) {
   if (q.is_position_out_of_reach() || q.is_orientation_out_of_reach()) return {};
   VariedTip problem(q, rows_of(q.target));
   BoundedDescent descent(problem.problem(), q.variables.bounds(), q.variables.size());
+  descent.most_iterations = q.most_iterations();
   InverseStarts starts = q.starts();
   SolutionList list(q, descent);
   for (int i = 0; i < config.max_starts; ++i) {

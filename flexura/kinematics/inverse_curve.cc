@@ -121,6 +121,8 @@ InverseResult answer(const Arm& arm, const ArmModel* model, const CurveTarget& t
   const double allowance = std::min(1e-3 * length + 2.0 * polyline_error(points), most_allowance * length);
   const double tolerance = config.position_tolerance.value_or(allowance);
   BoundedDescent descent(curve.problem(), variables.bounds(), variables.size());
+  // As of tips.
+  if (model != nullptr && !model->actuation().is_linear()) descent.most_iterations = 400;
   std::optional<Eigen::VectorXd> first = curve.start_along_tangents();
   if (config.start) first = variables.pack(*config.start);
   InverseStarts starts(variables, curve.of_shape().end(), first, config.seed);

@@ -43,7 +43,8 @@ namespace flexura {
 inline constexpr std::size_t arcs_of_rod_section = 3;
 
 /// An arm and its drive as tasks believe them to be: a section is an arc, or several (Section::bend_profile);
-/// of an arm whose model is static or dynamic, what its rod at rest makes of commands (RodResponse). Errors as RodResponse.
+/// of an arm whose model is static or dynamic, what its rod at rest makes of commands (RodResponse). Errors
+/// as RodResponse.
 [[nodiscard]] ArmModel arm_model_of(const ArmConfig& arm, const std::optional<DriveConfig>& drive);
 
 }  // namespace flexura

@@ -192,7 +192,8 @@ TEST(ContactRod, TheMomentumChangesByWeightFloorAndClamp) {
 TEST(ContactRod, ForcesConvergeWithTheNodes) {
   std::vector<double> forces;
   for (const double spacing : {0.02, 0.01, 0.005}) {
-    TouchingRod moving(soft_arm(5e5, 6), {.law = {.stiffness = 1e4}, .obstacles = {floor_at(-0.03)}}, spacing);
+    TouchingRod moving(soft_arm(5e5, 6), {.law = {.stiffness = 1e4}, .obstacles = {floor_at(-0.03)}},
+                       spacing);
     RodState state = moving.dynamics.rest();
     moving.go(state, {}, weight, 2e-3, 1.0);
     EXPECT_GT(moving.touching(state).size(), 4u);

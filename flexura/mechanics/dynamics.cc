@@ -38,8 +38,8 @@ Pose pose_of(const Placement<double>& at) {
 }
 
 void require_dynamics(const Rod& rod, const RodDynamicsConfig& config) {
-  if (!(config.spectral_radius >= 0 && config.spectral_radius <= 1))
-    throw std::invalid_argument("the spectral radius must be from 0 to 1");
+  const bool is_share = config.spectral_radius >= 0 && config.spectral_radius <= 1;
+  if (!is_share) throw std::invalid_argument("the spectral radius must be from 0 to 1");
   if (!(config.tolerance > 0) || config.most_iterations < 1 || config.most_pieces < 1)
     throw std::invalid_argument("the tolerance must be above 0, iterations and pieces at least 1");
   for (std::size_t i = 0; i < rod.sections.size(); ++i) {
@@ -140,9 +140,8 @@ std::string RodDynamics::Work::input_problem(const TendonInput& tendons, const R
 }
 
 void RodDynamics::Work::set_tensions(const TendonInput& tendons) {
-  std::fill(tensions.begin(), tensions.end(), 0.0);
-  if (!tendons.tensions.empty())
-    std::copy(tendons.tensions.begin(), tendons.tensions.end(), tensions.begin());
+  std::ranges::fill(tensions, 0.0);
+  if (!tendons.tensions.empty()) std::ranges::copy(tendons.tensions, tensions.begin());
   if (tendons.displacements.empty()) return;
   motion.find_lengths(lengths_.data());
   for (std::size_t i = 0; i < tensions.size(); ++i) {

@@ -161,12 +161,12 @@ bool RodDynamics::Work::solve_exactly(const Stage& stage) {
 }
 
 void RodDynamics::Work::begin(const RodState& state, const Stage& stage, double h) {
-  std::fill(tensions.begin(), tensions.end(), 0.0);
+  std::ranges::fill(tensions, 0.0);
   if (stage.by_displacement()) {
-    std::copy(state.tensions.begin(), state.tensions.end(), tensions.begin());
+    std::ranges::copy(state.tensions, tensions.begin());
     for (std::size_t i = 0; i < tensions.size(); ++i) taut_[i] = tensions[i] > 0 ? 1 : 0;
   } else if (!stage.tendons.tensions.empty()) {
-    std::copy(stage.tendons.tensions.begin(), stage.tendons.tensions.end(), tensions.begin());
+    std::ranges::copy(stage.tendons.tensions, tensions.begin());
   }
   guess(state, h);
 }
@@ -288,7 +288,7 @@ bool RodDynamics::Work::finish(const Stage& stage, RodState& state, double h) {
   state.q += h * use.gamma * state.rate;
   state.momentum += h * use.gamma * state.force;
   state.time += h;
-  std::copy(tensions.begin(), tensions.end(), state.tensions.begin());
+  std::ranges::copy(tensions, state.tensions.begin());
   state.middles = state.step == h ? std::min(3, state.middles + 1) : 1;
   state.step = h;
   state.middle[2].swap(state.middle[1]);

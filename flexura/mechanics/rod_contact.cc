@@ -142,7 +142,8 @@ double RodContact::meet(std::span<const NodeMotion> nodes, std::size_t k, std::s
                         Meeting& meeting) const {
   constexpr double none = std::numeric_limits<double>::infinity();
   const Node &from = nodes_[j], &to = nodes_[j + 1], &node = nodes_[k];
-  if (!(from.s - node.s > apart_ || node.s - to.s > apart_)) return none;
+  const bool is_apart = from.s - node.s > apart_ || node.s - to.s > apart_;
+  if (!is_apart) return none;
   const Eigen::Vector3d &a = nodes[j].pose.position, &b = nodes[j + 1].pose.position,
                         &p = nodes[k].pose.position;
   // Out of reach of a ball around the segment.
@@ -262,15 +263,12 @@ RodContact::MeetingSlopes RodContact::slopes_of(std::span<const NodeMotion> node
 
 RodContact::Blocks RodContact::blocks(const MeetingSlopes& slopes, const Meeting& meeting,
                                       const Vector6d& wrench, int at, int of) {
-  const double share = at == 0   ? 1
-                       : at == 1 ? meeting.share - 1
-                                 : -meeting.share,
-               by_share = at == 0   ? 0
-                          : at == 1 ? 1
-                                    : -1;
-  return {.by_pose = share * slopes.by_pose.middleCols<6>(6 * of) +
-                     by_share * wrench * slopes.share_by_pose.middleCols<6>(6 * of),
-          .by_twist = share * slopes.by_twist.middleCols<6>(6 * of)};
+  const std::array<double, 3> shares = {1, meeting.share - 1, -meeting.share}, by_share = {0, 1, -1};
+  const auto which = static_cast<std::size_t>(at);
+  const auto columns = 6 * static_cast<Eigen::Index>(of);
+  return {.by_pose = shares[which] * slopes.by_pose.middleCols<6>(columns) +
+                     by_share[which] * wrench * slopes.share_by_pose.middleCols<6>(columns),
+          .by_twist = shares[which] * slopes.by_twist.middleCols<6>(columns)};
 }
 
 void RodContact::find(std::span<const NodeMotion> nodes, std::vector<ContactForce>& found) const {

@@ -69,7 +69,7 @@ class RodContact final : public RodSurroundings {
  private:
   struct Node {
     RodPlace place;
-    double s, run, radius;
+    double s = 0, run = 0, radius = 0;
   };
   // Where a node touches the rod itself: between the nodes `from` and from + 1.
   struct Meeting {
@@ -86,7 +86,7 @@ class RodContact final : public RodSurroundings {
   };
   template <typename Found>
   void for_obstacles(std::span<const NodeMotion> nodes, Found&& found) const;
-  [[nodiscard]] double meet(std::span<const NodeMotion> nodes, std::size_t node, std::size_t from,
+  [[nodiscard]] double meet(std::span<const NodeMotion> nodes, std::size_t k, std::size_t j,
                             Meeting& meeting) const;
   template <typename Found>
   void for_meetings(std::span<const NodeMotion> nodes, Found&& found) const;

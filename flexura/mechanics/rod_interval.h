@@ -83,7 +83,7 @@ class RodInterval {
   void find_coefficients() {
     const T x = square();
     const double most = greatest(x);
-    const std::size_t terms = most < 0.06 ? 5 : most < 1 ? 8 : max_terms;
+    const std::size_t for_large = most < 1 ? 8 : max_terms, terms = most < 0.06 ? 5 : for_large;
     T c3 = series[0][terms - 1] + T{}, c4 = series[1][terms - 1] + T{};
     for (std::size_t i = terms - 1; i-- > 0;) {
       c3 = series[0][i] + x * c3;
@@ -148,7 +148,7 @@ template <typename Q>
 
 template <typename Q>
 [[nodiscard]] RodInterval<Q> still(const RodInterval<Dual<Q>>& moving) {
-  RodInterval<Q> one;
+  RodInterval<Q> one{};
   one.a1_ = value_of(moving.a1_);
   one.a2_ = value_of(moving.a2_);
   one.E_ = value_of(moving.E_);

@@ -42,7 +42,7 @@ void RodMatrix::find_columns(const RodMotion<double>& motion) {
   std::array<const Placement<double>*, width> at{};
   std::size_t s = 0;
   for (std::size_t first = 0; first < layout_.intervals; first += width) {
-    Placement<Number> X;
+    Placement<Number> X{};
     for (std::size_t lane = 0; lane < width; ++lane) {
       const std::size_t i = std::min(first + lane, layout_.intervals - 1);
       std::size_t section = s;
@@ -200,8 +200,8 @@ bool RodMatrix::factor(const RodMotion<double>& motion, const Factors& factors, 
     const RodLayout::Section& section = layout_.sections[s];
     Part& part = parts_[s];
     const bool has_base = s > 0;
-    std::fill(part.matrix.begin(), part.matrix.end(), 0.0);
-    std::fill(part.by_base.begin(), part.by_base.end(), 0.0);
+    std::ranges::fill(part.matrix, 0.0);
+    std::ranges::fill(part.by_base, 0.0);
     Block all{};
     for (std::size_t k = section.intervals + 1; k-- > 0;) {
       const std::size_t node = section.first_node + k;
@@ -215,8 +215,8 @@ bool RodMatrix::factor(const RodMotion<double>& motion, const Factors& factors, 
           more = factors.stiffness * pull.by_pose + factors.damping * pull.by_twist;
         for (std::size_t r = 0; r < 6; ++r)
           for (std::size_t c = 0; c < 6; ++c) {
-            const auto row = static_cast<Eigen::Index>(r), column = static_cast<Eigen::Index>(c);
-            H[6 * r + c] -= 0.5 * (more(row, column) + more(column, row));
+            const auto i = static_cast<Eigen::Index>(r), j = static_cast<Eigen::Index>(c);
+            H[6 * r + c] -= 0.5 * (more(i, j) + more(j, i));
           }
       }
       if (k == section.intervals)
@@ -228,7 +228,7 @@ bool RodMatrix::factor(const RodMotion<double>& motion, const Factors& factors, 
     if (factors.damping != 0 || factors.stiffness != 0) {
       const double *K = section.stiffness.data(), *D = section.damping.data();
       for (std::size_t j = 0; j < section.modes; ++j)
-        for (std::size_t l = static_cast<std::size_t>(section.grid.first[section.strain[j]]); l <= j; ++l)
+        for (auto l = static_cast<std::size_t>(section.grid.first[section.strain[j]]); l <= j; ++l)
           part.matrix[j * part.stride + l] +=
               factors.stiffness * K[j * section.modes + l] + factors.damping * D[j * section.modes + l];
     }

@@ -46,10 +46,10 @@ Screw<Dual<Lanes>> change_of(const Matrix6d& by_pose, const Matrix6d& by_twist,
     const auto slope = [&](const Triple<Dual<Lanes>>& a) {
       return Eigen::Vector3d(a.x.slope[lane], a.y.slope[lane], a.z.slope[lane]);
     };
-    Eigen::Matrix3d R, dR;
+    Eigen::Matrix3d R, turned;
     R << plain(X.x).transpose(), plain(X.y).transpose(), plain(X.z).transpose();
-    dR << slope(X.x).transpose(), slope(X.y).transpose(), slope(X.z).transpose();
-    const Eigen::Matrix3d turning = dR * R.transpose();
+    turned << slope(X.x).transpose(), slope(X.y).transpose(), slope(X.z).transpose();
+    const Eigen::Matrix3d turning = turned * R.transpose();
     const Eigen::Vector3d angular(turning(2, 1), turning(0, 2), turning(1, 0));
     Vector6d moved, faster;
     moved << slope(X.position) - angular.cross(plain(X.position)), angular;

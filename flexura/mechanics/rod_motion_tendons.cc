@@ -103,7 +103,7 @@ void RodMotion<S>::find_length_slopes(std::size_t tendon, S* slopes) {
   std::fill(slopes, slopes + layout_.modes, S{});
   bool has_chords = false;
   for (const RodLayout::Section& section : layout_.sections) {
-    const auto found = std::find(section.tendons.begin(), section.tendons.end(), tendon);
+    const auto found = std::ranges::find(section.tendons, tendon);
     if (found == section.tendons.end()) break;
     const auto i = static_cast<std::size_t>(found - section.tendons.begin());
     for (std::size_t k = 0; k <= section.intervals && section.disks.empty(); ++k) {

@@ -41,13 +41,15 @@ template <typename S>
 [[nodiscard]] S& component(Screw<S>& a, std::size_t c) {
   Triple<S>& half = c < 3 ? a.linear : a.angular;
   const std::size_t i = c < 3 ? c : c - 3;
-  return i == 0 ? half.x : i == 1 ? half.y : half.z;
+  if (i == 0) return half.x;
+  return i == 1 ? half.y : half.z;
 }
 template <typename S>
 [[nodiscard]] const S& component(const Screw<S>& a, std::size_t c) {
   const Triple<S>& half = c < 3 ? a.linear : a.angular;
   const std::size_t i = c < 3 ? c : c - 3;
-  return i == 0 ? half.x : i == 1 ? half.y : half.z;
+  if (i == 0) return half.x;
+  return i == 1 ? half.y : half.z;
 }
 
 /// Of a force f at p.

@@ -51,8 +51,8 @@ TEST(RodPayload, APayloadThatFallsOffLetsTheTipJumpUp) {
   const Pose tip = dynamics.tip(state);
   state = dynamics.drop(state, load.place, {}, pull_of_earth);
   // What left was at rest: the energy that is less is that of its height alone.
-  EXPECT_NEAR(dynamics.energy(state, pull_of_earth).total() - energy, 0.03 * pull_of_earth.gravity.dot(tip * load.offset),
-              2e-6);
+  EXPECT_NEAR(dynamics.energy(state, pull_of_earth).total() - energy,
+              0.03 * pull_of_earth.gravity.dot(tip * load.offset), 2e-6);
   const double dropped = dynamics.energy(state, pull_of_earth).total();
   double highest = low;
   for (int i = 0; i < 100; ++i) {
@@ -62,8 +62,9 @@ TEST(RodPayload, APayloadThatFallsOffLetsTheTipJumpUp) {
   }
   EXPECT_GT(highest, low + 0.01);
   EXPECT_THROW((void)dynamics.pick_up(state, {.mass = -1}, {}, pull_of_earth), std::invalid_argument);
-  EXPECT_THROW((void)dynamics.pick_up(state, {.place = {.section = 0, .at = 0.123}, .mass = 1}, {}, pull_of_earth),
-               std::invalid_argument);
+  EXPECT_THROW(
+      (void)dynamics.pick_up(state, {.place = {.section = 0, .at = 0.123}, .mass = 1}, {}, pull_of_earth),
+      std::invalid_argument);
 }
 
 TEST(RodPayload, PicksUpWithTheMomentumOfBoth) {

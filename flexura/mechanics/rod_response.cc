@@ -53,7 +53,7 @@ Arm in_its_frame(Arm arm) {
   return arm;
 }
 
-const Rod& fitting(const Arm& driven, const Rod& rod, const std::optional<Drive>& drive) {
+Rod fitting(const Arm& driven, const Rod& rod, const std::optional<Drive>& drive) {
   if (rod.sections.size() != driven.sections.size())
     throw std::invalid_argument("a rod of another number of sections than its arm");
   if (drive && drive->tendons.size() != rod.tendons.size())
@@ -116,6 +116,7 @@ Equilibrium RodResponse::solved(const ArmState& command, const Equilibrium& near
 const RodResponse::Answer& RodResponse::answer(const ArmState& command) const {
   require_fit(driven_, command);
   if (last_ && last_->command == command) return *last_;
+  last_.reset();
   Answer next{command, solved(command, straight_), {}};
   next.shape = fitted(next.at, command);
   last_ = std::move(next);
@@ -232,8 +233,7 @@ void RodResponse::analytic_slopes(Eigen::MatrixXd& by_command) const {
   }
 }
 
-void RodResponse::secant_slopes(const Answer& here, Eigen::MatrixXd& by_command) const {
-  const Answer kept = here;
+void RodResponse::secant_slopes(const Answer& kept, Eigen::MatrixXd& by_command) const {
   const ArmVariables varied(driven_);
   const auto column = [&](Eigen::Index c, double step, auto&& moved) {
     ArmState sides[2];

@@ -54,7 +54,7 @@ class RodResponse : public ArmResponse {
   [[nodiscard]] ArmState fitted(const Equilibrium& at, const ArmState& command) const;
   [[nodiscard]] ArmState along_tangents(const ArmState& command) const;
   void analytic_slopes(Eigen::MatrixXd& by_command) const;
-  void secant_slopes(const Answer& here, Eigen::MatrixXd& by_command) const;
+  void secant_slopes(const Answer& kept, Eigen::MatrixXd& by_command) const;
 
   Arm driven_, shaped_;  // in the rod's frame
   RodLoads loads_;
@@ -63,7 +63,7 @@ class RodResponse : public ArmResponse {
   ArmVariables variables_;     // of shapes
   // Places of the rod to which arcs are fitted, of its chain and of the chain of arcs.
   struct Place {
-    std::size_t element, node;
+    std::size_t element = 0, node = 0;
     MaterialPoint on_arcs;
   };
   std::vector<Place> places_;

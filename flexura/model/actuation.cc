@@ -115,7 +115,8 @@ ArmState Actuation::command(const ArmState& shape) const {
     for (std::size_t k = 0; k < arcs(); ++k) missed[section_of_[k]] += shape.bends[k] - made.bends[k];
     for (const Eigen::Vector2d& bend : missed) square += bend.squaredNorm();
     if (square < least) best = command, least = square;
-    if (!(square > 1e-24 && square < 100 * least)) break;
+    const bool goes_on = square > 1e-24 && square < 100 * least;
+    if (!goes_on) break;
     for (std::size_t i = 0; i < sections_; ++i) command.bends[i] += missed[i];
   }
   return best;

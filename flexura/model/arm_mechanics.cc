@@ -173,9 +173,13 @@ void check_mechanics(const ArmConfig& arm, Reader& reader) {
   for (std::size_t i = 0; i < arm.payload.size(); ++i)
     ends_on_arm(arm.payload[i].section, arm, fmt::format("payload[{}].section", i), reader);
   if (arm.mechanics != ArmMechanics::dynamics) {
-    const char* what = arm.contact ? "contact" : arm.drag ? "drag" : arm.payload.empty() ? "" : "payload";
-    if (*what != '\0')
-      reader.problem_at(what, "is of arms in motion: expected model = \"dynamic\" beside it, or none");
+    const auto refuse = [&](bool is_there, const char* what) {
+      if (is_there)
+        reader.problem_at(what, "is of arms in motion: expected model = \"dynamic\" beside it, or none");
+    };
+    refuse(arm.contact.has_value(), "contact");
+    refuse(arm.drag.has_value(), "drag");
+    refuse(!arm.payload.empty(), "payload");
   }
   if (arm.mechanics == ArmMechanics::kinematic) return;
   const std::string& model = names_of(&arm.mechanics)[static_cast<std::size_t>(arm.mechanics)];

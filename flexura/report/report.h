@@ -58,9 +58,9 @@ struct ReportData {
   std::string experiment_text;  ///< The experiment file as run, shown as it is.
   Arm arm;
   std::optional<ArmModel> model = {};  ///< What commands make of it. None: its sections' arcs.
-  std::vector<double> times;     ///< s, ascending; one a state, at least one.
-  std::vector<ArmState> states;  ///< As run; finite.
-  std::vector<Mark> events;      ///< In the order of time.
+  std::vector<double> times;           ///< s, ascending; one a state, at least one.
+  std::vector<ArmState> states;        ///< As run; finite.
+  std::vector<Mark> events;            ///< In the order of time.
   std::size_t recorded = 0;      ///< States in the run's log, where they are more than those given here.
   std::optional<Safety> safety;  ///< Empty: not checked, not shown.
   std::vector<ObstacleConfig> obstacles;

@@ -50,6 +50,7 @@ class Filming : public Rig, private RigTruth {
   [[nodiscard]] std::optional<RodEnergy> energy(double time) override {
     return rig_.arm().plant().energy(time);
   }
+  [[nodiscard]] std::string warning(double time) override { return rig_.arm().plant().warning(time); }
   [[nodiscard]] std::vector<PlantContact> contacts(double time) override {
     return rig_.arm().plant().contacts(time);
   }

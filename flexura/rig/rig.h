@@ -46,6 +46,8 @@ class RigTruth {
   [[nodiscard]] virtual std::optional<RodEnergy> energy(double /*time*/) { return std::nullopt; }
   /// Where it touched something then.
   [[nodiscard]] virtual std::vector<PlantContact> contacts(double /*time*/) { return {}; }
+  /// What was out of the ordinary in how it lay then, one line; "": nothing.
+  [[nodiscard]] virtual std::string warning(double /*time*/) { return {}; }
   /// How many microsteps each motor had lost by then, unknown to its controller; empty: none ever.
   [[nodiscard]] virtual std::vector<double> lost_steps(double /*time*/) { return {}; }
 };

@@ -60,8 +60,11 @@ void check_one(const CheckedMotion& checked, const ArmState& before) {
 
 // Whether it is the shape of an arm that has a hazard, whatever it was commanded to.
 bool is_of_shape(Hazard hazard) {
-  return hazard == Hazard::folding || hazard == Hazard::self_contact || hazard == Hazard::obstacle;
+  return hazard == Hazard::folding || hazard == Hazard::self_contact || hazard == Hazard::obstacle ||
+         hazard == Hazard::not_finite;
 }
+
+bool is_nowhere(const Violation& violation) { return violation.hazard == Hazard::not_finite; }
 
 SafetyReport check_with(const Arm& arm, const std::vector<ContactWatch>& contacts, const ArmState& initial,
                         const std::vector<TimedMotion>& motions, double step, Progress* progress) {
@@ -116,7 +119,9 @@ SafetyReport check_motions(const ArmModel& model, const std::vector<Obstacle>& o
     return check_motions(model.shaped(), obstacles, initial, motions, step, progress);
   SafetyReport report = check_with(model.driven(), {}, initial, motions, step, progress);
   if (!report.is_complete) return report;
-  std::erase_if(report.violations, [](const Violation& violation) { return is_of_shape(violation.hazard); });
+  std::erase_if(report.violations, [](const Violation& violation) {
+    return is_of_shape(violation.hazard) && violation.hazard != Hazard::not_finite;
+  });
   std::vector<TimedMotion> shaped;
   shaped.reserve(motions.size());
   for (const TimedMotion& motion : motions)
@@ -125,12 +130,18 @@ SafetyReport check_motions(const ArmModel& model, const std::vector<Obstacle>& o
       check_motions(model.shaped(), obstacles, actuation.shape(initial), shaped, step, progress);
   for (Violation violation : of_shape.violations) {
     if (!is_of_shape(violation.hazard)) continue;
+    // Where the command is nowhere the shape is nowhere, too.
+    if (violation.hazard == Hazard::not_finite && std::ranges::any_of(report.violations, is_nowhere))
+      continue;
     if (violation.section) violation.section = actuation.section_of()[*violation.section];
     if (violation.other_section) violation.other_section = actuation.section_of()[*violation.other_section];
     report.violations.push_back(std::move(violation));
   }
   report.is_complete = of_shape.is_complete;
   if (!report.is_complete) report.caveats = of_shape.caveats;
+  // Of a rod no rates are known: its shape is looked at from time to time.
+  if (report.is_complete && !actuation.is_linear())
+    report.caveats.insert(report.caveats.end(), of_shape.caveats.begin(), of_shape.caveats.end());
   report.sort();
   return report;
 }

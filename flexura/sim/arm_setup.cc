@@ -14,6 +14,7 @@ namespace {
 
 std::vector<std::array<double, 2>> tube_radii(const Arm& arm) {
   std::vector<std::array<double, 2>> radii;
+  radii.reserve(arm.sections.size());
   for (const Section& section : arm.sections) radii.push_back(section.radius);
   return radii;
 }

@@ -17,6 +17,10 @@ constexpr RodDynamicsConfig plant_config{};
 constexpr int most_halvings = 8;
 // Of a step, what counts as none.
 constexpr double no_time = 1e-9;
+// Nearer to each other two places of a section are one (RodDynamics).
+constexpr double one_place = 1e-9;
+// Of strains times a section's length: more is no arm any more, but a motion that blew up.
+constexpr double greatest_strain = 1e4;
 
 const ArmRod& moving_rod(const PlantSetup& setup) {
   if (!setup.truth.rod || !setup.truth.rod->time_step)
@@ -99,10 +103,20 @@ void DynamicPlant::go_on(RodState& state, double from, double h, const std::vect
   const double middle = from + h / (1 + plant_config.spectral_radius);
   const TendonInput input{.displacements = inputs().displacements(middle, lost)};
   const RodStep step = dynamics_.step(state, input, inputs().loads(middle), h);
-  if (step.converged()) return;
+  if (step.converged()) {
+    const bool is_an_arm =
+        state.q.allFinite() &&
+        state.q.cwiseProduct(dynamics_.chain().scales()).cwiseAbs().maxCoeff() < greatest_strain;
+    if (!is_an_arm)
+      throw SimulationError(
+          fmt::format("at {:.4f} s the motion of the arm blows up: what moves it is too strong for steps of "
+                      "{} s",
+                      from, step_));
+    return;
+  }
   if (step.end == DynamicsEnd::bad_input || halvings == most_halvings)
-    throw std::runtime_error(fmt::format("at {:.4f} s the motion of the arm cannot be computed: {}", from,
-                                         step.problem.empty() ? words(step.end) : step.problem));
+    throw SimulationError(fmt::format("at {:.4f} s the motion of the arm cannot be computed: {}", from,
+                                      step.problem.empty() ? words(step.end) : step.problem));
   go_on(state, from, h / 2, lost, halvings + 1);
   go_on(state, from + h / 2, h / 2, lost, halvings + 1);
 }
@@ -126,7 +140,13 @@ RodState DynamicPlant::state_at(double time) const {
 }
 
 Backbone DynamicPlant::backbone(double time) const {
-  return tube().backbone(state_at(time).q, inputs().rest_stretches(time));
+  const RodState state = state_at(time);
+  try {
+    return tube().backbone(state.q, inputs().rest_stretches(time));
+  } catch (const std::invalid_argument&) {
+    throw SimulationError(fmt::format(
+        "at {:.4f} s the motion of the arm blows up: it winds more tightly than an arm can", time));
+  }
 }
 
 std::vector<double> DynamicPlant::tensions(double time) const { return state_at(time).tensions; }
@@ -140,6 +160,7 @@ std::optional<RodEnergy> DynamicPlant::energy(double time) const {
 
 std::vector<char> DynamicPlant::carried_at(double time) const {
   std::vector<char> carried;
+  carried.reserve(rod_.payloads.size());
   for (const ArmRod::Payload& payload : rod_.payloads)
     carried.push_back(payload.from <= time && time < payload.until ? 1 : 0);
   return carried;
@@ -170,7 +191,7 @@ void DynamicPlant::hand_over(Snapshot& at, double time) const {
     // All that was carried there is dropped.
     for (std::size_t k = 0; k < left.size(); ++k) {
       const RodPlace& other = rod_.payloads[k].payload.place;
-      if (other.section == place.section && other.at == place.at) left[k] = 0;
+      if (other.section == place.section && std::abs(other.at - place.at) <= one_place) left[k] = 0;
     }
   }
   for (std::size_t i = 0; i < wanted.size(); ++i) {

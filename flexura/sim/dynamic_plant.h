@@ -13,6 +13,7 @@
 #include "flexura/mechanics/surroundings.h"
 #include "flexura/sim/arm_setup.h"
 #include "flexura/sim/rod_plant.h"
+#include "flexura/sim/simulation_error.h"
 
 namespace flexura {
 
@@ -20,7 +21,7 @@ namespace flexura {
 /// and loads pull at it, and it swings. It begins at rest, and is computed in steps of ArmRod::time_step from
 /// time 0 on, with commands as they are in each step; between two steps by a shorter one. So what it answers
 /// depends on time and commands alone. It touches obstacles and moves in a fluid as its ArmRod says, and
-/// picks payloads up and drops them at the ends of steps. std::runtime_error: a step does not converge,
+/// picks payloads up and drops them at the ends of steps. SimulationError: a step does not converge,
 /// however short.
 class DynamicPlant : public RodPlant {
  public:

@@ -108,8 +108,8 @@ Equilibrium StaticPlant::solved(double time, const Equilibrium& near, const std:
   statics_.stretch_rest(inputs().rest_stretches(time));
   Equilibrium at = statics_.solve(input, inputs().loads(time), near);
   if (!at.converged())
-    throw std::runtime_error(fmt::format(
-        "at {:.3f} s the arm comes to no rest under its tendons and loads: {}", time, words(at.end)));
+    throw SimulationError(fmt::format("at {:.3f} s the arm comes to no rest under its tendons and loads: {}",
+                                      time, words(at.end)));
   return at;
 }
 

@@ -8,12 +8,13 @@
 
 #include "flexura/mechanics/statics.h"
 #include "flexura/sim/rod_plant.h"
+#include "flexura/sim/simulation_error.h"
 
 namespace flexura {
 
 /// An arm that is an elastic rod: its tendons are pulled in, weight and loads pull at it, and it follows
 /// without inertia from equilibrium to equilibrium (docs/mechanics.md). Of several it takes the one that its
-/// way leads to, at steps of `step` s from time 0 on. std::runtime_error: the arm has no equilibrium.
+/// way leads to, at steps of `step` s from time 0 on. SimulationError: the arm has no equilibrium.
 class StaticPlant : public RodPlant {
  public:
   static constexpr double step = 0.02;

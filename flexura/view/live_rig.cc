@@ -39,6 +39,7 @@ std::vector<ActuatorSample> actuator_samples(const std::vector<double>& pulled,
                                              const std::vector<double>& tensions,
                                              const std::vector<double>& lost) {
   std::vector<ActuatorSample> samples;
+  samples.reserve(pulled.size());
   for (std::size_t i = 0; i < pulled.size(); ++i)
     samples.push_back({pulled[i], i < tensions.size() ? tensions[i] : 0, i < lost.size() ? lost[i] : 0});
   return samples;

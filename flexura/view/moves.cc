@@ -122,7 +122,8 @@ TendonPull pull_wanted(const std::vector<PulledTendon>& actuators, const std::ve
   TendonPull pull{displacements};
   for (std::size_t i = 0; i < actuators.size(); ++i) {
     const auto [least, most] = actuators[i].range;
-    if (!(displacements[i] >= least - rounding && displacements[i] <= most + rounding))
+    const bool is_inside = displacements[i] >= least - rounding && displacements[i] <= most + rounding;
+    if (!is_inside)
       throw ViewRefusal(
           fmt::format("tendons[{}] = {}: expected {:.4g} to {:.4g} m", i, displacements[i], least, most));
     pull.displacements[i] = std::clamp(displacements[i], least, most);

@@ -82,13 +82,15 @@ RodMotion<S>::RodMotion(const RodLayout& layout) : layout_(layout) {
   X_.resize(layout.nodes);
   for (auto* screws : {&V_, &P_, &W_, &along_, &spare_}) screws->resize(layout.nodes);
   motions_.resize(layout.nodes);
+  q_.resize(layout.modes);
+  v_.resize(layout.modes);
   pulls_.resize(layout.nodes);
 }
 
 template <typename S>
 void RodMotion<S>::place(const S* q, const S* v) {
-  q_ = q;
-  v_ = v;
+  std::copy(q, q + layout_.modes, q_.begin());
+  std::copy(v, v + layout_.modes, v_.begin());
   const std::size_t padded = layout_.padded;
   for (std::size_t i = 0; i < moments_.size(); ++i) moments_[i] = layout_.rest[i] + S{};
   std::fill(rates_.begin(), rates_.end(), S{});
@@ -258,7 +260,7 @@ template <typename S>
 void RodMotion<S>::set_inner_forces(S* force) const {
   for (const RodLayout::Section& section : layout_.sections) {
     S* part = force + section.first_mode;
-    const S *q = q_ + section.first_mode, *v = v_ + section.first_mode;
+    const S *q = q_.data() + section.first_mode, *v = v_.data() + section.first_mode;
     const RodGrid& grid = section.grid;
     for (std::size_t j = 0; j < section.modes; ++j) {
       const auto first = static_cast<std::size_t>(grid.first[section.strain[j]]),

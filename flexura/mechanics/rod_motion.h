@@ -74,8 +74,7 @@ class RodMotion {
   void add_modes(const std::vector<S>& of_moments, S* sums) const;
 
   const RodLayout& layout_;
-  const S* q_ = nullptr;
-  const S* v_ = nullptr;
+  std::vector<S> q_, v_;            // As it was placed last.
   std::vector<S> moments_, rates_;  // 18 x padded.
   std::vector<RodInterval<Dual<Number>>> intervals_;
   std::vector<S> steps_, speeds_;       // Of the intervals: 12 x padded, 6 x padded.

@@ -144,6 +144,7 @@ class RodDynamics {
   [[nodiscard]] double step_error(const RodState& state);
   /// The rates of the modes.
   [[nodiscard]] Eigen::VectorXd velocity(const RodState& state);
+  /// Of its motion, its strains, and its weight under these loads, J.
   [[nodiscard]] RodEnergy energy(const RodState& state, const RodLoads& loads);
   /// What damping takes from it, W.
   [[nodiscard]] double dissipation(const RodState& state);
@@ -154,6 +155,7 @@ class RodDynamics {
   /// Of all nodes, and metres of rod for each in an integral along it: as RodSurroundings has them.
   [[nodiscard]] std::vector<NodeMotion> motions(const RodState& state);
   [[nodiscard]] std::span<const double> node_runs() const;
+  /// X_BT
   [[nodiscard]] Pose tip(const RodState& state);
   /// How long the tendons are, m.
   [[nodiscard]] std::vector<double> tendon_lengths(const RodState& state);
@@ -177,6 +179,7 @@ class RodDynamics {
   /// Derivatives at a state, under what pulls. They cost as the square of the number of sections.
   [[nodiscard]] RodDynamicsSlopes slopes(const RodState& state, const TendonInput& tendons,
                                          const RodLoads& loads);
+  /// The linear motion around a state. Errors and cost as slopes().
   [[nodiscard]] RodLinear linearize(const RodState& state, const TendonInput& tendons, const RodLoads& loads);
   /// Of a step that is made in one piece. std::runtime_error: it does not converge.
   [[nodiscard]] RodStepSlopes step_slopes(const RodState& state, const TendonInput& tendons,

@@ -23,6 +23,7 @@ struct ArmRod {
   std::optional<RodContactConfig> contact = {};
   std::vector<RodPlace> contact_places = {};  ///< Which touch.
   std::optional<RodDragConfig> drag = {};
+  /// A mass that it carries for a time.
   struct Payload {
     RodPayload payload;
     double from = 0, until = 0;  ///< s

@@ -30,11 +30,17 @@ class RodInputs {
 
   /// As Plant's.
   void command(double time, const Eigen::VectorXd& u, double duration);
+  /// As Plant's, as all up to pulled().
   void halt(double time);
+  /// Tendons one by one.
   std::optional<ArmState> pull(double time, const std::vector<double>& displacements, double duration);
+  /// Weight and loads, on or off.
   bool weigh(double time, bool on);
+  /// Whether they are on.
   [[nodiscard]] bool is_weighed(double time) const;
+  /// The bends and stretches that are commanded.
   [[nodiscard]] std::optional<ArmState> commanded(double time) const;
+  /// How far each tendon is pulled in, m.
   [[nodiscard]] std::vector<double> pulled(double time) const;
   /// What was so before `time` is asked for no more.
   void forget_before(double time);
@@ -47,6 +53,7 @@ class RodInputs {
   [[nodiscard]] std::vector<double> displacements(double time, const std::vector<double>& lost) const;
   /// How long its sections are by themselves: factors on their lengths.
   [[nodiscard]] std::vector<double> rest_stretches(double time) const;
+  /// What pulls at it beside its tendons.
   [[nodiscard]] const RodLoads& loads(double time) const;
   /// Whether the weight was switched after `start` and up to `end`, s.
   [[nodiscard]] bool is_weighed_anew(double start, double end) const;

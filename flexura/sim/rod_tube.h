@@ -14,6 +14,7 @@ namespace flexura {
 /// The backbone of an arm that is a rod, with its tube, from the rod's strain modes. Several threads may ask.
 class RodTube {
  public:
+  /// The tube of the arm around the rod. Errors as RodChain.
   RodTube(const Arm& arm, const Rod& rod);
 
   /// In the world. `rest_stretches`: factors on the sections' own lengths.

@@ -113,7 +113,7 @@ describe.skipIf(!program)('an arm that sags', () => {
 
 describe.skipIf(!program)('a watched run of an elastic arm', () => {
   const opened = opened_before(
-    () => started(['run', example('11_helical_tendon'), '--set', 'task.0.duration=500', '--view']), 'live');
+    () => started(['run', example('11_helical_tendon'), '--set', 'task.0.duration=60', '--view']), 'live');
 
   test('shows how it truly lies, and its tensions', async () => {
     const { page, complaints } = opened;
@@ -121,7 +121,7 @@ describe.skipIf(!program)('a watched run of an elastic arm', () => {
       const state = await server_state(page);
       return { ...state, bend: Math.hypot(...state.bends), force: state.actuators[0]?.[1] ?? 0 };
     };
-    await until(async () => (await seen()).bend > 0.3, 20000, 'the run did not go on');
+    await until(async () => (await seen()).bend > 0.3, 60000, 'the run did not go on');
     const { actuators, force, tip, bend, is_running } = await seen();
     expect(is_running).toBe(true);
     expect(actuators).toHaveLength(2);
@@ -144,5 +144,5 @@ describe.skipIf(!program)('a watched run of an elastic arm', () => {
     await page.getByLabel('Plot 1 shows').selectOption('tensions');
     await until(async () => (await legend())[0] > 0, 4000, 'no tension is plotted');
     expect(complaints).toEqual([]);
-  });
+  }, 120000);
 });

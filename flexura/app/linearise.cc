@@ -8,10 +8,9 @@
 #include <utility>
 #include <vector>
 
+#include "flexura/app/rod_request.h"
 #include "flexura/base/problems.h"
-#include "flexura/base/table.h"
 #include "flexura/log/messages.h"
-#include "flexura/math/arrays.h"
 #include "flexura/mechanics/arm_rod.h"
 #include "flexura/mechanics/rod_modes.h"
 #include "flexura/store/json.h"
@@ -19,51 +18,21 @@
 namespace flexura {
 namespace {
 
-constexpr NumberRange pull_range = {.min = -1e9, .max = 1e9};
-
-/// A line of input, in the frame of the arm's base.
-struct LineariseRequest {
-  std::optional<std::vector<double>> tensions;       ///< N
-  std::optional<std::vector<double>> displacements;  ///< m
-  std::array<double, 3> tip_force = {0, 0, 0};       ///< N
-  std::array<double, 3> tip_moment = {0, 0, 0};      ///< N m
-  std::optional<std::array<double, 3>> gravity;      ///< m/s^2; none: the arm's.
-};
-
-const Table<LineariseRequest>& fields_of(const LineariseRequest*) {
-  static const auto table =
-      Table<LineariseRequest>("linearise request", "What pulls at the arm where its motion is linearised.")
-          .field("tensions", &LineariseRequest::tensions,
-                 {.meaning = "tendons' tensions at the base, N", .range = between(0, 1e9)})
-          .field(
-              "displacements", &LineariseRequest::displacements,
-              {.meaning = "how far tendons are pulled in", .unit = Unit::metre, .range = between(-1e6, 1e6)})
-          .field("tip_force", &LineariseRequest::tip_force,
-                 {.meaning = "force at the tip, N", .range = pull_range})
-          .field("tip_moment", &LineariseRequest::tip_moment,
-                 {.meaning = "moment at the tip, N m", .range = pull_range})
-          .field("gravity", &LineariseRequest::gravity,
-                 {.meaning = "gravity, instead of the file's",
-                  .unit = Unit::metre_per_second_squared,
-                  .range = between(-1e6, 1e6)});
+const Table<RodRequest>& fields_of(const RodRequest*) {
+  static const auto table = [] {
+    Table<RodRequest> made("linearise request", "What pulls at the arm where its motion is linearised.");
+    add_rod_fields(made);
+    return made;
+  }();
   return table;
 }
 
-LineariseRequest read_linearise_request(const Rod& rod, std::string_view line) {
+RodRequest read_linearise_request(const Rod& rod, std::string_view line) {
   const Node document = parse_json(line, "");
   Reader reader;
-  LineariseRequest request;
-  if (fields_of(static_cast<const LineariseRequest*>(nullptr)).read(document, reader, request)) {
-    const auto check_tendons = [&](const std::optional<std::vector<double>>& given, const char* name) {
-      if (!given || given->size() == rod.tendons.size()) return;
-      reader.problem_at(
-          name, fmt::format("{} given: expected {}, one for each tendon", given->size(), rod.tendons.size()));
-    };
-    check_tendons(request.tensions, "tensions");
-    check_tendons(request.displacements, "displacements");
-    if (request.tensions && request.displacements)
-      reader.problem_at("displacements", "are given beside tensions: expected one of them");
-  }
+  RodRequest request;
+  if (fields_of(static_cast<const RodRequest*>(nullptr)).read(document, reader, request))
+    check_rod_request(rod, request, reader);
   reader.throw_if_any();
   return request;
 }
@@ -91,9 +60,9 @@ Node eigenvalues_node(const Eigen::VectorXcd& values) {
   return {std::move(entries), {}};
 }
 
-// "q.1.bend_x.0": the constant part of the first section's bend about x; "v..." its rate.
+// "q.1.curvature_x.0": the constant part of the first section's curvature about x; "v..." its rate.
 Node state_names(const RodChain& chain) {
-  constexpr std::array strains = {"shear_x", "shear_y", "stretch", "bend_x", "bend_y", "twist"};
+  constexpr std::array strains = {"shear_x", "shear_y", "stretch", "curvature_x", "curvature_y", "twist"};
   std::vector<std::string> modes(static_cast<std::size_t>(chain.size()));
   for (std::size_t section = 0; section < chain.elements().size(); ++section) {
     int order = 0, before = -1;
@@ -137,15 +106,9 @@ LineariseAnswers::LineariseAnswers(const ArmConfig& arm, const std::optional<Dri
 
 std::string LineariseAnswers::answer(std::string_view line) {
   try {
-    const LineariseRequest request = read_linearise_request(rod_, line);
-    RodLoads loads = loads_;
-    if (request.gravity) loads.gravity = vector(*request.gravity);
-    const EndLoad tip{.section = rod_.sections.size() - 1,
-                      .force = vector(request.tip_force),
-                      .moment = vector(request.tip_moment)};
-    if (!tip.force.isZero(0) || !tip.moment.isZero(0)) loads.ends.push_back(tip);
-    const TendonInput tendons{.tensions = request.tensions.value_or(std::vector<double>{}),
-                              .displacements = request.displacements.value_or(std::vector<double>{})};
+    const RodRequest request = read_linearise_request(rod_, line);
+    const RodLoads loads = request.loads(rod_, loads_);
+    const TendonInput tendons = request.tendons();
     const Equilibrium found = statics_.solve(tendons, loads);
     if (found.end == StaticsEnd::bad_input) return write_json(linearise_refusal(found.problem));
     if (found.end == StaticsEnd::no_equilibrium) return write_json({not_linearised("no_equilibrium"), {}});

@@ -162,7 +162,7 @@ TEST(Linearise, NamesStatesInputsAndOutputs) {
   const std::vector<std::string> states = read_names(pulled, "states");
   ASSERT_EQ(states.size(), 24U);
   EXPECT_EQ(states.front(), "q.1.stretch.0");
-  EXPECT_EQ(states[2], "q.1.bend_x.1");
+  EXPECT_EQ(states[2], "q.1.curvature_x.1");
   EXPECT_EQ(states[6], "q.2.stretch.0");
   EXPECT_EQ(states.back(), "v.2.twist.0");
   EXPECT_THAT(read_names(pulled, "inputs"), ::testing::ElementsAre("displacement.1", "displacement.2"));

@@ -8,58 +8,34 @@
 #include <utility>
 #include <vector>
 
+#include "flexura/app/rod_request.h"
 #include "flexura/base/problems.h"
-#include "flexura/base/table.h"
 #include "flexura/log/messages.h"
-#include "flexura/math/arrays.h"
 #include "flexura/mechanics/arm_rod.h"
 #include "flexura/store/json.h"
 
 namespace flexura {
 namespace {
 
-constexpr NumberRange load_range = {.min = -1e9, .max = 1e9};
 // Each becomes a node of the rod.
 constexpr std::size_t max_places = 1000;
 
-/// A line of input, in the frame of the arm's base.
-struct StaticsRequest {
-  std::optional<std::vector<double>> tensions;       ///< N
-  std::optional<std::vector<double>> displacements;  ///< m
-  std::array<double, 3> tip_force = {0, 0, 0};       ///< N
-  std::array<double, 3> tip_moment = {0, 0, 0};      ///< N m
-  std::optional<std::array<double, 3>> gravity;      ///< m/s^2; none: the arm's.
-  std::optional<std::vector<double>> at;             ///< Arc lengths at rest, m.
+/// A line of input.
+struct StaticsRequest : RodRequest {
+  std::optional<std::vector<double>> at;  ///< Arc lengths at rest, m.
 };
 
 const Table<StaticsRequest>& fields_of(const StaticsRequest*) {
-  static const auto table =
-      Table<StaticsRequest>("statics request", "What pulls at the arm, and where along it to answer.")
-          .field("tensions", &StaticsRequest::tensions,
-                 {.meaning = "tendons' tensions at the base, N", .range = between(0, 1e9)})
-          .field(
-              "displacements", &StaticsRequest::displacements,
-              {.meaning = "how far tendons are pulled in", .unit = Unit::metre, .range = between(-1e6, 1e6)})
-          .field("tip_force", &StaticsRequest::tip_force,
-                 {.meaning = "force at the tip, N", .range = load_range})
-          .field("tip_moment", &StaticsRequest::tip_moment,
-                 {.meaning = "moment at the tip, N m", .range = load_range})
-          .field("gravity", &StaticsRequest::gravity,
-                 {.meaning = "gravity, instead of the file's",
-                  .unit = Unit::metre_per_second_squared,
-                  .range = between(-1e6, 1e6)})
-          .field("at", &StaticsRequest::at,
-                 {.meaning = "arc lengths at rest",
-                  .unit = Unit::metre,
-                  .range = at_least(0),
-                  .count = {0, max_places}});
+  static const auto table = [] {
+    Table<StaticsRequest> made("statics request", "What pulls at the arm, and where along it to answer.");
+    add_rod_fields(made).field("at", &StaticsRequest::at,
+                               {.meaning = "arc lengths at rest",
+                                .unit = Unit::metre,
+                                .range = at_least(0),
+                                .count = {0, max_places}});
+    return made;
+  }();
   return table;
-}
-
-void check_count(const std::optional<std::vector<double>>& given, std::size_t tendons, const char* name,
-                 Reader& reader) {
-  if (!given || given->size() == tendons) return;
-  reader.problem_at(name, fmt::format("{} given: expected {}, one for each tendon", given->size(), tendons));
 }
 
 StaticsRequest read_request(const Rod& rod, std::string_view line) {
@@ -67,10 +43,7 @@ StaticsRequest read_request(const Rod& rod, std::string_view line) {
   Reader reader;
   StaticsRequest request;
   if (fields_of(static_cast<const StaticsRequest*>(nullptr)).read(document, reader, request)) {
-    check_count(request.tensions, rod.tendons.size(), "tensions", reader);
-    check_count(request.displacements, rod.tendons.size(), "displacements", reader);
-    if (request.tensions && request.displacements)
-      reader.problem_at("displacements", "are given beside tensions: expected one of them");
+    check_rod_request(rod, request, reader);
     const double length = rod.length();
     for (std::size_t i = 0; request.at && i < request.at->size(); ++i) {
       if ((*request.at)[i] <= length * (1 + 1e-12)) continue;
@@ -152,18 +125,9 @@ std::string StaticsAnswers::problem(std::string_view line) const {
 std::string StaticsAnswers::answer(std::string_view line) {
   try {
     const StaticsRequest request = read_request(rod_, line);
-    RodLoads loads = loads_;
-    if (request.gravity) loads.gravity = vector(*request.gravity);
-    const EndLoad tip{.section = rod_.sections.size() - 1,
-                      .force = vector(request.tip_force),
-                      .moment = vector(request.tip_moment)};
-    if (!tip.force.isZero(0) || !tip.moment.isZero(0)) loads.ends.push_back(tip);
     std::vector<RodPlace> places;
     for (const double s : request.at.value_or(std::vector<double>{})) places.push_back(place_of(rod_, s));
-    const Equilibrium found =
-        statics_.solve({.tensions = request.tensions.value_or(std::vector<double>{}),
-                        .displacements = request.displacements.value_or(std::vector<double>{})},
-                       loads);
+    const Equilibrium found = statics_.solve(request.tendons(), request.loads(rod_, loads_));
     if (found.end == StaticsEnd::bad_input) return write_json(error_node(found.problem));
     Node::Table members = answer_of(found);
     if (request.at && members.size() > 2) {

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <array>
+#include <optional>
+#include <vector>
+
+#include "flexura/base/table.h"
+#include "flexura/base/unit.h"
+#include "flexura/mechanics/rod.h"
+#include "flexura/mechanics/statics.h"
+
+namespace flexura {
+
+/// What pulls at an elastic arm, as a line of `flexura statics` or `flexura linearise` says it, in the frame
+/// of the arm's base.
+struct RodRequest {
+  std::optional<std::vector<double>> tensions;       ///< N
+  std::optional<std::vector<double>> displacements;  ///< m
+  std::array<double, 3> tip_force = {0, 0, 0};       ///< N
+  std::array<double, 3> tip_moment = {0, 0, 0};      ///< N m
+  std::optional<std::array<double, 3>> gravity;      ///< m/s^2; none: the arm's.
+
+  /// What holds the tendons.
+  [[nodiscard]] TendonInput tendons() const;
+  /// The arm's loads, with the gravity and the tip's force and moment of this request.
+  [[nodiscard]] RodLoads loads(const Rod& rod, RodLoads of_arm) const;
+};
+
+/// Adds its fields to the table of a request that has them.
+template <typename Request>
+Table<Request>& add_rod_fields(Table<Request>& table) {
+  constexpr NumberRange load_range = {.min = -1e9, .max = 1e9};
+  return table
+      .field("tensions", &Request::tensions,
+             {.meaning = "tendons' tensions at the base, N", .range = between(0, 1e9)})
+      .field("displacements", &Request::displacements,
+             {.meaning = "how far tendons are pulled in", .unit = Unit::metre, .range = between(-1e6, 1e6)})
+      .field("tip_force", &Request::tip_force, {.meaning = "force at the tip, N", .range = load_range})
+      .field("tip_moment", &Request::tip_moment, {.meaning = "moment at the tip, N m", .range = load_range})
+      .field("gravity", &Request::gravity,
+             {.meaning = "gravity, instead of the file's",
+              .unit = Unit::metre_per_second_squared,
+              .range = between(-1e6, 1e6)});
+}
+
+/// Reports what does not fit the rod: other numbers of tendons, tensions beside displacements.
+void check_rod_request(const Rod& rod, const RodRequest& request, Reader& reader);
+
+}  // namespace flexura

@@ -99,10 +99,7 @@ mkdir -p docs/studies build/studies
 {
   echo "# Fuzzing"
   echo
-  echo "Every reader of foreign text, pictures and protocols, fed its committed corpus (\`tests/corpus/TARGET\`), seeded"
-  echo "mutations of it and, where any bytes mean something, bytes that are random throughout, under AddressSanitizer"
-  echo "and LeakSanitizer, and but for those that draw or measure pictures under UndefinedBehaviorSanitizer (GCC $(g++ -dumpfullversion))."
-  echo "A case fails when the target crashes, lets an exception out, or takes more than half a minute."
+  echo "Every reader of external text, pictures and protocols runs its corpus (\`tests/corpus/TARGET\`), seeded mutations and, where any bytes are valid, random bytes. AddressSanitizer and LeakSanitizer are on; UndefinedBehaviorSanitizer too, except for targets that draw or measure pictures (GCC $(g++ -dumpfullversion)). A crash, an escaped exception, or over half a minute is a failure."
   echo
   echo '```console'
   echo "\$ ./dev study fuzz 1000000 1"
@@ -116,8 +113,7 @@ mkdir -p docs/studies build/studies
     words=$(words_of "$target")
     [ -z "$words" ] || printf '%s\n\n' "$words"
   done
-  echo "The speed is of the sanitized build, with other work on the machine."
-  echo "The command runs all targets; with their names behind it only those, and the other rows stay."
+  echo "Speeds are of the sanitized build on a shared machine. Targets named after the command run alone; other rows stay."
 } >build/studies/fuzz.md
 mv build/studies/fuzz.md "$page"
 echo "wrote $page"

@@ -14,24 +14,12 @@ mkdir -p docs/studies build/studies
 {
   echo "# Checks of motions against dense samples"
   echo
-  echo "Random arms of one to six sections, every fourth of them planar, with random limits and radii, each among a random"
-  echo "plane, ball, rod and box. Eight motions each: hold, linear with minimum jerk, trapezoid, sine, linear and smooth"
-  echo "keyframes, a trapezoid by rates and accelerations of each section, a move of the tip to a place; and of planar arms"
-  echo "two more, a move of the cord angles with a law for each section and a swing of these. Each is checked as"
-  echo "[safety](../safety.md) tells, and then sampled at $samples even steps by other code"
-  echo "([limits](../../tests/support/sampled_check.h), [clearances](../../tests/support/sampled_clearance.h)); the motions, the sections' frames and"
-  echo "the distance from a point to an obstacle are the simulator's own."
+  echo "Random arms of one to six sections (every fourth planar), with random limits and radii, each with a random plane, ball, rod and box. Eight motions per arm: hold, minimum-jerk linear, trapezoid, sine, linear and smooth keyframes, a trapezoid with rates and accelerations per section, a move of the tip. Planar arms add a move of cord angles with a law per section, and its swing. Each is checked ([safety](../safety.md)) and sampled at $samples even steps by independent code ([limits](../../tests/support/sampled_check.h), [clearances](../../tests/support/sampled_clearance.h)). Motions, section frames and point-obstacle distances are the simulator's own."
   echo
-  echo "Bends, mean bend rates, stretches and folding are compared at every step. Clearances, of the arm to itself and"
-  echo "to each obstacle, are found by points along the sections and a descent from the nearest ones, at every hundredth"
-  echo "step; and at every step between two of these wherever one of them lies outside the reported contacts and nearer"
-  echo "than four times what any of the points moves in between, so that none of the others can be in contact either."
-  echo "Every section before every obstacle, and every pair of sections, is held against the spans reported of it, and"
-  echo "the worst value of every span against the samples within and against the state at its time (in pairs of"
-  echo "sections only to 1 % of the arm's length, where neighbours begin)."
-  echo "Reported times count with the resolution that the check"
-  echo "promises, 1e-4 s for contacts. A contact counts from 2e-6 m of depth. Worst values count as promised, too: short"
-  echo "by no more than 1e-4 (of the value; of a depth, m) where the check does not say by how much they may be."
+  echo "- Bends, mean bend rates, stretches and folding: every step."
+  echo "- Clearances to itself and obstacles, by points and descents: every hundredth step, and every step between where a contact outside the reported ones is possible."
+  echo "- Every section and obstacle, and every pair of sections, is compared with its reported spans; each worst value with the samples and the state at its time (pairs to 1 % of the length, where neighbours begin)."
+  echo "- Tolerances: 1e-4 s for contact times; contacts from 2e-6 m of depth; worst values may be 1e-4 short (relative; depths in m) where the check states no uncertainty."
   echo
   echo '```console'
   echo "\$ ./dev study safety $motions $samples $seed"

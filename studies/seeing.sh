@@ -21,17 +21,14 @@ wait $!
 {
   echo "# Seeing random arms"
   echo
-  echo "Random arms of one to four sections and one radius, before a white ground, from 1.2 to 3 m away and from any side,"
-  echo "by cameras without distortion, drawn by the"
-  echo "[renderer](../renderer.md) with its noise and blur at 640 x 480 px, and measured as [vision](../vision.md) tells."
-  echo "Noise is a standard deviation in values of 8 bits, the PSF one in pixels. The median axis, corrected for the camera,"
-  echo "is held against the exact image of the backbone: the distance of each sample of which both borders are seen,"
-  echo "from that curve. *Median* and *90 %* are of the rms of each picture; *rms* and *99 %* of all samples together;"
-  echo "*middle*: without the correction. *Not seen* are the samples that the axis bridges, where the arm lies on itself,"
-  echo "hides an end, or points at the camera; *bridged ones too* counts them as well. Arms *that cross themselves* do so with"
-  echo "the image of their backbone. *Ends* is the median distance of a free end from the backbone's. The aim of 0.02 px is"
-  echo "for noise 2 and a PSF of 0.7 px; the program judges it. (There a maximum-likelihood estimate of each line of pixels"
-  echo "by itself can reach 0.013 px, and the border of a mask gives 0.18 px.)"
+  echo "Random arms of one to four sections and one radius, before white, 1.2 to 3 m away, from any side. Cameras without distortion; pictures of 640 x 480 px by the [renderer](../renderer.md) with noise (standard deviation of 8-bit values) and blur (PSF, px), measured as in [vision](../vision.md). Errors are distances of samples with both borders visible, after correction for the camera, from the backbone's exact image."
+  echo
+  echo "- *Median*, *90 %*: of each picture's rms. *rms*, *99 %*: all samples. *Middle*: without correction."
+  echo "- *Not seen*: samples bridged where the arm covers itself, hides an end, or points at the camera. *Bridged ones too* includes them."
+  echo "- *Cross themselves*: arms with a crossing in the backbone's image."
+  echo "- *Ends*: median distance of free ends from the backbone's."
+  echo
+  echo "The aim of 0.02 px is for noise 2, PSF 0.7 px. There, a maximum-likelihood estimate per pixel line reaches 0.013 px, a mask's border 0.18 px."
   echo
   echo '```console'
   echo "\$ ./dev study seeing $cases $seed"
@@ -43,19 +40,14 @@ wait $!
   echo
   echo "## Two views to a shape"
   echo
-  echo "Arms of the same kind before two cameras, 1.5 to 3 m away and at a right angle to each other to within nine degrees;"
-  echo "noise from 0 to 4, PSF from 0.5 to 1.2 px. Errors are root mean squares of the positions along the arm, in percent of"
-  echo "its length. *Trusted* are the answers that come without a note ([estimating](../estimation.md)), *marked* those with"
-  echo "one; the rest was not found, with the reason. *Over sigma* is the error over the standard deviation that came with"
-  echo "the answer, and *within 50 %, 95 %* how often the true bends lie in the region that the covariance expects so often,"
-  echo "both of the trusted ones. Quantiles are by nearest rank. The second table has the aims, % of the length, and whether"
-  echo "they are met, as the program finds. The covariance is tested twice by chi^2, at the bounds that chance exceeds once in"
-  echo "a thousand: the bends' errors, squared by their covariance, are to be as large on average as it expects; and the true"
-  echo "bends' regions are to lie evenly from 0 to 100 % (ten equal parts). The last"
-  echo "table has both of the known arm by the noise of the pictures."
+  echo "Such arms before two cameras, 1.5 to 3 m away, perpendicular within nine degrees; noise 0 to 4, PSF 0.5 to 1.2 px. Errors are rms position errors along the arm, % of its length."
   echo
-  echo "For comparison, of real pictures where these are drawn: a network that was taught one robot of two segments tells"
-  echo "its shape from one picture to 0.36 % of its length on average, 70 times a second (C. Shentu et al., MoSS, 2023)."
+  echo "- *Trusted* answers have no note ([estimating](../estimation.md)), *marked* ones have; the rest was not found."
+  echo "- For trusted answers: *over sigma*, error over standard deviation; *within 50 %, 95 %*, share of true bends inside these covariance regions."
+  echo "- Quantiles are nearest ranks. The second table has aims and verdicts."
+  echo "- Two chi^2 tests, with bounds exceeded once in a thousand: mean squared error over covariance, and uniformity of the regions (ten parts). The last table has both by noise, for known arms."
+  echo
+  echo "For comparison, on real pictures: a network trained on one two-segment robot reaches 0.36 % of the length on average from one picture, at 70 Hz (C. Shentu et al., MoSS, 2023)."
   echo
   cat "$parts/shapes"
 } >build/studies/seeing.md

@@ -11,6 +11,17 @@ target_link_libraries(flexura_all INTERFACE ${targets})
 
 install(TARGETS flexura_all ${targets} EXPORT flexuraTargets)
 install(TARGETS flexura DESTINATION ${CMAKE_INSTALL_BINDIR})
+# The program writes its own manual page and completion scripts.
+set(manual ${PROJECT_BINARY_DIR}/flexura.1)
+set(bash_completion ${PROJECT_BINARY_DIR}/flexura.bash)
+set(zsh_completion ${PROJECT_BINARY_DIR}/_flexura)
+install(CODE "
+  execute_process(COMMAND \"$<TARGET_FILE:flexura>\" man OUTPUT_FILE \"${manual}\" COMMAND_ERROR_IS_FATAL ANY)
+  execute_process(COMMAND \"$<TARGET_FILE:flexura>\" completion bash OUTPUT_FILE \"${bash_completion}\" COMMAND_ERROR_IS_FATAL ANY)
+  execute_process(COMMAND \"$<TARGET_FILE:flexura>\" completion zsh OUTPUT_FILE \"${zsh_completion}\" COMMAND_ERROR_IS_FATAL ANY)")
+install(FILES ${manual} DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
+install(FILES ${bash_completion} DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME flexura)
+install(FILES ${zsh_completion} DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/site-functions)
 set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS flexura/public_headers.txt)
 file(STRINGS flexura/public_headers.txt headers REGEX "^[a-z]")
 foreach(header ${headers})

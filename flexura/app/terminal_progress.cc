@@ -11,6 +11,26 @@
 
 namespace flexura {
 
+std::optional<double> TimeLeft::at(double fraction, double elapsed) {
+  if (fraction < last_fraction_) {
+    begin_elapsed_ = elapsed;
+    begin_fraction_ = fraction;
+  }
+  last_fraction_ = fraction;
+  const double done = fraction - begin_fraction_;
+  const double took = elapsed - begin_elapsed_;
+  // Earlier the estimate would jump.
+  if (done < 0.02 || took < 1) return std::nullopt;
+  return took * (1 - fraction) / done;
+}
+
+std::string duration_text(double seconds) {
+  const auto whole = static_cast<long>(std::ceil(seconds));
+  if (whole < 60) return fmt::format("{} s", whole);
+  if (whole < 3600) return fmt::format("{} min {} s", whole / 60, whole % 60);
+  return fmt::format("{} h {} min", whole / 3600, whole % 3600 / 60);
+}
+
 TerminalProgress::TerminalProgress(std::ostream& err) : err_(err), on_terminal_(isatty(STDERR_FILENO) == 1) {}
 
 TerminalProgress::~TerminalProgress() { clear(); }
@@ -23,10 +43,12 @@ void TerminalProgress::update(double fraction, std::string_view what) {
   last_ = now;
   shown_ = true;
   constexpr int width = 30;
+  const auto left = time_left_.at(fraction, std::chrono::duration<double>(now - start_).count());
   const int filled = static_cast<int>(std::lround(fraction * width));
-  err_ << fmt::format("\r\x1b[K{:3.0f} % [{}{}] {}", fraction * 100,
+  err_ << fmt::format("\r\x1b[K{:3.0f} % [{}{}] {}{}", fraction * 100,
                       std::string(static_cast<std::size_t>(filled), '#'),
-                      std::string(static_cast<std::size_t>(width - filled), '.'), one_line(what))
+                      std::string(static_cast<std::size_t>(width - filled), '.'),
+                      left ? duration_text(*left) + " left, " : "", one_line(what))
        << std::flush;
 }
 

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace flexura {
+
+/// What an option or an argument takes.
+enum class Takes {
+  nothing,     ///< A flag.
+  text,        ///< A number, a name.
+  choice,      ///< One of `OptionHelp::choices`.
+  file,        ///< Any file.
+  experiment,  ///< An experiment file (.toml).
+  folder,
+};
+
+/// One option or positional argument of a command, as its help shows it.
+struct OptionHelp {
+  std::vector<std::string> names;  ///< "-h", "--help"; of a positional argument only its name, "EXPERIMENT".
+  std::string value;               ///< What stands for the value: "DIR"; "" for a flag.
+  std::string meaning;             ///< One sentence.
+  Takes takes = Takes::text;       ///< What the value is.
+  std::vector<std::string> choices;  ///< The words that it may be, for Takes::choice.
+};
+
+/// One command, as its help shows it.
+struct CommandHelp {
+  std::string name;
+  std::string group;    ///< The heading under which `flexura --help` lists it.
+  std::string meaning;  ///< One sentence.
+  std::string example;  ///< Lines that can be pasted into a shell.
+  std::vector<OptionHelp> positionals;
+  std::vector<OptionHelp> options;
+};
+
+/// The whole command line: the one source of the help, the shells' completion and the manual page.
+struct ProgramHelp {
+  std::string name;
+  std::string version;
+  std::string meaning;
+  std::vector<CommandHelp> commands;  ///< In the order of the help.
+};
+
+/// The completion script of a shell. The script needs nothing but the shell and `bash-completion` is not
+/// needed.
+[[nodiscard]] std::string bash_completion(const ProgramHelp& help);
+[[nodiscard]] std::string zsh_completion(const ProgramHelp& help);
+
+/// The manual page of section 1 in the man(7) macros of roff.
+[[nodiscard]] std::string manual_page(const ProgramHelp& help);
+
+}  // namespace flexura

@@ -22,3 +22,18 @@ function(flexura_embed target)
   add_dependencies(embedded ${target}_embedded)
   target_include_directories(${target} PRIVATE ${CMAKE_CURRENT_BINARY_DIR})
 endfunction()
+
+# flexura_embed_examples(TARGET) makes every examples/*/experiment.toml available to TARGET: "embedded/examples.h"
+# declares flexura::embedded::examples, an array of {name, text} in the order of the folders' names.
+function(flexura_embed_examples target)
+  file(GLOB files CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/examples/*/experiment.toml)
+  list(SORT files)
+  set(header ${CMAKE_CURRENT_BINARY_DIR}/embedded/examples.h)
+  add_custom_command(OUTPUT ${header}
+    COMMAND ${CMAKE_COMMAND} "-DINPUTS=${files}" -DOUTPUT=${header}
+            -P ${PROJECT_SOURCE_DIR}/cmake/EmbedExamples.cmake
+    DEPENDS ${files} ${PROJECT_SOURCE_DIR}/cmake/EmbedExamples.cmake VERBATIM)
+  target_sources(${target} PRIVATE ${header})
+  add_custom_target(${target}_embedded_examples DEPENDS ${header})
+  add_dependencies(embedded ${target}_embedded_examples)
+endfunction()

@@ -16,7 +16,7 @@
 #include <utility>
 #include <vector>
 
-#include "embedded/experiment_toml.h"
+#include "embedded/examples.h"
 #include "embedded/page.h"
 #include "flexura/app/browser.h"
 #include "flexura/app/commands.h"
@@ -40,6 +40,19 @@ std::string session_name() {
   return fmt::format("{:08x}{:08x}", device(), device());
 }
 
+// Every example, by the title in its file.
+std::vector<ViewExample> offered_examples() {
+  std::vector<ViewExample> offered;
+  for (const embedded::Example& one : embedded::examples) {
+    const std::string name(one.name);
+    const Experiment experiment = parse_experiment(one.text, name);
+    offered.push_back({name, experiment.title.empty() ? name : experiment.title,
+                       [experiment] { return std::make_shared<const ViewedRig>(experiment); },
+                       std::filesystem::path("results") / name});
+  }
+  return offered;
+}
+
 ViewStart start_of(const std::string& what) {
   ViewStart start;
   std::error_code error;  // What cannot be looked at is said by whoever reads it.
@@ -49,9 +62,10 @@ ViewStart start_of(const std::string& what) {
   } else if (std::filesystem::path(what).extension() == std::filesystem::path(log_file_name).extension()) {
     throw input_error(what, "is a log: expected the folder in which it lies, as `flexura run` made it");
   } else if (what.empty()) {
-    start.rig =
-        std::make_shared<const ViewedRig>(parse_experiment(embedded::experiment_toml, "the paper's arm"));
+    start.rig = std::make_shared<const ViewedRig>(
+        parse_experiment(embedded::examples.front().text, "the paper's arm"));
     start.results = std::filesystem::path("results") / "paper_arm";
+    start.examples = offered_examples();
   } else {
     start.rig = std::make_shared<const ViewedRig>(load_experiment(what));
     start.results = default_results_folder(what);

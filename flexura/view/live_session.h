@@ -45,6 +45,8 @@ class LiveSession : public PictureSession {
 
   /// The results of the last run that has ended and left some.
   [[nodiscard]] const std::optional<std::filesystem::path>& results() const { return results_; }
+  /// Whether tasks are running, whoever started them.
+  [[nodiscard]] bool is_running() const { return run_ != nullptr; }
   /// Whether a run that somebody else started has ended.
   [[nodiscard]] bool is_over() const { return is_watched_run() && run_ == nullptr; }
 

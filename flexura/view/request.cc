@@ -167,7 +167,12 @@ const Table<RunRequest>& fields_of(const RunRequest*) {
   return table;
 }
 const Table<CancelRequest>& fields_of(const CancelRequest*) { return bare<CancelRequest>("cancel"); }
-const Table<OpenRequest>& fields_of(const OpenRequest*) { return bare<OpenRequest>("open"); }
+const Table<OpenRequest>& fields_of(const OpenRequest*) {
+  static const auto table =
+      Table<OpenRequest>("open", "The recording of the last run, or an example.")
+          .field("example", &OpenRequest::example, {.meaning = "The name of one of the viewer's examples."});
+  return table;
+}
 const Table<LiveRequest>& fields_of(const LiveRequest*) { return bare<LiveRequest>("live"); }
 const Table<PingRequest>& fields_of(const PingRequest*) { return bare<PingRequest>("ping"); }
 

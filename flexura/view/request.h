@@ -41,7 +41,9 @@ struct RunRequest {
   std::optional<std::int64_t> task;  ///< Its place, from 0; all of them where it is left out.
 };
 struct CancelRequest {};
-struct OpenRequest {};
+struct OpenRequest {
+  std::optional<std::string> example;  ///< Its name; the recording of the last run where it is left out.
+};
 struct LiveRequest {};
 struct AtRequest {
   double time = 0;  ///< s

@@ -1,5 +1,7 @@
 #include "flexura/view/viewer.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <exception>
 #include <utility>
@@ -14,10 +16,17 @@
 namespace flexura {
 namespace {
 
-std::string hello_text(const Hello& hello, const std::string& session, bool has_rig, bool has_recording) {
+Node examples_node(const std::vector<ViewExample>& examples) {
+  Node::Array list;
+  for (const ViewExample& one : examples)
+    list.push_back({Node::Table{{"name", {}, text_node(one.name)}, {"title", {}, text_node(one.title)}}, {}});
+  return {std::move(list), {}};
+}
+
+std::string hello_text(const Hello& hello, const ViewStart& start, bool has_rig, bool has_recording) {
   return write_json({Node::Table{{"type", {}, text_node("hello")},
                                  {"version", {}, text_node(std::string(version()))},
-                                 {"session", {}, text_node(session)},
+                                 {"session", {}, text_node(start.session)},
                                  {"mode", {}, text_node(hello.mode)},
                                  {"title", {}, text_node(hello.title)},
                                  {"scene", {}, hello.scene},
@@ -29,6 +38,7 @@ std::string hello_text(const Hello& hello, const std::string& session, bool has_
                                  {"report", {}, {hello.report, {}}},
                                  {"rig", {}, {has_rig, {}}},
                                  {"recording", {}, {has_recording, {}}},
+                                 {"examples", {}, examples_node(start.examples)},
                                  {"readonly", {}, {hello.readonly, {}}}},
                      {}});
 }
@@ -62,7 +72,7 @@ void Viewer::opened(ClientId client) {
 }
 
 void Viewer::greet(ClientId client) {
-  messenger_.send(client, hello_text(shown_->hello(), start_.session, has_rig(), has_recording()));
+  messenger_.send(client, hello_text(shown_->hello(), start_, has_rig(), has_recording()));
   shown_->opened(client);
 }
 
@@ -93,8 +103,12 @@ void Viewer::said(ClientId client, const std::string& said_text, const std::shar
 
 void Viewer::take(ClientId client, const Request& request, const std::shared_ptr<const void>& debt) {
   Reply reply = request.id ? reply_to(client, *request.id, debt) : [](const ViewAnswer&) {};
-  if (std::holds_alternative<OpenRequest>(request.ask)) {
-    open_last(std::move(reply));
+  if (const auto* const open = std::get_if<OpenRequest>(&request.ask)) {
+    if (open->example) {
+      open_example(*open->example, reply);
+    } else {
+      open_last(std::move(reply));
+    }
   } else if (std::holds_alternative<LiveRequest>(request.ask)) {
     go_live(reply);
   } else {
@@ -115,6 +129,24 @@ void Viewer::open_last(Reply reply) {
     reply({nothing(), ""});
     show(*recording_);
   }
+}
+
+void Viewer::open_example(const std::string& name, const Reply& reply) {
+  const auto found = std::ranges::find(start_.examples, name, &ViewExample::name);
+  if (found == start_.examples.end())
+    throw ViewRefusal(
+        fmt::format("there is no example {}: expected one of the hello's examples", text_node(name).brief()));
+  if (is_opening_) throw ViewRefusal("a recording is being opened");
+  if (live_ != nullptr && live_->is_running()) throw ViewRefusal("tasks are running: cancel them first");
+  start_.rig = found->load();
+  start_.results = found->results;
+  const auto live_before =
+      std::exchange(live_, std::make_unique<LiveSession>(start_.rig, messenger_, background_,
+                                                         LiveSession::Config{clock_, start_.results, {}}));
+  reply({nothing(), ""});
+  show(*live_);
+  // Nobody is in the old sessions any more.
+  recording_.reset();
 }
 
 // A long log takes its time to be read.

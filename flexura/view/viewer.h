@@ -7,6 +7,7 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <vector>
 
 #include "flexura/view/background.h"
 #include "flexura/view/live_session.h"
@@ -16,13 +17,22 @@
 
 namespace flexura {
 
+/// An experiment that a viewer offers to open.
+struct ViewExample {
+  std::string name;                    ///< By which clients ask for it.
+  std::string title;                   ///< For people.
+  std::function<ViewedRigPtr()> load;  ///< Its rig; never null.
+  std::filesystem::path results;       ///< Where runs of its tasks put their results.
+};
+
 /// What a viewer begins with: a recording, or else a rig.
 struct ViewStart {
-  std::string session;                 ///< Another for each start of the program.
-  ViewedRigPtr rig = {};               ///< Never null where there is no recording.
-  RecordingPtr recording = {};         ///< May be null.
-  std::filesystem::path results = {};  ///< Where runs of tasks put their results.
-  std::shared_ptr<RunLink> run = {};   ///< A run that is going on, whose recording is opened at its end.
+  std::string session;                     ///< Another for each start of the program.
+  ViewedRigPtr rig = {};                   ///< Never null where there is no recording.
+  RecordingPtr recording = {};             ///< May be null.
+  std::filesystem::path results = {};      ///< Where runs of tasks put their results.
+  std::shared_ptr<RunLink> run = {};       ///< A run that is going on, whose recording is opened at its end.
+  std::vector<ViewExample> examples = {};  ///< What else can be opened; empty where a file was given.
 };
 
 /// What the viewer says and does: reads what clients say, answers, and leads them from rig to recording and
@@ -53,6 +63,7 @@ class Viewer {
   [[nodiscard]] Reply reply_to(ClientId client, std::int64_t id, std::shared_ptr<const void> debt);
   void take(ClientId client, const Request& request, const std::shared_ptr<const void>& debt);
   void open_last(Reply reply);
+  void open_example(const std::string& name, const Reply& reply);
   void open(const std::filesystem::path& folder, Reply reply);
   void go_live(const Reply& reply);
   /// Whether there is a rig to go to: none where the run that was watched is over.

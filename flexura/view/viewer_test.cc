@@ -1,8 +1,10 @@
 #include "flexura/view/viewer.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <memory>
 #include <stdexcept>
@@ -254,6 +256,40 @@ TEST(ViewerOfARecording, HasItsRigToGoTo) {
   EXPECT_FALSE(messenger.state(me).is_recording);
   viewer.said(me, R"({"id":1,"do":"open"})");
   EXPECT_TRUE(messenger.state(me).is_recording);
+}
+
+TEST(ViewerExamples, AreOfferedAndOpenedOneAfterAnother) {
+  FakeMessenger messenger;
+  FakeBackground background;
+  const auto load = [] { return viewed_rig(); };
+  Viewer viewer({.session = "0815",
+                 .rig = viewed_rig(),
+                 .results = "results",
+                 .examples = {{"bow", "An arm that bows", load, "results/bow"},
+                              {"wave", "A wave", load, "results/wave"}}},
+                messenger, background, 0);
+  viewer.opened(me);
+  const Node::Array offered = *messenger.last(me, "hello").find("examples")->as<Node::Array>();
+  ASSERT_EQ(offered.size(), 2);
+  EXPECT_EQ(*offered[0].find("name")->as<std::string>(), "bow");
+  EXPECT_EQ(*offered[1].find("title")->as<std::string>(), "A wave");
+  const auto hellos = [&] {
+    return std::ranges::count_if(messenger.texts[me], [](const std::string& text) {
+      return text.find(R"("type":"hello")") != std::string::npos;
+    });
+  };
+  for (const char* name : {"wave", "bow", "wave"}) {
+    const auto before = hellos();
+    viewer.said(me, fmt::format(R"({{"id":1,"do":"open","example":"{}"}})", name));
+    EXPECT_EQ(messenger.last(me, "reply").find("error"), nullptr) << name;
+    EXPECT_EQ(hellos(), before + 1) << "everybody is greeted by the new rig";
+    viewer.advance(1);
+  }
+  viewer.said(me, R"({"id":2,"do":"open","example":"spider"})");
+  EXPECT_THAT(*messenger.last(me, "reply").find("error")->as<std::string>(),
+              HasSubstr(R"(no example "spider")"));
+  viewer.said(me, R"({"id":3,"do":"open"})");
+  EXPECT_THAT(*messenger.last(me, "reply").find("error")->as<std::string>(), HasSubstr("no recording yet"));
 }
 
 }  // namespace

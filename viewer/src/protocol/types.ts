@@ -163,6 +163,8 @@ export interface Hello {
   rig: boolean;
   /** There is a recording to open. */
   recording: boolean;
+  /** What `open` can open; none from a program that was given a file. */
+  examples?: { name: string; title: string }[];
   readonly: boolean;
 }
 

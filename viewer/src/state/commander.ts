@@ -90,6 +90,12 @@ export class Commander {
     return this.ask('run', task === undefined ? {} : { task });
   }
 
+  /** Leaves the present rig for that of one of the hello's examples. */
+  open_example(example: string): Promise<boolean> {
+    this.forget_tip();
+    return this.ask('open', { example });
+  }
+
   private async ask(what: string, values: Record<string, unknown> = {}): Promise<boolean> {
     try {
       await this.link.request(what, values);

@@ -36,6 +36,11 @@ export function Header() {
       <span class="spacer" />
       {!teaching && hello && <Rig />}
       <nav class="tools" aria-label="Page">
+        {!teaching && (hello?.examples?.length ?? 0) > 0 && (
+          <button type="button" class="button quiet" onClick={() => (app.dialog.value = 'examples')}>
+            <Icon name="folder" />Examples
+          </button>
+        )}
         {teaching ? (
           <a class="button" href="#/"><Icon name="back" />Viewer</a>
         ) : (

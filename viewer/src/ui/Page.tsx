@@ -8,6 +8,7 @@ import { Teach } from '../teach/Teach';
 import { Timeline } from '../timeline/Timeline';
 import { use_app } from './app';
 import { Entrance } from './Entrance';
+import { Examples } from './Examples';
 import { Header } from './Header';
 import { Help } from './Help';
 import { NoticeList } from './NoticeList';
@@ -20,6 +21,7 @@ export function Page() {
       {app.route.value === 'teach' ? <Teach /> : <Bench />}
       <NoticeList />
       <Help />
+      <Examples />
     </>
   );
 }

@@ -7,7 +7,7 @@ import type { SceneView } from '../scene/view';
 import type { Viewer } from '../state/viewer';
 import { Views } from '../state/views';
 
-export type Dialog = 'help' | null;
+export type Dialog = 'help' | 'examples' | null;
 
 export interface App {
   viewer: Viewer;

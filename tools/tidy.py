@@ -3,8 +3,8 @@
 
 usage: tidy.py --build BUILD [--all]
 
-BUILD holds a compile_commands.json. tools/tidy_record.txt, committed, holds the digests of the sources as they were
-when clang-tidy last passed on them. Without --all, it checks the sources (.cc) of the product that differ from the
+BUILD holds a compile_commands.json. tools/tidy_record.txt, committed, holds the digests of the sources' code,
+without comments, as it was when clang-tidy last passed on them. Without --all, it checks the sources (.cc) of the product that differ from the
 record. With --all it checks every source, tests and benchmarks too, which also shows what a changed header means for
 those that include it. Each source of the product that passes is brought up to date in the record, as it was before.
 
@@ -29,6 +29,8 @@ ROOT = Path(__file__).resolve().parent.parent
 TIDY = "clang-tidy-19"
 SETTINGS = ROOT / ".clang-tidy"
 RECORD = ROOT / "tools/tidy_record.txt"
+# Texts, which may hold what looks like a comment, and comments.
+TOKEN = re.compile(r'R"(\w*)\((?:.|\n)*?\)\1"|"(?:\\.|[^"\\\n])*"|//[^\n]*|/\*(?:.|\n)*?\*/')
 INCLUDE = re.compile(r'^\s*#\s*include\s*"([^"]+)"', re.MULTILINE)
 
 
@@ -67,10 +69,20 @@ def key(command, files):
     return digest.hexdigest()
 
 
+def without_comments(text):
+    """The code alone: clang-tidy heeds no comment but NOLINT. White space counts once."""
+    def kept(token):
+        is_comment = token[0].startswith(("//", "/*"))
+        return " " if is_comment and "NOLINT" not in token[0] else token[0]
+
+    return " ".join(TOKEN.sub(kept, text).split())
+
+
 def digests(files):
-    """The first 16 hex digits of each file's SHA-256, by the file's path in the project."""
+    """The first 16 hex digits of the SHA-256 of each file's code, by the file's path in the project."""
     names = sorted(str(file.relative_to(ROOT)) for file in files)
-    return {name: hashlib.sha256((ROOT / name).read_bytes()).hexdigest()[:16] for name in names}
+    codes = [without_comments((ROOT / name).read_text()) for name in names]
+    return {name: hashlib.sha256(code.encode()).hexdigest()[:16] for name, code in zip(names, codes)}
 
 
 def recorded(record):

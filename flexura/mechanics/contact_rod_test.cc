@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <stdexcept>
 #include <vector>
 
@@ -30,28 +31,31 @@ std::vector<NodeMotion> moved(std::vector<NodeMotion> nodes, std::size_t node, E
 // Of all wrenches by the motion of all nodes.
 TEST(ContactRod, ItsDerivativesAreThoseByDifferencesWhereItTouchesItself) {
   const Rod rod = soft_arm();
-  const RodChain chain(rod, contact_places(rod, 0.05));
-  const std::size_t count = chain.elements()[0].grid().t.size();
+  const RodChain chain(rod);
+  const std::vector<RodPlace> places = contact_places(rod, 0.02);
+  const std::size_t count = places.size();
+  std::vector<std::size_t> all(count);
+  std::iota(all.begin(), all.end(), std::size_t{0});
   int touched = 0;
-  for_random_cases(60, [&](TestRandom& random) {
+  for_random_cases(30, [&](TestRandom& random) {
     const RodContact contact(chain, {.law = {.stiffness = 1e4, .damping = 0.5, .slip_speed = 0.1},
                                      .radii = {{0.03, 0.02}},
-                                     .itself_apart = 3});
+                                     .itself_apart = 3,
+                                     .places = places});
     // Curled up.
     std::vector<NodeMotion> nodes(count);
     const double radius = random.uniform(0.03, 0.04), rise = random.uniform(0, 0.02);
     for (std::size_t k = 0; k < count; ++k) {
-      const double s = 0.3 * chain.elements()[0].grid().t[k], angle = s / radius;
+      const double s = 0.3 * places[k].at, angle = s / radius;
       nodes[k].pose.position =
           Eigen::Vector3d(radius * (1 - std::cos(angle)), rise * angle, radius * std::sin(angle)) +
           random.vector<3>(-0.003, 0.003);
       nodes[k].twist << random.vector<3>(-0.3, 0.3), random.vector<3>(-2.0, 2.0);
     }
-    const std::vector<double> run(count, 0.0);
     std::vector<NodePull> pulls(count), after(count), before(count);
-    contact.pull(nodes, run, pulls);
-    std::vector<NodeCoupling> couplings;
-    contact.couple(nodes, run, couplings);
+    contact.pull_points(all, nodes, pulls);
+    std::vector<PointCoupling> couplings;
+    contact.couple(all, nodes, couplings);
     touched += couplings.empty() ? 0 : 1;
     Vector6d sum = Vector6d::Zero();
     for (const NodePull& pull : pulls) sum += pull.wrench;
@@ -61,12 +65,11 @@ TEST(ContactRod, ItsDerivativesAreThoseByDifferencesWhereItTouchesItself) {
       for (Eigen::Index c = 0; c < 6; ++c) {
         for (const bool by_pose : {true, false}) {
           const double pose = by_pose ? h : 0, twist = by_pose ? 0 : h;
-          contact.pull(moved(nodes, node, c, pose, twist), run, after);
-          contact.pull(moved(nodes, node, c, -pose, -twist), run, before);
+          contact.pull_points(all, moved(nodes, node, c, pose, twist), after);
+          contact.pull_points(all, moved(nodes, node, c, -pose, -twist), before);
           for (std::size_t at = 0; at < count; ++at) {
             Matrix6d slopes = Matrix6d::Zero();
-            if (at == node) slopes = by_pose ? pulls[at].by_pose : pulls[at].by_twist;
-            for (const NodeCoupling& each : couplings)
+            for (const PointCoupling& each : couplings)
               if (each.of == node && each.at == at) slopes += by_pose ? each.by_pose : each.by_twist;
             const Vector6d difference = (after[at].wrench - before[at].wrench) / (2 * h);
             EXPECT_LT((slopes.col(c) - difference).norm(), 1e-4 * (1 + difference.norm()))
@@ -84,9 +87,13 @@ struct TouchingRod {
   RodDynamics dynamics;
   RodContact contact;
 
-  TouchingRod(const Rod& given, const RodContactConfig& config, double spacing = 0.01)
-      : rod(given), dynamics(rod, {}, contact_places(rod, spacing)), contact(dynamics.chain(), config) {
+  TouchingRod(const Rod& given, RodContactConfig config, double spacing = 0.01)
+      : rod(given), dynamics(rod), contact(dynamics.chain(), touching_at(rod, config, spacing)) {
     dynamics.set_surroundings(&contact);
+  }
+  static RodContactConfig touching_at(const Rod& rod, RodContactConfig config, double spacing) {
+    config.places = contact_places(rod, spacing);
+    return config;
   }
   // So many steps of a motion that converge; look(state) after each.
   template <typename Look>
@@ -102,7 +109,9 @@ struct TouchingRod {
   void go(RodState& state, const TendonInput& tendons, const RodLoads& loads, double h, double until) {
     go(state, tendons, loads, h, until, [](const RodState&) {});
   }
-  std::vector<ContactForce> touching(const RodState& state) { return contact.find(dynamics.motions(state)); }
+  std::vector<ContactForce> touching(const RodState& state) {
+    return contact.find(dynamics.point_motions(state));
+  }
 };
 
 Eigen::Vector3d sum_of(const std::vector<ContactForce>& contacts) {
@@ -248,10 +257,11 @@ TEST(ContactRod, ARodThatCurlsUpDoesNotPassThroughItself) {
     for (int i = 1; i <= 24; ++i) moving.go(state, {.tensions = {0.5 * i}}, {}, 2e-3, 0.04 * i);
     moving.go(state, {.tensions = {12}}, {}, 2e-3, 1.2);
     // From the base to what is further than ten radii along it.
-    for (std::size_t k = 0; k < moving.dynamics.node_runs().size(); ++k) {
-      const double t = moving.dynamics.chain().elements()[0].grid().t[k];
-      const Eigen::Vector3d p = moving.dynamics.motions(state)[k].pose.position;
-      if (0.3 * t > 0.08) nearest[is_ghost ? 1 : 0] = std::min(nearest[is_ghost ? 1 : 0], p.norm());
+    const std::vector<NodeMotion> points = moving.dynamics.point_motions(state);
+    for (std::size_t k = 0; k < points.size(); ++k) {
+      const Eigen::Vector3d p = points[k].pose.position;
+      if (0.3 * moving.contact.points()[k].at > 0.08)
+        nearest[is_ghost ? 1 : 0] = std::min(nearest[is_ghost ? 1 : 0], p.norm());
     }
     if (!is_ghost)
       for (const ContactForce& contact : moving.touching(state)) {

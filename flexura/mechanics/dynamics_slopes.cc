@@ -12,7 +12,10 @@ void RodDynamics::Work::differentiate(const Eigen::VectorXd& q, const Eigen::Vec
                                       const RodLoads& loads, double by_q, double by_v,
                                       Eigen::MatrixXd& momentum, Eigen::MatrixXd& force) {
   using Number = Dual<Lanes>;
-  if (!differential_) differential_ = std::make_unique<RodMotion<Number>>(layout);
+  if (!differential_) {
+    differential_ = std::make_unique<RodMotion<Number>>(layout);
+    differential_->set_points(points.get());
+  }
   const Eigen::Index n = q.size();
   momentum.resize(n, n);
   force.resize(n, n);

@@ -195,6 +195,10 @@ bool RodMatrix::factor_part(Part& part, std::size_t modes, bool has_base) {
 
 bool RodMatrix::factor(const RodMotion<double>& motion, const Factors& factors, const double* tensions,
                        bool is_surrounded) {
+  ties_.clear();
+  pulled_.clear();
+  if (is_surrounded && !motion.chosen().empty()) find_point_columns(motion);
+  std::size_t points_left = pulled_.size();
   Block beyond{};
   for (std::size_t s = parts_.size(); s-- > 0;) {
     const RodLayout::Section& section = layout_.sections[s];
@@ -206,24 +210,20 @@ bool RodMatrix::factor(const RodMotion<double>& motion, const Factors& factors, 
     for (std::size_t k = section.intervals + 1; k-- > 0;) {
       const std::size_t node = section.first_node + k;
       Block H = block_of(layout_.bodies[node], motion.nodes()[node]);
-      if (is_surrounded && !motion.pulls()[node].is_idle) {
-        const NodePull& pull = motion.pulls()[node];
-        Matrix6d more;
-        if (pull.is_held)
-          more = -factors.stiffness * pull.stiffness - factors.damping * pull.damping;
-        else
-          more = factors.stiffness * pull.by_pose + factors.damping * pull.by_twist;
-        for (std::size_t r = 0; r < 6; ++r)
-          for (std::size_t c = 0; c < 6; ++c) {
-            const auto i = static_cast<Eigen::Index>(r), j = static_cast<Eigen::Index>(c);
-            H[6 * r + c] -= 0.5 * (more(i, j) + more(j, i));
-          }
-      }
+      if (is_surrounded && !motion.pulls()[node].is_idle) add_pull(H, motion.pulls()[node], factors);
       if (k == section.intervals)
         for (std::size_t i = 0; i < 36; ++i) H[i] += beyond[i];
       if (has_base)
         for (std::size_t i = 0; i < 36; ++i) all[i] += H[i];
       if (k > 0) add_product(part, part.columns.data() + k * 6 * part.stride, H, has_base);
+    }
+    for (; points_left > 0 && pulled_[points_left - 1].section == s; --points_left) {
+      const Pulled& point = pulled_[points_left - 1];
+      Block H{};
+      add_pull(H, motion.point_pulls()[point.chosen], factors);
+      if (has_base)
+        for (std::size_t i = 0; i < 36; ++i) all[i] += H[i];
+      add_product(part, point_columns_.data() + point.first, H, has_base);
     }
     if (factors.damping != 0 || factors.stiffness != 0) {
       const double *K = section.stiffness.data(), *D = section.damping.data();
@@ -246,10 +246,10 @@ bool RodMatrix::factor(const RodMotion<double>& motion, const Factors& factors, 
       }
     }
   }
-  return true;
+  return !is_surrounded || !motion.is_coupled() || factor_ties(motion, factors);
 }
 
-void RodMatrix::solve(double* x) const {
+void RodMatrix::solve_sections(double* x) const {
   std::array<double, 6> along{};
   for (std::size_t s = parts_.size(); s-- > 0;) {
     const RodLayout::Section& section = layout_.sections[s];
@@ -286,44 +286,6 @@ void RodMatrix::solve(double* x) const {
     for (std::size_t r = 0; r < 6 && s + 1 < parts_.size(); ++r)
       for (std::size_t j = 0; j < section.modes; ++j) along[r] += end[r * part.stride + j] * y[j];
   }
-}
-
-void RodMatrix::add_pull_change(const RodMotion<double>& motion, double stretch, const double* x,
-                                double* force) const {
-  // How far the rod's sections move each other; then what changes, from the tip on.
-  Vector6d moved = Vector6d::Zero(), beyond = Vector6d::Zero();
-  for (std::size_t s = 0; s + 1 < parts_.size(); ++s)
-    moved += node_twist(s, layout_.sections[s].intervals, x);
-  for (std::size_t s = parts_.size(); s-- > 0;) {
-    const RodLayout::Section& section = layout_.sections[s];
-    const std::size_t stride = parts_[s].stride;
-    const auto add = [&](std::size_t node, const Vector6d& wrench) {
-      const double* A = parts_[s].columns.data() + node * 6 * stride;
-      for (std::size_t r = 0; r < 6; ++r)
-        for (std::size_t j = 0; j < section.modes; ++j)
-          force[section.first_mode + j] += A[r * stride + j] * wrench[static_cast<Eigen::Index>(r)];
-    };
-    add(section.intervals, beyond);
-    for (std::size_t k = 0; k <= section.intervals; ++k) {
-      const NodePull& pull = motion.pulls()[section.first_node + k];
-      if (pull.is_idle) continue;
-      const Vector6d twist = moved + node_twist(s, k, x);
-      const Vector6d wrench = pull.by_twist * twist + stretch * (pull.by_pose * twist);
-      add(k, wrench);
-      beyond += wrench;
-    }
-    if (s > 0) moved -= node_twist(s - 1, layout_.sections[s - 1].intervals, x);
-  }
-}
-
-Vector6d RodMatrix::node_twist(std::size_t s, std::size_t node, const double* x) const {
-  const RodLayout::Section& section = layout_.sections[s];
-  const double* A = parts_[s].columns.data() + node * 6 * parts_[s].stride;
-  Vector6d twist = Vector6d::Zero();
-  for (std::size_t r = 0; r < 6; ++r)
-    for (std::size_t j = 0; j < section.modes; ++j)
-      twist[static_cast<Eigen::Index>(r)] += A[r * parts_[s].stride + j] * x[section.first_mode + j];
-  return twist;
 }
 
 Eigen::MatrixXd RodMatrix::node_columns(std::size_t node) const {

@@ -37,6 +37,7 @@ void RodDynamics::Work::differentiate(const Eigen::VectorXd& q, const Eigen::Vec
     };
     set(by_q, by_v);
     differential_->place(q_dual.data(), v_dual.data());
+    differential_->keep_surroundings(first > 0);
     differential_->pull(loads, pulls.data(), surroundings);
     differential_->balance(p_dual.data(), f_dual.data());
     set(0, 0);

@@ -129,8 +129,10 @@ Screw<S> RodMotion<S>::momentum_of(std::size_t node, const Screw<S>& twist) cons
 
 template <typename S>
 void RodMotion<S>::pull(const RodLoads& loads, const S* tensions, const RodSurroundings* surroundings) {
-  chosen_.clear();
-  is_coupled_ = false;
+  if (!keeps_surroundings_) {
+    chosen_.clear();
+    is_coupled_ = false;
+  }
   const Triple<double> gravity{loads.gravity.x(), loads.gravity.y(), loads.gravity.z()};
   const Triple<S> per_length = constant<S>(loads.per_length);
   const bool is_spread = !loads.per_length.isZero(0);

@@ -30,6 +30,8 @@ class RodMotion {
 
   /// Where the nodes are, and how fast.
   void place(const S* q, const S* v);
+  /// Whether pull() takes what surroundings did last: the same shape and rates, with other slopes.
+  void keep_surroundings(bool keeps) { keeps_surroundings_ = keeps; }
   /// What pulls at them, there. `tensions`: of all tendons, N.
   void pull(const RodLoads& loads, const S* tensions, const RodSurroundings* surroundings);
   /// The momenta and the forces, of all modes.
@@ -88,6 +90,7 @@ class RodMotion {
   [[nodiscard]] static Pull pull_of(const RodLayout::Passage& passage, const Screw<S>& strain);
   void add_tendons(const S* tensions);
   void add_surroundings(const RodSurroundings& surroundings);
+  void ask_surroundings(const RodSurroundings& surroundings);
   void bound_lengths();
   void place_points();
   void add_point_forces(S* force) const;
@@ -115,7 +118,7 @@ class RodMotion {
   std::vector<NodeMotion> motions_;
   std::vector<NodePull> pulls_;
   const RodPoints* points_ = nullptr;
-  bool is_coupled_ = false;
+  bool is_coupled_ = false, keeps_surroundings_ = false;
   const RodSurroundings* touching_ = nullptr;  // The last ones.
   std::vector<double> lengths_;                // Of the intervals, at most.
   std::vector<std::size_t> chosen_;            // Of the points; all below is of these.

@@ -161,38 +161,44 @@ void RodMotion<S>::place_points() {
 }
 
 template <typename S>
-void RodMotion<S>::add_surroundings(const RodSurroundings& surroundings) {
-  constexpr bool has_slopes = !std::is_same_v<S, double>;
+void RodMotion<S>::ask_surroundings(const RodSurroundings& surroundings) {
   for (std::size_t k = 0; k < layout_.nodes; ++k) set_motion(motions_[k], X_[k], V_[k]);
   surroundings.pull(motions_, layout_.run, pulls_);
+  touching_ = &surroundings;
+  couplings_.clear();
+  if (points_ == nullptr) return;
+  bound_lengths();
+  surroundings.choose(motions_, lengths_, chosen_);
+  if (chosen_.empty()) return;
+  place_points();
+  const std::span<NodePull> pulls(point_pulls_.data(), chosen_.size());
+  surroundings.pull_points(chosen_, point_motions(), pulls);
+  is_coupled_ = std::ranges::any_of(pulls, &NodePull::is_coupled);
+  if (!std::is_same_v<S, double> && is_coupled_) surroundings.couple(chosen_, point_motions(), couplings_);
+}
+
+template <typename S>
+void RodMotion<S>::add_surroundings(const RodSurroundings& surroundings) {
+  constexpr bool has_slopes = !std::is_same_v<S, double>;
+  if (!keeps_surroundings_)
+    ask_surroundings(surroundings);
+  else if (!chosen_.empty())
+    place_points();
   for (std::size_t k = 0; k < layout_.nodes; ++k) {
     const NodePull& pull = pulls_[k];
     if (pull.is_idle) continue;
     W_[k] += constant_wrench<S>(pull.wrench);
     if constexpr (has_slopes) W_[k] += wrench_change_of(pull.by_pose, pull.by_twist, X_[k], V_[k]);
   }
-  touching_ = &surroundings;
-  if (points_ == nullptr) return;
-  bound_lengths();
-  surroundings.choose(motions_, lengths_, chosen_);
-  if (chosen_.empty()) return;
-  place_points();
-  surroundings.pull_points(chosen_, point_motions(), {point_pulls_.data(), chosen_.size()});
   for (std::size_t i = 0; i < chosen_.size(); ++i) {
     const NodePull& pull = point_pulls_[i];
     if (pull.is_idle) continue;
     point_W_[i] = constant_wrench<S>(pull.wrench);
     if constexpr (has_slopes)
       point_W_[i] += wrench_change_of(pull.by_pose, pull.by_twist, point_X_[i], point_V_[i]);
-    is_coupled_ = is_coupled_ || pull.is_coupled;
   }
-  if (has_slopes && is_coupled_) {
-    couplings_.clear();
-    surroundings.couple(chosen_, point_motions(), couplings_);
-    for (const PointCoupling& each : couplings_)
-      point_W_[each.at] +=
-          wrench_change_of(each.by_pose, each.by_twist, point_X_[each.of], point_V_[each.of]);
-  }
+  for (const PointCoupling& each : couplings_)
+    point_W_[each.at] += wrench_change_of(each.by_pose, each.by_twist, point_X_[each.of], point_V_[each.of]);
   // The rod before the interval feels it as if it were at the interval's beginning.
   for (std::size_t i = 0; i < chosen_.size(); ++i)
     if (!point_pulls_[i].is_idle) W_[points_->points[chosen_[i]].node] += point_W_[i];

@@ -229,13 +229,13 @@ void fall_on_a_post(benchmark::State& state) {
 }
 BENCHMARK(fall_on_a_post)
     ->ArgNames({"post", "strains", "steps", "nodes", "modes", "mm"})
-    ->ArgsProduct({{0, 1, 2}, {0}, {50, 100, 200, 400}, {5}, {4}, {30}})
-    ->ArgsProduct({{0, 1, 2}, {0}, {200}, {7}, {6}, {30, 15, 5}})
-    ->ArgsProduct({{0, 1, 2}, {0}, {200}, {9}, {8}, {30, 15, 5}})
-    ->ArgsProduct({{0, 1, 2}, {0}, {800}, {9}, {8}, {5}})
+    ->ArgsProduct({{0, 2}, {0}, {100, 200, 10000}, {5}, {4}, {30}})
+    ->ArgsProduct({{0, 1, 2}, {0}, {50, 100, 200}, {7}, {6}, {15}})
+    ->ArgsProduct({{0, 2}, {1}, {50, 100, 200}, {7}, {6}, {15}})
     ->Unit(benchmark::kMicrosecond);
 
-// A tentacle that two tendons curl up until it lies on itself; none of it (0), and what that takes (1).
+// A tentacle that a tendon curls up until it lies on itself: what that takes (1), beside one that does not
+// feel itself (0).
 void curl_up(benchmark::State& state) {
   Rod rod = soft_arm_with_tendon(1e6);
   RodDynamics dynamics(rod);

@@ -23,7 +23,7 @@ void multiply(const std::array<double, 36>& H, const double* rows, double* sums,
 
 }  // namespace
 
-RodMatrix::RodMatrix(const RodLayout& layout) : layout_(layout), by_moments_(108 * layout.intervals) {
+RodMatrix::RodMatrix(const RodLayout& layout) : layout_(layout), by_moments_(54 * layout.intervals) {
   for (const RodLayout::Section& section : layout.sections) {
     Part& part = parts_.emplace_back();
     part.stride = (section.modes + step_of_rows - 1) / step_of_rows * step_of_rows;
@@ -58,22 +58,21 @@ void RodMatrix::find_columns(const RodMotion<double>& motion) {
           set(X.position, at[lane]->position);
     }
     const RodInterval<Number> interval = still(motion.intervals()[first / width]);
-    for (std::size_t r = 0; r < 6; ++r) {
-      // Unit wrenches, in the interval's frame.
+    // Unit forces, in the interval's frame. What a unit moment does along the angular strains is what the
+    // unit force does along the linear ones, and along these it does nothing: brackets are those of dual
+    // numbers.
+    for (std::size_t r = 0; r < 3; ++r) {
       Screw<Number> unit{};
       if (r == 0) unit.linear.x += 1.0;
       if (r == 1) unit.linear.y += 1.0;
       if (r == 2) unit.linear.z += 1.0;
-      if (r == 3) unit.angular.x += 1.0;
-      if (r == 4) unit.angular.y += 1.0;
-      if (r == 5) unit.angular.z += 1.0;
       const auto along = interval.along_moments(X.fetch(unit));
       for (std::size_t lane = 0; lane < width && first + lane < layout_.intervals; ++lane) {
-        double* to = by_moments_.data() + 108 * (first + lane) + r;
-        for (std::size_t m = 0; m < 3; ++m, to += 36) {
-          to[0] = along[m].linear.x[lane], to[6] = along[m].linear.y[lane], to[12] = along[m].linear.z[lane];
-          to[18] = along[m].angular.x[lane], to[24] = along[m].angular.y[lane],
-          to[30] = along[m].angular.z[lane];
+        double* to = by_moments_.data() + 54 * (first + lane) + r;
+        for (std::size_t m = 0; m < 3; ++m, to += 18) {
+          to[0] = along[m].linear.x[lane], to[3] = along[m].linear.y[lane], to[6] = along[m].linear.z[lane];
+          to[9] = along[m].angular.x[lane], to[12] = along[m].angular.y[lane],
+          to[15] = along[m].angular.z[lane];
         }
       }
     }
@@ -84,7 +83,7 @@ void RodMatrix::find_columns(const RodMotion<double>& motion) {
     for (std::size_t i = 0; i < section.intervals; ++i) {
       const double* before = part.columns.data() + i * 6 * part.stride;
       double* after = part.columns.data() + (i + 1) * 6 * part.stride;
-      const double* by = by_moments_.data() + 108 * (section.first_interval + i);
+      const double* by = by_moments_.data() + 54 * (section.first_interval + i);
       const auto column = static_cast<Eigen::Index>(i);
       const double *m1 = section.grid.moments[0].col(column).data(),
                    *m2 = section.grid.moments[1].col(column).data(),
@@ -93,12 +92,16 @@ void RodMatrix::find_columns(const RodMotion<double>& motion) {
         const auto first = static_cast<std::size_t>(section.grid.first[c]),
                    last = first + static_cast<std::size_t>(section.grid.count[c]);
         if (first == last) continue;
-        for (std::size_t r = 0; r < 6; ++r) {
-          const double y1 = by[6 * c + r], y2 = by[36 + 6 * c + r], y3 = by[72 + 6 * c + r];
-          const std::size_t row = r * part.stride;
-          for (std::size_t j = first; j < last; ++j)
-            after[row + j] = before[row + j] + (m1[j] * y1 + m2[j] * y2 + m3[j] * y3);
-        }
+        const auto add = [&](std::size_t row, std::size_t number) {
+          const double y1 = by[number], y2 = by[18 + number], y3 = by[36 + number];
+          const double* from = before + row * part.stride;
+          double* to = after + row * part.stride;
+          for (std::size_t j = first; j < last; ++j) to[j] = from[j] + (m1[j] * y1 + m2[j] * y2 + m3[j] * y3);
+        };
+        for (std::size_t r = 0; r < 3; ++r) add(r, 3 * c + r);
+        // Linear strains do not turn what is beyond; the columns' rows stay 0 there.
+        if (c < 3) continue;
+        for (std::size_t r = 0; r < 3; ++r) add(r + 3, 3 * (c - 3) + r);
       }
     }
   }

@@ -72,7 +72,7 @@ class RodMatrix {
 
   const RodLayout& layout_;
   std::vector<Part> parts_;
-  std::vector<double> by_moments_;  // 18 rows of 6 numbers of each interval.
+  std::vector<double> by_moments_;  // 18 rows of 3 numbers of each interval.
   // Of points that are pulled at: which of the chosen, which of all, and how its section's modes move it, 6
   // rows of the section's stride.
   struct Pulled {

@@ -46,7 +46,7 @@ void RodMatrix::find_point_columns(const RodMotion<double>& motion) {
   if (point_columns_.size() < size) point_columns_.resize(size);
   // So many points side by side as they were placed.
   std::size_t done = lanes, next = 0;
-  std::array<std::array<std::array<Screw<double>, 3>, 6>, lanes> along{};
+  std::array<std::array<std::array<std::array<double, 6>, 3>, 3>, lanes> along{};
   for (const Pulled& pulled : pulled_) {
     const RodPoints::Point& point = points.points[pulled.point];
     const RodLayout::Section& section = layout_.sections[point.section];
@@ -66,31 +66,32 @@ void RodMatrix::find_point_columns(const RodMotion<double>& motion) {
             set_lane_of(X.position, at.position, lane);
       }
       const RodInterval<Number> interval = still(motion.parts()[next]);
-      for (std::size_t r = 0; r < 6; ++r) {
+      // As of whole intervals: a unit moment does what the unit force does, one half of the strains further.
+      for (std::size_t r = 0; r < 3; ++r) {
         Screw<Number> unit{};
-        Triple<Number>& half = r < 3 ? unit.linear : unit.angular;
-        if (r % 3 == 0) half.x += 1.0;
-        if (r % 3 == 1) half.y += 1.0;
-        if (r % 3 == 2) half.z += 1.0;
+        if (r == 0) unit.linear.x += 1.0;
+        if (r == 1) unit.linear.y += 1.0;
+        if (r == 2) unit.linear.z += 1.0;
         const auto wide = interval.along_moments(X.fetch(unit));
-        for (std::size_t lane = 0; lane < lanes; ++lane)
-          for (std::size_t m = 0; m < 3; ++m)
-            along[lane][r][m] = {{wide[m].linear.x[lane], wide[m].linear.y[lane], wide[m].linear.z[lane]},
-                                 {wide[m].angular.x[lane], wide[m].angular.y[lane], wide[m].angular.z[lane]}};
+        for (std::size_t lane = 0; lane < lanes; ++lane) {
+          for (std::size_t m = 0; m < 3; ++m) {
+            const auto [linear, angular] = wide[m];
+            along[lane][r][m] = {linear.x[lane],  linear.y[lane],  linear.z[lane],
+                                 angular.x[lane], angular.y[lane], angular.z[lane]};
+          }
+        }
       }
     }
     const double* of_mode = motion.points()->moments.data() + point.first_moment;
-    for (std::size_t r = 0; r < 6; ++r) {
+    for (std::size_t r = 0; r < 3; ++r) {
       const auto& row = along[pulled.chosen % lanes][r];
       for (std::size_t j = 0; j < section.modes; ++j) {
         const std::size_t c = section.strain[j];
-        double sum = 0;
         for (std::size_t m = 0; m < 3; ++m) {
-          const Triple<double>& half = c < 3 ? row[m].linear : row[m].angular;
-          const std::array<double, 3> of = {half.x, half.y, half.z};
-          sum += of_mode[m * section.modes + j] * of[c % 3];
+          const double amount = of_mode[m * section.modes + j];
+          to[r * part.stride + j] += amount * row[m][c];
+          if (c >= 3) to[(r + 3) * part.stride + j] += amount * row[m][c - 3];
         }
-        to[r * part.stride + j] += sum;
       }
     }
   }

@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <map>
 #include <numbers>
+#include <optional>
 #include <vector>
 
 #include "bench/mujoco_rod.h"
@@ -14,6 +15,10 @@
 #include "flexura/mechanics/rod.h"
 #include "flexura/mechanics/rod_contact.h"
 #include "tests/support/known_rods.h"
+
+#ifdef FLEXURA_HAS_DART
+#include "bench/dart_rod.h"
+#endif
 
 // How fast a rod moves: half a second of a soft tentacle that falls from where it is straight and level.
 // `error_mm` is how far the tip is off after 0.25 and 0.5 s, the greater of the two; `times_real` by how much
@@ -39,6 +44,7 @@ struct Fall {
   RodDynamicsConfig config;
   TendonInput tendons;
   double step = 0.01;
+  std::optional<RodContactConfig> contact = {};
 
   void run(RodDynamics& dynamics, Tips& tips) const {
     const RodLoads weight = soft_tentacle_weight();
@@ -51,18 +57,29 @@ struct Fall {
     }
     tips[1] = dynamics.tip(state).position;
   }
+  // With what it touches, if it does.
+  struct Moving {
+    RodDynamics dynamics;
+    std::optional<RodContact> contact;
+
+    explicit Moving(const Fall& fall) : dynamics(fall.rod, fall.config) {
+      if (!fall.contact) return;
+      contact.emplace(dynamics.chain(), *fall.contact);
+      dynamics.set_surroundings(&*contact);
+    }
+  };
   [[nodiscard]] Tips tips() const {
-    RodDynamics dynamics(rod, config);
+    Moving moving(*this);
     Tips result;
-    run(dynamics, result);
+    run(moving.dynamics, result);
     return result;
   }
 };
 
 void bench_fall(benchmark::State& state, const Fall& fall, const Tips& known) {
-  RodDynamics dynamics(fall.rod, fall.config);
+  Fall::Moving moving(fall);
   Tips tips;
-  for (auto _ : state) fall.run(dynamics, tips);
+  for (auto _ : state) fall.run(moving.dynamics, tips);
   count(state, until, tips, known);
 }
 
@@ -113,6 +130,27 @@ BENCHMARK(fall_mujoco)
     ->Args({1, 300})
     ->Args({1, 1000})
     ->Unit(benchmark::kMicrosecond);
+
+#ifdef FLEXURA_HAS_DART
+// And by 24 of DART's.
+void fall_dart(benchmark::State& state) {
+  const Rod rod = soft_tentacle();
+  const double step = until / static_cast<double>(state.range(0));
+  DartRod peer(rod.sections[0], soft_tentacle_weight().gravity, 24, step);
+  const long steps = std::lround(until / step);
+  Tips tips;
+  for (auto _ : state) {
+    peer.reset();
+    for (long i = 0; i < steps; ++i) {
+      if (i == steps / 2) tips[0] = peer.tip();
+      peer.step();
+    }
+    tips[1] = peer.tip();
+  }
+  count(state, until, tips, falling_tips);
+}
+BENCHMARK(fall_dart)->ArgName("steps")->Arg(100)->Arg(300)->Arg(1000)->Unit(benchmark::kMicrosecond);
+#endif
 
 const Tips& converged(const Fall& fall, int extra) {
   static std::map<int, Tips> known;
@@ -168,32 +206,58 @@ BENCHMARK(fall_tendons)
     ->ArgsProduct({{0, 1}, {0, 1}, {50, 200}})
     ->Unit(benchmark::kMicrosecond);
 
-// The soft tentacle falls on a post, with three tendons (2); what that takes without either: with as many
-// nodes (1), and with as few as that needs (0). `contacts`: at the end.
+// The soft tentacle falls on a post, alone (1) and with three tendons (2), beside the same rod free (0);
+// bends alone (0) or all strains (1), each bend with so many modes. It touches at places so many mm apart,
+// which need not be nodes.
 void fall_on_a_post(benchmark::State& state) {
-  Fall fall = falling_tentacle(10000, 5);
-  const bool touches = state.range(0) == 2;
-  if (touches) fall = with_tendons(fall, false);
-  std::vector<RodPlace> places;
-  if (state.range(0) > 0) places = contact_places(fall.rod, 0.06);
-  RodDynamics dynamics(fall.rod, fall.config, places);
-  const RodContact contact(
-      dynamics.chain(),
-      {.law = {.stiffness = 1e5, .slip_speed = 0.01},
-       .obstacles = {CapsuleConfig{.from = {-0.25, -0.2, 0.35}, .to = {-0.25, 0.2, 0.35}, .radius = 0.03}}});
-  if (touches) dynamics.set_surroundings(&contact);
-  const RodLoads weight = soft_tentacle_weight();
-  RodState moving;
-  for (auto _ : state) {
-    moving = dynamics.rest();
-    for (long i = 0; i < std::lround(until / fall.step); ++i)
-      benchmark::DoNotOptimize(dynamics.step(moving, fall.tendons, weight, fall.step));
-  }
-  state.counters["contacts"] =
-      touches ? static_cast<double>(contact.find(dynamics.motions(moving)).size()) : 0;
-  state.counters["times_real"] = benchmark::Counter(until, benchmark::Counter::kIsIterationInvariantRate);
+  Fall fall = falling_tentacle(state.range(2), state.range(3));
+  const int post = static_cast<int>(state.range(0)), strains = static_cast<int>(state.range(1));
+  if (strains != 0) fall = with_all_strains(fall);
+  if (post == 2) fall = with_tendons(fall, false);
+  const auto touch = [post](Fall& touching, double spacing) {
+    if (post == 0) return;
+    touching.contact = {
+        .law = {.stiffness = 1e5, .slip_speed = 0.01},
+        .obstacles = {CapsuleConfig{.from = {-0.25, -0.2, 0.35}, .to = {-0.25, 0.2, 0.35}, .radius = 0.03}},
+        .places = contact_places(touching.rod, spacing)};
+  };
+  touch(fall, 3e-3);
+  const Tips& known = converged(fall, 10 + 2 * post + strains);
+  fall.rod.sections[0].modes.bend = static_cast<int>(state.range(4));
+  touch(fall, 1e-3 * static_cast<double>(state.range(5)));
+  bench_fall(state, fall, known);
 }
-BENCHMARK(fall_on_a_post)->ArgName("case")->DenseRange(0, 2)->Unit(benchmark::kMicrosecond);
+BENCHMARK(fall_on_a_post)
+    ->ArgNames({"post", "strains", "steps", "nodes", "modes", "mm"})
+    ->ArgsProduct({{0, 2}, {0}, {100, 200, 10000}, {5}, {4}, {30}})
+    ->ArgsProduct({{0, 1, 2}, {0}, {50, 100, 200}, {7}, {6}, {15}})
+    ->ArgsProduct({{0, 2}, {1}, {50, 100, 200}, {7}, {6}, {15}})
+    ->Unit(benchmark::kMicrosecond);
+
+// A tentacle that a tendon curls up until it lies on itself: what that takes (1), beside one that does not
+// feel itself (0).
+void curl_up(benchmark::State& state) {
+  Rod rod = soft_arm_with_tendon(1e6);
+  RodDynamics dynamics(rod);
+  const RodContact contact(dynamics.chain(),
+                           {.law = {.stiffness = 1e5}, .places = contact_places(rod, 0.01)});
+  if (state.range(0) != 0) dynamics.set_surroundings(&contact);
+  double iterations = 0;
+  std::size_t contacts = 0;
+  for (auto _ : state) {
+    RodState moving = dynamics.rest();
+    for (int i = 1; i <= 300; ++i) {
+      const RodStep step = dynamics.step(moving, {.tensions = {std::min(12.0, 0.05 * i)}}, {}, 2e-3);
+      iterations += step.iterations;
+      benchmark::DoNotOptimize(step);
+    }
+    if (state.range(0) != 0) contacts = contact.find(dynamics.point_motions(moving)).size();
+  }
+  state.counters["contacts"] = static_cast<double>(contacts);
+  state.counters["iterations"] = benchmark::Counter(iterations / 300, benchmark::Counter::kAvgIterations);
+  state.counters["times_real"] = benchmark::Counter(0.6, benchmark::Counter::kIsIterationInvariantRate);
+}
+BENCHMARK(curl_up)->ArgName("itself")->Arg(0)->Arg(1)->Unit(benchmark::kMicrosecond);
 
 // The heavy steel rod with all strains, no damping, whose tendon lets go of 5 of its 15 N.
 void heavy_rod_released(benchmark::State& state) {

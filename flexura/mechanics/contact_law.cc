@@ -86,11 +86,9 @@ ContactPress press(const ContactLaw& law, double depth, double rate) {
   return {.force = spring * share, .by_depth = slope * share, .by_rate = spring * share_slope * law.damping};
 }
 
-// The wrench is [f; c x f]. Its force is normal_force along, with along = n - friction slip / speed.
-Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::ColMajor, 6, 18> wrench_change(const ContactLaw& law,
-                                                                               const Touch& touch,
-                                                                               const TouchForce& at,
-                                                                               const TouchChange& change) {
+// It is normal_force along, with along = n - friction slip / speed.
+TouchChange::Rows force_change(const ContactLaw& law, const Touch& touch, const TouchForce& at,
+                               const TouchChange& change) {
   const Sliding sliding = sliding_of(law, touch, at);
   const Eigen::Vector3d& n = touch.nearest.normal;
   const Eigen::Vector3d along = n - law.friction / sliding.speed * at.slip;
@@ -99,12 +97,16 @@ Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::ColMajor, 6, 18> wrench_change(c
   const TouchChange::Row press =
       touch.run * (sliding.press.by_depth * change.depth - sliding.press.by_rate * speed);
   const TouchChange::Rows slip = change.velocity - sliding.normal_speed * change.normal - n * speed;
-  const TouchChange::Rows force =
-      along * press + at.normal_force * (change.normal - rub_by_slip(law, sliding, at.slip) * slip);
-  Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::ColMajor, 6, 18> result(6, force.cols());
-  result.topRows<3>() = force;
-  result.bottomRows<3>() = skew(at.point) * force - skew(at.force) * change.point;
-  return result;
+  return along * press + at.normal_force * (change.normal - rub_by_slip(law, sliding, at.slip) * slip);
+}
+
+TouchHold hold_of(const ContactLaw& law, const Touch& touch, const TouchForce& at) {
+  const Sliding sliding = sliding_of(law, touch, at);
+  const Eigen::Vector3d& n = touch.nearest.normal;
+  const Eigen::Matrix3d along = n * n.transpose(), across = Eigen::Matrix3d::Identity() - along;
+  return {.stiffness = touch.run * sliding.press.by_depth * along,
+          .damping = touch.run * sliding.press.by_rate * along +
+                     at.normal_force * across * rub_by_slip(law, sliding, at.slip) * across};
 }
 
 // A small twist moves the centre p by Jp, and the normal n(p) by H Jp, where H is its derivative; the
@@ -114,7 +116,6 @@ TouchForce touch_force(const ContactLaw& law, const Touch& touch, NodePull& pull
   const TouchForce result = touch_force(law, touch);
   pull = NodePull{};
   if (!(result.depth > 0)) return result;
-  const Sliding sliding = sliding_of(law, touch, result);
   const Eigen::Vector3d& n = touch.nearest.normal;
   Rows at_center, at_point;
   at_center << Eigen::Matrix3d::Identity(), -skew(touch.center);
@@ -123,22 +124,21 @@ TouchForce touch_force(const ContactLaw& law, const Touch& touch, NodePull& pull
   TouchChange change;
   change.depth.setZero(6);
   change.normal.setZero(3, 6);
-  change.point.setZero(3, 6);
   change.velocity = at_point;
-  pull.by_twist = wrench_change(law, touch, result, change);
+  // The wrench is [f; c x f].
+  Rows force = force_change(law, touch, result, change);
+  pull.by_twist << force, skew(result.point) * force;
   change.depth = -n.transpose() * at_center;
   change.normal = touch.nearest.curvature * at_center;
-  change.point = at_center - touch.radius * change.normal;
-  change.velocity = skew(touch.twist.tail<3>()) * change.point;
-  pull.by_pose = wrench_change(law, touch, result, change);
+  const Rows point = at_center - touch.radius * change.normal;
+  change.velocity = skew(touch.twist.tail<3>()) * point;
+  force = force_change(law, touch, result, change);
+  pull.by_pose << force, skew(result.point) * force - skew(result.force) * point;
 
-  // What holds: the spring and the damper along the normal, friction across.
-  const Eigen::Matrix<double, 1, 6> row = n.transpose() * at_point;
-  const Rows slide = at_point - n * row;
+  const TouchHold hold = hold_of(law, touch, result);
   pull.is_held = true;
-  pull.stiffness = touch.run * sliding.press.by_depth * row.transpose() * row;
-  pull.damping = touch.run * sliding.press.by_rate * row.transpose() * row +
-                 result.normal_force * slide.transpose() * rub_by_slip(law, sliding, result.slip) * slide;
+  pull.stiffness = at_point.transpose() * hold.stiffness * at_point;
+  pull.damping = at_point.transpose() * hold.damping * at_point;
   pull.wrench = result.wrench();
   return result;
 }

@@ -52,16 +52,23 @@ struct TouchForce {
 [[nodiscard]] TouchForce touch_force(const ContactLaw& law, const Touch& touch);
 /// How a touch changes, by so many numbers as there are columns.
 struct TouchChange {
-  using Row = Eigen::Matrix<double, 1, Eigen::Dynamic, Eigen::RowMajor, 1, 18>;
-  using Rows = Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::ColMajor, 3, 18>;
+  static constexpr int most = 30;
+  using Row = Eigen::Matrix<double, 1, Eigen::Dynamic, Eigen::RowMajor, 1, most>;
+  using Rows = Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::ColMajor, 3, most>;
 
-  Row depth;           ///< Of the depth.
-  Rows normal, point;  ///< Of the normal and the touching point.
-  Rows velocity;       ///< Of the velocity there of the ball against the body.
+  Row depth;      ///< Of the depth.
+  Rows normal;    ///< Of the normal.
+  Rows velocity;  ///< Of the velocity of the ball against the body at the touching point.
 };
-/// How the wrench changes then.
-[[nodiscard]] Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::ColMajor, 6, 18> wrench_change(
-    const ContactLaw& law, const Touch& touch, const TouchForce& at, const TouchChange& change);
+/// How the force changes then.
+[[nodiscard]] TouchChange::Rows force_change(const ContactLaw& law, const Touch& touch, const TouchForce& at,
+                                             const TouchChange& change);
+/// What holds: against the velocity of the touching point, the spring and the damper along the normal, and
+/// friction across; symmetric and positive semidefinite.
+struct TouchHold {
+  Eigen::Matrix3d stiffness = Eigen::Matrix3d::Zero(), damping = Eigen::Matrix3d::Zero();
+};
+[[nodiscard]] TouchHold hold_of(const ContactLaw& law, const Touch& touch, const TouchForce& at);
 
 /// The same, with its derivatives by the node's motion, where the body lies still.
 TouchForce touch_force(const ContactLaw& law, const Touch& touch, NodePull& pull);

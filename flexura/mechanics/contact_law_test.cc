@@ -290,19 +290,19 @@ TEST(RodDrag, IsTheFormulaOfACylinderAcrossAndAlongAFlow) {
 TEST(Surroundings, AddUp) {
   const RodChain chain(plain_rod());
   const std::size_t count = chain.elements()[0].grid().t.size();
-  const RodDrag drag(chain, {});
+  const RodDrag drag(chain, {}), water(chain, {.density = 1000});
   const RodContact contact(chain, {.obstacles = {PlaneConfig{.point = {0, 0.002, 0}}}});
-  const Surroundings both({&drag, &contact}), none({});
+  const Surroundings both({&drag, &water, &contact}), none({});
   std::vector<NodeMotion> nodes(count);
   for (std::size_t k = 0; k < count; ++k) {
     nodes[k].pose.position.z() = 0.2 * chain.elements()[0].grid().t[k];
     nodes[k].twist << 0.1, 0.02, 0.3, 1, 2, 3;
   }
-  const std::vector<double> run(count, 0.04);
+  const std::vector<double> run(count, 0.04), lengths(count - 1, 0.1);
   std::vector<NodePull> all(count), one(count), other(count);
   both.pull(nodes, run, all);
   drag.pull(nodes, run, one);
-  contact.pull(nodes, run, other);
+  water.pull(nodes, run, other);
   for (std::size_t k = 0; k < count; ++k) {
     EXPECT_GT(other[k].wrench.norm(), 0);
     EXPECT_EQ(all[k].wrench, one[k].wrench + other[k].wrench);
@@ -310,9 +310,22 @@ TEST(Surroundings, AddUp) {
     EXPECT_EQ(all[k].by_twist, one[k].by_twist + other[k].by_twist);
     EXPECT_EQ(all[k].stiffness, one[k].stiffness + other[k].stiffness);
   }
+  // At points, that of the one part which has some.
+  ASSERT_EQ(both.points().size(), count);
+  std::vector<std::size_t> chosen;
+  both.choose(nodes, lengths, chosen);
+  ASSERT_EQ(chosen.size(), count);
+  both.pull_points(chosen, nodes, all);
+  contact.pull_points(chosen, nodes, one);
+  for (std::size_t k = 0; k < count; ++k) {
+    EXPECT_GT(one[k].wrench.norm(), 0);
+    EXPECT_EQ(all[k].wrench, one[k].wrench);
+  }
   none.pull(nodes, run, all);
   for (const NodePull& pull : all) EXPECT_EQ(pull.wrench.norm() + pull.by_pose.norm(), 0);
+  EXPECT_TRUE(none.points().empty());
   EXPECT_THROW(Surroundings({nullptr}), std::invalid_argument);
+  EXPECT_THROW(Surroundings({&contact, &contact}), std::invalid_argument);
 }
 
 }  // namespace

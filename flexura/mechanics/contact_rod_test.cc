@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <stdexcept>
 #include <vector>
 
@@ -13,97 +14,13 @@
 #include "flexura/mechanics/rod_contact.h"
 #include "tests/support/known_rods.h"
 #include "tests/support/random_cases.h"
+#include "tests/support/touching_rod.h"
 
 namespace flexura {
 namespace {
 
 PlaneConfig floor_at(double x) { return {.point = {x, 0, 0}, .normal = {1, 0, 0}}; }
 const RodLoads weight{.gravity = {-9.81, 0, 0}};
-
-std::vector<NodeMotion> moved(std::vector<NodeMotion> nodes, std::size_t node, Eigen::Index c, double by_pose,
-                              double by_twist) {
-  nodes[node].pose = se3_exp(by_pose * Vector6d::Unit(c)) * nodes[node].pose;
-  nodes[node].twist[c] += by_twist;
-  return nodes;
-}
-
-// Of all wrenches by the motion of all nodes.
-TEST(ContactRod, ItsDerivativesAreThoseByDifferencesWhereItTouchesItself) {
-  const Rod rod = soft_arm();
-  const RodChain chain(rod, contact_places(rod, 0.05));
-  const std::size_t count = chain.elements()[0].grid().t.size();
-  int touched = 0;
-  for_random_cases(60, [&](TestRandom& random) {
-    const RodContact contact(chain, {.law = {.stiffness = 1e4, .damping = 0.5, .slip_speed = 0.1},
-                                     .radii = {{0.03, 0.02}},
-                                     .itself_apart = 3});
-    // Curled up.
-    std::vector<NodeMotion> nodes(count);
-    const double radius = random.uniform(0.03, 0.04), rise = random.uniform(0, 0.02);
-    for (std::size_t k = 0; k < count; ++k) {
-      const double s = 0.3 * chain.elements()[0].grid().t[k], angle = s / radius;
-      nodes[k].pose.position =
-          Eigen::Vector3d(radius * (1 - std::cos(angle)), rise * angle, radius * std::sin(angle)) +
-          random.vector<3>(-0.003, 0.003);
-      nodes[k].twist << random.vector<3>(-0.3, 0.3), random.vector<3>(-2.0, 2.0);
-    }
-    const std::vector<double> run(count, 0.0);
-    std::vector<NodePull> pulls(count), after(count), before(count);
-    contact.pull(nodes, run, pulls);
-    std::vector<NodeCoupling> couplings;
-    contact.couple(nodes, run, couplings);
-    touched += couplings.empty() ? 0 : 1;
-    Vector6d sum = Vector6d::Zero();
-    for (const NodePull& pull : pulls) sum += pull.wrench;
-    EXPECT_LT(sum.norm(), 1e-12);  // To each its opposite.
-    constexpr double h = 1e-7;
-    for (std::size_t node = 0; node < count; ++node) {
-      for (Eigen::Index c = 0; c < 6; ++c) {
-        for (const bool by_pose : {true, false}) {
-          const double pose = by_pose ? h : 0, twist = by_pose ? 0 : h;
-          contact.pull(moved(nodes, node, c, pose, twist), run, after);
-          contact.pull(moved(nodes, node, c, -pose, -twist), run, before);
-          for (std::size_t at = 0; at < count; ++at) {
-            Matrix6d slopes = Matrix6d::Zero();
-            if (at == node) slopes = by_pose ? pulls[at].by_pose : pulls[at].by_twist;
-            for (const NodeCoupling& each : couplings)
-              if (each.of == node && each.at == at) slopes += by_pose ? each.by_pose : each.by_twist;
-            const Vector6d difference = (after[at].wrench - before[at].wrench) / (2 * h);
-            EXPECT_LT((slopes.col(c) - difference).norm(), 1e-4 * (1 + difference.norm()))
-                << node << " " << at << " " << c << " " << by_pose;
-          }
-        }
-      }
-    }
-  });
-  EXPECT_GT(touched, 15 / one_case_of);
-}
-
-struct TouchingRod {
-  Rod rod;
-  RodDynamics dynamics;
-  RodContact contact;
-
-  TouchingRod(const Rod& given, const RodContactConfig& config, double spacing = 0.01)
-      : rod(given), dynamics(rod, {}, contact_places(rod, spacing)), contact(dynamics.chain(), config) {
-    dynamics.set_surroundings(&contact);
-  }
-  // So many steps of a motion that converge; look(state) after each.
-  template <typename Look>
-  void go(RodState& state, const TendonInput& tendons, const RodLoads& loads, double h, double until,
-          Look&& look) {
-    const long steps = std::lround((until - state.time) / h);
-    for (long i = 0; i < steps; ++i) {
-      const RodStep step = dynamics.step(state, tendons, loads, h);
-      ASSERT_TRUE(step.converged()) << words(step.end) << " at " << state.time;
-      look(state);
-    }
-  }
-  void go(RodState& state, const TendonInput& tendons, const RodLoads& loads, double h, double until) {
-    go(state, tendons, loads, h, until, [](const RodState&) {});
-  }
-  std::vector<ContactForce> touching(const RodState& state) { return contact.find(dynamics.motions(state)); }
-};
 
 Eigen::Vector3d sum_of(const std::vector<ContactForce>& contacts) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
@@ -237,30 +154,75 @@ TEST(ContactRod, ATentacleGraspsAPost) {
   EXPECT_LT(least, 0);
 }
 
-// Curled up by a tendon it meets itself, and stays outside.
-TEST(ContactRod, ARodThatCurlsUpDoesNotPassThroughItself) {
-  RodContactConfig touches{.law = {.stiffness = 1e5}}, ghost = touches;
-  ghost.itself = false;
-  double nearest[2] = {1, 1};
-  for (const bool is_ghost : {false, true}) {
-    TouchingRod moving(soft_arm_with_tendon(1e6), is_ghost ? ghost : touches);
-    RodState state = moving.dynamics.rest();
-    for (int i = 1; i <= 24; ++i) moving.go(state, {.tensions = {0.5 * i}}, {}, 2e-3, 0.04 * i);
-    moving.go(state, {.tensions = {12}}, {}, 2e-3, 1.2);
-    // From the base to what is further than ten radii along it.
-    for (std::size_t k = 0; k < moving.dynamics.node_runs().size(); ++k) {
-      const double t = moving.dynamics.chain().elements()[0].grid().t[k];
-      const Eigen::Vector3d p = moving.dynamics.motions(state)[k].pose.position;
-      if (0.3 * t > 0.08) nearest[is_ghost ? 1 : 0] = std::min(nearest[is_ghost ? 1 : 0], p.norm());
+// What is between the nodes moves as the rod does: a point is where it is as a node.
+TEST(ContactRod, PointsMoveAsTheRodDoes) {
+  Rod rod = soft_arm(1e6, 4);
+  rod.sections[0].rest_curvature = {{3, -2, 1}, {5, 1, 0}};
+  rod.sections.push_back(rod.sections[0]);
+  const std::vector<RodPlace> places = contact_places(rod, 0.05);
+  RodDynamics between(rod), nodes(rod, {}, places);
+  const RodContact contact(between.chain(), {.places = places});
+  between.set_surroundings(&contact);
+  for_random_cases(10, [&](TestRandom& random) {
+    Eigen::VectorXd q(between.chain().size()), v = q;
+    for (Eigen::Index j = 0; j < q.size(); ++j) {
+      q[j] = random.uniform(-1, 1) / between.chain().scales()[j] * 0.2;
+      v[j] = random.uniform(-1, 1) / between.chain().scales()[j];
     }
-    if (!is_ghost)
-      for (const ContactForce& contact : moving.touching(state)) {
-        EXPECT_FALSE(contact.obstacle.has_value());
-        EXPECT_FALSE(contact.is_deep);
-      }
-  }
-  EXPECT_GT(nearest[0], 0.014);
-  EXPECT_LT(nearest[1], 0.012);
+    const RodState state = between.start(q, v, {}, {}), same = nodes.start(q, v, {}, {});
+    const std::vector<NodeMotion> points = between.point_motions(state);
+    ASSERT_EQ(points.size(), places.size());
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      const NodeMotion node = nodes.motion(same, places[i]);
+      EXPECT_LT((points[i].pose.position - node.pose.position).norm(), 2e-7);
+      EXPECT_LT((points[i].pose.rotation - node.pose.rotation).norm(), 2e-6);
+      EXPECT_LT((points[i].twist - node.twist).norm(), 1e-5 * (1 + node.twist.norm()));
+    }
+  });
+}
+
+// Of forces at points, in both sections, by the modes and their rates.
+TEST(ContactRod, ForcesOfTheModesHaveTheDerivativesByDifferences) {
+  Rod rod = soft_arm(1e6, 3);
+  rod.sections.push_back(rod.sections[0]);
+  for (RodSection& section : rod.sections) section.length = 0.15;
+  int touched = 0;
+  for_random_cases(6, [&](TestRandom& random) {
+    TouchingRod moving(rod,
+                       {.law = {.stiffness = 1e4, .damping = 0.5, .slip_speed = 0.1, .transition = 1e-3},
+                        .obstacles = {floor_at(-0.02)},
+                        .radii = {{0.02, 0.02}, {0.02, 0.015}},
+                        .itself_apart = 3},
+                       0.02);
+    Eigen::VectorXd q(moving.dynamics.chain().size()), v = q;
+    for (Eigen::Index j = 0; j < q.size(); ++j) {
+      q[j] = random.uniform(-0.1, 0.1) / moving.dynamics.chain().scales()[j];
+      v[j] = random.uniform(-0.5, 0.5) / moving.dynamics.chain().scales()[j];
+    }
+    // Rolled up.
+    for (const RodElement& element : moving.dynamics.chain().elements())
+      q[moving.dynamics.chain().first(
+            static_cast<std::size_t>(&element - moving.dynamics.chain().elements().data())) +
+        element.grid().first[4]] += random.uniform(25, 32);
+    const RodState state = moving.dynamics.start(q, v, {}, weight);
+    for (const ContactForce& contact : moving.touching(state)) touched += contact.obstacle ? 1 : 1000;
+    const RodDynamicsSlopes slopes = moving.dynamics.slopes(state, {}, weight);
+    for (Eigen::Index j = 0; j < q.size(); ++j) {
+      const double h = 1e-6 / moving.dynamics.chain().scales()[j];
+      const Eigen::VectorXd step = h * Eigen::VectorXd::Unit(q.size(), j);
+      const auto change = [&](const Eigen::VectorXd& dq, const Eigen::VectorXd& dv) -> Eigen::VectorXd {
+        return (moving.dynamics.start(q + dq, v + dv, {}, weight).force -
+                moving.dynamics.start(q - dq, v - dv, {}, weight).force) /
+               (2 * h);
+      };
+      const Eigen::VectorXd none = Eigen::VectorXd::Zero(q.size()), by_q = change(step, none),
+                            by_v = change(none, step);
+      EXPECT_LT((slopes.force_by_q.col(j) - by_q).norm(), 1e-4 * (1 + by_q.norm())) << j;
+      EXPECT_LT((slopes.force_by_v.col(j) - by_v).norm(), 1e-4 * (1 + by_v.norm())) << j;
+    }
+  });
+  EXPECT_GT(touched % 1000, 0);  // The floor,
+  EXPECT_GT(touched, 1000);      // and itself.
 }
 
 TEST(ContactRod, TurnedWithItsFrameNothingChanges) {
@@ -306,6 +268,9 @@ TEST(ContactRod, RefusesWhatCannotBe) {
   EXPECT_THROW(RodContact(chain, {.radii = {{0.01, 0.01}, {0.01, 0.01}}}), std::invalid_argument);
   EXPECT_THROW(RodContact(chain, {.itself_apart = infinity}), std::invalid_argument);
   EXPECT_THROW(RodContact(chain, {.obstacles = {SphereConfig{.radius = infinity}}}), std::invalid_argument);
+  EXPECT_THROW(RodContact(chain, {.places = {{0, 0.5}, {0, 0.5}}}), std::invalid_argument);
+  EXPECT_THROW(RodContact(chain, {.places = {{1, 0.5}}}), std::invalid_argument);
+  EXPECT_THROW(RodContact(chain, {.places = {{0, 1.5}}}), std::invalid_argument);
   EXPECT_THROW((void)contact_places(soft_arm(), 0), std::invalid_argument);
   EXPECT_THROW((void)contact_places(soft_arm(), 1e-9), std::invalid_argument);
   const RodContact contact(chain, {});

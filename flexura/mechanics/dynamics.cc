@@ -160,6 +160,16 @@ bool RodDynamics::Work::find_velocity(const RodState& state) {
   return true;
 }
 
+void RodDynamics::Work::set_surroundings(const RodSurroundings* given) {
+  surroundings = given;
+  differential_.reset();
+  motion.set_points(nullptr);
+  points.reset();
+  if (given == nullptr || given->points().empty()) return;
+  points = std::make_unique<RodPoints>(chain.rod(), layout, given->points());
+  motion.set_points(points.get());
+}
+
 RodDynamics::RodDynamics(Rod rod, const RodDynamicsConfig& config, std::span<const RodPlace> places)
     : work_(std::make_unique<Work>(std::move(rod), config, places)) {}
 RodDynamics::~RodDynamics() = default;
@@ -167,7 +177,7 @@ RodDynamics::RodDynamics(RodDynamics&&) noexcept = default;
 RodDynamics& RodDynamics::operator=(RodDynamics&&) noexcept = default;
 
 void RodDynamics::set_surroundings(const RodSurroundings* surroundings) {
-  work_->surroundings = surroundings;
+  work_->set_surroundings(surroundings);
 }
 const RodChain& RodDynamics::chain() const { return work_->chain; }
 
@@ -282,6 +292,12 @@ NodeMotion RodDynamics::motion(const RodState& state, const RodPlace& place) {
   const Eigen::VectorXd v = velocity(state);
   work_->motion.place(state.q.data(), v.data());
   return {.pose = pose_of(work_->motion.nodes()[node]), .twist = eigen_of(work_->motion.velocities()[node])};
+}
+
+std::vector<NodeMotion> RodDynamics::point_motions(const RodState& state) {
+  const Eigen::VectorXd v = velocity(state);
+  work_->motion.place(state.q.data(), v.data());
+  return work_->motion.all_point_motions();
 }
 
 Pose RodDynamics::tip(const RodState& state) {

@@ -113,7 +113,8 @@ class RodDynamics {
   RodDynamics(RodDynamics&&) noexcept;
   RodDynamics& operator=(RodDynamics&&) noexcept;
 
-  /// What pulls beside tendons and loads; is kept by reference. Null: nothing.
+  /// What pulls beside tendons and loads; is kept by reference. Null: nothing. std::invalid_argument: it has
+  /// a point outside the rod.
   void set_surroundings(const RodSurroundings* surroundings);
 
   /// The rod at rest when nothing pulls.
@@ -155,6 +156,8 @@ class RodDynamics {
   /// Of all nodes, and metres of rod for each in an integral along it: as RodSurroundings has them.
   [[nodiscard]] std::vector<NodeMotion> motions(const RodState& state);
   [[nodiscard]] std::span<const double> node_runs() const;
+  /// Of all points at which the surroundings may pull (RodSurroundings::points()).
+  [[nodiscard]] std::vector<NodeMotion> point_motions(const RodState& state);
   /// X_BT
   [[nodiscard]] Pose tip(const RodState& state);
   /// How long the tendons are, m.

@@ -129,7 +129,7 @@ void look(RodDynamics& dynamics, const RodContact& contact, const RodState& stat
   require(!std::isnan(energy.kinetic) && !std::isnan(energy.strain));
   require(!std::isnan(dynamics.step_error(state)));
   require(!dynamics.tip(state).position.hasNaN());
-  for (const ContactForce& each : contact.find(dynamics.motions(state))) {
+  for (const ContactForce& each : contact.find(dynamics.point_motions(state))) {
     require(!each.force.hasNaN() && !each.normal.hasNaN() && !each.slip.hasNaN());
     require(each.depth > 0 && !(each.normal_force < 0));
   }
@@ -147,6 +147,8 @@ void run_scene(Numbers& numbers) {
                                    .transition = numbers.odd(numbers.power(-6, -3))},
                            .itself = numbers.integer(0, 1) == 0,
                            .itself_apart = numbers.uniform(2, 8)};
+  // At nodes, and between them.
+  if (numbers.integer(0, 1) == 0) touches.places = contact_places(rod, numbers.uniform(0.01, 0.1));
   const int obstacles = numbers.integer(0, 2);
   for (int i = 0; i < obstacles; ++i) touches.obstacles.push_back(obstacle_of(numbers));
   const RodContact contact(dynamics.chain(), touches);

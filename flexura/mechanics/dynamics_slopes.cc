@@ -12,7 +12,10 @@ void RodDynamics::Work::differentiate(const Eigen::VectorXd& q, const Eigen::Vec
                                       const RodLoads& loads, double by_q, double by_v,
                                       Eigen::MatrixXd& momentum, Eigen::MatrixXd& force) {
   using Number = Dual<Lanes>;
-  if (!differential_) differential_ = std::make_unique<RodMotion<Number>>(layout);
+  if (!differential_) {
+    differential_ = std::make_unique<RodMotion<Number>>(layout);
+    differential_->set_points(points.get());
+  }
   const Eigen::Index n = q.size();
   momentum.resize(n, n);
   force.resize(n, n);
@@ -34,6 +37,7 @@ void RodDynamics::Work::differentiate(const Eigen::VectorXd& q, const Eigen::Vec
     };
     set(by_q, by_v);
     differential_->place(q_dual.data(), v_dual.data());
+    differential_->keep_surroundings(first > 0);
     differential_->pull(loads, pulls.data(), surroundings);
     differential_->balance(p_dual.data(), f_dual.data());
     set(0, 0);

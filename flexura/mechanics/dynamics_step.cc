@@ -249,8 +249,7 @@ bool RodDynamics::Work::iterate_exactly(const Stage& stage, RodStep& result) {
 
 // The stage's force, with the last change of the rates.
 void RodDynamics::Work::finish_force(const Stage& stage) {
-  if (surroundings != nullptr &&
-      std::ranges::any_of(motion.pulls(), [](const NodePull& pull) { return pull.is_coupled; })) {
+  if (surroundings != nullptr && (motion.is_coupled() || !matrix.has_columns_of(motion))) {
     evaluate(stage);
     return;
   }

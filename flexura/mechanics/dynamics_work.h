@@ -11,6 +11,7 @@
 #include "flexura/mechanics/rod_layout.h"
 #include "flexura/mechanics/rod_matrix.h"
 #include "flexura/mechanics/rod_motion.h"
+#include "flexura/mechanics/rod_points.h"
 
 namespace flexura {
 
@@ -37,6 +38,7 @@ struct RodDynamics::Work {
   [[nodiscard]] static bool is_of_this_world(const Eigen::VectorXd& numbers) {
     return (numbers.array().abs() < 1e100).all();
   }
+  void set_surroundings(const RodSurroundings* given);
   [[nodiscard]] std::string input_problem(const TendonInput& tendons, const RodLoads& loads) const;
   RodStep step(RodState& state, const TendonInput& tendons, const RodLoads& loads, double h);
   /// Tensions as they are given, or by displacements, where the rod was placed.
@@ -55,6 +57,7 @@ struct RodDynamics::Work {
   RodMotion<double> motion;
   RodMatrix matrix;
   const RodSurroundings* surroundings = nullptr;
+  std::unique_ptr<RodPoints> points = {};        ///< Where they pull beside the nodes; none: nowhere.
   std::vector<double> rest_lengths, compliance;  // m, m/N
   std::vector<double> tensions;
   Eigen::VectorXd velocity;

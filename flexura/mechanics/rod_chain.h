@@ -10,14 +10,9 @@
 #include "flexura/math/pose.h"
 #include "flexura/mechanics/rod.h"
 #include "flexura/mechanics/rod_element.h"
+#include "flexura/mechanics/rod_surroundings.h"
 
 namespace flexura {
-
-/// A place on a rod: a part, from 0 to 1, of one of its sections.
-struct RodPlace {
-  std::size_t section = 0;
-  double at = 1;
-};
 
 /// A rod's sections joined: what its modes q make of it, the balance r(q) of all that pulls, and linear
 /// systems with r's derivative, at a cost that grows with the number of sections alone. For r = 0 the rod is

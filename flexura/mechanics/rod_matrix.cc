@@ -23,7 +23,7 @@ void multiply(const std::array<double, 36>& H, const double* rows, double* sums,
 
 }  // namespace
 
-RodMatrix::RodMatrix(const RodLayout& layout) : layout_(layout), by_moments_(108 * layout.intervals) {
+RodMatrix::RodMatrix(const RodLayout& layout) : layout_(layout), by_moments_(54 * layout.intervals) {
   for (const RodLayout::Section& section : layout.sections) {
     Part& part = parts_.emplace_back();
     part.stride = (section.modes + step_of_rows - 1) / step_of_rows * step_of_rows;
@@ -58,22 +58,21 @@ void RodMatrix::find_columns(const RodMotion<double>& motion) {
           set(X.position, at[lane]->position);
     }
     const RodInterval<Number> interval = still(motion.intervals()[first / width]);
-    for (std::size_t r = 0; r < 6; ++r) {
-      // Unit wrenches, in the interval's frame.
+    // Unit forces, in the interval's frame. What a unit moment does along the angular strains is what the
+    // unit force does along the linear ones, and along these it does nothing: brackets are those of dual
+    // numbers.
+    for (std::size_t r = 0; r < 3; ++r) {
       Screw<Number> unit{};
       if (r == 0) unit.linear.x += 1.0;
       if (r == 1) unit.linear.y += 1.0;
       if (r == 2) unit.linear.z += 1.0;
-      if (r == 3) unit.angular.x += 1.0;
-      if (r == 4) unit.angular.y += 1.0;
-      if (r == 5) unit.angular.z += 1.0;
       const auto along = interval.along_moments(X.fetch(unit));
       for (std::size_t lane = 0; lane < width && first + lane < layout_.intervals; ++lane) {
-        double* to = by_moments_.data() + 108 * (first + lane) + r;
-        for (std::size_t m = 0; m < 3; ++m, to += 36) {
-          to[0] = along[m].linear.x[lane], to[6] = along[m].linear.y[lane], to[12] = along[m].linear.z[lane];
-          to[18] = along[m].angular.x[lane], to[24] = along[m].angular.y[lane],
-          to[30] = along[m].angular.z[lane];
+        double* to = by_moments_.data() + 54 * (first + lane) + r;
+        for (std::size_t m = 0; m < 3; ++m, to += 18) {
+          to[0] = along[m].linear.x[lane], to[3] = along[m].linear.y[lane], to[6] = along[m].linear.z[lane];
+          to[9] = along[m].angular.x[lane], to[12] = along[m].angular.y[lane],
+          to[15] = along[m].angular.z[lane];
         }
       }
     }
@@ -84,7 +83,7 @@ void RodMatrix::find_columns(const RodMotion<double>& motion) {
     for (std::size_t i = 0; i < section.intervals; ++i) {
       const double* before = part.columns.data() + i * 6 * part.stride;
       double* after = part.columns.data() + (i + 1) * 6 * part.stride;
-      const double* by = by_moments_.data() + 108 * (section.first_interval + i);
+      const double* by = by_moments_.data() + 54 * (section.first_interval + i);
       const auto column = static_cast<Eigen::Index>(i);
       const double *m1 = section.grid.moments[0].col(column).data(),
                    *m2 = section.grid.moments[1].col(column).data(),
@@ -93,12 +92,16 @@ void RodMatrix::find_columns(const RodMotion<double>& motion) {
         const auto first = static_cast<std::size_t>(section.grid.first[c]),
                    last = first + static_cast<std::size_t>(section.grid.count[c]);
         if (first == last) continue;
-        for (std::size_t r = 0; r < 6; ++r) {
-          const double y1 = by[6 * c + r], y2 = by[36 + 6 * c + r], y3 = by[72 + 6 * c + r];
-          const std::size_t row = r * part.stride;
-          for (std::size_t j = first; j < last; ++j)
-            after[row + j] = before[row + j] + (m1[j] * y1 + m2[j] * y2 + m3[j] * y3);
-        }
+        const auto add = [&](std::size_t row, std::size_t number) {
+          const double y1 = by[number], y2 = by[18 + number], y3 = by[36 + number];
+          const double* from = before + row * part.stride;
+          double* to = after + row * part.stride;
+          for (std::size_t j = first; j < last; ++j) to[j] = from[j] + (m1[j] * y1 + m2[j] * y2 + m3[j] * y3);
+        };
+        for (std::size_t r = 0; r < 3; ++r) add(r, 3 * c + r);
+        // Linear strains do not turn what is beyond; the columns' rows stay 0 there.
+        if (c < 3) continue;
+        for (std::size_t r = 0; r < 3; ++r) add(r + 3, 3 * (c - 3) + r);
       }
     }
   }
@@ -195,6 +198,10 @@ bool RodMatrix::factor_part(Part& part, std::size_t modes, bool has_base) {
 
 bool RodMatrix::factor(const RodMotion<double>& motion, const Factors& factors, const double* tensions,
                        bool is_surrounded) {
+  ties_.clear();
+  pulled_.clear();
+  if (is_surrounded && !motion.chosen().empty()) find_point_columns(motion);
+  std::size_t points_left = pulled_.size();
   Block beyond{};
   for (std::size_t s = parts_.size(); s-- > 0;) {
     const RodLayout::Section& section = layout_.sections[s];
@@ -206,24 +213,20 @@ bool RodMatrix::factor(const RodMotion<double>& motion, const Factors& factors, 
     for (std::size_t k = section.intervals + 1; k-- > 0;) {
       const std::size_t node = section.first_node + k;
       Block H = block_of(layout_.bodies[node], motion.nodes()[node]);
-      if (is_surrounded && !motion.pulls()[node].is_idle) {
-        const NodePull& pull = motion.pulls()[node];
-        Matrix6d more;
-        if (pull.is_held)
-          more = -factors.stiffness * pull.stiffness - factors.damping * pull.damping;
-        else
-          more = factors.stiffness * pull.by_pose + factors.damping * pull.by_twist;
-        for (std::size_t r = 0; r < 6; ++r)
-          for (std::size_t c = 0; c < 6; ++c) {
-            const auto i = static_cast<Eigen::Index>(r), j = static_cast<Eigen::Index>(c);
-            H[6 * r + c] -= 0.5 * (more(i, j) + more(j, i));
-          }
-      }
+      if (is_surrounded && !motion.pulls()[node].is_idle) add_pull(H, motion.pulls()[node], factors);
       if (k == section.intervals)
         for (std::size_t i = 0; i < 36; ++i) H[i] += beyond[i];
       if (has_base)
         for (std::size_t i = 0; i < 36; ++i) all[i] += H[i];
       if (k > 0) add_product(part, part.columns.data() + k * 6 * part.stride, H, has_base);
+    }
+    for (; points_left > 0 && pulled_[points_left - 1].section == s; --points_left) {
+      const Pulled& point = pulled_[points_left - 1];
+      Block H{};
+      add_pull(H, motion.point_pulls()[point.chosen], factors);
+      if (has_base)
+        for (std::size_t i = 0; i < 36; ++i) all[i] += H[i];
+      add_product(part, point_columns_.data() + point.first, H, has_base);
     }
     if (factors.damping != 0 || factors.stiffness != 0) {
       const double *K = section.stiffness.data(), *D = section.damping.data();
@@ -246,10 +249,10 @@ bool RodMatrix::factor(const RodMotion<double>& motion, const Factors& factors, 
       }
     }
   }
-  return true;
+  return !is_surrounded || !motion.is_coupled() || factor_ties(motion, factors);
 }
 
-void RodMatrix::solve(double* x) const {
+void RodMatrix::solve_sections(double* x) const {
   std::array<double, 6> along{};
   for (std::size_t s = parts_.size(); s-- > 0;) {
     const RodLayout::Section& section = layout_.sections[s];
@@ -286,44 +289,6 @@ void RodMatrix::solve(double* x) const {
     for (std::size_t r = 0; r < 6 && s + 1 < parts_.size(); ++r)
       for (std::size_t j = 0; j < section.modes; ++j) along[r] += end[r * part.stride + j] * y[j];
   }
-}
-
-void RodMatrix::add_pull_change(const RodMotion<double>& motion, double stretch, const double* x,
-                                double* force) const {
-  // How far the rod's sections move each other; then what changes, from the tip on.
-  Vector6d moved = Vector6d::Zero(), beyond = Vector6d::Zero();
-  for (std::size_t s = 0; s + 1 < parts_.size(); ++s)
-    moved += node_twist(s, layout_.sections[s].intervals, x);
-  for (std::size_t s = parts_.size(); s-- > 0;) {
-    const RodLayout::Section& section = layout_.sections[s];
-    const std::size_t stride = parts_[s].stride;
-    const auto add = [&](std::size_t node, const Vector6d& wrench) {
-      const double* A = parts_[s].columns.data() + node * 6 * stride;
-      for (std::size_t r = 0; r < 6; ++r)
-        for (std::size_t j = 0; j < section.modes; ++j)
-          force[section.first_mode + j] += A[r * stride + j] * wrench[static_cast<Eigen::Index>(r)];
-    };
-    add(section.intervals, beyond);
-    for (std::size_t k = 0; k <= section.intervals; ++k) {
-      const NodePull& pull = motion.pulls()[section.first_node + k];
-      if (pull.is_idle) continue;
-      const Vector6d twist = moved + node_twist(s, k, x);
-      const Vector6d wrench = pull.by_twist * twist + stretch * (pull.by_pose * twist);
-      add(k, wrench);
-      beyond += wrench;
-    }
-    if (s > 0) moved -= node_twist(s - 1, layout_.sections[s - 1].intervals, x);
-  }
-}
-
-Vector6d RodMatrix::node_twist(std::size_t s, std::size_t node, const double* x) const {
-  const RodLayout::Section& section = layout_.sections[s];
-  const double* A = parts_[s].columns.data() + node * 6 * parts_[s].stride;
-  Vector6d twist = Vector6d::Zero();
-  for (std::size_t r = 0; r < 6; ++r)
-    for (std::size_t j = 0; j < section.modes; ++j)
-      twist[static_cast<Eigen::Index>(r)] += A[r * parts_[s].stride + j] * x[section.first_mode + j];
-  return twist;
 }
 
 Eigen::MatrixXd RodMatrix::node_columns(std::size_t node) const {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <array>
 #include <cstddef>
@@ -32,12 +33,13 @@ class RodMatrix {
   /// Adds up and factors it. False: it is not positive definite. `tensions`: of tendons in channels; or null.
   [[nodiscard]] bool factor(const RodMotion<double>& motion, const Factors& factors, const double* tensions,
                             bool is_surrounded);
+  /// Whether it has the columns of all points that are pulled at now: those that were when it was factored.
+  [[nodiscard]] bool has_columns_of(const RodMotion<double>& motion) const;
   /// Adds to the forces of the modes what surroundings, as they pulled last, change by changes x of the rates
-  /// and `stretch` x of the modes.
+  /// and `stretch` x of the modes. It has the columns, and no pull is coupled.
   void add_pull_change(const RodMotion<double>& motion, double stretch, const double* x, double* force) const;
   /// x becomes what the matrix makes to x.
   void solve(double* x) const;
-  /// The same for the triangular matrices of what was factored, for energies: x^T M^-1 x is |y|^2.
   /// The matrix itself, dense; allocates. The columns are there.
   [[nodiscard]] Eigen::MatrixXd dense_mass(const RodMotion<double>& motion) const;
   /// Twists of a node by the modes of all sections, 6 x modes; allocates.
@@ -59,13 +61,31 @@ class RodMatrix {
   static Block block_of(const RodLayout::Body& body, const Placement<double>& at);
   static void add_product(Part& part, const double* A, const Block& H, bool has_base);
   void add_tendons(std::size_t s, const RodMotion<double>& motion, const double* tensions, double factor);
+  static void add_pull(Block& H, const NodePull& pull, const Factors& factors);
+  void find_point_columns(const RodMotion<double>& motion);
+  [[nodiscard]] bool factor_ties(const RodMotion<double>& motion, const Factors& factors);
+  void solve_sections(double* x) const;
   // A node's twist by changes x of the modes of its section.
   [[nodiscard]] Vector6d node_twist(std::size_t section, std::size_t node, const double* x) const;
+  [[nodiscard]] Vector6d twist_of(std::size_t section, const double* columns, const double* x) const;
   static bool factor_part(Part& part, std::size_t modes, bool has_base);
 
   const RodLayout& layout_;
   std::vector<Part> parts_;
-  std::vector<double> by_moments_;  // 18 rows of 6 numbers of each interval.
+  std::vector<double> by_moments_;  // 18 rows of 3 numbers of each interval.
+  // Of points that are pulled at: which of the chosen, which of all, and how its section's modes move it, 6
+  // rows of the section's stride.
+  struct Pulled {
+    std::size_t chosen, point, section, first;
+  };
+  std::vector<Pulled> pulled_;
+  std::vector<double> point_columns_;
+  // Points that are tied: the matrix has rows_^T rows_ beside the sections' part, of which answers_ is the
+  // solution for rows_^T (M. A. Woodbury).
+  std::vector<PointTie> ties_;
+  Eigen::MatrixXd rows_, answers_;
+  Eigen::LLT<Eigen::MatrixXd> tied_;
+  mutable Eigen::VectorXd tensions_;
 };
 
 }  // namespace flexura

@@ -1,7 +1,6 @@
 #include "flexura/mechanics/rod_motion.h"
 
 #include <algorithm>
-#include <type_traits>
 
 #include "flexura/mechanics/rod_numbers.h"
 
@@ -33,36 +32,6 @@ template <typename S>
 void write_screw(const Screw<S>& a, S* to, std::size_t stride) {
   to[0] = a.linear.x, to[stride] = a.linear.y, to[2 * stride] = a.linear.z;
   to[3 * stride] = a.angular.x, to[4 * stride] = a.angular.y, to[5 * stride] = a.angular.z;
-}
-
-// How a node's motion changes a wrench.
-Screw<double> change_of(const Matrix6d&, const Matrix6d&, const Placement<double>&, const Screw<double>&) {
-  return {};
-}
-Screw<Dual<Lanes>> change_of(const Matrix6d& by_pose, const Matrix6d& by_twist,
-                             const Placement<Dual<Lanes>>& X, const Screw<Dual<Lanes>>& V) {
-  Screw<Dual<Lanes>> result{};
-  for (std::size_t lane = 0; lane < lanes_of<Lanes>; ++lane) {
-    const auto slope = [&](const Triple<Dual<Lanes>>& a) {
-      return Eigen::Vector3d(a.x.slope[lane], a.y.slope[lane], a.z.slope[lane]);
-    };
-    Eigen::Matrix3d R, turned;
-    R << plain(X.x).transpose(), plain(X.y).transpose(), plain(X.z).transpose();
-    turned << slope(X.x).transpose(), slope(X.y).transpose(), slope(X.z).transpose();
-    const Eigen::Matrix3d turning = turned * R.transpose();
-    const Eigen::Vector3d angular(turning(2, 1), turning(0, 2), turning(1, 0));
-    Vector6d moved, faster;
-    moved << slope(X.position) - angular.cross(plain(X.position)), angular;
-    faster << slope(V.linear), slope(V.angular);
-    const Vector6d change = by_pose * moved + by_twist * faster;
-    for (std::size_t c = 0; c < 6; ++c)
-      component(result, c).slope[lane] = change[static_cast<Eigen::Index>(c)];
-  }
-  return result;
-}
-template <typename S>
-Screw<S> constant_screw(const Vector6d& a) {
-  return {constant<S>(Eigen::Vector3d(a.head<3>())), constant<S>(Eigen::Vector3d(a.tail<3>()))};
 }
 
 }  // namespace
@@ -160,6 +129,10 @@ Screw<S> RodMotion<S>::momentum_of(std::size_t node, const Screw<S>& twist) cons
 
 template <typename S>
 void RodMotion<S>::pull(const RodLoads& loads, const S* tensions, const RodSurroundings* surroundings) {
+  if (!keeps_surroundings_) {
+    chosen_.clear();
+    is_coupled_ = false;
+  }
   const Triple<double> gravity{loads.gravity.x(), loads.gravity.y(), loads.gravity.z()};
   const Triple<S> per_length = constant<S>(loads.per_length);
   const bool is_spread = !loads.per_length.isZero(0);
@@ -182,31 +155,6 @@ void RodMotion<S>::pull(const RodLoads& loads, const S* tensions, const RodSurro
   }
   add_tendons(tensions);
   if (surroundings != nullptr) add_surroundings(*surroundings);
-}
-
-template <typename S>
-void RodMotion<S>::add_surroundings(const RodSurroundings& surroundings) {
-  constexpr bool has_slopes = !std::is_same_v<S, double>;
-  for (std::size_t k = 0; k < layout_.nodes; ++k) {
-    Pose& pose = motions_[k].pose;
-    pose.rotation << plain(X_[k].x).transpose(), plain(X_[k].y).transpose(), plain(X_[k].z).transpose();
-    pose.position = plain(X_[k].position);
-    motions_[k].twist = plain(V_[k]);
-  }
-  surroundings.pull(motions_, layout_.run, pulls_);
-  bool is_coupled = false;
-  for (std::size_t k = 0; k < layout_.nodes; ++k) {
-    const NodePull& pull = pulls_[k];
-    if (pull.is_idle) continue;
-    W_[k] += constant_screw<S>(pull.wrench);
-    if constexpr (has_slopes) W_[k] += change_of(pull.by_pose, pull.by_twist, X_[k], V_[k]);
-    is_coupled = is_coupled || pull.is_coupled;
-  }
-  if (!has_slopes || !is_coupled) return;
-  couplings_.clear();
-  surroundings.couple(motions_, layout_.run, couplings_);
-  for (const NodeCoupling& each : couplings_)
-    W_[each.at] += change_of(each.by_pose, each.by_twist, X_[each.of], V_[each.of]);
 }
 
 template <typename S>
@@ -254,6 +202,7 @@ void RodMotion<S>::balance(S* momentum, S* force) {
   set_inner_forces(force);
   add_modes(collected_, momentum);
   add_modes(changed_, force);
+  add_point_forces(force);
 }
 
 template <typename S>
@@ -298,6 +247,7 @@ void RodMotion<S>::find_acceleration_forces(S* force) {
   }
   set_inner_forces(force);
   collect(spare_, force);
+  add_point_forces(force);
 }
 
 template <typename S>

@@ -9,6 +9,7 @@
 #include "flexura/mechanics/rod.h"
 #include "flexura/mechanics/rod_interval.h"
 #include "flexura/mechanics/rod_layout.h"
+#include "flexura/mechanics/rod_points.h"
 #include "flexura/mechanics/rod_surroundings.h"
 
 namespace flexura {
@@ -24,8 +25,13 @@ class RodMotion {
 
   explicit RodMotion(const RodLayout& layout);
 
+  /// Where surroundings may pull beside the nodes; is kept by reference. Null: nowhere.
+  void set_points(const RodPoints* points);
+
   /// Where the nodes are, and how fast.
   void place(const S* q, const S* v);
+  /// Whether pull() takes what surroundings did last: the same shape and rates, with other slopes.
+  void keep_surroundings(bool keeps) { keeps_surroundings_ = keeps; }
   /// What pulls at them, there. `tensions`: of all tendons, N.
   void pull(const RodLoads& loads, const S* tensions, const RodSurroundings* surroundings);
   /// The momenta and the forces, of all modes.
@@ -42,6 +48,26 @@ class RodMotion {
   [[nodiscard]] const std::vector<Screw<S>>& momenta() const { return P_; }
   /// The slopes of the last surroundings' wrenches; none without.
   [[nodiscard]] const std::vector<NodePull>& pulls() const { return pulls_; }
+  /// The points that the last surroundings chose, and the same of them.
+  [[nodiscard]] const RodPoints* points() const { return points_; }
+  [[nodiscard]] std::span<const std::size_t> chosen() const { return chosen_; }
+  [[nodiscard]] std::span<const NodeMotion> point_motions() const {
+    return {point_motions_.data(), chosen_.size()};
+  }
+  [[nodiscard]] std::span<const NodePull> point_pulls() const {
+    return {point_pulls_.data(), chosen_.size()};
+  }
+  /// The parts of their intervals up to them, side by side; of points that are nodes, nothing.
+  [[nodiscard]] const std::vector<RodInterval<Dual<Number>>>& parts() const { return parts_; }
+  /// Whether points are pulled at that are tied to others.
+  [[nodiscard]] bool is_coupled() const { return is_coupled_; }
+  /// What holds them, emptied first.
+  void find_ties(std::vector<PointTie>& ties) const {
+    ties.clear();
+    if (is_coupled_) touching_->tie(chosen_, point_motions(), ties);
+  }
+  /// How all points move, after place(); allocates.
+  [[nodiscard]] std::vector<NodeMotion> all_point_motions();
   /// Of the intervals, side by side.
   [[nodiscard]] const std::vector<RodInterval<Dual<Number>>>& intervals() const { return intervals_; }
 
@@ -64,6 +90,10 @@ class RodMotion {
   [[nodiscard]] static Pull pull_of(const RodLayout::Passage& passage, const Screw<S>& strain);
   void add_tendons(const S* tensions);
   void add_surroundings(const RodSurroundings& surroundings);
+  void ask_surroundings(const RodSurroundings& surroundings);
+  void bound_lengths();
+  void place_points();
+  void add_point_forces(S* force) const;
   template <typename Add>
   void for_chords(const RodLayout::Section& section, std::size_t tendon, Add&& add) const;
   void add_strain_force(const RodLayout::Section& section, std::size_t node, const Screw<S>& along,
@@ -87,7 +117,17 @@ class RodMotion {
   bool is_pulled_ = false;  // By tendons along its strains.
   std::vector<NodeMotion> motions_;
   std::vector<NodePull> pulls_;
-  std::vector<NodeCoupling> couplings_;
+  const RodPoints* points_ = nullptr;
+  bool is_coupled_ = false, keeps_surroundings_ = false;
+  const RodSurroundings* touching_ = nullptr;  // The last ones.
+  std::vector<double> lengths_;                // Of the intervals, at most.
+  std::vector<std::size_t> chosen_;            // Of the points; all below is of these.
+  std::vector<RodInterval<Dual<Number>>> parts_;
+  std::vector<Placement<S>> point_X_;
+  std::vector<Screw<S>> point_V_, point_W_;
+  std::vector<NodeMotion> point_motions_;
+  std::vector<NodePull> point_pulls_;
+  std::vector<PointCoupling> couplings_;
 };
 
 // Instantiated for double and Dual<Lanes> in its sources.

@@ -17,6 +17,12 @@ constexpr double let_out = -1e6;
 Surroundings::Surroundings(std::vector<const RodSurroundings*> parts) : parts_(std::move(parts)) {
   if (std::ranges::any_of(parts_, [](const RodSurroundings* part) { return part == nullptr; }))
     throw std::invalid_argument("surroundings: a part that is not there");
+  for (const RodSurroundings* part : parts_) {
+    if (part->points().empty()) continue;
+    if (with_points_ != nullptr)
+      throw std::invalid_argument("surroundings: two parts that pull at points between nodes");
+    with_points_ = part;
+  }
 }
 
 void Surroundings::pull(std::span<const NodeMotion> nodes, std::span<const double> run,
@@ -33,9 +39,28 @@ void Surroundings::pull(std::span<const NodeMotion> nodes, std::span<const doubl
   }
 }
 
-void Surroundings::couple(std::span<const NodeMotion> nodes, std::span<const double> run,
-                          std::vector<NodeCoupling>& couplings) const {
-  for (const RodSurroundings* part : parts_) part->couple(nodes, run, couplings);
+std::span<const RodPlace> Surroundings::points() const {
+  return with_points_ != nullptr ? with_points_->points() : std::span<const RodPlace>{};
+}
+
+void Surroundings::choose(std::span<const NodeMotion> nodes, std::span<const double> lengths,
+                          std::vector<std::size_t>& chosen) const {
+  if (with_points_ != nullptr) with_points_->choose(nodes, lengths, chosen);
+}
+
+void Surroundings::pull_points(std::span<const std::size_t> chosen, std::span<const NodeMotion> points,
+                               std::span<NodePull> pulls) const {
+  if (with_points_ != nullptr) with_points_->pull_points(chosen, points, pulls);
+}
+
+void Surroundings::couple(std::span<const std::size_t> chosen, std::span<const NodeMotion> points,
+                          std::vector<PointCoupling>& couplings) const {
+  if (with_points_ != nullptr) with_points_->couple(chosen, points, couplings);
+}
+
+void Surroundings::tie(std::span<const std::size_t> chosen, std::span<const NodeMotion> points,
+                       std::vector<PointTie>& ties) const {
+  if (with_points_ != nullptr) with_points_->tie(chosen, points, ties);
 }
 
 TendonInput after_breaks(TendonInput input, std::span<const TendonBreak> breaks, double time) {

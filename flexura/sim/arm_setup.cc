@@ -33,7 +33,7 @@ void set_motion(const RigConfig& config, const Arm& arm, ArmRod& rod) {
                    .itself = contact->itself};
     double least = std::numeric_limits<double>::infinity();
     for (const auto& radius : rod.contact->radii) least = std::min({least, radius[0], radius[1]});
-    rod.contact_places = contact_places(rod.rod, contact->spacing.value_or(least));
+    rod.contact->places = contact_places(rod.rod, contact->spacing.value_or(least));
   }
   if (const auto& drag = config.arm.drag)
     rod.drag = {.density = drag->density,

@@ -21,7 +21,6 @@ struct ArmRod {
   std::vector<TendonBreak> breaks = {};
   std::optional<double> time_step = {};  ///< Of its motion, s. None: it has no inertia, and none of the next.
   std::optional<RodContactConfig> contact = {};
-  std::vector<RodPlace> contact_places = {};  ///< Which touch.
   std::optional<RodDragConfig> drag = {};
   /// A mass that it carries for a time.
   struct Payload {

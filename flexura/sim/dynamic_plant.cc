@@ -28,9 +28,10 @@ const ArmRod& moving_rod(const PlantSetup& setup) {
   return *setup.truth.rod;
 }
 
-// That are nodes: what touches, and what carries.
+// That are nodes: what carries.
 std::vector<RodPlace> places_of(const ArmRod& rod) {
-  std::vector<RodPlace> places = rod.contact_places;
+  std::vector<RodPlace> places;
+  places.reserve(rod.payloads.size());
   for (const ArmRod::Payload& payload : rod.payloads) places.push_back(payload.payload.place);
   return places;
 }
@@ -135,7 +136,7 @@ RodState DynamicPlant::state_at(double time) const {
   carry(from.carried);
   const double start = time_of(from.index);
   if (time - start > no_time * step_) go_on(state, start, time - start, from.lost, 0);
-  answer_ = {time, state};
+  answer_ = {.time = time, .state = state};
   return state;
 }
 
@@ -208,17 +209,22 @@ void DynamicPlant::hand_over(Snapshot& at, double time) const {
   at.carried = carried_ = wanted;
 }
 
+// A time is asked for twice, for what is recorded and for the warning: they are searched once.
 std::vector<PlantContact> DynamicPlant::contacts(double time) const {
-  std::vector<PlantContact> result;
-  if (!contact_) return result;
+  if (!contact_) return {};
   const RodState state = state_at(time);
-  std::vector<ContactForce> found;
-  {
-    const std::lock_guard lock(mutex_);
-    carry(snapshot(time).carried);
-    contact_->find(dynamics_.motions(state), found);
-  }
-  for (const ContactForce& each : found) {
+  const std::lock_guard lock(mutex_);
+  if (answer_ && answer_->time == time && answer_->contacts) return *answer_->contacts;
+  carry(snapshot(time).carried);
+  std::vector<PlantContact> result = found(contact_->find(dynamics_.point_motions(state)));
+  if (answer_ && answer_->time == time) answer_->contacts = result;
+  return result;
+}
+
+std::vector<PlantContact> DynamicPlant::found(const std::vector<ContactForce>& contacts) const {
+  std::vector<PlantContact> result;
+  result.reserve(contacts.size());
+  for (const ContactForce& each : contacts) {
     const RodSection& section = inputs().rod().sections[each.place.section];
     result.push_back({.s_rest = bases_[each.place.section] + each.place.at * section.length,
                       .with = each.obstacle ? names_[*each.obstacle] : "the arm",

@@ -55,6 +55,7 @@ class DynamicPlant : public RodPlant {
   void hand_over(Snapshot& at, double time) const;
   void carry(const std::vector<char>& wanted) const;
   [[nodiscard]] std::vector<char> carried_at(double time) const;
+  [[nodiscard]] std::vector<PlantContact> found(const std::vector<ContactForce>& contacts) const;
   // How the rod moves at a time.
   [[nodiscard]] RodState state_at(double time) const;
 
@@ -69,6 +70,7 @@ class DynamicPlant : public RodPlant {
   struct Answer {
     double time = 0;
     RodState state;
+    std::optional<std::vector<PlantContact>> contacts = {};  // once somebody asked
   };
   mutable std::optional<Answer> answer_;  // the last one; none after a change
   mutable RodDynamics dynamics_;

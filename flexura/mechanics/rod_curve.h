@@ -1,0 +1,52 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace flexura {
+
+/// A smooth curve through places along a rod: a cubic between each two, whose slope at a place is that of the
+/// parabola through it and its neighbours. So its tangent does not jump, and it is off a smooth rod by the
+/// fourth power of the spacing.
+class RodCurve {
+ public:
+  /// From a place to the next: with its places, x(u) = sum of weights.row(i) . (1, u, u^2, u^3) x_i, u from 0
+  /// to
+  /// 1. The second and the third are those that it lies between.
+  struct Segment {
+    std::array<std::size_t, 4> places{};
+    Eigen::Matrix4d weights = Eigen::Matrix4d::Zero();
+  };
+  /// Where a segment lies: x(u) = sum of powers.col(k) u^k, within a ball.
+  struct Piece {
+    Eigen::Matrix<double, 3, 4> powers;
+    Eigen::Vector3d middle = Eigen::Vector3d::Zero();
+    double reach = 0;
+
+    [[nodiscard]] Eigen::Vector3d at(double u) const {
+      return powers.col(0) + u * (powers.col(1) + u * (powers.col(2) + u * powers.col(3)));
+    }
+    [[nodiscard]] Eigen::Vector3d slope_at(double u) const {
+      return powers.col(1) + u * (2 * powers.col(2) + 3 * u * powers.col(3));
+    }
+    [[nodiscard]] Eigen::Vector3d bend_at(double u) const {
+      return 2 * powers.col(2) + 6 * u * powers.col(3);
+    }
+  };
+
+  RodCurve() = default;
+  /// `s`: of the places along the rod, rising, m.
+  explicit RodCurve(std::span<const double> s);
+
+  [[nodiscard]] const std::vector<Segment>& segments() const { return segments_; }
+  /// Where a segment lies when its places are there.
+  [[nodiscard]] static Piece piece(const Segment& segment, const std::array<Eigen::Vector3d, 4>& places);
+
+ private:
+  std::vector<Segment> segments_;
+};
+
+}  // namespace flexura

@@ -101,7 +101,7 @@ BENCHMARK(fit_following)->Arg(0)->Arg(1)->Unit(benchmark::kMicrosecond);
 void fit_tracking(benchmark::State& state) {
   std::vector<std::vector<Sighting>> sightings = film().sightings;
   for (std::vector<Sighting>& seen : sightings)
-    for (Sighting& one : seen) one.doubt = {.turn = 0.02, .focal = 0.02};
+    for (Sighting& one : seen) one.doubt = {.rotation_std = 0.02, .focal_std = 0.02};
   ShapeTracker tracker({.arm = film().arm}, {});
   std::optional<ArmState> expected;
   std::size_t i = 0, iterations = 0;

@@ -180,7 +180,7 @@ bool endure(double seconds, double step, std::uint64_t seed) {
   }
   ServoConfig config = bench.config();
   config.step = step, config.keeps_steps = false;
-  config.blind = std::max(0.3, 2 * step), config.lost = std::max(3.0, 10 * step);
+  config.hold_after = std::max(0.3, 2 * step), config.give_up_after = std::max(3.0, 10 * step);
   config.goals = repeated(one, other, seconds);
   Logbook book(bench.rig(), bench.experiment().arm.arm(), seconds / slices);
   book.begin(bench.rig().clock().now());

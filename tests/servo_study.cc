@@ -210,7 +210,7 @@ class StudyRig {
     if (cameras_ == Cameras::wrong) {
       const auto truth = true_views(bench), believed = believed_views(bench);
       arrival.believing = floor_of(arm, target, truth, believed, {});
-      arrival.doubting = floor_of(arm, target, truth, believed, config.doubt);
+      arrival.doubting = floor_of(arm, target, truth, believed, config.camera_prior);
     }
     return arrival;
   }

@@ -64,9 +64,10 @@ void check_written(const std::vector<MeasuredCamera>& cameras) {
     const MeasuredCamera &one = cameras[i], &other = again[i];
     require(one.name == other.name && one.fx == other.fx && one.fy == other.fy && one.cx == other.cx &&
             one.cy == other.cy && one.distortion == other.distortion && one.position == other.position &&
-            one.gamma == other.gamma && one.size == other.size && one.doubt.focal == other.doubt.focal);
+            one.gamma == other.gamma && one.size == other.size &&
+            one.prior.focal_std == other.prior.focal_std);
     require((one.pose().rotation - other.pose().rotation).norm() < 1e-12);
-    require(std::abs(one.doubt.turn - other.doubt.turn) <= 1e-12 * one.doubt.turn);
+    require(std::abs(one.prior.rotation_std - other.prior.rotation_std) <= 1e-12 * one.prior.rotation_std);
   }
 }
 

@@ -54,7 +54,7 @@ Look look_at(const PictureFile& picture, const MeasuredCamera& camera, const Est
   if (!photograph.is_mask)
     if (auto note = hint_of_exposure(gray_picture(photograph.bytes))) notes.push_back(std::move(*note));
   if (look.sighting.leaves_out) notes.emplace_back(rays_lacking);
-  look.sighting.doubt = camera.doubt;
+  look.sighting.doubt = camera.prior;
   return look;
 }
 

@@ -104,8 +104,9 @@ TEST_F(Estimate, FindsWhatIsWrongWithACameraThatIsDoubted) {
   EXPECT_NE(answer(exit_done).find("notes"), nullptr);
   EXPECT_GT(error(answer(exit_done)), 5e-3);
   arguments_.cameras = (folder_.path() / "doubted.toml").string();
-  write_new_file(arguments_.cameras, replaced(wrong, "name = \"side\"",
-                                              "name = \"side\"\ndoubt = { turn_deg = 1, focal = 0.01 }"));
+  write_new_file(arguments_.cameras,
+                 replaced(wrong, "name = \"side\"",
+                          "name = \"side\"\nprior = { rotation_std_deg = 1, focal_std = 0.01 }"));
   const Node found = answer(exit_done);
   EXPECT_LT(error(found), 1.5e-3);
   const auto& images = *found.find("images")->as<Node::Array>();
@@ -187,8 +188,9 @@ TEST_F(Estimate, HasEveryKeyThatIsDocumentedInItsShape) {
   arguments_.arm = (folder_.path() / "banded.toml").string();
   arguments_.points = points;
   arguments_.markers = {"0.2", "0.5", "0.8"};
-  write_new_file(folder_.path() / "doubted.toml", replaced(two_measured_cameras, "name = \"side\"",
-                                                           "name = \"side\"\ndoubt = { turn_deg = 0.1 }"));
+  write_new_file(folder_.path() / "doubted.toml",
+                 replaced(two_measured_cameras, "name = \"side\"",
+                          "name = \"side\"\nprior = { rotation_std_deg = 0.1 }"));
   arguments_.cameras = (folder_.path() / "doubted.toml").string();
   const Node found = answer(exit_done);
   EXPECT_TRUE(*found.find("found")->as<bool>());

@@ -52,8 +52,8 @@ ViewDoubt doubt_of(const IntrinsicsFit& fit, std::size_t camera) {
   const double focal = std::max(own.sigma(0) / fx, own.sigma(1) / fy),
                aside = std::max(own.sigma(2) / fx, own.sigma(3) / fy),
                turn = std::sqrt(fit.pose_covariance[camera].diagonal().tail<3>().maxCoeff());
-  return {.turn = std::min(most, together * std::max(aside, turn)),
-          .focal = std::min(most, together * focal)};
+  return {.rotation_std = std::min(most, together * std::max(aside, turn)),
+          .focal_std = std::min(most, together * focal)};
 }
 
 std::string measured_cameras_toml(const std::vector<CalibratedCamera>& cameras, const std::string& remark) {
@@ -67,7 +67,7 @@ std::string measured_cameras_toml(const std::vector<CalibratedCamera>& cameras, 
     written.size = {camera.size[0], camera.size[1]};
     written.position = array_of(camera.pose.position);
     written.rotation.value = array_of(quaternion_wxyz(camera.pose.rotation));
-    written.doubt = camera.doubt;
+    written.prior = camera.doubt;
   }
   return fmt::format("# {}\n", remark) +
          write_toml(Codec<MeasuredCameras>::write(file), fields_of(&file).info());

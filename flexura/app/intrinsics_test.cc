@@ -118,8 +118,8 @@ TEST_F(IntrinsicsCommand, MeasuresACameraAndKeepsEarlierFiles) {
   const auto three_sigmas = [&](const char* key) {
     return 3 * number(*camera.find("sigma"), key) / written[0].fx;
   };
-  EXPECT_NEAR(written[0].doubt.focal, std::max(three_sigmas("fx"), three_sigmas("fy")), 1e-5);
-  EXPECT_NEAR(written[0].doubt.turn, std::max(three_sigmas("cx"), three_sigmas("cy")), 1e-4);
+  EXPECT_NEAR(written[0].prior.focal_std, std::max(three_sigmas("fx"), three_sigmas("fy")), 1e-5);
+  EXPECT_NEAR(written[0].prior.rotation_std, std::max(three_sigmas("cx"), three_sigmas("cy")), 1e-4);
   // Residuals and covariance are kept with it.
   const std::string head = "\n# What the pictures tell, as JSON:\n# ";
   const std::size_t at = first.find(head);
@@ -147,7 +147,7 @@ TEST_F(IntrinsicsCommand, MeasuresWhereTheSecondCameraOfAPairStands) {
     EXPECT_NEAR(*position[i].as<double>(), X_12.position[static_cast<Eigen::Index>(i)], 1.5e-3);
   const auto written = read_as<MeasuredCameras>(read_toml_file(path("pair.toml"))).camera;
   for (const Node& sigma : *pair.find("sigma_rotation")->as<Node::Array>())
-    EXPECT_GE(written.at(1).doubt.turn, 2.999 * *sigma.as<double>());
+    EXPECT_GE(written.at(1).prior.rotation_std, 2.999 * *sigma.as<double>());
   EXPECT_EQ(*found.find("held_out")->find("views")->as<std::int64_t>(), 1);
   EXPECT_NE(entry(found, "cameras", 1).find("rms_alone_px"), nullptr);
   // An experiment includes it.

@@ -76,11 +76,20 @@ struct FieldInfo {
   std::string default_text;  ///< As it would be written; "" when required.
 };
 
+/// The old and the new name of a field, both without a unit's suffix.
+struct RenamedField {
+  std::string old_name;
+  std::string name;
+};
+
 /// A table of fields without its struct.
 struct TableInfo {
   std::string name;  ///< In messages and schemas; of a one_of's tables the text under "kind".
   std::string meaning = {};
   std::vector<FieldInfo> fields;
+  /// Fields that had another name in older versions. A document with the old name gets an error with the new
+  /// one.
+  std::vector<RenamedField> renamed = {};
 
   /// The field of this name, without a unit's suffix; null when there is none.
   [[nodiscard]] const FieldInfo* find(std::string_view field_name) const;

@@ -226,7 +226,19 @@ struct UnknownKey {
   const FieldInfo* meant = nullptr;
 };
 
+// Of a key that is a field's old name, in any unit; nothing where it is not.
+std::optional<UnknownKey> renamed_key(std::string_view key, const TableInfo& table) {
+  for (const RenamedField& renamed : table.renamed) {
+    if (!key.starts_with(renamed.old_name)) continue;
+    const std::string_view suffix = key.substr(renamed.old_name.size());
+    if (!suffix.empty() && std::ranges::count(all_unit_suffixes(), suffix) == 0) continue;
+    return UnknownKey{fmt::format("is now called \"{}{}\"", renamed.name, suffix), table.find(renamed.name)};
+  }
+  return std::nullopt;
+}
+
 UnknownKey unknown_key(std::string_view key, const TableInfo& table, std::string_view tag) {
+  if (auto renamed = renamed_key(key, table)) return *std::move(renamed);
   if (const FieldInfo* field = field_in_another_unit(key, table)) {
     return {field->spec.unit == Unit::none
                 ? fmt::format("unknown key: {} has no unit, write {}", field->name, field->name)

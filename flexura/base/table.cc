@@ -1,5 +1,9 @@
 #include "flexura/base/table.h"
 
+#include <fmt/format.h>
+
+#include <stdexcept>
+
 namespace flexura {
 namespace {
 
@@ -24,6 +28,12 @@ void AnyTable::add(std::string name, std::size_t offset, const ValueCodec& codec
   }
   info_.fields.push_back(std::move(info));
   bindings_.push_back({offset, &codec});
+}
+
+void AnyTable::add_renamed(std::string old_name, std::string name) {
+  if (info_.find(name) == nullptr || info_.find(old_name) != nullptr)
+    throw std::logic_error(fmt::format("{}: {} cannot be renamed {}", info_.name, old_name, name));
+  info_.renamed.push_back({std::move(old_name), std::move(name)});
 }
 
 bool AnyTable::read_at(const Node& node, Reader& reader, void* value, std::string_view tag) const {

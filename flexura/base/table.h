@@ -57,6 +57,7 @@ class AnyTable {
   /// struct.
   void add(std::string name, std::size_t offset, const ValueCodec& codec, const void* default_value,
            Spec spec);
+  void add_renamed(std::string old_name, std::string name);
   void add_check(std::function<void(const void*, Reader&)> rule) { checks_.push_back(std::move(rule)); }
   bool read_at(const Node& node, Reader& reader, void* value, std::string_view tag) const;
   [[nodiscard]] Node write_at(const void* value) const;
@@ -91,6 +92,14 @@ class Table : public AnyTable {
     const M* field = &(value.*member);
     const auto offset = reinterpret_cast<const char*>(field) - reinterpret_cast<const char*>(&value);
     add(std::move(name), static_cast<std::size_t>(offset), codec_of<M>, field, std::move(spec));
+    return *this;
+  }
+
+  /// Reports a field's old name, with any unit's suffix, as an error that gives the new `name`: "is now
+  /// called
+  /// ...". The field is added before; std::logic_error otherwise.
+  Table& renamed(std::string old_name, std::string name) {
+    add_renamed(std::move(old_name), std::move(name));
     return *this;
   }
 

@@ -5,6 +5,7 @@
 
 #include <limits>
 #include <memory>
+#include <stdexcept>
 
 namespace flexura {
 namespace {
@@ -154,6 +155,34 @@ TEST(Table, NamesTheKeyThatWasMeant) {
               ElementsAre("cart.toml:7:1: seats_m: unknown key: seats has no unit, write seats"));
   EXPECT_THAT(problems_of({member("xyzzy", 1.0)}),
               ElementsAre(HasSubstr("unknown key; expected one of: colour, seats, open")));
+}
+
+struct Bench {
+  double height = 0;
+  std::optional<Bell> horn;
+};
+
+const Table<Bench>& fields_of(const Bench*) {
+  static const auto table = Table<Bench>("bench", "Seats.")
+                                .field("height", &Bench::height, {.unit = Unit::metre, .required = true})
+                                .field("horn", &Bench::horn, {})
+                                .renamed("tallness", "height")
+                                .renamed("bell", "horn");
+  return table;
+}
+
+TEST(Table, NamesTheNewNameOfARenamedKey) {
+  Node::Table members = {member("tallness_mm", 2.0), member("bell", Node::Table{}, 2)};
+  try {
+    (void)read_as<Bench>(table(std::move(members)));
+    FAIL() << "old names are refused";
+  } catch (const InputError& error) {
+    EXPECT_STREQ(error.what(),
+                 "cart.toml:1:1: tallness_mm: is now called \"height_mm\"\n"
+                 "cart.toml:2:1: bell: is now called \"horn\"");
+  }
+  EXPECT_THROW(Table<Bell>("bell", "").renamed("sound", "noise"), std::logic_error)
+      << "no field has this name";
 }
 
 TEST(Table, NamesTheTableWhereAKeyBelongs) {

@@ -20,7 +20,7 @@ void add_axis_fields(Table<S>& table, const AxisUnits& units, Rate S::* max_rate
   table
       .field(
           "max_rate", max_rate,
-          {.meaning = "Fastest motion.", .unit = units.rate, .range = above(0), .default_text = default_rate})
+          {.meaning = "Largest speed.", .unit = units.rate, .range = above(0), .default_text = default_rate})
       .field(
           "max_acceleration", static_cast<Number>(&S::max_acceleration),
           {.meaning = "Largest acceleration.",
@@ -28,11 +28,11 @@ void add_axis_fields(Table<S>& table, const AxisUnits& units, Rate S::* max_rate
            .range = above(0),
            .default_text = S{}.max_acceleration < std::numeric_limits<double>::infinity() ? "" : "no limit"})
       .field("resolution", static_cast<Number>(&S::resolution),
-             {.meaning = "Distance between neighbouring positions that can be commanded; 0: any.",
+             {.meaning = "Smallest position increment that can be commanded; 0: continuous.",
               .unit = units.position,
               .range = at_least(0)})
       .field("backlash", static_cast<Number>(&S::backlash),
-             {.meaning = "Play: what the motor moves in vain when it turns back.",
+             {.meaning = "Backlash: motor travel without motion after a reversal.",
               .unit = units.position,
               .range = at_least(0)});
 }

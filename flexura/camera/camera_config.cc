@@ -61,17 +61,19 @@ void check_camera(const CameraConfig& camera, Reader& reader) {
 
 const Table<CameraStartConfig>& fields_of(const CameraStartConfig*) {
   static const auto table =
-      Table<CameraStartConfig>("initial", "Where the camera stands when the run starts.")
+      Table<CameraStartConfig>("initial", "Positions of the camera's axes at the start of the run.")
           .field("pan", &CameraStartConfig::pan,
-                 {.meaning = "Pan, to the camera's left.", .unit = Unit::radian, .range = turn_range})
+                 {.meaning = "Pan angle, positive to the camera's left.",
+                  .unit = Unit::radian,
+                  .range = turn_range})
           .field("tilt", &CameraStartConfig::tilt,
-                 {.meaning = "Tilt, upwards.", .unit = Unit::radian, .range = turn_range})
+                 {.meaning = "Tilt angle, positive upwards.", .unit = Unit::radian, .range = turn_range})
           .field("zoom", &CameraStartConfig::zoom,
-                 {.meaning = "Zoom: a ratio, or a motor count where the lens's table has counts.",
+                 {.meaning = "Zoom ratio, or motor count where the lens table has counts.",
                   .range = {.min = -1e9, .max = 1e9},
-                  .default_text = "the least of its limits"})
+                  .default_text = "the lower limit"})
           .field("stage", &CameraStartConfig::stage,
-                 {.meaning = "Offset of the stage: right, down, forward.",
+                 {.meaning = "Stage position: right, down, forward.",
                   .unit = Unit::metre,
                   .range = between(-1e3, 1e3)});
   return table;
@@ -80,17 +82,16 @@ const Table<CameraStartConfig>& fields_of(const CameraStartConfig*) {
 const Table<CameraConfig>& fields_of(const CameraConfig*) {
   static const auto table =
       Table<CameraConfig>("camera", "A camera on a pan/tilt/zoom head.")
-          .field(
-              "name", &CameraConfig::name,
-              {.meaning =
-                   "What tasks and files call it: letters, digits, -, _, spaces and points, no point first.",
-               .required = true})
+          .field("name", &CameraConfig::name,
+                 {.meaning = "Name of the camera in tasks and files: letters, digits, -, _, spaces and "
+                             "points, no point first.",
+                  .required = true})
           .field("mount", &CameraConfig::mount,
-                 {.meaning = "Where its head stands, and which way it faces.", .required = true})
-          .field("head", &CameraConfig::head, {.meaning = "The pan/tilt/zoom head."})
-          .field("lens", &CameraConfig::lens, {.meaning = "The lens."})
-          .field("sensor", &CameraConfig::sensor, {.meaning = "The sensor."})
-          .field("initial", &CameraConfig::initial, {.meaning = "Where it stands when the run starts."})
+                 {.meaning = "Position and orientation of the head.", .required = true})
+          .field("head", &CameraConfig::head, {.meaning = "Pan/tilt/zoom head."})
+          .field("lens", &CameraConfig::lens, {.meaning = "Lens."})
+          .field("sensor", &CameraConfig::sensor, {.meaning = "Sensor."})
+          .field("initial", &CameraConfig::initial, {.meaning = "Axis positions at the start of the run."})
           .check([](const CameraConfig& camera, Reader& reader) {
             check_name(camera.name, reader);
             check_camera(camera, reader);

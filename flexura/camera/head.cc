@@ -16,7 +16,8 @@ template <class Turn>
 Table<Turn> turn_table(const char* name, const char* meaning) {
   Table<Turn> table = axis_table<Turn>(name, meaning, turn_units, turn_range);
   table.field("zero", &Turn::zero,
-              {.meaning = "Where the axis stands when the head says 0: its angle is what it says and this.",
+              {.meaning = "Zero offset: angle of the axis when the head reads 0. The true angle is the "
+                          "reading plus this offset.",
                .unit = Unit::radian,
                .range = turn_range});
   return table;
@@ -47,26 +48,25 @@ AxisConfig ZoomConfig::axis(const ZoomTable& lens) const {
 }
 
 const Table<PanConfig>& fields_of(const PanConfig*) {
-  static const auto table = turn_table<PanConfig>(
-      "pan", "The pan axis, vertical at the head's foot; positive to the camera's left.");
+  static const auto table =
+      turn_table<PanConfig>("pan", "Pan axis, vertical at the head's foot; positive to the camera's left.");
   return table;
 }
 
 const Table<TiltConfig>& fields_of(const TiltConfig*) {
-  static const auto table =
-      turn_table<TiltConfig>("tilt", "The tilt axis, across the camera; positive upwards.");
+  static const auto table = turn_table<TiltConfig>("tilt", "Tilt axis, across the camera; positive upwards.");
   return table;
 }
 
 const Table<ZoomConfig>& fields_of(const ZoomConfig*) {
   static const auto table = [] {
-    Table<ZoomConfig> zoom(
-        "zoom", "What moves the zoom: in ratios, or in motor counts where the lens's table has them.");
+    Table<ZoomConfig> zoom("zoom",
+                           "Zoom axis, in ratios, or in motor counts where the lens table has counts.");
     zoom.field("limits", &ZoomConfig::limits,
                {.meaning = "Smallest and largest position.",
                 .range = {.min = -1e9, .max = 1e9},
-                .default_text = "1 to 10 for a linear zoom, else the table's"});
-    add_axis_fields(zoom, zoom_units, &ZoomConfig::max_rate, "all the range in 3 s");
+                .default_text = "1 to 10, or the range of the lens table"});
+    add_axis_fields(zoom, zoom_units, &ZoomConfig::max_rate, "the whole range in 3 s");
     return zoom.check([](const ZoomConfig& config, Reader& reader) {
       if (config.limits) check_limits(*config.limits, reader);
     });
@@ -76,27 +76,26 @@ const Table<ZoomConfig>& fields_of(const ZoomConfig*) {
 
 const Table<HeadConfig>& fields_of(const HeadConfig*) {
   static const auto table =
-      Table<HeadConfig>("head", "The pan/tilt/zoom head: how its axes move, and where they lie.")
-          .field("pan", &HeadConfig::pan, {.meaning = "The pan axis."})
-          .field("tilt", &HeadConfig::tilt, {.meaning = "The tilt axis."})
-          .field("zoom", &HeadConfig::zoom, {.meaning = "What moves the zoom."})
+      Table<HeadConfig>("head", "Pan/tilt/zoom head: limits, dynamics and geometry of its axes.")
+          .field("pan", &HeadConfig::pan, {.meaning = "Pan axis."})
+          .field("tilt", &HeadConfig::tilt, {.meaning = "Tilt axis."})
+          .field("zoom", &HeadConfig::zoom, {.meaning = "Zoom axis."})
           .field("delay", &HeadConfig::delay,
-                 {.meaning = "From a command until its motion starts.",
+                 {.meaning = "Delay from a command to the start of the motion.",
                   .unit = Unit::second,
                   .range = between(0, 1e3)})
-          .field(
-              "tilt_axis", &HeadConfig::tilt_axis,
-              {.meaning = "A point of the tilt axis, from the mount's origin on the pan axis: right, down, "
-                          "forward at pan 0.",
-               .unit = Unit::metre,
-               .range = offset_range})
+          .field("tilt_axis", &HeadConfig::tilt_axis,
+                 {.meaning = "Point on the tilt axis, from the mount's origin on the pan axis: right, down, "
+                             "forward at pan 0.",
+                  .unit = Unit::metre,
+                  .range = offset_range})
           .field("pupil", &HeadConfig::pupil,
-                 {.meaning = "The entrance pupil at ratio 1, from that point: right, down, forward in the "
-                             "camera's own axes.",
+                 {.meaning = "Entrance pupil at zoom ratio 1, from `tilt_axis`: right, down, forward in the "
+                             "camera's axes.",
                   .unit = Unit::metre,
                   .range = offset_range})
           .field("pupil_shift", &HeadConfig::pupil_shift,
-                 {.meaning = "How far the entrance pupil moves forward for each 1 of zoom ratio.",
+                 {.meaning = "Forward shift of the entrance pupil per unit of zoom ratio.",
                   .unit = Unit::metre,
                   .range = offset_range});
   return table;

@@ -103,60 +103,66 @@ std::optional<std::string> MeasuredCamera::other_size(int width, int height) con
 const Table<ViewDoubt>& fields_of(const ViewDoubt*) {
   using C = ViewDoubt;
   static const Table<C> table =
-      Table<C>(
-          "doubt",
-          "How wrong a camera's description may be: standard deviations. What is wrong is then found with "
-          "the shape.")
-          .field("turn", &C::turn,
-                 {.meaning = "Of where it looks, about each axis.",
+      Table<C>("prior",
+               "Prior standard deviations of a camera's description. Its errors are then estimated with the "
+               "shape.")
+          .field("rotation_std", &C::rotation_std,
+                 {.meaning = "Standard deviation of the orientation, about each axis.",
                   .unit = Unit::radian,
                   .range = between(0, 0.3)})
-          .field("focal", &C::focal, {.meaning = "Of its focal length, a share.", .range = between(0, 0.3)});
+          .field("focal_std", &C::focal_std,
+                 {.meaning = "Relative standard deviation of the focal length.", .range = between(0, 0.3)})
+          .renamed("turn", "rotation_std")
+          .renamed("focal", "focal_std");
   return table;
 }
 
 const Table<MeasuredCamera>& fields_of(const MeasuredCamera*) {
   using C = MeasuredCamera;
   static const Table<C> table =
-      Table<C>("camera", "A camera that stands still, as it was measured.")
-          .field("name", &C::name, {.meaning = "Its name, for messages."})
+      Table<C>("camera", "A fixed, measured camera.")
+          .field("name", &C::name, {.meaning = "Name of the camera in messages."})
           .field("fx", &C::fx,
-                 {.meaning = "Focal length, px.", .range = focal_length_range, .required = true})
+                 {.meaning = "Focal length along u, px.", .range = focal_length_range, .required = true})
           .field("fy", &C::fy,
-                 {.meaning = "The same along v, px.", .range = focal_length_range, .default_text = "fx"})
+                 {.meaning = "Focal length along v, px.", .range = focal_length_range, .default_text = "fx"})
           .field("cx", &C::cx,
-                 {.meaning = "Principal point, px; (0, 0) is the middle of the top left pixel.",
+                 {.meaning = "Column of the principal point, px; 0 is the middle of the leftmost pixel.",
                   .range = principal_point_range,
                   .required = true})
           .field("cy", &C::cy,
-                 {.meaning = "The same along v, px.", .range = principal_point_range, .required = true})
+                 {.meaning = "Row of the principal point, px; 0 is the middle of the topmost pixel.",
+                  .range = principal_point_range,
+                  .required = true})
           .field("distortion", &C::distortion,
-                 {.meaning = "k1, k2, p1, p2, k3, in OpenCV's order.", .range = distortion_range})
+                 {.meaning = "Brown-Conrady distortion k1, k2, p1, p2, k3, in OpenCV's order.",
+                  .range = distortion_range})
           .field("position", &C::position,
-                 {.meaning = "Of the entrance pupil in the world.", .unit = Unit::metre})
-          .field(
-              "rotation", &C::rotation,
-              {.meaning = "Of the camera's frame (x right, y down, z forward) in the world: three rows of a "
-                          "matrix, or [w, x, y, z]."})
-          .field(
-              "gamma", &C::gamma,
-              {.meaning = "Its pictures' values are light to the power 1/gamma: 1 of cameras for measuring, "
-                          "2.2 of most others'.",
-               .range = between(0.1, 10)})
+                 {.meaning = "Position of the entrance pupil in the world.", .unit = Unit::metre})
+          .field("rotation", &C::rotation,
+                 {.meaning = "Rotation from the camera's frame (x right, y down, z forward) to the world: "
+                             "three rows of a matrix, or a quaternion [w, x, y, z]."})
+          .field("gamma", &C::gamma,
+                 {.meaning = "Gamma of the pictures: pixel value is light to the power 1/gamma. Typical: 1 "
+                             "for measurement cameras, 2.2 for others.",
+                  .range = between(0.1, 10)})
           .field("size", &C::size,
-                 {.meaning = "Width and height of the pictures that this is about, px: others are refused.",
+                 {.meaning = "Width and height of the pictures, px. Pictures of another size are refused.",
                   .range = between(1, 65535),
                   .default_text = "any"})
-          .field("doubt", &C::doubt, {.meaning = "How wrong all that may be.", .default_text = "not at all"})
+          .field("prior", &C::prior,
+                 {.meaning = "Prior standard deviations of orientation and focal length.",
+                  .default_text = "exact"})
+          .renamed("doubt", "prior")
           .check(check_measured_camera);
   return table;
 }
 
 const Table<MeasuredCameras>& fields_of(const MeasuredCameras*) {
   static const Table<MeasuredCameras> table =
-      Table<MeasuredCameras>("cameras", "Cameras as they were measured, one for each picture.")
+      Table<MeasuredCameras>("cameras", "Measured cameras, one for each picture.")
           .field("camera", &MeasuredCameras::camera,
-                 {.meaning = "In the pictures' order.", .count = {1, 64}, .required = true})
+                 {.meaning = "Cameras, in the order of the pictures.", .count = {1, 64}, .required = true})
           .check(check_names);
   return table;
 }

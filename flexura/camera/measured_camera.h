@@ -47,7 +47,7 @@ struct MeasuredCamera {
   RotationConfig rotation;                             ///< R_WC: C's x right, y down, z forward.
   double gamma = 1;                                    ///< Its values are light to the power 1/gamma.
   std::optional<std::array<std::int64_t, 2>> size;     ///< Width and height of the pictures meant, px.
-  ViewDoubt doubt;                                     ///< In where it looks and how long its lens is.
+  ViewDoubt prior;                                     ///< Of its orientation and focal lengths.
 
   /// std::invalid_argument: as Lens says.
   [[nodiscard]] Lens lens() const;

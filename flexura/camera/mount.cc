@@ -56,45 +56,46 @@ const Table<SlideConfig>& fields_of(const SlideConfig*) {
 }
 
 const Table<StageConfig>& fields_of(const StageConfig*) {
-  static const auto table = Table<StageConfig>("stage", "What moves the mount along its own axes.")
-                                .field("x", &StageConfig::x, {.meaning = "To the right."})
-                                .field("y", &StageConfig::y, {.meaning = "Downwards."})
-                                .field("z", &StageConfig::z, {.meaning = "Forwards."})
-                                .field("delay", &StageConfig::delay,
-                                       {.meaning = "From a command until its motion starts.",
-                                        .unit = Unit::second,
-                                        .range = between(0, 1e3)});
+  static const auto table =
+      Table<StageConfig>("stage", "Linear stage that moves the mount along its own axes.")
+          .field("x", &StageConfig::x, {.meaning = "Axis to the right."})
+          .field("y", &StageConfig::y, {.meaning = "Axis downwards."})
+          .field("z", &StageConfig::z, {.meaning = "Axis forwards."})
+          .field("delay", &StageConfig::delay,
+                 {.meaning = "Delay from a command to the start of the motion.",
+                  .unit = Unit::second,
+                  .range = between(0, 1e3)});
   return table;
 }
 
 const Table<MountConfig>& fields_of(const MountConfig*) {
   static const auto table =
       Table<MountConfig>("mount",
-                         "Where the camera's head stands and which way it faces: look_at or rotation.")
+                         "Position and orientation of the camera's head. The orientation is given by "
+                         "`look_at` or `rotation`.")
           .field("position", &MountConfig::position,
-                 {.meaning = "The mount's origin, on the head's pan axis: X, Y, Z.",
+                 {.meaning = "Origin of the mount, on the head's pan axis: X, Y, Z.",
                   .unit = Unit::metre,
                   .range = place_range,
                   .required = true})
-          .field(
-              "look_at", &MountConfig::look_at,
-              {.meaning = "The point to which the camera faces at pan 0 and tilt 0, +Y upright in its image.",
-               .unit = Unit::metre,
-               .range = place_range,
-               .default_text = "not set"})
-          .field("roll", &MountConfig::roll,
+          .field("look_at", &MountConfig::look_at,
                  {.meaning =
-                      "With look_at: how far the mount is turned about that direction, clockwise seen from "
-                      "behind the camera.",
+                      "Point at which the camera looks at pan 0 and tilt 0, with +Y upright in its image.",
+                  .unit = Unit::metre,
+                  .range = place_range,
+                  .default_text = "not set"})
+          .field("roll", &MountConfig::roll,
+                 {.meaning = "Rotation of the mount about the viewing direction of `look_at`, clockwise as "
+                             "seen from behind the camera.",
                   .unit = Unit::radian,
                   .range = between(-10, 10)})
-          .field("rotation", &MountConfig::rotation,
-                 {.meaning =
-                      "Unit quaternion (w, x, y, z) that turns the mount's axes (right, down, forward) into "
-                      "the world's.",
-                  .range = between(-2, 2),
-                  .default_text = "not set"})
-          .field("stage", &MountConfig::stage, {.meaning = "What moves the mount."})
+          .field(
+              "rotation", &MountConfig::rotation,
+              {.meaning =
+                   "Unit quaternion (w, x, y, z) from the mount's axes (right, down, forward) to the world.",
+               .range = between(-2, 2),
+               .default_text = "not set"})
+          .field("stage", &MountConfig::stage, {.meaning = "Linear stage that moves the mount."})
           .check([](const MountConfig& mount, Reader& reader) {
             const Fault fault = orientation_fault(mount);
             if (!fault.what.empty()) reader.problem_at(fault.path, fault.what);

@@ -50,38 +50,41 @@ void check_sensor(const SensorConfig& sensor, Reader& reader) {
 
 // What the sensor delivers, and when.
 void add_frames(Table<SensorConfig>& table) {
-  table.field("width", &SensorConfig::width, {.meaning = "Pixels in a row.", .range = between(1, max_side)})
-      .field("height", &SensorConfig::height, {.meaning = "Rows.", .range = between(1, max_side)})
-      .field("pixels", &SensorConfig::pixels, {.meaning = "What a pixel holds: one value, or three."})
+  table.field("width", &SensorConfig::width, {.meaning = "Image width, px.", .range = between(1, max_side)})
+      .field("height", &SensorConfig::height, {.meaning = "Image height, px.", .range = between(1, max_side)})
+      .field("pixels", &SensorConfig::pixels,
+             {.meaning = "Channels of a pixel: one gray value or three colour values."})
       .field("bits", &SensorConfig::bits,
-             {.meaning = "Bits of each value; above 8 images have 16.", .range = between(1, 16)})
+             {.meaning = "Bits per value. Values of more than 8 bits are stored in 16.",
+              .range = between(1, 16)})
       .field("frame_rate", &SensorConfig::frame_rate,
-             {.meaning = "Frames a second, Hz.", .range = above_up_to(0, 1e6)})
+             {.meaning = "Frame rate, Hz.", .range = above_up_to(0, 1e6)})
       .field("exposure", &SensorConfig::exposure,
-             {.meaning = "How long a frame gathers light; motion blurs over it. 0 is an instant.",
+             {.meaning = "Exposure time of a frame, with motion blur; 0: instantaneous.",
               .unit = Unit::second,
               .range = between(0, 1e3)})
       .field("delay", &SensorConfig::delay,
-             {.meaning = "From the end of the exposure until the frame can be had.",
+             {.meaning = "Delay from the end of the exposure to the arrival of the frame.",
               .unit = Unit::second,
               .range = between(0, 1e3)})
       .field("drop", &SensorConfig::drop,
-             {.meaning = "Share of the frames that are lost.", .range = between(0, 1)})
+             {.meaning = "Fraction of the frames that are lost.", .range = between(0, 1)})
       .field("covered", &SensorConfig::covered,
-             {.meaning =
-                  "Spans of time, [from, to] each since the experiment's start, in which something covers "
-                  "the lens: pictures are dark.",
+             {.meaning = "Intervals [from, to] since the experiment's start in which the lens is covered and "
+                         "pictures are dark.",
               .unit = Unit::second,
               .range = between(0, 1e6)})
       .field("silent", &SensorConfig::silent,
-             {.meaning = "Spans of time likewise in which the camera does not answer.",
+             {.meaning =
+                  "Intervals [from, to] since the experiment's start in which the camera does not answer.",
               .unit = Unit::second,
               .range = between(0, 1e6)})
-      .field("readout", &SensorConfig::readout,
-             {.meaning = "All rows at once; one after another; or the even rows of one instant and the odd "
-                         "ones of half a frame later."})
+      .field(
+          "readout", &SensorConfig::readout,
+          {.meaning =
+               "Readout: all rows at once, row by row, or even rows first and odd rows half a frame later."})
       .field("row_time", &SensorConfig::row_time,
-             {.meaning = "Between two rows of a rolling shutter.",
+             {.meaning = "Time between two rows of a rolling shutter.",
               .unit = Unit::second,
               .range = between(0, 1)});
 }
@@ -90,25 +93,23 @@ void add_frames(Table<SensorConfig>& table) {
 void add_effects(Table<SensorConfig>& table) {
   table
       .field("vignetting", &SensorConfig::vignetting,
-             {.meaning = "Share of the light lost in the image's corners; it grows with the square of the "
+             {.meaning = "Fraction of the light lost in the image's corners. It grows with the square of the "
                          "distance from the middle.",
               .range = between(0, 1)})
       .field("psf", &SensorConfig::psf,
              {.meaning = "Standard deviation of the Gaussian blur of lens and pixel, px.",
               .range = between(0, 20)})
-      .field(
-          "full_well", &SensorConfig::full_well,
-          {.meaning = "Electrons that full scale stands for at gain 1; the shot noise is the square root of "
-                      "their number. 0 is no shot noise.",
-           .range = between(0, 1e9)})
+      .field("full_well", &SensorConfig::full_well,
+             {.meaning = "Electrons at full scale and gain 1. Shot noise is the square root of the electron "
+                         "count; 0: no shot noise.",
+              .range = between(0, 1e9)})
       .field("gain", &SensorConfig::gain,
              {.meaning = "Factor on the light and its shot noise.", .range = above_up_to(0, 1e3)})
       .field("read_noise", &SensorConfig::read_noise,
-             {.meaning =
-                  "Standard deviation of the noise added when a pixel is read, in values of an 8-bit image.",
+             {.meaning = "Standard deviation of the read noise, in values of an 8-bit image.",
               .range = between(0, 255)})
       .field("gamma", &SensorConfig::gamma,
-             {.meaning = "Values are the light to the power 1/gamma.", .range = between(0.1, 10)});
+             {.meaning = "Gamma: pixel value is light to the power 1/gamma.", .range = between(0.1, 10)});
 }
 
 }  // namespace
@@ -153,7 +154,7 @@ const std::vector<std::string>& names_of(const Readout*) {
 
 const Table<SensorConfig>& fields_of(const SensorConfig*) {
   static const auto table = [] {
-    Table<SensorConfig> result("sensor", "What turns the light on the image plane into numbers.");
+    Table<SensorConfig> result("sensor", "Image sensor: resolution, timing and noise.");
     add_frames(result);
     add_effects(result);
     result.check(check_sensor);

@@ -29,13 +29,13 @@ struct View {
   }
 };
 
-/// How wrong a camera's description may be: standard deviations of its view's error; of 0 it is believed.
+/// Prior standard deviations of the error in a camera's description; 0: exact.
 struct ViewDoubt {
-  double turn = 0;   ///< Of its frame about each axis, rad.
-  double focal = 0;  ///< Share of the focal lengths.
+  double rotation_std = 0;  ///< Of the frame's orientation, about each axis, rad.
+  double focal_std = 0;     ///< Of the focal lengths, relative.
 
-  /// Whether anything of the view is in doubt.
-  [[nodiscard]] bool is_any() const { return turn > 0 || focal > 0; }
+  /// Whether any of them is above 0.
+  [[nodiscard]] bool is_any() const { return rotation_std > 0 || focal_std > 0; }
 };
 
 /// Whether two cameras stand for the planes XOY and ZOY: `front` looks along Z and `side` along X, each

@@ -51,48 +51,49 @@ Spec row_spec(const char* meaning, NumberRange range, const char* default_text) 
 
 const Table<ZoomRow>& fields_of(const ZoomRow*) {
   static const auto table =
-      Table<ZoomRow>("zoom row", "A measured position of a zoom.")
+      Table<ZoomRow>("zoom row", "A measured zoom position.")
           .field("ratio", &ZoomRow::ratio,
-                 {.meaning = "Zoom ratio: the focal length over that at ratio 1. Rises from row to row.",
+                 {.meaning =
+                      "Zoom ratio: focal length over the focal length at ratio 1. Increases from row to row.",
                   .range = above_up_to(0, 1e4),
                   .required = true})
           .field("count", &ZoomRow::count,
-                 row_spec("Position of the zoom's motor. Where the rows have it, positions of the zoom are "
-                          "counts and not ratios; it rises, or falls, from row to row.",
+                 row_spec("Position of the zoom motor. With it, zoom positions are counts instead of ratios. "
+                          "It increases, or decreases, from row to row.",
                           {.min = -1e9, .max = 1e9}, "not set"))
-          .field(
-              "fx", &ZoomRow::fx,
-              row_spec("Focal length in pixels, across.", focal_length_range, "the lens's times the ratio"))
+          .field("fx", &ZoomRow::fx,
+                 row_spec("Horizontal focal length, px.", focal_length_range, "the lens's times the ratio"))
           .field("fy", &ZoomRow::fy,
-                 row_spec("Focal length in pixels, down.", focal_length_range, "the lens's times the ratio"))
+                 row_spec("Vertical focal length, px.", focal_length_range, "the lens's times the ratio"))
           .field("cx", &ZoomRow::cx,
-                 row_spec("Principal point, px from the left.", principal_point_range, "the lens's"))
+                 row_spec("Column of the principal point, px.", principal_point_range, "the lens's"))
           .field("cy", &ZoomRow::cy,
-                 row_spec("Principal point, px from the top.", principal_point_range, "the lens's"))
+                 row_spec("Row of the principal point, px.", principal_point_range, "the lens's"))
           .field("distortion", &ZoomRow::distortion,
-                 row_spec("Distortion k1, k2, p1, p2, k3.", distortion_range, "the lens's"));
+                 row_spec("Brown-Conrady distortion k1, k2, p1, p2, k3.", distortion_range, "the lens's"));
   return table;
 }
 
 const Table<LensConfig>& fields_of(const LensConfig*) {
   static const auto table =
-      Table<LensConfig>("lens", "A zoom lens: what it is at ratio 1, and how it changes with the zoom.")
+      Table<LensConfig>("lens", "Zoom lens: parameters at ratio 1 and their change with zoom.")
           .field("fx", &LensConfig::fx,
-                 {.meaning = "Focal length at ratio 1 in pixels, across.", .range = focal_length_range})
-          .field("fy", &LensConfig::fy, row_spec("The same, down.", focal_length_range, "fx"))
+                 {.meaning = "Horizontal focal length at ratio 1, px.", .range = focal_length_range})
+          .field("fy", &LensConfig::fy,
+                 row_spec("Vertical focal length at ratio 1, px.", focal_length_range, "fx"))
           .field("cx", &LensConfig::cx,
-                 row_spec("Principal point, px from the middle of the leftmost pixel.", principal_point_range,
-                          "the image's middle"))
+                 row_spec("Column of the principal point, px from the middle of the leftmost pixel.",
+                          principal_point_range, "the image's middle"))
           .field("cy", &LensConfig::cy,
-                 row_spec("Principal point, px from the middle of the topmost pixel.", principal_point_range,
-                          "the image's middle"))
+                 row_spec("Row of the principal point, px from the middle of the topmost pixel.",
+                          principal_point_range, "the image's middle"))
           .field("distortion", &LensConfig::distortion,
                  {.meaning = "Brown-Conrady distortion k1, k2, p1, p2, k3, in OpenCV's order.",
                   .range = distortion_range})
           .field("zoom", &LensConfig::zoom,
-                 {.meaning = "Measured positions of the zoom, as tables [[camera.lens.zoom]].",
+                 {.meaning = "Measured zoom positions, as tables [[camera.lens.zoom]].",
                   .count = {0, max_rows},
-                  .default_text = "none: focal length in proportion to the ratio, the rest constant"})
+                  .default_text = "none: focal length proportional to the ratio, the rest constant"})
           .check([](const LensConfig& config, Reader& reader) {
             if (const auto fault = ZoomTable::fault(config)) reader.problem_at(fault->path, fault->what);
           });

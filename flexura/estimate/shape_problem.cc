@@ -170,7 +170,7 @@ void ShapeProblem::add_doubt(std::size_t sighting, const ViewError& error) {
   constexpr double least = 1e-6;
   const ViewDoubt& doubt = sightings_[sighting].doubt;
   for (Eigen::Index k = 0; k < 4; ++k) {
-    const double sigma = std::max(k < 3 ? doubt.turn : doubt.focal, least);
+    const double sigma = std::max(k < 3 ? doubt.rotation_std : doubt.focal_std, least);
     residuals_[count_] = (k < 3 ? error.turn[k] : error.focal) / sigma;
     derivatives_.row(count_).setZero();
     derivatives_(count_, variables_.of_view(sighting) + k) = 1 / sigma;

@@ -20,7 +20,7 @@ namespace {
 // The turn of a view that is in doubt after which the base is seen where the arm begins.
 ViewError aimed_at_base(const Sighting& seen, const Eigen::Vector3d& p_WB) {
   ViewError error;
-  if (!(seen.doubt.turn > 0) || !seen.ends[0]) return error;
+  if (!(seen.doubt.rotation_std > 0) || !seen.ends[0]) return error;
   const auto ray = seen.view.lens.unproject(seen.ends[0]->pixel);
   if (!ray) return error;
   const Eigen::Vector3d looked = ray->homogeneous().normalized(),
@@ -28,7 +28,7 @@ ViewError aimed_at_base(const Sighting& seen, const Eigen::Vector3d& p_WB) {
   // Farther off it is no base, but where the arm comes out from behind something.
   constexpr double most = 3;  // Of the doubt.
   const Eigen::Vector3d turn = looked.cross(there);
-  if (turn.norm() < most * seen.doubt.turn) error.turn = turn;
+  if (turn.norm() < most * seen.doubt.rotation_std) error.turn = turn;
   return error;
 }
 

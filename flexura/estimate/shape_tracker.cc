@@ -34,8 +34,8 @@ ShapeBelief ShapeTracker::gone_on(std::span<const Sighting> sightings, double ti
   for (std::size_t i = 0; i < sightings.size() && variables.count() == variances.size(); ++i) {
     const Eigen::Index at = variables.of_view(i);
     if (at < 0) continue;
-    const double turn = sightings[i].doubt.turn > 0 ? config_.turn_drift : 0,
-                 focal = sightings[i].doubt.focal > 0 ? config_.focal_drift : 0;
+    const double turn = sightings[i].doubt.rotation_std > 0 ? config_.turn_drift : 0,
+                 focal = sightings[i].doubt.focal_std > 0 ? config_.focal_drift : 0;
     variances.segment<3>(at).array() += turn * turn * since;
     variances[at + 3] += focal * focal * since;
   }

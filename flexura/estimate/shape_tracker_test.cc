@@ -125,7 +125,7 @@ TEST(ShapeTracker, FindsOutThatACameraIsWrongFarBeyondDoubt) {
     const Backbone truth(prior.arm, state);
     std::vector<Sighting> seen = wrong_cameras(truth, random, 0.02, 0).seen;
     seen[1].view = corrected(seen[1].view, {.turn = Eigen::Vector3d::Zero(), .focal = 0.2});
-    for (Sighting& one : seen) one.doubt = {.turn = 0.02, .focal = 0.02};
+    for (Sighting& one : seen) one.doubt = {.rotation_std = 0.02, .focal_std = 0.02};
     ShapeTracker tracker(prior, {});
     ArmState expected = state;
     for (Eigen::Vector2d& bend : expected.bends) bend += random.vector<2>(-0.2, 0.2);
@@ -172,7 +172,7 @@ TEST(ShapeTracker, LeavesAloneWhatIsNotDoubted) {
     std::optional<ArmState> expected;
     for (int k = 0; k < 30; ++k) {
       WrongCameras cameras = wrong_cameras(Backbone(prior.arm, state), random, 0.05);
-      for (Sighting& one : cameras.seen) one.doubt = {.turn = 0.02, .focal = 0};
+      for (Sighting& one : cameras.seen) one.doubt = {.rotation_std = 0.02, .focal_std = 0};
       const ShapeEstimate found = tracker.look(cameras.seen, k, expected);
       for (const ViewError& error : found.shape.views) EXPECT_LT(std::abs(error.focal), 1e-4);
       expected = found.shape.state;

@@ -45,7 +45,7 @@ TEST(BadDriveFiles, TheGoodOneIsGood) { EXPECT_EQ(error_of_file(good_drive), "no
 TEST(BadDriveFiles, EachGetsALineWithPlaceValueAndExpectation) {
   const std::vector<BadFile> files{
       {"no tendons", "[[arm.section]]\nlength = 1\n[drive]\n",
-       "x.toml:3:2: drive.tendon: missing: expected an array (The tendons in the order"},
+       "x.toml:3:2: drive.tendon: missing: expected an array (Tendons in the order"},
       {"no section", drive_with("section = 1\n", ""),
        "x.toml:13:1: drive.tendon[0].section: missing: expected"},
       {"no angle", drive_with("angle_deg = 0\n", ""),

@@ -33,10 +33,10 @@ TEST(BadFiles, TheGoodOneIsGood) { EXPECT_EQ(error_of_file(good_file), "no error
 
 TEST(BadFiles, EachGetsALineWithPlaceValueAndExpectation) {
   const std::vector<BadFile> files{
-      {"empty", "", "x.toml:1:1: arm: missing: expected a table (The arm.)"},
+      {"empty", "", "x.toml:1:1: arm: missing: expected a table (Arm.)"},
       {"blank", "\n\n# nothing\n", "x.toml:1:1: arm: missing"},
       {"no sections", "[arm]\nkind = 'planar'\n",
-       "x.toml:1:2: arm.section: missing: expected an array (The sections, base first, as tables "
+       "x.toml:1:2: arm.section: missing: expected an array (Sections from base to tip, as tables "
        "[[arm.section]].)"},
       {"empty arm", "[arm]\nsection = []\n",
        "x.toml:2:11: arm.section is an empty array: expected an array of 1 to 1000"},
@@ -129,7 +129,7 @@ TEST(BadFiles, EachGetsALineWithPlaceValueAndExpectation) {
       {"negative duration", file_with("duration = 2.0", "duration = -2.0"),
        "x.toml:9:12: task[0].duration = -2: expected a number from 1e-09 s"},
       {"no target", file_with("to.archings_pi = [0.1, 0.2]\n", ""),
-       "x.toml:7:1: task[0].to: missing: expected a table (The shape to reach, as"},
+       "x.toml:7:1: task[0].to: missing: expected a table (Target shape, as"},
       {"too few angles", file_with("[0.1, 0.2]", "[0.1]"),
        "x.toml:10:4: task[0].to.archings: 1 given: expected 2, one for each section"},
       {"bad angle", file_with("0.2]", "true]"),

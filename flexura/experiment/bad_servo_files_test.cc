@@ -65,7 +65,8 @@ TEST(BadServo, EachIsOneClearLine) {
            {"settle = 5\ntimeout = 4\ntarget = [{" + bends + "}]\n",
             "task[0].timeout: 4 s: expected more than settle, 5 s"},
            {"target = [{curve = [[0, 0, 0], [0, 1e-300, 0]]}]\n", "target[0].curve: has no length"},
-           {"lost = 0.1\ntarget = [{" + bends + "}]\n", "task[0].lost: 0.1 s: expected more than blind"},
+           {"give_up_after = 0.1\ntarget = [{" + bends + "}]\n",
+            "task[0].give_up_after: 0.1 s: expected more than hold_after"},
            {"target = [{bends = [[0, 0], [0, 0], [0, 0], [0, 0]]}]\n",
             "4 given: expected 3, one for each section"},
            {"target = [{" + bends + ", stretches = [1]}]\n", "1 given: expected 3, one for each section"},
@@ -81,6 +82,21 @@ TEST(BadServo, EachIsOneClearLine) {
     EXPECT_NE(found.find(words), std::string::npos) << task << " -> " << found;
   }
   EXPECT_EQ(complaint("target = [{" + bends + "}]\n"), "");
+}
+
+TEST(BadServo, KeysOfOlderVersionsAreGivenTheirNewNames) {
+  const std::string bends = "bends = [[0, 0], [0, 0], [0, 0]]";
+  const std::string old_keys =
+      "blind_ms = 100\nlost = 2\ndoubt = { turn_deg = 1 }\ntarget = [{" + bends + "}]\n";
+  const std::string found = complaint(old_keys);
+  EXPECT_NE(found.find("task[0].blind_ms: is now called \"hold_after_ms\""), std::string::npos) << found;
+  EXPECT_NE(found.find("task[0].lost: is now called \"give_up_after\""), std::string::npos) << found;
+  EXPECT_NE(found.find("task[0].doubt: is now called \"camera_prior\""), std::string::npos) << found;
+  EXPECT_EQ(std::count(found.begin(), found.end(), '\n'), 2) << found;
+  const std::string inside = complaint("camera_prior = { turn_deg = 1 }\ntarget = [{" + bends + "}]\n");
+  EXPECT_NE(inside.find("task[0].camera_prior.turn_deg: is now called \"rotation_std_deg\""),
+            std::string::npos)
+      << inside;
 }
 
 // Of the task's first line, once for both cameras.
@@ -106,16 +122,17 @@ TEST(BadServo, PicturesThatComeAfterItIsGivenUp) {
   const auto late = [](const std::string& task, const std::string& delay) {
     return complaint_of(servo_file(task + servo_target, {.sensor = "exposure = 0.002, delay = " + delay}));
   };
-  EXPECT_NE(
-      late("", "100").find("task[0].lost: 3 s: expected more than the 100.002 s after which a picture of "
-                           "camera front comes"),
-      std::string::npos)
+  EXPECT_NE(late("", "100").find(
+                "task[0].give_up_after: 3 s: expected more than the 100.002 s after which a picture of "
+                "camera front comes"),
+            std::string::npos)
       << late("", "100");
   EXPECT_NE(late("", "2.999"), "");
   EXPECT_EQ(late("", "2.99"), "");
-  EXPECT_EQ(late("lost = 40\n", "30"), "");
-  EXPECT_NE(late("lost = 100\n", "70").find("at most 60 s"), std::string::npos) << late("lost = 100\n", "70");
-  EXPECT_EQ(late("lost = 100\n", "59"), "");
+  EXPECT_EQ(late("give_up_after = 40\n", "30"), "");
+  EXPECT_NE(late("give_up_after = 100\n", "70").find("at most 60 s"), std::string::npos)
+      << late("give_up_after = 100\n", "70");
+  EXPECT_EQ(late("give_up_after = 100\n", "59"), "");
 }
 
 // What is wrong with a target of two pictures that are this file.

@@ -107,11 +107,13 @@ TEST(EtalonLoop, RefusesKeysThatCountForNothing) {
   const LoopRig arcs = arcs_cameras({WrongStart{}, WrongStart{}});
   const std::string count = ": counts with bundle and bundle-etalon alone: expected no such key";
   EXPECT_THAT(
-      problems_of(arcs_rig("method = \"arcs\"\nguess = { focal = 0.2, principal_point = 3, zero = 0.1, "
-                           "rotation = 0.1, exact_heads = true }\nloop.arc_deg = 80\n",
-                           arcs)),
-      ::testing::ElementsAre("task[0].guess.focal" + count, "task[0].guess.principal_point" + count,
-                             "task[0].guess.zero" + count));
+      problems_of(arcs_rig(
+          "method = \"arcs\"\ncamera_prior = { focal_std = 0.2, principal_point_std = 3, zero_std = 0.1, "
+          "rotation_std = 0.1, exact_heads = true }\nloop.arc_deg = 80\n",
+          arcs)),
+      ::testing::ElementsAre("task[0].camera_prior.focal_std" + count,
+                             "task[0].camera_prior.principal_point_std" + count,
+                             "task[0].camera_prior.zero_std" + count));
   EXPECT_THAT(problems_of(etalon_rig("method = \"etalon-paper\"\nloop = { turn_deg = 1, slide = 0.1, "
                                      "zoom_step = 0.1, accepted = 1, zoom_accepted = 0.1 }\n",
                                      rig)),
@@ -119,8 +121,9 @@ TEST(EtalonLoop, RefusesKeysThatCountForNothing) {
 }
 
 TEST(ArcsLoop, TakesTheRigForAsWrongAsTheFileSays) {
-  CalibrationBench bench(arcs_rig("method = \"arcs\"\nguess = { rotation = 0.02, exact_heads = true }\n",
-                                  arcs_cameras({WrongStart{}, WrongStart{}}, false)));
+  CalibrationBench bench(
+      arcs_rig("method = \"arcs\"\ncamera_prior = { rotation_std = 0.02, exact_heads = true }\n",
+               arcs_cameras({WrongStart{}, WrongStart{}}, false)));
   const Experiment& file = bench.experiment();
   const LoopConfig config =
       loop_config(std::get<CalibrateTask>(file.task.front()), file.arm, file.cameras(), file.stand);
@@ -139,7 +142,7 @@ TEST(ArcsLoop, TakesTheRigForAsWrongAsTheFileSays) {
 // Of the distance from what is looked at: the cylinder may stand far from the arm's base.
 TEST(EtalonLoop, DoubtsPlacesByTheDistanceFromTheCylinder) {
   const CalibrationBench bench(
-      etalon_rig("method = \"bundle-etalon\"\nguess.distance = 0.1\n", {}, "height = 0.4\n"));
+      etalon_rig("method = \"bundle-etalon\"\ncamera_prior.position_std = 0.1\n", {}, "height = 0.4\n"));
   const Experiment& file = bench.experiment();
   const RigModel believed = rig_model(file.arm.arm(), file.cameras());
   const RigPrior prior = session_prior(std::get<CalibrateTask>(file.task.front()), believed, file.stand);

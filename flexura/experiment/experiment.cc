@@ -20,12 +20,11 @@ void check_experiment(const Experiment& experiment, Reader& reader) {
 
 const Table<Experiment>& fields_of(const Experiment*) {
   static const auto table =
-      with_setup_fields(
-          Table<Experiment>(
-              "Flexura experiment file",
-              "A rig and the tasks it does, one after another. An arm alone is a file with [arm] only."))
-          .field("task", &Experiment::task,
-                 {.meaning = "What is done, in this order.", .count = {0, max_tasks}, .default_text = "none"})
+      with_setup_fields(Table<Experiment>("Flexura experiment file",
+                                          "A rig and its tasks. A file with [arm] alone describes an arm."))
+          .field(
+              "task", &Experiment::task,
+              {.meaning = "Tasks, in order of execution.", .count = {0, max_tasks}, .default_text = "none"})
           .check(check_experiment);
   return table;
 }

@@ -83,7 +83,7 @@ class FlowTrial {
     rig.sensor = sensor;
     // A slow way, so that there are many pictures of an arm that moves.
     return servo_file(
-        "tolerance = 0.002\nsettle = 1\ndoubt = { turn = 0, focal = 0 }\n"
+        "tolerance = 0.002\nsettle = 1\ncamera_prior = { rotation_std = 0, focal_std = 0 }\n"
         "target = [{ time = 0, bends = [[0.1, 0.0], [0.0, 0.1], [-0.1, 0.0]] },\n"
         "{ time = 3, bends = [[0.8, 0.3], [-0.7, 0.5], [0.6, -0.6]] }]\n",
         rig);

@@ -316,20 +316,22 @@ TEST(EtalonLoop, RefusesWhatItCannotDo) {
           "[arm]\n[[arm.section]]\nlength = 1\n[[task]]\nkind = \"calibrate\"\nmethod = \"etalon\"\n"),
       HasSubstr("expected [stand.etalon]"));
   const LoopRig rig = {.size = 0.5};
+  EXPECT_EQ(problem_of(etalon_rig("method = \"etalon\"\ncamera_prior.rotation_std_deg = 5\n", rig)),
+            "task[0].camera_prior: is asked for by the methods bundle, bundle-etalon and arcs: expected no "
+            "such key");
   EXPECT_EQ(
-      problem_of(etalon_rig("method = \"etalon\"\nguess.rotation_deg = 5\n", rig)),
-      "task[0].guess: is asked for by the methods bundle, bundle-etalon and arcs: expected no such key");
-  EXPECT_EQ(problem_of(etalon_rig("method = \"etalon\"\nwanted.angle_deg = 1\n", rig)),
-            "task[0].wanted: is what the methods bundle and bundle-etalon stop by: expected no such key");
+      problem_of(etalon_rig("method = \"etalon\"\nrequired_std.angle_deg = 1\n", rig)),
+      "task[0].required_std: is what the methods bundle and bundle-etalon stop by: expected no such key");
   EXPECT_EQ(problem_of(etalon_rig("method = \"bundle-etalon\"\npose = [{ bends = [[0.1, 0]] }]\n", rig)),
             "task[0]: has no pose and no zooms with this method: expected none of these keys");
   EXPECT_EQ(problem_of(etalon_rig("method = \"bundle-etalon\"\nloop.turn_deg = 1\n", rig)),
             "task[0].loop: is how the paper's methods go about it, bundle and bundle-etalon do not: expected "
             "no such key");
-  EXPECT_EQ(error_of_file(etalon_rig("method = \"bundle-etalon\"\nstages = false\nwanted.angle_deg = 1\n"
-                                     "target = [0, 0.4, 0]\nguess.zero_deg = 1\n",
-                                     rig)),
-            "no error");
+  EXPECT_EQ(
+      error_of_file(etalon_rig("method = \"bundle-etalon\"\nstages = false\nrequired_std.angle_deg = 1\n"
+                               "target = [0, 0.4, 0]\ncamera_prior.zero_std_deg = 1\n",
+                               rig)),
+      "no error");
 }
 
 }  // namespace

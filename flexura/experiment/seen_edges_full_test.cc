@@ -22,7 +22,7 @@ namespace {
 TEST(MeasuredEdges, AreTheTrueContours) {
   ServoSetup rig;
   rig.sensor = "read_noise = 1, delay = 0, exposure = 0";
-  ServoBench bench(servo_file("doubt = { turn = 0, focal = 0 }\n" + servo_target, rig));
+  ServoBench bench(servo_file("camera_prior = { rotation_std = 0, focal_std = 0 }\n" + servo_target, rig));
   SightKeeper keeper(bench);
   const RigModel model = bench.believed();
   (void)servo_in_session(bench.ports(), model, bench.config(), keeper);

@@ -19,13 +19,13 @@ namespace {
 TEST(ServoEnds, CamerasThatAreNotDoubtedAreBelieved) {
   ServoSetup rig;
   rig.rest = "[[truth.camera]]\nname = \"side\"\nhead = { pan = { zero_deg = 0.5 } }\n";
-  ServoBench bench(servo_file("doubt = { turn = 0, focal = 0 }\n" + servo_target, rig));
+  ServoBench bench(servo_file("camera_prior = { rotation_std = 0, focal_std = 0 }\n" + servo_target, rig));
   const ServoResult result = bench.servo();
   ASSERT_TRUE(result.is_done) << result.reason;
   // 2.5 m away.
   EXPECT_LT(bench.truth(std::get<ArmState>(bench.config().goals.front().shape)).rms, 0.03);
   // What cameras that are wrong are off by is there in every picture alike: sigma is of the noise.
-  ServoBench right(servo_file("doubt = { turn = 0, focal = 0 }\n" + servo_target));
+  ServoBench right(servo_file("camera_prior = { rotation_std = 0, focal_std = 0 }\n" + servo_target));
   const double sigma = right.servo().steps.back().sigma;
   EXPECT_GT(result.steps.back().sigma, sigma / 5);
   EXPECT_LT(result.steps.back().sigma, 5 * sigma);
@@ -34,7 +34,8 @@ TEST(ServoEnds, CamerasThatAreNotDoubtedAreBelieved) {
 // And cameras that are right lose nothing by it.
 TEST(ServoEnds, CamerasThatAreRightNeedNoDoubt) {
   ServoBench bench(
-      servo_file("doubt = { turn = 0, focal = 0 }\ntolerance = 0.0005\nsettle = 0.5\n" + servo_target));
+      servo_file("camera_prior = { rotation_std = 0, focal_std = 0 }\ntolerance = 0.0005\nsettle = 0.5\n" +
+                 servo_target));
   const ServoResult result = bench.servo();
   ASSERT_TRUE(result.is_done) << result.reason;
   EXPECT_LT(bench.truth(std::get<ArmState>(bench.config().goals.front().shape)).rms, 0.001);
@@ -60,7 +61,7 @@ TEST(ServoEnds, ACameraThatIsWrongFarBeyondDoubtIsNamed) {
 TEST(ServoEnds, PicturesFromBeforeItBeganAreNotGoneBy) {
   ServoSetup rig;
   rig.sensor = "read_noise = 1, delay = 0.5, exposure = 0.002";
-  ServoBench bench(servo_file("blind = 1\n" + servo_target, rig));
+  ServoBench bench(servo_file("hold_after = 1\n" + servo_target, rig));
   RigPorts ports = bench.ports();
   const ArmState bent = {{{0.5, 0}, {0, 0.5}, {0, 0}}, {1, 1, 1}};
   ASSERT_FALSE(ports.arm->command(bent, 1).fault());
@@ -119,7 +120,7 @@ TEST(ServoEnds, ACameraThatSendsNothingIsNamed) {
   EXPECT_EQ(result.reason, "out of view: no pictures come of camera side");
   ASSERT_TRUE(result.fault);
   EXPECT_EQ(result.fault->reason, result.reason);
-  EXPECT_NEAR(result.fault->time, bench.config().lost, 0.1);
+  EXPECT_NEAR(result.fault->time, bench.config().give_up_after, 0.1);
 }
 
 // Whatever ends it: what was seen, sent and asked for last is kept, and in the summary.

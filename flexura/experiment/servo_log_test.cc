@@ -19,7 +19,7 @@ namespace {
 // Every command to a head that follows stands in the log, as every stretch does.
 TEST(ServoLog, HasWhatHeadsAndStretchesWereSentTo) {
   const std::string task =
-      "follow = true\nblind = 1\n[[task.target]]\nbends = [[1.2, 0.9], [0.8, 0.6], [0.2, 0.1]]\n"
+      "follow = true\nhold_after = 1\n[[task.target]]\nbends = [[1.2, 0.9], [0.8, 0.6], [0.2, 0.1]]\n"
       "stretches = [1.1, 1, 0.9]\n";
   ServoSetup rig;
   rig.sensor = "read_noise = 1, delay = 0.3, exposure = 0.002";

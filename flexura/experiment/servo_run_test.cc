@@ -21,8 +21,10 @@ TEST(ServoConfig, HasEverySettingOfItsTask) {
       ServoBench(
           servo_file("cameras = [\"side\", \"front\"]\nlaw = \"chords\"\nmeasure = \"flow\"\nanchor = 0.21\n"
                      "jacobian = \"recursive\"\npoints = 7\nrate = 3.5\ndamping = 0.023\npredict = false\n"
-                     "tolerance = 0.013\nsettle = 0.7\ntimeout = 11\nblind = 0.4\nlost = 2.5\nfollow = true\n"
-                     "doubt = { turn = 0.03, focal = 0.05 }\nstep = 0.04\n[[task.target]]\ntime = 0.6\n"
+                     "tolerance = 0.013\nsettle = 0.7\ntimeout = 11\nhold_after = 0.4\ngive_up_after = "
+                     "2.5\nfollow = true\n"
+                     "camera_prior = { rotation_std = 0.03, focal_std = 0.05 }\nstep = "
+                     "0.04\n[[task.target]]\ntime = 0.6\n"
                      "bends = [[0.1, 0], [0.2, 0], [0.3, 0]]\n",
                      rig))
           .config();
@@ -38,11 +40,11 @@ TEST(ServoConfig, HasEverySettingOfItsTask) {
   EXPECT_EQ(config.tolerance, 0.013);
   EXPECT_EQ(config.settle, 0.7);
   EXPECT_EQ(config.timeout, 11);
-  EXPECT_EQ(config.blind, 0.4);
-  EXPECT_EQ(config.lost, 2.5);
+  EXPECT_EQ(config.hold_after, 0.4);
+  EXPECT_EQ(config.give_up_after, 2.5);
   EXPECT_TRUE(config.follow);
-  EXPECT_EQ(config.doubt.turn, 0.03);
-  EXPECT_EQ(config.doubt.focal, 0.05);
+  EXPECT_EQ(config.camera_prior.rotation_std, 0.03);
+  EXPECT_EQ(config.camera_prior.focal_std, 0.05);
   EXPECT_EQ(config.step, 0.04);
   EXPECT_EQ(config.list_step, 0.05) << "the clock's";
   EXPECT_EQ(config.obstacles.size(), 1U);
@@ -55,12 +57,12 @@ TEST(ServoConfig, HasEverySettingOfItsTask) {
 
 // A picture every fifth of a second: between two of them nobody is blind, whatever the task says.
 TEST(ServoConfig, WaitsForThePicturesOfItsSlowerCamera) {
-  std::string file = servo_file("blind = 0.1\nlost = 0.4\n" + servo_target);
+  std::string file = servo_file("hold_after = 0.1\ngive_up_after = 0.4\n" + servo_target);
   file.replace(file.rfind("frame_rate = 30"), 15, "frame_rate = 5");
   const ServoConfig config = ServoBench(file).config();
   EXPECT_EQ(config.step, 0.2);
-  EXPECT_NEAR(config.blind, 0.3, 1e-15);
-  EXPECT_NEAR(config.lost, 0.6, 1e-15);
+  EXPECT_NEAR(config.hold_after, 0.3, 1e-15);
+  EXPECT_NEAR(config.give_up_after, 0.6, 1e-15);
 }
 
 }  // namespace

@@ -156,7 +156,7 @@ TEST(ServoTargets, AnArmThatGoesTheOtherWayIsToldAsDiverging) {
 TEST(ServoTargets, CamerasThatFollowZoomOutToKeepTheArmInView) {
   const std::string bent = "[arm.initial]\nbends = [[0.9, 0.2], [-0.9, 0.3], [0.9, -0.4]]\n";
   std::string file = servo_file(
-      "follow = true\nblind = 1\ntolerance = 0.004\n[[task.target]]\nbends = [[0, 0], [0, 0], [0, 0]]\n",
+      "follow = true\nhold_after = 1\ntolerance = 0.004\n[[task.target]]\nbends = [[0, 0], [0, 0], [0, 0]]\n",
       {.rest = bent});
   const std::string lens = "lens = { fx = 400 }";
   for (std::size_t at = 0; (at = file.find(lens, at)) != std::string::npos;)

@@ -86,7 +86,7 @@ INSTANTIATE_TEST_SUITE_P(All, IdealServo,
 TEST(Servo, IsPatientWithLatePictures) {
   ServoSetup setup;
   setup.sensor = "read_noise = 1, delay = 1, exposure = 0.002";
-  ServoBench bench(servo_file("blind = 3\nlost = 10\n" + servo_target, setup));
+  ServoBench bench(servo_file("hold_after = 3\ngive_up_after = 10\n" + servo_target, setup));
   const ServoResult result = bench.servo();
   ASSERT_TRUE(result.is_done) << result.reason;
   EXPECT_LT(bench.truth(wanted).rms, 0.006);
@@ -98,7 +98,8 @@ TEST(Servo, HeadsFollowTheArm) {
   ServoSetup setup;
   setup.sensor = "read_noise = 1, delay = 0.3, exposure = 0.002";
   ServoBench bench(servo_file(
-      "follow = true\nblind = 1\n[[task.target]]\nbends = [[1.2, 0.9], [0.8, 0.6], [0.2, 0.1]]\n", setup));
+      "follow = true\nhold_after = 1\n[[task.target]]\nbends = [[1.2, 0.9], [0.8, 0.6], [0.2, 0.1]]\n",
+      setup));
   const ServoResult result = bench.servo();
   ASSERT_TRUE(result.is_done) << result.reason;
   const ArmState bent = {{{1.2, 0.9}, {0.8, 0.6}, {0.2, 0.1}}, {1, 1, 1}};
@@ -159,7 +160,7 @@ TEST(Servo, WaitsWhileACameraIsCovered) {
 }
 
 TEST(Servo, GivesUpWithoutACamera) {
-  ServoBench bench(servo_file("lost = 1\n" + servo_target, side_camera("silent = [[0.4, 1e6]]")));
+  ServoBench bench(servo_file("give_up_after = 1\n" + servo_target, side_camera("silent = [[0.4, 1e6]]")));
   const ServoResult result = bench.servo();
   EXPECT_FALSE(result.is_done);
   EXPECT_NE(result.reason.find("out of view: camera side: link lost"), std::string::npos) << result.reason;

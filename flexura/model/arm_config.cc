@@ -54,42 +54,42 @@ const std::vector<std::string>& names_of(const ArmKind*) {
 
 const Table<Section>& fields_of(const Section*) {
   static const auto table =
-      Table<Section>("section", "One independently bent part of the arm, base first.")
+      Table<Section>("section", "One independently bent part of the arm.")
           .field("length", &Section::length,
-                 {.meaning = "Arc length of the section's centreline when not stretched.",
+                 {.meaning = "Arc length of the section's centerline at stretch 1.",
                   .unit = Unit::metre,
                   .range = size_range,
                   .required = true})
-          .field("radius", &Section::radius,
-                 {.meaning = "Radius of the tube; two numbers for a taper, at the section's base and end.",
-                  .unit = Unit::metre,
-                  .range = size_range,
-                  .one_for_all = true})
+          .field(
+              "radius", &Section::radius,
+              {.meaning = "Radius of the tube. Two numbers describe a taper, at the section's base and end.",
+               .unit = Unit::metre,
+               .range = size_range,
+               .one_for_all = true})
           .field("max_bend", &Section::max_bend,
-                 {.meaning = "Largest bend angle of the section (twice the arching).",
+                 {.meaning = "Largest bend angle of the section: twice its arching.",
                   .unit = Unit::radian,
                   .range = above(0),
                   .default_text = "no limit"})
           .field("max_bend_rate", &Section::max_bend_rate,
-                 {.meaning = "Fastest change of the bend.",
+                 {.meaning = "Largest bend rate.",
                   .unit = Unit::radian_per_second,
                   .range = above(0),
                   .default_text = "no limit"})
           .field("stretch_limits", &Section::stretch_limits,
-                 {.meaning = "Smallest and largest factor on the length.", .range = above_up_to(0, 100)})
+                 {.meaning = "Smallest and largest stretch.", .range = above_up_to(0, 100)})
           .field("max_stretch_rate", &Section::max_stretch_rate,
-                 {.meaning = "Fastest change of the stretch, 1/s.",
-                  .range = above(0),
-                  .default_text = "no limit"})
-          .field("bend_profile", &Section::bend_profile,
-                 {.meaning = "How the bend is spread along the section: it is so many arcs of equal length, "
-                             "bent in these proportions. Where the arm's model is static, so many arcs stand "
-                             "for the rod, each bent by this factor more than computed.",
-                  .range = between(0, 1e6),
-                  .count = {1, max_arcs},
-                  .default_text = "one arc; static: three"})
+                 {.meaning = "Largest stretch rate, 1/s.", .range = above(0), .default_text = "no limit"})
+          .field(
+              "bend_profile", &Section::bend_profile,
+              {.meaning =
+                   "Relative bends of arcs of equal length that make up the section. For a static arm: "
+                   "number of arcs that approximate the rod, and a factor on the computed bend of each arc.",
+               .range = between(0, 1e6),
+               .count = {1, max_arcs},
+               .default_text = "one arc; three if static"})
           .field("material", &Section::material,
-                 {.meaning = "What the elastic rod in the section is made of.", .default_text = "none"})
+                 {.meaning = "Elastic rod in the section.", .default_text = "none"})
           .check([](const Section& section, Reader& reader) {
             const auto& profile = section.bend_profile;
             if (profile && std::ranges::all_of(*profile, [](double part) { return part == 0; }))
@@ -105,26 +105,24 @@ const Table<Section>& fields_of(const Section*) {
 const Table<ShapeConfig>& fields_of(const ShapeConfig*) {
   static const auto table =
       Table<ShapeConfig>("shape",
-                         "A shape of the arm: its bends in one of three ways, and its stretches. What is "
-                         "left out is straight and unstretched.")
+                         "Shape of the arm: bends in one of three forms, and stretches. Omitted bends are 0.")
           .field("cord_angles", &ShapeConfig::cord_angles,
-                 {.meaning = "Planar arms: the angle of each section's cord from +X, counter-clockwise.",
+                 {.meaning = "Planar arms: angle of each section's chord from +X, counter-clockwise.",
                   .unit = Unit::radian,
                   .range = angle_range,
                   .default_text = "not set"})
           .field("archings", &ShapeConfig::archings,
-                 {.meaning = "Planar arms: each section's arching, half its bend, counter-clockwise.",
+                 {.meaning = "Planar arms: arching of each section, half its bend, counter-clockwise.",
                   .unit = Unit::radian,
                   .range = arching_range,
                   .default_text = "not set"})
           .field("bends", &ShapeConfig::bends,
-                 {.meaning =
-                      "Each section's bend vector: the bend towards the x and the y of its own base frame.",
+                 {.meaning = "Bend vector of each section: bends towards x and y of its own base frame.",
                   .unit = Unit::radian,
                   .range = bend_range,
                   .default_text = "not set"})
           .field("stretches", &ShapeConfig::stretches,
-                 {.meaning = "The factor on each section's length.",
+                 {.meaning = "Factor on the length of each section.",
                   .range = above_up_to(0, 100),
                   .default_text = "1 each"});
   return table;
@@ -132,22 +130,20 @@ const Table<ShapeConfig>& fields_of(const ShapeConfig*) {
 
 const Table<BaseConfig>& fields_of(const BaseConfig*) {
   static const auto table =
-      Table<BaseConfig>("base", "Where the arm stands in the world: by default in the origin, along +Y.")
+      Table<BaseConfig>("base", "Pose of the arm's base in the world.")
           .field(
               "position", &BaseConfig::position,
-              {.meaning = "Where the arm starts: X, Y, Z.", .unit = Unit::metre, .range = between(-1e6, 1e6)})
+              {.meaning = "Position of the base: X, Y, Z.", .unit = Unit::metre, .range = between(-1e6, 1e6)})
           .field("tangent", &BaseConfig::tangent,
-                 {.meaning = "Planar arms: the angle of the straight arm from +X, counter-clockwise.",
+                 {.meaning = "Planar arms: angle of the straight arm from +X, counter-clockwise.",
                   .unit = Unit::radian,
                   .range = angle_range,
                   .default_text = "pi/2"})
-          .field(
-              "rotation", &BaseConfig::rotation,
-              {.meaning =
-                   "Spatial arms: unit quaternion (w, x, y, z) that turns the base's axes into the world's; "
-                   "the straight arm runs along the base's z.",
-               .range = between(-2, 2),
-               .default_text = "z along +Y, x along +X"})
+          .field("rotation", &BaseConfig::rotation,
+                 {.meaning = "Spatial arms: unit quaternion (w, x, y, z) from the base's axes to the world. "
+                             "The straight arm points along the base's z.",
+                  .range = between(-2, 2),
+                  .default_text = "z along +Y, x along +X"})
           .check([](const BaseConfig& base, Reader& reader) {
             const std::string problem = base.rotation ? quaternion_problem(*base.rotation) : "";
             if (!problem.empty()) reader.problem_at("rotation", problem);
@@ -157,50 +153,45 @@ const Table<BaseConfig>& fields_of(const BaseConfig*) {
 
 const Table<ArmConfig>& fields_of(const ArmConfig*) {
   static const auto table =
-      Table<ArmConfig>("arm",
-                       "The arm: what it is made of, where it stands, and the shape in which it starts.")
+      Table<ArmConfig>("arm", "The arm: sections, base, initial shape and mechanical model.")
           .field("kind", &ArmConfig::kind,
-                 {.meaning =
-                      "Whether the arm bends in the XOY plane only, as the paper's, or in any direction."})
-          .field("base", &ArmConfig::base, {.meaning = "Where the arm stands."})
-          .field("initial", &ArmConfig::initial, {.meaning = "The shape in which the arm starts."})
+                 {.meaning = "Bending in the XOY plane only, as in the paper, or in any direction."})
+          .field("base", &ArmConfig::base, {.meaning = "Pose of the base."})
+          .field("initial", &ArmConfig::initial, {.meaning = "Initial shape."})
           .field("section", &ArmConfig::section,
-                 {.meaning = "The sections, base first, as tables [[arm.section]].",
+                 {.meaning = "Sections from base to tip, as tables [[arm.section]].",
                   .count = {1, max_sections},
                   .required = true})
-          .field("look", &ArmConfig::look, {.meaning = "What a camera sees of it beside its shape."})
-          .field(
-              "model", &ArmConfig::mechanics,
-              {.meaning = "kinematic: the arm's shape is as commands say. static: its sections are elastic "
-                          "rods, at rest under their tendons, gravity and loads; each needs a material. "
-                          "dynamic: these rods in motion, which swing; tasks believe them at rest. Under "
-                          "[truth.arm] the simulated arm is such a rod while the tasks go on believing what "
-                          "[arm] says."})
+          .field("look", &ArmConfig::look, {.meaning = "Appearance in the cameras' pictures."})
+          .field("model", &ArmConfig::mechanics,
+                 {.meaning =
+                      "Model of the arm. `kinematic`: shapes follow commands exactly. `static`: sections are "
+                      "elastic rods in equilibrium with tendons, gravity and loads; each needs a material. "
+                      "`dynamic`: these rods move and swing, but tasks use their equilibrium. Under "
+                      "[truth.arm] only the simulated arm is such a rod; tasks use the model of [arm]."})
           .field("gravity", &ArmConfig::gravity,
-                 {.meaning = "Gravity in the world's frame, X, Y, Z: [0, -9.81, 0] where +Y is up. It bends "
-                             "elastic rods alone.",
+                 {.meaning = "Gravity in the world's frame, X, Y, Z: [0, -9.81, 0] where +Y is up. Affects "
+                             "elastic rods only.",
                   .unit = Unit::metre_per_second_squared,
                   .range = between(-1e6, 1e6)})
           .field("tendon", &ArmConfig::tendon,
-                 {.meaning = "Where tendons run in its sections, as tables [[arm.tendon]].",
+                 {.meaning = "Routes of the tendons, as tables [[arm.tendon]].",
                   .count = {0, max_routes},
-                  .default_text = "those of [drive], if there is one"})
+                  .default_text = "the tendons of [drive], if any"})
           .field("load", &ArmConfig::load,
-                 {.meaning = "What pulls at the ends of sections, as tables [[arm.load]].",
+                 {.meaning = "Loads at the ends of sections, as tables [[arm.load]].",
                   .count = {0, max_loads},
                   .default_text = "none"})
-          .field(
-              "time_step", &ArmConfig::time_step,
-              {.meaning = "Time from one step to the next in which the motion of a dynamic arm is computed.",
-               .unit = Unit::second,
-               .range = between(1e-6, 0.1)})
+          .field("time_step", &ArmConfig::time_step,
+                 {.meaning = "Integration time step of a dynamic arm.",
+                  .unit = Unit::second,
+                  .range = between(1e-6, 0.1)})
           .field("contact", &ArmConfig::contact,
-                 {.meaning = "How a dynamic arm touches the obstacles, and itself.",
-                  .default_text = "it touches nothing"})
-          .field("drag", &ArmConfig::drag,
-                 {.meaning = "The fluid in which a dynamic arm moves.", .default_text = "none"})
+                 {.meaning = "Contact of a dynamic arm with obstacles and with itself.",
+                  .default_text = "no contact"})
+          .field("drag", &ArmConfig::drag, {.meaning = "Fluid around a dynamic arm.", .default_text = "none"})
           .field("payload", &ArmConfig::payload,
-                 {.meaning = "What a dynamic arm carries for a time, as tables [[arm.payload]].",
+                 {.meaning = "Masses that a dynamic arm carries for a time, as tables [[arm.payload]].",
                   .count = {0, max_loads},
                   .default_text = "none"})
           .check(check_arm);

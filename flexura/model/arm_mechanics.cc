@@ -17,9 +17,8 @@ constexpr double rounding = 1e-9;
 constexpr std::size_t max_coefficients = 20;
 
 Spec route(const char* direction) {
-  return {.meaning = fmt::format("Coefficients of powers of the arc length from the base in m, at rest, of "
-                                 "which the offset towards {} is the sum, in m; added to that by radius and "
-                                 "angle.",
+  return {.meaning = fmt::format("Offset towards {}, m, added to that of `radius` and `angle`: coefficients "
+                                 "of a polynomial in the unstretched arc length from the base, m.",
                                  direction),
           .range = between(-1e9, 1e9),
           .count = {0, max_coefficients},
@@ -100,12 +99,11 @@ const std::vector<std::string>& names_of(const ArmMechanics*) {
 
 const Table<TendonRouteConfig>& fields_of(const TendonRouteConfig*) {
   static const auto table =
-      Table<TendonRouteConfig>(
-          "tendon",
-          "Where a tendon runs in the tube, from the arm's base to the end of one section: "
-          "parallel to the backbone, converging, helical, or as polynomials say.")
+      Table<TendonRouteConfig>("tendon",
+                               "Route of a tendon in the tube, from the arm's base to the end of one "
+                               "section: parallel to the backbone, converging, helical or polynomial.")
           .field("section", &TendonRouteConfig::section,
-                 {.meaning = "The section at whose end it ends, counted from 1 at the base.",
+                 {.meaning = "Section at whose end the tendon ends, counted from 1 at the base.",
                   .range = between(1, 1e6),
                   .required = true})
           .field("radius", &TendonRouteConfig::radius,
@@ -113,31 +111,30 @@ const Table<TendonRouteConfig>& fields_of(const TendonRouteConfig*) {
                   .unit = Unit::metre,
                   .range = between(0, 1e3)})
           .field("angle", &TendonRouteConfig::angle,
-                 {.meaning = "Where it lies around the backbone at the arm's base, from x towards y.",
+                 {.meaning = "Angle around the backbone at the arm's base, from x towards y.",
                   .unit = Unit::radian,
                   .range = angle_range})
           .field("end_radius", &TendonRouteConfig::end_radius,
-                 {.meaning = "Distance from the backbone at its end; in between it changes evenly.",
+                 {.meaning = "Distance from the backbone at the tendon's end; linear in between.",
                   .unit = Unit::metre,
                   .range = between(0, 1e3),
                   .default_text = "radius"})
           .field("turns", &TendonRouteConfig::turns,
-                 {.meaning = "How often it runs around the backbone from the arm's base to its end, evenly, "
+                 {.meaning = "Uniform turns around the backbone from the arm's base to the tendon's end, "
                              "from x towards y.",
                   .range = between(-1e3, 1e3)})
           .field("x", &TendonRouteConfig::x, route("x"))
           .field("y", &TendonRouteConfig::y, route("y"))
-          .field("compliance", &TendonRouteConfig::compliance,
-                 {.meaning = "How much longer it is for each newton, m/N, where what is given is how far "
-                             "it is pulled in.",
-                  .range = between(0, 1e6)})
           .field(
-              "friction", &TendonRouteConfig::friction,
-              {.meaning = "Coulomb friction along its way: exp(-friction angle) is left of a tension where "
-                          "the tendon has turned by an angle, in radians, since its base.",
-               .range = between(0, 10)})
+              "compliance", &TendonRouteConfig::compliance,
+              {.meaning = "Elongation per newton of tension, m/N, where tendon displacements are commanded.",
+               .range = between(0, 1e6)})
+          .field("friction", &TendonRouteConfig::friction,
+                 {.meaning = "Coulomb friction coefficient mu along the tendon. The fraction exp(-mu theta) "
+                             "of the tension remains after a total turning angle theta from the base, rad.",
+                  .range = between(0, 10)})
           .field("breaks_at", &TendonRouteConfig::breaks_at,
-                 {.meaning = "When it breaks: from then on it pulls at nothing.",
+                 {.meaning = "Time at which the tendon breaks. Its tension is 0 from then on.",
                   .unit = Unit::second,
                   .range = between(0, 1e9),
                   .default_text = "never"});
@@ -148,17 +145,16 @@ const Table<LoadConfig>& fields_of(const LoadConfig*) {
   static const auto table =
       Table<LoadConfig>("load", "A force and a moment at the end of a section.")
           .field("section", &LoadConfig::section,
-                 {.meaning = "The section at whose end it pulls, counted from 1 at the base.",
+                 {.meaning = "Section whose end is loaded, counted from 1 at the base.",
                   .range = between(1, 1e6),
                   .required = true})
           .field("force", &LoadConfig::force,
                  {.meaning = "Force in the world's frame, N: X, Y, Z.", .range = between(-1e9, 1e9)})
           .field("moment", &LoadConfig::moment,
                  {.meaning = "Moment in the world's frame, N m: X, Y, Z.", .range = between(-1e9, 1e9)})
-          .field(
-              "following", &LoadConfig::following,
-              {.meaning = "Force and moment are in the frame of the section's end, z along the backbone, and "
-                          "turn with it."});
+          .field("following", &LoadConfig::following,
+                 {.meaning = "Whether force and moment are given in the frame of the section's end, z along "
+                             "the backbone, and rotate with it."});
   return table;
 }
 

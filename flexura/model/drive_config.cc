@@ -73,7 +73,7 @@ void check_positions(const Drive& drive, const ArmConfig& arm, const std::string
 Table<StepperMotor>& add_limits(Table<StepperMotor>& table) {
   return table
       .field("max_speed", &StepperMotor::max_speed,
-             {.meaning = "Fastest turning of the motor.",
+             {.meaning = "Largest speed of the motor.",
               .unit = Unit::radian_per_second,
               .range = above(0),
               .default_text = "no limit"})
@@ -83,35 +83,32 @@ Table<StepperMotor>& add_limits(Table<StepperMotor>& table) {
               .range = above(0),
               .default_text = "no limit"})
       .field("max_step_rate", &StepperMotor::max_step_rate,
-             {.meaning = "Most microsteps a second that the controller gives.",
+             {.meaning = "Largest microstep rate of the controller, 1/s.",
               .range = above(0),
               .default_text = "no limit"})
       .field("max_position", &StepperMotor::max_position,
-             {.meaning = "Most microsteps to either side of where the arm is straight and unstretched.",
+             {.meaning = "Largest position to either side of the straight, unstretched arm, in microsteps.",
               .range = above(0),
               .default_text = "no limit"})
-      .field(
-          "pull_out", &StepperMotor::pull_out,
-          {.meaning = "Pull-out torque as pairs [speed in rad/s, torque in N m], speeds rising; between them "
-                      "it changes evenly. Where a tendon of an arm whose model is static needs more, the "
-                      "motor loses steps.",
-           .range = between(0, 1e9),
-           .count = {1, 1000},
-           .default_text = "no limit"});
+      .field("pull_out", &StepperMotor::pull_out,
+             {.meaning =
+                  "Pull-out torque as pairs [speed in rad/s, torque in N m], in order of speed, with linear "
+                  "interpolation. The motor loses steps where a tendon of an elastic arm needs more.",
+              .range = between(0, 1e9),
+              .count = {1, 1000},
+              .default_text = "no limit"});
 }
 
 }  // namespace
 
 const Table<StepperMotor>& fields_of(const StepperMotor*) {
   static const auto table = [] {
-    Table<StepperMotor> motor("motor", "A stepper motor, as its controller drives it.");
-    motor
-        .field("phases", &StepperMotor::phases, {.meaning = "Phases of the motor.", .range = between(2, 100)})
+    Table<StepperMotor> motor("motor", "A stepper motor and the limits of its controller.");
+    motor.field("phases", &StepperMotor::phases, {.meaning = "Number of phases.", .range = between(2, 100)})
         .field("steps", &StepperMotor::steps,
-               {.meaning = "Full steps a turn, a multiple of the phases.", .range = between(2, 1e6)})
+               {.meaning = "Full steps per revolution, a multiple of the phases.", .range = between(2, 1e6)})
         .field("microsteps", &StepperMotor::microsteps,
-               {.meaning = "Microsteps into which the controller divides a full step.",
-                .range = between(1, 1e5)});
+               {.meaning = "Microsteps per full step.", .range = between(1, 1e5)});
     add_limits(motor);
     motor.check([](const StepperMotor& value, Reader& reader) {
       for (std::size_t i = 1; value.pull_out && i < value.pull_out->size(); ++i) {
@@ -131,16 +128,16 @@ const Table<StepperMotor>& fields_of(const StepperMotor*) {
 
 const Table<Spool>& fields_of(const Spool*) {
   static const auto table =
-      Table<Spool>("spool", "The spool that winds a tendon's cable, and the gear between motor and spool.")
+      Table<Spool>("spool", "Spool that winds a tendon's cable, and gear between motor and spool.")
           .field("radius", &Spool::radius,
-                 {.meaning = "From the spool's axis to the middle of the cable; it does not grow.",
+                 {.meaning = "Constant distance from the spool's axis to the middle of the cable.",
                   .unit = Unit::metre,
                   .range = above_up_to(0, 1e3)})
           .field("gear", &Spool::gear,
-                 {.meaning = "Turns of the motor for one turn of the spool.", .range = above_up_to(0, 1e6)})
+                 {.meaning = "Gear ratio: motor turns per spool turn.", .range = above_up_to(0, 1e6)})
           .field("backlash", &Spool::backlash,
-                 {.meaning = "Play between motor and spool: what the motor turns in vain when it reverses, "
-                             "measured at the spool.",
+                 {.meaning = "Backlash between motor and spool, at the spool: motor travel without motion "
+                             "after a reversal.",
                   .unit = Unit::radian,
                   .range = between(0, 10)});
   return table;
@@ -149,14 +146,14 @@ const Table<Spool>& fields_of(const Spool*) {
 const Table<TendonConfig>& fields_of(const TendonConfig*) {
   static const auto table =
       Table<TendonConfig>("tendon",
-                          "A cable, parallel to the backbone from the arm's base to the end of one section, "
-                          "and the axis that pulls it.")
+                          "A cable parallel to the backbone, from the arm's base to the end of one section, "
+                          "and its motor axis.")
           .field("section", &TendonConfig::section,
-                 {.meaning = "The section at whose end it ends, counted from 1 at the base.",
+                 {.meaning = "Section at whose end the tendon ends, counted from 1 at the base.",
                   .range = between(1, 1e6),
                   .required = true})
           .field("angle", &TendonConfig::angle,
-                 {.meaning = "Where it lies around the backbone, from the section's x towards its y.",
+                 {.meaning = "Angle around the backbone, from the section's x towards its y.",
                   .unit = Unit::radian,
                   .range = angle_range,
                   .required = true})
@@ -166,39 +163,41 @@ const Table<TendonConfig>& fields_of(const TendonConfig*) {
                   .range = above_up_to(0, 1e3),
                   .default_text = "the drive's"})
           .field("reversed", &TendonConfig::reversed,
-                 {.meaning = "The motor's positive microsteps let the cable out instead of pulling it in."})
-          .field("motor", &TendonConfig::motor,
-                 {.meaning = "A motor of its own, described whole.", .default_text = "the drive's"})
-          .field("spool", &TendonConfig::spool,
-                 {.meaning = "A spool of its own, described whole.", .default_text = "the drive's"});
+                 {.meaning = "Whether positive microsteps let the cable out instead of pulling it in."})
+          .field(
+              "motor", &TendonConfig::motor,
+              {.meaning = "Motor of this tendon. Its keys have their own defaults, not the drive's values.",
+               .default_text = "the drive's"})
+          .field(
+              "spool", &TendonConfig::spool,
+              {.meaning = "Spool of this tendon. Its keys have their own defaults, not the drive's values.",
+               .default_text = "the drive's"});
   return table;
 }
 
 const Table<DriveConfig>& fields_of(const DriveConfig*) {
   static const auto table =
-      Table<DriveConfig>("drive", "What moves the arm: tendons, wound on spools by stepper motors.")
+      Table<DriveConfig>("drive", "Tendon drive of the arm: spools turned by stepper motors.")
           .field("radius", &DriveConfig::radius,
-                 {.meaning = "Distance of the tendons from the backbone, where they have none of their own.",
+                 {.meaning = "Distance from the backbone of tendons without a `radius`.",
                   .unit = Unit::metre,
                   .range = above_up_to(0, 1e3)})
           .field("disks", &DriveConfig::disks,
-                 {.meaning = "Guide disks cut each section into this many equal pieces, and the tendons run "
-                             "straight between them.",
+                 {.meaning = "Number of equal pieces into which guide disks divide each section. Tendons are "
+                             "straight between disks.",
                   .range = between(1, 1e6),
                   .default_text = "none: a continuous channel"})
           .field("axes_per_controller", &DriveConfig::axes_per_controller,
-                 {.meaning = "Motors on one controller: how the axes are named in command lists.",
+                 {.meaning = "Motors per controller. Determines the names of axes in command lists.",
                   .range = between(1, 1000)})
-          .field(
-              "pretension", &DriveConfig::pretension,
-              {.meaning = "Tension of each tendon where the motors are at 0 and nothing else pulls, N; for "
-                          "arms whose model is static.",
-               .range = between(0, 1e9)})
-          .field("motor", &DriveConfig::motor, {.meaning = "The motors."})
-          .field("spool", &DriveConfig::spool, {.meaning = "The spools and gears."})
+          .field("pretension", &DriveConfig::pretension,
+                 {.meaning =
+                      "Tension of each tendon of an elastic arm at motor position 0 without other loads, N.",
+                  .range = between(0, 1e9)})
+          .field("motor", &DriveConfig::motor, {.meaning = "Motors."})
+          .field("spool", &DriveConfig::spool, {.meaning = "Spools and gears."})
           .field("tendon", &DriveConfig::tendon,
-                 {.meaning = "The tendons in the order of the axes that pull them, as tables "
-                             "[[drive.tendon]].",
+                 {.meaning = "Tendons in the order of their motor axes, as tables [[drive.tendon]].",
                   .count = {1, max_tendons},
                   .required = true});
   return table;

@@ -14,16 +14,16 @@ namespace {
 constexpr std::size_t max_marks = 4096;
 
 Spec color_of(const char* what) {
-  return {.meaning = fmt::format("Shares of red, green and blue light that {} gives back.", what),
+  return {.meaning = fmt::format("Fractions of red, green and blue light that {}.", what),
           .range = share_range};
 }
 
 Spec place_of(const char* what) {
-  return {.meaning = fmt::format(
-              "Where the middle of {} is: distance from the base along the unstretched arm.", what),
-          .unit = Unit::metre,
-          .range = between(0, 1e6),
-          .required = true};
+  return {
+      .meaning = fmt::format("Distance of the middle of {} from the base, along the unstretched arm.", what),
+      .unit = Unit::metre,
+      .range = between(0, 1e6),
+      .required = true};
 }
 
 Spec size_of(const char* meaning) {
@@ -40,32 +40,32 @@ const std::vector<std::string>& names_of(const TipKind*) {
 const Table<Marker>& fields_of(const Marker*) {
   static const auto table = Table<Marker>("marker", "A coloured band around the arm.")
                                 .field("at", &Marker::at, place_of("the band"))
-                                .field("width", &Marker::width, size_of("Width of the band, along the arm."))
-                                .field("color", &Marker::color, color_of("the band"));
+                                .field("width", &Marker::width, size_of("Width of the band along the arm."))
+                                .field("color", &Marker::color, color_of("the band reflects"));
   return table;
 }
 
 const Table<MarkerBands>& fields_of(const MarkerBands*) {
   static const auto table =
-      Table<MarkerBands>("bands", "Coloured bands at even distances along every section.")
+      Table<MarkerBands>("bands", "Coloured bands at equal distances along every section.")
           .field("per_section", &MarkerBands::per_section,
-                 {.meaning = "Bands on each section; the last one ends where the section does.",
+                 {.meaning = "Bands per section. The last band ends at the section's end.",
                   .range = between(1, 1000)})
           .field("width", &MarkerBands::width,
-                 {.meaning = "Width of a band, along the arm.",
+                 {.meaning = "Width of a band along the arm.",
                   .unit = Unit::metre,
                   .range = above_up_to(0, 1e6),
-                  .default_text = "a fifth of the distance between two bands"})
+                  .default_text = "a fifth of the band spacing"})
           .field("colors", &MarkerBands::colors,
-                 {.meaning = "Colours of the bands (shares of red, green and blue light), taken in turn from "
-                             "the base on.",
+                 {.meaning = "Colours of the bands from the base on, repeated: reflected fractions of red, "
+                             "green and blue light.",
                   .range = share_range,
                   .count = {1, 1000}});
   return table;
 }
 
 const Table<Disk>& fields_of(const Disk*) {
-  static const auto table = Table<Disk>("disk", "A guide disk: flat and round, across the arm.")
+  static const auto table = Table<Disk>("disk", "A flat, round guide disk across the arm.")
                                 .field("at", &Disk::at, place_of("the disk"))
                                 .field("radius", &Disk::radius, size_of("Radius of the disk."))
                                 .field("thickness", &Disk::thickness, size_of("Thickness of the disk."));
@@ -73,22 +73,22 @@ const Table<Disk>& fields_of(const Disk*) {
 }
 
 const Table<LookConfig>& fields_of(const LookConfig*) {
-  static const auto table =
-      Table<LookConfig>("look", "What a camera sees of the arm beside its shape.")
-          .field("color", &LookConfig::color, color_of("the arm"))
-          .field("tip", &LookConfig::tip,
-                 {.meaning = "How the arm ends: cut straight across, or in half a ball."})
-          .field("bands", &LookConfig::bands,
-                 {.meaning = "Coloured bands, evenly along every section.", .default_text = "none"})
-          .field("marker", &LookConfig::marker,
-                 {.meaning = "Single coloured bands, as tables [[look.marker]].",
-                  .count = {0, max_marks},
-                  .default_text = "none"})
-          .field("disk", &LookConfig::disk,
-                 {.meaning = "Guide disks, as tables [[look.disk]].",
-                  .count = {0, max_marks},
-                  .default_text = "none"})
-          .field("disk_color", &LookConfig::disk_color, color_of("the disks"));
+  static const auto table = Table<LookConfig>("look", "Appearance of the arm in pictures.")
+                                .field("color", &LookConfig::color, color_of("the arm reflects"))
+                                .field("tip", &LookConfig::tip,
+                                       {.meaning = "Shape of the tip: cut straight across, or a hemisphere."})
+                                .field("bands", &LookConfig::bands,
+                                       {.meaning = "Coloured bands at equal distances along every section.",
+                                        .default_text = "none"})
+                                .field("marker", &LookConfig::marker,
+                                       {.meaning = "Single coloured bands, as tables [[arm.look.marker]].",
+                                        .count = {0, max_marks},
+                                        .default_text = "none"})
+                                .field("disk", &LookConfig::disk,
+                                       {.meaning = "Guide disks, as tables [[arm.look.disk]].",
+                                        .count = {0, max_marks},
+                                        .default_text = "none"})
+                                .field("disk_color", &LookConfig::disk_color, color_of("the disks reflect"));
   return table;
 }
 

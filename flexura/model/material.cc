@@ -19,7 +19,9 @@ Spec stiffness(const char* meaning, bool both = false) {
   return {.meaning = meaning, .range = stiffness_range, .required = true, .one_for_all = both};
 }
 
-Spec modes(const char* strain) { return {.meaning = fmt::format("Of {}.", strain), .range = mode_range}; }
+Spec modes(const char* strain) {
+  return {.meaning = fmt::format("Number of polynomials for {}.", strain), .range = mode_range};
+}
 
 void check_ways(const MaterialConfig& material, Reader& reader) {
   if (material.stiffness) {
@@ -51,31 +53,32 @@ Table<MaterialConfig>& add_moduli(Table<MaterialConfig>& table) {
               .range = stiffness_range,
               .default_text = "E / (2 (1 + poisson))"})
       .field("poisson", &MaterialConfig::poisson,
-             {.meaning = "Poisson's ratio, beside no shear_modulus.",
+             {.meaning = "Poisson's ratio; not allowed with `shear_modulus`.",
               .range = between(0, 0.5),
               .default_text = fmt::format("{}", common_poisson)})
       .field("density", &MaterialConfig::density, {.meaning = "Density, kg/m^3.", .range = between(0, 1e6)})
       .field("radius", &MaterialConfig::radius,
-             {.meaning = "Radius of the elastic rod; two numbers for a taper, at the section's base and end.",
+             {.meaning =
+                  "Radius of the elastic rod. Two numbers describe a taper, at the section's base and end.",
               .unit = Unit::metre,
               .range = between(1e-6, 1e6),
               .one_for_all = true,
               .default_text = "the section's"})
       .field("inner_radius", &MaterialConfig::inner_radius,
-             {.meaning = "Radius of its bore; two numbers for a taper.",
+             {.meaning = "Radius of the rod's bore. Two numbers describe a taper.",
               .unit = Unit::metre,
               .range = between(0, 1e6),
               .one_for_all = true})
       .field("stiffness", &MaterialConfig::stiffness,
-             {.meaning = "Its stiffness, instead of the moduli.",
-              .default_text = "that of the moduli and radii"})
+             {.meaning = "Stiffness of the rod, instead of the moduli.",
+              .default_text = "from the moduli and radii"})
       .field("mass_per_length", &MaterialConfig::mass_per_length,
-             {.meaning = "Mass of a metre of it, kg/m, instead of the density.",
+             {.meaning = "Mass per length of the rod, kg/m, instead of the density.",
               .range = between(0, 1e6),
-              .default_text = "that of the density and radii"})
+              .default_text = "from the density and radii"})
       .field("damping_time", &MaterialConfig::damping_time,
-             {.meaning = "Viscosity (Kelvin and Voigt): damping over stiffness, the time in which a strain "
-                         "that nothing holds falls to 1/e. Of dynamic arms.",
+             {.meaning = "Damping over stiffness of a dynamic arm (Kelvin-Voigt): time constant with which a "
+                         "free strain decays.",
               .unit = Unit::second,
               .range = between(0, 1e3)});
 }
@@ -84,38 +87,38 @@ Table<MaterialConfig>& add_moduli(Table<MaterialConfig>& table) {
 
 const Table<StiffnessConfig>& fields_of(const StiffnessConfig*) {
   static const auto table =
-      Table<StiffnessConfig>("stiffness", "Stiffness of a rod, the same all along it.")
+      Table<StiffnessConfig>("stiffness", "Stiffness of a rod, uniform along it.")
           .field("shear", &StiffnessConfig::shear,
-                 stiffness("Against shear towards the x and the y of the cross-section, GA, N.", true))
-          .field("stretch", &StiffnessConfig::stretch, stiffness("Against stretch, EA, N."))
+                 stiffness("Shear stiffness GA towards x and y of the cross-section, N.", true))
+          .field("stretch", &StiffnessConfig::stretch, stiffness("Axial stiffness EA, N."))
           .field("bend", &StiffnessConfig::bend,
-                 stiffness("Against bends towards the x and the y of the cross-section, EI, N m^2.", true))
-          .field("twist", &StiffnessConfig::twist, stiffness("Against twist, GJ, N m^2."));
+                 stiffness("Bending stiffness EI towards x and y of the cross-section, N m^2.", true))
+          .field("twist", &StiffnessConfig::twist, stiffness("Torsional stiffness GJ, N m^2."));
   return table;
 }
 
 const Table<ModesConfig>& fields_of(const ModesConfig*) {
   static const auto table =
-      Table<ModesConfig>(
-          "modes",
-          "How finely a section's strains are resolved: of how many polynomials of arc length each "
-          "is made, 1 for a constant one; 0: it stays as it is at rest.")
-          .field("shear", &ModesConfig::shear, modes("the two shears, each"))
-          .field("stretch", &ModesConfig::stretch, modes("the stretch"))
-          .field("bend", &ModesConfig::bend, modes("the two curvatures, each"))
+      Table<ModesConfig>("modes",
+                         "Number of polynomials in arc length for each strain of a section. 1: constant "
+                         "strain; 0: strain fixed at its rest value.")
+          .field("shear", &ModesConfig::shear, modes("each of the two shear strains"))
+          .field("stretch", &ModesConfig::stretch, modes("the axial strain"))
+          .field("bend", &ModesConfig::bend, modes("each of the two curvatures"))
           .field("twist", &ModesConfig::twist, modes("the twist"));
   return table;
 }
 
 const Table<BodyConfig>& fields_of(const BodyConfig*) {
   static const auto table =
-      Table<BodyConfig>("mass", "A body that is fixed on the backbone: a guide disk, a camera, a weight.")
-          .field("at", &BodyConfig::at,
-                 {.meaning = "Where, as a part of the section's length.", .range = between(0, 1)})
+      Table<BodyConfig>("mass", "A body fixed on the backbone, such as a guide disk, a camera or a weight.")
+          .field(
+              "at", &BodyConfig::at,
+              {.meaning = "Position along the section, as a fraction of its length.", .range = between(0, 1)})
           .field("mass", &BodyConfig::mass,
-                 {.meaning = "Its mass, kg.", .range = between(0, 1e6), .required = true})
+                 {.meaning = "Mass, kg.", .range = between(0, 1e6), .required = true})
           .field("offset", &BodyConfig::offset,
-                 {.meaning = "Its centre of mass in the cross-section's frame: x, y, z.",
+                 {.meaning = "Centre of mass in the cross-section's frame: x, y, z.",
                   .unit = Unit::metre,
                   .range = between(-1e3, 1e3)});
   return table;
@@ -123,29 +126,26 @@ const Table<BodyConfig>& fields_of(const BodyConfig*) {
 
 const Table<MaterialConfig>& fields_of(const MaterialConfig*) {
   static const auto table = [] {
-    Table<MaterialConfig> material(
-        "material", "The elastic rod in a section: its moduli and radii, or its stiffness, and its mass.");
+    Table<MaterialConfig> material("material",
+                                   "Elastic rod in a section: moduli and radii or stiffness, and mass.");
     add_moduli(material)
         .field("rest_bend", &MaterialConfig::rest_bend,
-               {.meaning = "The bend vector that the section has when nothing pulls.",
+               {.meaning = "Bend vector of the unloaded section.", .unit = Unit::radian, .range = bend_range})
+        .field("rest_twist", &MaterialConfig::rest_twist,
+               {.meaning = "Twist of the unloaded section: rotation of its end about the backbone relative "
+                           "to its base, from x towards y.",
                 .unit = Unit::radian,
                 .range = bend_range})
-        .field(
-            "rest_twist", &MaterialConfig::rest_twist,
-            {.meaning = "How its end is turned against its base about the backbone then, from x towards y.",
-             .unit = Unit::radian,
-             .range = bend_range})
         .field("disks", &MaterialConfig::disks,
-               {.meaning = "Guide disks cut the section into this many equal pieces, and the tendons run "
-                           "straight between them.",
+               {.meaning = "Number of equal pieces into which guide disks divide the section. Tendons are "
+                           "straight between disks.",
                 .range = between(1, 1000),
                 .default_text = "none: a continuous channel"})
-        .field("modes", &MaterialConfig::modes, {.meaning = "How finely its strains are resolved."})
-        .field(
-            "nodes", &MaterialConfig::nodes,
-            {.meaning = "Places along the section at which forces are summed up, its ends among them, more "
-                        "than any strain has modes; 0: as many as the modes need.",
-             .range = between(0, 64)})
+        .field("modes", &MaterialConfig::modes, {.meaning = "Resolution of the strains."})
+        .field("nodes", &MaterialConfig::nodes,
+               {.meaning = "Number of quadrature nodes along the section, ends included; more than the modes "
+                           "of any strain. 0: chosen from the modes.",
+                .range = between(0, 64)})
         .field("mass", &MaterialConfig::mass,
                {.meaning = "Bodies on the section, as tables [[arm.section.material.mass]].",
                 .count = {0, max_bodies},

@@ -17,20 +17,20 @@ template <class S>
 Table<S> obstacle_table(const char* kind, const char* meaning) {
   Table<S> table(kind, meaning);
   table
-      .field("name", &S::name,
-             {.meaning = "What messages call it.", .default_text = "its kind and place in the list"})
+      .field(
+          "name", &S::name,
+          {.meaning = "Name of the obstacle in messages.", .default_text = "its kind and place in the list"})
       .field("ignore_base", &S::ignore_base,
-             {.meaning =
-                  "So much of the unstretched arm, from its base on, may touch it: for what the arm stands "
-                  "on.",
+             {.meaning = "Length of the unstretched arm, from its base, that may touch the obstacle, such as "
+                         "a support.",
               .unit = Unit::metre,
               .range = between(0, 1e6)})
       .field("may_touch", &S::may_touch,
-             {.meaning = "The arm may touch it, with all of its length: what is to be grasped or leaned on."})
+             {.meaning = "Whether all of the arm may touch the obstacle, to grasp it or to lean on it."})
       .field("color", &S::color,
-             {.meaning =
-                  "Shares of red, green and blue light that it gives back. Cameras that look for a dark arm "
-                  "see what is dark before their screens as well; what is as light as these they do not.",
+             {.meaning = "Fractions of red, green and blue light that the obstacle reflects. Cameras that "
+                         "look for a dark arm also see dark obstacles before their screens, but not "
+                         "obstacles as light as the default.",
               .range = share_range});
   return table;
 }
@@ -104,7 +104,7 @@ const Table<PlaneConfig>& fields_of(const PlaneConfig*) {
       obstacle_table<PlaneConfig>("plane", "A plane that the arm must not pass, such as the ground.")
           .field("point", &PlaneConfig::point, place("A point of the plane.", false))
           .field("normal", &PlaneConfig::normal,
-                 {.meaning = "Points to the side where the arm may be; of any length above 0.",
+                 {.meaning = "Normal of the plane, towards the side of the arm; any length above 0.",
                   .range = coordinate_range})
           .check([](const PlaneConfig& plane, Reader& reader) {
             if (!(vector(plane.normal).norm() > 0))
@@ -114,27 +114,28 @@ const Table<PlaneConfig>& fields_of(const PlaneConfig*) {
 }
 
 const Table<SphereConfig>& fields_of(const SphereConfig*) {
-  static const auto table = obstacle_table<SphereConfig>("sphere", "A ball.")
-                                .field("center", &SphereConfig::center, place("Its centre."))
-                                .field("radius", &SphereConfig::radius, size("Its radius."));
+  static const auto table = obstacle_table<SphereConfig>("sphere", "A sphere.")
+                                .field("center", &SphereConfig::center, place("Centre."))
+                                .field("radius", &SphereConfig::radius, size("Radius."));
   return table;
 }
 
 const Table<CapsuleConfig>& fields_of(const CapsuleConfig*) {
-  static const auto table = obstacle_table<CapsuleConfig>("capsule", "A rod with round ends.")
-                                .field("from", &CapsuleConfig::from, place("Where its axis starts."))
-                                .field("to", &CapsuleConfig::to, place("Where its axis ends."))
-                                .field("radius", &CapsuleConfig::radius, size("Its radius."));
+  static const auto table = obstacle_table<CapsuleConfig>("capsule", "A rod with hemispherical ends.")
+                                .field("from", &CapsuleConfig::from, place("Start of the axis."))
+                                .field("to", &CapsuleConfig::to, place("End of the axis."))
+                                .field("radius", &CapsuleConfig::radius, size("Radius."));
   return table;
 }
 
 const Table<BoxConfig>& fields_of(const BoxConfig*) {
   static const auto table =
       obstacle_table<BoxConfig>("box", "A box.")
-          .field("center", &BoxConfig::center, place("Its centre."))
-          .field("half_sizes", &BoxConfig::half_sizes, size("Half its edges, along its own x, y and z."))
+          .field("center", &BoxConfig::center, place("Centre."))
+          .field("half_sizes", &BoxConfig::half_sizes,
+                 size("Half the lengths of the edges, along the box's x, y and z."))
           .field("rotation", &BoxConfig::rotation,
-                 {.meaning = "Unit quaternion (w, x, y, z) that turns the box's axes into the world's.",
+                 {.meaning = "Unit quaternion (w, x, y, z) from the box's axes to the world.",
                   .range = between(-2, 2)})
           .check([](const BoxConfig& box, Reader& reader) {
             if (const std::string problem = quaternion_problem(box.rotation); !problem.empty())

@@ -25,27 +25,27 @@ void expect_direction(const std::array<double, 3>& direction, const char* name, 
 
 const Table<ScreenConfig>& fields_of(const ScreenConfig*) {
   static const auto table =
-      Table<ScreenConfig>("screen", "A flat white screen, seen from both sides.")
+      Table<ScreenConfig>("screen", "A flat white screen, visible from both sides.")
           .field("center", &ScreenConfig::center,
-                 {.meaning = "Its middle: X, Y, Z.",
+                 {.meaning = "Centre: X, Y, Z.",
                   .unit = Unit::metre,
                   .range = coordinate_range,
                   .required = true})
           .field("normal", &ScreenConfig::normal,
-                 {.meaning = "The way it faces; its height runs upwards as far as it can.",
+                 {.meaning = "Normal of the screen. Its height points upwards as far as possible.",
                   .range = coordinate_range})
           .field("width", &ScreenConfig::width, length_of("Width."))
           .field("height", &ScreenConfig::height, length_of("Height."))
           .field("brightness", &ScreenConfig::brightness,
-                 {.meaning = "Light that it sends; 1 is a camera's full scale.", .range = brightness_range})
-          .field("gradient", &ScreenConfig::gradient,
-                 {.meaning =
-                      "Share by which it grows brighter from its middle to its right and to its upper edge.",
-                  .range = between(-1, 1)})
+                 {.meaning = "Emitted light; 1 is a camera's full scale.", .range = brightness_range})
+          .field(
+              "gradient", &ScreenConfig::gradient,
+              {.meaning =
+                   "Relative increase of brightness from the middle to the right edge and to the upper edge.",
+               .range = between(-1, 1)})
           .field(
               "fall_off", &ScreenConfig::fall_off,
-              {.meaning =
-                   "Share by which its corners are darker than its middle; grows with the distance squared.",
+              {.meaning = "Relative loss of brightness in the corners. It grows with the distance squared.",
                .range = share_range})
           .check([](const ScreenConfig& screen, Reader& reader) {
             expect_direction(screen.normal, "normal", reader);
@@ -55,22 +55,23 @@ const Table<ScreenConfig>& fields_of(const ScreenConfig*) {
 
 const Table<EtalonConfig>& fields_of(const EtalonConfig*) {
   static const auto table =
-      Table<EtalonConfig>("etalon", "The calibration cylinder: dark grey, with a red line every 90 degrees.")
+      Table<EtalonConfig>("etalon", "Calibration cylinder: dark grey, with a red line every 90 degrees.")
           .field("position", &EtalonConfig::position,
-                 {.meaning = "Middle of its lower end: X, Y, Z.",
+                 {.meaning = "Centre of the lower end: X, Y, Z.",
                   .unit = Unit::metre,
                   .range = coordinate_range})
           .field("rotation", &EtalonConfig::rotation,
-                 {.meaning = "Quaternion (w, x, y, z) that turns its axes into the world's; it stands along "
-                             "its y, a red line towards its z.",
+                 {.meaning = "Quaternion (w, x, y, z) from the cylinder's axes to the world. Its axis is y; "
+                             "one red line faces z.",
                   .range = between(-2, 2)})
           .field("radius", &EtalonConfig::radius, length_of("Radius."))
           .field("height", &EtalonConfig::height, length_of("Height."))
           .field("color", &EtalonConfig::color,
-                 {.meaning = "Shares of red, green and blue light that it gives back.", .range = share_range})
+                 {.meaning = "Fractions of red, green and blue light that the cylinder reflects.",
+                  .range = share_range})
           .field("line_width", &EtalonConfig::line_width, length_of("Width of a red line."))
           .field("line_color", &EtalonConfig::line_color,
-                 {.meaning = "Shares of red, green and blue light that the lines give back.",
+                 {.meaning = "Fractions of red, green and blue light that the lines reflect.",
                   .range = share_range})
           .check([](const EtalonConfig& etalon, Reader& reader) {
             if (const std::string problem = quaternion_problem(etalon.rotation); !problem.empty())
@@ -83,22 +84,19 @@ const Table<EtalonConfig>& fields_of(const EtalonConfig*) {
 
 const Table<LightConfig>& fields_of(const LightConfig*) {
   static const auto table =
-      Table<LightConfig>("light", "The light on the arm, the etalon and the obstacles.")
-          .field("ambient", &LightConfig::ambient,
-                 {.meaning = "Light from everywhere.", .range = brightness_range})
-          .field(
-              "directional", &LightConfig::directional,
-              {.meaning = "Light from one direction, on a surface that faces it.", .range = brightness_range})
+      Table<LightConfig>("light", "Light on the arm, the calibration cylinder and the obstacles.")
+          .field("ambient", &LightConfig::ambient, {.meaning = "Ambient light.", .range = brightness_range})
+          .field("directional", &LightConfig::directional,
+                 {.meaning = "Directional light, on a surface that faces it.", .range = brightness_range})
           .field("towards", &LightConfig::towards,
-                 {.meaning = "The direction from which it comes.", .range = coordinate_range})
+                 {.meaning = "Direction towards the light source.", .range = coordinate_range})
           .field("shadow", &LightConfig::shadow,
-                 {.meaning = "Share of the directional light, and of a screen's, that a shadow takes away.",
+                 {.meaning =
+                      "Fraction of the directional light, and of a screen's light, that a shadow removes.",
                   .range = share_range})
           .field(
               "angular_radius", &LightConfig::angular_radius,
-              {.meaning =
-                   "Half the angle under which the light's source is seen: the larger, the softer a shadow's "
-                   "border.",
+              {.meaning = "Half the angular size of the light source. A larger source makes softer shadows.",
                .unit = Unit::radian,
                .range = above_up_to(0, 0.5)})
           .check([](const LightConfig& light, Reader& reader) {
@@ -109,24 +107,22 @@ const Table<LightConfig>& fields_of(const LightConfig*) {
 
 const Table<StandConfig>& fields_of(const StandConfig*) {
   static const auto table =
-      Table<StandConfig>("stand", "What stands around the arm: screens, calibration cylinder, light.")
+      Table<StandConfig>("stand", "Surroundings of the arm: screens, calibration cylinder and light.")
           .field("screen", &StandConfig::screen,
                  {.meaning = "Screens, as tables [[stand.screen]].",
                   .count = {0, 100},
-                  .default_text = "two, behind the arm as the paper's two cameras see it"})
-          .field("etalon", &StandConfig::etalon,
-                 {.meaning = "The calibration cylinder.", .default_text = "none"})
-          .field("light", &StandConfig::light, {.meaning = "The light."})
-          .field(
-              "camera_distances", &StandConfig::camera_distances,
-              {.meaning = "How far the default cameras \"front\" and \"side\" stand from the planes XOY and "
-                          "ZOY through the arm's base: the paper's D1 and D2.",
-               .unit = Unit::metre,
-               .range = above_up_to(0, 1e6),
-               .default_text = "so far that all of the arm's reach is in view"})
+                  .default_text = "two, behind the arm for the paper's two cameras"})
+          .field("etalon", &StandConfig::etalon, {.meaning = "Calibration cylinder.", .default_text = "none"})
+          .field("light", &StandConfig::light, {.meaning = "Light."})
+          .field("camera_distances", &StandConfig::camera_distances,
+                 {.meaning = "Distances D1 and D2 of the default cameras \"front\" and \"side\" from the "
+                             "planes XOY and ZOY through the arm's base.",
+                  .unit = Unit::metre,
+                  .range = above_up_to(0, 1e6),
+                  .default_text = "all of the arm's reach in view"})
           .field("background", &StandConfig::background,
-                 {.meaning = "Light from where nothing is.", .range = brightness_range})
-          .field("arm", &StandConfig::arm, {.meaning = "Whether the arm stands there too."});
+                 {.meaning = "Light of the empty background.", .range = brightness_range})
+          .field("arm", &StandConfig::arm, {.meaning = "Whether the arm is in the scene."});
   return table;
 }
 

@@ -59,9 +59,9 @@ void check_setup(const Setup& setup, Reader& reader) {
 }
 
 const Table<ClockConfig>& fields_of(const ClockConfig*) {
-  static const auto table = Table<ClockConfig>("clock", "How time runs in the experiment.")
+  static const auto table = Table<ClockConfig>("clock", "Time of the experiment.")
                                 .field("step", &ClockConfig::step,
-                                       {.meaning = "Time between two states of the experiment.",
+                                       {.meaning = "Time step between two states.",
                                         .unit = Unit::second,
                                         .range = between(1e-6, 1e3)});
   return table;
@@ -74,22 +74,20 @@ const std::vector<std::string>& names_of(const CurveKind*) {
 
 const Table<RecordConfig>& fields_of(const RecordConfig*) {
   static const auto table =
-      Table<RecordConfig>("record", "What is kept of a run.")
+      Table<RecordConfig>("record", "Contents of the log and the report.")
           .field("every", &RecordConfig::every,
-                 {.meaning = "Steps from one state in the log to the next; the last one is always kept.",
+                 {.meaning = "Number of steps between two states in the log. The last state is always kept.",
                   .range = between(1, 1e9)})
-          .field("report", &RecordConfig::report, {.meaning = "Write report.html and figures/."})
-          .field("cameras", &RecordConfig::cameras, {.meaning = "Keep the cameras' images in the log."})
-          .field(
-              "scene", &RecordConfig::scene,
-              {.meaning = "Keep in the log, for programs that draw it, what stands around the arm, and ten "
-                          "times a second how the arm lies."})
-          .field(
-              "curve", &RecordConfig::curve,
-              {.meaning =
-                   "The line drawn along the arm in the report: its exact arcs (the arm itself), the paper's "
-                   "Catmull-Rom spline through the sections' base points (eq. 11), or one Bezier a section "
-                   "with exact tangents."})
+          .field("report", &RecordConfig::report,
+                 {.meaning = "Whether report.html and figures/ are written."})
+          .field("cameras", &RecordConfig::cameras, {.meaning = "Whether the log keeps the cameras' images."})
+          .field("scene", &RecordConfig::scene,
+                 {.meaning = "Whether the log keeps the surroundings, and ten arm shapes a second, for "
+                             "programs that draw them."})
+          .field("curve", &RecordConfig::curve,
+                 {.meaning = "Curve drawn along the arm in the report: its exact arcs, the paper's "
+                             "Catmull-Rom spline through the sections' base points (eq. 11), or one Bezier "
+                             "curve per section with exact tangents."})
           .field("tension", &RecordConfig::tension,
                  {.meaning = "Tension of the Catmull-Rom spline.", .range = between(0, 1)});
   return table;
@@ -97,22 +95,20 @@ const Table<RecordConfig>& fields_of(const RecordConfig*) {
 
 const Table<TruthConfig>& fields_of(const TruthConfig*) {
   static const auto table =
-      Table<TruthConfig>(
-          "truth",
-          "The simulated world, where it differs from what the rest of the file says and the tasks "
-          "believe: parts of the same tables, laid upon them. Cameras are told apart by their names, "
-          "sections and tendons by their places.")
+      Table<TruthConfig>("truth",
+                         "Simulated truth: parts of the same tables that override the models which tasks "
+                         "use. Cameras are matched by name, sections and tendons by position in the list.")
           .field("arm", &TruthConfig::arm,
-                 {.meaning = "The arm as it is.", .partial = true, .default_text = "as believed"})
+                 {.meaning = "True arm.", .partial = true, .default_text = "as modelled"})
           .field("drive", &TruthConfig::drive,
-                 {.meaning = "What moves it.", .partial = true, .default_text = "as believed"})
+                 {.meaning = "True drive.", .partial = true, .default_text = "as modelled"})
           .field("camera", &TruthConfig::camera,
-                 {.meaning = "The cameras as they are.",
+                 {.meaning = "True cameras.",
                   .count = {0, max_cameras},
                   .partial = true,
-                  .default_text = "as believed"})
+                  .default_text = "as modelled"})
           .field("stand", &TruthConfig::stand,
-                 {.meaning = "What stands around the arm.", .partial = true, .default_text = "as believed"});
+                 {.meaning = "True surroundings.", .partial = true, .default_text = "as modelled"});
   return table;
 }
 

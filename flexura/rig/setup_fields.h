@@ -17,34 +17,35 @@ template <std::derived_from<Setup> S>
   return std::move(
       table
           .field("flexura", &Setup::flexura,
-                 {.meaning = "Version that ran the file; written into results.", .default_text = "not set"})
+                 {.meaning = "Version of Flexura that ran the file, written into results.",
+                  .default_text = "not set"})
           .field("title", &Setup::title,
-                 {.meaning = "A title for the report.", .default_text = "the file's name"})
+                 {.meaning = "Title of the report.", .default_text = "the file's name"})
           .field("seed", &Setup::seed,
-                 {.meaning = "Seed of every random number of the run.", .range = between(0, 1e15)})
+                 {.meaning = "Seed of all random numbers of the run.", .range = between(0, 1e15)})
           .field("include", &Setup::include,
-                 {.meaning = "Files in this file's folder or below upon whose values this file's are laid.",
+                 {.meaning = "Files in this file's folder or below whose values this file overrides.",
                   .count = {0, 100},
                   .default_text = "none"})
-          .field("clock", &Setup::clock, {.meaning = "How time runs."})
-          .field("record", &Setup::record, {.meaning = "What is kept of a run."})
-          .field("arm", &Setup::arm, {.meaning = "The arm.", .required = true})
-          .field(
-              "drive", &Setup::drive,
-              {.meaning = "What moves the arm; with it a run writes command lists.", .default_text = "none"})
+          .field("clock", &Setup::clock, {.meaning = "Time of the experiment."})
+          .field("record", &Setup::record, {.meaning = "Contents of the log and the report."})
+          .field("arm", &Setup::arm, {.meaning = "Arm.", .required = true})
+          .field("drive", &Setup::drive,
+                 {.meaning = "Drive of the arm. With a drive, a run writes command lists.",
+                  .default_text = "none"})
           .field("obstacle", &Setup::obstacle,
-                 {.meaning = "What the arm must not touch.",
+                 {.meaning = "Obstacles that the arm must not touch.",
                   .count = {0, max_obstacles},
                   .default_text = "none"})
-          .field("stand", &Setup::stand, {.meaning = "What stands around the arm for the cameras to see."})
+          .field("stand", &Setup::stand, {.meaning = "Surroundings of the arm that cameras see."})
           .field("camera", &Setup::camera,
-                 {.meaning = "The cameras.",
+                 {.meaning = "Cameras.",
                   .count = {0, max_cameras},
                   .default_text =
                       "two, \"front\" on +Z and \"side\" on -X, with all of the arm's reach in view"})
           .field("truth", &Setup::truth,
-                 {.meaning = "Where the simulated world differs from what the tasks believe.",
-                  .default_text = "nowhere"}));
+                 {.meaning = "Simulated truth, where it differs from the models that tasks use.",
+                  .default_text = "as modelled"}));
 }
 
 }  // namespace flexura

@@ -6,7 +6,7 @@
 namespace flexura {
 
 PictureMeter::PictureMeter(const RigModel& believed, const ServoConfig& config)
-    : base_(believed.arm.X_WB.position), has_markers_(!config.markers.empty()), doubt_(config.doubt) {
+    : base_(believed.arm.X_WB.position), has_markers_(!config.markers.empty()), doubt_(config.camera_prior) {
   for (std::size_t i = 0; i < 2; ++i) whites_[i] = believed.cameras.at(config.cameras[i]).sensor.white();
 }
 

@@ -15,16 +15,18 @@ void require(bool is_so, const char* what) {
 }  // namespace
 
 const Table<ServoDoubt>& fields_of(const ServoDoubt*) {
-  static const auto table = Table<ServoDoubt>("doubt",
-                                              "How wrong the cameras may be, as they are believed to "
-                                              "stand: standard deviations. What is wrong is "
-                                              "estimated with the arm's shape; 0: nothing is.")
-                                .field("turn", static_cast<double ServoDoubt::*>(&ServoDoubt::turn),
-                                       {.meaning = "Of how a camera is turned, about each axis of its view.",
-                                        .unit = Unit::radian,
-                                        .range = between(0, 1)})
-                                .field("focal", static_cast<double ServoDoubt::*>(&ServoDoubt::focal),
-                                       {.meaning = "Of its focal length, a share.", .range = between(0, 1)});
+  static const auto table =
+      Table<ServoDoubt>("camera_prior",
+                        "Prior standard deviations of the camera models. The servo estimates their errors "
+                        "with the arm's shape; 0: exact.")
+          .field("rotation_std", static_cast<double ServoDoubt::*>(&ServoDoubt::rotation_std),
+                 {.meaning = "Standard deviation of a camera's orientation, about each axis of its view.",
+                  .unit = Unit::radian,
+                  .range = between(0, 1)})
+          .field("focal_std", static_cast<double ServoDoubt::*>(&ServoDoubt::focal_std),
+                 {.meaning = "Relative standard deviation of the focal length.", .range = between(0, 1)})
+          .renamed("turn", "rotation_std")
+          .renamed("focal", "focal_std");
   return table;
 }
 
@@ -56,8 +58,9 @@ void check_servo(const ServoConfig& config) {
           "flow carries the angles of the laws chords and potential alone");
   require(config.anchor > 0, "a servo's anchor is above 0");
   require(
-      config.settle >= 0 && config.blind > 0 && config.lost > config.blind && config.timeout > config.settle,
-      "a servo settles in no less than 0 s and sooner than it is given up, and is lost later than blind");
+      config.settle >= 0 && config.hold_after > 0 && config.give_up_after > config.hold_after &&
+          config.timeout > config.settle,
+      "a servo settles in no less than 0 s and sooner than it is given up, and given up later than it holds");
   require(config.points >= 1 && config.rate > 0 && config.tolerance > 0 && config.step > 0,
           "a servo's points, rate, tolerance and step are above 0");
 }

@@ -59,11 +59,11 @@ struct ServoGoal {
   double missed = 0;
 };
 
-/// How wrong the cameras may be where nothing else is said: about where the base is seen, and how the arm
-/// goes on from it, tells what is wrong.
+/// Default prior of the camera models: the images of the base and of the arm beyond it determine their
+/// errors.
 struct ServoDoubt : ViewDoubt {
-  /// Of 0.02 rad, and a fiftieth of the focal length.
-  ServoDoubt() : ViewDoubt{.turn = 0.02, .focal = 0.02} {}
+  /// 0.02 rad, and 2 % of the focal length.
+  ServoDoubt() : ViewDoubt{.rotation_std = 0.02, .focal_std = 0.02} {}
 };
 
 /// What whoever wants a servo settles of it, in a file or in code.
@@ -79,10 +79,10 @@ struct ServoSettings {
   double tolerance = 0.005;  ///< Root mean square along the arm, share of its length: there.
   double settle = 0.5;       ///< The error has to stay below it for so long, s.
   double timeout = 20;       ///< To go on after the last goal's time, s.
-  double blind = 0.3;        ///< The arm goes on without being seen for so long, then stops and waits, s.
-  double lost = 3;           ///< Unseen for so long it gives up, s.
+  double hold_after = 0.3;   ///< Time without an observation after which the arm stops and waits, s.
+  double give_up_after = 3;  ///< Time without an observation after which the servo fails, s.
   bool follow = false;       ///< Heads turn so that the arm stays in the middle of the pictures.
-  ServoDoubt doubt;          ///< In each camera's view.
+  ServoDoubt camera_prior;   ///< Of each camera model.
 };
 
 /// What a servo does: its settings, and what the rig and the arm make of the rest.

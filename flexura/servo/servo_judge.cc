@@ -18,7 +18,7 @@ void ServoJudge::add(const ServoStep& step) {
   if (step.is_fresh && step.error) {
     add_error(step);
     seen_at_ = step.time;
-  } else if (step.time - seen_at_ > config_.blind) {
+  } else if (step.time - seen_at_ > config_.hold_after) {
     below_since_.reset();  // Nobody knows where it was meanwhile.
   }
   if (!is_done_ && !hopeless_ && step.time > goal_time_ + config_.timeout) hopeless_ = why_not();

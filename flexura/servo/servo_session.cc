@@ -42,7 +42,7 @@ class Session {
         rig_(ports, believed, config.cameras,
              {.span = longest_delay,
               .together = 0.6 * (1 / slower_frame_rate(believed.cameras, config.cameras)),
-              .silent = config.blind}),
+              .silent = config.hold_after}),
         meter_(believed, config),
         observer_(rig_, believed, config),
         features_(servo_features(config, believed)),
@@ -194,7 +194,7 @@ class Session {
     return true;
   }
 
-  [[nodiscard]] bool is_blind(double now) const { return observer_.blind_for(now) > config_.blind; }
+  [[nodiscard]] bool is_blind(double now) const { return observer_.blind_for(now) > config_.hold_after; }
 
   // Why pictures tell none.
   [[nodiscard]] std::string no_shape(const ServoSight& sight) const {
@@ -228,7 +228,7 @@ class Session {
       if (command.reason.empty()) command.reason = at_its_limit(wish);
       if (command.reason.empty() && slow.bends != wish.bends) command.reason = "the motors' acceleration";
     }
-    if (observer_.blind_for(now) > config_.lost)
+    if (observer_.blind_for(now) > config_.give_up_after)
       result_.reason = "out of view: " +
                        (unseen_because_.empty() ? rig_.no_pair(observer_.seen_since()) : unseen_because_);
     step.limited = command.reason;

@@ -48,7 +48,7 @@ double noise_of(const std::array<Sighting, 2>& seen) {
 ShapeObserver::ShapeObserver(const RigReader& rig, const RigModel& believed, const ServoConfig& config)
     : rig_(rig),
       length_(believed.arm.length()),
-      doubt_(config.doubt),
+      doubt_(config.camera_prior),
       prior_(prior_of(believed.arm, config.markers)),
       tracker_(prior_, patient_estimator(doubt_)) {}
 

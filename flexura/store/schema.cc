@@ -4,6 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -142,83 +145,196 @@ Node table_schema(const TableInfo& info, bool tagged, bool partial) {
 
 // --- Markdown ---
 
-std::string type_text(const Type& type, const Spec& spec, const Count& count) {
+// A bound of a range: 1e6 rather than 1000000.
+std::string bound_text(double value) {
+  constexpr double long_number = 1e5;
+  const double size = std::abs(value);
+  if (size < long_number) return fmt::format("{:g}", value);
+  const double exponent = std::floor(std::log10(size)), mantissa = value / std::pow(10, exponent);
+  return fmt::format("{:g}e{:g}", mantissa, exponent);
+}
+
+// As an interval, "(0, 1e4] s"; "> 0 m" and ">= 0 m" without an upper bound. The unit alone where every
+// number is in the range.
+std::string range_text(const NumberRange& range, std::string_view unit) {
+  std::string text;
+  if (std::isfinite(range.min) && std::isfinite(range.max))
+    text = fmt::format("{}{}, {}]", range.open_min ? '(' : '[', bound_text(range.min), bound_text(range.max));
+  else if (std::isfinite(range.min))
+    text = fmt::format("{} {}", range.open_min ? ">" : ">=", bound_text(range.min));
+  else if (std::isfinite(range.max))
+    text = fmt::format("<= {}", bound_text(range.max));
+  return fmt::format("{}{}{}", text, text.empty() || unit.empty() ? "" : " ", unit);
+}
+
+// One of them, or several: "number" and "numbers".
+std::string type_text(const Type& type, bool several) {
+  const char* s = several ? "s" : "";
   switch (type.kind) {
     case Type::Kind::boolean:
-      return "true or false";
+      return fmt::format("boolean{}", s);
     case Type::Kind::integer:
-      return "whole number";
+      return fmt::format("integer{}", s);
     case Type::Kind::number:
-      return "number";
+      return fmt::format("number{}", s);
     case Type::Kind::text:
-      return "text";
+      return fmt::format("text{}", s);
     case Type::Kind::bytes:
-      return "text in base64";
+      return fmt::format("text{} in base64", s);
     case Type::Kind::choice:
-      return fmt::format("`\"{}\"`", fmt::join(type.choices, "\"` or `\""));
+      return fmt::format("`\"{}\"`", fmt::join(type.choices, "\"`, `\""));
     case Type::Kind::table:
     case Type::Kind::one_of:
-      return "table";
+      return fmt::format("table{}", s);
     case Type::Kind::array:
       break;
   }
-  const Count& bounds = type.count.min > 0 ? type.count : count;
-  const std::string item = type_text(*type.item, spec, {});
-  const std::string size = bounds.min == bounds.max ? fmt::format(" {}", bounds.min) : std::string();
-  // "array of 2 numbers", "array of arrays of 2 numbers"
-  const std::size_t first_word = std::min(item.find(' '), item.size());
-  const std::string items = item.ends_with("whole number")
-                                ? item + "s"
-                                : item.substr(0, first_word) + "s" + item.substr(first_word);
-  return fmt::format("{}array of{} {}", spec.one_for_all ? item + ", or " : "", size, items);
+  const std::string items = type_text(*type.item, true);
+  const std::string size = type.count.min > 0 && type.count.min == type.count.max
+                               ? fmt::format("{} ", type.count.min)
+                               : std::string();
+  return fmt::format("{}{}{}", several ? "arrays of " : "", size, items);
 }
 
-void add_table_section(const TableInfo& info, const std::string& path, const std::string& heading,
-                       std::string& out);
+// "number", "3 numbers", "arrays of 2 numbers", "number or 2 numbers", with the range.
+std::string value_text(const FieldInfo& field) {
+  Type type = field.type;
+  const Count& count = field.spec.count;
+  if (type.kind == Type::Kind::array && type.count.min == 0 && count.min == count.max) type.count = count;
+  std::string text = type_text(type, false);
+  const bool are_choices = type.item != nullptr && type.item->kind == Type::Kind::choice;
+  if (field.spec.one_for_all && are_choices)
+    text = "one or several of " + text;
+  else if (field.spec.one_for_all)
+    text = fmt::format("{} or {}", type_text(*type.item, false), text);
+  const std::string range = range_text(field.spec.range, spellings(field.spec.unit).front().symbol);
+  return range.empty() ? text : fmt::format("{}, {}", text, range);
+}
 
-void add_sections_below(const Type& type, const std::string& path, bool repeated, std::string& out) {
-  switch (type.kind) {
-    case Type::Kind::array:
-      add_sections_below(*type.item, path, true, out);
-      break;
-    case Type::Kind::table:
-      add_table_section(*type.table, path,
-                        repeated ? fmt::format("`[[{}]]`", path) : fmt::format("`[{}]`", path), out);
-      break;
-    case Type::Kind::one_of:
-      for (const TableInfo* alternative : type.alternatives) {
-        add_table_section(*alternative, path,
-                          fmt::format("`[[{}]]`, `kind = \"{}\"`", path, alternative->name), out);
-      }
-      break;
-    default:
-      break;
+std::string row_of(const FieldInfo& field) {
+  std::string keys;
+  for (const UnitSpelling& way : spellings(field.spec.unit))
+    keys += fmt::format("{}`{}{}`", keys.empty() ? "" : ", ", field.name, way.suffix);
+  // A table that is left out has its fields' defaults, unless something else is given.
+  const bool is_whole = field.type.kind == Type::Kind::table && field.spec.default_text.empty();
+  const std::string otherwise = is_whole ? std::string() : field.default_text;
+  return fmt::format("| {} | {} | {} | {} |\n", keys, value_text(field),
+                     field.spec.required ? "required" : otherwise, field.spec.meaning);
+}
+
+// The rows of these fields, if there are any.
+std::string rows_of(const std::vector<const FieldInfo*>& fields) {
+  if (fields.empty()) return {};
+  std::string rows = "| key | value | default | meaning |\n|---|---|---|---|\n";
+  for (const FieldInfo* field : fields) rows += row_of(*field);
+  return rows;
+}
+
+bool has_row(const TableInfo& info, const FieldInfo& field) {
+  const FieldInfo* found = info.find(field.name);
+  return found != nullptr && row_of(*found) == row_of(field);
+}
+
+// Builds the page: a section for each table. What is the same in several tables is described once.
+class Page {
+ public:
+  explicit Page(const TableInfo& info)
+      : text_(fmt::format(
+            "# {}\n\nA key's suffix is its unit: `_mm`, `_ms`, `_deg` for degrees, `_pi` for multiples of pi "
+            "rad. Keys without a suffix, ranges and defaults are in SI units (m, s, rad). In a range, `[` "
+            "and "
+            "`]` include the bound and `(` excludes it. Several values are a TOML array.\n",
+            info.name)) {
+    add_table(info, "", {});
   }
-}
+  [[nodiscard]] std::string text() && { return std::move(text_); }
 
-void add_table_section(const TableInfo& info, const std::string& path, const std::string& heading,
-                       std::string& out) {
-  if (!heading.empty()) out += fmt::format("\n## {}\n", heading);
-  out += fmt::format(
-      "\n{}\n\n| key | value | unit | range | default | meaning |\n| --- | --- | --- | --- | --- | --- |\n",
-      info.meaning);
-  for (const FieldInfo& field : info.fields) {
-    std::string keys;
-    std::string units;
-    for (const UnitSpelling& way : spellings(field.spec.unit)) {
-      keys += fmt::format("{}`{}{}`", keys.empty() ? "" : ", ", field.name, way.suffix);
-      units += fmt::format("{}{}", units.empty() ? "" : ", ", way.symbol);
+ private:
+  struct Section {
+    const TableInfo* table;
+    std::string link;
+  };
+
+  // As GitHub makes it, with a number where several headings read alike.
+  std::string anchor_of(const std::string& heading) {
+    std::string anchor;
+    for (const char c : heading) {
+      const bool is_word = (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
+      if (is_word || c == ' ') anchor += c == ' ' ? '-' : c;
     }
-    out += fmt::format("| {} | {} | {} | {} | {} | {} |\n", keys,
-                       type_text(field.type, field.spec, field.spec.count), units,
-                       field.spec.range.text(spellings(field.spec.unit).front()),
-                       field.spec.required ? "required" : field.default_text, field.spec.meaning);
+    const int before = anchors_[anchor]++;
+    return before == 0 ? anchor : fmt::format("{}-{}", anchor, before);
   }
-  for (const FieldInfo& field : info.fields) {
-    if (field.spec.partial) continue;  // Parts of tables that have their sections elsewhere.
-    add_sections_below(field.type, path + (path.empty() ? "" : ".") + field.name, false, out);
+
+  std::string add_heading(const std::string& heading) {
+    text_ += fmt::format("\n## {}\n", heading);
+    return fmt::format("[{}](#{})", heading, anchor_of(heading));
   }
-}
+
+  // The section of a table, or a link to the one that it has. `common`: fields that are described elsewhere.
+  void add_section(const TableInfo& info, const std::string& path, const std::string& heading,
+                   const std::vector<const FieldInfo*>& common) {
+    const std::string link = add_heading(heading);
+    const auto before = std::ranges::find(sections_, &info, &Section::table);
+    if (before != sections_.end()) {
+      text_ += fmt::format("\nKeys: see {}.\n", before->link);
+      return;
+    }
+    add_table(info, path, common);
+    sections_.push_back({&info, link});
+  }
+
+  // What the table means, a row for each field, and the sections of the tables in it.
+  void add_table(const TableInfo& info, const std::string& path,
+                 const std::vector<const FieldInfo*>& common) {
+    // Of a table that has all the fields of another one: these are described there.
+    constexpr std::size_t fewest = 3;
+    const auto part = std::ranges::find_if(sections_, [&](const Section& section) {
+      const auto& fields = section.table->fields;
+      return fields.size() >= fewest &&
+             std::ranges::all_of(fields, [&](const FieldInfo& field) { return has_row(info, field); });
+    });
+    const bool has_part = part != sections_.end();
+    std::vector<const FieldInfo*> own;
+    for (const FieldInfo& field : info.fields) {
+      const bool is_common = std::ranges::find(common, field.name, &FieldInfo::name) != common.end();
+      if (!is_common && !(has_part && part->table->find(field.name) != nullptr)) own.push_back(&field);
+    }
+    const std::string also = has_part ? fmt::format(" It also has the keys of {}.", part->link) : "";
+    const std::string rows = rows_of(own);
+    text_ += fmt::format("\n{}{}\n{}{}", info.meaning, also, rows.empty() ? "" : "\n", rows);
+    for (const FieldInfo* field : own) {
+      if (field->spec.partial) continue;  // Parts of tables that have their sections elsewhere.
+      add_below(field->type, path + (path.empty() ? "" : ".") + field->name, false);
+    }
+  }
+
+  void add_below(const Type& type, const std::string& path, bool repeated) {
+    if (type.kind == Type::Kind::array) add_below(*type.item, path, true);
+    if (type.kind == Type::Kind::table)
+      add_section(*type.table, path, fmt::format(fmt::runtime(repeated ? "`[[{}]]`" : "`[{}]`"), path), {});
+    if (type.kind == Type::Kind::one_of) add_alternatives(type.alternatives, path);
+  }
+
+  // The fields that all have, then each.
+  void add_alternatives(const std::vector<const TableInfo*>& tables, const std::string& path) {
+    std::vector<const FieldInfo*> common;
+    for (const FieldInfo& field : tables.front()->fields) {
+      const auto has_it = [&](const TableInfo* table) { return has_row(*table, field); };
+      if (tables.size() > 1 && std::ranges::all_of(tables, has_it)) common.push_back(&field);
+    }
+    if (!common.empty()) {
+      (void)add_heading(fmt::format("`[[{}]]`", path));
+      text_ += "\nKeys of every kind:\n\n" + rows_of(common);
+    }
+    for (const TableInfo* table : tables)
+      add_section(*table, path, fmt::format("`[[{}]]`, `kind = \"{}\"`", path, table->name), common);
+  }
+
+  std::string text_;
+  std::map<std::string, int> anchors_;
+  std::vector<Section> sections_;
+};
 
 }  // namespace
 
@@ -242,10 +358,6 @@ Node json_schema(const TableInfo& info) {
   return schema;
 }
 
-std::string markdown_reference(const TableInfo& info) {
-  std::string out = fmt::format("# {}\n", info.name);
-  add_table_section(info, "", "", out);
-  return out;
-}
+std::string markdown_reference(const TableInfo& info) { return Page(info).text(); }
 
 }  // namespace flexura

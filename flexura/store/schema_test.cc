@@ -10,6 +10,7 @@ namespace flexura {
 namespace {
 
 using ::testing::HasSubstr;
+using ::testing::StartsWith;
 
 struct Lamp {
   double height = 1.0;
@@ -52,13 +53,86 @@ TEST(JsonSchema, DescribesKindsUnitsRangesAndCounts) {
 
 TEST(MarkdownReference, HasASectionATableAndARowAField) {
   const std::string page = markdown_reference(fields_of(static_cast<const Room*>(nullptr)).info());
-  EXPECT_THAT(page, HasSubstr("# room\n\nA room.\n"));
+  EXPECT_THAT(page, StartsWith("# room\n"));
+  EXPECT_THAT(page, HasSubstr("\n\nA room.\n"));
   EXPECT_THAT(page, HasSubstr("## `[[thing]]`, `kind = \"lamp\"`\n\nGives light.\n"));
-  EXPECT_THAT(
-      page,
-      HasSubstr("| `height`, `height_mm` | number | m, mm | above 0 m | required | How high it is. |\n"));
-  EXPECT_THAT(page,
-              HasSubstr("| `reach` | number, or array of 2 numbers |  | at least 0 | [1, 2] | How far. |\n"));
+  EXPECT_THAT(page, HasSubstr("| `height`, `height_mm` | number, > 0 m | required | How high it is. |\n"));
+  EXPECT_THAT(page, HasSubstr("| `reach` | number or 2 numbers, >= 0 | [1, 2] | How far. |\n"));
+}
+
+struct House {
+  std::vector<Room> room;
+  Lamp porch, path;
+};
+
+const Table<House>& fields_of(const House*) {
+  static const auto table = Table<House>("house", "A house.")
+                                .field("room", &House::room, {.meaning = "Its rooms."})
+                                .field("porch", &House::porch, {.meaning = "At the door."})
+                                .field("path", &House::path, {.meaning = "Along the path."});
+  return table;
+}
+
+TEST(MarkdownReference, DescribesATableOnceAndLinksToIt) {
+  const std::string page = markdown_reference(fields_of(static_cast<const House*>(nullptr)).info());
+  const std::string link = "Keys: see [`[[room.thing]]`, `kind = \"lamp\"`](#roomthing-kind--lamp).\n";
+  EXPECT_THAT(page, HasSubstr("## `[porch]`\n\n" + link));
+  EXPECT_THAT(page, HasSubstr("## `[path]`\n\n" + link));
+  EXPECT_EQ(page.find("How high it is."), page.rfind("How high it is."));
+}
+
+struct Sphere {
+  double size = 1, x = 0, y = 0, z = 0, speed = 2e6;
+};
+struct Ball {
+  double size = 1, speed = 2e6;
+};
+struct Place {
+  double x = 0, y = 0, z = 0;
+};
+struct Toys {
+  Place place;
+  std::vector<std::variant<Sphere, Ball>> toy;
+};
+
+template <class S>
+Table<S> moving_table(const char* kind) {
+  return Table<S>(kind, "Rolls.")
+      .field("size", &S::size, {.meaning = "Its size."})
+      .field("speed", &S::speed, {.meaning = "Its speed.", .range = between(0, 3e6)});
+}
+template <class S>
+Table<S> placed(Table<S> table) {
+  for (const auto& [name, member] : {std::pair{"x", &S::x}, std::pair{"y", &S::y}, std::pair{"z", &S::z}})
+    table.field(name, member, {.meaning = "Its place."});
+  return table;
+}
+const Table<Sphere>& fields_of(const Sphere*) {
+  static const auto table = placed(moving_table<Sphere>("sphere"));
+  return table;
+}
+const Table<Ball>& fields_of(const Ball*) {
+  static const auto table = moving_table<Ball>("ball");
+  return table;
+}
+const Table<Place>& fields_of(const Place*) {
+  static const auto table = placed(Table<Place>("place", "Where."));
+  return table;
+}
+const Table<Toys>& fields_of(const Toys*) {
+  static const auto table = Table<Toys>("toys", "Toys.")
+                                .field("place", &Toys::place, {.meaning = "Where they are."})
+                                .field("toy", &Toys::toy, {.meaning = "The toys."});
+  return table;
+}
+
+TEST(MarkdownReference, DescribesFieldsOnceThatSeveralTablesHave) {
+  const std::string page = markdown_reference(fields_of(static_cast<const Toys*>(nullptr)).info());
+  EXPECT_THAT(page, HasSubstr("## `[[toy]]`\n\nKeys of every kind:\n"));
+  EXPECT_THAT(page, HasSubstr("| `speed` | number, [0, 3e6] | 2000000 | Its speed. |\n"));
+  EXPECT_EQ(page.find("Its size."), page.rfind("Its size."));
+  EXPECT_THAT(page, HasSubstr("Rolls. It also has the keys of [`[place]`](#place).\n"));
+  EXPECT_EQ(page.find("| `x` |"), page.rfind("| `x` |"));
 }
 
 }  // namespace

@@ -29,46 +29,53 @@ struct Parameter {
 const std::vector<Parameter>& parameters() {
   using V = VaryConfig;
   static const std::vector<Parameter> all{
-      {"pan", &V::pan, Unit::radian, turn_range, "The head's pan, to the camera's left."},
-      {"tilt", &V::tilt, Unit::radian, turn_range, "The head's tilt, upwards."},
+      {"pan", &V::pan, Unit::radian, turn_range, "Pan angle of the head, positive to the camera's left."},
+      {"tilt", &V::tilt, Unit::radian, turn_range, "Tilt angle of the head, positive upwards."},
       {"roll", &V::roll, Unit::radian, turn_range,
-       "A turn of the camera about its optical axis, beside what it has; clockwise seen from behind it."},
+       "Additional rotation of the camera about its optical axis, clockwise as seen from behind."},
       {"orbit", &V::orbit, Unit::radian, turn_range,
-       "The camera rises around the target's horizontal axis and looks at its centre: the paper's tilt, seen "
-       "as the plane tilting its top towards the camera. At 0 it is where it stands."},
+       "Rotation of the camera upwards about the target's horizontal axis, looking at its centre: the "
+       "paper's tilt. At 0 the camera is at its initial pose."},
       {"distance",
        &V::distance,
        Unit::metre,
        {.min = 1e-6, .max = 1e6},
-       "The camera's distance from the target's centre, along the line on which it stands; it keeps its "
-       "orientation."},
+       "Distance of the camera from the target's centre, at constant direction and orientation."},
       {"mount_x", &V::mount_x, Unit::metre, place_range,
-       "The mount's position along X; the camera keeps its orientation."},
-      {"mount_y", &V::mount_y, Unit::metre, place_range, "The same along Y."},
-      {"mount_z", &V::mount_z, Unit::metre, place_range, "The same along Z."},
-      {"zoom", &V::zoom, Unit::none, {.min = -1e9, .max = 1e9}, "The zoom: a ratio or a motor count."},
-      {"stage_x", &V::stage_x, Unit::metre, slide_range, "The stage's offset to the right."},
-      {"stage_y", &V::stage_y, Unit::metre, slide_range, "The stage's offset downwards."},
-      {"stage_z", &V::stage_z, Unit::metre, slide_range, "The stage's offset forwards."},
+       "Position of the mount along X, at constant orientation."},
+      {"mount_y", &V::mount_y, Unit::metre, place_range,
+       "Position of the mount along Y, at constant orientation."},
+      {"mount_z", &V::mount_z, Unit::metre, place_range,
+       "Position of the mount along Z, at constant orientation."},
+      {"zoom", &V::zoom, Unit::none, {.min = -1e9, .max = 1e9}, "Zoom ratio or motor count."},
+      {"stage_x", &V::stage_x, Unit::metre, slide_range, "Stage position to the right."},
+      {"stage_y", &V::stage_y, Unit::metre, slide_range, "Stage position downwards."},
+      {"stage_z", &V::stage_z, Unit::metre, slide_range, "Stage position forwards."},
       {"focal_length", &V::focal_length, Unit::none, focal_length_range,
-       "The focal length in px as the zoom stands; fy keeps its proportion to fx."},
-      {"fx", &V::fx, Unit::none, focal_length_range, "The horizontal focal length alone, px."},
-      {"fy", &V::fy, Unit::none, focal_length_range, "The vertical focal length alone, px."},
-      {"cx", &V::cx, Unit::none, principal_point_range, "The principal point's column, px."},
-      {"cy", &V::cy, Unit::none, principal_point_range, "The principal point's row, px."},
-      {"k1", &V::k1, Unit::none, distortion_range, "Radial distortion, by the second power of the radius."},
-      {"k2", &V::k2, Unit::none, distortion_range, "Radial distortion, by the fourth power."},
+       "Focal length fx at the current zoom, px, at constant ratio fy/fx."},
+      {"fx", &V::fx, Unit::none, focal_length_range, "Horizontal focal length only, px."},
+      {"fy", &V::fy, Unit::none, focal_length_range, "Vertical focal length only, px."},
+      {"cx", &V::cx, Unit::none, principal_point_range, "Column of the principal point, px."},
+      {"cy", &V::cy, Unit::none, principal_point_range, "Row of the principal point, px."},
+      {"k1", &V::k1, Unit::none, distortion_range, "Radial distortion, second power of the radius."},
+      {"k2", &V::k2, Unit::none, distortion_range, "Radial distortion, fourth power of the radius."},
       {"p1", &V::p1, Unit::none, distortion_range, "Tangential distortion, vertical."},
       {"p2", &V::p2, Unit::none, distortion_range, "Tangential distortion, horizontal."},
-      {"k3", &V::k3, Unit::none, distortion_range, "Radial distortion, by the sixth power."},
-      {"tilt_axis_x", &V::tilt_axis_x, Unit::metre, slide_range, "The tilt axis, right of the pan axis."},
-      {"tilt_axis_y", &V::tilt_axis_y, Unit::metre, slide_range, "The tilt axis, below the mount's origin."},
-      {"tilt_axis_z", &V::tilt_axis_z, Unit::metre, slide_range, "The tilt axis, before the pan axis."},
-      {"pupil_x", &V::pupil_x, Unit::metre, slide_range, "The entrance pupil, right of the tilt axis."},
-      {"pupil_y", &V::pupil_y, Unit::metre, slide_range, "The entrance pupil, below the tilt axis."},
-      {"pupil_z", &V::pupil_z, Unit::metre, slide_range, "The entrance pupil, before the tilt axis."},
+      {"k3", &V::k3, Unit::none, distortion_range, "Radial distortion, sixth power of the radius."},
+      {"tilt_axis_x", &V::tilt_axis_x, Unit::metre, slide_range,
+       "Distance of the tilt axis to the right of the pan axis."},
+      {"tilt_axis_y", &V::tilt_axis_y, Unit::metre, slide_range,
+       "Distance of the tilt axis below the mount's origin."},
+      {"tilt_axis_z", &V::tilt_axis_z, Unit::metre, slide_range,
+       "Distance of the tilt axis in front of the pan axis."},
+      {"pupil_x", &V::pupil_x, Unit::metre, slide_range,
+       "Distance of the entrance pupil to the right of `tilt_axis`."},
+      {"pupil_y", &V::pupil_y, Unit::metre, slide_range,
+       "Distance of the entrance pupil below the tilt axis."},
+      {"pupil_z", &V::pupil_z, Unit::metre, slide_range,
+       "Distance of the entrance pupil in front of the tilt axis."},
       {"pupil_shift", &V::pupil_shift, Unit::metre, slide_range,
-       "How far the entrance pupil moves forward for each 1 of zoom ratio."}};
+       "Forward shift of the entrance pupil per unit of zoom ratio."}};
   return all;
 }
 
@@ -97,8 +104,7 @@ std::string camera_names(const std::vector<CameraConfig>& cameras) {
 
 const Table<VaryConfig>& fields_of(const VaryConfig*) {
   static const auto table = [] {
-    Table<VaryConfig> made("vary",
-                           "What is varied: one of these parameters of the camera, as [first, last].");
+    Table<VaryConfig> made("vary", "Varied parameter of the camera: exactly one of these, as [first, last].");
     for (const Parameter& one : parameters())
       made.field(
           one.name, one.member,
@@ -111,14 +117,15 @@ const Table<VaryConfig>& fields_of(const VaryConfig*) {
 const Table<StudyTargetConfig>& fields_of(const StudyTargetConfig*) {
   static const auto table =
       Table<StudyTargetConfig>("target",
-                               "A circle, and in it the square whose edges are level and upright: in the "
-                               "XOY plane parallel to OX and OY.")
+                               "A circle and its inscribed square with level and upright edges: parallel to "
+                               "OX and OY in the XOY plane.")
           .field("center", &StudyTargetConfig::center,
-                 {.meaning = "Its centre.", .unit = Unit::metre, .range = between(-1e6, 1e6)})
-          .field("normal", &StudyTargetConfig::normal,
-                 {.meaning = "The way its plane faces; of any length but 0.", .range = between(-1e6, 1e6)})
+                 {.meaning = "Centre.", .unit = Unit::metre, .range = between(-1e6, 1e6)})
+          .field(
+              "normal", &StudyTargetConfig::normal,
+              {.meaning = "Normal of the target's plane; any length above 0.", .range = between(-1e6, 1e6)})
           .field("radius", &StudyTargetConfig::radius,
-                 {.meaning = "The circle's radius.", .unit = Unit::metre, .range = between(1e-6, 1e6)})
+                 {.meaning = "Radius of the circle.", .unit = Unit::metre, .range = between(1e-6, 1e6)})
           .check([](const StudyTargetConfig& target, Reader& reader) {
             if (!(Eigen::Vector3d(target.normal.data()).stableNorm() > 1e-100))
               reader.problem_at("normal", "has no direction: expected a length above 0");
@@ -129,23 +136,21 @@ const Table<StudyTargetConfig>& fields_of(const StudyTargetConfig*) {
 const Table<StudyTask>& fields_of(const StudyTask*) {
   static const auto table =
       Table<StudyTask>("study",
-                       "How the image of a target changes when one of a camera's parameters is varied: "
-                       "distances in the image as tables and plots. The arm stays as it is, and no time "
-                       "passes.")
+                       "Image distances of a target as one camera parameter varies, as tables and plots. The "
+                       "arm keeps its shape and no time passes.")
           .field("name", &StudyTask::name,
-                 {.meaning = "What to call the task, its table and its figures.", .default_text = "its kind"})
+                 {.meaning = "Name of the task in results.", .default_text = "its kind"})
           .field("camera", &StudyTask::camera,
-                 {.meaning = "The camera's name.", .default_text = "the first camera"})
+                 {.meaning = "Name of the camera.", .default_text = "the first camera"})
           .field("vary", &StudyTask::vary,
-                 {.meaning = "What is varied, as `vary.orbit_deg = [-60, 60]`.", .required = true})
+                 {.meaning = "Varied parameter, as `vary.orbit_deg = [-60, 60]`.", .required = true})
           .field(
               "points", &StudyTask::points,
-              {.meaning = "Number of values, evenly from the first to the last.", .range = between(2, 10000)})
-          .field(
-              "measure", &StudyTask::measure,
-              {.meaning = "Also in pictures of the square, found and measured as a camera's: a third column. "
-                          "Takes a tenth of a second a value."})
-          .field("target", &StudyTask::target, {.meaning = "What the camera looks at."});
+              {.meaning = "Number of values, equally spaced from first to last.", .range = between(2, 10000)})
+          .field("measure", &StudyTask::measure,
+                 {.meaning = "Whether the square is also rendered and measured in pictures, for a third "
+                             "column. Takes a tenth of a second per value."})
+          .field("target", &StudyTask::target, {.meaning = "Target in the camera's view."});
   return table;
 }
 

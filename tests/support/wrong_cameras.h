@@ -13,7 +13,7 @@
 namespace flexura {
 
 /// In cameras that may be so wrong.
-constexpr ViewDoubt a_degree_and_two_percent = {.turn = degree, .focal = 0.02};
+constexpr ViewDoubt a_degree_and_two_percent = {.rotation_std = degree, .focal_std = 0.02};
 
 struct WrongCameras {
   std::vector<Sighting> seen;

@@ -81,9 +81,10 @@ void check_idle_keys(const CalibrateTask& task, const std::string& path, Reader&
   refuse(".zooms", task.zooms != usual.zooms, "bundle");
   if (task.method != CalibrateMethod::arcs) return;
   constexpr const char* bundles = "bundle and bundle-etalon";
-  refuse(".guess.focal", task.guess.focal != usual.guess.focal, bundles);
-  refuse(".guess.principal_point", task.guess.principal_point != usual.guess.principal_point, bundles);
-  refuse(".guess.zero", task.guess.zero != usual.guess.zero, bundles);
+  refuse(".camera_prior.focal_std", task.camera_prior.focal_std != usual.camera_prior.focal_std, bundles);
+  refuse(".camera_prior.principal_point_std",
+         task.camera_prior.principal_point_std != usual.camera_prior.principal_point_std, bundles);
+  refuse(".camera_prior.zero_std", task.camera_prior.zero_std != usual.camera_prior.zero_std, bundles);
 }
 
 // All that needs no shape of the arm.
@@ -94,11 +95,11 @@ void check_calibration(const CalibrateTask& task, const ArmConfig& arm,
   for (std::size_t i = 0; i < task.pose.size(); ++i)
     check_shape(task.pose[i], arm.kind, arm.section.size(), fmt::format("{}.pose[{}]", path, i), reader);
   const bool is_bundle = !is_loop(task);
-  if (!is_bundle && task.wanted != CalibrateWantedConfig{})
-    reader.problem_at(path + ".wanted",
+  if (!is_bundle && task.required_std != CalibrateRequiredStd{})
+    reader.problem_at(path + ".required_std",
                       "is what the methods bundle and bundle-etalon stop by: expected no such key");
-  if (!is_bundle && task.method != CalibrateMethod::arcs && task.guess != CalibrateGuessConfig{})
-    reader.problem_at(path + ".guess",
+  if (!is_bundle && task.method != CalibrateMethod::arcs && task.camera_prior != CalibrateCameraPrior{})
+    reader.problem_at(path + ".camera_prior",
                       "is asked for by the methods bundle, bundle-etalon and arcs: expected no such key");
   if (is_bundle && task.loop != CalibrateLoopConfig{})
     reader.problem_at(path + ".loop",

@@ -70,136 +70,145 @@ const std::vector<std::string>& names_of(const CalibrateMethod*) {
   return names;
 }
 
-const Table<CalibrateWantedConfig>& fields_of(const CalibrateWantedConfig*) {
+const Table<CalibrateRequiredStd>& fields_of(const CalibrateRequiredStd*) {
   static const auto table =
-      Table<CalibrateWantedConfig>("wanted", "How well the rig shall be known: standard deviations.")
-          .field("angle", &CalibrateWantedConfig::angle,
-                 {.meaning = "Of the angle between the optical axes.",
+      Table<CalibrateRequiredStd>(
+          "required_std", "Standard deviations of the calibrated rig at which no more pictures are taken.")
+          .field("angle", &CalibrateRequiredStd::angle,
+                 {.meaning = "Standard deviation of the angle between the optical axes.",
                   .unit = Unit::radian,
                   .range = above_up_to(0, 1)})
-          .field("focal", &CalibrateWantedConfig::focal,
-                 {.meaning = "Of each focal length, a share.", .range = above_up_to(0, 1)})
-          .field("zoom_ratio", &CalibrateWantedConfig::zoom_ratio,
-                 {.meaning = "Of how much larger one camera shows the arm than the other, a share.",
+          .field("focal", &CalibrateRequiredStd::focal,
+                 {.meaning = "Relative standard deviation of each focal length.", .range = above_up_to(0, 1)})
+          .field("zoom_ratio", &CalibrateRequiredStd::zoom_ratio,
+                 {.meaning = "Relative standard deviation of the ratio of the arm's sizes in the two images.",
                   .range = above_up_to(0, 1)});
   return table;
 }
 
-const Table<CalibrateGuessConfig>& fields_of(const CalibrateGuessConfig*) {
+const Table<CalibrateCameraPrior>& fields_of(const CalibrateCameraPrior*) {
   static const auto table =
-      Table<CalibrateGuessConfig>(
-          "guess", "How wrong the file's description of the cameras may be: standard deviations.")
-          .field("rotation", &CalibrateGuessConfig::rotation,
-                 {.meaning = "Of how a mount is turned, about each axis.",
+      Table<CalibrateCameraPrior>("camera_prior", "Prior standard deviations of the file's camera models.")
+          .field("rotation_std", &CalibrateCameraPrior::rotation_std,
+                 {.meaning = "Standard deviation of a mount's orientation, about each axis.",
                   .unit = Unit::radian,
                   .range = above_up_to(0, 1)})
-          .field("distance", &CalibrateGuessConfig::distance,
-                 {.meaning = "Of where a mount is, in each direction, as a share of its distance from the "
-                             "arm's base, or from the cylinder before which it is calibrated.",
+          .field("position_std", &CalibrateCameraPrior::position_std,
+                 {.meaning = "Standard deviation of a mount's position along each axis, as a fraction of its "
+                             "distance from the arm's base, or from the calibration cylinder if used.",
                   .range = above_up_to(0, 1)})
-          .field("focal", &CalibrateGuessConfig::focal,
-                 {.meaning = "Of the focal length, a share.", .range = between(0, 1)})
-          .field("principal_point", &CalibrateGuessConfig::principal_point,
-                 {.meaning = "Of the principal point, in each direction, px.", .range = between(0, 1000)})
+          .field("focal_std", &CalibrateCameraPrior::focal_std,
+                 {.meaning = "Relative standard deviation of the focal length.", .range = between(0, 1)})
+          .field("principal_point_std", &CalibrateCameraPrior::principal_point_std,
+                 {.meaning = "Standard deviation of the principal point along each axis, px.",
+                  .range = between(0, 1000)})
           .field(
-              "zero", &CalibrateGuessConfig::zero,
-              {.meaning = "Of where a head's axes stand when it says 0; a pan's counts where a stage moves.",
+              "zero_std", &CalibrateCameraPrior::zero_std,
+              {.meaning =
+                   "Standard deviation of a head's zero offsets. For pan it counts only where a stage moves.",
                .unit = Unit::radian,
                .range = between(0, 1)})
-          .field("exact_heads", &CalibrateGuessConfig::exact_heads,
-                 {.meaning = "Heads stand where they count, not somewhere within half a step of it."});
+          .field("exact_heads", &CalibrateCameraPrior::exact_heads,
+                 {.meaning = "Whether heads are exactly at their counted positions, not anywhere within half "
+                             "a step of them."})
+          .renamed("rotation", "rotation_std")
+          .renamed("distance", "position_std")
+          .renamed("focal", "focal_std")
+          .renamed("principal_point", "principal_point_std")
+          .renamed("zero", "zero_std");
   return table;
 }
 
 const Table<CalibrateLoopConfig>& fields_of(const CalibrateLoopConfig*) {
   static const auto table =
-      Table<CalibrateLoopConfig>("loop", "How the paper's methods go about it.")
+      Table<CalibrateLoopConfig>("loop", "Parameters of the paper's iterative methods.")
           .field("accepted", &CalibrateLoopConfig::accepted,
-                 {.meaning = "What is accepted of every offset in a picture, px.",
+                 {.meaning = "Tolerance of every offset in a picture, px.",
                   .range = above_up_to(0, 1000),
-                  .default_text = "0.05 with etalon, 0.5 with arcs, 3 as printed"})
-          .field("zoom_accepted", &CalibrateLoopConfig::zoom_accepted,
-                 {.meaning = "Share by which the cameras may show the target unlike.",
-                  .range = above_up_to(0, 1),
-                  .default_text = "0.001; 0.01 as printed"})
+                  .default_text = "0.05 for etalon, 0.5 for arcs, 3 for -paper methods"})
+          .field(
+              "zoom_accepted", &CalibrateLoopConfig::zoom_accepted,
+              {.meaning = "Relative tolerance of the difference between the target's sizes in both images.",
+               .range = above_up_to(0, 1),
+               .default_text = "0.001; 0.01 for -paper methods"})
           .field("turn", &CalibrateLoopConfig::turn,
-                 {.meaning = "As printed: every turn of a head.",
+                 {.meaning = "Fixed rotation step of a head, for etalon-paper.",
                   .unit = Unit::radian,
                   .range = above_up_to(0, 1)})
           .field("slide", &CalibrateLoopConfig::slide,
-                 {.meaning = "As printed: every way of a stage.",
+                 {.meaning = "Fixed translation step of a stage, for etalon-paper.",
                   .unit = Unit::metre,
                   .range = above_up_to(0, 10)})
           .field("zoom_step", &CalibrateLoopConfig::zoom_step,
-                 {.meaning = "As printed: every change of a zoom, a share.", .range = above_up_to(0, 1)})
+                 {.meaning = "Fixed relative step of a zoom, for etalon-paper.", .range = above_up_to(0, 1)})
           .field("arc", &CalibrateLoopConfig::arc,
-                 {.meaning = "By how much the arm is bent into an arc.",
+                 {.meaning = "Bend of the arm in an arc, for arcs and arcs-paper.",
                   .unit = Unit::radian,
                   .range = between(0.2, 6),
-                  .default_text = "90 degrees with arcs, 120 as printed"});
+                  .default_text = "90 degrees for arcs, 120 for arcs-paper"});
   return table;
 }
 
 const Table<CalibrateTask>& fields_of(const CalibrateTask*) {
   static const auto table =
       Table<CalibrateTask>("calibrate",
-                           "Two cameras find out how they stand, and are sent to where both look at the arm "
-                           "along orthogonal axes with equal zoom. The arm shows some poses, going from one "
-                           "to the next by way of the shape in which it is; heads, stages and zooms are "
-                           "moved as well. It takes as long as it takes.")
+                           "Calibrates two cameras, then points them at the arm along orthogonal axes with "
+                           "equal zoom. The arm takes several poses and returns to its shape in between; "
+                           "heads, stages and zooms move too. The duration depends on the progress.")
           .field("name", &CalibrateTask::name,
-                 {.meaning = "What to call the task in results.", .default_text = "its kind"})
-          .field("method", &CalibrateTask::method,
-                 {.meaning =
-                      "How: bundle is by least squares over everything at once, from pictures of the arm, "
-                      "bundle-etalon from pictures of the calibration cylinder; etalon is the paper's loop "
-                      "before the calibration cylinder, corrected, and etalon-paper the same as printed; "
-                      "arcs is the paper's loop with arcs of the arm in two planes, corrected, and "
-                      "arcs-paper the same as printed."})
-          .field("cameras", &CalibrateTask::cameras,
-                 {.meaning = "The names of two cameras.", .count = {2, 2}, .default_text = "the first two"})
+                 {.meaning = "Name of the task in results.", .default_text = "its kind"})
           .field(
-              "pose", &CalibrateTask::pose,
+              "method", &CalibrateTask::method,
               {.meaning =
-                   "What the arm shows, as `pose = [{ bends = ... }, ...]`. The cameras are to look at the "
-                   "middle of the first one.",
-               .count = {1, 100},
-               .default_text = "six, that bend every part of the arm to every side"})
+                   "Calibration method. `bundle`: least squares over all parameters, from pictures of the "
+                   "arm. `bundle-etalon`: least squares from pictures of the calibration cylinder. `etalon`: "
+                   "the paper's loop with the cylinder, corrected. `arcs`: the paper's loop with arcs of the "
+                   "arm in two planes, corrected. `etalon-paper`, `arcs-paper`: these loops as printed."})
+          .field("cameras", &CalibrateTask::cameras,
+                 {.meaning = "Names of two cameras.", .count = {2, 2}, .default_text = "the first two"})
+          .field("pose", &CalibrateTask::pose,
+                 {.meaning = "Shapes of the arm in the pictures, as `pose = [{ bends = ... }, ...]`.",
+                  .count = {1, 100},
+                  .default_text = "six, with every part of the arm bent to every side"})
           .field("images", &CalibrateTask::images,
-                 {.meaning = "Pictures a camera, at most; with bundle and bundle-etalon the last one "
-                             "verifies, and those of a search come on top.",
+                 {.meaning = "Largest number of pictures per camera, without those of a search. With bundle "
+                             "and bundle-etalon the last picture is for verification.",
                   .range = between(3, image_limit),
-                  .default_text = "12 with both bundles, 60 with etalon and arcs, 400 as printed"})
-          .field("wanted", &CalibrateTask::wanted, {.meaning = "When no more pictures are needed."})
-          .field("guess", &CalibrateTask::guess, {.meaning = "How rough the file's description is."})
-          .field("loop", &CalibrateTask::loop, {.meaning = "How the paper's methods go about it."})
+                  .default_text = "12 for both bundles, 60 for etalon and arcs, 400 for -paper methods"})
+          .field("required_std", &CalibrateTask::required_std,
+                 {.meaning = "Standard deviations at which the calibration stops."})
+          .field("camera_prior", &CalibrateTask::camera_prior,
+                 {.meaning = "Prior standard deviations of the file's camera models."})
+          .field("loop", &CalibrateTask::loop, {.meaning = "Parameters of the paper's iterative methods."})
           .field("target", &CalibrateTask::target,
-                 {.meaning = "What the cameras shall look at in the end.",
+                 {.meaning = "Point at which both cameras look in the end.",
                   .unit = Unit::metre,
                   .range = between(-1e6, 1e6),
                   .default_text = "the middle of the arm in its first pose"})
-          .field("stages", &CalibrateTask::stages, {.meaning = "Stages may be moved, as far as they travel."})
+          .field("stages", &CalibrateTask::stages,
+                 {.meaning = "Whether stages may move, within their travel."})
           .field("zooms", &CalibrateTask::zooms,
-                 {.meaning = "Focal lengths to look with, as factors on that at the start.",
+                 {.meaning = "Focal lengths for the pictures, as factors on the initial one.",
                   .range = between(0.1, 100),
                   .count = {1, 10}})
           .field("move_duration", &CalibrateTask::move_duration,
-                 {.meaning = "Time of the arm's way to a pose, or back.",
+                 {.meaning = "Duration of the arm's motion to a pose, or back.",
                   .unit = Unit::second,
                   .range = above_up_to(0, longest)})
           .field("settle_timeout", &CalibrateTask::settle_timeout,
-                 {.meaning = "How long motions may take before something is taken to be stuck.",
+                 {.meaning = "Longest duration of a motion. A device that moves longer counts as stuck.",
                   .unit = Unit::second,
                   .range = above_up_to(0, longest)})
           .field("frame_timeout", &CalibrateTask::frame_timeout,
-                 {.meaning = "How long to wait for a picture.",
+                 {.meaning = "Longest wait for a picture.",
                   .unit = Unit::second,
                   .range = above_up_to(0, longest)})
-          .field(
-              "save", &CalibrateTask::save,
-              {.meaning = "A file (.toml) in this file's folder for the rig as found, which experiments can "
-                          "include. One that is there already is kept, under another name.",
-               .default_text = "none; the results have it as rig.toml"});
+          .field("save", &CalibrateTask::save,
+                 {.meaning = "Name of a .toml file in this file's folder for the calibrated rig, which "
+                             "experiments can include. An existing rig file is kept under another name.",
+                  .default_text = "none; the results have it as rig.toml"})
+          .renamed("wanted", "required_std")
+          .renamed("guess", "camera_prior");
   return table;
 }
 
@@ -266,7 +275,9 @@ RigSessionConfig session_config(const CalibrateTask& task, const ArmConfig& arm,
     // Once from where the heads stand, for nothing there moves; a red line is seen at two places.
     config.first = 1, config.fewest = 2;
   }
-  config.wanted = {task.wanted.angle, {task.wanted.focal, task.wanted.focal}, task.wanted.zoom_ratio};
+  config.wanted = {task.required_std.angle,
+                   {task.required_std.focal, task.required_std.focal},
+                   task.required_std.zoom_ratio};
   if (task.target) config.target = vector(*task.target);
   config.may_use_stages = task.stages;
   config.zooms = task.zooms;
@@ -302,15 +313,15 @@ LoopConfig loop_config(const CalibrateTask& task, const ArmConfig& arm,
 RigPrior session_prior(const CalibrateTask& task, const RigModel& believed, const StandConfig& stand) {
   std::optional<Eigen::Vector3d> seen;
   if (is_before_etalon(task)) seen = EtalonFigure(stand.etalon.value_or(EtalonConfig{})).middle();
-  RigPrior prior = rough_prior(believed, task.guess.distance, seen);
+  RigPrior prior = rough_prior(believed, task.camera_prior.position_std, seen);
   // The cylinder tells nothing of the arm.
   if (is_before_etalon(task)) prior.arm = {.length = 0, .bend_gain = 0, .bend_share = 0, .bend = 0};
   for (CameraPrior& camera : prior.cameras) {
-    if (camera.pan_zero > 0) camera.pan_zero = task.stages ? task.guess.zero : 0;
-    camera.tilt_zero = task.guess.zero;
-    camera.rotation = task.guess.rotation, camera.focal = task.guess.focal;
-    camera.principal_point = task.guess.principal_point;
-    if (task.guess.exact_heads) camera.steps = 0;
+    if (camera.pan_zero > 0) camera.pan_zero = task.stages ? task.camera_prior.zero_std : 0;
+    camera.tilt_zero = task.camera_prior.zero_std;
+    camera.rotation = task.camera_prior.rotation_std, camera.focal = task.camera_prior.focal_std;
+    camera.principal_point = task.camera_prior.principal_point_std;
+    if (task.camera_prior.exact_heads) camera.steps = 0;
   }
   return prior;
 }

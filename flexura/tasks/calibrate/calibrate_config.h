@@ -31,23 +31,23 @@ enum class CalibrateMethod {
   arcs_paper,     ///< The same as printed.
 };
 
-/// How well the rig shall be known: standard deviations.
-struct CalibrateWantedConfig {
-  double angle = RigSigmas{}.angle;            ///< Between the axes, rad.
-  double focal = RigSigmas{}.focal[0];         ///< Share.
-  double zoom_ratio = RigSigmas{}.zoom_ratio;  ///< Share.
-  bool operator==(const CalibrateWantedConfig&) const = default;
+/// Standard deviations of the calibrated rig at which no more pictures are taken.
+struct CalibrateRequiredStd {
+  double angle = RigSigmas{}.angle;            ///< Angle between the axes, rad.
+  double focal = RigSigmas{}.focal[0];         ///< Focal lengths, relative.
+  double zoom_ratio = RigSigmas{}.zoom_ratio;  ///< Ratio of the arm's sizes in the images, relative.
+  bool operator==(const CalibrateRequiredStd&) const = default;
 };
 
-/// How wrong the file's description of the cameras may be: standard deviations.
-struct CalibrateGuessConfig {
-  double rotation = CameraPrior{}.rotation;  ///< Of a mount, rad.
-  double distance = 0.2;                     ///< Of a mount's place, in each direction, of its distance.
-  double focal = CameraPrior{}.focal;        ///< Share.
-  double principal_point = CameraPrior{}.principal_point;  ///< px
-  double zero = CameraPrior{}.tilt_zero;                   ///< Of a head's axes, rad.
-  bool exact_heads = false;  ///< Heads stand where they count, not within half a step of it.
-  bool operator==(const CalibrateGuessConfig&) const = default;
+/// Prior standard deviations of the file's camera models.
+struct CalibrateCameraPrior {
+  double rotation_std = CameraPrior{}.rotation;  ///< Of a mount's orientation, about each axis, rad.
+  double position_std = 0.2;               ///< Of a mount's position, along each axis, over its distance.
+  double focal_std = CameraPrior{}.focal;  ///< Of the focal length, relative.
+  double principal_point_std = CameraPrior{}.principal_point;  ///< px
+  double zero_std = CameraPrior{}.tilt_zero;                   ///< Of a head's zero offsets, rad.
+  bool exact_heads = false;  ///< Heads are exactly at their counted positions.
+  bool operator==(const CalibrateCameraPrior&) const = default;
 };
 
 /// How the paper's methods go about it (calibrate/loop_session.h).
@@ -68,8 +68,8 @@ struct CalibrateTask {
   std::vector<std::string> cameras;    ///< Two names; empty: the first two.
   std::vector<ShapeConfig> pose;       ///< What the arm shows; empty: default_poses.
   std::optional<std::int64_t> images;  ///< A camera, at most.
-  CalibrateWantedConfig wanted;
-  CalibrateGuessConfig guess;
+  CalibrateRequiredStd required_std;
+  CalibrateCameraPrior camera_prior;
   CalibrateLoopConfig loop;
   std::optional<std::array<double, 3>> target;      ///< What the cameras shall look at, m.
   bool stages = RigSessionConfig{}.may_use_stages;  ///< They may be moved, as far as they travel.
@@ -82,8 +82,8 @@ struct CalibrateTask {
 };
 
 const std::vector<std::string>& names_of(const CalibrateMethod*);
-const Table<CalibrateWantedConfig>& fields_of(const CalibrateWantedConfig*);
-const Table<CalibrateGuessConfig>& fields_of(const CalibrateGuessConfig*);
+const Table<CalibrateRequiredStd>& fields_of(const CalibrateRequiredStd*);
+const Table<CalibrateCameraPrior>& fields_of(const CalibrateCameraPrior*);
 const Table<CalibrateLoopConfig>& fields_of(const CalibrateLoopConfig*);
 const Table<CalibrateTask>& fields_of(const CalibrateTask*);
 

@@ -38,25 +38,22 @@ const Table<DynamicsTargetConfig>& fields_of(const DynamicsTargetConfig*) {
   static const auto table =
       with_shape_fields(
           Table<Target>("target",
-                        "The shape that the law leads to, said in one way: by its bends, or by the two "
-                        "angles of the arm's direction."))
+                        "Target shape of the law, by bends or by the two angles of the arm's direction."))
           .field("azimuths", &Target::azimuths,
-                 {.meaning =
-                      "theta: the direction's angle from +Y towards +X, at equal shares of the length, "
-                      "from the base, where it is the base's own, to the tip; by half a turn at most from "
-                      "place to place.",
+                 {.meaning = "Azimuths theta of the arm's direction from +Y towards +X, at equal fractions "
+                             "of the length from base to tip. The first one is the base's; neighbours differ "
+                             "by at most half a turn.",
                   .unit = Unit::radian,
                   .range = between(-50, 50),
                   .count = {2, most_angles},
                   .default_text = "not set"})
-          .field(
-              "elevations", &Target::elevations,
-              {.meaning = "q: its angle from the plane XOY towards +Z, at the same places; below a quarter "
-                          "turn.",
-               .unit = Unit::radian,
-               .range = angle_range,
-               .count = {2, most_angles},
-               .default_text = "not set"});
+          .field("elevations", &Target::elevations,
+                 {.meaning = "Elevations q of the arm's direction from the plane XOY towards +Z, at the same "
+                             "points; below a quarter turn.",
+                  .unit = Unit::radian,
+                  .range = angle_range,
+                  .count = {2, most_angles},
+                  .default_text = "not set"});
   return table;
 }
 
@@ -64,38 +61,36 @@ const Table<PotentialConfig>& fields_of(const PotentialConfig*) {
   using P = PotentialConfig;
   static const auto table =
       Table<P>("law",
-               "Numbers of the artificial potential with gravity compensation and damping. What violates a "
-               "condition of the theory is taken too; the run then shows what happens, and ends as failed, "
-               "with the reason.")
-          .field(
-              "stiffness", &P::stiffness,
-              {.meaning = "k of theta and of q, N m a metre of the arm and rad; by the theory above 0. One "
-                          "for both, or one each.",
-               .range = gain,
-               .one_for_all = true})
-          .field(
-              "damping", &P::damping,
-              {.meaning = "K of the rates of (theta, q), N m s a metre of the arm: a matrix, by the theory "
-                          "positive definite.",
-               .range = gain})
+               "Gains of the artificial potential with gravity compensation and damping. Gains that violate "
+               "the theory are accepted; such a run shows the motion and ends as failed, with the reason.")
+          .field("stiffness", &P::stiffness,
+                 {.meaning = "Potential stiffness k of theta and of q, N m per metre of arm and rad; above 0 "
+                             "by the theory. One for both, or one each.",
+                  .range = gain,
+                  .one_for_all = true})
+          .field("damping", &P::damping,
+                 {.meaning = "Damping matrix K of the rates of (theta, q), N m s per metre of arm; positive "
+                             "definite by the theory.",
+                  .range = gain})
           .field("length_stiffness", &P::length_stiffness,
-                 {.meaning = "k of each section's length, where lengths vary, N/m; above 0.", .range = gain})
+                 {.meaning =
+                      "Potential stiffness k of each variable section length, N/m; above 0 by the theory.",
+                  .range = gain})
           .field("length_damping", &P::length_damping,
-                 {.meaning = "K of each section's length, N s/m; above 0.", .range = gain})
+                 {.meaning = "Damping K of each variable section length, N s/m; above 0 by the theory.",
+                  .range = gain})
           .field("gravity_compensation", &P::gravity_compensation,
-                 {.meaning = "How much of gravity is compensated, a share; by the theory 1.",
-                  .range = between(-10, 10)})
+                 {.meaning = "Compensated fraction of gravity; 1 by the theory.", .range = between(-10, 10)})
           .field("elasticity", &P::elasticity,
-                 {.meaning = "What the law does about the arm's own elasticity: cancels it, makes it part of "
-                             "the potential, or ignores it, which the theory does not allow where the target "
-                             "bends or stretches the arm."})
+                 {.meaning =
+                      "Treatment of the arm's own elasticity: cancelled, part of the potential, or ignored. "
+                      "The theory does not allow `ignored` where the target bends or stretches the arm."})
           .field("drives", &P::drives,
-                 {.meaning = "What gives the arm the law's forces: drives everywhere along it, or a torque "
-                             "alike along each section, or a moment from each section's base to its end. The "
-                             "few give what is nearest to the law's force; with basis \"sections\" that is "
-                             "all of it."})
+                 {.meaning = "Actuators that apply the law's force: everywhere along the arm, a uniform "
+                             "torque along each section, or a moment from each section's base to its end. "
+                             "The last two apply the nearest force, which is exact with basis \"sections\"."})
           .field("sign", &P::sign,
-                 {.meaning = "Of the potential's force: 1, or -1 to lead away from the target.",
+                 {.meaning = "Sign of the potential's force: 1, or -1 to drive the arm away from the target.",
                   .range = between(-1, 1)});
   return table;
 }
@@ -104,21 +99,21 @@ const Table<MeasurementConfig>& fields_of(const MeasurementConfig*) {
   using M = MeasurementConfig;
   static const auto table =
       Table<M>("measurement",
-               "How the law gets to know the arm's angles. The potential, gravity's compensation and that of "
-               "elasticity go by what was measured last; the damping is of the arm's own rates.")
+               "Measurement of the arm's angles. The potential and both compensations use the latest "
+               "measurement; damping uses the true rates.")
           .field("reading", &M::reading,
-                 {.meaning = "What is read: theta and q themselves at each node, or what two image planes "
-                             "show of each point of the arm; the potential's force is then that of the two "
-                             "plane errors, and where these do not tell both pictures are triangulated."})
+                 {.meaning = "Measured quantity: theta and q at each node, or each point of the arm in two "
+                             "image planes. With `planes`, the potential's force uses the two plane errors; "
+                             "where these are undefined, both pictures are triangulated."})
           .field("delay", &M::delay,
-                 {.meaning = "How late measurements are.", .unit = Unit::second, .range = between(0, 60)})
+                 {.meaning = "Delay of a measurement.", .unit = Unit::second, .range = between(0, 60)})
           .field("noise", &M::noise,
-                 {.meaning = "Standard deviation of each of the angles that are read, from measurement to "
-                             "measurement; out of its plane a planar arm has none.",
+                 {.meaning = "Standard deviation of each measured angle, independent for each measurement. "
+                             "Planar arms have no noise out of their plane.",
                   .unit = Unit::radian,
                   .range = between(0, 10)})
           .field("step", &M::step,
-                 {.meaning = "Time from one measurement to the next.",
+                 {.meaning = "Time between measurements.",
                   .unit = Unit::second,
                   .range = between(1e-4, 10),
                   .default_text = "the clock's step"});
@@ -128,48 +123,49 @@ const Table<MeasurementConfig>& fields_of(const MeasurementConfig*) {
 const Table<DynamicsTask>& fields_of(const DynamicsTask*) {
   using T = DynamicsTask;
   static const auto table =
-      Table<T>("dynamics",
-               "The arm as a continuum with mass, weight and elasticity moves from where it is, at rest, by "
-               "the forces of the paper's artificial potential. Drives, cameras and [truth] have no part in "
-               "it.")
-          .field("name", &T::name,
-                 {.meaning = "What to call the task in results.", .default_text = "its kind"})
+      Table<T>(
+          "dynamics",
+          "Motion of the arm as a continuum with mass, weight and elasticity under the paper's artificial "
+          "potential, from rest in its current shape. Drives, cameras and [truth] have no effect.")
+          .field("name", &T::name, {.meaning = "Name of the task in results.", .default_text = "its kind"})
           .field("duration", &T::duration,
-                 {.meaning = "How long the motion is followed.",
+                 {.meaning = "Duration of the motion.",
                   .unit = Unit::second,
                   .range = above_up_to(0, longest_motion)})
           .field("target", &T::target,
-                 {.meaning = "Where to, as `target.bends_deg = [...]` or `target.azimuths_deg = [...]` and "
-                             "`target.elevations_deg = [...]`.",
+                 {.meaning = "Target shape, as `target.bends_deg = [...]` or `target.azimuths_deg = [...]` "
+                             "and `target.elevations_deg = [...]`.",
                   .required = true})
           .field("density", &T::density,
-                 {.meaning = "Mass a length of the arm at rest, kg/m.", .range = between(1e-6, 1e6)})
+                 {.meaning = "Mass per length of the arm at rest, kg/m.", .range = between(1e-6, 1e6)})
           .field("gravity", &T::gravity,
-                 {.meaning = "In the world, any direction.",
+                 {.meaning = "Gravity in the world's frame: X, Y, Z.",
                   .unit = Unit::metre_per_second_squared,
                   .range = between(-1e4, 1e4)})
-          .field("bending_stiffness", &T::bending_stiffness, {.meaning = "EI, N m^2.", .range = amount})
+          .field("bending_stiffness", &T::bending_stiffness,
+                 {.meaning = "Bending stiffness EI, N m^2.", .range = amount})
           .field("axial_stiffness", &T::axial_stiffness,
-                 {.meaning = "EA, where lengths vary, N.", .range = amount})
+                 {.meaning = "Axial stiffness EA of variable lengths, N.", .range = amount})
           .field("damping", &T::damping,
-                 {.meaning = "By the medium: of a length that turns by 1 rad/s it takes so many W/m.",
+                 {.meaning = "Damping by the medium: power lost per metre of arm that turns at 1 rad/s, W/m.",
                   .range = amount})
           .field("length_damping", &T::length_damping,
-                 {.meaning = "Of the lengths' rates, N s/m.", .range = amount})
+                 {.meaning = "Damping of the rates of variable lengths, N s/m.", .range = amount})
           .field("variable_lengths", &T::variable_lengths,
-                 {.meaning = "The sections' lengths change by the law, too; else they stay as they are."})
+                 {.meaning = "Whether the law changes the lengths of the sections."})
           .field("basis", &T::basis,
-                 {.meaning = "What each angle is along the arm: linear in every section (arcs, where the arm "
-                             "bends in one plane), or one polynomial."})
+                 {.meaning = "Each angle along the arm: linear in every section (arcs, where the arm bends "
+                             "in one plane), or one polynomial."})
           .field("nodes", &T::nodes,
-                 {.meaning = "Numbers of the polynomial, of each angle.", .range = between(1, 16)})
-          .field("law", &T::law, {.meaning = "The law's numbers."})
+                 {.meaning = "Number of nodes of the polynomial, for each angle.", .range = between(1, 16)})
+          .field("law", &T::law, {.meaning = "Gains of the law."})
           .field("measurement", &T::measurement,
-                 {.meaning = "How the law gets to know the angles.", .default_text = "exactly"})
-          .field("tolerance", &T::tolerance,
-                 {.meaning = "The arm is there when no more than this share of W, as it was at the start, is "
-                             "left at the end.",
-                  .range = above_up_to(0, 1)});
+                 {.meaning = "Measurement of the arm's angles.", .default_text = "exact"})
+          .field(
+              "tolerance", &T::tolerance,
+              {.meaning =
+                   "Largest Lyapunov function W at the end for success, as a fraction of its initial value.",
+               .range = above_up_to(0, 1)});
   return table;
 }
 

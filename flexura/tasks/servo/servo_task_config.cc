@@ -54,124 +54,122 @@ M ServoTask::* of_task(M ServoSettings::* setting) {
 const Table<ServoTargetConfig>& fields_of(const ServoTargetConfig*) {
   using Target = ServoTargetConfig;
   static const auto table =
-      with_shape_fields(
-          Table<Target>("target",
-                        "A wanted shape, said in one way: by its bends; by a place for the tip; as a curve "
-                        "in space, along which the whole backbone shall lie; by the angles of its "
-                        "direction; or by two pictures of the arm in it.")
-              .field("time", &Target::time,
-                     {.meaning = "When it is wanted, from the task's start; in between, what is wanted goes "
-                                 "from one target to the next in straight lines.",
-                      .unit = Unit::second,
-                      .range = between(0, longest_time)}))
+      with_shape_fields(Table<Target>("target",
+                                      "Target shape of the arm in one form: bends, tip position, backbone "
+                                      "curve in space, direction angles, or two pictures of the arm.")
+                            .field("time", &Target::time,
+                                   {.meaning = "Time of the target from the task's start. Between targets "
+                                               "the reference is interpolated linearly.",
+                                    .unit = Unit::second,
+                                    .range = between(0, longest_time)}))
           .field("position", &Target::position,
-                 {.meaning = "Where the tip shall be in the world.",
+                 {.meaning = "Position of the tip in the world.",
                   .unit = Unit::metre,
                   .range = between(-1e6, 1e6),
                   .default_text = "not set"})
           .field("curve", &Target::curve,
-                 {.meaning = "Points of the backbone in the world, from the base on to the tip. How far the "
-                             "nearest shape may be from the smooth curve through them is `tolerance`.",
+                 {.meaning = "Points of the backbone in the world from base to tip. `tolerance` limits the "
+                             "distance between the smooth curve through them and the nearest shape.",
                   .unit = Unit::metre,
                   .range = between(-1e6, 1e6),
                   .count = {2, most_points},
                   .default_text = "not set"})
           .field("azimuths", &Target::azimuths,
-                 {.meaning =
-                      "The direction's angle from +Y towards +X, at equal shares of the length, from base to "
-                      "tip.",
+                 {.meaning = "Azimuths of the arm's direction from +Y towards +X, at equal fractions of the "
+                             "length from base to tip.",
                   .unit = Unit::radian,
                   .range = angle_range,
                   .count = {2, most_points},
                   .default_text = "not set"})
           .field("elevations", &Target::elevations,
-                 {.meaning = "Its angle from the plane XOY towards +Z, at the same places.",
+                 {.meaning =
+                      "Elevations of the arm's direction from the plane XOY towards +Z, at the same points.",
                   .unit = Unit::radian,
                   .range = angle_range,
                   .count = {2, most_points},
                   .default_text = "not set"})
-          .field(
-              "pictures", &Target::pictures,
-              {.meaning =
-                   "Two picture files in this file's folder or below, of the task's cameras in this order, "
-                   "as they stand when the task begins.",
-               .count = {2, 2},
-               .default_text = "not set"});
+          .field("pictures", &Target::pictures,
+                 {.meaning = "Two picture files in this file's folder or below, from the task's cameras in "
+                             "this order, at their positions at the task's start.",
+                  .count = {2, 2},
+                  .default_text = "not set"});
   return table;
 }
 
 const Table<ServoTask>& fields_of(const ServoTask*) {
   using T = ServoTask;
   static const auto table =
-      Table<T>("servo",
-               "The arm is steered by two cameras until its shape is the wanted one. It takes as long as it "
-               "takes.")
-          .field("name", &T::name,
-                 {.meaning = "What to call the task in results.", .default_text = "its kind"})
+      Table<T>(
+          "servo",
+          "Servos the shape of the arm to a target by two cameras. The duration depends on the convergence.")
+          .field("name", &T::name, {.meaning = "Name of the task in results.", .default_text = "its kind"})
           .field("law", of_task(&T::law),
-                 {.meaning =
-                      "What drives it: shape is the shape that both images tell, less the wanted one; "
-                      "points, chords and moments compare features of the images, silhouettes their edges; "
-                      "potential is the paper's artificial potential on the errors in two image planes (the "
-                      "first camera's XOY, the second one's ZOY)."})
+                 {.meaning = "Error that drives the arm. `shape`: shape estimated from both images minus "
+                             "target shape. `points`, `chords`, `moments`: image features. `silhouettes`: "
+                             "image edges. `potential`: the paper's artificial potential on the errors in "
+                             "two image planes (XOY of the first camera, ZOY of the second)."})
           .field("measure", of_task(&T::measure),
-                 {.meaning = "Where chords and potential have their angles from: each picture by itself, or "
-                             "the flow from the picture before, drawn back to each picture."})
-          .field("anchor", of_task(&T::anchor),
-                 {.meaning = "Angles that flow carries are drawn back as exp(-t/anchor).",
-                  .unit = Unit::second,
-                  .range = above_up_to(0, longest_time)})
+                 {.meaning = "Source of the angles for chords and potential: each picture alone, or optical "
+                             "flow since the previous picture, with correction towards each picture."})
           .field(
-              "jacobian", of_task(&T::jacobian),
-              {.meaning = "How the arm follows its drives: as the model has it, or as learned on the way by "
-                          "Broyden's update or by recursive least squares."})
+              "anchor", of_task(&T::anchor),
+              {.meaning = "Time constant of the correction of flow angles: errors decay as exp(-t/anchor).",
+               .unit = Unit::second,
+               .range = above_up_to(0, longest_time)})
+          .field("jacobian", of_task(&T::jacobian),
+                 {.meaning = "Jacobian of the arm with respect to its drives: from the model, or learned "
+                             "online by Broyden's update or by recursive least squares."})
           .field("cameras", &T::cameras,
-                 {.meaning = "The names of two cameras.", .count = {2, 2}, .default_text = "the first two"})
+                 {.meaning = "Names of two cameras.", .count = {2, 2}, .default_text = "the first two"})
           .field("target", &T::target,
-                 {.meaning = "The wanted shapes, as `[[task.target]]`, in the order of their times.",
+                 {.meaning = "Target shapes in order of time, as `[[task.target]]`.",
                   .count = {1, most_targets},
                   .required = true})
           .field("points", of_task(&T::points),
-                 {.meaning = "Of points, chords, potential and silhouettes: places along the arm.",
+                 {.meaning = "Number of points along the arm, for points, chords, potential and silhouettes.",
                   .range = between(1, 200)})
           .field("rate", of_task(&T::rate),
-                 {.meaning = "Errors fall as exp(-rate t), 1/s.", .range = above_up_to(0, 1000)})
+                 {.meaning = "Convergence rate, 1/s: errors decay as exp(-rate t).",
+                  .range = above_up_to(0, 1000)})
           .field("damping", of_task(&T::damping),
-                 {.meaning =
-                      "Of the least squares, a share of the derivatives' root mean square; none with shape.",
+                 {.meaning = "Damping of the least squares, relative to the root mean square of the "
+                             "derivatives; not used by shape.",
                   .range = between(0, 10)})
           .field("predict", of_task(&T::predict),
-                 {.meaning = "What was sent after a picture was taken is counted as done."})
-          .field(
-              "tolerance", of_task(&T::tolerance),
-              {.meaning =
-                   "The arm is there when it is so near, root mean square along it, a share of its length.",
-               .range = above_up_to(0, 1)})
+                 {.meaning =
+                      "Whether the servo predicts the effect of commands that are newer than the picture."})
+          .field("tolerance", of_task(&T::tolerance),
+                 {.meaning = "Largest shape error at which the target counts as reached: root mean square "
+                             "along the arm, as a fraction of its length.",
+                  .range = above_up_to(0, 1)})
           .field("settle", of_task(&T::settle),
-                 {.meaning = "And stays so near for this time.",
+                 {.meaning = "Time for which the error must stay within `tolerance`.",
                   .unit = Unit::second,
                   .range = between(0, longest_time)})
           .field("timeout", of_task(&T::timeout),
-                 {.meaning = "How long to go on after the last target's time.",
+                 {.meaning = "Longest duration after the last target's time.",
                   .unit = Unit::second,
                   .range = above_up_to(0, longest_time)})
-          .field("blind", of_task(&T::blind),
-                 {.meaning = "Unseen for so long, the arm stops and waits.",
+          .field("hold_after", of_task(&T::hold_after),
+                 {.meaning = "Time without an observation after which the arm stops and waits.",
                   .unit = Unit::second,
                   .range = above_up_to(0, longest_time)})
-          .field("lost", of_task(&T::lost),
-                 {.meaning = "Unseen for so long, the task is given up.",
+          .field("give_up_after", of_task(&T::give_up_after),
+                 {.meaning = "Time without an observation after which the task fails.",
                   .unit = Unit::second,
                   .range = above_up_to(0, longest_time)})
-          .field(
-              "follow", of_task(&T::follow),
-              {.meaning = "The cameras' heads turn, and zoom out, so that the arm stays in their pictures."})
-          .field("doubt", of_task(&T::doubt), {.meaning = "How wrong the cameras may be."})
+          .field("follow", of_task(&T::follow),
+                 {.meaning = "Whether the cameras' heads track the arm, and zoom out, to keep it in view."})
+          .field("camera_prior", of_task(&T::camera_prior),
+                 {.meaning = "Prior standard deviations of the camera models."})
           .field("step", &T::step,
-                 {.meaning = "Time from one command to the next.",
+                 {.meaning = "Time between commands.",
                   .unit = Unit::second,
                   .range = between(shortest_step, longest_step),
-                  .default_text = "a frame of the slower camera"});
+                  .default_text = "one frame of the slower camera"})
+          .renamed("blind", "hold_after")
+          .renamed("lost", "give_up_after")
+          .renamed("doubt", "camera_prior");
   return table;
 }
 
@@ -181,8 +179,9 @@ std::array<std::size_t, 2> servo_cameras(const ServoTask& task, const std::vecto
 
 ServoSettings servo_settings(const ServoTask& task, const std::vector<CameraConfig>& cameras) {
   auto settings = static_cast<const ServoSettings&>(task);
-  settings.blind = std::max(task.blind, 1.5 / slower_frame_rate(cameras, servo_cameras(task, cameras)));
-  settings.lost = std::max(task.lost, 2 * settings.blind);
+  settings.hold_after =
+      std::max(task.hold_after, 1.5 / slower_frame_rate(cameras, servo_cameras(task, cameras)));
+  settings.give_up_after = std::max(task.give_up_after, 2 * settings.hold_after);
   return settings;
 }
 
@@ -219,13 +218,14 @@ void check_frames(const ServoTask& task, const std::vector<CameraConfig>& camera
                       fmt::format("not given, and a frame of the slower camera takes {:.6g} s: expected a "
                                   "step from {} s to {} s",
                                   frame, shortest_step, longest_step));
-  const double lost = servo_settings(task, cameras).lost;
+  const double given_up = servo_settings(task, cameras).give_up_after;
   for (const std::size_t i : {front, side}) {
     const double late = times_of_frame_at(cameras[i].sensor, 0).received;
     const std::string when =
         fmt::format("the {:.6g} s after which a picture of camera {} comes", late, cameras[i].name);
-    if (late >= lost) {
-      reader.problem_at(path + ".lost", fmt::format("{} s: expected more than {}", task.lost, when));
+    if (late >= given_up) {
+      reader.problem_at(path + ".give_up_after",
+                        fmt::format("{} s: expected more than {}", task.give_up_after, when));
       return;
     }
     if (late > longest_delay) {
@@ -259,9 +259,9 @@ void check_target(const ServoTargetConfig& target, const ArmConfig& arm, const s
 void check_servo(const ServoTask& task, const ArmConfig& arm, const std::vector<CameraConfig>& cameras,
                  const std::string& path, Reader& reader) {
   check_two_cameras(task.cameras, cameras, path, reader);
-  if (!(task.lost > task.blind))
-    reader.problem_at(path + ".lost",
-                      fmt::format("{} s: expected more than blind, {} s", task.lost, task.blind));
+  if (!(task.give_up_after > task.hold_after))
+    reader.problem_at(path + ".give_up_after", fmt::format("{} s: expected more than hold_after, {} s",
+                                                           task.give_up_after, task.hold_after));
   if (!(task.timeout > task.settle))
     reader.problem_at(path + ".timeout",
                       fmt::format("{} s: expected more than settle, {} s", task.timeout, task.settle));

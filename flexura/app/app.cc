@@ -18,6 +18,7 @@
 
 #include "flexura/app/commands.h"
 #include "flexura/app/estimate.h"
+#include "flexura/app/identify.h"
 #include "flexura/app/intrinsics.h"
 #include "flexura/app/measure.h"
 #include "flexura/app/render.h"
@@ -104,6 +105,38 @@ void add_answers(CLI::App& app, Command& chosen, const std::string& name, const 
   answers->add_option("ARM", *file, "A file with [arm] (an experiment, or an arm alone)")->required();
   answers->callback(
       [&chosen, file, command] { chosen = [file, command] { return command(*file, std::cin, std::cout); }; });
+}
+
+void add_identify(CLI::App& app, Command& chosen) {
+  auto arguments = std::make_shared<IdentifyArguments>();
+  CLI::App* identify =
+      app.add_subcommand("identify", "Find an elastic arm's stiffness and damping by how it moved");
+  identify->add_option("EXPERIMENT", arguments->experiment, "The experiment file (TOML): the arm as believed")
+      ->required();
+  identify
+      ->add_option("MOTION", arguments->motion,
+                   "A folder made by `flexura run`, its log (.mcap), or measured places (.csv)")
+      ->required();
+  identify->add_option("--from", arguments->from, "Leave out what was before, s")->type_name("T");
+  identify->add_option("--to", arguments->to, "Leave out what was after, s")->type_name("T");
+  identify
+      ->add_option("--noise-mm", arguments->noise_mm,
+                   "Standard deviation of measured coordinates, mm; a log's places get such errors")
+      ->type_name("N");
+  identify->add_option("--window", arguments->window, "How long a piece of the motion an equation takes, s")
+      ->type_name("S");
+  identify->add_flag("--alike", arguments->alike, "All sections are of one material");
+  identify->add_flag("--mass", arguments->mass, "Look for a factor on the mass too");
+  identify->add_option("--set", arguments->sets, "Change a value: arm.section.0.length=2.5 (repeatable)")
+      ->type_name("PATH=VALUE")
+      ->allow_extra_args(false);
+  identify->add_option("--seed", arguments->seed, "Seed of these errors")
+      ->type_name("N")
+      ->check(CLI::Range(std::int64_t{0}, std::int64_t{1000000000000000}));
+  identify->add_flag("--json", arguments->json, "Print JSON lines");
+  identify->callback([&chosen, arguments] {
+    chosen = [arguments] { return identify_command(*arguments, std::cout, std::cerr); };
+  });
 }
 
 void add_render(CLI::App& app, Command& chosen) {
@@ -311,6 +344,7 @@ int parse_and_run(int argc, const char* const* argv) {
   add_answers(app, chosen, "ik", "Inverse kinematics", inverse_command);
   add_answers(app, chosen, "statics", "Equilibrium of an elastic arm", statics_command);
   add_answers(app, chosen, "linearise", "Motion of an elastic arm around its equilibrium", linearise_command);
+  add_identify(app, chosen);
   add_render(app, chosen);
   add_measure(app, chosen);
   add_estimate(app, chosen);

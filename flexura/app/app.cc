@@ -17,6 +17,7 @@
 
 #include "flexura/app/command_line.h"
 #include "flexura/app/commands.h"
+#include "flexura/app/identify.h"
 #include "flexura/app/new_experiment.h"
 #include "flexura/app/view.h"
 #include "flexura/base/node.h"
@@ -133,6 +134,41 @@ void add_answers(CLI::App& app, Command& chosen, const std::string& name, const 
       [&chosen, file, command] { chosen = [file, command] { return command(*file, std::cin, std::cout); }; });
 }
 
+void add_identify(CLI::App& app, Command& chosen) {
+  auto arguments = std::make_shared<IdentifyArguments>();
+  CLI::App* identify = add_command(app, "identify", command_group::experiments,
+                                   "Identify an elastic arm's stiffness and damping from a motion",
+                                   "flexura identify experiment.toml results/experiment");
+  identify->add_option("EXPERIMENT", arguments->experiment, "The experiment file (TOML) with the nominal arm")
+      ->type_name("")
+      ->required();
+  identify
+      ->add_option("MOTION", arguments->motion,
+                   "A folder made by `flexura run`, its log (.mcap), or measured points (.csv)")
+      ->type_name("")
+      ->required();
+  identify->add_option("--from", arguments->from, "Start of the part that is used, s (default: the start)")
+      ->type_name("T");
+  identify->add_option("--to", arguments->to, "End of the part that is used, s (default: the end)")
+      ->type_name("T");
+  identify
+      ->add_option("--noise-mm", arguments->noise_mm,
+                   "Standard deviation of measured coordinates, mm; points of a log get such noise")
+      ->type_name("N");
+  identify->add_option("--window", arguments->window, "Length of the piece of motion in one equation, s")
+      ->type_name("S");
+  identify->add_flag("--alike", arguments->alike, "All sections have the same material");
+  identify->add_flag("--mass", arguments->mass, "Estimate a factor on the mass too");
+  add_set_option(*identify, arguments->sets);
+  identify->add_option("--seed", arguments->seed, "Seed of the noise, 0 to 1e15")
+      ->type_name("N")
+      ->check(CLI::Range(std::int64_t{0}, std::int64_t{1000000000000000}).description(""));
+  identify->add_flag("--json", arguments->json, "Print JSON lines");
+  identify->callback([&chosen, arguments] {
+    chosen = [arguments] { return identify_command(*arguments, std::cout, std::cerr); };
+  });
+}
+
 void add_export(CLI::App& app, Command& chosen) {
   auto results = std::make_shared<std::string>();
   auto format = std::make_shared<std::string>("csv");
@@ -238,6 +274,7 @@ int parse_and_run(int argc, const char* const* argv) {
               R"(echo '{"tensions":[4,0,0,2,0,0]}' | flexura statics tendons.toml)", statics_command);
   add_answers(app, chosen, "linearise", "Linear model of an elastic arm's motion around its equilibrium",
               R"(echo '{"tensions":[4,0,0,2,0,0]}' | flexura linearise tendons.toml)", linearise_command);
+  add_identify(app, chosen);
   add_picture_commands(app, chosen);
   add_schema(app, chosen);
   add_helpers(app, chosen);

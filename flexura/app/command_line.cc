@@ -14,7 +14,7 @@ Takes taken(const std::string& value) {
   if (value.find('|') != std::string::npos) return Takes::choice;
   if (value == "EXPERIMENT" || value == "ARM" || value == "WHAT") return Takes::experiment;
   if (value == "FILE" || value == "IMAGE") return Takes::file;
-  if (value == "DIR" || value == "RESULTS") return Takes::folder;
+  if (value == "DIR" || value == "RESULTS" || value == "MOTION") return Takes::folder;
   return Takes::text;
 }
 

@@ -18,6 +18,7 @@ struct RodParameter {
     stretch,
     bends,  ///< Of both directions.
     twist,
+    stiffness,  ///< These four together: Young's modulus, of a material whose Poisson's ratio is known.
     damping,  ///< s: the damping is this times the stiffness that the rod says, instead of what the rod says.
     mass,     ///< A factor on the mass of all of the rod, inertia and weight.
   };
@@ -31,6 +32,9 @@ struct RodMotionRecordSample {
   Eigen::VectorXd q;                      ///< The strain modes, as of RodChain.
   std::optional<Eigen::VectorXd> v = {};  ///< dq/dt; of all samples or of none: then by differences of q.
   std::vector<double> tensions = {};      ///< N, one a tendon, each >= 0; empty: none pulls.
+  /// Of the errors of q, modes x modes, where they depend on each other: of all samples or of none, and
+  /// instead of RodMotionRecord::q_noise. Symmetric, positive definite.
+  Eigen::MatrixXd q_covariance = {};
 };
 
 /// How a rod moved.

@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "flexura/math/dense.h"
 #include "flexura/mechanics/dynamics.h"
 
 namespace flexura {
@@ -25,6 +26,18 @@ void require_list(const VectorXd& list, Index count, const std::string& name) {
   if (!list.allFinite()) throw std::invalid_argument(fmt::format("{}: not finite", name));
 }
 
+void require_covariance(const RodMotionRecord& record, std::size_t k, Index modes) {
+  const MatrixXd& covariance = record.samples[k].q_covariance;
+  if ((covariance.size() > 0) != (record.samples[0].q_covariance.size() > 0))
+    throw std::invalid_argument("covariances are known of all samples, or of none");
+  if (covariance.size() == 0) return;
+  if (covariance.rows() != modes || covariance.cols() != modes || !Cholesky(covariance).is_definite())
+    throw std::invalid_argument(
+        fmt::format("covariance of sample {}: expected {} x {} numbers, positive definite", k, modes, modes));
+  if (record.q_noise.size() > 0)
+    throw std::invalid_argument("noise of modes is given twice: for all samples, and for each");
+}
+
 void require_record(const RodMotionRecord& record, Index modes) {
   if (record.samples.size() < least_samples)
     throw std::invalid_argument(
@@ -35,6 +48,7 @@ void require_record(const RodMotionRecord& record, Index modes) {
     if (sample.v.has_value() != record.samples[0].v.has_value())
       throw std::invalid_argument("rates are known of all samples, or of none");
     if (sample.v) require_list(*sample.v, modes, fmt::format("rates of sample {}", k));
+    require_covariance(record, k, modes);
     if (!std::isfinite(sample.time) || (k > 0 && !(sample.time > record.samples[k - 1].time)))
       throw std::invalid_argument(fmt::format("sample {}: expected a later time than before", k));
   }
@@ -44,7 +58,8 @@ void require_record(const RodMotionRecord& record, Index modes) {
     require_list(*noise, modes, name);
     if (noise->minCoeff() < 0) throw std::invalid_argument(fmt::format("{}: below 0", name));
   }
-  if (record.v_noise.size() > 0 && (!record.samples[0].v || record.q_noise.size() == 0))
+  const bool has_noise = record.q_noise.size() > 0 || record.samples[0].q_covariance.size() > 0;
+  if (record.v_noise.size() > 0 && (!record.samples[0].v || !has_noise))
     throw std::invalid_argument("noise of rates is that of rates that are known, beside that of modes");
 }
 
@@ -91,6 +106,7 @@ std::array<bool, 6> strains_of(RodParameter::Kind kind) {
       return {false, false, false, true, true, false};
     case RodParameter::Kind::twist:
       return {false, false, false, false, false, true};
+    case RodParameter::Kind::stiffness:
     case RodParameter::Kind::damping:
       return {true, true, true, true, true, true};
     case RodParameter::Kind::mass:
@@ -281,6 +297,16 @@ MatrixXd covariance_of(const std::vector<Window>& windows, const std::vector<Noi
   return C;
 }
 
+// Its product with its transpose is the covariance of a sample's modes.
+MatrixXd noise_root(const RodMotionRecord& record, std::size_t k) {
+  const MatrixXd& covariance = record.samples[k].q_covariance;
+  if (covariance.size() == 0) return record.q_noise.asDiagonal();
+  // L^-1 as what L makes of the unit, and back: L = C L^-T.
+  return covariance * Cholesky(covariance)
+                          .solve_lower(MatrixXd::Identity(covariance.rows(), covariance.cols()))
+                          .transpose();
+}
+
 }  // namespace
 
 IdentificationEquations::IdentificationEquations(const Rod& rod, const std::vector<RodParameter>& parameters,
@@ -299,7 +325,8 @@ IdentificationEquations::IdentificationEquations(const Rod& rod, const std::vect
   fixed.setZero(rows);
   scales =
       dynamics.stiffness_matrix().diagonal().cwiseSqrt().replicate(static_cast<Index>(windows.size()), 1);
-  const bool is_noisy = record.q_noise.size() > 0 && !record.q_noise.isZero(0),
+  const bool is_noisy = (record.q_noise.size() > 0 && !record.q_noise.isZero(0)) ||
+                        samples[0].q_covariance.size() > 0,
              has_rates = samples[0].v.has_value();
   const Index directions = has_rates ? 2 * n : n;
   const VectorXd v_noise = record.v_noise.size() > 0 ? record.v_noise : VectorXd::Zero(n);
@@ -308,6 +335,8 @@ IdentificationEquations::IdentificationEquations(const Rod& rod, const std::vect
     for (const Window& window : windows)
       way.emplace_back(NoiseWay::Zero(n, static_cast<Index>(window.count) * directions));
 
+  std::vector<MatrixXd> roots;
+  for (std::size_t k = 0; is_noisy && k < samples.size(); ++k) roots.push_back(noise_root(record, k));
   for (std::size_t k = 0; k < samples.size(); ++k) {
     const auto has_sample = [&](const Window& window) {
       if (k < window.first || k >= window.first + window.count) return false;
@@ -339,15 +368,14 @@ IdentificationEquations::IdentificationEquations(const Rod& rod, const std::vect
         if (!is_noisy) continue;
         NoiseWay& way = ways[f][w];
         const MatrixXd by_v = bump * term.bump_by_v + slope * term.slope_by_v;
-        way.middleCols(at * directions, n) +=
-            (bump * term.bump_by_q + slope * term.slope_by_q) * record.q_noise.asDiagonal();
+        way.middleCols(at * directions, n) += (bump * term.bump_by_q + slope * term.slope_by_q) * roots[k];
         if (has_rates) {
           way.middleCols(at * directions + n, n) += by_v * v_noise.asDiagonal();
           continue;
         }
         for (std::size_t i = 0; i < 5; ++i) {
           const auto there = static_cast<Index>(stencil.first + i - window.first);
-          way.middleCols(there * directions, n) += stencil.weights[i] * by_v * record.q_noise.asDiagonal();
+          way.middleCols(there * directions, n) += stencil.weights[i] * by_v * roots[stencil.first + i];
         }
       }
     }

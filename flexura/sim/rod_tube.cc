@@ -21,6 +21,14 @@ std::vector<RodPlace> sampled_places(const Rod& rod) {
 
 }  // namespace
 
+std::vector<RodPlace> tube_places(const Rod& rod) {
+  std::vector<RodPlace> places;
+  for (std::size_t i = 0; i < rod.sections.size(); ++i)
+    for (std::size_t k = 0; k < samples_a_section; ++k) places.push_back({i, part_of(k)});
+  places.push_back({rod.sections.size() - 1, 1});
+  return places;
+}
+
 RodTube::RodTube(const Arm& arm, const Rod& rod) : arm_(arm), chain_(rod, sampled_places(rod)) {
   for (const RodElement& element : chain_.elements()) {
     std::vector<std::size_t>& nodes = nodes_.emplace_back();

@@ -27,4 +27,8 @@ class RodTube {
   std::vector<std::vector<std::size_t>> nodes_;  // of each section
 };
 
+/// Where on the rod such a backbone goes through its poses, base first and the tip last, by equal parts of
+/// each section. From one to the next there are two arcs.
+[[nodiscard]] std::vector<RodPlace> tube_places(const Rod& rod);
+
 }  // namespace flexura

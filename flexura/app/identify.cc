@@ -1,0 +1,266 @@
+#include "flexura/app/identify.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <ostream>
+#include <stdexcept>
+#include <utility>
+
+#include "flexura/app/commands.h"
+#include "flexura/app/words.h"
+#include "flexura/base/node.h"
+#include "flexura/experiment/experiment.h"
+#include "flexura/math/hash.h"
+#include "flexura/mechanics/arm_rod.h"
+#include "flexura/mechanics/identification.h"
+#include "flexura/mechanics/place_record.h"
+#include "flexura/mechanics/rod_modes.h"
+#include "flexura/mechanics/statics.h"
+#include "flexura/store/json.h"
+
+namespace flexura {
+namespace {
+
+using Eigen::Index;
+using Kind = RodParameter::Kind;
+
+// A window covers a swing, but fits several times into the record, and has samples enough.
+constexpr double least_windows = 4, least_samples_in_window = 12;
+
+// Uniform in (0, 1), of a counter.
+double uniform_of(std::uint64_t bits) { return (static_cast<double>(bits >> 11) + 0.5) * 0x1p-53; }
+
+// A log's places as somebody measures them: with errors of that standard deviation (G. Box, M. Muller).
+void add_errors(MeasuredMotion& motion, double noise, std::int64_t seed) {
+  const auto first = static_cast<std::uint64_t>(seed);
+  for (std::size_t k = 0; k < motion.samples.size(); ++k)
+    for (std::size_t i = 0; i < motion.places.size(); ++i)
+      for (std::size_t c = 0; c < 3; ++c) {
+        const double radius = std::sqrt(-2 * std::log(uniform_of(hash(first, k, i, c, 0))));
+        const double angle = 2 * std::numbers::pi * uniform_of(hash(first, k, i, c, 1));
+        motion.samples[k].positions[i][static_cast<Index>(c)] += noise * radius * std::cos(angle);
+      }
+}
+
+// s: of the slowest swing of the arm at rest; 0: it has none.
+double slowest_period(const Rod& rod, const RodLoads& loads) {
+  RodStatics statics(rod);
+  const Equilibrium rest = statics.solve({}, loads);
+  if (!rest.converged() || !rest.q.allFinite()) return 0;
+  RodDynamics dynamics(rod);
+  const RodModes modes = rod_modes(dynamics.slopes(dynamics.rest(rest), {}, loads));
+  return modes.frequencies.empty() || !(modes.frequencies[0] > 0) ? 0 : 1 / modes.frequencies[0];
+}
+
+// s
+double window_for(const Rod& rod, const RodLoads& loads, const std::vector<RodPlaceSample>& samples) {
+  const double length = samples.back().time - samples.front().time,
+               step = length / static_cast<double>(samples.size() - 1);
+  const double period = slowest_period(rod, loads);
+  const double wanted = period > 0 ? period : length / 8;
+  return std::min(length, std::max(least_samples_in_window * step, std::min(wanted, length / least_windows)));
+}
+
+std::vector<RodParameter> parameters_of(const Rod& rod, const IdentifySettings& settings) {
+  std::vector<RodParameter> parameters;
+  for (const Kind kind : {Kind::stiffness, Kind::damping})
+    for (std::size_t i = 0; i < (settings.alike ? 1 : rod.sections.size()); ++i)
+      parameters.push_back(
+          {.kind = kind, .section = settings.alike ? std::nullopt : std::optional<std::size_t>(i)});
+  if (settings.mass) parameters.push_back({.kind = Kind::mass});
+  return parameters;
+}
+
+// Damping and stiffness as found: damping time, s, with its standard deviation. Both must be told.
+IdentifiedValue damping_of(const Identification& found, Index stiffness, Index damping, double spread) {
+  const double f = found.values[stiffness], c = found.values[damping];
+  // c is counted in stiffnesses of the file.
+  const Eigen::Vector2d slope(-c / (f * f), 1 / f);
+  Eigen::Matrix2d covariance;
+  covariance << found.covariance(stiffness, stiffness), found.covariance(stiffness, damping),
+      found.covariance(damping, stiffness), found.covariance(damping, damping);
+  return {.name = "damping_time",
+          .unit = "s",
+          .is_told = f > 0,
+          .value = c / f,
+          .sigma = spread * std::sqrt(std::max(0.0, slope.dot(covariance * slope)))};
+}
+
+// The rod with what was found; what was not stays.
+Rod identified_rod(Rod rod, const IdentifiedArm& found) {
+  for (const IdentifiedValue& value : found.values) {
+    if (!value.is_told || !(value.value > 0)) continue;
+    for (std::size_t i = 0; i < rod.sections.size(); ++i) {
+      if (value.section && *value.section != i + 1) continue;
+      RodSection& section = rod.sections[i];
+      if (value.name == "damping_time") {
+        section.damping_time = value.value;
+      } else if (value.name == "mass_factor") {
+        section.density *= value.value;
+        if (section.mass_per_length) *section.mass_per_length *= value.value;
+        for (PointMass& mass : section.masses) mass.mass *= value.value;
+      } else {
+        const double factor = value.value / value.nominal;
+        section.youngs_modulus *= factor, section.shear_modulus *= factor;
+        if (section.stiffness) *section.stiffness *= factor;
+      }
+    }
+  }
+  return rod;
+}
+
+Node value_node(const IdentifiedValue& value) {
+  const double nothing = std::numeric_limits<double>::quiet_NaN();
+  Node::Table line = {{"parameter", {}, text_node(value.name)}};
+  if (value.section) line.push_back({"section", {}, {static_cast<std::int64_t>(*value.section), {}}});
+  line.push_back({"told", {}, {value.is_told, {}}});
+  line.push_back({"value", {}, number_node(value.is_told ? value.value : nothing)});
+  line.push_back({"sigma", {}, number_node(value.is_told ? value.sigma : nothing)});
+  line.push_back({"nominal", {}, number_node(value.nominal)});
+  line.push_back({"unit", {}, text_node(value.unit)});
+  return {std::move(line), {}};
+}
+
+Node rest_node(const IdentifiedArm& found) {
+  return {Node::Table{{"samples", {}, {static_cast<std::int64_t>(found.samples), {}}},
+                      {"places", {}, {static_cast<std::int64_t>(found.places), {}}},
+                      {"equations", {}, {static_cast<std::int64_t>(found.equations), {}}},
+                      {"misfit", {}, number_node(found.misfit)},
+                      {"noise", {}, number_node(found.noise)},
+                      {"shape_rms", {}, number_node(found.rms)},
+                      {"residual_rms", {}, number_node(found.missed)},
+                      {"nominal_residual_rms", {}, number_node(found.missed_file)}},
+          {}};
+}
+
+std::string words_of(const std::string& name) {
+  if (name == "youngs_modulus") return "Young's modulus, Pa";
+  if (name == "stiffness_factor") return "stiffness, factor";
+  return name == "damping_time" ? "damping time, s" : "mass, factor";
+}
+
+std::string distance_words(double metres) {
+  return std::isfinite(metres) ? fmt::format("{:.2f} mm", 1e3 * metres) : "farther than can be computed";
+}
+
+void print_table(const IdentifiedArm& found, std::ostream& out) {
+  out << fmt::format("{:<34}{:>12}{:>12}{:>12}\n", "", "identified", "+-", "in the file");
+  for (const IdentifiedValue& value : found.values) {
+    const std::string of = value.section ? fmt::format("section {}: ", *value.section) : "";
+    out << fmt::format("{:<34}", of + words_of(value.name));
+    out << (value.is_told ? fmt::format("{:>12.5g}{:>12.2g}", value.value, value.sigma)
+                          : fmt::format("{:>24}", "not told by this motion"));
+    out << fmt::format("{:>12.5g}\n", value.nominal);
+  }
+  out << fmt::format("{} places at {} times, which the rod's shapes meet within {} (rms); misfit {:.2f}\n",
+                     found.places, found.samples, distance_words(found.rms), found.misfit);
+  out << fmt::format(
+      "moved by its tendons alone the arm of the file is off by {} (rms), as identified by {}\n",
+      distance_words(found.missed_file), distance_words(found.missed));
+}
+
+void refuse_what_is_not_known(const IdentifyArguments& arguments, const ArmConfig& arm) {
+  if (arm.drag)
+    throw input_error(arguments.experiment,
+                      "arm.drag: a fluid is not known to identification: expected none");
+  if (!arm.payload.empty())
+    throw input_error(arguments.experiment,
+                      "arm.payload: payloads are not known to identification: expected none");
+  if (arguments.noise_mm && !(*arguments.noise_mm > 0 && std::isfinite(*arguments.noise_mm)))
+    throw input_error("--noise-mm", fmt::format("{}: expected a number above 0", *arguments.noise_mm));
+  if (arguments.window && !(*arguments.window > 0 && std::isfinite(*arguments.window)))
+    throw input_error("--window", fmt::format("{}: expected a number above 0", *arguments.window));
+}
+
+Rod known_rod(const std::string& file, const Experiment& experiment) {
+  try {
+    Rod rod = rod_of(experiment.arm, experiment.drive);
+    (void)RodDynamics(rod);
+    return rod;
+  } catch (const std::invalid_argument& error) {
+    throw input_error(file, error.what());
+  }
+}
+
+}  // namespace
+
+IdentifiedArm identify_arm(const ArmConfig& arm, const Rod& rod, const MeasuredMotion& motion,
+                           const IdentifySettings& settings) {
+  const RodLoads loads = loads_of(arm);
+  const RodPlaceRecord record = record_of_places(rod, motion.places, motion.samples, loads, settings.noise);
+  const std::vector<RodParameter> parameters = parameters_of(rod, settings);
+  const double window = settings.window > 0 ? settings.window : window_for(rod, loads, motion.samples);
+  const Identification found = identify(rod, parameters, record.record, {.window = window});
+  IdentifiedArm result{.values = {},
+                       .samples = motion.samples.size(),
+                       .places = motion.places.size(),
+                       .equations = found.equations,
+                       .misfit = found.misfit,
+                       .noise = record.noise,
+                       .rms = record.rms};
+  // What the rod's description leaves counts as noise does.
+  const double spread = std::sqrt(std::max(1.0, found.misfit));
+  const auto count = static_cast<Index>(settings.alike ? 1 : rod.sections.size());
+  const auto is_told = [&](Index g) { return found.is_observable[static_cast<std::size_t>(g)] != 0; };
+  for (Index i = 0; i < count; ++i) {
+    const MaterialConfig& material = *arm.section[static_cast<std::size_t>(i)].material;
+    const bool has_modulus = material.youngs_modulus.has_value() && !material.stiffness;
+    const double nominal = has_modulus ? *material.youngs_modulus : 1;
+    const auto section = settings.alike ? std::nullopt : std::optional<std::size_t>(i + 1);
+    result.values.push_back({.name = has_modulus ? "youngs_modulus" : "stiffness_factor",
+                             .unit = has_modulus ? "Pa" : "",
+                             .section = section,
+                             .is_told = is_told(i),
+                             .value = nominal * found.values[i],
+                             .sigma = nominal * spread * found.sigma[i],
+                             .nominal = nominal});
+    IdentifiedValue damping{.name = "damping_time", .unit = "s"};
+    if (is_told(i) && is_told(count + i)) damping = damping_of(found, i, count + i, spread);
+    damping.section = section;
+    damping.nominal = material.damping_time;
+    result.values.push_back(damping);
+  }
+  if (settings.mass)
+    result.values.push_back({.name = "mass_factor",
+                             .unit = "",
+                             .is_told = is_told(2 * count),
+                             .value = found.values[2 * count],
+                             .sigma = spread * found.sigma[2 * count],
+                             .nominal = 1});
+  result.missed_file = places_missed(rod, motion.places, motion.samples, record);
+  result.missed = places_missed(identified_rod(rod, result), motion.places, motion.samples, record);
+  return result;
+}
+
+int identify_command(const IdentifyArguments& arguments, std::ostream& out, std::ostream& err) {
+  const Experiment experiment = load_experiment(arguments.experiment, {arguments.sets, arguments.seed});
+  refuse_what_is_not_known(arguments, experiment.arm);
+  const Rod rod = known_rod(arguments.experiment, experiment);
+  MeasuredMotion motion = read_motion(arguments.motion, experiment, rod, {arguments.from, arguments.to});
+  if (motion.is_cut) err << "note: the run was cut short; its log is read up to the last complete chunk\n";
+  const double noise = arguments.noise_mm.value_or(0) * 1e-3;
+  if (motion.is_logged && noise > 0) add_errors(motion, noise, experiment.seed);
+  IdentifiedArm found;
+  try {
+    found = identify_arm(experiment.arm, rod, motion,
+                         {.noise = noise,
+                          .window = arguments.window.value_or(0),
+                          .mass = arguments.mass,
+                          .alike = arguments.alike});
+  } catch (const std::invalid_argument& error) {
+    throw input_error(arguments.motion, error.what());
+  }
+  if (arguments.json) {
+    for (const IdentifiedValue& value : found.values) out << write_json(value_node(value)) << '\n';
+    out << write_json(rest_node(found)) << '\n';
+  } else {
+    print_table(found, out);
+  }
+  return std::ranges::any_of(found.values, &IdentifiedValue::is_told) ? exit_done : exit_missed;
+}
+
+}  // namespace flexura

@@ -1,0 +1,277 @@
+#include "flexura/mechanics/place_record.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <vector>
+
+#include "flexura/math/dense.h"
+#include "flexura/math/levenberg_marquardt.h"
+#include "flexura/mechanics/dynamics.h"
+
+namespace flexura {
+namespace {
+
+using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
+
+// Of the bends' greatest energy, what a mode of another strain may have.
+constexpr double other_energy = 0.01;
+// Of the rod's length: the noise that counts before any is known, and the least that does.
+constexpr double first_noise = 1e-3, least_noise = 1e-9;
+// Root mean square of what is left, by the length: beyond it the places are none of this rod.
+constexpr double most_left = 0.05;
+constexpr int most_tries = 60;
+// Of a simulated motion, s, and which part of a step's way its input is of (RodDynamics::step).
+constexpr double longest_step = 5e-3, step_share = 1 / 1.1;
+
+class PlaceFit {
+ public:
+  PlaceFit(const Rod& rod, std::span<const RodPlace> places)
+      : chain_(rod, places), rows_(3 * static_cast<Index>(places.size())) {
+    for (const RodPlace& place : places)
+      nodes_.push_back({place.section, chain_.elements()[place.section].grid().node_at(place.at)});
+    for (std::size_t i = 0; i < nodes_.size(); ++i)
+      for (std::size_t k = 0; k < i; ++k)
+        if (nodes_[i].element == nodes_[k].element && nodes_[i].node == nodes_[k].node)
+          throw std::invalid_argument(fmt::format("places {} and {} are the same", k + 1, i + 1));
+    if (rows_ <= chain_.size())
+      throw std::invalid_argument(
+          fmt::format("{} places do not tell {} strain modes: expected at least {}, or a rod of fewer modes",
+                      places.size(), chain_.size(), chain_.size() / 3 + 1));
+  }
+
+  [[nodiscard]] const RodChain& chain() const { return chain_; }
+
+  // From `q` on, to the least |p(q) - positions|^2 / noise^2 + |q / spread|^2. What is left of the positions.
+  VectorXd fit(std::span<const Eigen::Vector3d> positions, double noise, const VectorXd& spread,
+               VectorXd& q) {
+    wanted_ = positions, noise_ = noise;
+    const VectorXd prior = spread.cwiseAbs2().cwiseInverse();
+    VectorXd left = left_at(q), at = q, next = q, then = left;
+    MatrixXd information;
+    VectorXd slope;
+    double cost = 0;
+    const auto linearise = [&] {
+      const MatrixXd J = slopes_at(at) / noise_;
+      information = J.transpose() * J;
+      information.diagonal() += prior;
+      slope = J.transpose() * left / noise_ + prior.cwiseProduct(at);
+      cost = cost_of(left, prior, at);
+    };
+    linearise();
+    (void)levenberg_marquardt(
+        cost, {.start = 1e-6, .rise = 10, .eased = [](double value, double) { return value / 10; }},
+        most_tries,
+        [&](double damping) {
+          MatrixXd damped = information;
+          damped.diagonal() += damping * information.diagonal();
+          next = at - Cholesky(damped).solve(slope);
+          if (!next.allFinite()) return TriedStep{};
+          then = left_at(next);
+          return TriedStep{.cost = then.allFinite() ? cost_of(then, prior, next) : TriedStep{}.cost};
+        },
+        [&](const TriedStep& step, double& to_lower) {
+          const double gained = to_lower - step.cost;
+          at = next, left = then;
+          linearise();
+          to_lower = cost;
+          return gained < 1e-9 * (1 + cost);
+        },
+        [&](const TriedStep& step, double of) { return step.cost - of < 1e-9 * (1 + of); });
+    q = at;
+    covariance_ = Cholesky(information).inverse();
+    return left;
+  }
+  // Of the last fit.
+  [[nodiscard]] const MatrixXd& covariance() const { return covariance_; }
+
+ private:
+  struct Node {
+    std::size_t element, node;
+  };
+  [[nodiscard]] double cost_of(const VectorXd& left, const VectorXd& prior, const VectorXd& q) const {
+    return left.squaredNorm() / (noise_ * noise_) + prior.dot(q.cwiseAbs2());
+  }
+  VectorXd left_at(const VectorXd& q) {
+    chain_.place(q);
+    VectorXd left(rows_);
+    for (std::size_t i = 0; i < nodes_.size(); ++i)
+      left.segment<3>(3 * static_cast<Index>(i)) = position(nodes_[i]) - wanted_[i];
+    return left;
+  }
+  MatrixXd slopes_at(const VectorXd& q) {
+    chain_.place_with_columns(q);
+    MatrixXd J(rows_, chain_.size());
+    RodElement::Columns twist(6, chain_.size());
+    for (std::size_t i = 0; i < nodes_.size(); ++i) {
+      chain_.columns_at(nodes_[i].element, nodes_[i].node, twist);
+      const Eigen::Vector3d p = position(nodes_[i]);
+      for (Index j = 0; j < chain_.size(); ++j)
+        J.block<3, 1>(3 * static_cast<Index>(i), j) =
+            twist.col(j).head<3>() + Eigen::Vector3d(twist.col(j).tail<3>()).cross(p);
+    }
+    return J;
+  }
+  [[nodiscard]] Eigen::Vector3d position(const Node& at) const {
+    return chain_.elements()[at.element].poses()[at.node].position;
+  }
+
+  RodChain chain_;
+  Index rows_;
+  std::vector<Node> nodes_;
+  std::span<const Eigen::Vector3d> wanted_;
+  double noise_ = 1;
+  MatrixXd covariance_;
+};
+
+void require_places(const Rod& rod, std::span<const RodPlace> places) {
+  for (std::size_t i = 0; i < places.size(); ++i)
+    if (places[i].section >= rod.sections.size() || !(places[i].at >= 0) || !(places[i].at <= 1))
+      throw std::invalid_argument(fmt::format("place {} is not on the rod", i + 1));
+}
+
+void require_samples(std::span<const RodPlaceSample> samples, std::size_t places) {
+  if (samples.size() < 2)
+    throw std::invalid_argument(fmt::format("{} samples of places: expected at least 2", samples.size()));
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    const std::vector<Eigen::Vector3d>& positions = samples[k].positions;
+    if (positions.size() != places)
+      throw std::invalid_argument(
+          fmt::format("sample {}: {} positions given: expected {}", k, positions.size(), places));
+    if (!std::ranges::all_of(positions, [](const Eigen::Vector3d& p) { return p.allFinite(); }))
+      throw std::invalid_argument(fmt::format("sample {}: a position that is not finite", k));
+  }
+}
+
+// All samples' modes, each fit beginning where the one before ended.
+struct Fits {
+  std::vector<VectorXd> modes;
+  std::vector<MatrixXd> covariances;
+  double square = 0;  // Of what is left, the sum.
+};
+Fits fit_all(PlaceFit& places, std::span<const RodPlaceSample> samples, double noise,
+             const VectorXd& spread) {
+  const Index n = places.chain().size();
+  Fits fits;
+  VectorXd q = VectorXd::Zero(n);
+  for (const RodPlaceSample& sample : samples) {
+    fits.square += places.fit(sample.positions, noise, spread, q).squaredNorm();
+    fits.covariances.push_back(places.covariance());
+    fits.modes.push_back(q);
+  }
+  return fits;
+}
+
+// Which of the modes are bends.
+std::vector<Index> bend_modes(const RodChain& chain) {
+  std::vector<Index> modes;
+  for (std::size_t i = 0; i < chain.elements().size(); ++i)
+    chain.elements()[i].grid().for_modes([&](int strain, int mode) {
+      if (strain == 3 || strain == 4) modes.push_back(chain.first(i) + mode);
+    });
+  return modes;
+}
+
+// dq/dt at the start, by a line through the first samples.
+VectorXd first_rates(const RodMotionRecord& record) {
+  const std::size_t count = std::min<std::size_t>(record.samples.size(), 7);
+  double time = 0, square = 0;
+  for (std::size_t k = 0; k < count; ++k) time += record.samples[k].time / static_cast<double>(count);
+  VectorXd rates = VectorXd::Zero(record.samples[0].q.size());
+  for (std::size_t k = 0; k < count; ++k) {
+    const double since = record.samples[k].time - time;
+    rates += since * record.samples[k].q, square += since * since;
+  }
+  return rates / square;
+}
+
+}  // namespace
+
+RodPlaceRecord record_of_places(const Rod& rod, std::span<const RodPlace> places,
+                                std::span<const RodPlaceSample> samples, const RodLoads& loads,
+                                double noise) {
+  require_places(rod, places);
+  require_samples(samples, places.size());
+  if (!(noise >= 0) || !std::isfinite(noise))
+    throw std::invalid_argument("the noise of places must be at least 0");
+  PlaceFit fit(rod, places);
+  const Index n = fit.chain().size();
+  const double length = rod.length();
+  const double coordinates = 3.0 * static_cast<double>(places.size() * samples.size());
+  const VectorXd stiffness = RodDynamics(rod).stiffness_matrix().diagonal();
+  const std::vector<Index> bends = bend_modes(fit.chain());
+
+  // By bends alone, to know how much energy there is. A strain of 10 rad in a section is any bend.
+  VectorXd spread = VectorXd::Constant(n, 1e-4).cwiseQuotient(fit.chain().scales());
+  for (const Index mode : bends) spread[mode] = 10 / fit.chain().scales()[mode];
+  Fits fits = fit_all(fit, samples, first_noise * length, spread);
+  double energy = 0;
+  for (const VectorXd& q : fits.modes) {
+    double there = 0;
+    for (const Index mode : bends) there += 0.5 * stiffness[mode] * q[mode] * q[mode];
+    energy = std::max(energy, there);
+  }
+  if (const double left = std::sqrt(fits.square / coordinates); !(left < most_left * length))
+    throw std::invalid_argument(
+        fmt::format("no shape of the rod comes near to the places: {:.3g} m are left of them", left));
+  // Of a rod that does not bend at all some remains.
+  energy = std::max(energy, 1e-9 * stiffness.maxCoeff());
+  spread = (2 * other_energy * energy * stiffness.cwiseInverse()).cwiseSqrt();
+  for (const Index mode : bends) spread[mode] = std::sqrt(2e4 * energy / stiffness[mode]);
+
+  const double freedom =
+      coordinates * (1 - static_cast<double>(n) / (3.0 * static_cast<double>(places.size())));
+  double counted = noise > 0 ? noise : first_noise * length;
+  for (int pass = 0; pass < (noise > 0 ? 1 : 3); ++pass) {
+    fits = fit_all(fit, samples, counted, spread);
+    if (noise == 0) counted = std::max(std::sqrt(fits.square / freedom), least_noise * length);
+  }
+  RodPlaceRecord result{.record = {.samples = {}, .loads = loads},
+                        .noise = counted,
+                        .rms = std::sqrt(fits.square / coordinates)};
+  for (std::size_t k = 0; k < samples.size(); ++k)
+    result.record.samples.push_back({.time = samples[k].time,
+                                     .q = fits.modes[k],
+                                     .tensions = samples[k].tensions,
+                                     .q_covariance = fits.covariances[k]});
+  return result;
+}
+
+double places_missed(const Rod& rod, std::span<const RodPlace> places,
+                     std::span<const RodPlaceSample> samples, const RodPlaceRecord& record) {
+  require_places(rod, places);
+  require_samples(samples, places.size());
+  const std::vector<RodMotionRecordSample>& motion = record.record.samples;
+  RodDynamics dynamics(rod, {}, places);
+  if (motion.size() != samples.size() || motion[0].q.size() != dynamics.chain().size())
+    throw std::invalid_argument("a record that is not of these samples of this rod");
+  const RodLoads& loads = record.record.loads;
+  RodState state =
+      dynamics.start(motion[0].q, first_rates(record.record), {.tensions = motion[0].tensions}, loads);
+  double square = 0;
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    if (k > 0) {
+      const double run = samples[k].time - samples[k - 1].time;
+      const int steps = static_cast<int>(std::ceil(run / longest_step));
+      for (int i = 0; i < steps; ++i) {
+        // Tensions change evenly between two samples; a step takes those near its end.
+        const double share = (i + step_share) / steps;
+        TendonInput input{.tensions = motion[k].tensions};
+        for (std::size_t t = 0; t < input.tensions.size(); ++t)
+          input.tensions[t] += (1 - share) * (motion[k - 1].tensions[t] - motion[k].tensions[t]);
+        if (!dynamics.step(state, input, loads, run / steps).converged())
+          return std::numeric_limits<double>::infinity();
+      }
+    }
+    for (std::size_t i = 0; i < places.size(); ++i)
+      square += (dynamics.motion(state, places[i]).pose.position - samples[k].positions[i]).squaredNorm();
+  }
+  const double rms = std::sqrt(square / static_cast<double>(samples.size() * places.size()));
+  return std::isfinite(rms) ? rms : std::numeric_limits<double>::infinity();
+}
+
+}  // namespace flexura

@@ -17,6 +17,8 @@ namespace flexura {
 struct RodPlace {
   std::size_t section = 0;
   double at = 1;
+
+  bool operator==(const RodPlace&) const = default;
 };
 
 /// A rod's sections joined: what its modes q make of it, the balance r(q) of all that pulls, and linear

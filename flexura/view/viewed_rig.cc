@@ -2,11 +2,15 @@
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <span>
 #include <utility>
+#include <variant>
 
 #include "flexura/math/so3.h"
+#include "flexura/mechanics/arm_rod.h"
+#include "flexura/mechanics/statics.h"
 #include "flexura/model/arm_way.h"
 #include "flexura/model/backbone.h"
 #include "flexura/sim/arm_setup.h"
@@ -14,6 +18,12 @@
 
 namespace flexura {
 namespace {
+
+// To two digits: what people read.
+double rounded(double value) {
+  const double digit = std::pow(10.0, std::floor(std::log10(value)) - 1);
+  return std::round(value / digit) * digit;
+}
 
 // What a time lies between: `part` of the way from one instant to the next, or at one alone.
 struct Between {
@@ -97,6 +107,19 @@ Backbone backbone_at(const ViewedRig& rig, const std::vector<Instant>& instants,
   return rig.truth.backbone(at.is_one() ? at.from.arm : interpolate(at.from.arm, at.to.arm, at.part));
 }
 
+// By how the tip yields to forces where the arm starts; of an arm that has no rest there, without tendons.
+std::optional<PushScale> push_scale(const ArmSetup& setup) {
+  const Rod& rod = setup.rod->rod;
+  RodStatics statics(rod);
+  const TendonInput start{.displacements = arc_displacements(rod, setup.initial).pulled};
+  if (!statics.solve(start, setup.rod->loads).converged() && !statics.solve({}, {}).converged())
+    return std::nullopt;
+  const Eigen::Matrix3d yields = statics.slopes().tip_by_tip.topLeftCorner<3, 3>();
+  const double compliance = yields.norm();
+  if (!(compliance > 0) || !std::isfinite(compliance)) return std::nullopt;
+  return PushScale{rod.length(), rounded(5 / compliance), rounded(2 * rod.length() / compliance)};
+}
+
 }  // namespace
 
 ViewedRig::ViewedRig(Experiment read)
@@ -109,7 +132,13 @@ ViewedRig::ViewedRig(Experiment read)
   if (const ArmSetup setup(experiment.true_rig()); setup.rod) {
     actuators = pulled_tendons(setup);
     has_weight = has_loads(setup.rod->loads);
+    has_inertia = setup.rod->time_step.has_value();
+    touches = setup.rod->contact.has_value();
+    push = push_scale(setup);
   }
+  for (std::size_t i = 0; i < obstacles.size(); ++i)
+    if (!std::visit([](const auto& config) { return config.may_touch; }, experiment.obstacle[i]))
+      forbidden.push_back(obstacles[i]);
   if (experiment.drive) drive = experiment.drive->drive();
   for (const CameraConfig& config : experiment.true_rig().cameras) {
     cameras.emplace_back(config);

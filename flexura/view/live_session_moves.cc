@@ -144,9 +144,10 @@ void LiveSession::push(ClientId client, const PushRequest& request) {
   const std::optional<PushScale>& scale = viewed()->push;
   if (!scale)
     throw ViewRefusal("push: this arm yields to no force: expected [arm] model = \"static\" or \"dynamic\"");
-  if (request.s > scale->length)
+  constexpr double rounding = 1e-6;  // A page has places of states, in single precision.
+  if (request.s > (1 + rounding) * scale->length)
     throw ViewRefusal(fmt::format("s = {:.6g}: expected 0 to {:.6g} m", request.s, scale->length));
-  PlantPush push{.s_rest = request.s, .most = scale->most};
+  PlantPush push{.s_rest = std::min(request.s, scale->length), .most = scale->most};
   if (request.force) {
     push.force = vector(*request.force);
     if (push.force.norm() > scale->most)

@@ -77,6 +77,8 @@ TEST_F(StaticPushView, RefusesWhatIsNoPushOfThisArm) {
   hard.stiffness = 1000 * scale.stiffness;
   EXPECT_THAT(ask(hard).error, HasSubstr("stiffness = "));
   EXPECT_FALSE(pass(0.1).push);
+  EXPECT_EQ(ask(by_force(static_cast<float>(1.0000001), 0.1, 0, 0)).error, "") << "the tip, rounded";
+  EXPECT_EQ(ask(ReleaseRequest{}).error, "");
   EXPECT_EQ(ask(ReleaseRequest{}).error, "") << "nothing pushes, and nothing does then";
 }
 

@@ -107,17 +107,32 @@ Backbone backbone_at(const ViewedRig& rig, const std::vector<Instant>& instants,
   return rig.truth.backbone(at.is_one() ? at.from.arm : interpolate(at.from.arm, at.to.arm, at.part));
 }
 
-// By how the tip yields to forces where the arm starts; of an arm that has no rest there, without tendons.
-std::optional<PushScale> push_scale(const ArmSetup& setup) {
+// How far a newton across it moves the tip of the arm as it starts, m/N: with a force that makes tendons taut
+// which hang slack there. 0: not known.
+double compliance_of(const ArmSetup& setup) {
+  constexpr double little = 0.05;  // of the arm's length, of one without tendons
   const Rod& rod = setup.rod->rod;
   RodStatics statics(rod);
-  const TendonInput start{.displacements = arc_displacements(rod, setup.initial).pulled};
-  if (!statics.solve(start, setup.rod->loads).converged() && !statics.solve({}, {}).converged())
-    return std::nullopt;
-  const Eigen::Matrix3d yields = statics.slopes().tip_by_tip.topLeftCorner<3, 3>();
-  const double compliance = yields.norm();
+  const TendonInput tendons{.displacements = arc_displacements(rod, setup.initial).pulled};
+  const Equilibrium start = statics.solve(tendons, setup.rod->loads);
+  if (!start.converged()) return 0;
+  const double freely = statics.slopes().tip_by_tip.topLeftCorner<3, 3>().norm();
+  if (!(freely > 0)) return 0;
+  const double force = little * rod.length() / freely;
+  double most = 0;
+  for (const int axis : {0, 1}) {
+    RodLoads loads = setup.rod->loads;
+    loads.ends.push_back({.section = rod.sections.size() - 1, .force = force * start.tip.rotation.col(axis)});
+    const Equilibrium moved = statics.solve(tendons, loads, start);
+    if (moved.converged()) most = std::max(most, (moved.tip.position - start.tip.position).norm() / force);
+  }
+  return most > 0 ? most : freely;
+}
+
+std::optional<PushScale> push_scale(const ArmSetup& setup) {
+  const double compliance = compliance_of(setup), length = setup.rod->rod.length();
   if (!(compliance > 0) || !std::isfinite(compliance)) return std::nullopt;
-  return PushScale{rod.length(), rounded(5 / compliance), rounded(2 * rod.length() / compliance)};
+  return PushScale{length, rounded(5 / compliance), rounded(length / compliance)};
 }
 
 }  // namespace

@@ -36,7 +36,7 @@ struct Instant {
 struct PushScale {
   double length = 0;     ///< Of the arm at rest, m.
   double stiffness = 0;  ///< Of a hand's spring, N/m: five times as stiff as the arm's tip at the start.
-  double most = 0;       ///< N: what would draw that tip twice the arm's length away, were it linear.
+  double most = 0;       ///< N: what would draw that tip as far away as the arm is long, were it linear.
 };
 
 /// A rig as an experiment describes it, ready to be shown. A value that does not change: threads share it.

@@ -37,7 +37,7 @@ export function ForcePanel() {
 function PushFields({ control, state }: { control: PushControl; state: State }) {
   const { viewer } = use_app();
   const s = useSignal(control.length);
-  const force = useSignal<Vector3>([Number((control.most / 10).toPrecision(1)), 0, 0]);
+  const force = useSignal<Vector3>([Number((control.most / 20).toPrecision(1)), 0, 0]);
   const { still } = viewer;
   const pushed = Boolean(state.push);
   const again = (): void => {

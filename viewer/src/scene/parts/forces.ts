@@ -5,15 +5,15 @@ import { contact_force, contact_point, contact_stride, push_force, push_to, type
 import type { Part, PartContext } from '../part';
 import { plain } from '../plain';
 
-const colors = { dark: { push: 0xff8ad1, contact: 0xffb347 }, light: { push: 0xd0207f, contact: 0xc25400 } };
+const colors = { dark: { push: 0xff8ad1, contact: 0xb9a2ff }, light: { push: 0xb8196f, contact: 0x5f3dc4 } };
 
 /** More contacts than that are not told apart. */
 const most_contacts = 256;
 /** Shares of the arm's length: lines, marks, arrows without a spring, and the arrow of the greatest contact force. */
 const line = 0.0045;
-const mark = 0.009;
+const mark = 0.011;
 const arrow = 0.18;
-const longest = 0.22;
+const longest = 0.3;
 
 /** The end of a scale on which a force can be read: 1, 2 or 5 times a power of ten. */
 export function scale_end(force: number): number {

@@ -153,8 +153,12 @@ void Player::tell_watcher(double time, const ArmState& state) {
   if (truth == nullptr || !watcher_->wants_truth()) return;
   // While a task waits for the rig, several steps of the clock are at one time of the rig's.
   const double now = rig_->ports().clock->now();
-  watcher_->truth(time,
-                  {truth->backbone(now), truth->pulled(now), truth->tensions(now), truth->lost_steps(now)});
+  watcher_->truth(time, {.backbone = truth->backbone(now),
+                         .pulled = truth->pulled(now),
+                         .tensions = truth->tensions(now),
+                         .lost_steps = truth->lost_steps(now),
+                         .energy = energy_message(now, truth->energy(now)),
+                         .contacts = contact_messages(truth->contacts(now))});
 }
 
 void Player::tell_tasks(double time) {

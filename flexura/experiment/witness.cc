@@ -114,18 +114,31 @@ void Witness::state(std::size_t step, double time, const ArmState& state) {
   states_.push_back(state);
 }
 
+std::vector<ContactMessage> contact_messages(const std::vector<PlantContact>& contacts) {
+  std::vector<ContactMessage> messages;
+  messages.reserve(contacts.size());
+  for (const PlantContact& contact : contacts)
+    messages.push_back({.s = contact.s_rest,
+                        .with = contact.with,
+                        .point = {contact.point.x(), contact.point.y(), contact.point.z()},
+                        .force = {contact.force.x(), contact.force.y(), contact.force.z()},
+                        .depth = contact.depth,
+                        .normal_force = contact.normal_force,
+                        .sticks = contact.sticks});
+  return messages;
+}
+
+std::optional<EnergyMessage> energy_message(double time, const std::optional<RodEnergy>& energy) {
+  if (!energy) return std::nullopt;
+  return EnergyMessage{time, energy->kinetic, energy->strain, energy->gravity};
+}
+
 // The sum of all contact forces' sizes, N.
 double Witness::contact_readings(RigTruth& truth, double now) {
-  ContactsMessage message{now, {}};
+  const std::vector<PlantContact> contacts = truth.contacts(now);
+  const ContactsMessage message{now, contact_messages(contacts)};
   double sum = 0;
-  for (const PlantContact& contact : truth.contacts(now)) {
-    message.contacts.push_back({.s = contact.s_rest,
-                                .with = contact.with,
-                                .point = {contact.point.x(), contact.point.y(), contact.point.z()},
-                                .force = {contact.force.x(), contact.force.y(), contact.force.z()},
-                                .depth = contact.depth});
-    sum += contact.force.norm();
-  }
+  for (const PlantContact& contact : contacts) sum += contact.force.norm();
   const bool touches = !message.contacts.empty();
   if (touches || touched_) log_.recorder().write({arm_contacts_topic, now, message});
   touched_ = touches;
@@ -145,8 +158,7 @@ void Witness::rod_readings(RigTruth& truth, double now, const Backbone& backbone
     recorder.write({arm_tensions_topic, now, message});
   }
   if (energy) {
-    const EnergyMessage message{now, energy->kinetic, energy->strain, energy->gravity};
-    recorder.write({arm_energy_topic, now, message});
+    recorder.write({arm_energy_topic, now, *energy_message(now, energy)});
   }
   const double contact_force = energy ? contact_readings(truth, now) : 0;
   tell_lost_steps(now, lost);

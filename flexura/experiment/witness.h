@@ -17,6 +17,12 @@
 
 namespace flexura {
 
+/// Where an arm touches something, as logs have it.
+[[nodiscard]] std::vector<ContactMessage> contact_messages(const std::vector<PlantContact>& contacts);
+/// The energy of an arm in motion at `time` s, likewise; none of another.
+[[nodiscard]] std::optional<EnergyMessage> energy_message(double time,
+                                                          const std::optional<RodEnergy>& energy);
+
 /// What the report shows of a true arm that is an elastic rod.
 struct RodRecord {
   std::vector<double> times;                  ///< s

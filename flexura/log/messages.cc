@@ -130,7 +130,9 @@ const Table<ContactMessage>& fields_of(const ContactMessage*) {
           .field("with", &ContactMessage::with, {.meaning = "The obstacle's name, or \"the arm\"."})
           .field("point", &ContactMessage::point, {.meaning = "In the world, m."})
           .field("force", &ContactMessage::force, {.meaning = "On the arm there, N."})
-          .field("depth", &ContactMessage::depth, {.meaning = "How deep the arm is in it, m."});
+          .field("depth", &ContactMessage::depth, {.meaning = "How deep the arm is in it, m."})
+          .field("normal_force", &ContactMessage::normal_force, {.meaning = "Across the surface, N."})
+          .field("sticks", &ContactMessage::sticks, {.meaning = "It does not slide along the other."});
   return table;
 }
 

@@ -105,11 +105,13 @@ struct EnergyMessage {
 
 /// flexura.Contact: where the true arm touches something.
 struct ContactMessage {
-  double s = 0;         ///< Place on the arm: arc length from its base at rest, m.
-  std::string with;     ///< The obstacle's name, or "the arm".
-  VectorMessage point;  ///< In the world, m.
-  VectorMessage force;  ///< On the arm there, N.
-  double depth = 0;     ///< m
+  double s = 0;                             ///< Place on the arm: arc length from its base at rest, m.
+  std::string with;                         ///< The obstacle's name, or "the arm".
+  VectorMessage point;                      ///< In the world, m.
+  VectorMessage force;                      ///< On the arm there, N.
+  double depth = 0;                         ///< m
+  std::optional<double> normal_force = {};  ///< Across the surface, N.
+  std::optional<bool> sticks = {};          ///< It does not slide along the other.
 };
 /// flexura.Contacts, on /arm/contacts beside the true arm, where that is an elastic rod in motion that
 /// touches something or did so at the time before.

@@ -1,11 +1,13 @@
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "flexura/camera/head.h"
 #include "flexura/camera/mount.h"
+#include "flexura/log/messages.h"
 #include "flexura/model/arm.h"
 #include "flexura/model/backbone.h"
 
@@ -19,6 +21,8 @@ struct TrueArm {
   std::vector<double> pulled;      ///< How far its drives have each tendon pulled in, m; empty: not known.
   std::vector<double> tensions;    ///< N; empty: of an arm without forces.
   std::vector<double> lost_steps;  ///< Microsteps of each motor; empty: none ever.
+  std::optional<EnergyMessage> energy = {};   ///< Of an arm in motion.
+  std::vector<ContactMessage> contacts = {};  ///< Where it touches something.
 };
 
 /// Where a camera's head and stage say that they stand.

@@ -136,6 +136,7 @@ std::string RodDynamics::Work::input_problem(const TendonInput& tendons, const R
     if (!end.force.allFinite() || !end.moment.allFinite()) return "a load that is not finite";
     if (end.section >= chain.rod().sections.size()) return "a load at a section that the rod has not";
   }
+  if (!loads.springs.empty()) return "springs among the loads: of a rod in motion they are surroundings";
   return "";
 }
 

@@ -115,12 +115,27 @@ struct EndLoad {
   bool following = false;                            ///< Turns with the section's end.
 };
 
+/// A spring that draws a point of a rod's middle line to a place, like a hand that holds it by a rubber band:
+/// with d from the point to the place its force is k d / sqrt(1 + (k |d| / most)^2), and so never above
+/// `most`; a constant force comes on top of that.
+struct PointSpring {
+  std::size_t section = 0;
+  double at = 1;                                    ///< Where, of the section's length; in [0, 1].
+  Eigen::Vector3d to = Eigen::Vector3d::Zero();     ///< The place, in the base's frame, m.
+  double stiffness = 0;                             ///< k, N/m; >= 0. 0: the constant force alone.
+  double most = 1;                                  ///< N; > 0
+  Eigen::Vector3d force = Eigen::Vector3d::Zero();  ///< The constant force, in the base's frame, N.
+};
+
 /// What pulls at a rod beside its tendons, in the frame of its base.
 struct RodLoads {
   Eigen::Vector3d gravity = Eigen::Vector3d::Zero();  ///< m/s^2
   Eigen::Vector3d per_length =
       Eigen::Vector3d::Zero();  ///< A force along all of it, N for each metre at rest.
   std::vector<EndLoad> ends = {};
+  /// Each at a place that is a node of the rod. For arms at rest; of a rod in motion they are surroundings
+  /// (RodSpring).
+  std::vector<PointSpring> springs = {};
 };
 
 /// A rod clamped at its base, in whose frame everything is: it leaves the origin along z.

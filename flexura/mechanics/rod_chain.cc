@@ -14,7 +14,7 @@ namespace flexura {
 namespace {
 
 bool is_none(const RodLoads& loads) {
-  return loads.gravity.isZero(0) && loads.per_length.isZero(0) && loads.ends.empty();
+  return loads.gravity.isZero(0) && loads.per_length.isZero(0) && loads.ends.empty() && loads.springs.empty();
 }
 
 // Whether loads are the gradient of an energy.

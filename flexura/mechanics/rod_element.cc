@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "flexura/math/so3.h"
+#include "flexura/mechanics/rod_spring.h"
 
 namespace flexura {
 namespace {
@@ -264,6 +265,13 @@ void RodElement::find_forces(const RodLoads& loads) {
       F_.back() += wrench_at(X.position, end.force, end.moment);
       D_.back() += dead_force_slope(X.position, end.force);
     }
+  }
+  for (const PointSpring& spring : loads.springs) {
+    if (spring.section != index_) continue;
+    const std::size_t node = grid_.node_at(spring.at);
+    const SpringPull pull = spring_pull(spring, X_[node].position);
+    F_[node] += pull.wrench;
+    D_[node] += pull.by_pose;
   }
 }
 

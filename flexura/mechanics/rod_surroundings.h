@@ -15,6 +15,8 @@ namespace flexura {
 struct RodPlace {
   std::size_t section = 0;
   double at = 1;
+
+  bool operator==(const RodPlace&) const = default;
 };
 
 /// Where a node of a rod is, and its twist [v; w] about the origin of the rod's base, in the base's axes: the

@@ -8,6 +8,7 @@
 
 #include "flexura/math/dense.h"
 #include "flexura/mechanics/complementary.h"
+#include "flexura/mechanics/rod_spring.h"
 
 namespace flexura {
 namespace {
@@ -85,6 +86,10 @@ std::string RodStatics::input_problem() const {
   for (const EndLoad& end : loads_.ends) {
     if (!end.force.allFinite() || !end.moment.allFinite()) return "a load that is not finite";
     if (end.section >= chain_.rod().sections.size()) return "a load at a section that the rod has not";
+  }
+  for (const PointSpring& spring : loads_.springs) {
+    if (std::string problem = spring_problem(spring); !problem.empty()) return problem;
+    if (spring.section >= chain_.rod().sections.size()) return "a spring at a section that the rod has not";
   }
   return "";
 }

@@ -46,13 +46,9 @@ DynamicPlant::DynamicPlant(const PlantSetup& setup)
       horizon_(setup.horizon),
       dynamics_(inputs().rod(), plant_config, places_of(rod_)),
       carried_(rod_.payloads.size(), 0) {
-  std::vector<const RodSurroundings*> around;
-  if (rod_.contact) {
-    around.push_back(&contact_.emplace(dynamics_.chain(), *rod_.contact));
+  if (rod_.contact)
     for (const Obstacle& obstacle : obstacles(rod_.contact->obstacles)) names_.push_back(obstacle.name);
-  }
-  if (rod_.drag) around.push_back(&drag_.emplace(dynamics_.chain(), *rod_.drag));
-  if (!around.empty()) dynamics_.set_surroundings(&surroundings_.emplace(around));
+  surround();
   double base = 0;
   for (const RodSection& section : inputs().rod().sections) {
     bases_.push_back(base);
@@ -71,6 +67,32 @@ DynamicPlant::DynamicPlant(const PlantSetup& setup)
 
 DynamicPlant::~DynamicPlant() = default;
 
+// What is around the rod, at the nodes that it has.
+void DynamicPlant::surround() const {
+  std::vector<const RodSurroundings*> around;
+  if (rod_.contact) around.push_back(&contact_.emplace(dynamics_.chain(), *rod_.contact));
+  if (rod_.drag) around.push_back(&drag_.emplace(dynamics_.chain(), *rod_.drag));
+  if (grabbed_) around.push_back(&spring_.emplace(dynamics_.chain(), *grabbed_));
+  dynamics_.set_surroundings(around.empty() ? nullptr : &surroundings_.emplace(around));
+}
+
+// The point that is pushed becomes a node. States stay what they are: nodes beside those that integrals are
+// taken at change nothing of the rod.
+void DynamicPlant::grab(const std::optional<RodPlace>& place) const {
+  if (place == grabbed_) return;
+  std::vector<RodPlace> places = places_of(rod_);
+  if (place) places.push_back(*place);
+  dynamics_ = RodDynamics(inputs().rod(), plant_config, places);
+  grabbed_ = place;
+  carried_.assign(rod_.payloads.size(), 0);
+  surround();
+}
+
+std::optional<RodPlace> DynamicPlant::grabbed_at(double time) const {
+  const std::optional<PointSpring> spring = inputs().spring(time);
+  return spring ? std::optional(RodPlace{spring->section, spring->at}) : std::nullopt;
+}
+
 void DynamicPlant::forget() {
   const std::lock_guard lock(mutex_);
   answer_.reset();
@@ -83,6 +105,7 @@ void DynamicPlant::advance(double time) {
     Snapshot then = snapshots_.back();
     {
       const std::lock_guard lock(mutex_);
+      grab(grabbed_at(time_of(then.index)));
       carry(then.carried);
       go_on(then.state, time_of(then.index), step_, then.lost, 0);
       hand_over(then, time_of(next));
@@ -103,6 +126,8 @@ void DynamicPlant::go_on(RodState& state, double from, double h, const std::vect
                          int halvings) const {
   const double middle = from + h / (1 + plant_config.spectral_radius);
   const TendonInput input{.displacements = inputs().displacements(middle, lost)};
+  // One that is pushed elsewhere meanwhile is so from the next step on.
+  if (grabbed_) spring_->set(grabbed_at(middle) == grabbed_ ? inputs().spring(middle) : std::nullopt);
   const RodStep step = dynamics_.step(state, input, inputs().loads(middle), h);
   if (step.converged()) {
     const bool is_an_arm =
@@ -133,6 +158,7 @@ RodState DynamicPlant::state_at(double time) const {
   if (answer_ && answer_->time == time) return answer_->state;
   const Snapshot& from = snapshot(time);
   RodState state = from.state;
+  grab(grabbed_at(time_of(from.index)));
   carry(from.carried);
   const double start = time_of(from.index);
   if (time - start > no_time * step_) go_on(state, start, time - start, from.lost, 0);
@@ -231,6 +257,8 @@ std::vector<PlantContact> DynamicPlant::found(const std::vector<ContactForce>& c
                       .point = X_WB_ * each.point,
                       .force = X_WB_.rotation * each.force,
                       .depth = each.depth,
+                      .normal_force = each.normal_force,
+                      .sticks = each.sticks,
                       .is_deep = each.is_deep});
   }
   return result;

@@ -9,6 +9,7 @@
 #include "flexura/mechanics/dynamics.h"
 #include "flexura/mechanics/rod_contact.h"
 #include "flexura/mechanics/rod_drag.h"
+#include "flexura/mechanics/rod_spring.h"
 #include "flexura/mechanics/statics.h"
 #include "flexura/mechanics/surroundings.h"
 #include "flexura/sim/arm_setup.h"
@@ -54,6 +55,9 @@ class DynamicPlant : public RodPlant {
   void go_on(RodState& state, double from, double h, const std::vector<double>& lost, int halvings) const;
   void hand_over(Snapshot& at, double time) const;
   void carry(const std::vector<char>& wanted) const;
+  void grab(const std::optional<RodPlace>& place) const;
+  void surround() const;
+  [[nodiscard]] std::optional<RodPlace> grabbed_at(double time) const;
   [[nodiscard]] std::vector<char> carried_at(double time) const;
   [[nodiscard]] std::vector<PlantContact> found(const std::vector<ContactForce>& contacts) const;
   // How the rod moves at a time.
@@ -75,9 +79,12 @@ class DynamicPlant : public RodPlant {
   mutable std::optional<Answer> answer_;  // the last one; none after a change
   mutable RodDynamics dynamics_;
   mutable std::vector<char> carried_;  // by dynamics_
-  std::optional<RodContact> contact_;
-  std::optional<RodDrag> drag_;
-  std::optional<Surroundings> surroundings_;
+  // Of the nodes of dynamics_; the point that is pushed is one.
+  mutable std::optional<RodContact> contact_;
+  mutable std::optional<RodDrag> drag_;
+  mutable std::optional<RodSpring> spring_;
+  mutable std::optional<Surroundings> surroundings_;
+  mutable std::optional<RodPlace> grabbed_;
 };
 
 }  // namespace flexura

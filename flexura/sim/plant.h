@@ -17,6 +17,24 @@
 
 namespace flexura {
 
+/// How a hand pushes an arm: at a point of its middle line, by a spring to a place and by a constant force
+/// (PointSpring).
+struct PlantPush {
+  double s_rest = 0;                                ///< The point: arc length from the arm's base at rest, m.
+  Eigen::Vector3d to = Eigen::Vector3d::Zero();     ///< The spring's other end, in the world, m.
+  double stiffness = 0;                             ///< Of the spring, N/m; 0: there is none.
+  double most = 1;                                  ///< It pulls no more than this, N; > 0.
+  Eigen::Vector3d force = Eigen::Vector3d::Zero();  ///< The constant force, in the world, N.
+
+  bool operator==(const PlantPush&) const = default;
+};
+/// What a push does at an instant, in the world.
+struct PlantPushForce {
+  double s_rest = 0;                                ///< As PlantPush's, m.
+  Eigen::Vector3d point = Eigen::Vector3d::Zero();  ///< Where that point is, m.
+  Eigen::Vector3d force = Eigen::Vector3d::Zero();  ///< On the arm, N.
+};
+
 /// The arm of the simulated world, as it truly is: what commands make of it over time.
 ///
 /// A command u has, for an arm behind a drive, a position for each motor (microsteps, in its own sense), else
@@ -56,6 +74,16 @@ class Plant {
   virtual bool weigh(double /*time*/, bool /*on*/) { return false; }
   /// Whether these pull then.
   [[nodiscard]] virtual bool is_weighed(double /*time*/) const { return true; }
+  /// From `time` s on, not before the last such call: something pushes the arm so; none: nothing does any
+  /// more. false: it is no arm that yields to forces, and does nothing. std::invalid_argument: a push whose
+  /// numbers are not finite or out of bounds, or at no point of the arm.
+  virtual bool push(double /*time*/, const std::optional<PlantPush>& /*push*/) { return false; }
+  /// That push then. Times as backbone().
+  [[nodiscard]] virtual std::optional<PlantPush> pushed(double /*time*/) const { return std::nullopt; }
+  /// What it does then. Times as backbone().
+  [[nodiscard]] virtual std::optional<PlantPushForce> push_force(double /*time*/) const {
+    return std::nullopt;
+  }
   /// How far its drives have each tendon pulled in, m, from the straight arm on (a pretension and lost steps
   /// are not in that). Empty: it has no tendons that are known one by one. Times as backbone().
   [[nodiscard]] virtual std::vector<double> pulled(double /*time*/) const { return {}; }

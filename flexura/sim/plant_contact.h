@@ -12,6 +12,8 @@ struct PlantContact {
   Eigen::Vector3d point = Eigen::Vector3d::Zero();  ///< In the world, m.
   Eigen::Vector3d force = Eigen::Vector3d::Zero();  ///< On the arm there, N.
   double depth = 0;                                 ///< m
+  double normal_force = 0;                          ///< Across the surface, N.
+  bool sticks = false;                              ///< It does not slide along the other.
   bool is_deep = false;  ///< The arm's middle is inside: the force may push anywhere.
 };
 

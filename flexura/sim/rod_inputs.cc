@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "flexura/mechanics/arm_rod.h"
+#include "flexura/mechanics/rod_spring.h"
 #include "flexura/port/driven_arm.h"
 #include "flexura/sim/arm_setup.h"
 #include "flexura/sim/tendon_pull.h"
@@ -104,8 +105,56 @@ bool RodInputs::is_weighed_anew(double start, double end) const {
                              [&](const Weighing& each) { return each.time > start && each.time <= end; });
 }
 
+void RodInputs::push(double time, const std::optional<PlantPush>& push) {
+  std::optional<PointSpring> spring;
+  if (push) spring = spring_of(*push);
+  // A hand is asked for more often than the arm moves on.
+  if (!pushings_.empty() && pushings_.back().time >= time) pushings_.pop_back();
+  pushings_.push_back({time, push, spring});
+}
+
+PointSpring RodInputs::spring_of(const PlantPush& push) const {
+  constexpr double rounding = 1e-9;  // of the arm's length
+  const double length = rod_.length();
+  if (!(push.s_rest >= -rounding * length && push.s_rest <= (1 + rounding) * length))
+    throw std::invalid_argument(fmt::format("a push at s = {}: expected 0 to {:.6g} m", push.s_rest, length));
+  PointSpring spring{.stiffness = push.stiffness, .most = push.most};
+  double left = push.s_rest;
+  while (spring.section + 1 < rod_.sections.size() && left > rod_.sections[spring.section].length)
+    left -= rod_.sections[spring.section++].length;
+  spring.at = std::clamp(left / rod_.sections[spring.section].length, 0.0, 1.0);
+  const Pose X_BW = arm_.X_WB.inverse();
+  spring.to = X_BW * push.to;
+  spring.force = X_BW.rotation * push.force;
+  if (const std::string problem = spring_problem(spring); !problem.empty())
+    throw std::invalid_argument(problem);
+  return spring;
+}
+
+const RodInputs::Pushing* RodInputs::pushing(double time) const {
+  const auto last = std::ranges::find_if(pushings_.rbegin(), pushings_.rend(),
+                                         [time](const Pushing& each) { return each.time <= time; });
+  return last == pushings_.rend() ? nullptr : &*last;
+}
+
+std::optional<PlantPush> RodInputs::pushed(double time) const {
+  const Pushing* last = pushing(time);
+  return last == nullptr ? std::nullopt : last->push;
+}
+
+std::optional<PointSpring> RodInputs::spring(double time) const {
+  const Pushing* last = pushing(time);
+  return last == nullptr ? std::nullopt : last->spring;
+}
+
+bool RodInputs::is_pushed_anew(double start, double end) const {
+  return std::ranges::any_of(pushings_,
+                             [&](const Pushing& each) { return each.time > start && each.time <= end; });
+}
+
 void RodInputs::forget_before(double time) {
   // The last one before it counts.
+  while (pushings_.size() > 1 && pushings_[1].time < time) pushings_.erase(pushings_.begin());
   while (weighings_.size() > 1 && weighings_[1].time < time) weighings_.erase(weighings_.begin());
 }
 

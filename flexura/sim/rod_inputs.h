@@ -38,6 +38,13 @@ class RodInputs {
   bool weigh(double time, bool on);
   /// Whether they are on.
   [[nodiscard]] bool is_weighed(double time) const;
+  /// What pushes the arm. std::invalid_argument: as Plant::push.
+  void push(double time, const std::optional<PlantPush>& push);
+  [[nodiscard]] std::optional<PlantPush> pushed(double time) const;
+  /// The same as a spring of the rod, in the frame of its base.
+  [[nodiscard]] std::optional<PointSpring> spring(double time) const;
+  /// Whether that changed after `start` and up to `end`, s.
+  [[nodiscard]] bool is_pushed_anew(double start, double end) const;
   /// The bends and stretches that are commanded.
   [[nodiscard]] std::optional<ArmState> commanded(double time) const;
   /// How far each tendon is pulled in, m.
@@ -80,6 +87,15 @@ class RodInputs {
     bool on = true;
   };
   std::vector<Weighing> weighings_;  // by time; before the first one: on
+
+  struct Pushing {
+    double time = 0;  // from which on
+    std::optional<PlantPush> push;
+    std::optional<PointSpring> spring;
+  };
+  [[nodiscard]] PointSpring spring_of(const PlantPush& push) const;
+  [[nodiscard]] const Pushing* pushing(double time) const;
+  std::vector<Pushing> pushings_;  // by time; before the first one: none
 };
 
 }  // namespace flexura

@@ -19,6 +19,9 @@ class RodPlant : public Plant {
   std::optional<ArmState> pull(double time, const std::vector<double>& displacements,
                                double duration) override;
   bool weigh(double time, bool on) override;
+  bool push(double time, const std::optional<PlantPush>& push) override;
+  [[nodiscard]] std::optional<PlantPush> pushed(double time) const override { return inputs_.pushed(time); }
+  [[nodiscard]] std::optional<PlantPushForce> push_force(double time) const override;
   [[nodiscard]] bool is_weighed(double time) const override { return inputs_.is_weighed(time); }
   [[nodiscard]] std::optional<ArmState> commanded(double time) const override {
     return inputs_.commanded(time);
@@ -27,7 +30,8 @@ class RodPlant : public Plant {
 
  protected:
   /// Errors as RodInputs.
-  explicit RodPlant(const PlantSetup& setup) : inputs_(setup), tube_(setup.truth.arm, inputs_.rod()) {}
+  explicit RodPlant(const PlantSetup& setup)
+      : inputs_(setup), tube_(setup.truth.arm, inputs_.rod()), X_WB_(setup.truth.arm.X_WB) {}
 
   /// Something was commanded: what was found for times from then on is so no more.
   virtual void forget() = 0;
@@ -38,6 +42,7 @@ class RodPlant : public Plant {
  private:
   RodInputs inputs_;
   RodTube tube_;
+  Pose X_WB_;
 };
 
 }  // namespace flexura

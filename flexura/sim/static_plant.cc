@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <stdexcept>
@@ -80,7 +81,7 @@ bool StaticPlant::is_jump(const Snapshot& from, const Snapshot& to) const {
   const double way = (to.at.tip.position - from.at.tip.position).norm();
   if (way < least * length) return false;
   const double start = static_cast<double>(from.index) * step, end = static_cast<double>(to.index) * step;
-  if (inputs().is_weighed_anew(start, end)) return false;
+  if (inputs().is_weighed_anew(start, end) || inputs().is_pushed_anew(start, end)) return false;
   const std::vector<double> before = inputs().displacements(start, from.lost),
                             after = inputs().displacements(end, to.lost);
   double bent = 0;
@@ -102,11 +103,25 @@ std::string StaticPlant::warning(double time) const {
   return {};
 }
 
+// Nodes beside those that integrals are taken at change nothing else.
+void StaticPlant::grab(const std::optional<RodPlace>& place) const {
+  if (place == grabbed_) return;
+  statics_ = place ? RodStatics(inputs().rod(), std::array{*place}) : RodStatics(inputs().rod());
+  grabbed_ = place;
+}
+
 Equilibrium StaticPlant::solved(double time, const Equilibrium& near, const std::vector<double>& lost) const {
   const TendonInput input{.displacements = inputs().displacements(time, lost)};
+  RodLoads loads = inputs().loads(time);
+  std::optional<RodPlace> place;
+  if (const auto spring = inputs().spring(time)) {
+    loads.springs = {*spring};
+    place = RodPlace{spring->section, spring->at};
+  }
   const std::lock_guard lock(mutex_);
+  grab(place);
   statics_.stretch_rest(inputs().rest_stretches(time));
-  Equilibrium at = statics_.solve(input, inputs().loads(time), near);
+  Equilibrium at = statics_.solve(input, loads, near);
   if (!at.converged())
     throw SimulationError(fmt::format("at {:.3f} s the arm comes to no rest under its tendons and loads: {}",
                                       time, words(at.end)));

@@ -62,6 +62,9 @@ class StaticPlant : public RodPlant {
     Equilibrium at;
   };
   mutable std::optional<Answer> answer_;
+  // With the point that is pushed among its nodes.
+  void grab(const std::optional<RodPlace>& place) const;
+  mutable std::optional<RodPlace> grabbed_;
   mutable RodStatics statics_;
 };
 

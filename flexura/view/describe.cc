@@ -273,6 +273,15 @@ Node live_controls_node(const ViewedRig& rig) {
     table.push_back({"actuators", {}, actuator_nodes(rig)});
   }
   table.push_back({"weight", {}, {rig.has_weight, {}}});
+  table.push_back({"inertia", {}, {rig.has_inertia, {}}});
+  table.push_back({"contact", {}, {rig.touches, {}}});
+  if (rig.push)
+    table.push_back({"push",
+                     {},
+                     {Node::Table{{"length", {}, {rig.push->length, {}}},
+                                  {"stiffness", {}, {rig.push->stiffness, {}}},
+                                  {"most", {}, {rig.push->most, {}}}},
+                      {}}});
   return controls;
 }
 

@@ -45,7 +45,35 @@ std::vector<ActuatorSample> actuator_samples(const std::vector<double>& pulled,
   return samples;
 }
 
+// Of a push of all of its strength along all of its length: less kinetic energy is rest.
+constexpr double still = 1e-9;
+
+int obstacle_of(const ViewedRig& rig, const std::string& name) {
+  const auto found = std::ranges::find(rig.obstacles, name, &Obstacle::name);
+  return found == rig.obstacles.end() ? -1 : static_cast<int>(found - rig.obstacles.begin());
+}
+
 }  // namespace
+
+std::vector<ContactSample> contact_samples(const ViewedRig& rig,
+                                           const std::vector<ContactMessage>& contacts) {
+  const auto slip_of = [](const std::optional<bool>& sticks) {
+    if (!sticks) return ContactSample::Slip::unknown;
+    return *sticks ? ContactSample::Slip::sticks : ContactSample::Slip::slides;
+  };
+  std::vector<ContactSample> samples;
+  samples.reserve(contacts.size());
+  for (const ContactMessage& contact : contacts) {
+    const Eigen::Vector3d force(contact.force.x, contact.force.y, contact.force.z);
+    samples.push_back({.obstacle = obstacle_of(rig, contact.with),
+                       .s = contact.s,
+                       .point = {contact.point.x, contact.point.y, contact.point.z},
+                       .force = force,
+                       .normal_force = contact.normal_force.value_or(force.norm()),
+                       .slip = slip_of(contact.sticks)});
+  }
+  return samples;
+}
 
 LiveRig::LiveRig(ViewedRigPtr rig, double now) : rig_(std::move(rig)) { restart(now); }
 
@@ -53,11 +81,24 @@ void LiveRig::restart(double now) {
   simulated_ = std::make_unique<SimulatedRig>(rig_->experiment.model_rig(), rig_->experiment.true_rig(),
                                               no_picture, static_cast<std::uint64_t>(rig_->experiment.seed));
   start_ = now;
+  behind_ = 0;
 }
 
 void LiveRig::skip_to(double next) {
-  constexpr double most = 0.1;  // s
-  if (rig_->is_rod) start_ += std::max(0.0, next - now() - most);
+  // One that swings is shown in short steps also where these take long.
+  const double most = rig_->has_inertia ? 0.05 : 0.1;  // s
+  constexpr double newest = 0.2;                       // Of what pace_ remembers.
+  if (!rig_->is_rod) return;
+  const double passed = next - now();
+  behind_ = passed > most ? behind_ + 1 : 0;
+  pace_ = behind_ > 0 ? pace_ + newest * (most / passed - pace_) : 1;
+  start_ += std::max(0.0, passed - most);
+}
+
+// A pause of everything is not slow.
+std::optional<double> LiveRig::pace() const {
+  constexpr int few = 5;
+  return behind_ >= few ? std::optional(pace_) : std::nullopt;
 }
 
 // The simulated rig has no links that are lost: a fault here is a fault of the program.
@@ -107,12 +148,33 @@ void LiveRig::weigh(bool on) {
   }
 }
 
+void LiveRig::push(const std::optional<PlantPush>& push) {
+  Plant& plant = simulated_->arm().plant();
+  const double time = rig_time(now());
+  const std::optional<PlantPush> was = plant.pushed(time);
+  plant.push(time, push);
+  try {
+    (void)plant.backbone(time);
+  } catch (const std::runtime_error&) {
+    plant.push(time, was);
+    throw;
+  }
+}
+
+bool LiveRig::is_yielding() {
+  if (is_pushed()) return true;
+  const auto energy = simulated_->arm().plant().energy(rig_time(now()));
+  return energy && rig_->push && energy->kinetic > still * rig_->push->most * rig_->push->length;
+}
+
 // Whether what moves an arm says that it lies the same at two times.
 bool LiveRig::lie_alike(double time, double other) {
   const Plant& plant = simulated_->arm().plant();
   const double at = rig_time(time), then = rig_time(other);
-  return truth(time) == truth(other) && plant.is_weighed(at) == plant.is_weighed(then) &&
-         plant.pulled(at) == plant.pulled(then);
+  // What swings does so by itself.
+  if (rig_->has_inertia) return false;
+  return truth(time) == truth(other) && plant.pushed(at) == plant.pushed(then) &&
+         plant.is_weighed(at) == plant.is_weighed(then) && plant.pulled(at) == plant.pulled(then);
 }
 
 StateMessage LiveRig::state() {
@@ -129,6 +191,21 @@ StateMessage LiveRig::state() {
   const Plant& plant = simulated_->arm().plant();
   const double time = rig_time(message.time);
   message.is_weightless = !plant.is_weighed(time);
+  message.is_moving = message.is_moving || is_yielding();
+  message.energy = plant.energy(time);
+  if (const auto pushes = plant.push_force(time)) {
+    const PlantPush push = plant.pushed(time).value();
+    message.push = PushSample{push.s_rest, push.stiffness > 0 ? push.to : pushes->point, pushes->force};
+  }
+  for (const PlantContact& contact : plant.contacts(time))
+    message.contacts.push_back(
+        {.obstacle = obstacle_of(*rig_, contact.with),
+         .s = contact.s_rest,
+         .point = contact.point,
+         .force = contact.force,
+         .normal_force = contact.normal_force,
+         .slip = contact.sticks ? ContactSample::Slip::sticks : ContactSample::Slip::slides});
+  message.pace = pace();
   message.actuators = actuator_samples(plant.pulled(time), plant.tensions(time), plant.lost_steps(time));
   if (rig_->drive) {
     const std::vector<double> positions(reading.positions.begin(), reading.positions.end());
@@ -173,6 +250,9 @@ StateMessage still_state(const ViewedRig& rig, double time, const ArmState& stat
   message.samples = arm_samples(truth != nullptr ? truth->backbone : rig.model.backbone(state));
   if (truth != nullptr)
     message.actuators = actuator_samples(truth->pulled, truth->tensions, truth->lost_steps);
+  if (truth != nullptr && truth->energy)
+    message.energy = RodEnergy{truth->energy->kinetic, truth->energy->strain, truth->energy->gravity};
+  if (truth != nullptr) message.contacts = contact_samples(rig, truth->contacts);
   for (std::size_t i = 0; i < rig.cameras.size(); ++i)
     message.cameras.push_back(camera_sample(rig.cameras[i], stances.at(i)));
   if (rig.drive) message.displacements = tendon_displacements(rig.model.driven(), *rig.drive, state).pulled;

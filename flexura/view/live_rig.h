@@ -3,12 +3,14 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "flexura/log/run_watcher.h"
 #include "flexura/model/backbone.h"
 #include "flexura/port/rig_ports.h"
+#include "flexura/sim/plant.h"
 #include "flexura/sim/simulated_rig.h"
 #include "flexura/view/moves.h"
 #include "flexura/view/state_message.h"
@@ -33,6 +35,8 @@ class LiveRig {
   /// Before it goes on to a time: a rod is followed step by step, and has no time to make up for what nobody
   /// saw. All but the last 0.1 s up to then pass without it.
   void skip_to(double next);
+  /// How fast its time goes of late, of real time, where its steps take longer than they last; else none.
+  [[nodiscard]] std::optional<double> pace() const;
 
   /// The shape that the arm is believed to be in.
   [[nodiscard]] ArmState believed();
@@ -54,6 +58,12 @@ class LiveRig {
   /// From now on the arm is with or without its weight and loads, until a restart. std::runtime_error: then
   /// it would find no rest; all stays as it was.
   void weigh(bool on);
+  /// From now on something pushes the arm so, until a restart; none: nothing does. std::runtime_error: then
+  /// it would find no rest; all stays as it was. std::invalid_argument: a push that cannot be.
+  void push(const std::optional<PlantPush>& push);
+  [[nodiscard]] bool is_pushed() { return simulated_->arm().plant().pushed(rig_time(now())).has_value(); }
+  /// Whether it is pushed, or swings: then it may come anywhere.
+  [[nodiscard]] bool is_yielding();
   /// What is out of the ordinary in how the arm rests now, one line; "": nothing.
   [[nodiscard]] std::string warning() { return simulated_->arm().plant().warning(rig_time(now())); }
 
@@ -72,11 +82,17 @@ class LiveRig {
   ViewedRigPtr rig_;
   double start_ = 0;  // when the simulated rig's time is 0, s
   std::unique_ptr<SimulatedRig> simulated_;
+  int behind_ = 0;  // How many times in a row it did not make up for all of the time.
+  double pace_ = 1;
 };
 
 /// The shape of arcs that comes nearest to tendons that are pulled in so. std::logic_error: the rig has none
 /// that are pulled one by one.
 [[nodiscard]] ArmState nearest_arcs(const ViewedRig& rig, const TendonPull& pull);
+
+/// Contacts of a log or of a run, as state messages have them.
+[[nodiscard]] std::vector<ContactSample> contact_samples(const ViewedRig& rig,
+                                                         const std::vector<ContactMessage>& contacts);
 
 /// The state message of the arm as tasks command it: in `state` at `time` s, with the cameras at their
 /// `stances`; lying as `truth` says, where that is not null.

@@ -86,6 +86,16 @@ struct LiveSession::Taker : PictureSession::Taker {
     session.weigh(weight.on);
     done();
   }
+  void operator()(const PushRequest& push) const {
+    session.require_free();
+    session.push(client, push);
+    done();
+  }
+  void operator()(const ReleaseRequest&) const {
+    session.require_free();
+    session.release();
+    done();
+  }
   void operator()(const RunRequest& run) const {
     session.require_free();
     session.start_run(run, reply);
@@ -141,6 +151,8 @@ void LiveSession::opened(ClientId client) {
 
 void LiveSession::closed(ClientId client) {
   clients_.erase(client);
+  // Nobody holds the arm any more.
+  if (hand_ == client) release();
   PictureSession::closed(client);
 }
 
@@ -176,6 +188,7 @@ void LiveSession::start_run(const RunRequest& request, const Reply& reply) {
   } catch (const std::exception& error) {
     throw ViewRefusal(error.what());
   }
+  release();
   run_ = std::make_shared<RunLink>();
   news_ = {};
   teller_.begin();
@@ -207,6 +220,7 @@ void LiveSession::advance(double now) {
   const double next = clock_ - config_.start;
   move_on(next);
   tell_warning();
+  tell_pace();
   follow_run();
   if (clients_.empty()) return;
   send_states();
@@ -236,6 +250,7 @@ void LiveSession::send_states() {
   StateMessage state = is_running && news_.time
                            ? still_state(*viewed(), *news_.time, news_.state, run_stances(), run_truth())
                            : rig_.state();
+  if (is_running) state.pace.reset();
   // A page's time goes on; that of a run which it watches from the start to the end is the run's.
   if (!is_watched_run()) state.time = rig_.now();
   state.is_running = is_running;

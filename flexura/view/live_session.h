@@ -77,6 +77,10 @@ class LiveSession : public PictureSession {
   void halt();
   void reset();
   void weigh(bool on);
+  void push(ClientId client, const PushRequest& push);
+  void release();
+  void watch_yielding();
+  void tell_pace();
   void keep_clear(double next);
   void move_on(double next);
   void tell_warning();
@@ -104,6 +108,8 @@ class LiveSession : public PictureSession {
   std::optional<Move> waiting_;
   std::uint64_t generation_ = 0;  // Moves of an older one are forgotten.
   bool is_touching_ = false;
+  std::optional<ClientId> hand_;  // Whose push it is.
+  bool is_slow_ = false;
   double warned_ = -1;   // s
   std::string warning_;  // of the arm's rest, as told
   std::shared_ptr<RunLink> run_;

@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "flexura/math/arrays.h"
 #include "flexura/port/camera_moves.h"
 #include "flexura/view/answers.h"
 #include "flexura/view/live_session.h"
@@ -35,7 +36,7 @@ LiveSession::Judged LiveSession::judge(const ViewedRig& rig, const ArmState& fro
   } else {
     judged.state = std::get<ArmState>(move.target);
   }
-  judged.danger = danger_on_way(rig.model, rig.obstacles, from, judged.state);
+  judged.danger = danger_on_way(rig.model, rig.forbidden, from, judged.state);
   return judged;
 }
 
@@ -96,6 +97,7 @@ void LiveSession::warn(const std::string& text) {
 
 void LiveSession::halt() {
   cancel();
+  release();
   ++generation_;
   if (waiting_) std::exchange(waiting_, std::nullopt)->reply({nothing(), "something else has stopped it"});
   const RigPorts ports = rig_.ports();
@@ -110,6 +112,7 @@ void LiveSession::halt() {
 
 void LiveSession::reset() {
   ++generation_;
+  hand_.reset();
   warning_.clear();
   if (waiting_) std::exchange(waiting_, std::nullopt)->reply({nothing(), "something else has stopped it"});
   ++leaps_;
@@ -120,7 +123,7 @@ void LiveSession::reset() {
     head_targets_.push_back(camera.initial_head());
     stage_targets_.push_back(camera.initial_stage());
   }
-  is_touching_ = !touched(rig_.backbone(rig_.now()), viewed()->obstacles).empty();
+  is_touching_ = !touched(rig_.backbone(rig_.now()), viewed()->forbidden).empty();
 }
 
 // With or without weight and loads: at once, for they have no inertia either.
@@ -132,9 +135,66 @@ void LiveSession::weigh(bool on) {
   } catch (const std::runtime_error& error) {
     throw ViewRefusal(fmt::format("weight: the arm stays as it is: {}", error.what()));
   }
-  const std::string text = touched(rig_.backbone(rig_.now()), viewed()->obstacles);
+  const std::string text = touched(rig_.backbone(rig_.now()), viewed()->forbidden);
   if (!text.empty() && !is_touching_) notice("error", "safety", text);
   is_touching_ = !text.empty();
+}
+
+void LiveSession::push(ClientId client, const PushRequest& request) {
+  const std::optional<PushScale>& scale = viewed()->push;
+  if (!scale)
+    throw ViewRefusal("push: this arm yields to no force: expected [arm] model = \"static\" or \"dynamic\"");
+  constexpr double rounding = 1e-6;  // A page has places of states, in single precision.
+  if (request.s > (1 + rounding) * scale->length)
+    throw ViewRefusal(fmt::format("s = {:.6g}: expected 0 to {:.6g} m", request.s, scale->length));
+  PlantPush push{.s_rest = std::min(request.s, scale->length), .most = scale->most};
+  if (request.force) {
+    push.force = vector(*request.force);
+    if (push.force.norm() > scale->most)
+      throw ViewRefusal(
+          fmt::format("force: {:.4g} N: expected {:.4g} N at most", push.force.norm(), scale->most));
+  } else {
+    constexpr double stiffest = 100;  // of the controls'
+    push.to = vector(*request.to);
+    push.stiffness = request.stiffness.value_or(scale->stiffness);
+    if (push.stiffness > stiffest * scale->stiffness)
+      throw ViewRefusal(fmt::format("stiffness = {:.6g}: expected {:.4g} N/m at most", push.stiffness,
+                                    stiffest * scale->stiffness));
+  }
+  try {
+    rig_.push(push);
+  } catch (const std::exception& error) {
+    throw ViewRefusal(fmt::format("push: the arm stays as it is: {}", error.what()));
+  }
+  hand_ = client;
+}
+
+void LiveSession::release() {
+  hand_.reset();
+  if (!rig_.is_pushed()) return;
+  try {
+    rig_.push(std::nullopt);
+  } catch (const std::runtime_error& error) {
+    notice("error", "safety", std::string("everything is put back: ") + error.what());
+    reset();
+  }
+}
+
+// What is pushed, or swings, comes where no drive has it: it is said what it touches there.
+void LiveSession::watch_yielding() {
+  if (rig_.is_arm_moving() || !rig_.is_yielding()) return;
+  const std::string text = touched(rig_.backbone(rig_.now()), viewed()->forbidden);
+  const bool was_touching = std::exchange(is_touching_, !text.empty());
+  if (!text.empty() && !was_touching) notice("warning", "safety", text);
+}
+
+// Once, when it becomes so.
+void LiveSession::tell_pace() {
+  const std::optional<double> pace = rig_.pace();
+  if (pace && !is_slow_)
+    event("warning", "clock",
+          "its steps take longer than they last: the arm moves more slowly than in real time");
+  is_slow_ = pace.has_value();
 }
 
 // Once, when it becomes so.
@@ -148,7 +208,7 @@ void LiveSession::tell_warning() {
 // Stops the arm before a step that would bring it to touch something.
 void LiveSession::keep_clear(double next) {
   if (!rig_.is_arm_moving()) return;
-  const std::string text = touched(rig_.backbone(next), viewed()->obstacles);
+  const std::string text = touched(rig_.backbone(next), viewed()->forbidden);
   const bool was_touching = std::exchange(is_touching_, !text.empty());
   if (text.empty() || was_touching) return;
   ++generation_;
@@ -163,6 +223,7 @@ void LiveSession::move_on(double next) {
   try {
     keep_clear(next);
     rig_.go_to(next);
+    watch_yielding();
   } catch (const std::runtime_error& error) {
     notice("error", "safety", std::string("everything is put back: ") + error.what());
     reset();

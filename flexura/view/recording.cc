@@ -72,6 +72,9 @@ void Recording::index() {
     const Entry entry{message.log_time, &message};
     if (topic == arm_state_topic) states_.push_back(entry);
     if (topic == arm_truth_topic) truths_.push_back(entry);
+    if (topic == arm_energy_topic) energies_.push_back(entry);
+    if (topic == arm_tensions_topic) tensions_.push_back(entry);
+    if (topic == arm_contacts_topic) contacts_.push_back(entry);
     if (topic == servo_steps_topic) servo_steps_.push_back(entry);
     if (topic == calibration_decisions_topic) decisions_.push_back(entry);
     const bool is_servo = topic == servo_sightings_topic,
@@ -93,7 +96,7 @@ void Recording::index() {
   std::ranges::for_each(images_, sort);
   std::ranges::for_each(heads_, sort);
   std::ranges::for_each(stages_, sort);
-  sort(truths_);
+  for (Entries* entries : {&truths_, &energies_, &tensions_, &contacts_}) sort(*entries);
   sort(servo_steps_);
   sort(decisions_);
   std::ranges::for_each(servo_sightings_, sort);
@@ -268,6 +271,33 @@ std::optional<std::vector<ArmSample>> Recording::truth(double time) const {
     return std::nullopt;
   }
   return samples_of(arm);
+}
+
+// The message at or just before a time; none where that is long ago, or damaged.
+template <class M>
+std::optional<M> Recording::newest(const Entries& entries, double time) {
+  constexpr double rounding = 1e-6, late = 0.1;  // s
+  if (entries.empty()) return std::nullopt;
+  const Entry& entry = entries[place_at(entries, time + rounding)];
+  const double age = time - seconds(entry.time);
+  if (age < -rounding || age > late) return std::nullopt;
+  try {
+    return message_of<M>(*entry.message);
+  } catch (const InputError&) {
+    return std::nullopt;
+  }
+}
+
+Recording::LoggedForces Recording::forces(double time) const {
+  LoggedForces forces;
+  forces.energy = newest<EnergyMessage>(energies_, time);
+  if (const auto tensions = newest<TensionsMessage>(tensions_, time)) {
+    forces.tensions = tensions->tensions;
+    forces.lost_steps = tensions->lost_steps.value_or(std::vector<double>{});
+  }
+  if (auto contacts = newest<ContactsMessage>(contacts_, time))
+    forces.contacts = std::move(contacts->contacts);
+  return forces;
 }
 
 CameraStance Recording::stance(std::size_t camera, double time) const {

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "flexura/log/messages.h"
 #include "flexura/store/mcap_reader.h"
 #include "flexura/tasks/servo/servo_messages.h"
 #include "flexura/view/calibration_extras.h"
@@ -64,6 +65,18 @@ class Recording {
   /// where the log has it of no time near that. InputError where it is no arm.
   [[nodiscard]] bool has_truth() const { return !truths_.empty(); }
   [[nodiscard]] std::optional<std::vector<ArmSample>> truth(double time) const;
+  /// Forces of an arm that is an elastic rod, as the log has them at or just before a time.
+  struct LoggedForces {
+    std::optional<EnergyMessage> energy;   ///< None: not known then.
+    std::vector<double> tensions;          ///< N; empty: not known then.
+    std::vector<double> lost_steps;        ///< Likewise.
+    std::vector<ContactMessage> contacts;  ///< Empty: none.
+  };
+  /// At a time, s. What cannot be read is not known.
+  [[nodiscard]] LoggedForces forces(double time) const;
+  [[nodiscard]] bool has_energy() const { return !energies_.empty(); }    ///< Whether the log has it at all.
+  [[nodiscard]] bool has_contacts() const { return !contacts_.empty(); }  ///< Likewise.
+  [[nodiscard]] bool has_tensions() const { return !tensions_.empty(); }  ///< Likewise.
   /// How a camera stood at a time, s, as the log has it, or else (a damaged message, too) as the experiment
   /// starts.
   [[nodiscard]] CameraStance stance(std::size_t camera, double time) const;
@@ -92,7 +105,9 @@ class Recording {
   McapReader log_;
   Entries states_;
   std::vector<Entries> images_, heads_, stages_;  // by camera
-  Entries truths_;
+  template <class M>
+  [[nodiscard]] static std::optional<M> newest(const Entries& entries, double time);
+  Entries truths_, energies_, tensions_, contacts_;
   Entries servo_steps_;
   std::vector<Entries> servo_sightings_, calibration_sightings_;  // by camera
   Entries decisions_;                                             // of calibrations

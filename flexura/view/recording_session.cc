@@ -48,6 +48,17 @@ bool has_report(const Recording& recording) {
   }
 }
 
+// Of an arm that is a rod. How far tendons are pulled in the log does not say.
+void add_forces(const ViewedRig& rig, const Recording::LoggedForces& forces, StateMessage& state) {
+  if (const auto& energy = forces.energy)
+    state.energy = RodEnergy{energy->kinetic, energy->strain, energy->gravity};
+  state.contacts = contact_samples(rig, forces.contacts);
+  if (forces.tensions.size() != rig.actuators.size()) return;
+  for (std::size_t i = 0; i < forces.tensions.size(); ++i)
+    state.actuators.push_back(
+        {0, forces.tensions[i], i < forces.lost_steps.size() ? forces.lost_steps[i] : 0});
+}
+
 }  // namespace
 
 struct RecordingSession::Table {
@@ -169,6 +180,7 @@ void RecordingSession::send_state(ClientId client) {
   stances.reserve(viewed()->cameras.size());
   for (std::size_t i = 0; i < viewed()->cameras.size(); ++i) stances.push_back(recording_->stance(i, time));
   StateMessage state = still_state(*viewed(), time, recording_->state(place), stances);
+  add_forces(*viewed(), recording_->forces(time), state);
   state.is_recording = true;
   state.is_unsafe = recording_->is_unsafe(time);
   state.sequence = sequence_++;

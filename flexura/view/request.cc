@@ -159,6 +159,23 @@ const Table<WeightRequest>& fields_of(const WeightRequest*) {
           .field("on", &WeightRequest::on, {.required = true});
   return table;
 }
+const Table<PushRequest>& fields_of(const PushRequest*) {
+  static const auto table =
+      Table<PushRequest>("push", "Something pushes the simulated arm at a point.")
+          .field("s", &PushRequest::s, {.meaning = "m", .range = between(0, farthest), .required = true})
+          .field("to", &PushRequest::to, {.meaning = "where a spring draws it, m", .range = any_place})
+          .field("force", &PushRequest::force, {.meaning = "N", .range = any_place})
+          .field("stiffness", &PushRequest::stiffness,
+                 {.meaning = "of the spring, N/m", .range = above_up_to(0, farthest)})
+          .check([](const PushRequest& push, Reader& reader) {
+            if (push.to.has_value() == push.force.has_value())
+              reader.problem("expected one of to (a spring draws the point there) and force");
+            if (push.force && push.stiffness)
+              reader.problem_at("stiffness", "is of a spring: expected none beside force");
+          });
+  return table;
+}
+const Table<ReleaseRequest>& fields_of(const ReleaseRequest*) { return bare<ReleaseRequest>("release"); }
 const Table<RunRequest>& fields_of(const RunRequest*) {
   static const auto table =
       Table<RunRequest>("run", "The experiment's tasks run.")

@@ -37,6 +37,14 @@ struct ResetRequest {};
 struct WeightRequest {
   bool on = true;
 };
+/// Something pushes the simulated arm at a point of its middle line: a spring to a place, or a force.
+struct PushRequest {
+  double s = 0;                                ///< Along the unstretched arm, m.
+  std::optional<std::array<double, 3>> to;     ///< The spring's other end, m; one of the two.
+  std::optional<std::array<double, 3>> force;  ///< N
+  std::optional<double> stiffness;             ///< Of the spring, N/m; the controls' where it is left out.
+};
+struct ReleaseRequest {};
 struct RunRequest {
   std::optional<std::int64_t> task;  ///< Its place, from 0; all of them where it is left out.
 };
@@ -79,6 +87,8 @@ const Table<StageRequest>& fields_of(const StageRequest*);
 const Table<HaltRequest>& fields_of(const HaltRequest*);
 const Table<ResetRequest>& fields_of(const ResetRequest*);
 const Table<WeightRequest>& fields_of(const WeightRequest*);
+const Table<PushRequest>& fields_of(const PushRequest*);
+const Table<ReleaseRequest>& fields_of(const ReleaseRequest*);
 const Table<RunRequest>& fields_of(const RunRequest*);
 const Table<CancelRequest>& fields_of(const CancelRequest*);
 const Table<OpenRequest>& fields_of(const OpenRequest*);
@@ -93,10 +103,10 @@ const Table<PointRequest>& fields_of(const PointRequest*);
 const Table<BackboneRequest>& fields_of(const BackboneRequest*);
 const Table<PingRequest>& fields_of(const PingRequest*);
 
-using Ask =
-    std::variant<ArmRequest, TipRequest, HeadRequest, StageRequest, HaltRequest, ResetRequest, WeightRequest,
-                 RunRequest, CancelRequest, OpenRequest, LiveRequest, AtRequest, ImagesRequest, AckRequest,
-                 PixelRequest, MeasureRequest, ShapeRequest, PointRequest, BackboneRequest, PingRequest>;
+using Ask = std::variant<ArmRequest, TipRequest, HeadRequest, StageRequest, HaltRequest, ResetRequest,
+                         WeightRequest, PushRequest, ReleaseRequest, RunRequest, CancelRequest, OpenRequest,
+                         LiveRequest, AtRequest, ImagesRequest, AckRequest, PixelRequest, MeasureRequest,
+                         ShapeRequest, PointRequest, BackboneRequest, PingRequest>;
 
 /// What one message asks, or why it asks nothing.
 struct Request {

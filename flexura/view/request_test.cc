@@ -54,6 +54,12 @@ TEST(Request, ReadsEverythingThatAPageCanAsk) {
   (void)read_as_ask<ShapeRequest>(R"({"id":7,"do":"shape"})");
   EXPECT_EQ(read_as_ask<PointRequest>(R"({"id":7,"do":"point","s":0.5})").s, 0.5);
   EXPECT_TRUE(read_as_ask<BackboneRequest>(R"({"id":7,"do":"backbone","bends":[[0,1]]})").bends);
+  const auto push = read_as_ask<PushRequest>(R"({"id":7,"do":"push","s":0.5,"to":[1,2,3],"stiffness":4})");
+  EXPECT_EQ(push.s, 0.5);
+  EXPECT_EQ(push.to->at(2), 3);
+  EXPECT_EQ(push.stiffness, 4);
+  EXPECT_EQ(read_as_ask<PushRequest>(R"({"id":7,"do":"push","s":0,"force":[0,-1,0]})").force->at(1), -1);
+  (void)read_as_ask<ReleaseRequest>(R"({"id":7,"do":"release"})");
   (void)read_as_ask<PingRequest>(R"({"id":7,"do":"ping"})");
 }
 
@@ -98,6 +104,18 @@ TEST(Request, SaysInOneLineWhatIsWrong) {
        "layers[1]: there is no layer \"edges\": expected one of mask, silhouette, axis, markers, circle"},
       {R"({"id":7,"do":"measure","camera":"a","layers":"axis"})", "layers"},
       {R"({"id":7,"do":"shape","camera":"a"})", "camera: unknown key"},
+      {R"({"id":7,"do":"push","force":[0,0,1]})", "s: missing"},
+      {R"({"id":7,"do":"push","s":0.1})", "expected one of to (a spring draws the point there) and force"},
+      {R"({"id":7,"do":"push","s":0.1,"to":[0,0,0],"force":[0,0,1]})", "expected one of to"},
+      {R"({"id":7,"do":"push","s":-0.1,"force":[0,0,1]})", "s = -0.1"},
+      {R"({"id":7,"do":"push","s":NaN,"force":[0,0,1]})", "JSON"},
+      {R"({"id":7,"do":"push","s":0.1,"force":[0,0,1e300]})", "force[2]"},
+      {R"({"id":7,"do":"push","s":0.1,"force":[0,null,1]})", "force[1]"},
+      {R"({"id":7,"do":"push","s":0.1,"force":[0,1]})", "force"},
+      {R"({"id":7,"do":"push","s":0.1,"to":[0,0,0],"stiffness":0})", "stiffness"},
+      {R"({"id":7,"do":"push","s":0.1,"force":[0,0,1],"stiffness":5})", "stiffness: is of a spring"},
+      {R"({"id":7,"do":"push","s":0.1,"force":[0,0,1],"hand":1})", "hand: unknown key"},
+      {R"({"id":7,"do":"release","s":0.1})", "s: unknown key"},
       {R"({"id":7,"do":"at","time":"now"})", "time"},
       {R"({"id":"7","do":"ack","camera":"a","number":0})", "id = \"7\": expected a whole number"}};
   for (const auto& [text, error] : cases) {

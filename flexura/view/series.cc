@@ -60,6 +60,40 @@ void append_servo(const Recording& recording, double time, std::vector<double>& 
   for (const auto& error : errors) values.push_back(error.value_or(std::numeric_limits<double>::quiet_NaN()));
 }
 
+// Of an arm that is a rod.
+struct ForceQuantities {
+  explicit ForceQuantities(const Recording& recording)
+      : tensions(recording.has_tensions() ? recording.rig()->actuators.size() : 0),
+        has_energy(recording.has_energy()),
+        has_contacts(recording.has_contacts()) {}
+
+  [[nodiscard]] bool any() const { return tensions > 0 || has_energy || has_contacts; }
+  void name(std::vector<Quantity>& list) const {
+    if (has_energy)
+      for (const char* part : {"kinetic", "elastic", "gravity", "total"})
+        list.push_back({fmt::format("energy_{}", part), "J", "energy"});
+    add_names("tension", "N", tensions, list);
+    if (has_contacts) list.push_back({"contact_force", "N", {}});
+  }
+  void append(const Recording& recording, double time, std::vector<double>& values) const {
+    constexpr double none = std::numeric_limits<double>::quiet_NaN();
+    const Recording::LoggedForces forces = recording.forces(time);
+    if (has_energy) {
+      const EnergyMessage at = forces.energy.value_or(EnergyMessage{time, none, none, none});
+      values.insert(values.end(), {at.kinetic, at.strain, at.gravity, at.kinetic + at.strain + at.gravity});
+    }
+    for (std::size_t i = 0; i < tensions; ++i)
+      values.push_back(i < forces.tensions.size() ? forces.tensions[i] : none);
+    double sum = 0;
+    for (const ContactMessage& each : forces.contacts)
+      sum += Eigen::Vector3d(each.force.x, each.force.y, each.force.z).norm();
+    if (has_contacts) values.push_back(sum);
+  }
+
+  std::size_t tensions;
+  bool has_energy, has_contacts;
+};
+
 // The places in [first, last) where a curve is least and greatest, and where it begins and ends.
 void add_extremes(const std::vector<double>& curve, std::size_t first, std::size_t last,
                   std::vector<std::size_t>& kept) {
@@ -108,6 +142,7 @@ std::vector<Quantity> SeriesTable::quantities(const Recording& recording) {
   }
   if (can_stretch(arm)) add_names("stretch", "", sections, list);
   for (const char* axis : {"x", "y", "z"}) list.push_back({std::string("tip_") + axis, "m"});
+  ForceQuantities(recording).name(list);
   if (recording.has_servo()) std::ranges::copy(servo_quantities(), std::back_inserter(list));
   return list;
 }
@@ -117,9 +152,11 @@ SeriesTable::SeriesTable(const Recording& recording) {
   std::vector<std::vector<double>*> curves;
   curves.reserve(names.size());
   for (const Quantity& quantity : names) curves.push_back(&curves_[quantity.name]);
+  const ForceQuantities forces(recording);
   for (std::size_t place = 0; place < recording.states(); ++place) {
     times_.push_back(recording.time_of_state(place));
     std::vector<double> values = values_of(recording.rig()->model, recording.state(place));
+    if (forces.any()) forces.append(recording, times_.back(), values);
     if (recording.has_servo()) append_servo(recording, times_.back(), values);
     for (std::size_t i = 0; i < values.size(); ++i) curves[i]->push_back(values[i]);
   }

@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::uint8_t state_kind = 1, image_kind = 2;
 constexpr std::uint8_t moving_flag = 1, running_flag = 2, recording_flag = 4, unsafe_flag = 8,
-                       weightless_flag = 16;
+                       weightless_flag = 16, energy_flag = 32, push_flag = 64, pace_flag = 128;
 
 // Little-endian numbers into a text.
 class Writer {
@@ -77,7 +77,8 @@ std::uint8_t flags_of(const StateMessage& state) {
   return static_cast<std::uint8_t>(
       (state.is_moving ? moving_flag : 0) | (state.is_running ? running_flag : 0) |
       (state.is_recording ? recording_flag : 0) | (state.is_unsafe ? unsafe_flag : 0) |
-      (state.is_weightless ? weightless_flag : 0));
+      (state.is_weightless ? weightless_flag : 0) | (state.energy ? energy_flag : 0) |
+      (state.push ? push_flag : 0) | (state.pace ? pace_flag : 0));
 }
 
 void put_camera(const CameraSample& camera, Writer& out) {
@@ -106,6 +107,53 @@ std::size_t body_size(std::size_t sections, std::size_t samples, std::size_t cam
   return 4 * (3 * sections + 8 * samples + 18 * cameras + tendons + 3 * actuators);
 }
 
+// What follows that.
+std::size_t forces_size(std::uint8_t flags, std::size_t contacts) {
+  const auto if_flag = [flags](std::uint8_t flag, std::size_t numbers) {
+    return (flags & flag) != 0 ? numbers : 0;
+  };
+  return 4 * (if_flag(energy_flag, 3) + if_flag(push_flag, 7) + if_flag(pace_flag, 1) + 10 * contacts);
+}
+
+void put_forces(const StateMessage& state, Writer& out) {
+  const auto vector = [&out](const Eigen::Vector3d& p) {
+    for (const double x : p) out.single(x);
+  };
+  if (state.energy)
+    out.single(state.energy->kinetic), out.single(state.energy->strain), out.single(state.energy->gravity);
+  if (state.push) out.single(state.push->s), vector(state.push->to), vector(state.push->force);
+  if (state.pace) out.single(*state.pace);
+  for (const ContactSample& contact : state.contacts) {
+    out.single(contact.obstacle), out.single(contact.s);
+    vector(contact.point), vector(contact.force);
+    out.single(contact.normal_force), out.single(static_cast<double>(contact.slip));
+  }
+}
+
+void take_forces(std::uint8_t flags, std::size_t contacts, BytesReader& in, StateMessage& state) {
+  const auto vector = [&in] {
+    Eigen::Vector3d p;
+    for (double& x : p) x = in.single();
+    return p;
+  };
+  if ((flags & energy_flag) != 0) {
+    RodEnergy& energy = state.energy.emplace();
+    energy.kinetic = in.single(), energy.strain = in.single(), energy.gravity = in.single();
+  }
+  if ((flags & push_flag) != 0) {
+    PushSample& push = state.push.emplace();
+    push.s = in.single(), push.to = vector(), push.force = vector();
+  }
+  if ((flags & pace_flag) != 0) state.pace = in.single();
+  for (std::size_t i = 0; i < contacts; ++i) {
+    ContactSample& contact = state.contacts.emplace_back();
+    contact.obstacle = static_cast<int>(std::clamp(in.single(), -1.0, 65535.0));
+    contact.s = in.single(), contact.point = vector(), contact.force = vector();
+    contact.normal_force = in.single();
+    contact.slip = static_cast<ContactSample::Slip>(std::clamp(in.single(), 0.0, 2.0));
+  }
+}
+
 }  // namespace
 
 std::vector<ArmSample> arm_samples(const Backbone& backbone) {
@@ -131,8 +179,10 @@ std::vector<ArmSample> arm_samples(std::span<const Arc> arcs, const Pose& tip) {
 std::string state_message(const StateMessage& state) {
   Writer out;
   const std::size_t sections = state.arm.bends.size();
-  out.reserve(head_size + body_size(sections, state.samples.size(), state.cameras.size(),
-                                    state.displacements.size(), state.actuators.size()));
+  out.reserve(head_size +
+              body_size(sections, state.samples.size(), state.cameras.size(), state.displacements.size(),
+                        state.actuators.size()) +
+              forces_size(flags_of(state), state.contacts.size()));
   out.put(state_kind);
   out.put(flags_of(state));
   out.count(sections);
@@ -143,7 +193,7 @@ std::string state_message(const StateMessage& state) {
   out.put(state.sequence);
   out.put(state.time);
   out.count(state.actuators.size());
-  out.put(std::uint16_t{0});
+  out.count(state.contacts.size());
   for (const Eigen::Vector2d& bend : state.arm.bends) out.single(bend.x()), out.single(bend.y());
   for (const double stretch : state.arm.stretches) out.single(stretch);
   for (const ArmSample& sample : state.samples) out.single(sample.s), out.pose(sample.X_WS);
@@ -151,6 +201,7 @@ std::string state_message(const StateMessage& state) {
   for (const double displacement : state.displacements) out.single(displacement);
   for (const ActuatorSample& each : state.actuators)
     out.single(each.value), out.single(each.force), out.single(each.lost);
+  put_forces(state, out);
   return std::move(out).text();
 }
 
@@ -170,8 +221,10 @@ std::optional<StateMessage> read_state_message(std::string_view bytes) {
   state.sequence = in.take<std::uint32_t>();
   state.time = in.number();
   const auto actuators = in.take<std::uint16_t>();
-  (void)in.take<std::uint16_t>();
-  if (in.size() != body_size(counts[0], counts[1], counts[2], counts[3], actuators)) return std::nullopt;
+  const auto contacts = in.take<std::uint16_t>();
+  if (in.size() !=
+      body_size(counts[0], counts[1], counts[2], counts[3], actuators) + forces_size(flags, contacts))
+    return std::nullopt;
   for (int i = 0; i < counts[0]; ++i) {
     const double x = in.single();
     state.arm.bends.emplace_back(x, in.single());
@@ -187,6 +240,7 @@ std::optional<StateMessage> read_state_message(std::string_view bytes) {
     const double value = in.single(), force = in.single();
     state.actuators.push_back({value, force, in.single()});
   }
+  take_forces(flags, contacts, in, state);
   return state;
 }
 

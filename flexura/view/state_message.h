@@ -10,6 +10,7 @@
 
 #include "flexura/camera/head.h"
 #include "flexura/math/pose.h"
+#include "flexura/mechanics/rod_energy.h"
 #include "flexura/model/arm.h"
 #include "flexura/model/backbone.h"
 
@@ -37,6 +38,26 @@ struct ActuatorSample {
   double lost = 0;   ///< Steps that its motor has lost.
 };
 
+/// What pushes the arm at one of its points.
+struct PushSample {
+  double s = 0;  ///< The point: along the unstretched arm, m.
+  /// Where the spring draws it; without a spring the point itself, m.
+  Eigen::Vector3d to = Eigen::Vector3d::Zero();
+  Eigen::Vector3d force = Eigen::Vector3d::Zero();  ///< On the arm, N.
+};
+
+/// Where the arm touches something.
+struct ContactSample {
+  /// What is known of how it touches there.
+  enum class Slip : std::uint8_t { unknown, slides, sticks };
+  int obstacle = -1;                                ///< Its place in the scene; -1: the arm itself.
+  double s = 0;                                     ///< Along the unstretched arm, m.
+  Eigen::Vector3d point = Eigen::Vector3d::Zero();  ///< m
+  Eigen::Vector3d force = Eigen::Vector3d::Zero();  ///< On the arm, N.
+  double normal_force = 0;                          ///< Across the surface, N.
+  Slip slip = Slip::unknown;
+};
+
 /// What moves, at one time.
 struct StateMessage {
   bool is_moving = false;
@@ -53,6 +74,10 @@ struct StateMessage {
   std::vector<CameraSample> cameras;
   std::vector<double> displacements;  ///< m, of the tendons.
   std::vector<ActuatorSample> actuators;
+  std::optional<RodEnergy> energy;  ///< Of an arm in motion.
+  std::optional<PushSample> push;
+  std::optional<double> pace;  ///< Where it is slower than real time: of that.
+  std::vector<ContactSample> contacts;
 };
 
 /// The samples of a state message: the ends of every arc, and so many points between that from one to the

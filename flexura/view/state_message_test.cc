@@ -54,7 +54,44 @@ StateMessage random_message(TestRandom& random) {
     message.actuators.push_back(
         {random.uniform(-0.1, 0.1), random.uniform(0, 99), 10.0 * random.integer(0, 9)});
   message.is_weightless = random.integer(0, 1) == 1;
+  if (random.integer(0, 1) == 1) message.energy = RodEnergy{random.uniform(0, 1), 2, random.uniform(-3, 0)};
+  if (random.integer(0, 1) == 1)
+    message.push = PushSample{random.uniform(0, 1), random.vector<3>(-1, 1), random.vector<3>(-5, 5)};
+  if (random.integer(0, 1) == 1) message.pace = random.uniform(0, 1);
+  for (int i = random.integer(0, 5); i > 0; --i)
+    message.contacts.push_back({.obstacle = random.integer(-1, 3),
+                                .s = random.uniform(0, 1),
+                                .point = random.vector<3>(-1, 1),
+                                .force = random.vector<3>(-5, 5),
+                                .normal_force = random.uniform(0, 5),
+                                .slip = static_cast<ContactSample::Slip>(random.integer(0, 2))});
   return message;
+}
+
+void expect_forces(const StateMessage& back, const StateMessage& message) {
+  const auto near = [](const Eigen::Vector3d& a, const Eigen::Vector3d& b) { return (a - b).norm() < 1e-5; };
+  ASSERT_EQ(back.energy.has_value(), message.energy.has_value());
+  if (message.energy) {
+    EXPECT_NEAR(back.energy->total(), message.energy->total(), 1e-6);
+    EXPECT_EQ(back.energy->kinetic, static_cast<float>(message.energy->kinetic));
+  }
+  ASSERT_EQ(back.push.has_value(), message.push.has_value());
+  if (message.push) {
+    EXPECT_EQ(back.push->s, static_cast<float>(message.push->s));
+    EXPECT_TRUE(near(back.push->to, message.push->to) && near(back.push->force, message.push->force));
+  }
+  ASSERT_EQ(back.pace.has_value(), message.pace.has_value());
+  if (message.pace) {
+    EXPECT_EQ(*back.pace, static_cast<float>(*message.pace));
+  }
+  ASSERT_EQ(back.contacts.size(), message.contacts.size());
+  for (std::size_t i = 0; i < message.contacts.size(); ++i) {
+    const ContactSample &read = back.contacts[i], &written = message.contacts[i];
+    EXPECT_EQ(read.obstacle, written.obstacle);
+    EXPECT_EQ(read.slip, written.slip);
+    EXPECT_EQ(read.normal_force, static_cast<float>(written.normal_force));
+    EXPECT_TRUE(near(read.point, written.point) && near(read.force, written.force));
+  }
 }
 
 TEST(StateMessage, ReadsBackInSinglePrecision) {
@@ -68,6 +105,7 @@ TEST(StateMessage, ReadsBackInSinglePrecision) {
     EXPECT_EQ(back->is_recording, message.is_recording);
     EXPECT_EQ(back->is_unsafe, message.is_unsafe);
     EXPECT_EQ(back->sequence, message.sequence);
+    expect_forces(*back, message);
     EXPECT_EQ(back->time, message.time);
     ASSERT_EQ(back->samples.size(), message.samples.size());
     for (std::size_t i = 0; i < message.samples.size(); ++i) {

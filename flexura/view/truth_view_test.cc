@@ -101,6 +101,73 @@ TEST_F(TruthView, SaysNothingOfARunThatKnowsNoTruth) {
   EXPECT_EQ(messenger_.count(me, extras_stream), 0U);
 }
 
+// Tensions, energies and contacts, as the run wrote them.
+TEST_F(TruthView, ShowsTheForcesOfAnArmInMotion) {
+  record(R"(
+[arm]
+kind = "spatial"
+model = "dynamic"
+gravity = [0, 0, 0]
+[[arm.section]]
+length = 0.3
+radius = [0.02, 0.012]
+max_bend_deg = 300
+max_bend_rate_deg = 500
+material = { youngs_modulus = 1e6, poisson = 0.49, density = 1070, damping_time = 0.05 }
+[[arm.tendon]]
+section = 1
+radius_mm = 10
+[arm.contact]
+spacing_mm = 20
+[[obstacle]]
+kind = "capsule"
+name = "post"
+from = [0.07, 0.2, -0.3]
+to = [0.07, 0.2, 0.3]
+radius = 0.03
+may_touch = true
+[[camera]]
+name = "front"
+mount = { position = [0, 0.5, 2], look_at = [0, 0.5, 0] }
+[[task]]
+kind = "move"
+duration = 0.6
+to.bends_deg = [[150, 0]]
+[[task]]
+kind = "hold"
+duration = 0.4
+[record]
+cameras = false
+report = false
+)");
+  const auto state_at = [&](double time) {
+    session_->take(me, AtRequest{time}, [](const ViewAnswer& answer) { EXPECT_EQ(answer.error, ""); });
+    return messenger_.state(me);
+  };
+  const StateMessage start = state_at(0), end = state_at(1);
+  EXPECT_TRUE(start.contacts.empty());
+  EXPECT_EQ(start.energy.value().kinetic, 0);
+  EXPECT_GT(state_at(0.3).energy.value().kinetic, 1e-6);
+  EXPECT_GT(end.energy.value().strain, 1e-3);
+  ASSERT_FALSE(end.contacts.empty());
+  EXPECT_EQ(end.contacts.front().obstacle, 0);
+  EXPECT_GT(end.contacts.front().normal_force, 0);
+  EXPECT_NE(end.contacts.front().slip, ContactSample::Slip::unknown);
+  ASSERT_EQ(end.actuators.size(), 1U);
+  EXPECT_GT(end.actuators[0].force, 0.01);
+  EXPECT_FALSE(end.push);
+  std::string names;
+  for (const Quantity& quantity : session_->hello().quantities) names += quantity.name + " ";
+  EXPECT_THAT(names, HasSubstr("energy_kinetic energy_elastic energy_gravity energy_total tension_1 "
+                               "contact_force "));
+  std::string series;
+  session_->take(SeriesAsk{{"energy_total", "tension_1", "contact_force"}, 50},
+                 [&](const HttpAnswer& answer) { series = answer.body; });
+  EXPECT_THAT(series, HasSubstr("\"contact_force\":[0"));
+  EXPECT_EQ(series.find("null"), std::string::npos);
+  EXPECT_THROW(session_->take(me, PushRequest{}, [](const ViewAnswer&) {}), ViewRefusal);
+}
+
 // A log of states, each bent further by 0.1 rad, and of what comes with them.
 class WrittenTruth : public TruthView {
  protected:

@@ -2,11 +2,15 @@
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <span>
 #include <utility>
+#include <variant>
 
 #include "flexura/math/so3.h"
+#include "flexura/mechanics/arm_rod.h"
+#include "flexura/mechanics/statics.h"
 #include "flexura/model/arm_way.h"
 #include "flexura/model/backbone.h"
 #include "flexura/sim/arm_setup.h"
@@ -14,6 +18,12 @@
 
 namespace flexura {
 namespace {
+
+// To two digits: what people read.
+double rounded(double value) {
+  const double digit = std::pow(10.0, std::floor(std::log10(value)) - 1);
+  return std::round(value / digit) * digit;
+}
 
 // What a time lies between: `part` of the way from one instant to the next, or at one alone.
 struct Between {
@@ -97,6 +107,34 @@ Backbone backbone_at(const ViewedRig& rig, const std::vector<Instant>& instants,
   return rig.truth.backbone(at.is_one() ? at.from.arm : interpolate(at.from.arm, at.to.arm, at.part));
 }
 
+// How far a newton across it moves the tip of the arm as it starts, m/N: with a force that makes tendons taut
+// which hang slack there. 0: not known.
+double compliance_of(const ArmSetup& setup) {
+  constexpr double little = 0.05;  // of the arm's length, of one without tendons
+  const Rod& rod = setup.rod->rod;
+  RodStatics statics(rod);
+  const TendonInput tendons{.displacements = arc_displacements(rod, setup.initial).pulled};
+  const Equilibrium start = statics.solve(tendons, setup.rod->loads);
+  if (!start.converged()) return 0;
+  const double freely = statics.slopes().tip_by_tip.topLeftCorner<3, 3>().norm();
+  if (!(freely > 0)) return 0;
+  const double force = little * rod.length() / freely;
+  double most = 0;
+  for (const int axis : {0, 1}) {
+    RodLoads loads = setup.rod->loads;
+    loads.ends.push_back({.section = rod.sections.size() - 1, .force = force * start.tip.rotation.col(axis)});
+    const Equilibrium moved = statics.solve(tendons, loads, start);
+    if (moved.converged()) most = std::max(most, (moved.tip.position - start.tip.position).norm() / force);
+  }
+  return most > 0 ? most : freely;
+}
+
+std::optional<PushScale> push_scale(const ArmSetup& setup) {
+  const double compliance = compliance_of(setup), length = setup.rod->rod.length();
+  if (!(compliance > 0) || !std::isfinite(compliance)) return std::nullopt;
+  return PushScale{length, rounded(5 / compliance), rounded(length / compliance)};
+}
+
 }  // namespace
 
 ViewedRig::ViewedRig(Experiment read)
@@ -109,7 +147,13 @@ ViewedRig::ViewedRig(Experiment read)
   if (const ArmSetup setup(experiment.true_rig()); setup.rod) {
     actuators = pulled_tendons(setup);
     has_weight = has_loads(setup.rod->loads);
+    has_inertia = setup.rod->time_step.has_value();
+    touches = setup.rod->contact.has_value();
+    push = push_scale(setup);
   }
+  for (std::size_t i = 0; i < obstacles.size(); ++i)
+    if (!std::visit([](const auto& config) { return config.may_touch; }, experiment.obstacle[i]))
+      forbidden.push_back(obstacles[i]);
   if (experiment.drive) drive = experiment.drive->drive();
   for (const CameraConfig& config : experiment.true_rig().cameras) {
     cameras.emplace_back(config);

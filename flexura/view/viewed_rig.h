@@ -32,6 +32,13 @@ struct Instant {
   std::shared_ptr<const Backbone> shape = {};  ///< How a rod lies; null: the true arm's arcs, so bent.
 };
 
+/// What a hand needs to push an arm: forces that move it visibly, and no more than it bears.
+struct PushScale {
+  double length = 0;     ///< Of the arm at rest, m.
+  double stiffness = 0;  ///< Of a hand's spring, N/m: five times as stiff as the arm's tip at the start.
+  double most = 0;       ///< N: what would draw that tip as far away as the arm is long, were it linear.
+};
+
 /// A rig as an experiment describes it, ready to be shown. A value that does not change: threads share it.
 class ViewedRig {
  public:
@@ -43,10 +50,14 @@ class ViewedRig {
   bool is_rod;            ///< The arm as it is: it lies as its plant says, which `truth` does not know.
   std::vector<PulledTendon> actuators;  ///< Tendons that can be pulled in one by one.
   bool has_weight = false;              ///< Weight or loads pull at the arm as it is.
+  std::optional<PushScale> push = {};   ///< Of an arm that yields to forces.
+  bool touches = false;                 ///< The arm as it is meets obstacles, which push back.
+  bool has_inertia = false;             ///< The arm as it is moves by itself, and swings.
   std::vector<Obstacle> obstacles;
-  std::optional<Drive> drive;    ///< As it is believed to be.
-  std::vector<Camera> cameras;   ///< As they are.
-  std::vector<Camera> believed;  ///< As they are believed to be.
+  std::vector<Obstacle> forbidden;  ///< Those that the arm must not touch.
+  std::optional<Drive> drive;       ///< As it is believed to be.
+  std::vector<Camera> cameras;      ///< As they are.
+  std::vector<Camera> believed;     ///< As they are believed to be.
   std::vector<SensorConfig> sensors;
 
   /// The place of the camera of this name; none when there is none.

@@ -78,6 +78,10 @@ function view(app: App): Binding[] {
   ];
 }
 
+function toggle_push({ viewer, push_tool }: App): void {
+  if (viewer.hello.value?.controls.push && !viewer.readonly) push_tool.value = !push_tool.value;
+}
+
 function look_at_point(app: App): void {
   const shown = app.view.value;
   const samples = shown?.state?.samples;
@@ -90,12 +94,14 @@ function pick_tip({ viewer: { picked, scene } }: App): void {
   picked.value = picked.value === null && scene.value ? total_length(scene.value.arm) : null;
 }
 
-function rig({ viewer }: App): Binding[] {
+function rig(app: App): Binding[] {
+  const { viewer } = app;
   const group = 'Rig';
   const ask = (what: string) => () => void viewer.commander.plain(what);
   return [
     { group, keys: ['Backspace'], what: 'Reset: everything back to the start', run: () => (viewer.readonly ? viewer.playback.seek(0) : viewer.blind || ask('reset')()) },
     { group, keys: ['h'], what: 'Halt: everything stops', run: ask('halt') },
+    { group, keys: ['g'], what: 'Push an elastic arm by dragging it, on or off', run: () => toggle_push(app) },
     { group, keys: ['r'], what: 'Run the tasks', run: () => viewer.blind || ask('run')() },
     { group, keys: ['c'], what: 'Cancel the run', run: () => viewer.readonly || ask('cancel')() },
   ];
@@ -105,7 +111,7 @@ function page(app: App): Binding[] {
   const group = 'Page';
   return [
     { group, keys: ['F1', '?'], what: 'This help', run: () => (app.dialog.value = app.dialog.value === 'help' ? null : 'help') },
-    { group, keys: ['Escape'], what: 'Close; then the free view; then pick nothing', run: () => escape(app) },
+    { group, keys: ['Escape'], what: 'Close; then push no more; then the free view; then pick nothing', run: () => escape(app) },
     { group, keys: ['l'], what: 'Light or dark', run: toggle_theme },
   ];
 }
@@ -113,6 +119,7 @@ function page(app: App): Binding[] {
 function escape(app: App): void {
   if (app.dialog.value) app.dialog.value = null;
   else if (app.route.value !== 'viewer') return;
+  else if (app.push_tool.value) app.push_tool.value = false;
   else if (app.views.current.value !== null) app.views.free();
   else app.viewer.picked.value = null;
 }

@@ -7,16 +7,17 @@ export function LeftPanel() {
   const open = useSignal(left_tabs[0].id);
   const { viewer } = use_app();
   const bad = viewer.events.value.filter(({ level }) => level !== 'info').length;
-  const tab = left_tabs.find(({ id }) => id === open.value) ?? left_tabs[0];
+  const tabs = left_tabs.filter(({ shown }) => shown?.(viewer.hello.value) ?? true);
+  const tab = tabs.find(({ id }) => id === open.value) ?? tabs[0];
   const move = (by: number): void => {
-    const place = left_tabs.indexOf(tab);
-    open.value = left_tabs[(place + by + left_tabs.length) % left_tabs.length].id;
+    const place = tabs.indexOf(tab);
+    open.value = tabs[(place + by + tabs.length) % tabs.length].id;
     document.getElementById(`tab-${open.value}`)?.focus();
   };
   return (
     <aside class="left" aria-label="Controls">
       <div class="tabs" role="tablist" aria-label="Controls">
-        {left_tabs.map(({ id, label }) => (
+        {tabs.map(({ id, label }) => (
           <button
             key={id} id={`tab-${id}`} type="button" role="tab" aria-selected={id === tab.id}
             aria-controls="left-panel" tabIndex={id === tab.id ? 0 : -1}

@@ -1,5 +1,7 @@
 // What can be plotted of a live rig: taken from the states that the page remembers.
-import { actuator_force, actuator_stride, camera_pan, camera_stride, camera_tilt, sample_stride, type State } from '../protocol/state';
+import {
+  actuator_force, actuator_stride, camera_pan, camera_stride, camera_tilt, contact_force, contact_stride, push_force, sample_stride, type State,
+} from '../protocol/state';
 import type { Hello, Scene } from '../protocol/types';
 
 export interface Source {
@@ -57,6 +59,28 @@ export function live_sources(hello: Hello, scene: Scene): Source[] {
       id: 'tensions', label: 'Tensions', unit: 'N', names, value: (state, i) => state.actuators[actuator_stride * i + actuator_force],
     });
   }
+  if (hello.controls.inertia) {
+    sources.push({
+      id: 'energy', label: 'Energy', unit: 'J', names: ['kinetic', 'elastic', 'gravity', 'total'],
+      value: ({ energy }, i) => {
+        if (!energy) return null;
+        return i < 3 ? energy[i] : energy[0] + energy[1] + energy[2];
+      },
+    });
+  }
+  if (hello.controls.push) {
+    sources.push({ id: 'push', label: 'Push', unit: 'N', names: ['force'], value: ({ push }) => (push ? size_at(push, push_force) : 0) });
+  }
+  if (hello.controls.contact) {
+    sources.push({
+      id: 'contacts', label: 'Contact forces', unit: 'N', names: ['sum'],
+      value: ({ contacts }) => {
+        let sum = 0;
+        for (let i = 0; contacts && i < contacts.length; i += contact_stride) sum += size_at(contacts, i + contact_force);
+        return sum;
+      },
+    });
+  }
   if (scene.cameras.length) {
     sources.push({
       id: 'heads', label: 'Pan and tilt', unit: '°',
@@ -71,6 +95,11 @@ export function live_sources(hello: Hello, scene: Scene): Source[] {
     });
   }
   return sources.flatMap(in_parts);
+}
+
+/** Of the vector that begins there. */
+export function size_at(numbers: ArrayLike<number>, at: number): number {
+  return Math.hypot(numbers[at], numbers[at + 1], numbers[at + 2]);
 }
 
 /** A servo's errors, of the arm's length: as recordings call them. */

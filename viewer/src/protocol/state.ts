@@ -10,6 +10,9 @@ export const flag_running = 2;
 export const flag_recording = 4;
 export const flag_unsafe = 8;
 export const flag_weightless = 16;
+export const flag_energy = 32;
+export const flag_push = 64;
+export const flag_pace = 128;
 
 /** Numbers in a row of `samples`: s, x, y, z, qw, qx, qy, qz. */
 export const sample_stride = 8;
@@ -20,6 +23,18 @@ export const camera_stride = 18;
 export const actuator_stride = 3;
 export const actuator_force = 1;
 export const actuator_lost = 2;
+
+/** Numbers of a push: s, the place to which the point is drawn, the force. */
+export const push_size = 7;
+export const push_to = 1;
+export const push_force = 4;
+
+/** Numbers in a row of `contacts`: obstacle, s, point, force, normal force, how it touches. */
+export const contact_stride = 10;
+export const contact_point = 2;
+export const contact_force = 5;
+export const contact_normal = 8;
+export const contact_slip = 9;
 
 /** Where what stands in a camera's row. */
 export const camera_pan = 7;
@@ -45,6 +60,14 @@ export interface State {
   displacements: Float32Array;
   /** Rows of what can be moved one by one: how far it is, m, by which it pulls, N, and the steps that its motor has lost. */
   actuators: Float32Array;
+  /** Kinetic, elastic and of gravity, J; of arms that move by themselves. */
+  energy?: Float32Array | null;
+  /** What pushes the arm; null where nothing does. */
+  push?: Float32Array | null;
+  /** Of real time, where the arm moves more slowly than that. */
+  pace?: number | null;
+  /** Rows of where it touches something. */
+  contacts?: Float32Array;
   /** What was drawn beside it when it came. */
   extras?: Extras | null;
 }
@@ -76,7 +99,13 @@ export function decode_state(buffer: ArrayBuffer): State {
   const cameras = view.getUint16(6, true);
   const tendons = view.getUint16(8, true);
   const actuators = view.getUint16(24, true);
-  const numbers = 3 * sections + sample_stride * samples + camera_stride * cameras + tendons + actuator_stride * actuators;
+  const flags = view.getUint8(1);
+  const energy = flags & flag_energy ? 3 : 0;
+  const push = flags & flag_push ? push_size : 0;
+  const pace = flags & flag_pace ? 1 : 0;
+  const contacts = contact_stride * view.getUint16(26, true);
+  const numbers = 3 * sections + sample_stride * samples + camera_stride * cameras + tendons + actuator_stride * actuators
+    + energy + push + pace + contacts;
   if (buffer.byteLength !== state_header + 4 * numbers) {
     throw new Error(`a state of ${buffer.byteLength} bytes, expected ${state_header + 4 * numbers}`);
   }
@@ -87,7 +116,7 @@ export function decode_state(buffer: ArrayBuffer): State {
     return part;
   };
   return {
-    flags: view.getUint8(1),
+    flags,
     leaps: view.getUint16(10, true),
     sequence: view.getUint32(12, true),
     time: view.getFloat64(16, true),
@@ -97,6 +126,10 @@ export function decode_state(buffer: ArrayBuffer): State {
     cameras: take(camera_stride * cameras),
     displacements: take(tendons),
     actuators: take(actuator_stride * actuators),
+    energy: energy ? take(energy) : null,
+    push: push ? take(push) : null,
+    pace: pace ? take(pace)[0] : null,
+    contacts: take(contacts),
   };
 }
 

@@ -119,12 +119,24 @@ export interface ActuatorControl {
   motor: boolean;
 }
 
+export interface PushControl {
+  length: number;
+  stiffness: number;
+  most: number;
+}
+
 export interface Controls {
   sections: SectionControl[];
   tendons: null | TendonControl[];
   actuators?: ActuatorControl[];
   /** Weight and loads pull at the arm, and can be switched off. */
   weight?: boolean;
+  /** The arm yields to a hand: up to where along it, m, how stiff its spring is by itself, N/m, and how much it pulls at most, N. */
+  push?: PushControl;
+  /** It moves by itself, and has energies. */
+  inertia?: boolean;
+  /** It touches obstacles, which push back. */
+  contact?: boolean;
   heads: HeadControl[];
   stages: StageControl[];
   tasks: { name: string; kind: string }[];

@@ -39,6 +39,10 @@ function connect(canvas: HTMLCanvasElement, app: ReturnType<typeof use_app>): ()
     drop_tip: () => viewer.commander.release_tip(),
     pick: (s) => (viewer.picked.value = s),
     leave_camera: () => views.free(),
+    can_push: () => viewer.hello.peek()?.controls.push !== undefined && !viewer.still && viewer.freshness.peek() === 'live',
+    pushes_anyway: () => app.push_tool.peek(),
+    push: (s, to) => viewer.commander.push({ s, to }),
+    release: () => void viewer.commander.release(),
   });
   let epoch = -1;
   const ends = [

@@ -5,6 +5,7 @@ import { preferences, toggle_hidden } from '../state/preferences';
 import { eye_of, eyes_of } from '../overlays/extras';
 import { use_app } from '../ui/app';
 import { Icon } from '../ui/Icon';
+import { PushNote, PushTool } from './PushNotes';
 import { point_at } from '../math/arc';
 import { total_length } from './rings';
 
@@ -19,11 +20,13 @@ export function StageNotes() {
             onClick={() => (views.current.value = name)}>{name ?? 'Free view'}</button>
         ))}
       </div>
+      <PushTool />
       <OldLabel />
       <Clock />
       <ExtrasLegend />
       <PickedPoint />
       <TipNote />
+      <PushNote />
     </>
   );
 }

@@ -1,8 +1,9 @@
 // The hand in the 3D view: left orbits, right or middle pans, the wheel zooms; on the tip's handle the left button drags
-// the tip; a click picks a point of the backbone, a double click looks at what is there.
+// the tip, and with Shift or the tool for it any point is pushed; a click picks a point of the backbone, a double click looks at what is there.
 import { Plane, Raycaster, Vector2, Vector3 } from 'three';
 import { sample_stride } from '../protocol/state';
 import type { Vector3 as Triple } from '../protocol/types';
+import { point_at } from '../math/arc';
 import { nearest_point } from './pick';
 import { radius_at, total_length } from './rings';
 import type { SceneView } from './view';
@@ -13,18 +14,25 @@ export interface PointerHost {
   drop_tip(): void;
   pick(s: number | null): void;
   leave_camera(): void;
+  /** The arm yields to a hand now; `anyway`: also without Shift. */
+  can_push(): boolean;
+  pushes_anyway(): boolean;
+  push(s: number, to: Triple): void;
+  release(): void;
 }
 
 const click_px = 4;
 const pick_px = 10;
 const tip_px = 14;
 
-type Action = 'orbit' | 'pan' | 'tip' | null;
+type Action = 'orbit' | 'pan' | 'tip' | 'push' | null;
 
 export class Pointer {
   private action: Action = null;
   private moved = 0;
   private last = new Vector2();
+  /** Of the point that is pushed. */
+  private pushed = 0;
   private readonly plane = new Plane();
   private readonly grip = new Vector3();
   private readonly ray = new Raycaster();
@@ -48,7 +56,8 @@ export class Pointer {
     canvas.setPointerCapture(event.pointerId);
     this.moved = 0;
     this.last.set(event.offsetX, event.offsetY);
-    if (event.button !== 0 || event.shiftKey) this.action = 'pan';
+    if (event.button === 0 && this.is_to_push(event) && this.grab_point(event)) this.action = 'push';
+    else if (event.button !== 0 || event.shiftKey) this.action = 'pan';
     else if (this.host.can_drag() && this.over_tip(event)) this.grab(event);
     else this.action = 'orbit';
   };
@@ -56,14 +65,14 @@ export class Pointer {
   private move = (event: PointerEvent): void => {
     const { view } = this;
     if (!this.action) {
-      view.canvas.style.cursor = this.host.can_drag() && this.over_tip(event) ? 'grab' : '';
+      view.canvas.style.cursor = this.cursor(event);
       return;
     }
     const dx = event.offsetX - this.last.x;
     const dy = event.offsetY - this.last.y;
     this.last.set(event.offsetX, event.offsetY);
     this.moved += Math.abs(dx) + Math.abs(dy);
-    if (this.action === 'tip') return this.drag(event);
+    if (this.action === 'tip' || this.action === 'push') return this.drag(event);
     if (this.moved < click_px) return;
     // Turning what a camera sees would show something that it does not: one leaves it.
     this.host.leave_camera();
@@ -79,6 +88,7 @@ export class Pointer {
 
   private cancel = (): void => {
     if (this.action === 'tip') this.host.drop_tip();
+    if (this.action === 'push') this.host.release();
     this.action = null;
     this.view.canvas.style.cursor = '';
   };
@@ -100,13 +110,28 @@ export class Pointer {
   };
 
   private click(event: PointerEvent): void {
+    if (!this.view.state || !this.view.scene) return;
+    this.host.pick(this.point_under(event));
+  }
+
+  /** The arc length of the arm's point that is under the pointer. */
+  private point_under(event: PointerEvent): number | null {
     const { view } = this;
     const { state, scene } = view;
-    if (!state || !scene) return;
+    if (!state || !scene) return null;
     const hit = nearest_point(state.samples, view.camera, view.width, view.height, event.offsetX, event.offsetY);
     // A thick arm is hit anywhere on its skin.
     const thick = this.pixels_of(radius_at(scene.arm, hit.s));
-    this.host.pick(hit.distance < Math.max(pick_px, thick) ? hit.s : null);
+    return hit.distance < Math.max(pick_px, thick) ? hit.s : null;
+  }
+
+  private is_to_push(event: PointerEvent): boolean {
+    return this.host.can_push() && (event.shiftKey || this.host.pushes_anyway());
+  }
+
+  private cursor(event: PointerEvent): string {
+    if (this.is_to_push(event)) return this.point_under(event) === null ? 'crosshair' : 'grab';
+    return this.host.can_drag() && this.over_tip(event) ? 'grab' : '';
   }
 
   private pixels_of(length: number): number {
@@ -138,19 +163,35 @@ export class Pointer {
     const tip = this.tip(new Vector3());
     if (!tip) return;
     this.action = 'tip';
+    this.hold(tip, event);
+  }
+
+  /** The arm's point under the pointer is drawn likewise. */
+  private grab_point(event: PointerEvent): boolean {
+    const s = this.point_under(event);
+    const { state } = this.view;
+    if (s === null || !state) return false;
+    this.pushed = s;
+    this.view.canvas.style.cursor = 'grabbing';
+    this.hold(new Vector3(...point_at(state.samples, s).position), event);
+    return true;
+  }
+
+  private hold(point: Vector3, event: PointerEvent): void {
     const normal = new Vector3(0, 0, 1);
     if (this.view.scene?.arm.kind !== 'planar') this.view.camera.getWorldDirection(normal);
-    this.plane.setFromNormalAndCoplanarPoint(normal, tip);
+    this.plane.setFromNormalAndCoplanarPoint(normal, point);
     this.grip.set(0, 0, 0);
     const under = this.under(event);
-    if (under) this.grip.subVectors(tip, under);
+    if (under) this.grip.subVectors(point, under);
   }
 
   private drag(event: PointerEvent): void {
     const under = this.under(event);
     if (!under || this.moved < 1) return;
     under.add(this.grip);
-    this.host.drag_tip([under.x, under.y, under.z]);
+    if (this.action === 'push') this.host.push(this.pushed, [under.x, under.y, under.z]);
+    else this.host.drag_tip([under.x, under.y, under.z]);
   }
 
   private under(event: PointerEvent): Vector3 | null {

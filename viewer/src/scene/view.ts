@@ -86,7 +86,8 @@ export class SceneView {
     // Only with a state one knows where the cameras are.
     if (this.is_to_frame) this.frame_arm();
     this.is_to_frame = false;
-    if (!anyway && before && same(before.samples, state.samples) && same(before.cameras, state.cameras)) return;
+    if (!anyway && before && same(before.samples, state.samples) && same(before.cameras, state.cameras)
+      && same(before.push ?? nothing, state.push ?? nothing) && same(before.contacts ?? nothing, state.contacts ?? nothing)) return;
     for (const part of this.parts) part.draw?.(state);
     this.invalidate();
   }
@@ -158,6 +159,13 @@ export class SceneView {
     const point = new Vector3(...point_at(this.state.samples, s).position).project(this.camera);
     const box = this.canvas.getBoundingClientRect();
     return { x: box.left + ((point.x + 1) / 2) * box.width, y: box.top + ((1 - point.y) / 2) * box.height };
+  }
+
+  /** Where a point is in pixels of the canvas; null behind the eye. */
+  pixel_of(x: number, y: number, z: number): { x: number; y: number } | null {
+    const point = new Vector3(x, y, z).project(this.camera);
+    if (Math.abs(point.z) > 1) return null;
+    return { x: ((point.x + 1) / 2) * this.size.x, y: ((1 - point.y) / 2) * this.size.y };
   }
 
   /** Something moved: there is a new picture to draw. */
@@ -248,6 +256,8 @@ export class SceneView {
     ++this.drawn;
   };
 }
+
+const nothing = new Float32Array(0);
 
 function same(a: Float32Array, b: Float32Array): boolean {
   if (a.length !== b.length) return false;

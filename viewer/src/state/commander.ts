@@ -8,12 +8,15 @@ import type { Playback } from './playback';
 
 export type ArmCommand = Record<string, unknown>;
 
+export type Push = { s: number; to: Vector3 } | { s: number; force: Vector3 };
+
 export class Commander {
   /** What inverse kinematics said last, and for which goal; null when nobody drags. */
   readonly tip_result = signal<TipResult | null>(null);
   readonly tip_goal = signal<Vector3 | null>(null);
   private readonly arm_latest: Latest<ArmCommand>;
   private readonly tip_latest: Latest<Vector3, TipResult>;
+  private readonly push_latest: Latest<Push>;
   private is_tip_led = false;
   private readonly axes = new Map<string, Latest<Record<string, unknown>>>();
 
@@ -22,6 +25,7 @@ export class Commander {
       if (error) notices.error(error);
     };
     this.arm_latest = new Latest<ArmCommand>((values) => link.request('arm', values), told);
+    this.push_latest = new Latest<Push>((push) => link.request('push', push), told);
     this.tip_latest = new Latest<Vector3, TipResult>(
       (position) => link.request<TipResult>('tip', { position }),
       (result, error) => {
@@ -62,6 +66,18 @@ export class Commander {
   weight(on: boolean): Promise<boolean> {
     this.playback.go_live();
     return this.ask('weight', { on });
+  }
+
+  /** Something pushes the arm at s: a spring to a place, or a force. */
+  push(push: Push): void {
+    this.playback.go_live();
+    this.push_latest.ask(push);
+  }
+
+  /** Nothing does any more: nor what still waits to be asked. */
+  release(): Promise<boolean> {
+    this.push_latest.forget();
+    return this.ask('release');
   }
 
   /** Moves a head or a stage: `what` is the request's name. */

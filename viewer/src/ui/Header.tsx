@@ -1,7 +1,8 @@
 import { useSignal } from '@preact/signals';
-import { flag_unsafe, flag_weightless } from '../protocol/state';
+import { flag_pace, flag_unsafe, flag_weightless } from '../protocol/state';
 import { theme_now, toggle_theme } from '../state/preferences';
 import { use_app } from './app';
+import { fixed } from './format';
 import { Icon } from './Icon';
 
 const badges = {
@@ -33,6 +34,7 @@ export function Header() {
       {!teaching && (viewer.flags.value & flag_weightless) !== 0 && (
         <span class="badge" data-kind="weightless" role="status" title="Weight and loads are switched off in this simulation.">NO WEIGHT</span>
       )}
+      {!teaching && (viewer.flags.value & flag_pace) !== 0 && <Pace />}
       <span class="spacer" />
       {!teaching && hello && <Rig />}
       <nav class="tools" aria-label="Page">
@@ -54,6 +56,19 @@ export function Header() {
           aria-label="Help and keys" title="Help (F1)"><Icon name="help" /></button>
       </nav>
     </header>
+  );
+}
+
+/** That the simulation does not keep up. */
+function Pace() {
+  const { viewer } = use_app();
+  viewer.tick.value;
+  const pace = viewer.shown?.pace;
+  return (
+    <span class="badge" data-kind="slow" role="status"
+      title="Its steps take longer than they last: the arm moves more slowly than in real time.">
+      {pace ? `${fixed(pace, 2)} × REAL TIME` : 'SLOW'}
+    </span>
   );
 }
 

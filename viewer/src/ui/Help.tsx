@@ -7,6 +7,7 @@ import { Icon } from './Icon';
 const hand = [
   { keys: ['Drag'], what: 'Turn the view' },
   { keys: ['Right drag, Shift drag'], what: 'Move the view' },
+  { keys: ['Shift drag on the arm'], what: 'Push an elastic arm there; so does any drag with Push switched on (G)' },
   { keys: ['Wheel'], what: 'Nearer or farther' },
   { keys: ['Double click'], what: 'Look at what is there' },
   { keys: ['Click on the arm'], what: 'Pick a point of the backbone' },

@@ -17,6 +17,8 @@ export interface App {
   parts: Signal<{ id: string; label: string }[]>;
   dialog: Signal<Dialog>;
   route: Signal<'viewer' | 'teach'>;
+  /** The left button pushes the arm where it is dragged. */
+  push_tool: Signal<boolean>;
   /** The time under the pointer in a plot or on the timeline, which all of them show. */
   cursor: Signal<number | null>;
   keys: KeyMap;
@@ -32,6 +34,7 @@ export function make_app(viewer: Viewer, keys: KeyMap): App {
     parts: signal([]),
     dialog: signal(null),
     route: signal('viewer'),
+    push_tool: signal(false),
     cursor: signal(null),
     keys,
     use_token: () => false,

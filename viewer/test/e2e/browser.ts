@@ -158,6 +158,13 @@ export interface ServerState {
   displacements: number[];
   /** Value, force and lost steps of each. */
   actuators: number[][];
+  /** Kinetic, elastic, gravity; [] where nothing is known of it. */
+  energy: number[];
+  /** s, place, force; [] where nothing pushes. */
+  push: number[];
+  /** Obstacle, s, point, force, normal force, how it touches. */
+  contacts: number[][];
+  is_moving: boolean;
   is_weightless: boolean;
   is_running: boolean;
 }
@@ -178,6 +185,11 @@ export async function server_state(page: Page): Promise<ServerState> {
       const last = 3 * sections + 8 * (samples - 1);
       const tendons = last + 8 + 18 * view.getUint16(6, true);
       const actuators = tendons + view.getUint16(8, true);
+      const flags = view.getUint8(1);
+      const energy = actuators + 3 * view.getUint16(24, true);
+      const push = energy + (flags & 32 ? 3 : 0);
+      const pace = push + (flags & 64 ? 7 : 0);
+      const contacts = pace + (flags & 128 ? 1 : 0);
       resolve({
         time: view.getFloat64(16, true),
         bends: Array.from(numbers.subarray(0, 2 * sections)),
@@ -185,6 +197,10 @@ export async function server_state(page: Page): Promise<ServerState> {
         camera: Array.from(numbers.subarray(last + 8, last + 26)),
         displacements: Array.from(numbers.subarray(tendons, actuators)),
         actuators: Array.from({ length: view.getUint16(24, true) }, (_, i) => Array.from(numbers.subarray(actuators + 3 * i, actuators + 3 * i + 3))),
+        energy: Array.from(numbers.subarray(energy, push)),
+        push: Array.from(numbers.subarray(push, pace)),
+        contacts: Array.from({ length: view.getUint16(26, true) }, (_, i) => Array.from(numbers.subarray(contacts + 10 * i, contacts + 10 * i + 10))),
+        is_moving: (flags & 1) !== 0,
         is_weightless: (view.getUint8(1) & 16) !== 0,
         is_running: (view.getUint8(1) & 2) !== 0,
       });

@@ -11,13 +11,20 @@ export interface StateRows {
   displacements: ArrayLike<number>;
   /** Three a row. */
   actuators?: ArrayLike<number>;
+  /** Three numbers, seven, one and ten a row. */
+  energy?: ArrayLike<number>;
+  push?: ArrayLike<number>;
+  pace?: number;
+  contacts?: ArrayLike<number>;
 }
 
 export function encode_state(state: StateRows): Buffer {
-  const parts = [state.bends, state.stretches, state.samples, state.cameras, state.displacements, state.actuators ?? []];
+  const parts = [state.bends, state.stretches, state.samples, state.cameras, state.displacements, state.actuators ?? [],
+    state.energy ?? [], state.push ?? [], state.pace === undefined ? [] : [state.pace], state.contacts ?? []];
+  const flags = state.flags | (state.energy ? 32 : 0) | (state.push ? 64 : 0) | (state.pace === undefined ? 0 : 128);
   const bytes = Buffer.alloc(28 + 4 * parts.reduce((sum, { length }) => sum + length, 0));
   bytes.writeUInt8(1, 0);
-  bytes.writeUInt8(state.flags, 1);
+  bytes.writeUInt8(flags, 1);
   bytes.writeUInt16LE(state.stretches.length, 2);
   bytes.writeUInt16LE(state.samples.length / 8, 4);
   bytes.writeUInt16LE(state.cameras.length / 18, 6);
@@ -26,6 +33,7 @@ export function encode_state(state: StateRows): Buffer {
   bytes.writeUInt32LE(state.sequence, 12);
   bytes.writeDoubleLE(state.time, 16);
   bytes.writeUInt16LE((state.actuators?.length ?? 0) / 3, 24);
+  bytes.writeUInt16LE((state.contacts?.length ?? 0) / 10, 26);
   let at = 28;
   for (const part of parts) for (let i = 0; i < part.length; ++i) at = bytes.writeFloatLE(part[i], at);
   return bytes;

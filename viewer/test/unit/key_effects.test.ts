@@ -11,6 +11,8 @@ let orbit: Orbit;
 let camera: PerspectiveCamera;
 let done: string[];
 let mode: 'live' | 'recording';
+let is_elastic: boolean;
+const push_tool = signal(false);
 
 /** All that it is asked for is written down, with what it was asked for. */
 function noted(name: string, has: Record<string, unknown> = {}): object {
@@ -25,6 +27,8 @@ beforeEach(() => {
   place();
   done = [];
   mode = 'live';
+  is_elastic = false;
+  push_tool.value = false;
 });
 
 function place(): void {
@@ -36,11 +40,13 @@ function press(key: string): void {
   const app = {
     viewer: {
       playback: noted('time', { mode: signal(mode) }), commander: noted('rig'), picked: signal(0.25), readonly: false, blind: false,
+      hello: signal({ controls: is_elastic ? { push: {} } : {} }),
     },
     views: noted('views', { current: signal(null) }),
     view: signal(noted('view', { orbit, camera, state: { samples: new Float32Array(7) } })),
     dialog: signal(null),
     route: signal('viewer'),
+    push_tool,
   } as unknown as App;
   const bound = bindings_of(app).filter(({ keys }) => keys.includes(key));
   expect(bound, key).toHaveLength(1);
@@ -114,6 +120,19 @@ test.each([
     press(key);
     expect(done, key).toContain(what);
   }
+});
+
+test('an elastic arm is pushed by dragging, until Escape', () => {
+  press('g');
+  expect(push_tool.value).toBe(false);
+  is_elastic = true;
+  press('g');
+  expect(push_tool.value).toBe(true);
+  press('Escape');
+  expect(push_tool.value).toBe(false);
+  press('g');
+  press('g');
+  expect(push_tool.value).toBe(false);
 });
 
 test('the end of a recording is its last state', () => {

@@ -23,6 +23,19 @@ test('a state is read as it was written', () => {
   }
 });
 
+test('forces are read as they were written', () => {
+  const forces = {
+    energy: [0.5, 0.25, -2], push: [0.5, 1, 2, 3, -1, 0.5, 0], pace: 0.5,
+    contacts: Array.from({ length: 20 }, (_, i) => i / 8),
+  };
+  const state = decode_state(buffer(encode_state({ ...rows, ...forces })));
+  expect(state.flags).toBe(9 + 32 + 64 + 128);
+  for (const key of ['energy', 'push', 'contacts'] as const) expect(Array.from(state[key]!)).toEqual(forces[key]);
+  expect(state.pace).toBe(0.5);
+  const without = decode_state(buffer(encode_state(rows)));
+  expect([without.energy, without.push, without.pace, without.contacts!.length]).toEqual([null, null, null, 0]);
+});
+
 test('a state of another length than its counts say is refused', () => {
   const bytes = encode_state(rows);
   expect(() => decode_state(buffer(bytes.subarray(0, bytes.length - 4)))).toThrow(/expected/);

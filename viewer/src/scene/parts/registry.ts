@@ -2,11 +2,12 @@ import type { PartMaker } from '../part';
 import { make_arm } from './arm';
 import { make_cameras } from './cameras';
 import { make_floor } from './floor';
+import { make_forces } from './forces';
 import { make_ghosts } from './ghosts';
 import { make_stand } from './stand';
 import { make_tendons } from './tendons';
 import { make_trail } from './trail';
 
 /** What stands in the 3D view; a new kind of thing is one line here and one file beside. */
-export const part_makers: PartMaker[] = [make_arm, make_tendons, make_trail, make_ghosts, make_cameras, make_stand, make_floor];
+export const part_makers: PartMaker[] = [make_arm, make_tendons, make_forces, make_trail, make_ghosts, make_cameras, make_stand, make_floor];
 

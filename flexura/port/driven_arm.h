@@ -58,9 +58,8 @@ class DrivenArm : public ArmPort {
   Arm arm_;
   Drive drive_;
   MotorCommander commander_;
-  std::vector<double> zero_;  // Displacements where the motors are at 0, m.
-  std::vector<double>
-      followed_;  // Behind the backlash, microsteps pulled in; for a port that does not report it.
+  std::vector<double> zero_;      // Displacements where the motors are at 0, m.
+  std::vector<double> followed_;  // Behind the backlash, microsteps; for a port without carried values.
 };
 
 /// Returns the displacements, m, where the motors are at 0 if the motors at `positions`, microsteps, make

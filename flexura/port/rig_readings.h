@@ -12,8 +12,7 @@ namespace flexura {
 
 /// Reading of a camera's axis positions.
 struct StanceReading {
-  double time =
-      0;  ///< Time of the head's reading, s; without a head of the stage's, without both of the clock.
+  double time = 0;  ///< Of the head, s; without a head of the stage, without both of the clock.
   RigStance stance;
   bool moving = false;  ///< Head or stage is moving.
 };

@@ -68,8 +68,7 @@ class FlowFeatures : public ServoFeatures {
   std::optional<double> time_;  // Time of the last observation, s.
   std::array<Seen, 2> seen_;
   std::array<Angles, 2> angles_;
-  std::array<Eigen::Matrix2Xd, 2>
-      pixels_;  // Chords' ends, placed so that the chords have their carried angles.
+  std::array<Eigen::Matrix2Xd, 2> pixels_;  // Ends of chords with their carried angles.
 };
 
 }  // namespace flexura

@@ -72,19 +72,17 @@ struct ServoSettings {
   ServoMeasure measure = ServoMeasure::picture;  ///< For the laws that compare chord angles.
   double anchor = 0.1;  ///< Angles carried by flow approach the measured ones as exp(-t/anchor), s.
   ServoJacobian jacobian = ServoJacobian::model;
-  std::int64_t points =
-      12;  ///< Number of places along the arm, for the laws points, chords, potential and silhouettes.
-  double rate = 4;        ///< Errors decay as exp(-rate t), 1/s.
-  double damping = 0.01;  ///< ImageLawGains::damping; not used by `shape`.
-  bool predict = true;    ///< Counts motions commanded since the exposure as done.
-  double tolerance =
-      0.005;            ///< Largest root mean square error along the arm at the target, share of its length.
-  double settle = 0.5;  ///< How long the error has to stay below it, s.
-  double timeout = 20;  ///< Time to continue after the last target's time, s.
-  double blind = 0.3;   ///< How long the arm moves on without observations before it stops and waits, s.
-  double lost = 3;      ///< How long without observations until the servo ends, s.
-  bool follow = false;  ///< Heads turn to keep the arm in the middle of the pictures.
-  ServoDoubt doubt;     ///< Prior of each camera's view errors.
+  std::int64_t points = 12;  ///< Places along the arm: laws points, chords, potential, silhouettes.
+  double rate = 4;           ///< Errors decay as exp(-rate t), 1/s.
+  double damping = 0.01;     ///< ImageLawGains::damping; not used by `shape`.
+  bool predict = true;       ///< Counts motions commanded since the exposure as done.
+  double tolerance = 0.005;  ///< Largest final rms error along the arm, share of its length.
+  double settle = 0.5;       ///< How long the error has to stay below it, s.
+  double timeout = 20;       ///< Time to continue after the last target's time, s.
+  double blind = 0.3;        ///< How long the arm moves on without observations before it stops and waits, s.
+  double lost = 3;           ///< How long without observations until the servo ends, s.
+  bool follow = false;       ///< Heads turn to keep the arm in the middle of the pictures.
+  ServoDoubt doubt;          ///< Prior of each camera's view errors.
 };
 
 /// Configuration of a servo: its settings, and data of the rig and the arm.
@@ -94,10 +92,9 @@ struct ServoConfig : ServoSettings {
   std::vector<ServoGoal> goals;      ///< At least one, with increasing times from 0; interpolated linearly.
   std::vector<double> markers = {};  ///< Middles of the arm's bands, m along the unstretched arm, increasing.
   double step = 1.0 / 30;            ///< Time between commands, s.
-  bool keeps_steps =
-      true;  ///< Whether to keep ServoResult::steps, which grow with the duration of the servo.
-  std::optional<Drive> drive = {};  ///< Drive for the limiter (LimiterConfig).
-  double list_step = 0;             ///< Step of the limiter's command list, s.
+  bool keeps_steps = true;           ///< Keep ServoResult::steps, which grow with the duration.
+  std::optional<Drive> drive = {};   ///< Drive for the limiter (LimiterConfig).
+  double list_step = 0;              ///< Step of the limiter's command list, s.
   /// Last commanded state, if known. Drives report it only in their steps.
   std::optional<ArmState> sent = {};
   std::vector<Obstacle> obstacles = {};

@@ -55,7 +55,7 @@ void ServoGoals::measure(const PicturePair& recorded, const Arm& arm, PictureMet
 std::string ServoGoals::wrong_order(const ServoSight& sight, const PicturePair& recorded, PictureMeter& meter,
                                     const ShapeObserver& observer) const {
   constexpr double noise = 1.5,
-                   far_worse = 2;  // In units of what the noise explains; ratio to the other fit.
+                   far_worse = 2;  // In noise units; ratio of both fits.
   const auto& [frames, views] = recorded;
   const auto is_taken_by = [&](std::size_t i, std::size_t camera) {
     return std::visit(

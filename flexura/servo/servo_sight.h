@@ -18,9 +18,8 @@ struct ServoSight {
   /// For targets from recorded pictures: their offset from what nominal cameras would observe, in the law's
   /// features; empty: zero.
   Eigen::VectorXd desired_offset;
-  std::array<Frame, 2> frames;  ///< Of both cameras.
-  std::array<Sighting, 2>
-      seen;  ///< Centerlines, bands and borders, in the nominal views corrected by their estimated errors.
+  std::array<Frame, 2> frames;         ///< Of both cameras.
+  std::array<Sighting, 2> seen;        ///< Centerlines, bands, borders; views corrected by their errors.
   ShapeEstimate estimate;              ///< Shape of the arm at that time.
   std::array<std::string, 2> reasons;  ///< Reason why a picture shows no arm, or "".
 };

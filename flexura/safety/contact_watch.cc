@@ -109,8 +109,7 @@ QuantityBounds ContactWatch::self_bounds(const Chain& chain) {
   const SectionTube& first = chain.first_tube();
   if (stay_apart(first, chain.grown(1), possible, deepest)) return free_of_contact;
   const SectionTube thin = chain.grown(-1);
-  const bool may_meet =
-      deepest_pair(first, thin) < deepest;  // A tube made thinner by a large motion may vanish.
+  const bool may_meet = deepest_pair(first, thin) < deepest;  // A tube made thinner may vanish.
   if (may_meet && come_within(first, thin, chain.rule(1), deepest)) return in_contact;
   return undecided(chain.moved());
 }

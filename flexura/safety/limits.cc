@@ -25,8 +25,7 @@ double folding_rate(const Section& section, const Motion& motion, std::size_t i,
   const double half = (end - start) / 2;
   const double bend = middle.bends[i].norm() + rates.bend * half;
   const double stretch = middle.stretches[i] - rates.stretch * half;
-  if (middle.stretches[i] + rates.stretch * half <= 0)
-    return 0;  // No length anywhere in the interval: infinite throughout.
+  if (middle.stretches[i] + rates.stretch * half <= 0) return 0;  // No length anywhere: always infinite.
   if (stretch <= 0) return infinity;
   return slenderness(section) * (rates.bend / stretch + bend * rates.stretch / (stretch * stretch));
 }

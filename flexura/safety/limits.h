@@ -17,11 +17,10 @@ inline constexpr double limit_tolerance = 1e-9;
 /// A limited quantity of one section.
 struct LimitWatch {
   Hazard hazard = Hazard::bend;
-  std::size_t section = 0;  ///< From 0.
-  double limit = 0;         ///< As reported.
-  double sign = 1;          ///< -1: the value must not fall below the limit.
-  std::function<double(const ArmState& state)>
-      value;  ///< Returns the section's value in a state, in the hazard's unit.
+  std::size_t section = 0;                             ///< From 0.
+  double limit = 0;                                    ///< As reported.
+  double sign = 1;                                     ///< -1: the value must not fall below the limit.
+  std::function<double(const ArmState& state)> value;  ///< Returns the value in the hazard's unit.
   /// Returns a bound on |d value/dt| in [start, end] of a motion with known rates.
   std::function<double(const Motion& motion, double start, double end)> rate;
 

@@ -58,10 +58,8 @@ class WatchedQuantities {
 struct SpanSearch {
   double time = 0;   ///< Undecided intervals longer than this are halved, s.
   double value = 0;  ///< Intervals with an upper bound that exceeds the limit by more are halved too.
-  std::size_t most_intervals =
-      200'000;  ///< For one quantity: after so many intervals, samples decide the rest.
-  std::size_t most_together =
-      std::numeric_limits<std::size_t>::max();  ///< For all quantities, shared evenly.
+  std::size_t most_intervals = 200'000;  ///< Per quantity; after that, samples decide the rest.
+  std::size_t most_together = std::numeric_limits<std::size_t>::max();  ///< Of all, shared evenly.
   /// Receives the share of the time that is decided, now and then; false ends the search with the results so
   /// far.
   std::function<bool(double decided)> go_on = {};

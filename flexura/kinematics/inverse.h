@@ -66,11 +66,10 @@ enum class InverseOutcome {
 /// The state found, or the reason of the failure.
 struct InverseResult {
   InverseOutcome outcome = InverseOutcome::no_convergence;
-  bool is_proven = false;  ///< The target is out of reach of every state within the limits.
-  ArmState state;          ///< Within the limits: the solution, or the nearest state found.
-  Eigen::Vector3d tip;     ///< p_WT of `state`, m.
-  double position_error =
-      0.0;  ///< Error of `state`, m: distance of the tip, or the largest distance along the arm for a curve.
+  bool is_proven = false;       ///< The target is out of reach of every state within the limits.
+  ArmState state;               ///< Within the limits: the solution, or the nearest state found.
+  Eigen::Vector3d tip;          ///< p_WT of `state`, m.
+  double position_error = 0.0;  ///< Distance of the tip, m; for a curve the largest along the arm.
   double angle_error = 0.0;  ///< Error of `state`, rad, from the target's direction or rotation; otherwise 0.
   double position_tolerance = 0.0;  ///< Largest position_error that counts as converged, m.
   int iterations = 0;               ///< Number of evaluations of the arm and its Jacobian.

@@ -71,13 +71,11 @@ TEST(Profile, MinimumJerkHasItsKnownPeakAndRestsAtItsEnds) {
 }
 
 TEST(Profile, TrapezoidUsesItsLimitsAndNoMore) {
-  const Profile reaches =
-      Profile::trapezoid(1.0, 0.5, 1.0);  // 0.5 s of acceleration, 1.5 s constant, 0.5 s of deceleration.
+  const Profile reaches = Profile::trapezoid(1.0, 0.5, 1.0);  // 0.5 s up, 1.5 s constant, 0.5 s down.
   EXPECT_DOUBLE_EQ(reaches.duration(), 2.5);
   EXPECT_DOUBLE_EQ(reaches.max_rate(0, 2.5), 0.5);
   EXPECT_DOUBLE_EQ(reaches.fraction(0.5), 0.125);
-  const Profile falls_short =
-      Profile::trapezoid(1.0, 10.0, 1.0);  // 1 s of acceleration, 1 s of deceleration.
+  const Profile falls_short = Profile::trapezoid(1.0, 10.0, 1.0);  // 1 s up, 1 s down.
   EXPECT_DOUBLE_EQ(falls_short.duration(), 2.0);
   EXPECT_DOUBLE_EQ(falls_short.max_rate(0, 2), 1.0);
 }

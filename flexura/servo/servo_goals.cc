@@ -54,8 +54,7 @@ void ServoGoals::measure(const PicturePair& recorded, const Arm& arm, PictureMet
 // pictures' noise. If they fit neither, the cameras are wrong and the order is not judged.
 std::string ServoGoals::wrong_order(const ServoSight& sight, const PicturePair& recorded, PictureMeter& meter,
                                     const ShapeObserver& observer) const {
-  constexpr double noise = 1.5,
-                   far_worse = 2;  // In noise units; ratio of both fits.
+  constexpr double noise = 1.5, far_worse = 2;  // In noise units; ratio of both fits.
   const auto& [frames, views] = recorded;
   const auto is_taken_by = [&](std::size_t i, std::size_t camera) {
     return std::visit(

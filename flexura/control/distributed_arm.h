@@ -91,10 +91,9 @@ class DistributedArm {
   Eigen::MatrixXd root_;   // sqrt(rho W) running: T = |root_ d(stretch e)/dt|^2 / 2.
   Eigen::VectorXd weigh_;  // rho (L - s) w.
   Eigen::VectorXd theta_, q_, theta_s_, q_s_, theta_t_, q_t_, stretch_, stretch_t_, rates_;
-  Eigen::Matrix3Xd e_, e_theta_, e_q_,
-      curving_;                          // curving_: acceleration of stretch e at constant rates.
-  std::array<Eigen::MatrixXd, 3> by_x_;  // d(stretch e)/dx by component, a row per point.
-  Eigen::MatrixXd flow_, mass_;          // root_ by_x_, with the three components stacked.
+  Eigen::Matrix3Xd e_, e_theta_, e_q_, curving_;  // curving_: acceleration of stretch e at constant rates.
+  std::array<Eigen::MatrixXd, 3> by_x_;           // d(stretch e)/dx by component, a row per point.
+  Eigen::MatrixXd flow_, mass_;                   // root_ by_x_, with the three components stacked.
   Eigen::VectorXd flow_rate_, bias_, point_force_, gravity_gradient_, elastic_gradient_, damping_force_;
   Cholesky factor_;
 };

@@ -43,7 +43,7 @@ struct LoopConfig {
   double arc = 90 * degree;
   ArmPictureConfig picture;       ///< Includes the arm's markers.
   std::optional<RigPrior> prior;  ///< Prior of the rig for `arcs`; missing: that of rough_prior().
-  /// Renders the simulator's grey picture of the arm in a state: the ideal image.
+  /// Renders the simulator's gray picture of the arm in a state: the ideal image.
   std::function<Image<std::uint8_t>(const View&, const ArmState&)> draw;
   double move_duration = 2;  ///< Duration of a move of the arm to a shape or back, s.
   RigPatience patience;

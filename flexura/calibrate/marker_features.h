@@ -19,7 +19,7 @@ struct MarkerFeature {
   std::size_t number = 0;  ///< Number of the marker; for ends 0 (base) or 1 (tip).
 };
 
-/// Classifies the colours that can be distinguished; a grey picture has only one kind.
+/// Classifies the colours that can be distinguished; a gray picture has only one kind.
 class MarkerPalette {
  public:
   MarkerPalette(const MarkerScene& expected, const MarkerScene& seen);

@@ -107,7 +107,7 @@ struct IdealArc {
   std::string plane;            ///< "XOY" or "ZOY".
   ArmState state;               ///< Bends of the sections, each with its rotation about its base axis.
   View view;                    ///< The ideal camera.
-  Image<std::uint8_t> picture;  ///< The ideal image, grey.
+  Image<std::uint8_t> picture;  ///< The ideal image, gray.
 };
 
 /// Receives the events of a session. It does not influence the session, except by cancelling it.

@@ -16,7 +16,7 @@ struct ZoomCorrelation {
 
 /// Finds the ratio between 1/2 and 2 with the largest normalised cross-correlation (step 13 of section 3.4).
 /// The ideal picture is enlarged by it about its figure's centroid and laid onto the real figure's centroid.
-/// Throws std::invalid_argument unless both are grey and of equal size.
+/// Throws std::invalid_argument unless both are gray and of equal size.
 [[nodiscard]] ZoomCorrelation correlate_zoom(const Image<std::uint8_t>& real,
                                              const Image<std::uint8_t>& ideal);
 

@@ -23,7 +23,7 @@
 namespace flexura {
 namespace {
 
-// A scene in two forms: as it is drawn, and as its bodies, each with its grey level on all sides.
+// A scene in two forms: as it is drawn, and as its bodies, each with its gray level on all sides.
 struct KnownScene {
   struct Body {
     ImplicitBody body;
@@ -45,7 +45,7 @@ struct KnownScene {
     scene.obstacles.push_back({obstacle, Color::Constant(gray)});
     for (const ImplicitBody& body : implicit_bodies(obstacle)) bodies.push_back({body, gray});
   }
-  // Grey level seen from `eye` in a direction near which the arm has only these frustums.
+  // Gray level seen from `eye` in a direction near which the arm has only these frustums.
   [[nodiscard]] double gray(const std::vector<FrustumTube::Frustum>& near, const Eigen::Vector3d& eye,
                             const Eigen::Vector3d& direction) const {
     double depth = ImplicitBody::nowhere, result = 0;

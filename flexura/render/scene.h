@@ -17,7 +17,7 @@ namespace flexura {
 /// Linear.
 using Color = Eigen::Vector3d;
 
-/// Returns the brightness of a colour to a grey sensor: 0.2126 red + 0.7152 green + 0.0722 blue (ITU-R
+/// Returns the brightness of a colour to a gray sensor: 0.2126 red + 0.7152 green + 0.0722 blue (ITU-R
 /// BT.709).
 [[nodiscard]] inline double gray_of(const Color& color) {
   return 0.2126 * color.x() + 0.7152 * color.y() + 0.0722 * color.z();

@@ -90,12 +90,12 @@ class ArmFinder {
   ArmFinder(ArmFinder&&) noexcept;
   ArmFinder& operator=(ArmFinder&&) noexcept;
 
-  /// Finds the arm in a grey picture; the result is valid until the next call. Throws std::invalid_argument
+  /// Finds the arm in a gray picture; the result is valid until the next call. Throws std::invalid_argument
   /// for more than one channel.
   const ArmSighting& find(const Image<std::uint8_t>& gray);
   /// Finds the arm in a picture with more than 8 bits; brightness counts from 0 to `white`.
   const ArmSighting& find(const Image<std::uint16_t>& gray, int white = 65535);
-  /// Finds the arm in any picture, grey or in colour, with the largest value `white`. Throws
+  /// Finds the arm in any picture, gray or in colour, with the largest value `white`. Throws
   /// std::invalid_argument if `white` is below 1.
   const ArmSighting& find(const Picture& picture, int white);
   /// Finds the arm in a picture from a file, with all its bits. In a mask, `mask_sigma` is a lower bound on

@@ -11,7 +11,7 @@
 
 namespace flexura {
 
-/// Returns red, green, blue (0 to 255) at a subpixel position by bilinear interpolation; for a grey picture
+/// Returns red, green, blue (0 to 255) at a subpixel position by bilinear interpolation; for a gray picture
 /// its value three times.
 [[nodiscard]] Eigen::Vector3d color_at(const Image<std::uint8_t>& picture, const Eigen::Vector2d& pixel);
 

@@ -10,9 +10,9 @@
 
 namespace flexura {
 
-/// Returns the motion of the image at these positions from one grey picture to the next, px. Uses the
+/// Returns the motion of the image at these positions from one gray picture to the next, px. Uses the
 /// pyramidal method of Lucas and Kanade (J.-Y. Bouguet, 2001; OpenCV's). Empty where a position is not found
-/// again. Throws std::invalid_argument for pictures of different sizes, or not grey.
+/// again. Throws std::invalid_argument for pictures of different sizes, or not gray.
 [[nodiscard]] std::vector<std::optional<Eigen::Vector2d>> flow_at(const Image<std::uint8_t>& before,
                                                                   const Image<std::uint8_t>& after,
                                                                   std::span<const Eigen::Vector2d> places);

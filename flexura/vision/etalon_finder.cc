@@ -47,7 +47,7 @@ std::optional<UprightLine> line_through(std::vector<Vector2d> points, double mid
   return line;
 }
 
-// Redness of a pixel; in a grey picture its brightness.
+// Redness of a pixel; in a gray picture its brightness.
 double redness(const Image<std::uint8_t>& picture, int u, int v) {
   if (picture.channels() != 3) return picture.at(u, v);
   return picture.at(u, v, 0) - 0.5 * (picture.at(u, v, 1) + picture.at(u, v, 2));

@@ -39,8 +39,8 @@ struct EtalonSighting {
   }
 };
 
-/// Finds the cylinder in a picture, grey or red, green, blue; `gray` is the same picture in grey
-/// (gray_picture()). In a grey picture the lines are found by their brightness.
+/// Finds the cylinder in a picture, gray or red, green, blue; `gray` is the same picture in gray
+/// (gray_picture()). In a gray picture the lines are found by their brightness.
 [[nodiscard]] EtalonSighting find_etalon(const Image<std::uint8_t>& picture, const Image<std::uint8_t>& gray,
                                          const ThresholdConfig& config = {});
 

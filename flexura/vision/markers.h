@@ -23,7 +23,7 @@ struct MarkerSighting {
   /// the arm and the picture's plane, positive if the arm approaches the camera from base to tip.
   double bulge = 0;
   Eigen::Vector3d color = {
-      0, 0, 0};  ///< Red, green, blue of its middle, of 0 to 255; in a grey picture its value three times.
+      0, 0, 0};  ///< Red, green, blue of its middle, of 0 to 255; in a gray picture its value three times.
   bool is_band = true;  ///< Whether it is visible across the arm; otherwise a spot.
   /// Much longer than others, or of two parts: probably two in one.
   bool may_be_merged = false;
@@ -38,8 +38,8 @@ struct MarkerSightings {
   std::vector<std::string> notes;  ///< About gaps where one may be missing, and about omitted candidates.
 };
 
-/// Finds the markers along an arm in `picture` (grey, or red, green, blue) by their difference from the arm's
-/// own colour. In a grey picture bands are found by their brightness. The search for spots covers the whole
+/// Finds the markers along an arm in `picture` (gray, or red, green, blue) by their difference from the arm's
+/// own colour. In a gray picture bands are found by their brightness. The search for spots covers the whole
 /// skin and takes several times as long as bands alone. Without it, possible spots are not in the notes.
 /// `arm` must be from this very picture. Empty for an axis of fewer than 8 samples, and (with a note) for an
 /// arm thinner than 4 px.

@@ -32,7 +32,7 @@ Image<Value> gray_of_colors(const Image<Value>& picture) {
   return gray;
 }
 
-// Returns a grey picture stored in colour as one channel; other pictures unchanged.
+// Returns a gray picture stored in colour as one channel; other pictures unchanged.
 Image<std::uint8_t> without_colors(Image<std::uint8_t> picture) {
   if (picture.channels() != 3) return picture;
   const auto values = picture.values();

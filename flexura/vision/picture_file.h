@@ -10,7 +10,7 @@
 
 namespace flexura {
 
-/// A picture from a file: grey or red, green, blue.
+/// A picture from a file: gray or red, green, blue.
 struct Photograph {
   Image<std::uint8_t> bytes;   ///< Always set; of more than 8 bits the upper ones.
   Image<std::uint16_t> words;  ///< Empty for 8 bits; values from 0 to `white`, larger for hot pixels.
@@ -34,7 +34,7 @@ inline constexpr std::size_t most_picture_bytes = std::size_t{1} << 29;
 [[nodiscard]] Photograph decode_picture(std::span<const std::uint8_t> file, const std::string& name);
 
 /// Returns the brightness of a picture, rounded: 0.2126 red + 0.7152 green + 0.0722 blue (ITU-R BT.709) of
-/// its values, without undoing a gamma. A grey picture is returned unchanged.
+/// its values, without undoing a gamma. A gray picture is returned unchanged.
 [[nodiscard]] Image<std::uint8_t> gray_picture(const Image<std::uint8_t>& picture);
 [[nodiscard]] Image<std::uint16_t> gray_picture(const Image<std::uint16_t>& picture);
 

@@ -83,7 +83,7 @@ TEST(BadServo, EachIsOneClearLine) {
   EXPECT_EQ(complaint("target = [{" + bends + "}]\n"), "");
 }
 
-// Of the task's first line, once for both cameras.
+// At the task's first line, once for both cameras.
 TEST(BadServo, CamerasThatNoStepCanFollow) {
   struct Case {
     std::string rate, task, words;
@@ -118,7 +118,7 @@ TEST(BadServo, PicturesThatComeAfterItIsGivenUp) {
   EXPECT_EQ(late("lost = 100\n", "59"), "");
 }
 
-// What is wrong with a target of two pictures that are this file.
+// Returns the error of a target whose two pictures are this file.
 std::string complaint_of_pictures(const std::string& picture) {
   const TemporaryFolder folder;
   for (const char* name : {"a.pgm", "b.pgm"}) std::ofstream(folder.path() / name) << picture;

@@ -104,7 +104,7 @@ TEST(Planar, Equations9And10AsPrintedEndElsewhere) {
   }
   EXPECT_NEAR(sum * std::cos(angle), 9.038, 5e-4);
   EXPECT_NEAR(sum * std::sin(angle), 12.440, 5e-4);
-  // With the angle of the section that is being summed, the same sum is the paper's E.
+  // With the angle of the section that is being summed, the sum is the paper's E.
   EXPECT_NEAR(paper_end_effector(1.0).x(), -10.738, 5e-4);
   EXPECT_NEAR(paper_end_effector(1.0).y(), 5.201, 5e-4);
 }

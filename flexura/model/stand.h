@@ -22,7 +22,7 @@ struct ScreenConfig {
   double fall_off = 0;  ///< Share by which its corners are darker than its middle.
 };
 
-/// The calibration cylinder: dark grey, with red lines along it.
+/// The calibration cylinder: dark gray, with red lines along it.
 struct EtalonConfig {
   std::array<double, 3> position = {0, 0, 0};     ///< Middle of its lower end, m.
   std::array<double, 4> rotation = {1, 0, 0, 0};  ///< Quaternion (w, x, y, z), E to W: the axis is E's +Y.

@@ -70,8 +70,8 @@ using ClockedArm = ClockedDevice<ArmPort, ArmState, ArmReading, double>;
 using ClockedHead = ClockedDevice<HeadPort, HeadState, HeadReading>;
 using ClockedStage = ClockedDevice<StagePort, StageState, StageReading>;
 
-/// A camera with its own clock. The frames' `time` is of that clock. `received` is of the rig's clock, by
-/// whoever fetches the frames.
+/// A camera with its own clock. The frames' `time` is of that clock; `received` is of the rig's clock, from
+/// the program that fetches the frames.
 class ClockedCamera : public CameraPort {
  public:
   /// A frame is received `quickest` to `slowest` s after the middle of its exposure. `slowest` may be

@@ -33,7 +33,7 @@ struct ServoResult {
   /// Last observation, command and request before the servo ended early, for any reason; `time` since the
   /// start.
   std::optional<LimiterFault> fault;
-  /// First observation, and newest one with a shape; null if there is none.
+  /// First observation, and newest one with a shape; null if missing.
   std::shared_ptr<const ServoSight> first, last;
 };
 

@@ -49,8 +49,8 @@ class RigTruth {
   [[nodiscard]] virtual std::vector<PlantContact> contacts(double /*time*/) { return {}; }
   /// Returns a one-line warning about its state at that time, or "".
   [[nodiscard]] virtual std::string warning(double /*time*/) { return {}; }
-  /// Returns the microsteps that each motor had lost by that time, unknown to its controller; empty if none
-  /// can be lost.
+  /// Returns the microsteps that each motor had lost by that time, unknown to its controller; empty if it
+  /// never loses any.
   [[nodiscard]] virtual std::vector<double> lost_steps(double /*time*/) { return {}; }
 };
 

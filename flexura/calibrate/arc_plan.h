@@ -24,9 +24,9 @@ namespace flexura {
 /// plane.
 struct ArcPlan {
   std::array<ArmState, 2> arcs;  ///< In XOY for the first camera, in ZOY for the second.
-  std::array<Eigen::Vector3d, 2> centers,
-      normals;        ///< Centers (m) and normals of the arc circles, in W; the cameras look along -normal.
-  double radius = 0;  ///< Radius of the arc circles, m.
+  /// Centers (m) and normals of the arc circles, in W; the cameras look along -normal.
+  std::array<Eigen::Vector3d, 2> centers, normals;
+  double radius = 0;                            ///< Radius of the arc circles, m.
   Eigen::Vector3d target;                       ///< Point where the optical axes should meet, in W, m.
   std::array<View, 2> ideal;                    ///< Target views of the cameras.
   std::array<Image<std::uint8_t>, 2> pictures;  ///< Ideal images: what each ideal view shows of its arc.

@@ -35,8 +35,8 @@ class ArcsAsPrinted : public ArcsLoop {
       sight.seen = eyes_[i].see(*sight.frame.picture, Lens(loop_.lens(i)),
                                 expected_markers(loop_.believed().arm, plan_.arcs[i],
                                                  loop_.config().picture.markers, plan_.ideal[i]));
-      if (!sight.seen.points.empty())
-        sight.seen.reason.clear();  // Missing markers are no error: they are not needed.
+      // Missing markers are no error: they are not needed.
+      if (!sight.seen.points.empty()) sight.seen.reason.clear();
       points_.clear();
       for (const CurvePoint& point : sight.seen.points) points_.push_back(point.pixel);
       sight.circle = circle_ = fit_circle(points_);

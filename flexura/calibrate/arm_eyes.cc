@@ -125,9 +125,9 @@ class ArmEyes : public RigEyes {
 
   const RigPrior& prior_;
   const RigSessionConfig& config_;
-  SightDoubt doubt_ = {
-      .sideways = 0.01, .roll = 0.01, .scale = 0.01};  // Errors of the initial guess of the cameras.
-  std::vector<ArmPicture> pictures_;                   // One per camera.
+  // Errors of the initial guess of the cameras.
+  SightDoubt doubt_ = {.sideways = 0.01, .roll = 0.01, .scale = 0.01};
+  std::vector<ArmPicture> pictures_;  // One per camera.
   RigSights sights_;
   ArmFigure figure_;  // The last one.
   std::size_t count_ = 0;

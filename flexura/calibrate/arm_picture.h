@@ -27,7 +27,7 @@ struct ArmPictureConfig {
 /// The arm in one picture before its markers are identified.
 struct ArmFigure {
   std::vector<AxisSample> axis;
-  std::vector<MarkerSighting> markers;  ///< In order along the centerline.
+  std::vector<MarkerSighting> markers;  ///< Markers in order along the centerline.
   MarkerScene scene;                    ///< The markers and arm ends that can be identified.
   std::array<int, 2> size = {0, 0};     ///< Size of the picture, px.
   std::string reason;                   ///< Why no arm was found; "" if one was.

@@ -31,8 +31,8 @@ class EtalonLoop {
     const char* step;
     double px;    ///< Measured offset.
     double want;  ///< Required motion, rad or m; as printed, the measured offset.
-    double accepted,
-        most;  ///< Tolerance and largest step, in the unit of `want`; `most` is 0 for steps of equal size.
+    /// Tolerance and largest step, in the unit of `want`; `most` is 0 for steps of equal size.
+    double accepted, most;
     const char* how;     ///< Description for the log.
     Eigen::Vector4d by;  ///< Motion of pan, tilt, stage x and y per unit of `want`, or per step.
   };

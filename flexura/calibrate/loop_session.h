@@ -32,8 +32,8 @@ struct LoopConfig {
   std::array<std::size_t, 2> cameras = {0, 1};  ///< Indices of the front and the side camera in the rig.
   std::size_t images = 60;                      ///< Maximum number of pictures per camera.
   double accepted = 0.05;                       ///< Tolerance of every offset in the picture, px.
-  double zoom_accepted =
-      0.001;  ///< Tolerance of the relative difference of the target's sizes in the two pictures.
+  /// Tolerance of the relative difference of the target's sizes in the two pictures.
+  double zoom_accepted = 0.001;
   double turn = 0.2 * degree;  ///< As printed: size of each turn of a head, rad.
   double slide = 0.005;        ///< As printed: size of each stage step, m.
   double zoom_step = 0.02;     ///< As printed: relative change of the zoom per step.

@@ -36,9 +36,9 @@ struct MarkerMatch {
 
 /// Prior standard deviations of the motion of a whole picture relative to the expected one.
 struct MatchDoubt {
-  double shift = std::numeric_limits<double>::infinity();  ///< px
-  double turn = std::numeric_limits<double>::infinity();   ///< rad
-  double scale = std::numeric_limits<double>::infinity();  ///< Of the logarithm of the scale.
+  double shift = std::numeric_limits<double>::infinity();  ///< Shift, px.
+  double turn = std::numeric_limits<double>::infinity();   ///< Rotation, rad.
+  double scale = std::numeric_limits<double>::infinity();  ///< Logarithm of the scale.
 };
 
 /// Identifies markers by their pattern. The expected picture is shifted, rotated (up to 45 degrees) and

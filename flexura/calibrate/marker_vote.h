@@ -15,10 +15,10 @@ namespace flexura {
 /// A picture of an arm, and the modelled positions of its markers and ends in W.
 struct MarkerPicture {
   struct Place {
-    Eigen::Vector3d p_W = {0, 0, 0};  ///< m
+    Eigen::Vector3d p_W = {0, 0, 0};  ///< Position in W, m.
     Eigen::Vector3d color = {1, 1, 1};
   };
-  View view;  ///< As modelled.
+  View view;  ///< View as modelled.
   std::vector<Place> markers;
   std::array<Eigen::Vector3d, 2> ends;  ///< Base and tip in W, m.
   MarkerScene seen;
@@ -34,8 +34,8 @@ struct SightError {
 
 /// Prior standard deviations of a SightError.
 struct SightDoubt {
-  double sideways = 0.25;  ///< Of rotations that shift a picture, rad.
-  double roll = 0.17;      ///< Of rotations about the line of sight, rad.
+  double sideways = 0.25;  ///< Rotations that shift a picture, rad.
+  double roll = 0.17;      ///< Rotations about the line of sight, rad.
   double scale = 0.22;
 };
 

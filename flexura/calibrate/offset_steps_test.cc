@@ -103,8 +103,8 @@ std::string end_of_pair(const Eigen::Matrix2d& behaviour, Eigen::Vector2d offset
     const LoopState state = chosen.take(offsets[i]);
     if (state == LoopState::holds) return "holds";
     if (state == LoopState::stuck) return chosen.reason();
-    if (i == 1)
-      steps[0] = OffsetSteps(held[0], 100);  // The next offset is not the result of its own last step.
+    // The next offset is not the result of its own last step.
+    if (i == 1) steps[0] = OffsetSteps(held[0], 100);
     offsets -= behaviour.col(i) * chosen.move();
   }
   return "goes on";

@@ -50,9 +50,9 @@ struct RigWish {
 /// Deviation from that configuration, by the model.
 struct RigRemainder {
   double angle = 0;  ///< Angle between the axes minus 90 degrees, rad.
-  std::array<Eigen::Vector2d, 2>
-      aim;                ///< Offset of each axis from the target, to the right and downwards, m.
-  double zoom_ratio = 1;  ///< First camera's magnification over the second's.
+  /// Offset of each axis from the target, to the right and downwards, m.
+  std::array<Eigen::Vector2d, 2> aim;
+  double zoom_ratio = 1;                ///< First camera's magnification over the second's.
   std::array<double, 2> roll = {0, 0};  ///< Roll of each camera about its axis, rad: no head can correct it.
 };
 

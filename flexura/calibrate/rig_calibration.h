@@ -24,8 +24,8 @@ struct RigCalibration {
   std::vector<ArmState> poses;     ///< Estimated arm poses.
   std::vector<RigStance> stances;  ///< Estimated camera stances.
   Eigen::VectorXd x;               ///< Values of the problem's variables.
-  Eigen::MatrixXd
-      covariance;    ///< Covariance of x. Infinite entries: the observations do not bound a part of x.
+  /// Covariance of x. Infinite entries: the observations do not bound a part of x.
+  Eigen::MatrixXd covariance;
   double rms = 0;    ///< Root mean square of the residual entries, in their standard deviations.
   double scale = 1;  ///< Scale of the residuals, corrected for the number of fitted variables; sigmas are
                      ///< multiplied by it if it is above 1.

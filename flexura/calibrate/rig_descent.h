@@ -9,7 +9,7 @@ namespace flexura {
 
 /// Free variables of a descent and its bound on residuals.
 struct RigDescentConfig {
-  std::vector<bool> is_free;  ///< By column of x; empty: all are free.
+  std::vector<bool> is_free;  ///< Free columns of x; empty: all are free.
   int most_iterations = 60;
   double bound = 3;             ///< Residuals count linearly beyond this ...
   bool does_bound_rise = true;  ///< ... or beyond the size of most residuals, if that is larger.

@@ -17,11 +17,11 @@ namespace flexura {
 struct RigReading {
   std::optional<RigProblem> problem;  ///< Problem of the identified observations; always set.
   RigCalibration found;
-  double things =
-      0;  ///< Number of observations identified as markers and axis points, or as points of the cylinder.
+  /// Number of observations identified as markers and axis points, or as points of the cylinder.
+  double things = 0;
   double amiss = 0;  ///< Number of them that the rig does not explain, plus unidentified markers.
-  double explained =
-      0;  ///< `things`, minus twice those that it does not explain, minus unidentified markers.
+  /// `things`, minus twice those that it does not explain, minus unidentified markers.
+  double explained = 0;
 
   /// Returns whether it was found with at most a twentieth amiss.
   [[nodiscard]] bool is_whole() const { return found.is_found && amiss <= 0.05 * things; }

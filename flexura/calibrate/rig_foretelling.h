@@ -8,8 +8,8 @@ namespace flexura {
 /// Agreement of a picture with a rig that was estimated without it.
 struct RigForetelling {
   double px = 0;  ///< Prediction error of the observations, root mean square, px.
-  double sigmas =
-      0;  ///< Prediction error in units of the combined uncertainty of rig, head, arm and picture.
+  /// Prediction error in units of the combined uncertainty of rig, head, arm and picture.
+  double sigmas = 0;
 };
 
 /// Compares a picture with the rig estimated by `problem`; stance and arm pose are those read when it was

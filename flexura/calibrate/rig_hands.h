@@ -14,8 +14,8 @@ namespace flexura {
 
 /// Time limits and tolerances for moves and frames.
 struct RigPatience {
-  double settle = 20;  ///< For motions to end, s.
-  double frame = 3;    ///< For a frame, s.
+  double settle = 20;  ///< Time limit for motions to end, s.
+  double frame = 3;    ///< Time limit for a frame, s.
   double poll = 0.02;  ///< Interval between checks for motion, s.
   /// Largest deviation between measured and commanded bend of a section, rad.
   double bend = 0.02;

@@ -24,7 +24,7 @@ struct RigBlindness {
 
 /// What observations determine of a rig, and what they do not.
 struct RigObservability {
-  std::vector<RigKnowledge> numbers;    ///< In the order of x.
+  std::vector<RigKnowledge> numbers;    ///< Variables in the order of x.
   std::vector<RigBlindness> blindness;  ///< Combinations with over half of the prior left, largest first.
 };
 

@@ -25,8 +25,8 @@ struct RigImage {
 /// All observations. Pictures taken without moving the head share a stance, and those taken without moving
 /// the arm share a pose. The errors of stance and pose are then common to them.
 struct RigObservations {
-  std::vector<ArmState> poses;     ///< As commanded.
-  std::vector<RigStance> stances;  ///< As read.
+  std::vector<ArmState> poses;     ///< Arm poses as commanded.
+  std::vector<RigStance> stances;  ///< Camera stances as read.
   std::vector<RigImage> images;
   std::optional<EtalonConfig> etalon = {};  ///< Known position of the cylinder, if there is one.
 };

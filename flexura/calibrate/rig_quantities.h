@@ -14,7 +14,7 @@ namespace flexura {
 struct RigQuantity {
   std::string name;
   double value = 0;
-  Eigen::VectorXd gradient;  ///< By x.
+  Eigen::VectorXd gradient;  ///< Derivative by x.
 
   /// Returns its standard deviation for a covariance of x.
   [[nodiscard]] double sigma(const Eigen::MatrixXd& covariance) const;

@@ -62,9 +62,9 @@ struct SeenValue {
 
 /// One picture and its observations.
 struct RigSight {
-  std::size_t look = 0;  ///< From 1; 0 during the search for the arm.
-  RigStance stance;      ///< As read.
-  ArmState pose;         ///< As measured by the drives.
+  std::size_t look = 0;  ///< Number of the look, from 1; 0 during the search for the arm.
+  RigStance stance;      ///< Camera stance as read.
+  ArmState pose;         ///< Arm pose as measured by the drives.
   Frame frame;           ///< The picture and its time.
   SeenArm seen;
   std::vector<SeenValue> values;    ///< Measurements of the paper's methods (loop_session.h).
@@ -73,7 +73,7 @@ struct RigSight {
 
 /// State of knowledge after a look.
 struct RigStep {
-  double time = 0;                       ///< s
+  double time = 0;                       ///< Time, s.
   std::size_t looks = 0;                 ///< Looks so far.
   bool is_found = false;                 ///< Whether a rig explains the observations so far.
   std::string reason;                    ///< Why none does.
@@ -90,7 +90,7 @@ struct RigStep {
 
 /// Result of a picture in one of the paper's methods (loop_session.h).
 struct LoopDecision {
-  double time = 0;                  ///< s
+  double time = 0;                  ///< Time, s.
   std::size_t looks = 0;            ///< Pictures of all cameras so far.
   std::size_t camera = 0;           ///< Index in the rig.
   std::string step;                 ///< "horizontal orientation", ...
@@ -137,19 +137,20 @@ class RigSessionWatcher {
 /// Result of a session.
 struct RigSessionResult {
   bool is_done = false;
-  std::string reason;                            ///< Why it failed, and where the rig was left.
-  std::vector<RigStep> steps;                    ///< After each look that was followed by an estimate.
-  std::size_t looks = 0;                         ///< Counted as in RigSessionConfig::images.
-  std::array<std::size_t, 2> pictures = {0, 0};  ///< By camera, including those of the search.
-  RigCalibration found;                          ///< Estimate from all pictures.
+  std::string reason;          ///< Why it failed, and where the rig was left.
+  std::vector<RigStep> steps;  ///< After each look that was followed by an estimate.
+  std::size_t looks = 0;       ///< Counted as in RigSessionConfig::images.
+  /// Number of pictures by camera, including those of the search.
+  std::array<std::size_t, 2> pictures = {0, 0};
+  RigCalibration found;                                    ///< Estimate from all pictures.
   std::size_t markers = 0, points = 0, etalon_points = 0;  ///< Numbers of observations in all pictures.
   RigObservability observability;
   Eigen::Vector3d target = Eigen::Vector3d::Zero();  ///< Target of the cameras in W, m.
   std::array<RigStance, 2> start;                    ///< Initial positions.
   /// Deviation that the commands of the initial model would have left, and that of the initial positions.
   std::optional<RigRemainder> believed_remainder, start_remainder;
-  WantedRig wanted;        ///< As commanded.
-  RigRemainder remainder;  ///< Estimated afterwards.
+  WantedRig wanted;        ///< Wanted configuration as commanded.
+  RigRemainder remainder;  ///< Deviation estimated afterwards.
   /// Prediction errors in the last look by camera, root mean square, px. Its pictures have no part in the
   /// prediction.
   std::array<double, 2> verified = {0, 0};

@@ -27,8 +27,8 @@ class RigSights {
   RigSights(const Arm& marked, ArmPictureConfig config, const std::array<std::size_t, 2>& cameras)
       : marked_(marked), config_(std::move(config)), cameras_(cameras) {}
 
-  std::vector<ArmState> poses;     ///< As commanded.
-  std::vector<RigStance> stances;  ///< As read.
+  std::vector<ArmState> poses;     ///< Arm poses as commanded.
+  std::vector<RigStance> stances;  ///< Camera stances as read.
   std::vector<Look> looks;
 
   /// Identifies the markers in each look, if the rig is `model` up to `doubt`; all looks of a camera together

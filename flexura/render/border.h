@@ -13,7 +13,7 @@ inline constexpr double border_reach = 3;
 
 /// A curve in the image near a point, approximated by a straight line.
 struct Border {
-  double distance = std::numeric_limits<double>::infinity();  ///< From the point, px; >= 0.
+  double distance = std::numeric_limits<double>::infinity();  ///< Distance from the point, px; >= 0.
   Eigen::Vector2d towards = {1, 0};                           ///< Unit vector from the point to the line.
   double depth = 0;                                           ///< Depth of the curve in space, m.
   bool is_ring = false;  ///< Whether it is the edge of a coloured ring on the arm.

@@ -25,15 +25,15 @@ struct SquarePart {
   std::size_t count = 0;
   double area = 0;
   Eigen::Vector2d centroid = {0, 0};
-  std::array<Eigen::Vector2d, 2>
-      chord;  ///< Where the line enters and leaves the square, if the area is not 0.
+  /// Where the line enters and leaves the square, if the area is not 0.
+  std::array<Eigen::Vector2d, 2> chord;
 };
 /// The line is x . normal = offset; `normal` is a unit vector that points beyond it.
 [[nodiscard]] SquarePart part_beyond(double half, const Eigen::Vector2d& normal, double offset);
 
 /// A square of the image that one straight border divides into two uniform parts.
 struct Division {
-  Eigen::Vector2d normal;  ///< From the near to the far side.
+  Eigen::Vector2d normal;  ///< Unit normal from the near to the far side.
   double offset = 0;       ///< Distance of the border from the square's centre, px.
   Hit far;
   SquarePart far_part;
@@ -43,8 +43,8 @@ struct Division {
 /// distance along the normal, px.
 struct Stripes {
   Eigen::Vector2d normal;
-  double slope = 0;  ///< m/px; > 0.
-  double s = 0;      ///< In the middle, m.
+  double slope = 0;  ///< Arc length per pixel, m/px; > 0.
+  double s = 0;      ///< Arc length in the middle, m.
 };
 /// Returns the stripes if several ring edges cross the square around `middle` as parallel lines and no other
 /// surface ends there. Empty otherwise, also if the edges bend too much.

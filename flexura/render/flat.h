@@ -11,9 +11,9 @@ namespace flexura {
 
 /// A circle in space, in C: the rim of a tube's end or the edge of a coloured ring.
 struct Circle {
-  Eigen::Vector3d center, normal;  ///< m; unit.
-  Eigen::Vector3d x, y;            ///< Unit, in its plane, perpendicular.
-  double radius = 0;               ///< m; > 0.
+  Eigen::Vector3d center, normal;  ///< Center, m; unit normal.
+  Eigen::Vector3d x, y;            ///< Perpendicular unit vectors in its plane.
+  double radius = 0;               ///< Radius, m; > 0.
   /// A ray of direction d meets the circle's plane at (d . by_x, d . by_y) / (d . by_z), from the center
   /// along x and y. by_z is positive in front of the camera.
   Eigen::Vector3d by_x, by_y, by_z;

@@ -16,8 +16,8 @@ void QuickPicture::leave(const ImageRegion& region) {
 bool QuickPicture::draw(const Stage& stage, const RayField& rays, const Intrinsics& intrinsics,
                         PixelKind pixels, LightImage& picture) {
   width_ = picture.depth.width(), height_ = picture.depth.height();
-  constexpr double most =
-      1e6;  // Limit of the principal point and of focal lengths, px, for single precision.
+  // Limit of the principal point and of focal lengths, px, for single precision.
+  constexpr double most = 1e6;
   const bool is_lens_known = std::abs(intrinsics.cx) < most && std::abs(intrinsics.cy) < most &&
                              intrinsics.fx < most && intrinsics.fy < most;
   // Regions of the image are bounded across the images of axes: pixels have to be nearly square.

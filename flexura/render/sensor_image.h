@@ -15,7 +15,7 @@ namespace flexura {
 /// Determines the noise of an image together with the pixel and the channel: equal streams give equal noise,
 /// different ones independent noise.
 struct NoiseStream {
-  std::uint64_t seed = 0;    ///< Of the run.
+  std::uint64_t seed = 0;    ///< Seed of the run.
   std::uint64_t camera = 0;  ///< Index of the camera.
   std::uint64_t frame = 0;   ///< Number of the frame.
 };
@@ -23,14 +23,15 @@ struct NoiseStream {
 /// Reusable working memory of a sensor; after the first use it allocates nothing more. One per thread.
 struct SensorRows {
   std::vector<float> left, right;  ///< Light at a row's ends, with its continuation.
-  std::vector<float> conditioned;  ///< As many rows as the PSF needs at a time, plus one.
-  std::vector<std::uint8_t> same;  ///< SameAs of their blocks.
+  std::vector<float> conditioned;  ///< Conditioned rows: as many as the PSF needs at a time, plus one.
+  std::vector<std::uint8_t> same;  ///< SameAs of the blocks of these rows.
   std::vector<std::uint8_t> age;   ///< By block: how many of the last rows were equal to their predecessor.
-  std::vector<std::uint8_t> is_plain, is_even, is_known, is_needed;  ///< Of the present row, by block.
-  std::vector<BlockWork> work;                                       ///< By block.
+  /// State of each block of the present row.
+  std::vector<std::uint8_t> is_plain, is_even, is_known, is_needed;
+  std::vector<BlockWork> work;       ///< Work for each block.
   std::vector<const float*> window;  ///< The rows that the PSF combines for the present one, in order.
-  std::vector<float> light, levels;  ///< Of the present row, rounded up to whole blocks.
-  std::vector<std::uint8_t> bytes;   ///< Same for sensors of up to 8 bits.
+  std::vector<float> light, levels;  ///< Light and levels of the present row, rounded up to whole blocks.
+  std::vector<std::uint8_t> bytes;   ///< Levels of the present row for sensors of up to 8 bits.
 };
 
 /// A sensor that converts light into the values that a camera delivers. In physical order, for each value:

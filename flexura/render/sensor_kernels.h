@@ -24,7 +24,7 @@ struct NoiseRow {
 /// A row of light in the sensor.
 struct SensorRow {
   std::size_t blocks = 0;
-  const float* weights = nullptr;  ///< Of the PSF, nearest pixel first, without the middle one.
+  const float* weights = nullptr;  ///< Weights of the PSF, nearest pixel first, without the middle one.
   std::size_t radius = 0;          ///< Number of weights.
   std::size_t channels = 1;
 };

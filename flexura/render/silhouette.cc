@@ -19,8 +19,8 @@ struct Section2d {
   Pose X_CS;
   double s = 0, radius = 0, widening = 0;
   Eigen::Vector2d curvature;  // Towards x and y, 1/m.
-  double across_x = 0, across_y = 0,
-         along = 0;  // Of the center, from the camera, in the section's frame.
+  // Of the center, from the camera, in the section's frame.
+  double across_x = 0, across_y = 0, along = 0;
 
   [[nodiscard]] Eigen::Vector3d point(double angle) const {
     return X_CS * Eigen::Vector3d(radius * std::cos(angle), radius * std::sin(angle), 0);

@@ -10,9 +10,9 @@ namespace flexura {
 
 /// A point of an outline curve on the arm's surface.
 struct OutlinePoint {
-  double s = 0;                          ///< m from the arm's base.
-  double angle = 0;                      ///< Around the backbone from the frame's x at s, rad.
-  Eigen::Vector3d p_CP = {0, 0, 0};      ///< m.
+  double s = 0;                          ///< Arc length from the arm's base, m.
+  double angle = 0;                      ///< Angle around the backbone from the frame's x at s, rad.
+  Eigen::Vector3d p_CP = {0, 0, 0};      ///< Point in C, m.
   std::optional<Eigen::Vector2d> pixel;  ///< Empty: behind the camera, or outside the lens's field.
   bool is_visible = false;               ///< Whether nothing is in front of it, the arm included.
 };

@@ -65,15 +65,15 @@ struct SpanPiece {
                                   ///< are left to the reference path, as bend or taper change there; or 0.
   float end_sine, end_cosine, end_offset;
   float reach;  ///< Distance within which contours may divide the pixel, m.
-  float
-      bent_reach;  ///< Distance inside a contour within which edges of rings and lines are bent, m; >= reach.
-  int centering;   ///< Number of Newton steps to the deepest point of the ray.
+  /// Distance inside a contour within which edges of rings and lines are bent, m; >= reach.
+  float bent_reach;
+  int centering;       ///< Number of Newton steps to the deepest point of the ray.
   float largest_move;  ///< Limit on the last of these steps, m.
   int refining;        ///< Number of Newton steps to the entry.
   float settled;       ///< Limit on the last of these steps, m.
   float light[3];      ///< Strength of the directional light over the radius, times the direction towards it.
   float ambient;
-  float albedo[3];  ///< At its start.
+  float albedo[3];  ///< Albedo at its start.
   const SpanEdge* edges;
   std::size_t edge_count, channels;
   std::uint8_t rims;  ///< Ends that it has (state_base, state_tip); their rim pixels are skipped.
@@ -98,7 +98,7 @@ struct SpanRim {
 struct RimPixels {
   float share[span_step];      ///< Share of the pixel that shows them.
   float light[3 * span_step];  ///< Their light times that share.
-  float depth[span_step];      ///< In the middle of the pixel; infinite if they are not visible there.
+  float depth[span_step];      ///< Depth in the middle of the pixel; infinite if they are not visible there.
   std::uint8_t is_plain[span_step];
 };
 
@@ -124,11 +124,11 @@ struct SpanPlaces {
 struct BorderPixels {
   float coverage[span_step];  ///< Share of the pixel inside.
   float light[3 * span_step];
-  float depth[span_step];    ///< In the middle of the pixel; infinite outside.
+  float depth[span_step];    ///< Depth in the middle of the pixel; infinite outside.
   float contour[span_step];  ///< Depth of the contour.
   std::uint8_t is_simple[span_step];
-  std::uint8_t
-      is_sure[span_step];  ///< Whether the result is reliable; otherwise the reference path draws the pixel.
+  /// Whether the result is reliable; otherwise the reference path draws the pixel.
+  std::uint8_t is_sure[span_step];
 };
 
 /// Functions of one instruction set.

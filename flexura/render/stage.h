@@ -36,7 +36,7 @@ struct FacePart {
   int screen = -1;
 };
 struct PlanePart {
-  Eigen::Vector3d point, normal;  ///< C; unit, out of the body.
+  Eigen::Vector3d point, normal;  ///< A point of the plane, C; unit normal out of the body.
   int body = 0;
 };
 
@@ -56,18 +56,18 @@ struct RingStretch {
 /// A convex body other than the arm as seen from the light: the intersection of the half planes of these
 /// lines.
 struct CasterSide {
-  Eigen::Vector3d normal;  ///< C; unit, across the light and the line, outwards.
+  Eigen::Vector3d normal;  ///< Unit normal, C, across the light and the line, outwards.
   double reach = 0;        ///< Distance of the body's middle from the line, m.
 };
 struct Caster {
-  Eigen::Vector3d center;            ///< C.
+  Eigen::Vector3d center;            ///< Center in C.
   std::size_t first = 0, count = 0;  ///< Range in the stage's caster_sides.
 };
 
 /// Edge of a red line, with the plane through it and the camera.
 struct LineEdge {
-  Eigen::Vector3d from, to;  ///< Its ends, C.
-  double angle = 0;          ///< Around the etalon's +Y from its +Z, rad in (-pi, pi].
+  Eigen::Vector3d from, to;  ///< Ends of the edge, C.
+  double angle = 0;          ///< Angle around the etalon's +Y from its +Z, rad in (-pi, pi].
 };
 
 /// A scene in one camera's frame C, as primitives for ray intersection. Its vectors are reused from frame to
@@ -78,13 +78,13 @@ struct Stage {
   std::vector<DiscPart> discs;
   std::vector<FacePart> faces;
   std::vector<PlanePart> planes;
-  std::vector<RingEdge> ring_edges;  ///< By s.
-  std::vector<RingStretch> rings;    ///< By s.
+  std::vector<RingEdge> ring_edges;  ///< Edges by ascending s.
+  std::vector<RingStretch> rings;    ///< Stretches by ascending s.
   std::vector<int> open_rings;       ///< Scratch space.
   std::vector<LineEdge> line_edges;
   std::vector<Caster> casters;
   std::vector<CasterSide> caster_sides;
-  Eigen::Vector3d light = {0, 0, 0};  ///< C, unit, towards it.
+  Eigen::Vector3d light = {0, 0, 0};  ///< Unit direction towards the light, C.
   int first_arm_piece = 0, last_arm_piece = -1;
   double arm_length = 0;
   double pixel = 0;  ///< Length of the largest step in (a, b) per pixel.
@@ -99,7 +99,7 @@ void build_stage(const Scene& scene, const Pose& X_WC, double pixel, Stage& stag
 /// An end of a tube.
 struct TubeEnd {
   TipKind shape = TipKind::flat;
-  int body = 0;  ///< Of a flat end's disc.
+  int body = 0;  ///< Body of a flat end's disc.
 };
 
 /// Adds the pieces and ends of a tube; where the radius jumps between arcs, a disc of `step_body` closes the

@@ -23,9 +23,9 @@ struct Part {
 
 /// The surface that a ray meets first.
 struct Hit {
-  double depth = std::numeric_limits<double>::infinity();  ///< m; infinite: no surface.
+  double depth = std::numeric_limits<double>::infinity();  ///< Depth, m; infinite: no surface.
   Part part = {Part::Kind::piece, 0};
-  Eigen::Vector3d normal = {0, 0, -1};  ///< C, unit; towards the camera's side.
+  Eigen::Vector3d normal = {0, 0, -1};  ///< Unit normal, C, towards the camera's side.
   /// On the arm, arc length from the base, m; elsewhere NaN.
   double s = std::numeric_limits<double>::quiet_NaN();
   SurfaceLabel label;

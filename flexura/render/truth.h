@@ -25,17 +25,17 @@ namespace flexura {
 /// True values in the middle of one pixel.
 struct PixelTruth {
   SurfaceLabel label;
-  double depth = std::numeric_limits<double>::infinity();  ///< As in TruthMaps, m.
-  double s = std::numeric_limits<double>::quiet_NaN();     ///< m.
+  double depth = std::numeric_limits<double>::infinity();  ///< Depth as in TruthMaps, m.
+  double s = std::numeric_limits<double>::quiet_NaN();     ///< Arc length as in TruthMaps, m.
 };
 /// Throws std::out_of_range unless (u, v) is in the image.
 [[nodiscard]] PixelTruth pixel_truth(const Renderer& renderer, int u, int v);
 
 /// True values in the middle of each pixel.
 struct TruthMaps {
-  Image<float> depth;          ///< Along the optical axis, m; infinite where there is no surface.
-  Image<std::uint16_t> label;  ///< label_value().
-  Image<float> s;              ///< On the arm, arc length from its base, m; NaN elsewhere.
+  Image<float> depth;          ///< Depth along the optical axis, m; infinite where there is no surface.
+  Image<std::uint16_t> label;  ///< label_value() of the surface.
+  Image<float> s;              ///< Arc length from the base on the arm, m; NaN elsewhere.
 };
 /// Resizes `maps` to the renderer's view and fills them.
 void truth_maps(const Renderer& renderer, TruthMaps& maps);
@@ -47,9 +47,9 @@ void truth_maps(const Renderer& renderer, TruthMaps& maps);
 
 /// A point of the arm's backbone in the image.
 struct AxisPoint {
-  double s = 0;                          ///< m.
+  double s = 0;                          ///< Arc length from the base, m.
   std::optional<Eigen::Vector2d> pixel;  ///< Empty: behind the camera, or outside the lens's field.
-  double depth = 0;                      ///< Along the optical axis, m; negative behind the camera.
+  double depth = 0;                      ///< Depth along the optical axis, m; negative behind the camera.
   /// Whether the camera sees the arm's surface there: the line from the camera to the point enters the arm
   /// once and meets nothing else before.
   bool is_visible = false;

@@ -21,13 +21,13 @@ struct TubePiece {
   Eigen::Matrix3d R_CP = Eigen::Matrix3d::Identity();
   Eigen::Vector3d p_CP = Eigen::Vector3d::Zero();  ///< Start of the centerline, C.
   Eigen::Vector3d p_PC = Eigen::Vector3d::Zero();  ///< The camera in P.
-  double curvature = 0, length = 0;                ///< 1/m, >= 0; m.
-  double radius = 0, widening = 0;                 ///< At the start, m; its change by arc length.
+  double curvature = 0, length = 0;                ///< Curvature, 1/m, >= 0; length, m.
+  double radius = 0, widening = 0;                 ///< Radius at the start, m, and its change by arc length.
   double s = 0;                                    ///< Arc length of its start on the whole tube, m.
   bool is_ball = false;                            ///< Everything within `radius` of the origin instead.
   bool is_cut_before = true, is_cut_after = true;  ///< Whether it ends at the planes (a sphere at none).
-  Eigen::Vector3d end_tangent = {0, 0, 1};         ///< P.
-  double end_offset = 0;                           ///< Of the end's plane along end_tangent, m.
+  Eigen::Vector3d end_tangent = {0, 0, 1};         ///< Unit tangent at the end, P.
+  double end_offset = 0;                           ///< Offset of the end's plane along end_tangent, m.
   int before = -1, after = -1;                     ///< Continuing pieces at its ends; -1: a true end.
   int body = 0;
   Eigen::Vector3d bound_center = Eigen::Vector3d::Zero();  ///< Center of a ball that contains it, P.
@@ -46,8 +46,8 @@ struct TubePiece {
 struct LocalRay {
   Eigen::Vector3d origin, direction;
   double square = 0;  ///< Squared length of the direction.
-  double cross =
-      0;  ///< Rate of rotation around the centre of curvature (docs/renderer.md), constant along it.
+  /// Rate of rotation around the centre of curvature (docs/renderer.md), constant along it.
+  double cross = 0;
 };
 /// From the camera; or from any point in C in any direction.
 [[nodiscard]] LocalRay local_ray(const TubePiece& piece, const Ray& ray);
@@ -57,8 +57,8 @@ struct LocalRay {
 /// The part of a ray between two depths.
 struct DepthRange {
   double from = 0, to = 0;
-  bool leaves_before = false,
-       leaves_after = false;  ///< At `to`, through the plane at the start or at the end.
+  /// Whether it leaves at `to` through the plane at the start or at the end.
+  bool leaves_before = false, leaves_after = false;
   [[nodiscard]] bool is_empty() const { return !(from < to); }
 };
 /// Returns where the ray is in the piece's part of space and within `radius` of its bound's centre.
@@ -73,11 +73,11 @@ struct Inside {
 
 /// A point near the piece, in C.
 struct TubePoint {
-  double s = 0;             ///< Of the nearest point of the centerline, m from the start of the whole tube.
-  double gap = 0;           ///< Signed distance to the surface (in the cross-section), m; negative inside.
-  Eigen::Vector3d normal;   ///< Of the surfaces of equal gap, C, unit.
-  Eigen::Vector3d outward;  ///< From the centerline, C, unit.
-  Eigen::Vector3d tangent;  ///< Of the centerline, C, unit.
+  double s = 0;    ///< Arc length of the nearest point of the centerline, m from the start of the whole tube.
+  double gap = 0;  ///< Signed distance to the surface (in the cross-section), m; negative inside.
+  Eigen::Vector3d normal;   ///< Unit normal of the surfaces of equal gap, C.
+  Eigen::Vector3d outward;  ///< Unit direction from the centerline, C.
+  Eigen::Vector3d tangent;  ///< Unit tangent of the centerline, C.
   double shrink = 1;        ///< 1 - curvature * distance towards the centre: length along it by arc length.
 };
 [[nodiscard]] TubePoint tube_point(const TubePiece& piece, const Eigen::Vector3d& p_CQ);

@@ -29,8 +29,8 @@ struct ArmFinderConfig {
 
 /// A point of a centerline.
 struct AxisSample {
-  Eigen::Vector2d pixel = {0,
-                           0};  ///< Point of the centerline, px; (0, 0) is the middle of the top-left pixel.
+  /// Point of the centerline, px; (0, 0) is the middle of the top-left pixel.
+  Eigen::Vector2d pixel = {0, 0};
   Eigen::Vector2d normal = {0, 1};  ///< A unit vector: the direction from base to tip, turned from u to v.
   double width = 0;                 ///< Distance of the borders along the normal, px.
   double sigma = 0;                 ///< Standard deviation of `pixel` along the normal, px.
@@ -51,7 +51,7 @@ struct AxisEnd {
   Eigen::Vector2d pixel = {0, 0};  ///< Position of the axis's end, px.
   /// How far the silhouette extends beyond `pixel`, px: an end seen at an angle, or a round one.
   double bulge = 0;
-  double sigma = 0;  ///< Of a free end: standard deviation of `pixel` along the axis, px.
+  double sigma = 0;  ///< Standard deviation of `pixel` along the axis at a free end, px.
 };
 
 /// Observation of an arm in one picture.
@@ -59,7 +59,7 @@ struct ArmSighting {
   Threshold threshold;
   std::string reason;              ///< Why there is no axis; "" if there is one.
   std::vector<std::string> notes;  ///< Further messages about the picture.
-  std::vector<AxisSample> axis;    ///< From the base on, one or two pixels apart.
+  std::vector<AxisSample> axis;    ///< Samples from the base on, one or two pixels apart.
   std::array<AxisEnd, 2> ends;     ///< Base and tip.
   double blur = 0;                 ///< Blur of its borders as sampled, a standard deviation, px.
   double noise = 0;                ///< Noise of the picture, a standard deviation, of 0 to 255.

@@ -20,7 +20,7 @@ bool to_backbone_image(const Lens& lens, std::vector<AxisSample>& axis);
 
 /// A centerline at the image of the backbone, as far as the lens determines it.
 struct BackboneAxis {
-  std::vector<AxisSample> samples;  ///< As many as were measured.
+  std::vector<AxisSample> samples;  ///< Samples, as many as were measured.
   /// By sample: whether it, its neighbours and its new position have rays. The others stay on the tube's
   /// middle.
   std::vector<bool> is_backbone;

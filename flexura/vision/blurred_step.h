@@ -12,7 +12,7 @@ namespace flexura {
 
 /// Result of an edge fit.
 struct StepFit {
-  double offset = 0;    ///< In sample distances, from the expected position.
+  double offset = 0;    ///< Distance from the expected position, in sample distances.
   double contrast = 0;  ///< Brightness after the edge minus that before it.
   double residual = 0;  ///< Standard deviation of the samples from the model.
 };

@@ -35,10 +35,10 @@ void find_border(const Image<std::uint8_t>& gray, const Threshold& threshold, co
 struct FigureBorder {
   Threshold threshold;
   std::string reason;               ///< Why no figure was found; "" if one was.
-  std::int64_t area = 0;            ///< Pixels of the figure.
-  double blur = 0;                  ///< Of its border, px.
+  std::int64_t area = 0;            ///< Number of pixels of the figure.
+  double blur = 0;                  ///< Blur of its border, px.
   bool touches_border = false;      ///< Whether any of its pixels lies in the picture's outermost ring.
-  std::vector<BorderPoint> points;  ///< In order around it (find_border).
+  std::vector<BorderPoint> points;  ///< Border points in order around it (find_border).
 };
 /// Finds it in a gray picture.
 [[nodiscard]] FigureBorder largest_figure(const Image<std::uint8_t>& gray,

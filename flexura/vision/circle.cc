@@ -123,8 +123,8 @@ void test_circle(std::span<const Vector2d> points, double sigma, CircleFit& fit)
 struct Facing {
   Vector2d mean = Vector2d::Zero();                  // Mean direction.
   Eigen::Matrix2d spread = Eigen::Matrix2d::Zero();  // Sum of their squares about the mean.
-  Vector2d gradient =
-      Vector2d::Zero();  // Gradient of the points' distances from the circle, relative to the mean direction.
+  // Gradient of the points' distances from the circle, relative to the mean direction.
+  Vector2d gradient = Vector2d::Zero();
   double miss = 0, squares = 0;  // Sum of the distances from the circle, px, and of their squares.
 };
 

@@ -10,10 +10,10 @@ namespace flexura {
 
 /// Least-squares circle through points, by distance.
 struct CircleFit {
-  Eigen::Vector2d center = {0, 0};                       ///< px, in the picture's (u, v).
-  double radius = 0;                                     ///< px
-  double rms = 0;                                        ///< Of the distances, px.
-  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< Of center and radius, px^2.
+  Eigen::Vector2d center = {0, 0};                       ///< Center, px, in the picture's (u, v).
+  double radius = 0;                                     ///< Radius, px.
+  double rms = 0;                                        ///< Root mean square of the distances, px.
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< Covariance of center and radius, px^2.
   double arc = 0;  ///< Part of the circle spanned by the points, rad; 2 pi for the whole circle.
   /// Whether the points satisfy the circle's equation (section 3.4, step 5): an ellipse fits no better than
   /// noise explains in 99 of 100 cases.
@@ -43,11 +43,12 @@ struct CircleFit {
 
 /// Least-squares ellipse through points, by distance.
 struct EllipseFit {
-  Eigen::Vector2d center = {0, 0};     ///< px, in the picture's (u, v).
-  Eigen::Vector2d semi_axes = {0, 0};  ///< The longer one first, px.
-  double angle = 0;                    ///< Of the longer one from u towards v, rad in (-pi/2, pi/2].
-  double rms = 0;                      ///< Of the distances, px.
-  Eigen::Matrix<double, 5, 5> covariance = Eigen::Matrix<double, 5, 5>::Zero();  ///< In the order above.
+  Eigen::Vector2d center = {0, 0};     ///< Center, px, in the picture's (u, v).
+  Eigen::Vector2d semi_axes = {0, 0};  ///< Semi-axes, px, the longer one first.
+  double angle = 0;                    ///< Angle of the longer axis from u towards v, rad in (-pi/2, pi/2].
+  double rms = 0;                      ///< Root mean square of the distances, px.
+  /// Covariance in the order above.
+  Eigen::Matrix<double, 5, 5> covariance = Eigen::Matrix<double, 5, 5>::Zero();
 };
 
 /// Fits a circle to at least 3 points: V. Pratt's algebraic one (1987), then Gauss-Newton's method on the

@@ -20,8 +20,8 @@ class CurveSmoother {
   void smooth(std::span<Values> values, std::span<const double> weights, std::span<const double> strengths);
 
  private:
-  std::vector<std::array<double, 4>>
-      factor_;  // Rows of the banded factor: the diagonal and three entries beside it.
+  // Rows of the banded factor: the diagonal and three entries beside it.
+  std::vector<std::array<double, 4>> factor_;
 };
 
 }  // namespace flexura

@@ -11,8 +11,8 @@ namespace flexura {
 
 /// Result of the search for a figure's border.
 struct EdgeFit {
-  double offset = 0;    ///< px outward from the expected position.
-  double contrast = 0;  ///< Positive if the background is outward.
+  double offset = 0;    ///< Distance outward from the expected position, px.
+  double contrast = 0;  ///< Contrast, positive if the background is outward.
   double residual = 0;  ///< Standard deviation of the brightness from the model.
   double sigma = 0;     ///< Standard deviation of the offset, px, for noise as large as the contrast.
 };

@@ -26,9 +26,8 @@ struct EtalonSighting {
   int top = 0, bottom = 0;  ///< First and last row of the silhouette.
   double middle_row = 0;    ///< Half-way between top and bottom: reference row of the lines' `at`.
   UprightLine left, right;  ///< The silhouette's sides.
-  double width_above = 0,
-         width_below =
-             0;  ///< Width of the silhouette a tenth of its height inside each end, px (docs/vision.md).
+  /// Width of the silhouette a tenth of its height inside each end, px (docs/vision.md).
+  double width_above = 0, width_below = 0;
   std::optional<double> upper_edge, lower_edge;  ///< v of the silhouette's ends, near its middle, px.
   std::vector<UprightLine> lines;                ///< The red lines, left to right.
   bool touches_border = false;  ///< Whether the silhouette reaches into the picture's outermost ring.

@@ -235,8 +235,8 @@ void look_for_merged(std::vector<MarkerSighting>& markers) {
 
 void look_for_gaps(MarkerSightings& found) {
   const std::vector<MarkerSighting>& markers = found.markers;
-  std::vector<std::size_t>
-      ends;  // The markers behind the gaps; markers side by side have no gap between them.
+  // The markers behind the gaps; markers side by side have no gap between them.
+  std::vector<std::size_t> ends;
   std::vector<double> gaps;
   ends.reserve(markers.size()), gaps.reserve(markers.size());
   for (std::size_t i = 1; i < markers.size(); ++i) {

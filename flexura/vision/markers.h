@@ -17,13 +17,13 @@ struct MarkerSighting {
   Eigen::Vector2d pixel = {0, 0};
   double along = 0;   ///< Distance along the axis from its first sample to the foot of `pixel`, px.
   double aside = 0;   ///< Distance from there to `pixel` along the axis's normal, px; 0 for bands.
-  double length = 0;  ///< Along the axis, px.
+  double length = 0;  ///< Length along the axis, px.
   double sigma = 0;   ///< Standard deviation of `along`, px.
   /// Bulge of the band's front along the axis, in half widths of the arm. It is the sine of the angle between
   /// the arm and the picture's plane, positive if the arm approaches the camera from base to tip.
   double bulge = 0;
-  Eigen::Vector3d color = {
-      0, 0, 0};  ///< Red, green, blue of its middle, of 0 to 255; in a gray picture its value three times.
+  /// Red, green, blue of its middle, of 0 to 255; in a gray picture its value three times.
+  Eigen::Vector3d color = {0, 0, 0};
   bool is_band = true;  ///< Whether it is visible across the arm; otherwise a spot.
   /// Much longer than others, or of two parts: probably two in one.
   bool may_be_merged = false;
@@ -34,7 +34,7 @@ struct MarkerSighting {
 
 /// All observed markers of an arm.
 struct MarkerSightings {
-  std::vector<MarkerSighting> markers;  ///< From the base on.
+  std::vector<MarkerSighting> markers;  ///< Markers from the base on.
   std::vector<std::string> notes;  ///< About gaps where one may be missing, and about omitted candidates.
 };
 

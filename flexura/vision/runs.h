@@ -17,10 +17,10 @@ struct Run {
 
 /// A connected component of foreground pixels, corners included.
 struct Component {
-  std::int64_t area = 0;                         ///< px
+  std::int64_t area = 0;                         ///< Area, px.
   int left = 0, top = 0, right = 0, bottom = 0;  ///< Its box, inclusive.
   int on_border = 0;                             ///< Number of its pixels in the picture's outermost ring.
-  std::uint32_t first_run = 0;                   ///< In Components::runs.
+  std::uint32_t first_run = 0;                   ///< Index of its first run in Components::runs.
   std::uint32_t run_count = 0;                   ///< Number of its runs; they need not be consecutive.
 };
 
@@ -28,7 +28,7 @@ struct Component {
 /// union-find). After the first pictures it allocates no more.
 struct Components {
   std::vector<Run> runs;        ///< Row by row from the top, left to right.
-  std::vector<Component> list;  ///< In the order of their first run.
+  std::vector<Component> list;  ///< Components in the order of their first run.
 
   /// Finds the pixels on the figure's side of the threshold, or of the local level of `blocks`.
   void find(const Image<std::uint8_t>& gray, const Threshold& threshold,

@@ -136,8 +136,8 @@ Figure figure_of(const Image<std::uint8_t>& gray, const Level& level) {
   return share >= 0.5 ? Figure::dark : Figure::bright;
 }
 
-// Returns whether two classes of a block are far apart: much more than the halves of a shaded screen (3.5
-// times its own spread), and by a share of the brightness.
+// Returns whether two classes of a block are far apart, by a share of the brightness. They must be much
+// farther apart than the halves of a shaded screen (3.5 times its own spread).
 bool stand_apart(const Threshold& found) {
   constexpr double spreads = 5, share = 0.2;
   const double contrast = found.bright - found.dark;

@@ -18,7 +18,7 @@ namespace flexura {
 enum class ThresholdMethod {
   otsu,      ///< The largest variance between the two classes (N. Otsu, 1979).
   two_mode,  ///< The deepest valley between the histogram's two peaks.
-  fixed,     ///< As given.
+  fixed,     ///< `ThresholdConfig::level`.
   by_block,  ///< Otsu's for each block of the picture, linear between blocks: for uneven screens.
 };
 const std::vector<std::string>& names_of(const ThresholdMethod*);

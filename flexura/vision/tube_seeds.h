@@ -13,8 +13,8 @@ namespace flexura {
 /// A point in a component, and the shortest chord through it.
 struct TubeSeed {
   Eigen::Vector2d center = {0, 0};  ///< The chord's middle, px.
-  Eigen::Vector2d normal = {1, 0};  ///< Along the chord.
-  double width = 0;                 ///< px
+  Eigen::Vector2d normal = {1, 0};  ///< Unit vector along the chord.
+  double width = 0;                 ///< Length of the chord, px.
 };
 
 /// Returns the shortest chord through a pixel of the component over `directions` evenly spaced directions. If

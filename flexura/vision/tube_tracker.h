@@ -16,9 +16,9 @@ namespace flexura {
 /// Intersection of a line across a tube with its two borders.
 struct CrossSection {
   Eigen::Vector2d center = {0, 0};  ///< Half-way between the borders, px.
-  Eigen::Vector2d normal = {
-      0, 1};              ///< Along the line, a unit vector: the direction of travel turned from u to v.
-  double half_width = 0;  ///< px
+  /// Unit vector along the line: the direction of travel turned from u to v.
+  Eigen::Vector2d normal = {0, 1};
+  double half_width = 0;                         ///< Half of the tube's width, px.
   std::array<bool, 2> is_seen = {false, false};  ///< The border on the normal's side, and the other one.
 
   [[nodiscard]] bool is_whole() const { return is_seen[0] && is_seen[1]; }

@@ -19,8 +19,8 @@ std::optional<Aside> aside_of_beginning(const Sighting& seen, const Eigen::Vecto
     length += (points[count].pixel - points[count - 1].pixel).norm();
   if (count < fewest || length < stretch) return std::nullopt;
   const auto step = [&](std::size_t i) { return (points[i].pixel - points[i - 1].pixel).normalized(); };
-  constexpr double straight =
-      0.88;  // The cosine of half a radian: the image of a stronger bend is no parabola.
+  // The cosine of half a radian: the image of a stronger bend is no parabola.
+  constexpr double straight = 0.88;
   for (std::size_t i = 2; i < count; ++i)
     if (step(i).dot(step(1)) < straight) return std::nullopt;
   const Eigen::Vector2d way = (points[count - 1].pixel - points[0].pixel).normalized();

@@ -26,11 +26,11 @@ class CurveImage {
 
   /// A point of the image.
   struct Point {
-    double place = 0;         ///< In knots.
-    Eigen::Vector2d pixel;    ///< Of the curve there.
-    Eigen::Vector2d tangent;  ///< Unit.
-    double speed = 0;         ///< px per knot.
-    double scale = 0;         ///< px per metre across the line of sight, there.
+    double place = 0;         ///< Position, in knots.
+    Eigen::Vector2d pixel;    ///< Image point of the curve, px.
+    Eigen::Vector2d tangent;  ///< Unit tangent.
+    double speed = 0;         ///< Speed along the curve, px per knot.
+    double scale = 0;         ///< Scale across the line of sight, px per metre.
   };
   /// `place` from 0 to last(); beyond, the last piece's cubic is extended.
   [[nodiscard]] Point at(double place) const;

@@ -32,14 +32,14 @@ struct ShapeEstimate {
   std::string reason;         ///< Why it was not found.
   bool is_elsewhere = false;  ///< Not found because the cameras' errors would be far beyond their priors.
   std::vector<std::string> notes;  ///< Reasons against the estimate; empty if there are none.
-  double rms = 0;                  ///< Of the points' distances from the shape's images, px.
+  double rms = 0;                  ///< Root mean square of the points' distances from the shape's images, px.
   double doubted = 0;              ///< Share of the points that are outliers.
-  double scale = 1;  ///< Of the residuals, in units of their sigmas: at least 1; included in `sigma`.
+  double scale = 1;  ///< Scale of the residuals, in units of their sigmas: at least 1; included in `sigma`.
   /// Standard deviation of the position at the knots `s` (m of arc length), m: the root of the trace.
   std::vector<double> s, sigma;
-  Eigen::MatrixXd covariance;         ///< Of the unknowns (ShapeVariables).
+  Eigen::MatrixXd covariance;         ///< Covariance of the unknowns (ShapeVariables).
   double surprise = 0;                ///< Normalised innovation (ShapeFit::surprise).
-  int iterations = 0;                 ///< Of the final descent.
+  int iterations = 0;                 ///< Iterations of the final descent.
   std::vector<PlacedMarker> markers;  ///< Markers used by the fit, from the base on.
 
   /// Returns the root mean square of `sigma` along the arm, m; 0 if `sigma` is empty.

@@ -13,14 +13,15 @@ struct ShapeFit {
   Shape shape;
   bool is_settled = false;  ///< Whether no step reduces the cost further.
   int iterations = 0;
-  double scale = 1;                     ///< Of the residuals, in units of their sigmas: robust, at least 1.
-  double cost = 0;                      ///< Mean of the points' squared distances, each bounded, px^2.
-  double rms = 0;                       ///< Of the inlier points' distances, px.
-  double doubted = 0;                   ///< Share of the points that are outliers.
+  double scale = 1;    ///< Robust scale of the residuals, in units of their sigmas; at least 1.
+  double cost = 0;     ///< Mean of the points' squared distances, each bounded, px^2.
+  double rms = 0;      ///< Root mean square of the inlier points' distances, px.
+  double doubted = 0;  ///< Share of the points that are outliers.
   std::vector<double> doubted_in = {};  ///< Share of outliers in each observation.
   double surprise = 0;   ///< Normalised innovation of a belief: root mean square of its residuals in sigmas.
   int contradicted = 0;  ///< Number of ends and markers observed elsewhere than on the shape.
-  Eigen::MatrixXd covariance;  ///< Of the unknowns; infinite if the observations do not determine them.
+  /// Covariance of the unknowns; infinite if the observations do not determine them.
+  Eigen::MatrixXd covariance;
 
   static constexpr double most_scale = 8;  ///< In sigmas: a larger scale is no fit.
   /// Returns whether no better fit is needed. `most_rms`: of inlier points, px.

@@ -12,10 +12,10 @@ namespace flexura {
 
 /// Process noise of an arm and of the cameras' views: standard deviations.
 struct TrackerConfig {
-  double drift = 0.005;  ///< Of each bend, rad per root second.
+  double drift = 0.005;  ///< Process noise of each bend, rad per root second.
   double astray = 0.1;   ///< Motion-proportional noise of each bend: share of its section's predicted change.
-  double turn_drift = 1e-4;   ///< Of a view's rotation error, rad per root second.
-  double focal_drift = 1e-4;  ///< Of a view's focal error, per root second.
+  double turn_drift = 1e-4;   ///< Process noise of a view's rotation error, rad per root second.
+  double focal_drift = 1e-4;  ///< Process noise of a view's focal error, per root second.
   /// Predictions with a larger normalised innovation (ShapeEstimate::surprise) are discarded.
   double most_surprise = 2.5;
   /// If more than this share of the points are outliers in `patience` successive observations, the arm is

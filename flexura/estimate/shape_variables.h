@@ -29,13 +29,13 @@ struct ShapePrior {
 struct Shape {
   Arm arm;  ///< With the estimated base.
   ArmState state;
-  std::vector<ViewError> views = {};  ///< Of the cameras; missing entries mean no error.
+  std::vector<ViewError> views = {};  ///< Errors of the cameras' views; missing entries mean no error.
 };
 
 /// Previous knowledge of a shape.
 struct ShapeBelief {
   Shape mean;
-  Eigen::MatrixXd covariance;  ///< Of the unknowns (ShapeVariables), including views with a prior.
+  Eigen::MatrixXd covariance;  ///< Covariance of the unknowns (ShapeVariables), including views with a prior.
 };
 
 /// The unknowns of a prior, in this order: the bends (x and y of each section; of planar arms x alone), the

@@ -13,7 +13,7 @@ namespace flexura {
 
 /// An image point of the backbone.
 struct CurvePoint {
-  Eigen::Vector2d pixel = {0, 0};  ///< px
+  Eigen::Vector2d pixel = {0, 0};  ///< Image position, px.
   double sigma = 0.1;              ///< Standard deviation across the curve, px; > 0.
   /// Additional standard deviation of the error common to the points of a long stretch, px.
   double offset = 0;
@@ -22,15 +22,15 @@ struct CurvePoint {
 /// Correlation of the errors of an axis's points along the curve: exp(-distance / reach), distances in px.
 /// Individually measured points are independent.
 struct ErrorReach {
-  double sigma = 0;     ///< For the errors of CurvePoint::sigma, px; 0: independent.
-  double offset = 120;  ///< For the errors of CurvePoint::offset, px; > 0.
+  double sigma = 0;     ///< Reach of the errors of CurvePoint::sigma, px; 0: independent.
+  double offset = 120;  ///< Reach of the errors of CurvePoint::offset, px; > 0.
 };
 
 /// A marker at a known position on the arm.
 struct SeenMarker {
   Eigen::Vector2d pixel = {0, 0};  ///< Image of the backbone at its middle.
-  double s = 0;                    ///< Of its middle, m along the unstretched arm.
-  double sigma = 0.1;              ///< px, in each direction; > 0.
+  double s = 0;                    ///< Position of its middle, m along the unstretched arm.
+  double sigma = 0.1;              ///< Standard deviation in each direction, px; > 0.
 };
 
 /// A coloured band around the arm at an unknown position.
@@ -38,18 +38,18 @@ struct SeenBand {
   Eigen::Vector2d pixel = {0, 0};     ///< Image of the backbone in its middle.
   Eigen::Vector2d heading = {1, 0};   ///< Unit direction of the curve there.
   double sigma = 0.2;                 ///< Standard deviation along the curve, px; > 0.
-  Eigen::Vector3d color = {0, 0, 0};  ///< Red, green, blue, of 0 to 255.
+  Eigen::Vector3d color = {0, 0, 0};  ///< Red, green, blue, from 0 to 255.
 };
 
 /// Image of an end of the arm.
 struct SeenEnd {
-  Eigen::Vector2d pixel = {0, 0};  ///< px
+  Eigen::Vector2d pixel = {0, 0};  ///< Image position, px.
   double sigma = 0.3;              ///< Standard deviation along the curve, px; > 0.
 };
 
 /// A point of the arm's silhouette.
 struct SeenBorder {
-  Eigen::Vector2d pixel = {0, 0};  ///< px
+  Eigen::Vector2d pixel = {0, 0};  ///< Image position, px.
   double sigma = 0.5;              ///< Standard deviation across the border, px; > 0.
 };
 
@@ -65,19 +65,19 @@ struct ViewError {
 
 /// Observation of an arm's backbone by one camera.
 struct Sighting {
-  View view;                       ///< As modelled.
-  std::vector<CurvePoint> points;  ///< Along the arm, from base to tip if that is known.
+  View view;                       ///< View as modelled.
+  std::vector<CurvePoint> points;  ///< Points along the arm, from base to tip if that is known.
   /// Base and tip; empty if the arm continues unseen (out of the picture, behind something).
   std::array<std::optional<SeenEnd>, 2> ends;
   std::vector<SeenMarker> markers;   ///< Identified markers.
-  std::vector<SeenBand> bands = {};  ///< In any order; the estimator identifies them.
+  std::vector<SeenBand> bands = {};  ///< Bands in any order; the estimator identifies them.
   ViewDoubt doubt = {};              ///< Prior of the view's error.
   /// Points of the silhouette where no axis was found, in any order; for arms of known radius.
   std::vector<SeenBorder> borders = {};
   /// The two edges of the tube where both are visible: right of the direction from base to tip in the
   /// picture, then left. They are as measured, without correction to the backbone.
   std::array<std::vector<CurvePoint>, 2> edges = {};
-  ErrorReach reach = {};  ///< Of the points' errors.
+  ErrorReach reach = {};  ///< Reach of the points' errors.
   /// Sample points of the arm's foreground, px; empty if not known.
   std::vector<Eigen::Vector2d> figure = {};
   /// Whether the lens has no ray for some of the arm's pixels; these are omitted.

@@ -18,10 +18,10 @@ class SpaceCurve {
  public:
   /// A point of the curve, and its derivative by the unknowns.
   struct Knot {
-    Eigen::Vector3d position;  ///< p_WP, m.
-    Eigen::Vector3d tangent;   ///< Unit, W.
-    Eigen::Matrix<double, 3, Eigen::Dynamic>
-        unknowns;  ///< Derivative of the position by the unknowns on which it depends.
+    Eigen::Vector3d position;  ///< Position p_WP, m.
+    Eigen::Vector3d tangent;   ///< Unit tangent, W.
+    /// Derivative of the position by the unknowns on which it depends.
+    Eigen::Matrix<double, 3, Eigen::Dynamic> unknowns;
   };
 
   /// `intervals` in each section, at least 2.

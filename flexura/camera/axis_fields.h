@@ -10,7 +10,7 @@ namespace flexura {
 
 /// Units of an axis in a file.
 struct AxisUnits {
-  Unit position, rate, acceleration;  ///< Of position, velocity and acceleration.
+  Unit position, rate, acceleration;  ///< Units of position, velocity and acceleration.
 };
 
 /// Adds the fields common to all axes: rates, resolution, backlash. S has the members of AxisConfig.

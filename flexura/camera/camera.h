@@ -15,19 +15,20 @@ namespace flexura {
 
 /// Pixel of a point in W and its derivatives: px per m, rad, or unit of zoom.
 struct CameraProjection {
-  Eigen::Vector2d pixel;                 ///< (u, v), px; inside the image or not.
-  Eigen::Matrix<double, 2, 3> by_point;  ///< By the point in W.
-  /// By a small motion [v; w] of the mount, V_WM_W: p_WM + v, exp(w) R_WM, in W's axes.
+  Eigen::Vector2d pixel;                 ///< Pixel (u, v), px; inside the image or not.
+  Eigen::Matrix<double, 2, 3> by_point;  ///< Derivative by the point in W.
+  /// Derivative by a small motion [v; w] of the mount, V_WM_W: p_WM + v, exp(w) R_WM, in W's axes.
   Eigen::Matrix<double, 2, 6> by_mount;
-  Eigen::Matrix<double, 2, 3> by_stage;                      ///< By the stage's offset.
-  Eigen::Vector2d by_pan, by_tilt;                           ///< px/rad
-  Eigen::Vector2d by_zoom;                                   ///< Through the lens and the pupil's shift.
-  Eigen::Matrix<double, 2, 3> by_tilt_axis;                  ///< By HeadConfig::tilt_axis.
-  Eigen::Matrix<double, 2, 3> by_pupil;                      ///< By HeadConfig::pupil.
-  Eigen::Vector2d by_pupil_shift;                            ///< By HeadConfig::pupil_shift.
-  Eigen::Matrix<double, 2, intrinsics_count> by_intrinsics;  ///< At this zoom; fx, fy, cx, cy, k1, ...
-  /// By the intrinsics at ratio 1, on which those at this zoom depend. (By a zoom table's row: by_intrinsics
-  /// * ZoomTable::by_row().asDiagonal().)
+  Eigen::Matrix<double, 2, 3> by_stage;  ///< Derivative by the stage's offset.
+  Eigen::Vector2d by_pan, by_tilt;       ///< Derivatives by pan and tilt, px/rad.
+  Eigen::Vector2d by_zoom;               ///< Derivative by the zoom, through the lens and the pupil's shift.
+  Eigen::Matrix<double, 2, 3> by_tilt_axis;  ///< Derivative by HeadConfig::tilt_axis.
+  Eigen::Matrix<double, 2, 3> by_pupil;      ///< Derivative by HeadConfig::pupil.
+  Eigen::Vector2d by_pupil_shift;            ///< Derivative by HeadConfig::pupil_shift.
+  /// Derivative by the intrinsics at this zoom: fx, fy, cx, cy, k1, ...
+  Eigen::Matrix<double, 2, intrinsics_count> by_intrinsics;
+  /// Derivative by the intrinsics at ratio 1, on which those at this zoom depend. (By a zoom table's row:
+  /// by_intrinsics * ZoomTable::by_row().asDiagonal().)
   Eigen::Matrix<double, 2, intrinsics_count> by_lens;
 };
 

@@ -16,9 +16,10 @@ namespace flexura {
 
 /// Positions of a camera's axes at the start of a run.
 struct CameraStartConfig {
-  double pan = 0, tilt = 0;                 ///< As in HeadState, rad.
-  std::optional<double> zoom;               ///< A position of the lens; default: its lower limit.
-  std::array<double, 3> stage = {0, 0, 0};  ///< Along the mount's axes (right, down, forward), m.
+  double pan = 0, tilt = 0;    ///< Angles as in HeadState, rad.
+  std::optional<double> zoom;  ///< Position of the zoom; default: its lower limit.
+  /// Stage offset along the mount's axes (right, down, forward), m.
+  std::array<double, 3> stage = {0, 0, 0};
 };
 
 /// One `[[camera]]` of a file.

@@ -28,8 +28,8 @@ struct TiltConfig : AxisConfig {
 
 /// The zoom of a head, in positions of the lens's table: ratios, or motor counts.
 struct ZoomConfig {
-  std::optional<std::array<double, 2>>
-      limits;                      ///< Default: 1 to 10 for a linear zoom, otherwise the table's ends.
+  /// Default: 1 to 10 for a linear zoom, otherwise the table's ends.
+  std::optional<std::array<double, 2>> limits;
   std::optional<double> max_rate;  ///< Per second; default: the whole range in 3 s.
   /// As in AxisConfig, in positions.
   double max_acceleration = std::numeric_limits<double>::infinity();
@@ -45,7 +45,7 @@ struct HeadConfig {
   PanConfig pan;
   TiltConfig tilt;
   ZoomConfig zoom;
-  double delay = 0;                             ///< From a command to the start of its motion, s.
+  double delay = 0;                             ///< Delay from a command to the start of its motion, s.
   std::array<double, 3> tilt_axis = {0, 0, 0};  ///< A point of the tilt axis in the panned frame, m.
   std::array<double, 3> pupil = {0, 0, 0};      ///< Entrance pupil at ratio 1, from there, in C's axes, m.
   double pupil_shift = 0;                       ///< Forward shift of the pupil per unit of ratio, m.
@@ -53,8 +53,8 @@ struct HeadConfig {
 
 /// Position of a head, as it reads.
 struct HeadState {
-  double pan = 0, tilt = 0;  ///< From the axes' zeros, rad.
-  double zoom = 1;           ///< A position of the lens's table.
+  double pan = 0, tilt = 0;  ///< Angles from the axes' zeros, rad.
+  double zoom = 1;           ///< Position of the zoom in the lens's table.
 
   bool operator==(const HeadState&) const = default;
 };
@@ -66,8 +66,9 @@ const Table<HeadConfig>& fields_of(const HeadConfig*);
 
 /// Geometry of a head's axes.
 struct HeadGeometry {
-  Eigen::Vector3d tilt_axis = Eigen::Vector3d::Zero();  ///< In the panned frame, m.
-  Eigen::Vector3d pupil = Eigen::Vector3d::Zero();      ///< At the present zoom, m.
+  Eigen::Vector3d tilt_axis = Eigen::Vector3d::Zero();  ///< Point of the tilt axis in the panned frame, m.
+  /// Pupil at the present zoom, in C's axes from the tilt axis, m.
+  Eigen::Vector3d pupil = Eigen::Vector3d::Zero();
 };
 
 /// Returns R_pan, about M's -y by `pan` rad: turns M's z (forward) towards its -x (left).

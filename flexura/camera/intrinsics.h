@@ -28,15 +28,17 @@ inline constexpr int intrinsics_count = 9;
 
 /// A pixel (u, v) and its derivatives.
 struct Projection {
-  Eigen::Vector2d pixel;                                     ///< px
-  Eigen::Matrix<double, 2, 3> by_point;                      ///< By the point in C, px/m.
-  Eigen::Matrix<double, 2, intrinsics_count> by_intrinsics;  ///< In the order above.
+  Eigen::Vector2d pixel;                 ///< Pixel (u, v), px.
+  Eigen::Matrix<double, 2, 3> by_point;  ///< Derivative by the point in C, px/m.
+  /// Derivative by the intrinsics, in the order above.
+  Eigen::Matrix<double, 2, intrinsics_count> by_intrinsics;
 };
 
 /// A pixel and its derivative by the point alone.
 struct PointProjection {
-  Eigen::Vector2d pixel = {0, 0};                                              ///< px
-  Eigen::Matrix<double, 2, 3> by_point = Eigen::Matrix<double, 2, 3>::Zero();  ///< px/m in C.
+  Eigen::Vector2d pixel = {0, 0};  ///< Pixel (u, v), px.
+  /// Derivative by the point in C, px/m.
+  Eigen::Matrix<double, 2, 3> by_point = Eigen::Matrix<double, 2, 3>::Zero();
 };
 
 /// A lens at one zoom, ready to project: intrinsics and the field within which they are one-to-one.

@@ -37,14 +37,14 @@ struct Codec<RotationConfig> {
 
 /// One `[[camera]]` of a file of measured cameras: a fixed lens and its pose.
 struct MeasuredCamera {
-  std::string name;                                    ///< For messages.
-  double fx = 800;                                     ///< px
-  std::optional<double> fy;                            ///< px; default: fx.
-  double cx = 319.5, cy = 239.5;                       ///< px
+  std::string name;                                    ///< Name for messages.
+  double fx = 800;                                     ///< Focal length, px.
+  std::optional<double> fy;                            ///< Focal length, px; default: fx.
+  double cx = 319.5, cy = 239.5;                       ///< Principal point, px.
   std::array<double, 5> distortion = {0, 0, 0, 0, 0};  ///< k1, k2, p1, p2, k3: OpenCV's order.
-  std::array<double, 3> position = {0, 0, 0};          ///< p_WC, m.
-  RotationConfig rotation;                             ///< R_WC: C's x right, y down, z forward.
-  double gamma = 1;                                    ///< Its values are light to the power 1/gamma.
+  std::array<double, 3> position = {0, 0, 0};          ///< Position p_WC, m.
+  RotationConfig rotation;                             ///< Orientation R_WC: C's x right, y down, z forward.
+  double gamma = 1;                                    ///< Gamma: values are light to the power 1/gamma.
   std::optional<std::array<std::int64_t, 2>> size;     ///< Width and height of its pictures, px.
   ViewDoubt doubt;                                     ///< Prior of its orientation and focal length.
 

@@ -18,7 +18,7 @@ struct SlideConfig : AxisConfig {
 /// Translates a mount along its own axes.
 struct StageConfig {
   SlideConfig x, y, z;  ///< Right, down, forward.
-  double delay = 0;     ///< From a command to the start of its motion, s.
+  double delay = 0;     ///< Delay from a command to the start of its motion, s.
 
   /// Returns whether it travels along any axis.
   [[nodiscard]] bool can_move() const;
@@ -33,10 +33,11 @@ struct StageState {
 
 /// Pose of a camera's mount as given in a file. The orientation is given in one of two ways.
 struct MountConfig {
-  std::array<double, 3> position = {0, 0, 0};     ///< p_WM at stage offset 0, m.
-  std::optional<std::array<double, 3>> look_at;   ///< M's z points to this point of W; M's y downwards.
-  double roll = 0;                                ///< With look_at: subsequent rotation about z, rad.
-  std::optional<std::array<double, 4>> rotation;  ///< Or the quaternion (w, x, y, z) of R_WM.
+  std::array<double, 3> position = {0, 0, 0};    ///< Position p_WM at stage offset 0, m.
+  std::optional<std::array<double, 3>> look_at;  ///< M's z points to this point of W; M's y downwards.
+  double roll = 0;                               ///< Rotation about z after look_at, rad.
+  /// Instead of look_at, the quaternion (w, x, y, z) of R_WM.
+  std::optional<std::array<double, 4>> rotation;
   StageConfig stage;
 
   /// Returns X_WM at stage offset 0. Throws std::invalid_argument for no orientation or two, or a look_at in

@@ -21,21 +21,21 @@ enum class Readout { global, rolling, interlaced };
 ///
 /// Light is in units of the sensor's full scale: 1 is the end of the quantizer's range at gain 1.
 struct SensorConfig {
-  std::int64_t width = 640, height = 480;  ///< px
+  std::int64_t width = 640, height = 480;  ///< Size, px.
   PixelKind pixels = PixelKind::gray;
-  std::int64_t bits = 8;   ///< Of each value; 1 to 16.
-  double frame_rate = 30;  ///< Hz
+  std::int64_t bits = 8;   ///< Bits of each value, 1 to 16.
+  double frame_rate = 30;  ///< Frame rate, Hz.
   double exposure = 0;     ///< Duration for which a frame gathers light, s, with motion blur. 0: an instant.
-  double delay = 0;        ///< From the end of the exposure until the frame is available, s.
+  double delay = 0;        ///< Delay from the end of the exposure until the frame is available, s.
   double drop = 0;         ///< Share of lost frames.
   /// Intervals, s, in which something covers the lens, or the camera does not answer.
   std::vector<std::array<double, 2>> covered = {}, silent = {};
   double gain = 1;       ///< Factor on the light before readout; it amplifies shot noise, too.
   double full_well = 0;  ///< Electrons at full scale and gain 1; determines the shot noise. 0: no shot noise.
-  double read_noise = 0;  ///< Standard deviation in values of an 8-bit image.
+  double read_noise = 0;  ///< Standard deviation of the read noise, in values of an 8-bit image.
   double psf = 0;         ///< Standard deviation of the Gaussian blur of lens and pixel, px.
   double vignetting = 0;  ///< Share of light lost in the image's corners; grows with the radius squared.
-  double gamma = 1;       ///< Values are light to the power 1/gamma.
+  double gamma = 1;       ///< Gamma: values are light to the power 1/gamma.
   Readout readout = Readout::global;
   double row_time = 0;  ///< Time between two rows of a rolling shutter, s; only with Readout::rolling.
 
@@ -53,9 +53,9 @@ struct SensorConfig {
 
 /// Times of a frame.
 struct FrameTimes {
-  double start = 0;     ///< Of the first row's exposure, s.
-  double middle = 0;    ///< Of the exposure of the middle of the image, s.
-  double end = 0;       ///< Of the last row's exposure, s.
+  double start = 0;     ///< Start of the first row's exposure, s.
+  double middle = 0;    ///< Middle of the exposure in the middle of the image, s.
+  double end = 0;       ///< End of the last row's exposure, s.
   double received = 0;  ///< end + delay, s.
 };
 /// Returns the times of a frame that starts at `start`, s.

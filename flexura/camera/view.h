@@ -14,8 +14,8 @@ namespace flexura {
 struct View {
   Lens lens{Intrinsics{}};
   Pose X_WC;         ///< Origin: the entrance pupil, m; x right, y down, z forward.
-  int width = 640;   ///< px
-  int height = 480;  ///< px
+  int width = 640;   ///< Width of the image, px.
+  int height = 480;  ///< Height of the image, px.
 
   /// Returns the pixel of a point in W, m, inside the image or not; empty if the lens does not show it.
   [[nodiscard]] std::optional<Eigen::Vector2d> project(const Eigen::Vector3d& p_WP) const {
@@ -31,8 +31,8 @@ struct View {
 
 /// Camera prior: standard deviations of the error of its view; 0 means exact.
 struct ViewDoubt {
-  double turn = 0;   ///< Of its frame's rotation about each axis, rad.
-  double focal = 0;  ///< Relative error of the focal lengths.
+  double turn = 0;   ///< Standard deviation of the frame's rotation about each axis, rad.
+  double focal = 0;  ///< Standard deviation of the focal lengths, relative.
 
   /// Returns whether the view has a prior.
   [[nodiscard]] bool is_any() const { return turn > 0 || focal > 0; }

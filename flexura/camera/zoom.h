@@ -25,11 +25,11 @@ struct ZoomRow {
 
 /// A zoom lens as described in a file: the lens at ratio 1 and its changes.
 struct LensConfig {
-  double fx = 800;                                     ///< At ratio 1, px.
-  std::optional<double> fy;                            ///< px; default: fx.
-  std::optional<double> cx, cy;                        ///< px; default: the image's middle.
+  double fx = 800;                                     ///< Focal length at ratio 1, px.
+  std::optional<double> fy;                            ///< Focal length, px; default: fx.
+  std::optional<double> cx, cy;                        ///< Principal point, px; default: the image's middle.
   std::array<double, 5> distortion = {0, 0, 0, 0, 0};  ///< k1, k2, p1, p2, k3, at ratio 1.
-  std::vector<ZoomRow> zoom;                           ///< By rising ratio. Empty: linear zoom.
+  std::vector<ZoomRow> zoom;                           ///< Rows by rising ratio. Empty: linear zoom.
 };
 
 const Table<ZoomRow>& fields_of(const ZoomRow*);

@@ -13,7 +13,7 @@ namespace flexura {
 
 /// A camera calibrated alone.
 struct CameraAlone {
-  BundleFit fit;                   ///< Of this camera and the boards that it saw.
+  BundleFit fit;                   ///< Fit of this camera and the boards that it saw.
   std::vector<std::size_t> views;  ///< Indices of these boards in the given views.
 };
 

@@ -36,9 +36,9 @@ struct BundleFit {
   BoardBundle bundle;
   bool is_converged = false;  ///< Otherwise no step helped, or the limit was reached.
   int steps = 0;              ///< The first linearisation, and every step tried.
-  double square_sum = 0;      ///< Of all pixels' distances, px^2.
+  double square_sum = 0;      ///< Sum of all pixels' squared distances, px^2.
   std::size_t points = 0;     ///< Number of pixels compared.
-  std::size_t unknowns = 0;   ///< Cameras' and boards'.
+  std::size_t unknowns = 0;   ///< Number of unknowns of cameras and boards.
   /// Information matrix of the cameras' unknowns, with the boards' eliminated, for noise of 1 px; its inverse
   /// is their covariance. For each camera first the fitted part of its lens, in the order of
   /// `intrinsics_count`. Then, for each camera except the first, its small motion [v; w] of X_1C: p + v,

@@ -12,9 +12,10 @@ namespace flexura {
 
 /// A board in one picture.
 struct BoardSighting {
-  std::vector<Eigen::Vector2d> pixels;  ///< Of the board's points, in their order; empty if it was not found.
-  std::string reason;                   ///< Why it was not found; "" if it was.
-  bool is_larger = false;               ///< Not found because the pattern continues: it is a larger board.
+  /// Image points of the board, in its order; empty if it was not found.
+  std::vector<Eigen::Vector2d> pixels;
+  std::string reason;      ///< Why it was not found; "" if it was.
+  bool is_larger = false;  ///< Not found because the pattern continues: it is a larger board.
 
   [[nodiscard]] bool is_found() const { return !pixels.empty(); }
 };

@@ -14,7 +14,8 @@ const std::vector<std::string>& names_of(const BoardPattern*);
 /// chessboard or the centres of dark circles on a bright background.
 struct BoardTarget {
   BoardPattern pattern = BoardPattern::chessboard;
-  int columns = 9, rows = 6;  ///< Of points; for asymmetric circles, those in one row.
+  int columns = 9, rows = 6;  ///< Numbers of columns and rows of points; for asymmetric circles, `columns`
+                              ///< are those in one row.
   double square = 0.025;  ///< Distance of rows, and of columns, m. Columns of asymmetric circles are twice
                           ///< that apart, and every second row is shifted by half of it.
 

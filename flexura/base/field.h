@@ -50,8 +50,8 @@ struct Count {
 struct Spec {
   std::string meaning = {};  ///< A sentence for errors, the schema and the reference.
   Unit unit = Unit::none;
-  NumberRange range = {};  ///< Of a number, or of each number of an array.
-  Count count = {};        ///< Of the outermost array.
+  NumberRange range = {};  ///< Range of a number, or of each number of an array.
+  Count count = {};        ///< Number of entries of the outermost array.
   bool required = false;
   bool partial = false;           ///< For a table: a file may contain parts of it; the reader gets the whole.
   bool one_for_all = false;       ///< For an array: may be written as one value for all entries.
@@ -75,7 +75,7 @@ struct FieldInfo {
   std::string name;  ///< The key without a unit's suffix.
   Type type;
   Spec spec;
-  std::string default_text;  ///< As written in a file; "" if required.
+  std::string default_text;  ///< Default as written in a file; "" if required.
 };
 
 /// A table of fields without its struct.
@@ -84,7 +84,7 @@ struct TableInfo {
   std::string meaning = {};
   std::vector<FieldInfo> fields;
 
-  /// Returns the field of this name, without a unit's suffix; null if there is none.
+  /// Returns the field of this name, without a unit's suffix; null if missing.
   [[nodiscard]] const FieldInfo* find(std::string_view field_name) const;
 };
 

@@ -25,7 +25,7 @@ struct Node {
   using Value = std::variant<std::monostate, bool, std::int64_t, double, std::string, Array, Table, Other>;
 
   Value value;
-  SourcePosition where;  ///< Of the value; the key before it has its own position (Member::where).
+  SourcePosition where;  ///< Position of the value; the key before it has its own position (Member::where).
 
   /// Returns the value if it is a T, one of the types of Value; otherwise null. An integer is not a double.
   template <class T>
@@ -39,7 +39,7 @@ struct Node {
   /// Returns whether there is no value. Empty texts, arrays and tables are values.
   [[nodiscard]] bool empty() const { return std::holds_alternative<std::monostate>(value); }
 
-  /// Returns the value under `key` of a table; null if there is none or this is not a table. Points into this
+  /// Returns the value under `key` of a table; null if missing or if this is not a table. Points into this
   /// node.
   [[nodiscard]] const Node* find(std::string_view key) const;
   [[nodiscard]] Node* find(std::string_view key);

@@ -10,8 +10,8 @@ namespace flexura {
 
 /// A position in the user's input. Line and column count from 1; line 0 means the source as a whole.
 struct SourcePosition {
-  std::shared_ptr<const std::string>
-      source;  ///< Name of the source: a file's path, "--set", "stdin"; may be null.
+  /// Name of the source: a file's path, "--set", "stdin"; may be null.
+  std::shared_ptr<const std::string> source;
   int line = 0;
   int column = 0;
   /// Column of the first character of a text, after its quotes, if it is on one line without escapes. 0 for

@@ -32,8 +32,8 @@ bool AnyTable::read_at(const Node& node, Reader& reader, void* value, std::strin
   for (std::size_t i = 0; i < found.size(); ++i) {
     if (found[i].member == nullptr) continue;
     const Node::Member& member = *found[i].member;
-    SourcePosition where =
-        member.where;  // That of the key, to which problems refer; texts are positioned after it.
+    // That of the key, to which problems refer; texts are positioned after it.
+    SourcePosition where = member.where;
     if (member.node.where.source == where.source && member.node.where.line == where.line)
       where.text_column = member.node.where.text_column;
     const Reader::Scope scope(reader, info_.fields[i].name, member.key, where);

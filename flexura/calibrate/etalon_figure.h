@@ -65,7 +65,7 @@ class EtalonFigure {
   /// if there is no line, or if the lens has no ray there.
   [[nodiscard]] std::optional<Eigen::Vector3d> nearest(const EtalonPoint& seen, const View& view) const;
 
-  /// Predicts what a picture shows, with sigma 0: two points of each side, one of each rim, and two of each
+  /// Predicts the points of a picture, with sigma 0: two of each side, one of each rim, and two of each
   /// red line that faces the camera within 60 degrees. Empty unless the whole cylinder is visible, at least
   /// `margin` px from the border.
   [[nodiscard]] std::optional<std::vector<EtalonPoint>> expected(const View& view, double margin) const;

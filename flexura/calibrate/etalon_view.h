@@ -35,7 +35,7 @@ struct EtalonView {
   double climb_by_px = 0;    ///< d climb / d taper.
 };
 
-/// Returns the centroid of the visible part of the largest dark figure; empty if there is none.
+/// Returns the centroid of the visible part of the largest dark figure; empty without a figure.
 [[nodiscard]] std::optional<Eigen::Vector2d> dark_centroid(const Image<std::uint8_t>& picture);
 
 /// Evaluates a picture of a cylinder of this radius with the lens model.

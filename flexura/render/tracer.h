@@ -37,7 +37,7 @@ struct Hit {
 /// bodies meet.
 struct Trace {
   Hit hit;
-  Border nearest, second;                                  ///< Infinitely far if none is within border_reach.
+  Border nearest, second;                                  ///< Infinitely far if beyond border_reach.
   double clear = std::numeric_limits<double>::infinity();  ///< Distance of the nearest border that is not a
                                                            ///< ring's edge, px.
 };

@@ -32,7 +32,7 @@ class ShapeSearch {
   struct Result {
     ShapeFit fit;
     std::vector<Sighting> seen;
-    /// Distance of another shape that explains everything equally well, m; 0: there is none. Determined if an
+    /// Distance of another shape that explains everything equally well, m; 0: no such shape. Determined if an
     /// end is displaced and nothing else decides.
     double apart = 0;
   };

@@ -59,7 +59,7 @@ double largest_radius_of(const std::array<double, 5>& distortion) {
   return infinity;
 }
 
-// Returns the point whose radial distortion gives `wanted`; one near the rim if there is none.
+// Returns the point whose radial distortion gives `wanted`; one near the rim if no point does.
 Eigen::Vector2d undistort_radially(const Eigen::Vector2d& wanted, const std::array<double, 5>& distortion,
                                    double largest_radius) {
   const double radius = wanted.norm();

@@ -93,7 +93,7 @@ class NormalEquations {
   }
 
   // Computes the steps of the cameras' unknowns and of each board's, with Marquardt's damping; returns false
-  // if there is none.
+  // on failure.
   bool solve(double damping, VectorXd& cameras, std::vector<Vector6>& boards) {
     reduced_ = A_;
     reduced_.diagonal() *= 1 + damping;

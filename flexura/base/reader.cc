@@ -205,8 +205,7 @@ std::string_view nearest_spelling(std::string_view key, const TableInfo& table, 
   return nearest_name(key, names);
 }
 
-// Returns the table inside this one, or the array of tables, that has a field of this name; null if there is
-// none.
+// Returns the table inside this one, or the array of tables, that has a field of this name; or null.
 const FieldInfo* table_with(std::string_view key, const TableInfo& table) {
   const auto has_key = [key](const FieldInfo& field) {
     const TableInfo* inner = field.type.item ? field.type.item->table : field.type.table;

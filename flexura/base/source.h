@@ -47,7 +47,7 @@ class InputError : public std::runtime_error {
 [[nodiscard]] InputError input_error(const std::string& source, std::string what, int line = 0,
                                      int column = 0);
 
-/// Returns the name in `names` that the misspelt `word` most likely means; empty if none is near.
+/// Returns the name in `names` that the misspelt `word` most likely means; empty if no name is near.
 [[nodiscard]] std::string_view nearest_name(std::string_view word, const std::vector<std::string>& names);
 
 }  // namespace flexura

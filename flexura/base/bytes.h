@@ -10,18 +10,18 @@
 
 namespace flexura {
 
-/// Bytes in a message: text in base64 (RFC 4648, with padding) where it is written.
+/// Bytes in a message; written as base64 text (RFC 4648, with padding).
 struct Bytes {
   std::string data;
 
   bool operator==(const Bytes&) const = default;
 };
 
-/// The bytes of a file that was read as text; valid as long as the text is.
+/// Returns the bytes of a file that was read as text; valid as long as the text.
 [[nodiscard]] std::span<const std::uint8_t> bytes_of(std::string_view text);
 
 [[nodiscard]] std::string base64(std::string_view data);
-/// None when the text is not base64 as base64() writes it.
+/// Returns std::nullopt unless the text is base64 as written by base64().
 [[nodiscard]] std::optional<std::string> from_base64(std::string_view text);
 
 template <>

@@ -4,7 +4,7 @@
 
 namespace flexura {
 
-/// A degree, rad: 25 * degree is an angle in the program, angle / degree what people read.
+/// A degree, rad: 25 * degree is an angle in the program, angle / degree is in degrees.
 inline constexpr double degree = std::numbers::pi / 180;
 
 }  // namespace flexura

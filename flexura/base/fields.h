@@ -1,7 +1,7 @@
 #pragma once
 
-// Names of what table.h defines, for headers that declare tables of fields without using them: a struct's
-// header declares `const Table<S>& fields_of(const S*)`, its source and whoever reads or writes it include
+// Forward declarations of table.h, for headers that declare tables of fields without using them. A struct's
+// header declares `const Table<S>& fields_of(const S*)`; its source and all readers and writers include
 // table.h.
 namespace flexura {
 

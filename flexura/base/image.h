@@ -14,7 +14,7 @@ template <typename T>
 class Image {
  public:
   Image() = default;
-  /// Every value is `value`. Sizes must not be negative.
+  /// Sets every value to `value`. Sizes must not be negative.
   Image(int width, int height, int channels = 1, T value = T{})
       : width_(width),
         height_(height),
@@ -31,11 +31,11 @@ class Image {
   [[nodiscard]] T& at(int u, int v, int channel = 0) { return values_[index(u, v, channel)]; }
   [[nodiscard]] const T& at(int u, int v, int channel = 0) const { return values_[index(u, v, channel)]; }
 
-  /// Row v, width() * channels() values, pixel by pixel. As of at(), v is not checked.
+  /// Row v, width() * channels() values, pixel by pixel. As in at(), v is not checked.
   [[nodiscard]] std::span<T> row(int v) { return {&values_[index(0, v, 0)], row_size()}; }
   [[nodiscard]] std::span<const T> row(int v) const { return {&values_[index(0, v, 0)], row_size()}; }
 
-  /// All of them, in the order above.
+  /// All values, in the order above.
   [[nodiscard]] std::span<T> values() { return values_; }
   [[nodiscard]] std::span<const T> values() const { return values_; }
 
@@ -55,7 +55,7 @@ class Image {
   std::vector<T> values_;
 };
 
-/// What a sensor delivers, or a file holds: bytes up to 8 bits a value, words above.
+/// A picture from a sensor or a file: bytes up to 8 bits per value, words above.
 using Picture = std::variant<Image<std::uint8_t>, Image<std::uint16_t>>;
 
 }  // namespace flexura

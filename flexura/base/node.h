@@ -10,13 +10,14 @@
 
 namespace flexura {
 
-/// A value as a user wrote it, in TOML or JSON, and where. The common ground between file formats and the
-/// typed tables of fields (table.h): formats make and print nodes, tables read and write them.
+/// A value as written by a user in TOML or JSON, with its position. It is the common form between file
+/// formats and the typed tables of fields (table.h): formats parse and print nodes, tables read and write
+/// them.
 struct Node {
   struct Member;
   using Array = std::vector<Node>;
   using Table = std::vector<Member>;  ///< In the order written; keys are unique.
-  /// A value no field takes, such as a date; `name` says what it is, for the error.
+  /// A value that no field accepts, such as a date; `name` describes it for the error.
   struct Other {
     std::string name;
   };
@@ -24,9 +25,9 @@ struct Node {
   using Value = std::variant<std::monostate, bool, std::int64_t, double, std::string, Array, Table, Other>;
 
   Value value;
-  SourcePosition where;  ///< Of the value; the key before it has its own place (Member::where).
+  SourcePosition where;  ///< Position of the value; the key before it has its own position (Member::where).
 
-  /// The value if it is a T, one of the types of Value; else null. An integer is no double.
+  /// Returns the value if it is a T, one of the types of Value; otherwise null. An integer is not a double.
   template <class T>
   [[nodiscard]] const T* as() const {
     return std::get_if<T>(&value);
@@ -35,40 +36,41 @@ struct Node {
   [[nodiscard]] T* as() {
     return std::get_if<T>(&value);
   }
-  /// Nothing is written here. Empty texts, arrays and tables are something.
+  /// Returns whether there is no value. Empty texts, arrays and tables are values.
   [[nodiscard]] bool empty() const { return std::holds_alternative<std::monostate>(value); }
 
-  /// The value under `key` of a table; null when there is none or this is no table. Points into this node.
+  /// Returns the value under `key` of a table; null if missing or if this is not a table. Points into this
+  /// node.
   [[nodiscard]] const Node* find(std::string_view key) const;
   [[nodiscard]] Node* find(std::string_view key);
 
-  /// Short text for messages: the value itself, or what kind of value it is ("an array", "a table").
+  /// Returns a short text for messages: the value itself, or its kind ("an array", "a table").
   [[nodiscard]] std::string brief() const;
-  /// The value as one writes it, arrays in full: "[0.02, 0.02]". A table is "its fields' defaults", as this
-  /// serves the description of defaults.
+  /// Returns the value as written in a file, arrays in full: "[0.02, 0.02]". A table is "its fields'
+  /// defaults", as this serves the description of defaults.
   [[nodiscard]] std::string literal() const;
 };
 
-/// What a table has under a key, and where the key stands in the text.
+/// A key of a table with its value and position.
 struct Node::Member {
   std::string key;
   SourcePosition where;
   Node node;
 };
 
-/// A number that a program writes. One that is not finite is written as nothing: JSON has no word for it.
+/// Makes a node of a number; one that is not finite gives an empty node, as JSON cannot represent it.
 [[nodiscard]] Node number_node(double value);
-/// A text that a program writes.
+/// Makes a node of a text.
 [[nodiscard]] Node text_node(std::string value);
-/// An array of texts.
+/// Makes a node of an array of texts.
 [[nodiscard]] Node texts_node(const std::vector<std::string>& values);
 
-/// Lays `over` upon `under`: tables are merged key by key, anything else is replaced.
+/// Merges `over` into `under`: tables key by key; anything else is replaced.
 void merge(Node& under, Node over);
 
 /// Sets the value at a dotted path ("arm.section.0.length" or "arm.section[0].length"; numbers index arrays),
-/// making tables on the way. A value of the same name in another unit ("length_mm" beside "length") is taken
-/// out. Returns an error text ("" when done): a part that is no table, an index outside an array.
+/// and makes missing tables. Removes a value of the same name in another unit ("length_mm" beside "length").
+/// Returns an error text ("" on success): a part is not a table, or an index is outside an array.
 [[nodiscard]] std::string set_at_path(Node& root, std::string_view path, Node value);
 
 }  // namespace flexura

@@ -10,7 +10,7 @@
 namespace flexura {
 namespace {
 
-// The character at the front; empty where there is none that is UTF-8.
+// Returns the first character; empty if it is not valid UTF-8.
 std::string_view first_character(std::string_view text) {
   constexpr std::size_t longest = 4;
   for (std::size_t size = 1; size <= std::min(longest, text.size()); ++size)
@@ -18,7 +18,7 @@ std::string_view first_character(std::string_view text) {
   return {};
 }
 
-// Control characters (C0, DEL, C1), and what Unicode has to end lines.
+// Returns whether it is a control character (C0, DEL, C1) or a line separator of Unicode.
 bool is_control(std::string_view character) {
   const auto first = static_cast<unsigned char>(character.front());
   if (character.size() == 1) return first < ' ' || first == 0x7f;

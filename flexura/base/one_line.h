@@ -5,8 +5,9 @@
 
 namespace flexura {
 
-/// The text as a message shows it: control characters, ends of lines and bytes that are no UTF-8 as "\n",
-/// "\t", "\r" or "\x1b", so that it stays on its line and moves no terminal. All else is left as it is.
+/// Returns the text for use in a message, on one line and without terminal control. Control characters, ends
+/// of lines and bytes that are not UTF-8 become "
+/// ", "\t", "\r" or "\x1b". All else is unchanged.
 [[nodiscard]] std::string one_line(std::string_view text);
 
 }  // namespace flexura

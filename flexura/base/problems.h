@@ -8,11 +8,11 @@
 
 namespace flexura {
 
-/// So many of the problems of one input are told, for a hundred thousand would scroll the first away.
+/// Maximum number of reported problems of one input: a hundred thousand would scroll the first away.
 inline constexpr std::size_t max_listed_problems = 20;
 
-/// The first problems of one line of input (max_listed_problems) and how many more there are, in one line;
-/// the place is the line itself, which the asker knows.
+/// Returns the first problems of one line of input (max_listed_problems) and the number of further ones, in
+/// one line. Positions are omitted: the caller knows the line.
 [[nodiscard]] std::string joined(const std::vector<Problem>& problems);
 
 }  // namespace flexura

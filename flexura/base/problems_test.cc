@@ -12,7 +12,7 @@ TEST(Joined, HasTheColumnsOfOneLineButNotTheLineItself) {
   EXPECT_EQ(joined({}), "");
 }
 
-// A line of a million unknown keys has a short answer.
+// A line of a million unknown keys gets a short answer.
 TEST(Joined, TellsTheFirstAndHowManyMoreThereAre) {
   const std::string text = joined(std::vector<Problem>(1000, {{}, "unknown key"}));
   EXPECT_THAT(text, ::testing::EndsWith("unknown key; and 980 more"));

@@ -4,8 +4,8 @@
 
 namespace flexura {
 
-/// Told by a long job how far it is; what it does with that (a line on a terminal, a message to the viewer)
-/// is its own.
+/// Receives the progress of a long job; implementations print a line on a terminal or send a message to the
+/// viewer.
 class Progress {
  public:
   virtual ~Progress() = default;
@@ -13,9 +13,9 @@ class Progress {
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
-  /// `fraction` in [0, 1] is done; `what` names the present part of the job.
+  /// Reports that `fraction` in [0, 1] is done; `what` names the present part of the job.
   virtual void update(double fraction, std::string_view what) = 0;
-  /// Whether the job shall end early, in good order. Asked often, from the job's thread.
+  /// Returns whether the job should end early, in good order. Called often, from the job's thread.
   [[nodiscard]] virtual bool is_cancelled() const { return false; }
 };
 

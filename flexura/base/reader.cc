@@ -10,7 +10,7 @@
 namespace flexura {
 namespace {
 
-// "task[0].loop" as a header of TOML has it: "task.loop".
+// Returns "task[0].loop" as in a TOML header: "task.loop".
 std::string without_indices(std::string_view path) {
   std::string names;
   bool is_index = false;
@@ -49,7 +49,7 @@ std::string Reader::below(std::string_view name) const {
 
 void Reader::problem(std::string what) { problem_at("", std::move(what)); }
 
-// Of what was written at `path`, or at its nearest part that was.
+// Returns the position of what was written at `path`, or at its nearest written part.
 SourcePosition Reader::place_of(std::string path) const {
   auto found = written_.find(path);
   while (found == written_.end() && !path.empty()) {
@@ -113,7 +113,7 @@ bool Reader::number(const Node& node, const Spec& spec, double& value) {
     value = scaled;
     return true;
   }
-  // Only now: a file may have millions of numbers.
+  // Only on error: a file may have millions of numbers.
   const std::string range = spec.range.text(spelling);
   const std::string unit = spelling.symbol.empty() ? "" : fmt::format(" in {}", spelling.symbol);
   unexpected(node, range.empty() ? "a finite number" + unit : "a number " + range);
@@ -186,8 +186,7 @@ std::string ways_to_write(const FieldInfo& field) {
   return ways;
 }
 
-// The field of another spelling, or nearly the same one, that a key without a field may be meant for; or
-// null.
+// Returns the field of another unit, or with a similar name, that an unknown key may stand for; or null.
 const FieldInfo* field_in_another_unit(std::string_view key, const TableInfo& table) {
   const auto found = std::ranges::find_if(table.fields, [&](const FieldInfo& field) {
     return key.starts_with(field.name) &&
@@ -206,7 +205,7 @@ std::string_view nearest_spelling(std::string_view key, const TableInfo& table, 
   return nearest_name(key, names);
 }
 
-// The table inside this one, or one of several there, that has a field of this name; null where none has.
+// Returns the table inside this one, or the array of tables, that has a field of this name; or null.
 const FieldInfo* table_with(std::string_view key, const TableInfo& table) {
   const auto has_key = [key](const FieldInfo& field) {
     const TableInfo* inner = field.type.item ? field.type.item->table : field.type.table;
@@ -219,8 +218,7 @@ const FieldInfo* table_with(std::string_view key, const TableInfo& table) {
   return found == table.fields.end() ? nullptr : &*found;
 }
 
-// What is said of a key that no field of the table has, "did you mean ...", and the field that it is meant
-// for.
+// Error text of a key that the table lacks, "did you mean ...", and the field that is probably meant.
 struct UnknownKey {
   std::string what;
   const FieldInfo* meant = nullptr;
@@ -312,7 +310,7 @@ std::vector<FoundField> find_fields(const Node& node, const TableInfo& table, Re
   }
   for (std::size_t i = 0; i < found.size(); ++i) {
     const FieldInfo& field = table.fields[i];
-    // One mistake, one line: a misspelt field is not missing, too.
+    // One mistake, one line: a misspelt field is not also reported as missing.
     if (found[i].member == nullptr && field.spec.required && std::ranges::count(meant, &field) == 0)
       reader.problem_at(field.name, missing(field));
   }

@@ -13,15 +13,15 @@
 
 namespace flexura {
 
-/// Where a typed read stands in the document, and the problems found so far. Tables of fields (table.h) drive
-/// it; checks across fields use it to report at the place a field was written.
+/// Position of a typed read in the document, and the problems found so far. Tables of fields (table.h) drive
+/// it; checks across fields use it to report at the position of a field.
 class Reader {
  public:
   /// Makes the part of the document named `name` the current place while in scope.
   class Scope {
    public:
     Scope(Reader& reader, std::string_view name, const SourcePosition& where);
-    /// A field, which messages name as it was spelt (`key`) and checks by its `name`.
+    /// A field, which messages show as written (`key`) and checks by its `name`.
     Scope(Reader& reader, std::string_view name, std::string_view key, const SourcePosition& where);
     /// The entry `index`, from 0, of the array that is the current place.
     Scope(Reader& reader, std::size_t index, const SourcePosition& where);
@@ -36,19 +36,19 @@ class Reader {
 
   /// Reports a problem at the current place: "PATH: what".
   void problem(std::string what);
-  /// Reports a problem at `path`, relative to the current place ("task[0].to.bends"), or at its nearest part
-  /// that was written.
+  /// Reports a problem at `path`, relative to the current place ("task[0].to.bends"), or at its nearest
+  /// written part.
   void problem_at(std::string_view path, std::string what);
-  /// The same for the character `offset` (from 0) of the text at `path`: at its place in the file where that
-  /// is known, else followed by "at character N of TEXT".
+  /// Reports a problem for the character `offset` (from 0) of the text at `path`. It is reported at its
+  /// position in the file if that is known, otherwise followed by "at character N of TEXT".
   void problem_in_text(std::string_view path, const std::string& text, std::size_t offset, std::string what);
-  /// "PATH = VALUE: expected ...".
+  /// Reports "PATH = VALUE: expected ...".
   void unexpected(const Node& node, std::string_view expected);
-  /// The same where a word out of `choices` is expected, with the one that may be meant.
+  /// Reports that one of `choices` is expected, with the one that is probably meant.
   void unexpected_choice(const Node& node, const std::vector<std::string>& choices);
 
   [[nodiscard]] const std::vector<Problem>& problems() const { return problems_; }
-  /// Throws every problem as one InputError, if there are any.
+  /// Throws all problems as one InputError, if there are any.
   void throw_if_any() const;
 
   // --- used by the codecs (table.h) ---
@@ -56,15 +56,16 @@ class Reader {
   /// The unit in which the current field is written.
   UnitSpelling spelling = {"", 1.0, ""};
 
-  /// A finite number within the range, in base units; a problem and false otherwise.
+  /// Reads a finite number within the range, in base units; otherwise reports a problem and returns false.
   bool number(const Node& node, const Spec& spec, double& value);
-  /// The same of a whole number, within the range as it stands: units are not counted in. 3.0 is no whole
-  /// one.
+  /// Reads an integer within the range, without conversion of units; otherwise reports a problem and returns
+  /// false. 3.0 is not an integer.
   bool integer(const Node& node, const Spec& spec, std::int64_t& value);
-  /// A text without control characters: one that is printed cannot pass for more than it is.
+  /// Reads a text without control characters, so that its printed form cannot be misleading.
   bool text(const Node& node, std::string& value);
-  /// The array, when the node is one and has the right number of entries; a problem and null otherwise. One
-  /// of `item`s, which tells how to write an array of tables where a single table stands.
+  /// Returns the array if the node is one with the right number of entries; otherwise reports a problem and
+  /// returns null. `item` is the kind of its entries: the message shows how to write an array of tables
+  /// instead of a single table.
   const Node::Array* array(const Node& node, const Count& count, Type::Kind item);
 
  private:
@@ -76,16 +77,16 @@ class Reader {
   std::vector<Problem> problems_;
 };
 
-/// A field of `table` found in a document: which, how it was spelt, and its value.
+/// A field of `table` found in a document, its spelling and value.
 struct FoundField {
-  /// Null where the field was left out; else it points into the document, which has to live longer.
+  /// Null if the field was omitted; otherwise it points into the document, which must outlive it.
   const Node::Member* member = nullptr;
-  UnitSpelling spelling;  ///< The unit in which the key says it is written.
+  UnitSpelling spelling;  ///< The unit given by the key.
 };
 
-/// Finds each field of `table` (in its order; `member` null where left out). Problems: not a table, unknown
-/// keys with the name meant, units that do not fit, a field written twice in two units, required ones
-/// missing. `tag` is one more key to accept ("kind" of a one_of), "" for none.
+/// Finds each field of `table` (in its order; `member` null if omitted). Reports: not a table, unknown keys
+/// with the probable name, wrong units, a field written in two units, missing required fields. `tag` is an
+/// additional accepted key ("kind" of a one_of), or "".
 [[nodiscard]] std::vector<FoundField> find_fields(const Node& node, const TableInfo& table, Reader& reader,
                                                   std::string_view tag = {});
 

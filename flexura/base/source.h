@@ -8,35 +8,34 @@
 
 namespace flexura {
 
-/// A place in something a user wrote. Line and column count from 1; a line of 0 means the source as a whole.
+/// A position in the user's input. Line and column count from 1; line 0 means the source as a whole.
 struct SourcePosition {
-  std::shared_ptr<const std::string>
-      source;  ///< What to call it: a file's path, "--set", "stdin"; may be null.
+  /// Name of the source: a file's path, "--set", "stdin"; may be null.
+  std::shared_ptr<const std::string> source;
   int line = 0;
   int column = 0;
-  /// Where the characters of a text begin, when they stand on one line as they are: after its quotes. 0 for
-  /// other values, and where escapes have changed the text.
+  /// Column of the first character of a text, after its quotes, if it is on one line without escapes. 0 for
+  /// other values and texts.
   int text_column = 0;
 
-  /// "file:line:column", "file" without a line, "" without a source.
+  /// Returns "file:line:column", "file" without a line, "" without a source.
   [[nodiscard]] std::string text() const;
 };
 
-/// One thing that is wrong with the input, in one line.
+/// One error in the input, in one line.
 struct Problem {
   SourcePosition where;
-  /// Begins with the path of what is wrong, where that has one: "arm.kind = 3: expected ...".
+  /// Begins with the path of the error, if it has one: "arm.kind = 3: expected ...".
   std::string what;
 
-  /// "file:line:column: what".
+  /// Returns "file:line:column: what".
   [[nodiscard]] std::string text() const;
 };
 
-/// Input that cannot be used: every problem found, in the order of their discovery (the program's exit status
-/// 2).
+/// Unusable input: all problems found, in order of discovery (the program's exit status 2).
 class InputError : public std::runtime_error {
  public:
-  /// what() has a line each for the first 20, and how many more there are.
+  /// what() has one line for each of the first 20, and the number of further ones.
   explicit InputError(std::vector<Problem> problems);
   [[nodiscard]] const std::vector<Problem>& problems() const { return problems_; }
 
@@ -44,11 +43,11 @@ class InputError : public std::runtime_error {
   std::vector<Problem> problems_;
 };
 
-/// The InputError of a source that fails as a whole, or at one place.
+/// Returns the InputError of a source that fails as a whole, or at one position.
 [[nodiscard]] InputError input_error(const std::string& source, std::string what, int line = 0,
                                      int column = 0);
 
-/// `name` out of `names` that the misspelt `word` most likely means; empty when none is near.
+/// Returns the name in `names` that the misspelt `word` most likely means; empty if no name is near.
 [[nodiscard]] std::string_view nearest_name(std::string_view word, const std::vector<std::string>& names);
 
 }  // namespace flexura

@@ -7,7 +7,7 @@
 namespace flexura {
 namespace {
 
-// An array that a file may not leave empty is so when the file leaves it out.
+// An array that must not be empty in a file is empty if the file omits it.
 bool says_nothing(const Node& node, const Spec& spec) {
   const auto* entries = node.as<Node::Array>();
   return node.empty() || (entries != nullptr && entries->empty() && spec.count.min > 0);
@@ -42,7 +42,8 @@ bool AnyTable::read_at(const Node& node, Reader& reader, void* value, std::strin
   for (std::size_t i = 0; i < found.size(); ++i) {
     if (found[i].member == nullptr) continue;
     const Node::Member& member = *found[i].member;
-    SourcePosition where = member.where;  // the key's, which problems point at; texts stand behind it
+    // That of the key, to which problems refer; texts are positioned after it.
+    SourcePosition where = member.where;
     if (member.node.where.source == where.source && member.node.where.line == where.line)
       where.text_column = member.node.where.text_column;
     const Reader::Scope scope(reader, info_.fields[i].name, member.key, where);

@@ -23,19 +23,19 @@
 
 namespace flexura {
 
-/// How a member's type is read from a document, written back, and described. Specialised per type; a struct
-/// gets its codec from its table of fields, an enum from its names (below).
+/// Reading, writing and description of a member's type. Specialised per type; a struct gets its codec from
+/// its table of fields, an enum from its names (below).
 template <class T>
 struct Codec;
 
-/// How values of one type are read, written and described, by their addresses.
+/// Reading, writing and description of values of one type, by their addresses.
 struct ValueCodec {
   bool (*read)(const Node& node, const Spec& spec, Reader& reader, void* value);
   Node (*write)(const void* value);
   Type (*type)();
 };
 
-/// The one of a type.
+/// The codec of a type.
 template <class T>
 inline constexpr ValueCodec codec_of = {
     [](const Node& node, const Spec& spec, Reader& reader, void* value) {
@@ -44,7 +44,7 @@ inline constexpr ValueCodec codec_of = {
     [](const void* value) { return Codec<T>::write(*static_cast<const T*>(value)); },
     [] { return Codec<T>::type(); }};
 
-/// A table of fields without its struct's type: what is the same for all, compiled once. Values are addresses
+/// A table of fields without its struct's type: the part common to all, compiled once. Values are addresses
 /// of the struct.
 class AnyTable {
  public:
@@ -53,7 +53,7 @@ class AnyTable {
  protected:
   AnyTable(std::string name, std::string meaning);
 
-  /// A field `offset` bytes into the struct; `default_value` is the address of the member of a default
+  /// Adds a field `offset` bytes into the struct; `default_value` is the address of the member of a default
   /// struct.
   void add(std::string name, std::size_t offset, const ValueCodec& codec, const void* default_value,
            Spec spec);
@@ -72,19 +72,18 @@ class AnyTable {
   std::vector<std::function<void(const void*, Reader&)>> checks_;
 };
 
-/// The table of fields of a struct: each member's name, unit, range, default and meaning, said once. From it
-/// come the typed reader, the errors, the writer, the schema and the reference page.
+/// The table of fields of a struct: each member's name, unit, range, default and meaning, defined once. The
+/// typed reader, the errors, the writer, the schema and the reference page are derived from it.
 ///
-/// A struct S has a table when `const Table<S>& fields_of(const S*)` is found beside it. Defaults are the
+/// A struct S has a table if `const Table<S>& fields_of(const S*)` is found beside it. Defaults are the
 /// members of a default-constructed S.
 template <class S>
 class Table : public AnyTable {
  public:
-  /// `name`: the text under "kind" where this is one of several tables. `meaning`: a sentence for the
-  /// reference.
+  /// `name`: the text under "kind" if this is one of several tables. `meaning`: a sentence for the reference.
   Table(std::string name, std::string meaning) : AnyTable(std::move(name), std::move(meaning)) {}
 
-  /// Adds a field that fills `member`, of S or of what S is made of.
+  /// Adds a field that fills `member`, of S or of a base of S.
   template <class M, class Base>
     requires std::derived_from<S, Base>
   Table& field(std::string name, M Base::* member, Spec spec) {
@@ -110,12 +109,12 @@ class Table : public AnyTable {
     return *this;
   }
 
-  /// Fills `value` from a table; false when a problem was reported.
+  /// Fills `value` from a table; returns false if a problem was reported.
   bool read(const Node& node, Reader& reader, S& value, std::string_view tag = {}) const {
     return read_at(node, reader, &value, tag);
   }
 
-  /// Every field that has something to write, in the table's order and in base units.
+  /// Writes every field that has a value, in the table's order and in base units.
   [[nodiscard]] Node write(const S& value) const { return write_at(&value); }
 
  private:
@@ -125,7 +124,7 @@ class Table : public AnyTable {
   }
 };
 
-/// Reads a whole document as an S; throws InputError with every problem found.
+/// Reads a whole document as an S; throws InputError with all problems found.
 template <class S>
 [[nodiscard]] S read_as(const Node& document) {
   Reader reader;
@@ -145,7 +144,7 @@ struct Codec<double> {
   static bool read(const Node& node, const Spec& spec, Reader& reader, double& value) {
     return reader.number(node, spec, value);
   }
-  /// An infinite bound is none: it is left out.
+  /// An infinite value means no bound and is omitted.
   static Node write(double value) { return std::isfinite(value) ? Node{value, {}} : Node{}; }
 };
 
@@ -193,7 +192,7 @@ struct Codec<E> {
   static Node write(E value) { return {name_of(value), {}}; }
 };
 
-/// Not written at all when left out.
+/// Not written if empty.
 template <class T>
 struct Codec<std::optional<T>> {
   static Type type() { return Codec<T>::type(); }
@@ -208,14 +207,14 @@ struct Codec<std::optional<T>> {
 
 namespace codec_detail {
 
-// Of one entry of an array.
+// Kind of one entry of an array.
 template <class T>
 Type::Kind kind_of() {
   static const Type::Kind kind = Codec<T>::type().kind;
   return kind;
 }
 
-// Reads the entries of an array into values[0..]; every bad entry is reported.
+// Reads the entries of an array into values[0..]; every invalid entry is reported.
 template <class T, class Values>
 bool read_entries(const Node::Array& entries, const Spec& spec, Reader& reader, Values& values) {
   bool all_read = true;
@@ -284,7 +283,7 @@ struct Codec<S> {
   static Node write(const S& value) { return table().write(value); }
 };
 
-/// One of several tables, told apart by the key "kind", which holds the table's name.
+/// One of several tables, identified by the key "kind", which holds the table's name.
 template <HasFields... S>
 struct Codec<std::variant<S...>> {
   using Value = std::variant<S...>;

@@ -82,7 +82,7 @@ SourcePosition at(int line, int column) {
   return {source, line, column};
 }
 
-// A member whose key stands in column 1 of `line` and whose value in column 10.
+// A member with its key in column 1 of `line` and its value in column 10.
 Node::Member member(std::string key, Node::Value value, int line = 1) {
   return {std::move(key), at(line, 1), {std::move(value), at(line, 10)}};
 }
@@ -188,7 +188,7 @@ TEST(Table, NamesTheNewNameOfARenamedKey) {
 TEST(Table, NamesTheTableWhereAKeyBelongs) {
   EXPECT_THAT(problems_of({member("radius_mm", 20.0, 7)}),
               ElementsAre("cart.toml:7:1: radius_mm: unknown key; it belongs into each \"wheel\""));
-  // What is nearly a key of this table is meant for that one.
+  // A misspelt key of this table gets a hint to that key.
   try {
     (void)read_as<Street>(table({member("seats", std::int64_t{3}, 7)}));
     ADD_FAILURE() << "read";

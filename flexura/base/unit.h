@@ -5,7 +5,7 @@
 
 namespace flexura {
 
-/// What a number in a file measures. Inside the program everything is SI; a key's suffix says another unit.
+/// Quantity of a number in a file. The program uses SI units; a key's suffix selects another unit.
 enum class Unit {
   none,
   metre,
@@ -17,23 +17,23 @@ enum class Unit {
   radian_per_second_squared
 };
 
-/// A way to write a quantity: a value under the key NAME + suffix counts `factor` base units.
+/// A spelling of a quantity: a value under the key NAME + suffix counts `factor` base units.
 struct UnitSpelling {
   std::string_view suffix;  ///< "" for the base unit, "_deg", "_pi", "_mm", ...
   double factor = 1.0;      ///< Base units for a written 1.
   std::string_view symbol;  ///< "rad", "deg", "x pi rad", "mm", ...
 };
 
-/// The spellings of a unit, base unit first.
+/// Returns the spellings of a unit, base unit first.
 [[nodiscard]] std::span<const UnitSpelling> spellings(Unit unit);
 
-/// The base unit's symbol ("m", "rad"), "" for none.
+/// Returns the base unit's symbol ("m", "rad"), "" for Unit::none.
 [[nodiscard]] inline std::string_view symbol(Unit unit) { return spellings(unit).front().symbol; }
 
-/// Every suffix that any unit has, to tell a wrong unit from a misspelt name.
+/// Returns the suffixes of all units, to distinguish a wrong unit from a misspelt name.
 [[nodiscard]] std::span<const std::string_view> all_unit_suffixes();
 
-/// A key without its unit's suffix: "length" of "length_mm" and of "length".
+/// Returns a key without its unit's suffix: "length" for "length_mm" and for "length".
 [[nodiscard]] std::string_view without_unit(std::string_view key);
 
 }  // namespace flexura

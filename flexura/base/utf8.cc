@@ -4,14 +4,15 @@ namespace flexura {
 
 namespace {
 
-/// What may follow a first byte: how many bytes, and the range of the first of them. The others are 80 to BF.
+/// Valid continuation of a first byte: the number of bytes, and the range of the first of them. The others
+/// are 80 to BF.
 struct Rest {
   std::size_t count = 0;
   unsigned char low = 0x80;
   unsigned char high = 0xBF;
 };
 
-/// Of a first byte; of one that cannot be first, more than any text has.
+/// Returns the continuation of a first byte; for an invalid one, a count larger than any text.
 Rest rest_of(unsigned char first) {
   if (first < 0x80) return {};
   if (first >= 0xC2 && first <= 0xDF) return {1};

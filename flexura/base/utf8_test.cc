@@ -8,7 +8,7 @@
 namespace flexura {
 namespace {
 
-/// As RFC 3629 says it: the bits of a code point in the shortest form.
+/// By the definition of RFC 3629: the bits of a code point in the shortest form.
 std::string encoded(unsigned point) {
   const auto tail = [](unsigned bits) { return static_cast<char>(0x80U | (bits & 0x3FU)); };
   if (point < 0x80) return {static_cast<char>(point)};

@@ -4,7 +4,7 @@
 
 namespace flexura {
 
-/// The version of the library, of the CMake project.
+/// Returns the version of the library, that of the CMake project.
 [[nodiscard]] std::string_view version();
 
 }  // namespace flexura

@@ -11,39 +11,39 @@
 
 namespace flexura {
 
-/// One camera calibrated by itself.
+/// A camera calibrated alone.
 struct CameraAlone {
-  BundleFit fit;                   ///< Of this camera and the boards that it saw.
-  std::vector<std::size_t> views;  ///< Which these are, of the views given.
+  BundleFit fit;                   ///< Fit of this camera and the boards that it saw.
+  std::vector<std::size_t> views;  ///< Indices of these boards in the given views.
 };
 
-/// The root mean square of so many distances.
+/// Returns the root mean square of `points` distances.
 [[nodiscard]] double rms_of(double square_sum, std::size_t points);
 
-/// Calibrates one camera of the given image size (width, height) from the views in which it saw the board: by
-/// the closed form and least squares, from other focal lengths too where that ends badly. Not converged with
-/// fewer than two views.
+/// Calibrates one camera of the given image size (width, height) from the views in which it saw the board.
+/// Uses the closed form and least squares; after a bad result, also other initial focal lengths. Not
+/// converged with fewer than two views.
 [[nodiscard]] CameraAlone fit_alone(std::span<const Eigen::Vector2d> points, std::span<const BoardView> views,
                                     std::size_t camera, const std::array<int, 2>& size,
                                     const BundleConfig& config);
 
-/// Where one view, in which both cameras saw the board, has a camera in the first one.
+/// Pose of a camera in the first one, from one view in which both saw the board.
 struct CameraStep {
-  std::size_t view = 0;  ///< Of the views given.
+  std::size_t view = 0;  ///< Index in the given views.
   Pose X_1C;
 };
 [[nodiscard]] std::vector<CameraStep> camera_steps(const CameraAlone& first, const CameraAlone& other);
 
-/// X_1C, the mean of what the views say; none without a view.
+/// Returns X_1C, the mean over the views; empty without a view.
 [[nodiscard]] std::optional<Pose> start_camera(std::span<const CameraStep> steps);
 
-/// How far the views disagree about where a camera is.
+/// Disagreement of the views about a camera's pose.
 struct StepSpread {
-  double turn = 0, distance = 0;  ///< rad and m, of the view that is farthest
-  std::size_t view = 0;           ///< from what most say, and which of the views given that is.
+  double turn = 0, distance = 0;  ///< Largest deviation of a view from the majority, rad and m.
+  std::size_t view = 0;           ///< Index of that view in the given ones.
 };
-/// From the step that is nearest to the others (the median of its turns from them is least). At least one
-/// step.
+/// Computes the deviations from the step that is nearest to the others (smallest median of its rotations from
+/// them). Needs at least one step.
 [[nodiscard]] StepSpread step_spread(std::span<const CameraStep> steps);
 
 }  // namespace flexura

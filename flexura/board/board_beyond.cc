@@ -36,7 +36,7 @@ std::vector<Side> sides_of(const BoardTarget& board, const std::vector<Vector2d>
   return sides;
 }
 
-// Where the parabola through a side's lines is, so many steps inwards.
+// Returns the line that the parabola through a side's lines predicts this many steps inwards.
 Line line_at(const Side& side, double inwards) {
   const double first = 0.5 * (inwards - 1) * (inwards - 2), second = inwards * (2 - inwards),
                third = 0.5 * inwards * (inwards - 1);
@@ -46,7 +46,7 @@ Line line_at(const Side& side, double inwards) {
   return line;
 }
 
-// The mean brightness about a place; none outside of the picture.
+// Returns the mean brightness around a position; empty outside the picture.
 std::optional<double> brightness(const Image<std::uint8_t>& gray, const Vector2d& pixel) {
   const bool is_inside =
       pixel.x() >= 1 && pixel.y() >= 1 && pixel.x() <= gray.width() - 2 && pixel.y() <= gray.height() - 2;
@@ -58,8 +58,8 @@ std::optional<double> brightness(const Image<std::uint8_t>& gray, const Vector2d
   return sum / 9;
 }
 
-// How bright the places of a line are that the pattern has dark and bright in turn: between the points of a
-// chessboard; at circles and between them. Empty where the picture does not show all of them.
+// Returns the brightness at the positions of a line where the pattern alternates: between the points of a
+// chessboard; at circles and between them. Empty unless the picture shows all of them.
 std::vector<double> pattern_along(const Image<std::uint8_t>& gray, BoardPattern pattern, const Line& line) {
   std::vector<double> values;
   for (std::size_t i = 0; i < line.size(); ++i) {
@@ -76,9 +76,9 @@ std::vector<double> pattern_along(const Image<std::uint8_t>& gray, BoardPattern 
 }
 
 bool goes_on(const Image<std::uint8_t>& gray, BoardPattern pattern, const Side& side) {
-  // A chessboard's squares have their like two lines off: those between the outermost points, and those
-  // behind the squares that every board has around these points. Of the latter the near part, for a board's
-  // outermost squares are often cut. Circles have theirs in the next line.
+  // On a chessboard, corresponding squares are two lines apart: those between the outermost points, and those
+  // beyond the squares that every board has around these points. Of the latter only the near part is used, as
+  // a board's outermost squares are often cut. For circles it is the next line.
   const bool is_chessboard = pattern == BoardPattern::chessboard;
   const auto inside = pattern_along(gray, pattern, line_at(side, is_chessboard ? 0.5 : 0)),
              beyond = pattern_along(gray, pattern, line_at(side, is_chessboard ? -1.25 : -1));
@@ -99,7 +99,7 @@ bool goes_on(const Image<std::uint8_t>& gray, BoardPattern pattern, const Side& 
     here.add(inside[i], inside[i] > middle);
     there.add(beyond[i], inside[i] > middle);
   }
-  // On the boards of opencv-doc parts have 0.8 of the contrast and more, and whole boards 0.1 and less.
+  // On the boards of opencv-doc, parts have a contrast ratio of 0.8 and more, whole boards of 0.1 and less.
   return there.value() > 0.5 * here.value();
 }
 

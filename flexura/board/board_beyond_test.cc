@@ -21,7 +21,7 @@ constexpr int columns_px = 320, rows_px = 240;
 
 const Intrinsics board_lens = {.fx = 330, .fy = 330, .cx = 159.5, .cy = 119.5};
 
-// The pixels of some columns and rows of a board, from the given ones on.
+// The pixels of some columns and rows of a board, starting with the given ones.
 std::vector<Eigen::Vector2d> pixels_of(const BoardTarget& board, const Pose& X_CB, const BoardTarget& part,
                                        int first_column, int first_row) {
   const Lens lens(board_lens);
@@ -65,7 +65,7 @@ TEST(BoardBeyond, SaysNothingOfWhatThePictureDoesNotShow) {
   const auto pixels = pixels_of(board, X_CB, part, 0, 0);
   const Image<std::uint8_t> picture = board_picture(board, Lens(board_lens), X_CB, columns_px, rows_px);
   EXPECT_TRUE(goes_on(picture, part, pixels));
-  // The same, cut off behind the points.
+  // The same board, cut off beyond the points.
   double right = 0;
   for (const Eigen::Vector2d& pixel : pixels) right = std::max(right, pixel.x());
   Image<std::uint8_t> cut(static_cast<int>(right) + 3, rows_px);

@@ -32,7 +32,7 @@ Pose moved(const Pose& pose, const Vector6& twist) {
   return {so3_exp(twist.tail<3>()) * pose.rotation, pose.position + twist.head<3>()};
 }
 
-// The same by the first numbers of a lens.
+// Moves the first values of a lens by a step.
 Intrinsics moved(const Intrinsics& lens, const VectorXd& step) {
   const auto part = [&](Index i) { return i < step.size() ? step[i] : 0.0; };
   Intrinsics result = lens;
@@ -41,7 +41,7 @@ Intrinsics moved(const Intrinsics& lens, const VectorXd& step) {
   return result;
 }
 
-// Lenses ready to project; none when a number is none of a lens.
+// Returns lenses ready to project; empty if a value is invalid.
 std::optional<std::vector<Lens>> lenses_of(const BoardBundle& bundle) {
   std::vector<Lens> lenses;
   for (const Intrinsics& lens : bundle.lenses) {
@@ -54,8 +54,8 @@ std::optional<std::vector<Lens>> lenses_of(const BoardBundle& bundle) {
   return lenses;
 }
 
-// The unknowns of all views together and their normal equations: of the cameras (A), of each board (D), and
-// between the two (B).
+// The unknowns of all views and their normal equations: of the cameras (A), of each board (D), and between
+// the two (B).
 class NormalEquations {
  public:
   NormalEquations(std::span<const Vector2d> points, std::span<const BoardView> views,
@@ -73,12 +73,12 @@ class NormalEquations {
 
   [[nodiscard]] Index lens_size() const { return lens_size_; }
   [[nodiscard]] Index lens_at(std::size_t camera) const { return static_cast<Index>(camera) * lens_size_; }
-  // Of a camera but the first.
+  // Of a camera other than the first.
   [[nodiscard]] Index pose_at(std::size_t camera, std::size_t cameras) const {
     return lens_at(cameras) + (static_cast<Index>(camera) - 1) * pose_size_;
   }
 
-  // False where a point is shown nowhere.
+  // Returns false if a lens does not show a point.
   bool linearize(const BoardBundle& bundle) {
     const auto lenses = lenses_of(bundle);
     if (!lenses) return false;
@@ -92,12 +92,12 @@ class NormalEquations {
     return true;
   }
 
-  // The steps of the cameras' unknowns and of each board's, with Marquardt's damping; false when there is
-  // none.
+  // Computes the steps of the cameras' unknowns and of each board's, with Marquardt's damping; returns false
+  // on failure.
   bool solve(double damping, VectorXd& cameras, std::vector<Vector6>& boards) {
     reduced_ = A_;
     reduced_.diagonal() *= 1 + damping;
-    // What no view tells stays as it is.
+    // Unknowns that no view determines stay fixed.
     for (double& entry : reduced_.diagonal())
       if (entry == 0) entry = 1;
     cameras = cameras_right_;
@@ -125,7 +125,7 @@ class NormalEquations {
     return cameras.allFinite();
   }
 
-  // Infinite where a point is shown nowhere.
+  // Infinite if a lens does not show a point.
   [[nodiscard]] double square_sum(const BoardBundle& bundle) const {
     constexpr double nowhere = std::numeric_limits<double>::infinity();
     if (!lenses_of(bundle)) return nowhere;
@@ -140,7 +140,7 @@ class NormalEquations {
     return std::isfinite(sum) ? sum : nowhere;
   }
 
-  // Of the last linearization, undamped.
+  // Of the last linearisation, undamped.
   [[nodiscard]] MatrixXd information() const {
     MatrixXd result = A_;
     for (std::size_t view = 0; result.size() > 0 && view < views_.size(); ++view)
@@ -181,7 +181,7 @@ class NormalEquations {
 
   // Adds one camera's part of one view.
   void scatter(std::size_t camera, std::size_t view, std::size_t cameras, Index own) {
-    std::array<std::array<Index, 3>, 2> parts{};  // from, to, size
+    std::array<std::array<Index, 3>, 2> parts{};  // From, to, size.
     std::size_t count = 0;
     if (lens_size_ > 0) parts[count++] = {0, lens_at(camera), lens_size_};
     if (own > lens_size_) parts[count++] = {lens_size_, pose_at(camera, cameras), pose_size_};
@@ -245,7 +245,7 @@ BundleFit fit_bundle(std::span<const Vector2d> points, std::span<const BoardView
   fit.square_sum = first, fit.steps = 1;
   for (const BoardView& view : views)
     for (const auto& pixels : view.pixels) fit.points += pixels.size();
-  bool is_shown = true;  // What stands in the equations is of fit.bundle.
+  bool is_shown = true;  // Whether the equations are those of fit.bundle.
   BoardBundle tried;
   VectorXd cameras;
   std::vector<Vector6> boards;
@@ -256,7 +256,7 @@ BundleFit fit_bundle(std::span<const Vector2d> points, std::span<const BoardView
     return {.cost = equations.square_sum(tried)};
   };
   const auto keep = [&](const TriedStep& step, double& cost) {
-    constexpr double exact = 1e-20;  // px^2 a point
+    constexpr double exact = 1e-20;  // px^2 per point
     const bool is_small =
         cost - step.cost <= config.least_gain * cost || step.cost < exact * static_cast<double>(fit.points);
     std::swap(fit.bundle, tried);
@@ -265,7 +265,7 @@ BundleFit fit_bundle(std::span<const Vector2d> points, std::span<const BoardView
     fit.is_converged = is_small && is_shown;
     return is_small || !is_shown;
   };
-  // Where rounding alone is left, no step is better.
+  // When only rounding is left, no step is better.
   const auto leave = [&](const TriedStep& step, double cost) {
     return fit.is_converged = step.cost <= cost * (1 + config.least_gain);
   };

@@ -10,51 +10,52 @@
 
 namespace flexura {
 
-/// What cameras that stand still to each other saw of a board at one time: for each camera the pixels of the
-/// board's points, in the board's order; none where it saw no board. (Of a camera that never sees one nothing
-/// is told: it stays as it was.)
+/// One view of a board by cameras fixed to each other. For each camera it has the pixels of the board's
+/// points, in the board's order; empty if it saw no board. (A camera that never sees one keeps its values.)
 struct BoardView {
   std::vector<std::vector<Eigen::Vector2d>> pixels;  ///< (u, v), px.
 };
 
-/// What a set of views is explained by.
+/// Unknowns that explain a set of views.
 struct BoardBundle {
-  std::vector<Intrinsics> lenses;  ///< A camera each.
-  std::vector<Pose> cameras;       ///< X_1C: each camera in the first; the first is where it is.
+  std::vector<Intrinsics> lenses;  ///< One per camera.
+  std::vector<Pose> cameras;       ///< X_1C: each camera in the first; that of the first stays fixed.
   std::vector<Pose> boards;        ///< X_1B: each view's board in the first camera.
 };
 
-/// What of a bundle is fitted.
+/// What is fitted in a bundle.
 struct BundleConfig {
-  bool cameras = true;        ///< Lenses and cameras, and not the boards alone.
-  int distortion = 5;         ///< How many of k1, k2, p1, p2, k3; the others keep their values.
-  int most_steps = 100;       ///< Of BundleFit::steps.
-  double least_gain = 1e-12;  ///< A step that gains less than this share of the sum is the last.
+  bool cameras = true;  ///< Whether lenses and camera poses are fitted, in addition to the boards.
+  int distortion = 5;  ///< Number of fitted coefficients of k1, k2, p1, p2, k3; the others keep their values.
+  int most_steps = 100;       ///< Limit of BundleFit::steps.
+  double least_gain = 1e-12;  ///< The fit ends when a step gains less than this share of the sum.
 };
 
-/// A bundle fitted to views.
+/// Result of a fit.
 struct BundleFit {
   BoardBundle bundle;
-  bool is_converged = false;  ///< Else no step helped, or they ran out.
-  int steps = 0;              ///< The first linearization, and every step tried.
-  double square_sum = 0;      ///< Of all pixels' distances, px^2.
-  std::size_t points = 0;     ///< Pixels that were compared.
-  std::size_t unknowns = 0;   ///< Cameras' and boards'.
-  /// Of the cameras' unknowns, the boards' eliminated, for noise of 1 px: its inverse is their covariance.
-  /// Camera by camera its lens, in the order of `intrinsics_count` as far as it is fitted; then for each
-  /// camera but the first its small motion [v; w] of X_1C: p + v, exp(w) R.
+  bool is_converged = false;  ///< Otherwise no step helped, or the limit was reached.
+  int steps = 0;              ///< The first linearisation, and every step tried.
+  double square_sum = 0;      ///< Sum of all pixels' squared distances, px^2.
+  std::size_t points = 0;     ///< Number of pixels compared.
+  std::size_t unknowns = 0;   ///< Number of unknowns of cameras and boards.
+  /// Information matrix of the cameras' unknowns, with the boards' eliminated, for noise of 1 px; its inverse
+  /// is their covariance. For each camera first the fitted part of its lens, in the order of
+  /// `intrinsics_count`. Then, for each camera except the first, its small motion [v; w] of X_1C: p + v,
+  /// exp(w) R.
   Eigen::MatrixXd information;
 };
 
-/// Least squares of the distances between `views` and the images of `points` (z = 0 in B), in all cameras and
-/// views at once, from a start; by Levenberg's and Marquardt's method. A board's six unknowns appear in its
-/// own view only, so the boards are eliminated from each step (Schur complement; D. C. Brown's bundle
-/// adjustment), which costs a time in proportion to the number of views. Where a start shows a point nowhere,
-/// the fit has not converged and is the start.
+/// Fits a bundle by least squares of the distances between `views` and the images of `points` (z = 0 in B),
+/// in all cameras and views at once. Uses the Levenberg-Marquardt method from `start`. A board's six unknowns
+/// appear in its own view only. The boards are therefore eliminated from each step (Schur complement; D. C.
+/// Brown's bundle adjustment), at a cost proportional to the number of views. If the start does not show a
+/// point, the result is the start, not converged.
 [[nodiscard]] BundleFit fit_bundle(std::span<const Eigen::Vector2d> points, std::span<const BoardView> views,
                                    const BoardBundle& start, const BundleConfig& config);
 
-/// The sum of squared distances in one view and camera, px^2; none where the lens shows a point nowhere.
+/// Returns the sum of squared distances in one view and camera, px^2; empty if the lens does not show a
+/// point.
 [[nodiscard]] std::optional<double> square_sum(std::span<const Eigen::Vector2d> points, const BoardView& view,
                                                const BoardBundle& bundle, std::size_t camera,
                                                const Pose& X_1B);

@@ -50,8 +50,8 @@ double corner_sigma(const Intrinsics& lens,
 }
 
 MatrixXd covariance_of(const MatrixXd& information, const VectorXd& scale) {
-  // In units in which each unknown moves a corner by a pixel, so that the least eigenvalues say what is not
-  // told.
+  // In units in which each unknown moves a corner by a pixel, so that the smallest eigenvalues belong to
+  // undetermined directions.
   const MatrixXd scaled = scale.cwiseInverse().asDiagonal() * information * scale.cwiseInverse().asDiagonal();
   const auto [values, vectors] = symmetric_eigen(scaled);
   const double least = 1e-12 * std::max(values.maxCoeff(), 1e-300);

@@ -19,7 +19,7 @@ namespace {
 using Eigen::Vector2d;
 using Corners = std::vector<cv::Point2f>;
 
-// The distance between two neighbours of a row or a column, px, where it is least.
+// Returns the smallest distance of neighbours in a row or a column, px.
 double least_spacing(const Corners& corners, const BoardTarget& board) {
   double least = std::numeric_limits<double>::infinity();
   const auto columns = static_cast<std::size_t>(board.columns);
@@ -30,16 +30,16 @@ double least_spacing(const Corners& corners, const BoardTarget& board) {
   return least;
 }
 
-// Half the window in which a corner is made precise: as wide as ten pixels, or a quarter of a square where
-// squares are large, but without the neighbours' corners.
+// Half the window in which a corner is refined: ten pixels wide, or a quarter of a square if squares are
+// large, without the neighbours' corners.
 int half_window(double spacing) {
   constexpr double usual = 5, least = 2;
   const double wanted = std::max(usual, spacing / 8);
   return static_cast<int>(std::floor(std::clamp(wanted, least, std::max(least, 0.5 * spacing - 1))));
 }
 
-// Whether neighbours have nothing to do with each other, as behind a lens cap: OpenCV would look for squares
-// in each grain for minutes, in large pictures for hours. A board's squares are some pixels wide.
+// Returns whether neighbouring pixels are uncorrelated, as behind a lens cap. OpenCV would search squares in
+// each grain for minutes, in large pictures for hours. A board's squares are several pixels wide.
 bool is_noise(const Image<std::uint8_t>& gray) {
   const auto values = gray.values();
   double sum = 0, squares = 0;
@@ -55,7 +55,7 @@ bool is_noise(const Image<std::uint8_t>& gray) {
     }
     return steps / count;
   };
-  // In variances it is 2 of noise of any distribution, 4/3 of squares three pixels wide.
+  // In variances it is 2 for noise of any distribution, 4/3 for squares three pixels wide.
   const double most = 1.6 * variance;
   return mean_step(1) > most && mean_step(width) > most;
 }
@@ -71,12 +71,12 @@ bool find_corners(const cv::Mat& picture, const BoardTarget& board, Corners& cor
 }
 
 bool find_circles(const cv::Mat& picture, const BoardTarget& board, Corners& corners) {
-  // OpenCV's own limits are for pictures of 640 x 480 px.
+  // OpenCV's default limits are for pictures of 640 x 480 px.
   cv::SimpleBlobDetector::Params blobs;
   blobs.minArea = 10;
   blobs.maxArea = static_cast<float>(picture.total()) / static_cast<float>(board.columns);
   blobs.minDistBetweenBlobs = 3;
-  // The search for the grid draws random numbers: the same ones for every picture.
+  // The search for the grid uses random numbers: equal ones for every picture.
   cv::setRNGSeed(1);
   const int kind =
       board.pattern == BoardPattern::circles ? cv::CALIB_CB_SYMMETRIC_GRID : cv::CALIB_CB_ASYMMETRIC_GRID;
@@ -84,12 +84,12 @@ bool find_circles(const cv::Mat& picture, const BoardTarget& board, Corners& cor
                              cv::SimpleBlobDetector::create(blobs));
 }
 
-// Twice the signed area of the triangle a, b, c: positive where it turns from u to v.
+// Twice the signed area of the triangle a, b, c: positive for a rotation from u to v.
 double turn(const Vector2d& a, const Vector2d& b, const Vector2d& c) {
   return (b - a).x() * (c - a).y() - (b - a).y() * (c - a).x();
 }
 
-// The picture's mean brightness about the middle of the square whose first corner is `at`.
+// Mean brightness around the middle of the square whose first corner is `at`.
 double brightness(const Image<std::uint8_t>& gray, const std::vector<Vector2d>& pixels, std::size_t at,
                   std::size_t columns) {
   const Vector2d middle =
@@ -102,7 +102,7 @@ double brightness(const Image<std::uint8_t>& gray, const std::vector<Vector2d>& 
   return sum;
 }
 
-// One order of the points for all cameras, as far as the board tells it.
+// Brings the points into an order common to all cameras, as far as the board determines it.
 void put_in_order(const Image<std::uint8_t>& gray, const BoardTarget& board, std::vector<Vector2d>& pixels) {
   const auto columns = static_cast<std::size_t>(board.columns), rows = pixels.size() / columns;
   // Mirrored: the board would be seen from behind.
@@ -120,10 +120,10 @@ void put_in_order(const Image<std::uint8_t>& gray, const BoardTarget& board, std
 
 BoardSighting find_board(const Image<std::uint8_t>& gray, const BoardTarget& board) {
   if (is_noise(gray)) return {.pixels = {}, .reason = "the picture is nothing but noise"};
-  // The same bytes on every machine, whatever it has of processors. (And ThreadSanitizer, which cannot see
-  // into the packaged library, takes what its threads lock on this one's stack for races.)
+  // Equal bytes on every machine, whatever its number of processors. (Also, ThreadSanitizer cannot see into
+  // the packaged library and reports its locks on this stack as races.)
   cv::setNumThreads(1);
-  // OpenCV reads only.
+  // OpenCV only reads it.
   const cv::Mat picture(gray.height(), gray.width(), CV_8U, const_cast<std::uint8_t*>(gray.values().data()));
   Corners corners;
   bool is_found = false;
@@ -131,7 +131,7 @@ BoardSighting find_board(const Image<std::uint8_t>& gray, const BoardTarget& boa
     is_found = board.pattern == BoardPattern::chessboard ? find_corners(picture, board, corners)
                                                          : find_circles(picture, board, corners);
   } catch (const cv::Exception&) {
-    is_found = false;  // A picture too small for the search, and the like.
+    is_found = false;  // For example a picture too small for the search.
   }
   BoardSighting sighting;
   const auto is_inside = [&](const cv::Point2f& at) {

@@ -10,21 +10,20 @@
 
 namespace flexura {
 
-/// A board as one picture shows it.
+/// A board in one picture.
 struct BoardSighting {
-  std::vector<Eigen::Vector2d>
-      pixels;              ///< Of the board's points, in their order; none when it was not found.
-  std::string reason;      ///< Why not; "" when it was.
-  bool is_larger = false;  ///< Not found, because the pattern goes on: it is a larger board.
+  /// Image points of the board, in its order; empty if it was not found.
+  std::vector<Eigen::Vector2d> pixels;
+  std::string reason;      ///< Why it was not found; "" if it was.
+  bool is_larger = false;  ///< Not found because the pattern continues: it is a larger board.
 
   [[nodiscard]] bool is_found() const { return !pixels.empty(); }
 };
 
-/// Finds a board of at least 3 x 3 points that is wholly in the picture, by OpenCV's calib3d; corners to a
-/// small part of a pixel (W. Foerstner's saddle point, cornerSubPix, in a window that reaches no neighbour).
-/// The first point is chosen so that rows and columns turn as on the board and, on a chessboard that can
-/// tell, so that the square inward of it is dark. A part of a larger board is none. The same picture gives
-/// the same numbers.
+/// Finds a board of at least 3 x 3 points that is entirely in the picture, by OpenCV's calib3d. Corners are
+/// subpixel (W. Foerstner's saddle point, cornerSubPix, in a window without neighbouring corners). The first
+/// point is chosen so that rows and columns turn as on the board. On an unambiguous chessboard the square
+/// inward of it is also dark. A part of a larger board is not accepted. Equal pictures give equal results.
 [[nodiscard]] BoardSighting find_board(const Image<std::uint8_t>& gray, const BoardTarget& board);
 
 }  // namespace flexura

@@ -21,7 +21,7 @@ namespace {
 constexpr int width = 320, height = 240;
 const Intrinsics lens_numbers = {.fx = 330, .fy = 330, .cx = 159.5, .cy = 119.5};
 
-// The root mean square of the distances from where the board's points are.
+// Root mean square of the distances from the true points.
 double error(const BoardSighting& found, const BoardTarget& board, const Pose& X_CB) {
   const Lens lens(lens_numbers);
   const auto points = board.points();
@@ -37,10 +37,10 @@ BoardSighting look(const BoardTarget& board, const Pose& X_CB) {
   return find_board(board_picture(board, Lens(lens_numbers), X_CB, width, height), board);
 }
 
-// OpenCV would look for squares among the grains.
+// OpenCV would search squares among the grains.
 TEST(BoardFinder, DoesNotSearchNoise) {
   BoardTarget board{.columns = 7, .rows = 4};
-  // Of a covered lens, cut off at 0, and of brighter pictures.
+  // A covered lens, clipped at 0, and brighter pictures.
   for (const auto& [level, deviation] :
        {std::array{0.0, 0.5}, {0.0, 0.7}, {0.0, 1.0}, {2.0, 0.4}, {16.0, 0.5}, {100.0, 30.0}}) {
     TestRandom random(1);
@@ -79,7 +79,7 @@ TEST(BoardFinder, KnowsTheFirstCornerOfABoardThatIsUpsideDown) {
 }
 
 TEST(BoardFinder, FindsGridsOfCircles) {
-  // Two opposite first circles are as good where the board cannot tell.
+  // Opposite first circles are equivalent if the board is ambiguous.
   const BoardTarget circles{.pattern = BoardPattern::circles, .columns = 7, .rows = 5},
       shifted{.pattern = BoardPattern::asymmetric_circles, .columns = 4, .rows = 7, .square = 0.02};
   for (const BoardTarget& board : {circles, shifted}) {

@@ -1,4 +1,4 @@
-// The chessboards of the Debian package opencv-doc, which nobody here made: thirteen pairs of pictures.
+// The chessboards of the Debian package opencv-doc: thirteen pairs of real pictures.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -72,8 +72,8 @@ TEST_F(RealBoards, GiveEachCameraTheKnownResidual) {
   EXPECT_EQ(left.points, 13 * points_.size());
   EXPECT_NEAR(left.rms, 0.195, 0.005 * 0.195);
   EXPECT_NEAR(right.rms, 0.207, 0.005 * 0.207);
-  // No board comes near the corners of the left pictures: the last coefficient is not told, and the rest is
-  // enough.
+  // No board comes near the corners of the left pictures: the last coefficient is undetermined, and the
+  // others are sufficient.
   EXPECT_EQ(left.cameras[0].untold, std::vector<int>{8});
   EXPECT_TRUE(right.cameras[0].untold.empty());
   const IntrinsicsFit fewer = fit_intrinsics(points_, side(0), one_size, {.distortion = 4});
@@ -95,8 +95,8 @@ TEST_F(RealBoards, ArePredictedWhenTheyAreHeldOut) {
   EXPECT_EQ(left.points, 7 * points_.size());
   ASSERT_TRUE(left.held_out_rms);
   EXPECT_LE(*left.held_out_rms, 0.197);
-  // The right camera has 0.207 px on the pictures that it is fitted to, and does not keep to that; it and the
-  // pair must not be much worse than their fits.
+  // The right camera fits its pictures to 0.207 px but predicts others less well. It and the pair must not be
+  // much worse than their fits.
   const IntrinsicsFit right = fit_intrinsics(points_, side(1), one_size, {.hold_out = 2}),
                       pair = fit_intrinsics(points_, pairs(), two_sizes, {.hold_out = 2});
   EXPECT_LT(*right.held_out_rms, 1.03 * right.rms);

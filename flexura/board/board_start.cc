@@ -17,7 +17,7 @@ using Eigen::Matrix3d;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-// Takes points to their middle and to a mean square distance of 2 from it.
+// Normalises points to mean 0 and a mean square distance of 2.
 Matrix3d normalization(std::span<const Vector2d> points) {
   Vector2d middle = Vector2d::Zero();
   for (const Vector2d& point : points) middle += point / static_cast<double>(points.size());
@@ -30,8 +30,8 @@ Matrix3d normalization(std::span<const Vector2d> points) {
   return result;
 }
 
-// The lens with this principal point to which the homographies' columns are most nearly of one length and at
-// right angles (Zhang's constraints in 1/fx^2 and 1/fy^2).
+// Returns the focal lengths for this principal point that make the homographies' columns most nearly
+// orthogonal and of equal length (Zhang's constraints in 1/fx^2 and 1/fy^2).
 std::optional<Vector2d> focal_lengths(std::span<const Matrix3d> homographies,
                                       const Vector2d& principal_point) {
   Eigen::Matrix2d normal = Eigen::Matrix2d::Zero();
@@ -54,7 +54,7 @@ std::optional<Vector2d> focal_lengths(std::span<const Matrix3d> homographies,
   return inverse_squares.cwiseSqrt().cwiseInverse();
 }
 
-// The image of the absolute conic without skew, B11, B22, B13, B23, B33: the principal point that it has.
+// Returns the principal point from the image of the absolute conic without skew, B11, B22, B13, B23, B33.
 std::optional<Vector2d> principal_point(std::span<const Matrix3d> homographies, const Matrix3d& scale) {
   Eigen::Matrix<double, 5, 5> normal = Eigen::Matrix<double, 5, 5>::Zero();
   for (const Matrix3d& H : homographies) {
@@ -73,7 +73,7 @@ std::optional<Vector2d> principal_point(std::span<const Matrix3d> homographies, 
   }
   const auto [values, vectors] = symmetric_eigen(normal);
   const Eigen::Vector<double, 5> conic = vectors.col(0);
-  // Two directions that are as good: the boards do not tell.
+  // Two equally good directions: the boards do not determine it.
   if (values[1] < 1e-9 * values[4]) return std::nullopt;
   if (!(conic[0] * conic[1] > 0)) return std::nullopt;
   const Vector3d normalized(-conic[2] / conic[0], -conic[3] / conic[1], 1);
@@ -99,7 +99,7 @@ std::optional<Matrix3d> board_homography(std::span<const Vector2d> points, std::
   normalized << h.head<3>().transpose(), h.segment<3>(3).transpose(), h.tail<3>().transpose();
   Matrix3d H = to.inverse() * normalized * from;
   H /= H.norm();
-  // The board's first point in front of the camera.
+  // The board's first point is in front of the camera.
   if (H.row(2).dot(points.front().homogeneous()) < 0) H = -H;
   if (!H.allFinite()) return std::nullopt;
   return H;
@@ -112,8 +112,7 @@ Intrinsics start_lens(std::span<const Matrix3d> homographies, int width, int hei
   scale.col(2) = Vector3d(-middle.x() / size, -middle.y() / size, 1);
   std::optional<Vector2d> focal;
   Vector2d center = middle;
-  // Distortion and noise draw a principal point that is told weakly far away: it has to be in the middle
-  // half.
+  // Distortion and noise shift a weakly determined principal point far away: it must be in the middle half.
   const auto told = principal_point(homographies, scale);
   if (told && std::abs(told->x() - middle.x()) < 0.25 * width &&
       std::abs(told->y() - middle.y()) < 0.25 * height) {
@@ -121,7 +120,7 @@ Intrinsics start_lens(std::span<const Matrix3d> homographies, int width, int hei
     if (focal) center = *told;
   }
   if (!focal) focal = focal_lengths(homographies, middle);
-  constexpr double widest = 0.2, longest = 50;  // in the image's size
+  constexpr double widest = 0.2, longest = 50;  // In the image's size.
   if (!focal || focal->minCoeff() < widest * size || focal->maxCoeff() > longest * size) {
     const double guess = 0.5 * size / std::tan(25 * degree);
     return {.fx = guess, .fy = guess, .cx = middle.x(), .cy = middle.y()};
@@ -142,7 +141,7 @@ std::optional<Pose> start_pose(const Lens& lens, std::span<const Vector2d> point
   const double scale = 2 / (H->col(0).norm() + H->col(1).norm());
   Matrix3d axes;
   axes << scale * H->col(0), scale * H->col(1), (scale * H->col(0)).cross(scale * H->col(1));
-  constexpr double parallel = 1e-6;  // A board of which no more than a line is seen: turned about it anyhow.
+  constexpr double parallel = 1e-6;  // A board seen as a line; its rotation about it is arbitrary.
   if (!(axes.col(2).norm() > parallel)) return std::nullopt;
   const Matrix3d R_CB = nearest_rotation(axes);
   if (!R_CB.allFinite()) return std::nullopt;

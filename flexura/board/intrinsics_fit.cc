@@ -33,7 +33,7 @@ constexpr const char* untilted =
     "the views do not tell focal length and principal point apart from where the board was: expected boards "
     "tilted to different sides";
 
-// What the views do not tell wanders off without end, and they are explained all the same.
+// Undetermined unknowns diverge although the views are explained.
 const char* why_not_converged(const BundleFit& fit) {
   constexpr double good = 2;  // px
   const bool is_explained = fit.points > 0 && rms_of(fit.square_sum, fit.points) < good;
@@ -97,7 +97,7 @@ class Calibration {
   }
 
   bool find_start(BoardBundle& start) {
-    constexpr double start_gain = 1e-7;  // The joint fit goes on from there.
+    constexpr double start_gain = 1e-7;  // The joint fit continues from there.
     std::vector<CameraAlone> alone;
     for (std::size_t camera = 0; camera < sizes_.size(); ++camera) {
       alone.push_back(fit_alone(points_, fitted_, camera, sizes_[camera], bundle_config(start_gain)));
@@ -129,7 +129,7 @@ class Calibration {
         start.boards.push_back(start.cameras[camera] *
                                alone[camera].fit.bundle.boards[static_cast<std::size_t>(at - seen.begin())]);
       }
-      // Pixels on a line: no camera can say where that board was.
+      // Pixels on a line: no camera determines the pose of that board.
       if (start.boards.size() == view) {
         result_.reason = "the points of a view lie on a line";
         return false;
@@ -138,8 +138,7 @@ class Calibration {
     return true;
   }
 
-  // Why cameras that are good by themselves have no places to each other that explain all views; "" if they
-  // have.
+  // Returns why cameras that fit well alone have no relative poses that explain all views; "" if they do.
   [[nodiscard]] std::string why_apart(const BundleFit& fit) const {
     constexpr double much_worse = 5, visible = 1;  // px
     std::vector<std::string> rms_alone;
@@ -222,7 +221,7 @@ class Calibration {
     }
   }
 
-  // Where the boards of held-out views were, and how well the cameras then say their pixels.
+  // Fits the boards of held-out views and computes the cameras' prediction errors.
   void predict() {
     double sum = 0;
     std::size_t count = 0;
@@ -270,7 +269,7 @@ class Calibration {
     const auto [width, height] = sizes_[camera];
     const double largest = largest_share * std::hypot(width, height);
     own.corner_sigma = corner_sigma(own.lens, own.covariance, width, height);
-    // Perfect pictures would tell everything.
+    // Perfect pictures would determine everything.
     const double grown = result_.noise < best_noise ? best_noise / std::max(result_.noise, 1e-12) : 1;
     const auto seen = intrinsics_effects(own.lens, seen_by(camera)),
                corners = intrinsics_effects(own.lens, image_corners(width, height));
@@ -286,9 +285,9 @@ class Calibration {
   std::span<const BoardView> views_;
   std::span<const Size> sizes_;
   IntrinsicsConfig config_;
-  std::vector<std::size_t> numbers_;  // Of the views that are fitted.
+  std::vector<std::size_t> numbers_;  // Of the fitted views.
   std::vector<BoardView> fitted_;
-  std::vector<std::vector<CameraStep>> steps_;  // Of each camera but the first.
+  std::vector<std::vector<CameraStep>> steps_;  // Of each camera except the first.
   BoardBundle bundle_;
   MatrixXd unit_covariance_;
   IntrinsicsFit result_;

@@ -44,7 +44,7 @@ Intrinsics random_intrinsics(TestRandom& random) {
   return lens;
 }
 
-// So far that the board takes up about a third of the image.
+// The board covers about a third of the image.
 double distance_for(const Intrinsics& lens) { return 0.7e-3 * lens.fx; }
 
 BoardBundle random_camera(TestRandom& random, int views) {
@@ -80,7 +80,7 @@ TEST(IntrinsicsFit, SolvesTheMinimalCaseExactly) {
   for_random_cases(20, [](TestRandom& random) {
     BoardBundle truth = random_camera(random, 2);
     truth.lenses[0].distortion = {};
-    // Two boards tilted about different axes; parallel ones tell nothing.
+    // Two boards tilted about different axes; parallel ones give no information.
     truth.boards[0].rotation = so3_exp({0.5, 0.1, 0}), truth.boards[1].rotation = so3_exp({-0.1, 0.5, 0.2});
     const auto views = seen_boards(truth, points, 0, random);
     const IntrinsicsFit fit = fit_intrinsics(points, views, one_size, {.distortion = 0});
@@ -132,7 +132,7 @@ TEST(IntrinsicsFit, IsAsFarOffAsItsCovarianceSays) {
   for (int j = 0; j < intrinsics_count; ++j) expect_chi_square(parts[j], cases);
 }
 
-// All pixels of a bundle whose cameras' and boards' unknowns are moved.
+// All pixels of a bundle after a step of the cameras' and boards' unknowns.
 Eigen::VectorXd pixels_of(const BoardBundle& bundle, const Eigen::VectorXd& step) {
   BoardBundle moved = bundle;
   Eigen::Index at = 0;
@@ -212,7 +212,8 @@ TEST(IntrinsicsFit, IsOpenCVs) {
     EXPECT_NEAR(fit.rms, rms, 1e-6);
     EXPECT_NEAR(fit.cameras[0].lens.fx, K.at<double>(0, 0), 0.02 * fit.cameras[0].sigma(0));
     EXPECT_NEAR(fit.cameras[0].lens.cy, K.at<double>(1, 2), 0.02 * fit.cameras[0].sigma(3));
-    // OpenCV divides by the points, not by their two coordinates each, less the unknowns.
+    // OpenCV divides by the points minus the unknowns, not by their coordinates (two per point) minus the
+    // unknowns.
     const double unknowns = intrinsics_count + 6.0 * 8, count = 8.0 * static_cast<double>(points.size());
     const double ratio = std::sqrt((count - unknowns) / (2 * count - unknowns));
     for (int i = 0; i < intrinsics_count; ++i)
@@ -242,7 +243,7 @@ TEST(IntrinsicsFit, KnowsThatBoardsInTheMiddleDoNotTellDistortion) {
   ASSERT_TRUE(middle.is_found) << middle.reason;
   EXPECT_GT(middle.cameras[0].corner_sigma, 8);
   EXPECT_THAT(middle.cameras[0].untold, Contains(8));
-  // Boards all over the image do.
+  // Boards all over the image determine it.
   for (Pose& pose : truth.boards) pose = random_board(random, board, 0.25, 0.6, 0.3);
   const IntrinsicsFit all_over = fit_intrinsics(points, seen_boards(truth, points, 0.1, random), one_size);
   ASSERT_TRUE(all_over.is_found) << all_over.reason;
@@ -254,7 +255,7 @@ TEST(IntrinsicsFit, PredictsHeldOutViewsAsWellAsItExplainsTheOthers) {
   TestRandom random(case_seed(0));
   const BoardBundle truth = random_pair(random, 20);
   auto views = seen_boards(truth, points, 0.2, random);
-  // A view that no camera has does not count.
+  // A view without any camera does not count.
   views.insert(views.begin() + 1, BoardView{{{}, {}}});
   const IntrinsicsFit fit = fit_intrinsics(points, views, two_sizes, {.hold_out = 4});
   ASSERT_TRUE(fit.is_found) << fit.reason;
@@ -277,7 +278,7 @@ TEST(IntrinsicsFit, UsesViewsThatOneCameraHas) {
   ASSERT_TRUE(fit.is_found) << fit.reason;
   EXPECT_EQ(fit.points, 12 * points.size());
   EXPECT_LT(motion(truth.boards[0], *fit.boards[0]).norm(), 0.01);
-  // Boards that never were seen by both do not tell where the second camera stands.
+  // Boards never seen by both cameras do not determine the second camera's pose.
   for (std::size_t view = 4; view < 8; ++view) views[view].pixels[view % 2].clear();
   EXPECT_THAT(fit_intrinsics(points, views, two_sizes).reason, HasSubstr("together"));
 }
@@ -286,7 +287,8 @@ TEST(IntrinsicsFit, KnowsThatPicturesDoNotBelongTogether) {
   for_random_cases(4, [](TestRandom& random) {
     const BoardBundle truth = random_pair(random, 8);
     const auto views = seen_boards(truth, points, 0.1, random);
-    // All of the second camera's shifted by one; and one alone that shows the board where it was before.
+    // All of the second camera's views shifted by one; and a single one that shows the board in its previous
+    // position.
     auto shifted = views, one = views;
     for (std::size_t i = 0; i < views.size(); ++i)
       shifted[i].pixels[1] = views[(i + 1) % views.size()].pixels[1];

@@ -13,7 +13,7 @@
 namespace flexura {
 namespace {
 
-// In which the arc of a camera lies.
+// The plane of camera i's arc.
 const char* name_of_plane(std::size_t i) { return i == 0 ? "XOY" : "ZOY"; }
 
 }  // namespace
@@ -40,7 +40,7 @@ std::optional<std::string> plan_arcs(LookLoop& loop, bool aims_at_centers, ArcPl
   const double bend = loop.config().arc;
   plan.radius = arm.length() / bend;
   plan.normals = {Eigen::Vector3d::UnitZ(), Eigen::Vector3d::UnitX()};
-  // Towards the side from which each camera is believed to look; the arcs bend away from the other camera.
+  // Points each normal towards the modelled position of its camera; the arcs bend away from the other camera.
   for (std::size_t i = 0; i < 2; ++i)
     if (vector(loop.model(i).mount.position).dot(plan.normals[i]) < arm.X_WB.position.dot(plan.normals[i]))
       plan.normals[i] = -plan.normals[i];
@@ -57,7 +57,7 @@ std::optional<std::string> plan_arcs(LookLoop& loop, bool aims_at_centers, ArcPl
     middles[i] = aims_at_centers ? plan.centers[i] : backbone.pose(0.5 * arm.length()).position;
   }
   plan.target = {middles[0].x(), 0.5 * (middles[0].y() + middles[1].y()), middles[1].z()};
-  // The smallest magnification that both cameras have, and something to spare for making it smaller still.
+  // The smallest magnification that both cameras reach, with a margin for making it smaller still.
   double magnification = 0;
   std::array<double, 2> distances{}, depths{};
   for (std::size_t i = 0; i < 2; ++i) {

@@ -14,26 +14,28 @@
 
 namespace flexura {
 
-/// The bends after which the whole arm is one arc of a circle that turns by `bend` rad towards a direction of
-/// W (steps 1 and 7 of section 3.4: each section's share of the bend, by its length, and how that is rotated
-/// about the base's axis). None where the arm cannot: a planar arm out of its plane, a base that points along
-/// the direction, a section that does not bend so far.
+/// Returns the bends for which the whole arm is one circular arc that turns by `bend` rad towards a direction
+/// of W. See steps 1 and 7 of section 3.4: the share of each section by its length, and the rotation about
+/// the base axis. Empty if the arm cannot: a planar arm out of its plane, a base axis along the direction, or
+/// a section that does not bend that far.
 [[nodiscard]] std::optional<ArmState> arc_state(const Arm& arm, double bend, const Eigen::Vector3d& towards);
 
-/// Where the cameras shall stand, as the simulator has it: each looks along the normal of its arc's plane.
+/// Poses that the cameras should reach, from the simulator: each camera looks along the normal of its arc's
+/// plane.
 struct ArcPlan {
-  std::array<ArmState, 2> arcs;  ///< In XOY, for the first camera, and in ZOY.
-  std::array<Eigen::Vector3d, 2> centers,
-      normals;                ///< Of the arcs' circles, in W; the cameras look along -normal.
-  double radius = 0;          ///< m
-  Eigen::Vector3d target;     ///< Where the axes shall meet.
-  std::array<View, 2> ideal;  ///< What the cameras shall be,
-  std::array<Image<std::uint8_t>, 2> pictures;  ///< and would see each of its arc: the ideal images.
-  std::array<double, 2> zoom = {1, 1};          ///< Positions of the lenses for that.
+  std::array<ArmState, 2> arcs;  ///< In XOY for the first camera, in ZOY for the second.
+  /// Centers (m) and normals of the arc circles, in W; the cameras look along -normal.
+  std::array<Eigen::Vector3d, 2> centers, normals;
+  double radius = 0;                            ///< Radius of the arc circles, m.
+  Eigen::Vector3d target;                       ///< Point where the optical axes should meet, in W, m.
+  std::array<View, 2> ideal;                    ///< Target views of the cameras.
+  std::array<Image<std::uint8_t>, 2> pictures;  ///< Ideal images: what each ideal view shows of its arc.
+  std::array<double, 2> zoom = {1, 1};          ///< Lens positions of the ideal views.
 };
 
-/// The plan for cameras as they are believed to be; `aims_at_centers`: each at its circle's centre, or both
-/// at the middle of the space that the arcs take. Those who watch are told of it. Or why there is none.
+/// Computes the plan for the modelled cameras and reports it to the observers of the loop. With
+/// `aims_at_centers` each camera aims at the centre of its circle; otherwise both aim at the middle of the
+/// space that the arcs occupy. Returns the reason if there is no plan.
 [[nodiscard]] std::optional<std::string> plan_arcs(LookLoop& loop, bool aims_at_centers, ArcPlan& plan);
 
 }  // namespace flexura

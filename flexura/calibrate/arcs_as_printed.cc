@@ -29,13 +29,14 @@ class ArcsAsPrinted : public ArcsLoop {
     return std::nullopt;
   }
 
-  // Steps 3 to 5: a picture, its median axis, a circle through it.
+  // Steps 3 to 5: takes a picture, extracts the centerline, fits a circle to it.
   Trouble look(std::size_t i) override {
     auto trouble = loop_.look(i, [&](RigSight& sight) {
       sight.seen = eyes_[i].see(*sight.frame.picture, Lens(loop_.lens(i)),
                                 expected_markers(loop_.believed().arm, plan_.arcs[i],
                                                  loop_.config().picture.markers, plan_.ideal[i]));
-      if (!sight.seen.points.empty()) sight.seen.reason.clear();  // Markers are not asked for.
+      // Missing markers are no error: they are not needed.
+      if (!sight.seen.points.empty()) sight.seen.reason.clear();
       points_.clear();
       for (const CurvePoint& point : sight.seen.points) points_.push_back(point.pixel);
       sight.circle = circle_ = fit_circle(points_);
@@ -72,7 +73,7 @@ class ArcsAsPrinted : public ArcsLoop {
     return off.norm() > loop_.config().accepted ? centre(i, off, *next) : go_around(i, *next);
   }
 
-  // Of the two kinds of motion that make a circle of it, the head's.
+  // Centres the circle with the head, one of the two kinds of motion that make the image a circle.
   Trouble centre(std::size_t i, const Eigen::Vector2d& off, RigStance& next) {
     next.head = turned_towards(next.head, loop_.lens(i), off);
     next = loop_.commandable_stance(i, next);
@@ -83,7 +84,7 @@ class ArcsAsPrinted : public ArcsLoop {
                        off.norm());
   }
 
-  // And the stage's: around the centre by what the ratio of the axes says, which does not say to which side.
+  // Moves the stage around the centre by the angle from the axis ratio, which does not give the side.
   Trouble go_around(std::size_t i, RigStance& next) {
     Orbit& orbit = orbits_[i];
     const auto ellipse = fit_ellipse(points_);
@@ -95,7 +96,7 @@ class ArcsAsPrinted : public ArcsLoop {
     constexpr double steepest = 0.35;  // rad
     const double tilt = orbit.share * std::min(steepest, std::acos(std::clamp(ratio, 0.0, 1.0)));
     const double distance = loop_.lens(i).fx * plan_.radius / ellipse->semi_axes.x();
-    // Along the shorter axis, which has no sign of its own: the sides are those of the last time.
+    // Along the shorter axis. Its sign is arbitrary, so it is matched to that of the previous time.
     Eigen::Vector3d way(-std::sin(ellipse->angle), std::cos(ellipse->angle), 0);
     if (way.dot(orbit.way) < 0) way = -way;
     orbit.way = way;
@@ -103,7 +104,7 @@ class ArcsAsPrinted : public ArcsLoop {
     const Eigen::Matrix3d R_MC = pan_rotation(angles[0]) * tilt_rotation(angles[1]);
     const Eigen::Vector3d slide = orbit.side * distance * std::tan(tilt) * (R_MC * way);
     next.stage.offset += Eigen::Vector3d(slide.x(), slide.y(), 0);
-    // It keeps looking at the centre: what goes right turns left.
+    // The camera keeps looking at the centre: a shift to the right needs a turn to the left.
     next.head.pan += slide.x() / distance, next.head.tilt += slide.y() / distance;
     next = loop_.commandable_stance(i, next);
     loop_.decide(i, "ratio of axes", 1 - ratio, 0, "share",

@@ -18,8 +18,8 @@
 namespace flexura {
 
 RigPrior arcs_prior(RigPrior prior) {
-  // The same factors in both arcs. Two cameras that each look from about one place would not tell how the
-  // planes of two arcs stand to each other that bend each as they like.
+  // The bend factors are equal in both arcs. With independent bends, two cameras that each look from about
+  // one place would not determine the angle between the planes of the arcs.
   prior.arm.bend_share = prior.arm.bend = 0;
   for (CameraPrior& camera : prior.cameras) {
     camera.pan_zero = camera.tilt_zero = camera.tilt_axis = camera.pupil = camera.pupil_shift = 0;
@@ -76,7 +76,7 @@ class ArcsCorrected : public ArcsLoop {
     return std::nullopt;
   }
 
-  // Turns towards what is dark in the picture until enough markers are seen, whichever they are.
+  // Turns towards what is dark in the picture until enough markers are visible, no matter which.
   Trouble look(std::size_t i) override {
     for (;;) {
       eyes_->sent(i, loop_.stance(i));
@@ -88,7 +88,7 @@ class ArcsCorrected : public ArcsLoop {
         sight.values = {{"markers", static_cast<double>(sight.seen.markers.size())}};
       });
       if (trouble || eyes_->markers() >= seen_as_.fewest) return trouble;
-      constexpr double near = 4;  // px: it is in the middle, and yet too little is seen.
+      constexpr double near = 4;  // px: the figure is centred, yet too few markers are visible.
       const RigSight& sight = loop_.sight();
       trouble = loop_.turn_towards(
           i, "arm", dark_centroid(eight_bits(*sight.frame.picture, loop_.model(i).sensor.white())), near,
@@ -97,7 +97,7 @@ class ArcsCorrected : public ArcsLoop {
     }
   }
 
-  // Where the cameras are by all that was seen, and where they should go.
+  // Estimates the camera poses from all pictures so far, and the poses to move to.
   Trouble learn() override {
     foretold_.reset();
     if (reading_) foretold_ = angle({AskedStance{loop_.stance(0), {}}, AskedStance{loop_.stance(1), {}}});
@@ -116,21 +116,21 @@ class ArcsCorrected : public ArcsLoop {
   [[nodiscard]] Pose pose(std::size_t i) const { return view_of(model(), loop_.stance(i)).X_WC; }
 
   struct Angle {
-    double value = 0, sigma = 0;  // Between the axes, rad.
+    double value = 0, sigma = 0;  // Angle between the optical axes and its standard deviation, rad.
   };
   [[nodiscard]] Angle angle(const std::array<AskedStance, 2>& stances) const {
     const RigVariables& variables = reading_->problem->variables();
     const RigQuantity asked = axes_angle(optical_axis(variables, reading_->found.x, stances[0]),
                                          optical_axis(variables, reading_->found.x, stances[1]));
     Angle angle{asked.value, asked.sigma(reading_->found.covariance)};
-    // What heads do with commands of which nothing was seen yet.
+    // Adds the step error of heads at commanded positions that were not observed yet.
     for (std::size_t i = 0; i < 2; ++i)
       if (!stances[i].observed)
         angle.sigma = std::hypot(angle.sigma, prior_.cameras[loop_.config().cameras[i]].steps * pan_step(i));
     return angle;
   }
 
-  // Why what was seen cannot be trusted.
+  // Returns why the observations cannot be trusted, if so.
   [[nodiscard]] Trouble disagreement() const {
     if (!reading_->is_whole())
       return fmt::format(
@@ -146,12 +146,12 @@ class ArcsCorrected : public ArcsLoop {
         angle_.value / degree, foretold_->value / degree, foretold_->sigma / degree);
   }
 
-  // From the arc's plane to where a camera should be.
+  // Distance of a camera's ideal position from the plane of its arc, m.
   [[nodiscard]] double distance(std::size_t i) const {
     return std::abs((plan_.ideal[i].X_WC.position - plan_.centers[i]).dot(plan_.normals[i]));
   }
 
-  // How far a camera's picture is from the simulator's, as the larger of turn and shift, px.
+  // Deviation of a camera's picture from the simulator's, px: the larger of rotation and translation.
   [[nodiscard]] double offset(std::size_t i) const {
     const Pose is = pose(i);
     const Pose& ideal = plan_.ideal[i].X_WC;
@@ -160,8 +160,8 @@ class ArcsCorrected : public ArcsLoop {
     return loop_.lens(i).fx * std::max(turn, shift.norm() / distance(i));
   }
 
-  // How far it may be when nothing brings it nearer: by what the pictures do not tell, and what cannot be
-  // commanded, px.
+  // Deviation that nothing can reduce further, px: the uncertainty of the pictures and the resolution of
+  // commands.
   [[nodiscard]] double allowed(std::size_t i) const {
     constexpr double likely = 4;  // Standard deviations, or steps.
     const auto& [pan, tilt, zoom] = loop_.camera(i).head_axes();
@@ -171,8 +171,8 @@ class ArcsCorrected : public ArcsLoop {
     return std::max(loop_.config().accepted, likely * loop_.lens(i).fx * finest);
   }
 
-  // The commands that bring both cameras to where the simulator has them; of the heads' positions around, the
-  // pans whose axes are together the most nearly orthogonal.
+  // Finds the commands that bring both cameras to the simulator's poses. Of the neighbouring head positions
+  // it takes the pans whose axes are the most nearly orthogonal.
   void find_wanted() {
     std::array<RigStance, 2> asked = {loop_.stance(0), loop_.stance(1)};
     std::array<double, 2> pans = {0, 0};
@@ -181,7 +181,7 @@ class ArcsCorrected : public ArcsLoop {
       pans[i] = asked[i].head.pan;
       const double tilt = asked[i].head.tilt;
       asked[i] = loop_.commandable_stance(i, asked[i]);
-      // Where the pupil will be by then decides how far the stage goes.
+      // The stage offset depends on where the pupil will be after the head's turn.
       asked[i].stage.offset = stage_towards(found(i), asked[i], plan_.ideal[i].X_WC.position);
       asked[i].head.tilt = tilt;
     }
@@ -218,7 +218,7 @@ class ArcsCorrected : public ArcsLoop {
                          side ? *side + "; " : "", loop_.name(i), off);
     }
     std::string what;
-    // Small steps that shrink no more are what the pictures do not tell.
+    // Small steps that no longer shrink are below what the pictures determine.
     if (off <= loop_.config().accepted || is_there)
       what = "holds, or nothing finer can be commanded";
     else if (off > 0.5 * last && !is_far)
@@ -235,7 +235,7 @@ class ArcsCorrected : public ArcsLoop {
     return std::nullopt;
   }
 
-  // How many times as long a focal length shows half of the markers of both arcs still.
+  // Factor by which the focal length can grow while half of the markers of both arcs stay visible.
   [[nodiscard]] double longer(std::size_t i) const {
     constexpr double most = 2.5, less = 0.95, margin = 20;  // px
     const std::vector<KnownMarker>& markers = loop_.config().picture.markers;
@@ -254,7 +254,7 @@ class ArcsCorrected : public ArcsLoop {
     return 1;
   }
 
-  // What a longer focal length moves in the picture moves away from the principal point.
+  // A longer focal length moves image points away from the principal point; this determines it.
   Trouble center() {
     std::array<RigStance, 2> wide = {loop_.stance(0), loop_.stance(1)};
     std::vector<std::size_t> looking;
@@ -280,14 +280,14 @@ class ArcsCorrected : public ArcsLoop {
 
   RigPrior prior_;
   RigSessionConfig seen_as_;
-  std::unique_ptr<RigEyes> eyes_;                     // With all pictures.
-  std::optional<RigReading> reading_;                 // What they tell.
+  std::unique_ptr<RigEyes> eyes_;                     // Holds all pictures.
+  std::optional<RigReading> reading_;                 // Estimate from all pictures.
   std::array<bool, 2> is_centered_ = {false, false};  // By a longer focal length.
   Angle angle_;
-  std::optional<Angle> foretold_;  // Before the last pictures were taken.
+  std::optional<Angle> foretold_;  // Predicted axis angle, before the last pictures were taken.
   std::array<RigStance, 2> wanted_;
-  std::array<bool, 2> is_short_{};  // A head or stage does not reach where it should.
-  std::array<double, 2> last_{};    // Offsets.
+  std::array<bool, 2> is_short_{};  // Whether a head or stage ended short of its commanded position.
+  std::array<double, 2> last_{};    // Previous deviations, px.
 };
 
 }  // namespace

@@ -50,7 +50,7 @@ LookLoop::Trouble ArcsLoop::settle(const std::vector<std::size_t>& numbers) {
   }
 }
 
-// Step 13: the zooms after which each camera shows its arc as large as the simulator's picture does, by
+// Step 13: sets the zooms for which each camera shows its arc as large as the simulator's picture, by
 // normalised cross-correlation.
 LookLoop::Trouble ArcsLoop::equalize_zooms() {
   std::array<double, 2> last = {1, 1};

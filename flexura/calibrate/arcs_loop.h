@@ -10,16 +10,16 @@
 
 namespace flexura {
 
-/// Calibrates with arcs of the arm (section 3.4): it is bent into arcs in XOY and ZOY, cameras look and move
-/// until they see them as the simulator has it; then the zooms. What derives from it measures, and says where
-/// a camera goes and when it stays.
+/// Base class of calibrations with arcs of the arm (section 3.4). The arm is bent into arcs in XOY and ZOY;
+/// the cameras look and move until they see the arcs as in the simulator. Then the zooms follow. Derived
+/// classes measure, choose the moves of a camera and decide when it stays.
 class ArcsLoop {
  public:
   explicit ArcsLoop(LookLoop& loop) : loop_(loop) {}
   virtual ~ArcsLoop() = default;
   ArcsLoop(const ArcsLoop&) = delete;
   ArcsLoop& operator=(const ArcsLoop&) = delete;
-  /// `aims_at_centers`: as plan_arcs has it.
+  /// Runs the calibration; `aims_at_centers` as in plan_arcs.
   [[nodiscard]] LookLoop::Trouble run(bool aims_at_centers);
 
  protected:
@@ -27,17 +27,18 @@ class ArcsLoop {
 
   /// Takes a picture of an arc and measures it.
   [[nodiscard]] virtual Trouble look(std::size_t i) = 0;
-  /// What all pictures of a round tell.
+  /// Evaluates all pictures of a round.
   [[nodiscard]] virtual Trouble learn() { return std::nullopt; }
-  /// Where a camera goes; nowhere where it stays.
+  /// Sets `next` to the next position of a camera; leaves it empty if the camera stays.
   [[nodiscard]] virtual Trouble decide(std::size_t i, std::optional<RigStance>& next) = 0;
-  /// Brings both cameras to where the plan has them.
+  /// Moves both cameras to the poses of the plan.
   [[nodiscard]] virtual Trouble align() = 0;
 
   /// Looks at each of the arcs with each of the cameras.
   [[nodiscard]] Trouble look_at(const std::vector<std::size_t>& arcs,
                                 const std::vector<std::size_t>& cameras);
-  /// Looks at the arcs of these numbers with the cameras of these numbers, learns and moves until these stay.
+  /// Looks at the arcs with these numbers through the cameras with these numbers, learns and moves, until the
+  /// cameras stay.
   [[nodiscard]] Trouble settle(const std::vector<std::size_t>& numbers);
 
   LookLoop& loop_;
@@ -47,21 +48,21 @@ class ArcsLoop {
   [[nodiscard]] Trouble equalize_zooms();
 };
 
-/// The thirteen steps as printed: each camera looks at one arc and moves until the median axis verifies a
-/// circle's equation. What the paper leaves open is how: the head brings the circle's centre to where the
-/// simulator has it, then the stage takes the camera around the centre by what the ellipse's axes say, to the
-/// one side or, when that made it worse, to the other. It warns with the power of the test.
+/// The thirteen steps as printed: each camera looks at one arc and moves until the centerline satisfies the
+/// circle's equation. The paper leaves the motions open. Here the head brings the circle's centre to its
+/// place in the simulator. Then the stage moves the camera around the centre by the angle from the ellipse's
+/// axes. If that made it worse, the stage moves to the other side. The task warns with the power of the test.
 [[nodiscard]] std::unique_ptr<ArcsLoop> arcs_as_printed(LookLoop& loop);
-/// Made well posed: both cameras see both arcs, by their markers and axes; what moves a camera from where all
-/// these pictures put it to where the simulator has it is commanded, until nothing finer can be, or pictures
-/// tell nothing finer. Then both look once with a longer focal length, which shows principal points, and go
-/// on from what is known now. Pictures that do not agree within their standard deviations are trouble, and so
-/// is what cannot be commanded.
+/// Well-posed version: both cameras see both arcs, with their markers and centerlines. Each camera is
+/// commanded from its estimated to the simulator's pose, until nothing finer can be commanded or seen. Then
+/// both look once with a longer focal length, which shows the principal points, and continue with that
+/// estimate. Pictures that disagree by more than their standard deviations are an error, and so are poses
+/// that cannot be commanded.
 [[nodiscard]] std::unique_ptr<ArcsLoop> arcs_corrected(LookLoop& loop);
 
-/// How wrong a rig may be that is calibrated with arcs, by how wrong one may be beside: its lenses are known
-/// but for 1 px of the principal point, its heads but for their steps, and a section's bends are wrong by the
-/// same factor in every arc.
+/// Returns the prior of a rig that is calibrated with arcs, from that of the default calibration. The lenses
+/// are known except for 1 px of the principal point, the heads except for their steps. The bend error of a
+/// section is one factor, equal in every arc.
 [[nodiscard]] RigPrior arcs_prior(RigPrior prior);
 
 }  // namespace flexura

@@ -43,7 +43,7 @@ TEST(ArcState, IsOneArcOfACircleInItsPlaneWhereTheArmCan) {
 constexpr RigTrialConfig known_lenses = {
     .zero = 0, .focal = 0, .principal_point = 1, .noise = 0.2, .markers = 12};
 
-// What both cameras see of both arcs from where they start, of a rig that is wrong as arcs_prior has it.
+// What both cameras see of both arcs from their starting positions, for a rig with errors from arcs_prior.
 RigObservations arcs_seen(const RigModel& truth, TestRandom& random) {
   RigTrial trial(truth, known_lenses, random);
   for (const Eigen::Vector3d& towards : {Eigen::Vector3d::UnitX().eval(), (-Eigen::Vector3d::UnitZ()).eval()})
@@ -74,7 +74,7 @@ TEST(ArcsPrior, MakesTwoArcsTellTheAngleBetweenTheAxesAsWellAsItSays) {
     squares += off * off, ++count, largest = std::max(largest, sigma);
     EXPECT_LT(std::abs(off), 5);
   });
-  // Numbers are evenly within what is taken for a standard deviation here: smaller errors than claimed.
+  // The errors are uniform within one prior standard deviation, hence smaller than normal ones.
   EXPECT_LT(std::sqrt(squares / count), 1.2);
   EXPECT_GT(std::sqrt(squares / count), 0.3);
   EXPECT_LT(largest, 0.4 * degree);

@@ -11,11 +11,11 @@
 namespace flexura {
 namespace {
 
-// What may be wrong with where the cameras of a rig that was found look.
+// Errors of the views predicted by a rig that was found.
 constexpr SightDoubt of_found = {.sideways = 0.03, .roll = 0.02, .scale = 0.05};
 
-// Finds the rig that explains pictures of which nobody knows yet which marker is which: recognised by a rig,
-// the rig found by that, and recognised anew.
+// Finds the rig that explains pictures whose markers are not identified yet. Identifies them by a rig,
+// estimates the rig from that, and identifies them again.
 class ArmEyes : public RigEyes {
  public:
   ArmEyes(const RigModel& believed, const RigPrior& prior, const RigSessionConfig& config,
@@ -37,8 +37,8 @@ class ArmEyes : public RigEyes {
   }
 
   std::size_t markers() const override { return count_; }
-  // By markers as the rig that was found before has them, if there is one, and as long as something is amiss
-  // as the guess has them, those of one camera, or of both, taken for something else if need be.
+  // Identifies the markers by the rig found before, if any. If that fails, by the initial guess, and then
+  // with the markers of one camera or both shifted to other identities.
   RigReading read(const RigModel* found) const override {
     std::vector<RigReading> readings;
     if (found != nullptr) readings.push_back(read_as(*found, of_found, {0, 0}));
@@ -59,7 +59,7 @@ class ArmEyes : public RigEyes {
   std::vector<RigStance>& stances() override { return sights_.stances; }
   bool look(std::size_t i, const Picture& picture) override {
     figure_ = pictures_[i].look(picture);
-    // One marker alone may be any.
+    // A single marker could be any of them.
     constexpr std::size_t fewest = 2;
     count_ = markers_of(figure_.scene);
     return count_ >= fewest;
@@ -75,8 +75,8 @@ class ArmEyes : public RigEyes {
     return sights_.seen(model(found), sights_.looks.size() - 1, match);
   }
 
-  // Recognised anew with each rig that is found, until nothing changes, or for so many rounds; the round that
-  // explains most.
+  // Identifies the markers again with each rig that is found, until nothing changes or the rounds are used
+  // up. Returns the round that explains most.
   [[nodiscard]] RigReading read_as(const RigModel& first, const SightDoubt& doubt,
                                    const std::array<std::size_t, 2>& rank) const {
     RigReading best;
@@ -94,14 +94,14 @@ class ArmEyes : public RigEyes {
       if (round == 0 || (is_found && now.explained >= best.explained)) best = std::move(now);
       if (!is_found) break;
       std::vector<MarkerMatch> again = sights_.recognise(model, of_found);
-      // The first round leaves out looks of few markers.
+      // The first round leaves out pictures with few markers.
       if (round > 0 && again == matches) break;
       matches = std::move(again);
     }
     return best;
   }
 
-  // Nothing is found by one camera alone.
+  // One camera alone determines nothing.
   void rate(const std::vector<MarkerMatch>& matches, RigReading& reading) const {
     double unknown = 0;
     std::vector<std::size_t> images(believed_.cameras.size(), 0);
@@ -125,8 +125,9 @@ class ArmEyes : public RigEyes {
 
   const RigPrior& prior_;
   const RigSessionConfig& config_;
-  SightDoubt doubt_ = {.sideways = 0.01, .roll = 0.01, .scale = 0.01};  // Of cameras as they were guessed.
-  std::vector<ArmPicture> pictures_;                                    // Of each camera.
+  // Errors of the initial guess of the cameras.
+  SightDoubt doubt_ = {.sideways = 0.01, .roll = 0.01, .scale = 0.01};
+  std::vector<ArmPicture> pictures_;  // One per camera.
   RigSights sights_;
   ArmFigure figure_;  // The last one.
   std::size_t count_ = 0;

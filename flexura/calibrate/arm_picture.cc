@@ -12,7 +12,7 @@
 namespace flexura {
 namespace {
 
-// Of where bands are found along the arm, whatever the noise, px: nine of ten within 0.36
+// Standard deviation of band positions along the arm without noise, px: nine of ten lie within 0.36
 // (docs/studies/seeing.md).
 constexpr double least_marker_sigma = 0.2;
 
@@ -28,8 +28,8 @@ MarkerScene scene_of(const ArmSighting& arm, const std::vector<MarkerSighting>& 
   return scene;
 }
 
-// So far apart that their errors have nothing to do with each other: a width of the arm, and px at least. No
-// one is known better than lenses are.
+// Samples the centerline so far apart that errors are independent: one arm width, and at least a minimum in
+// px. No point is more precise than the lens is.
 std::vector<CurvePoint> spaced_points(const std::vector<AxisSample>& axis) {
   constexpr double spacing = 10, least_sigma = 0.05;
   std::vector<CurvePoint> points;
@@ -42,7 +42,7 @@ std::vector<CurvePoint> spaced_points(const std::vector<AxisSample>& axis) {
     points.push_back({axis[i].pixel, std::max(axis[i].sigma, least_sigma)});
     next = way + pitch;
   }
-  // The last one keeps away from the end as the first one does.
+  // Keeps the last point as far from the end as the first one.
   if (!points.empty() && (points.back().pixel - axis.back().pixel).norm() < spacing) points.pop_back();
   return points;
 }
@@ -82,7 +82,7 @@ ArmFigure ArmPicture::look(const Picture& picture) {
   }
   const Image<std::uint8_t> bytes = eight_bits(picture, config_.white);
   look.axis = arm.axis;
-  // Along the axis as it is seen: which lens would correct it is known only when the figure is recognised.
+  // Along the centerline as seen: the lens that would correct it is known only after identification.
   look.markers = find_markers(bytes, arm).markers;
   look.scene = scene_of(arm, look.markers);
   look.size = {bytes.width(), bytes.height()};
@@ -96,7 +96,7 @@ SeenArm recognised(const ArmFigure& look, const MarkerMatch& match, const Lens& 
   if (!look.reason.empty()) return seen;
   for (std::size_t i = 0; i < look.markers.size(); ++i) {
     const MarkerSighting& marker = look.markers[i];
-    // Where the lens has no ray there is no place of the arm, and no marker to calibrate by.
+    // Where the lens has no ray there is no point of the arm and no usable marker.
     if (!lens.unproject(marker.pixel)) continue;
     if (match.markers[i]) {
       seen.markers.push_back(

@@ -18,36 +18,35 @@
 
 namespace flexura {
 
-/// What is known of an arm and of its pictures beforehand.
+/// Prior knowledge about an arm and its pictures.
 struct ArmPictureConfig {
-  std::vector<KnownMarker> markers;  ///< Of the arm, base first.
-  int white = 255;                   ///< The largest value of a picture.
+  std::vector<KnownMarker> markers;  ///< Markers of the arm, base first.
+  int white = 255;                   ///< Largest pixel value.
 };
 
-/// What is seen of an arm in one picture before anybody asks which of its markers is which.
+/// The arm in one picture before its markers are identified.
 struct ArmFigure {
   std::vector<AxisSample> axis;
-  std::vector<MarkerSighting> markers;  ///< Along the axis.
-  MarkerScene scene;                    ///< Those of them, and those ends of the arm, that can be recognised.
-  std::array<int, 2> size = {0, 0};     ///< Of the picture, px.
-  std::string reason;                   ///< Why there is no arm; "" when there is.
+  std::vector<MarkerSighting> markers;  ///< Markers in order along the centerline.
+  MarkerScene scene;                    ///< The markers and arm ends that can be identified.
+  std::array<int, 2> size = {0, 0};     ///< Size of the picture, px.
+  std::string reason;                   ///< Why no arm was found; "" if one was.
 };
 
-/// What is seen of an arm in one picture, its markers recognised.
+/// The arm in one picture with its markers identified.
 struct SeenArm {
   std::vector<SeenMarker> markers;
-  std::vector<CurvePoint> points;  ///< Of the backbone, from base to tip, independent of each other.
-  std::size_t unknown = 0;         ///< Markers that were seen and not recognised.
-  std::string reason;              ///< Why there are no markers; "" when there are.
+  std::vector<CurvePoint> points;  ///< Points of the backbone, base to tip, with independent errors.
+  std::size_t unknown = 0;         ///< Number of detected markers that were not identified.
+  std::string reason;              ///< Why there are no markers; "" if there are.
 };
 
-/// Where an arm's markers and ends are if the arm and the view are as believed; nothing is seen yet. The
-/// markers' places are told along `marked`: the same arm, whose sections may have been taken for longer or
-/// shorter.
+/// Predicts where the markers and ends of an arm appear, for the modelled arm and view. Marker positions are
+/// measured along `marked`: the arm with nominal section lengths, which may differ from the estimated ones.
 [[nodiscard]] MarkerPicture marker_picture(const Arm& arm, const ArmState& state,
                                            const std::vector<KnownMarker>& markers, const View& view,
                                            const Arm& marked);
-/// Where they are to be seen.
+/// Returns the predicted markers and ends as a MarkerScene.
 [[nodiscard]] MarkerScene expected_markers(const Arm& arm, const ArmState& state,
                                            const std::vector<KnownMarker>& markers, const View& view,
                                            const Arm& marked);
@@ -56,22 +55,22 @@ struct SeenArm {
   return expected_markers(arm, state, markers, view, arm);
 }
 
-/// How many of them are inside the picture, so many px from its border at least.
+/// Returns the number of them inside the picture, at least `margin` px from its border.
 [[nodiscard]] std::size_t markers_inside(const MarkerScene& scene, const View& view, double margin);
 
-/// Markers and axis points of a look, when it is known which marker is which. `lens` corrects for what a wide
-/// tube shows of itself (vision/backbone_image.h).
+/// Returns markers and centerline points of a picture whose markers are matched. `lens` corrects for the
+/// apparent shape of a wide tube (vision/backbone_image.h).
 [[nodiscard]] SeenArm recognised(const ArmFigure& look, const MarkerMatch& match, const Lens& lens,
                                  const ArmPictureConfig& config);
 
-/// Measures pictures of an arm. The same picture and expectation give the same answer, whatever was seen
-/// before.
+/// Measures pictures of an arm. The result depends on the picture and the expectation alone, not on earlier
+/// pictures.
 class ArmPicture {
  public:
   explicit ArmPicture(ArmPictureConfig config) : config_(std::move(config)) {}
 
   [[nodiscard]] ArmFigure look(const Picture& picture);
-  /// The same, and which marker is which by what is expected in this picture alone.
+  /// Finds the arm and identifies its markers by what is expected in this picture alone.
   [[nodiscard]] SeenArm see(const Picture& picture, const Lens& lens, const MarkerScene& expected);
 
  private:

@@ -1,4 +1,4 @@
-// A second opinion on what is least, and how sure it is: by Ceres, with residuals of its own.
+// Checks minimum and covariance against Ceres, with separately written residuals.
 #include <gtest/gtest.h>
 
 #include <Eigen/Core>
@@ -17,15 +17,15 @@
 namespace flexura {
 namespace {
 
-// How far two answers are apart.
+// Largest differences between two solutions.
 struct Disagreement {
-  double number = 0;      // Of any number, in standard deviations.
-  double angle = 0;       // Between the axes of two stances, rad.
-  double focal = 0;       // Share.
-  double place = 0;       // m
-  double cost = 0;        // Share.
-  double sigma = 0;       // Of any number, share.
-  double covariance = 0;  // Of any entry, in the two numbers' standard deviations.
+  double number = 0;      // Of any variable, in standard deviations.
+  double angle = 0;       // Of the axis angle between two stances, rad.
+  double focal = 0;       // Of focal lengths, relative.
+  double place = 0;       // Of positions, m.
+  double cost = 0;        // Of the cost, relative.
+  double sigma = 0;       // Of any variable's standard deviation, relative.
+  double covariance = 0;  // Of any entry, in units of the two variables' standard deviations.
 
   void widen(const Disagreement& other) {
     number = std::max(number, other.number), angle = std::max(angle, other.angle);
@@ -72,7 +72,7 @@ void compare(const RigTrial& trial, double bound, Disagreement& worst) {
   worst.widen(now);
 }
 
-// Twelve pictures a camera of markers alone.
+// Twelve pictures per camera, markers only.
 Disagreement worst_of(int trials, double bound) {
   Disagreement worst;
   for_random_cases(trials, [&](TestRandom& random) {
@@ -94,7 +94,7 @@ Disagreement worst_of(int trials, double bound) {
 }
 
 TEST(BundleByCeres, IsTheSameRigFromTheSameRoughGuessAndAsSureOfIt) {
-  const Disagreement worst = worst_of(4, 8);  // Nothing is so far off.
+  const Disagreement worst = worst_of(4, 8);  // No residual reaches this bound.
   EXPECT_LT(worst.sigma, 1e-5);
   EXPECT_LT(worst.covariance, 1e-5);
 }

@@ -17,21 +17,21 @@
 namespace flexura {
 namespace {
 
-// What the paper counts in a picture of the calibration cylinder (section 3.4), as printed: whole pixels on
-// either side of a threshold.
+// What the paper counts in a picture of the calibration cylinder (section 3.4): whole pixels on either side
+// of a threshold.
 struct EtalonCounts {
-  std::string reason;        // Why there is nothing to count; "" when there is.
-  int left = 0, right = 0;   // White pixels beside the line with most black ones: p_st, p_dr.
-  int above = 0, below = 0;  // White pixels of the column with most black ones: p_sus, p_jos.
+  std::string reason;        // Why there is nothing to count; "" if there is something.
+  int left = 0, right = 0;   // White pixels left and right of the line with the most black ones: p_st, p_dr.
+  int above = 0, below = 0;  // White pixels of the column with the most black ones: p_sus, p_jos.
   int first = 0, last = 0;   // Black pixels of the first and the last line that have any: p_sup, p_inf.
-  std::int64_t white = 0;    // White pixels in all: p_zoom.
+  std::int64_t white = 0;    // Total number of white pixels: p_zoom.
   std::vector<double> axes;  // Columns of the red axes, left to right.
   double middle = 0;         // Column half-way between the whites to the left and right.
 };
 
-// Columns in which a third of the black lines are red.
+// Returns the columns in which a third of the black lines are red.
 std::vector<double> red_axes(const Image<std::uint8_t>& picture, const std::vector<int>& black_by_row) {
-  constexpr double reddest = 25;  // Of 255, above the other colours' mean.
+  constexpr double reddest = 25;  // Excess of red over the mean of the other colours, of 255.
   std::vector<int> red(static_cast<std::size_t>(picture.width()), 0);
   int lines = 0;
   for (int v = 0; v < picture.height(); ++v) {
@@ -82,8 +82,8 @@ EtalonCounts count_etalon(const Image<std::uint8_t>& picture) {
 void tell_counts(const EtalonCounts& counts, const LookLoop& loop, RigSight& sight) {
   sight.seen.reason = counts.reason;
   if (!counts.reason.empty()) return;
-  // As drawn_etalon has them: what is counted bounds the silhouette, and an axis is a column.
-  constexpr double whole_pixel = 0.29;  // Of a place known to a pixel, the standard deviation, px.
+  // Same layout as drawn_etalon: the counts bound the silhouette, and an axis is a column.
+  constexpr double whole_pixel = 0.29;  // Standard deviation of a position rounded to whole pixels, px.
   const SensorConfig& sensor = loop.believed().cameras[sight.stance.camera].sensor;
   const double left = counts.left, right = static_cast<double>(sensor.width - 1 - counts.right),
                top = counts.above, bottom = static_cast<double>(sensor.height - 1 - counts.below);
@@ -132,7 +132,7 @@ class EtalonAsPrinted : public EtalonLoop {
             offset("vertical positioning", seen.first - seen.last, {0, 0, 0, config.slide})};
   }
 
-  // Where horizontal positioning sees two axes, the outer one is turned out of the picture.
+  // If horizontal positioning sees two axes, turns the outer one out of the picture.
   Trouble prepare(std::size_t i, std::size_t offset, bool& is_turned) override {
     if (offset != 1) return std::nullopt;
     const std::vector<double>& axes = counts_[i].axes;
@@ -167,7 +167,7 @@ class EtalonAsPrinted : public EtalonLoop {
         for (const std::size_t offset : {first, first + 1})
           if (auto trouble = null(i, {offset})) return trouble;
         if (auto trouble = look(i)) return trouble;
-        // As printed the vertical test asks for the offset of positioning, which was just accepted: it always
+        // As printed, the vertical test checks the offset of positioning, which was just accepted: it always
         // stops.
         const Offset tested = offsets(i)[first + 1];
         holds = first == 2 || std::abs(tested.px) <= tested.accepted;
@@ -187,7 +187,7 @@ class EtalonAsPrinted : public EtalonLoop {
   }
 
   Trouble finish() override {
-    // Nothing as printed asks whether what is counted is all of the cylinder.
+    // The printed method never checks whether the counts cover the whole cylinder.
     for (std::size_t i = 0; i < 2; ++i) {
       const EtalonCounts& last = counts_[i];
       if (std::min({last.left, last.right, last.above, last.below}) == 0)
@@ -196,7 +196,7 @@ class EtalonAsPrinted : public EtalonLoop {
             "counted",
             loop_.name(i));
     }
-    loop_.result().zoom_ratio.reset();  // White pixels are no magnification.
+    loop_.result().zoom_ratio.reset();  // White pixels do not measure magnification.
     loop_.result().notes.emplace_back(
         "as printed: where the cameras stand around the cylinder was not measured, for the white pixels "
         "beside the red axis do not depend on where the axis is");

@@ -17,7 +17,7 @@ class EtalonCorrected : public EtalonLoop {
   explicit EtalonCorrected(LookLoop& loop) : EtalonLoop(loop, false) {}
 
  private:
-  // As it is believed to be by now.
+  // The lens with the principal point estimated so far.
   [[nodiscard]] Intrinsics lens(std::size_t i) const {
     Intrinsics lens = loop_.lens(i);
     lens.cx += beside_[i].x(), lens.cy += beside_[i].y();
@@ -55,7 +55,8 @@ class EtalonCorrected : public EtalonLoop {
                             const Eigen::Vector4d& by) {
       return Offset{step, px, want, accepted * by_px, half_turn, how, by};
     };
-    // A camera that slides keeps looking at the cylinder: position and orientation do not undo each other.
+    // A camera that slides keeps looking at the cylinder, so that position and orientation do not undo each
+    // other.
     const auto slid = [&](const char* step, double px, double angle, double angle_by_px, const char* how,
                           const Eigen::Vector4d& by) {
       return Offset{step, px, distance * angle, accepted * distance * angle_by_px, half_way, how, by};
@@ -68,7 +69,7 @@ class EtalonCorrected : public EtalonLoop {
                  {0, turn, 0, 1})};
   }
 
-  // Turns towards what is seen of the cylinder until all of it is.
+  // Turns towards the visible part of the cylinder until all of it is visible.
   Trouble prepare(std::size_t i, std::size_t /*offset*/, bool& is_turned) override {
     const EtalonView& view = views_[i];
     is_turned = !view.reason.empty();
@@ -81,7 +82,8 @@ class EtalonCorrected : public EtalonLoop {
                               "camera {} cannot have all of the cylinder in its picture: {}", view.reason);
   }
 
-  // All four in one picture; again with the principal point that a longer focal length shows.
+  // Nulls all four offsets in one picture, then again with the principal point found by a longer focal
+  // length.
   Trouble align(std::size_t i) override {
     for (const bool is_centered : {false, true}) {
       if (is_centered)
@@ -95,7 +97,7 @@ class EtalonCorrected : public EtalonLoop {
     return std::nullopt;
   }
 
-  // How many times as long a focal length shows all of the cylinder still.
+  // Factor by which the focal length can grow while the whole cylinder stays visible.
   [[nodiscard]] double longer(std::size_t i) const {
     const EtalonSighting& seen = views_[i].sighting;
     const Intrinsics lens = this->lens(i);
@@ -103,7 +105,7 @@ class EtalonCorrected : public EtalonLoop {
     const double half = 0.5 * (seen.bottom - seen.top);
     double times = std::numeric_limits<double>::infinity();
     const auto keep = [&](double from_middle, double room) {
-      constexpr double margin = 12;  // px: more than a principal point is off, times what it grows by.
+      constexpr double margin = 12;  // px: more than the error of the principal point times the zoom factor.
       if (from_middle > 0) times = std::min(times, (room - margin) / from_middle);
     };
     for (const UprightLine& side : {seen.left, seen.right}) {
@@ -115,7 +117,7 @@ class EtalonCorrected : public EtalonLoop {
     return times;
   }
 
-  // What a longer focal length moves in the picture moves away from the principal point.
+  // A longer focal length moves image points away from the principal point; this determines it.
   Trouble center(std::size_t i) {
     const RigStance wide = loop_.stance(i);
     const EtalonView before = views_[i];
@@ -137,7 +139,7 @@ class EtalonCorrected : public EtalonLoop {
       if (auto trouble = loop_.go_longer(i, next)) return trouble;
       if (auto trouble = look(i)) return trouble;
       if (views_[i].reason.empty()) break;
-      // A principal point that is far off carries the cylinder out of the picture.
+      // A large error of the principal point moves the cylinder out of the picture.
       times = std::sqrt(times);
     }
     const auto stays = [](double was, double is, double f, double f_then) {
@@ -155,8 +157,8 @@ class EtalonCorrected : public EtalonLoop {
 
   double ratio() const override { return views_[0].magnification / views_[1].magnification; }
 
-  // Of the positions around, the pans whose axes are the most nearly orthogonal; of equals those that look at
-  // the cylinder. Then one more picture each, which says how it is.
+  // Chooses, of the neighbouring positions, the pans whose axes are the most nearly orthogonal; among equals
+  // those that look at the cylinder. Then takes one more picture per camera to measure the result.
   Trouble finish() override {
     constexpr double visible = 0.01;
     if (std::abs(*loop_.result().zoom_ratio - 1) > visible)
@@ -182,7 +184,7 @@ class EtalonCorrected : public EtalonLoop {
       if (!views_[i].reason.empty())
         return fmt::format("camera {} after its last move: {}", loop_.name(i), views_[i].reason);
     }
-    // Which way around they stand: the angle between the axes is less or more.
+    // The arrangement of the cameras decides whether the angle between the axes is too small or too large.
     const Eigen::Vector3d a = loop_.camera(0).pose(loop_.stance(0).stance()).rotation.col(2),
                           b = loop_.camera(1).pose(loop_.stance(1).stance()).rotation.col(2);
     const double hand = a.cross(b).y() < 0 ? 1 : -1;
@@ -193,9 +195,9 @@ class EtalonCorrected : public EtalonLoop {
   }
 
   std::array<EtalonView, 2> views_;
-  // By which each principal point is to the right of and below where the file has it, px.
+  // Offsets of the principal points to the right of and below the file's values, px.
   std::array<Eigen::Vector2d, 2> beside_ = {Eigen::Vector2d::Zero(), Eigen::Vector2d::Zero()};
-  std::array<int, 2> turns_ = {0, 0};  // Towards a cylinder of which not all is seen.
+  std::array<int, 2> turns_ = {0, 0};  // Number of turns towards a cylinder that is partly visible.
 };
 
 }  // namespace

@@ -11,9 +11,9 @@
 namespace flexura {
 namespace {
 
-// No border is known better than this, px; nor is the middle of a red line, which is wide, or a rim.
+// Smallest standard deviations, px: of a border; of the middle of a wide red line, or of a rim.
 constexpr double least_sigma = 0.02, least_red_sigma = 0.05;
-// Where lines are looked at, in shares of the silhouette's height from its middle row.
+// Rows where lines are measured, as shares of the silhouette's height from its middle row.
 constexpr std::array<double, 2> places = {-0.25, 0.25};
 
 Eigen::Vector2d at(const UprightLine& line, const EtalonSighting& seen, double share) {
@@ -23,15 +23,15 @@ Eigen::Vector2d at(const UprightLine& line, const EtalonSighting& seen, double s
 
 void add(EtalonPart part, std::size_t number, const UprightLine& line, const EtalonSighting& seen,
          std::vector<EtalonPoint>& points) {
-  // A line through n points is known to this at either place.
+  // Standard deviation at either place of a line fitted through n points.
   const double of_fit = 1.4 * line.rms / std::sqrt(std::max(1, line.count));
   const double least = part == EtalonPart::red_line ? least_red_sigma : least_sigma;
   for (const double share : places)
     points.push_back({part, number, at(line, seen, share), std::max(least, of_fit)});
 }
 
-// The angle by which a line on the cylinder lies to the right of where the camera stands around it, by how
-// far it is from the silhouette's middle; that needs no view.
+// Bearing of a line on the cylinder, to the right of the camera's direction around it, from its distance to
+// the silhouette's middle. Needs no view.
 double bearing_of(const UprightLine& line, const EtalonSighting& seen) {
   const double half = 0.5 * (seen.right.at - seen.left.at);
   return std::asin(std::clamp((line.at - seen.middle(seen.middle_row)) / half, -1.0, 1.0));
@@ -42,7 +42,7 @@ double bearing_of(const UprightLine& line, const EtalonSighting& seen) {
 std::vector<EtalonPoint> etalon_points(const EtalonSighting& seen, const EtalonFigure& etalon,
                                        const View& view) {
   std::vector<EtalonPoint> points;
-  // A camera that hangs has left and right, and up and down, the other way round.
+  // For a camera upside down, left and right are exchanged, and up and down.
   const bool hangs = view.X_WC.rotation.col(1).dot(etalon.up()) > 0;
   add(EtalonPart::left_side, 0, hangs ? seen.right : seen.left, seen, points);
   add(EtalonPart::right_side, 0, hangs ? seen.left : seen.right, seen, points);
@@ -51,7 +51,8 @@ std::vector<EtalonPoint> etalon_points(const EtalonSighting& seen, const EtalonF
   };
   add_rim(EtalonPart::upper_rim, hangs ? seen.lower_edge : seen.upper_edge);
   add_rim(EtalonPart::lower_rim, hangs ? seen.upper_edge : seen.lower_edge);
-  // Beyond `facing` a line's middle is not the middle of what is seen of it; lines are 90 degrees apart.
+  // Beyond `facing`, the middle of the visible part of a line is not its true middle. Lines are 90 degrees
+  // apart.
   constexpr double facing = std::numbers::pi / 3, known = 40 * degree;
   constexpr std::size_t lines = 4;
   for (const UprightLine& line : seen.lines) {
@@ -88,8 +89,8 @@ class EtalonEyes : public RigEyes {
       : RigEyes(believed), prior_(prior), config_(config), etalon_(config.etalon.value()) {}
 
   std::optional<Eigen::Vector2d> whereabouts() const override { return last_.centroid; }
-  // The rig that was found before says which red line is which or, where that leads nowhere, the guess; and
-  // then the rig that is found.
+  // Identifies the red lines by the rig found before or, if that fails, by the initial guess; then by the rig
+  // just found.
   RigReading read(const RigModel* found) const override {
     std::vector<RigReading> readings;
     readings.push_back(read_by(model(found)));

@@ -9,18 +9,18 @@
 
 namespace flexura {
 
-/// Points of the cylinder that a sighting tells: two of each side and of each red line that can be told from
-/// the others, and one of each rim. By a view that is known within 40 degrees around the cylinder, upright or
-/// upside down.
+/// Returns the cylinder points of an observation: two of each side and of each identifiable red line, and one
+/// of each rim. The bearing of `view` around the cylinder must be known within 40 degrees, upright or upside
+/// down.
 [[nodiscard]] std::vector<EtalonPoint> etalon_points(const EtalonSighting& seen, const EtalonFigure& etalon,
                                                      const View& view);
 
-/// The same for the log and for eyes: a marker for each point of a red line (its place: how high up), and of
-/// the silhouette its four corners as points.
+/// Returns the observation in the form of a SeenArm, for the log and for sessions. Each point of a red line
+/// becomes a marker, placed by its height; the four corners of the silhouette become points.
 [[nodiscard]] SeenArm drawn_etalon(const EtalonSighting& seen, const EtalonConfig& etalon, const View& view);
 
-/// The eyes of a session before the calibration cylinder, which its configuration has. What they say of a
-/// picture is as drawn_etalon has it. All outlive them.
+/// Returns the observer of a session in front of the configured calibration cylinder. It reports pictures as
+/// drawn_etalon does. All arguments must outlive it.
 [[nodiscard]] std::unique_ptr<RigEyes> etalon_eyes(const RigModel& believed, const RigPrior& prior,
                                                    const RigSessionConfig& config);
 

@@ -13,7 +13,7 @@ namespace {
 constexpr double quarter = std::numbers::pi / 2;
 constexpr std::size_t red_lines = 4;
 
-// From the axis, at an angle from E's +Z towards its +X.
+// Unit vector away from the axis, at an angle from E's +Z towards its +X.
 Eigen::Vector3d outwards(double angle) { return {std::sin(angle), 0, std::cos(angle)}; }
 
 }  // namespace
@@ -22,7 +22,7 @@ EtalonFigure::EtalonFigure(const EtalonConfig& etalon)
     : X_WE_{rotation_of(etalon.rotation), vector(etalon.position)},
       radius_(etalon.radius),
       height_(etalon.height),
-      // The middle of what is seen of a line that is wide lies a little deeper than the line's own.
+      // The middle of the visible part of a wide line lies slightly deeper than the line itself.
       red_radius_(etalon.radius * std::cos(0.5 * etalon.line_width / etalon.radius)) {}
 
 std::optional<EtalonLine> EtalonFigure::line(EtalonPart part, std::size_t number, const Eigen::Vector3d& p_WC,
@@ -34,8 +34,8 @@ std::optional<EtalonLine> EtalonFigure::line(EtalonPart part, std::size_t number
   const auto along = [&](double angle, double radius) {
     return EtalonLine{X_WE_ * (radius * outwards(angle)), up()};
   };
-  // Where a rim is measured, a quarter of the width beside the middle, it is as far around the rim to either
-  // side; halfway between these two places lies what their mean shows.
+  // A rim is measured a quarter of the width to either side of the middle, at equal angles around the rim.
+  // The mean of the two shows the point halfway between them.
   const auto rim = [&](double height) {
     const double side = (half == RimHalf::seen ? half_seen(part, p_WC) : half) == RimHalf::near ? 1 : -1;
     double around = std::numbers::pi / 6;
@@ -73,7 +73,7 @@ std::optional<Eigen::Vector3d> EtalonFigure::nearest(const EtalonPoint& seen, co
   const auto known = line(seen.part, seen.number, view.X_WC.position, seen.half);
   const auto ray = view.lens.unproject(seen.pixel);
   if (!known || !ray) return std::nullopt;
-  // The shortest way between the line and the ray of sight.
+  // Shortest segment between the line and the line of sight.
   const Eigen::Vector3d sight = view.X_WC.rotation * Eigen::Vector3d(ray->x(), ray->y(), 1).normalized();
   const Eigen::Vector3d from = known->point - view.X_WC.position;
   const double cosine = sight.dot(known->direction), square = 1 - cosine * cosine;

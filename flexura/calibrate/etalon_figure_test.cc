@@ -22,7 +22,7 @@
 namespace flexura {
 namespace {
 
-// Between the two cameras of believed_rig, turned about its axis.
+// A cylinder between the two cameras of believed_rig, turned about its axis.
 EtalonConfig random_etalon(TestRandom& random) {
   const double half = random.uniform(-0.2, 0.2);
   EtalonConfig etalon;
@@ -41,7 +41,7 @@ Eigen::Vector3d surface_point(const EtalonConfig& etalon, double angle, double h
              Eigen::Vector3d(etalon.radius * std::sin(angle), height, etalon.radius * std::cos(angle));
 }
 
-// What is leftmost, rightmost, highest and lowest of a great many points of the surface.
+// Compares with the leftmost, rightmost, highest and lowest of very many points of the surface.
 TEST(EtalonFigure, SidesAndRimsAreWhereItsSurfaceEndsAndPixelsShowPointsOfThem) {
   for_random_cases(20, [](TestRandom& random) {
     EtalonConfig etalon = random_etalon(random);
@@ -58,7 +58,7 @@ TEST(EtalonFigure, SidesAndRimsAreWhereItsSurfaceEndsAndPixelsShowPointsOfThem) 
     const auto& points = *expected;
     ASSERT_EQ(points[0].part, EtalonPart::left_side);
     ASSERT_EQ(points[2].part, EtalonPart::right_side);
-    // Where a side, by its two points, is in a row.
+    // Column of a side, given by two points, in row v.
     const auto side_at = [&](std::size_t first, double v) {
       const Eigen::Vector2d &a = points[first].pixel, &b = points[first + 1].pixel;
       return a.x() + (b.x() - a.x()) * (v - a.y()) / (b.y() - a.y());
@@ -77,8 +77,8 @@ TEST(EtalonFigure, SidesAndRimsAreWhereItsSurfaceEndsAndPixelsShowPointsOfThem) 
     }
     EXPECT_NEAR(least, 0, 2e-3);
     EXPECT_NEAR(most, 0, 2e-3);
-    // As pictures are measured: where the silhouette ends in two columns, a quarter of its width at that end
-    // beside its middle.
+    // As in measured pictures: the end of the silhouette in two columns, a quarter of its width there beside
+    // its middle.
     for (const auto& [rim, way] : {std::pair{4, -1.0}, {5, 1.0}}) {
       const double v = points[static_cast<std::size_t>(rim)].pixel.y();
       const double left = side_at(0, v), width = side_at(2, v) - left;
@@ -97,7 +97,7 @@ TEST(EtalonFigure, SidesAndRimsAreWhereItsSurfaceEndsAndPixelsShowPointsOfThem) 
   EXPECT_FALSE(EtalonFigure(around_camera).nearest({}, seen_by(believed_rig(), 0)));
 }
 
-// The pictures of an etalon by a rig that is wrong, from several stances.
+// Pictures of a cylinder by a rig with errors, from several stances.
 RigObservations seen_etalon(const RigModel& truth, const EtalonConfig& etalon, double noise,
                             TestRandom& random) {
   RigObservations seen;
@@ -107,7 +107,7 @@ RigObservations seen_etalon(const RigModel& truth, const EtalonConfig& etalon, d
     for (const double turn : {0.0, -0.06, 0.06}) {
       for (const std::size_t camera : {std::size_t{0}, std::size_t{1}}) {
         RigStance stance{.camera = camera, .stage = {{aside, 0.3 * aside, turn > 0 ? 0.2 : 0}}};
-        // Towards the cylinder, so that all of it is seen; positions can be commanded.
+        // Towards the cylinder, so that all of it is visible; positions can be commanded exactly.
         const View there = view_of(truth, stance);
         const Eigen::Vector3d p_CE = there.X_WC.inverse() * EtalonFigure(etalon).middle();
         stance.head = {std::atan2(-p_CE.x(), p_CE.z()) + turn, std::atan2(-p_CE.y(), p_CE.z()) - turn, 1};
@@ -125,7 +125,7 @@ RigObservations seen_etalon(const RigModel& truth, const EtalonConfig& etalon, d
   return seen;
 }
 
-// Seen from far above or below a rim's near or far side is beyond the sides' ends.
+// Seen from far above or below, the near or far side of a rim lies beyond the ends of the sides.
 TEST(EtalonFigure, ItsOutlineBoundsBothRims) {
   for_random_cases(200, [](TestRandom& random) {
     EtalonConfig etalon = random_etalon(random);
@@ -153,7 +153,7 @@ TEST(EtalonFigure, ItsOutlineBoundsBothRims) {
   });
 }
 
-// At a rim's height its near and its far half are one line, before and beyond it either goes on smoothly.
+// At a rim's height its near and far halves are one line; above and below, both continue smoothly.
 TEST(EtalonFigure, HalvesOfARimMeetAtTheCamerasHeight) {
   for_random_cases(50, [](TestRandom& random) {
     EtalonConfig etalon = random_etalon(random);
@@ -166,7 +166,7 @@ TEST(EtalonFigure, HalvesOfARimMeetAtTheCamerasHeight) {
       return vector(etalon.position) +
              Eigen::Vector3d(1.5 * std::sin(bearing), rim + above, 1.5 * std::cos(bearing));
     };
-    // Elevations of both halves, seen from so far above the rim.
+    // Elevation of a half seen from this height above the rim.
     const auto elevation = [&](double above, RimHalf half) {
       const Eigen::Vector3d to = figure.line(part, 0, from(above), half)->point - from(above);
       return std::atan2(to.y(), std::hypot(to.x(), to.z()));
@@ -176,7 +176,7 @@ TEST(EtalonFigure, HalvesOfARimMeetAtTheCamerasHeight) {
     for (const double above : {-little, little}) {
       const RimHalf seen = figure.half_seen(part, from(above));
       EXPECT_EQ(seen, (above < 0) == is_upper ? RimHalf::near : RimHalf::far);
-      // Of the upper rim the higher of both ends the silhouette, of the lower one the lower one.
+      // The higher half bounds the silhouette at the upper rim, the lower half at the lower rim.
       const RimHalf hidden = seen == RimHalf::near ? RimHalf::far : RimHalf::near;
       EXPECT_EQ(elevation(above, seen) > elevation(above, hidden), is_upper);
       EXPECT_EQ(elevation(above, seen), elevation(above, RimHalf::seen));
@@ -193,7 +193,7 @@ TEST(EtalonFigure, DerivativesOfItsRowsAreThoseOfDifferences) {
     const RigRows rows = problem.rows()[3];
     EXPECT_LE(rows.residuals.norm(), 1e-4);
     const NumericalJacobian numerical = row_differences(problem, x, 3, 1e-5);
-    // Where rims are measured hardly wanders as the camera comes nearer.
+    // The measured places of a rim hardly move as the camera comes nearer.
     constexpr Eigen::Index first_rim = 4, rims = 2;
     for (Eigen::Index j = 0; j < rows.derivatives.cols(); ++j) {
       Eigen::VectorXd off = numerical.value.col(j) - rows.derivatives.col(j);
@@ -232,7 +232,7 @@ TEST(EtalonFigure, TellsARigFromRoughGuessesAndHowWell) {
     squares += std::pow((angle.value - should) / sigma, 2), ++count;
   });
   EXPECT_LT(squares, (1 + 4 * std::sqrt(2.0 / count)) * count);
-  // Sigmas that are much too large would hold all of them easily.
+  // Far too large sigmas would satisfy the tests above easily.
   EXPECT_GT(squares, (one_case_of > 1 ? 0 : 0.2) * count);
 }
 

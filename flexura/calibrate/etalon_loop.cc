@@ -12,7 +12,7 @@
 namespace flexura {
 namespace {
 
-// Whether limits end a move by more than a step before what was asked for.
+// Returns whether limits end a move more than one step before its target.
 bool falls_short(const Camera& camera, const RigStance& asked, const RigStance& next) {
   const auto is_beyond = [](double off, double resolution) { return std::abs(off) > resolution + 1e-9; };
   const auto& [pan, tilt, zoom] = camera.head_axes();
@@ -27,7 +27,7 @@ bool falls_short(const Camera& camera, const RigStance& asked, const RigStance& 
 
 LookLoop::Trouble EtalonLoop::run() {
   loop_.result().target = EtalonFigure(loop_.config().etalon).middle();
-  // Red lines are every 90 degrees: which one a camera sees is told by what is believed of the cameras.
+  // Red lines are 90 degrees apart: the camera model identifies which one a camera sees.
   if (auto trouble = loop_.begin()) return trouble;
   for (std::size_t i = 0; i < 2; ++i)
     if (auto trouble = loop_.begin_zoomed(i, zoom_ends(loop_.camera(i))[0], "zoom to x1",
@@ -57,7 +57,7 @@ LookLoop::Trouble EtalonLoop::null(std::size_t i, std::initializer_list<std::siz
       const Offset& offset = all[which.begin()[k]];
       if (steps.size() == k) steps.push_back(begun(offset));
       if (auto trouble = step(i, offset, steps[k], is_moved)) return trouble;
-      // What a slide leaves to the head is none of the head's own steps.
+      // The correction that a slide leaves to the head does not count as one of the head's own steps.
       if (is_moved && k % 2 == 1) steps[k - 1] = begun(all[which.begin()[k - 1]]);
     }
     if (!is_moved) return std::nullopt;
@@ -110,8 +110,8 @@ LookLoop::Trouble EtalonLoop::zoom() {
       return "zoom " + steps.reason() +
              "; as printed the camera that shows the larger cylinder is the one that zooms in";
     loop_.result().zoom_ratio = ratio;
-    // As printed: of the camera that shows the cylinder larger already. Else the smaller one is enlarged;
-    // where its lens ends, the other one is made smaller.
+    // As printed: zooms the camera that shows the cylinder larger already. Corrected: enlarges the smaller
+    // one, or reduces the other one if the lens is at its limit.
     const std::size_t chosen = (ratio < 1) == is_printed_ ? 1 : 0;
     const bool holds = is_printed_ ? state == LoopState::holds : std::abs(std::log(ratio)) <= accepted;
     std::optional<std::size_t> next;

@@ -11,12 +11,13 @@
 
 namespace flexura {
 
-/// Calibrates with the calibration cylinder (section 3.4): of both cameras horizontal orientation and
-/// positioning, then vertical ones, each an offset in the picture that a motion nulls; then the zooms. What
-/// derives from it measures, and says which steps are taken and when that is enough.
+/// Base class of calibrations with the cylinder (section 3.4). For both cameras: horizontal orientation and
+/// positioning, then vertical ones. Each is an offset in the picture that a motion nulls. Then the zooms
+/// follow. Derived classes measure, choose the steps and decide when an offset is small enough.
 class EtalonLoop {
  public:
-  /// `is_printed`: steps are all alike, one offset after the other is nulled, and zooms go the printed way.
+  /// `is_printed`: steps have equal size, offsets are nulled one after the other, and zooms go the printed
+  /// way.
   EtalonLoop(LookLoop& loop, bool is_printed) : loop_(loop), is_printed_(is_printed) {}
   virtual ~EtalonLoop() = default;
   EtalonLoop(const EtalonLoop&) = delete;
@@ -25,29 +26,30 @@ class EtalonLoop {
 
  protected:
   using Trouble = LookLoop::Trouble;
-  /// Something to be nulled, and the motion that does it by the behaviour of the image that is believed.
+  /// An offset to be nulled, and the motion that nulls it in the model of the image.
   struct Offset {
     const char* step;
-    double px;              ///< As measured.
-    double want;            ///< As a motion: rad, or m. As printed: as measured.
-    double accepted, most;  ///< Likewise; most: of one step, 0 where steps are all alike.
-    const char* how;        ///< In words.
-    Eigen::Vector4d by;     ///< Of pan, tilt, stage x and y, for each unit of `want`, or a step.
+    double px;    ///< Measured offset.
+    double want;  ///< Required motion, rad or m; as printed, the measured offset.
+    /// Tolerance and largest step, in the unit of `want`; `most` is 0 for steps of equal size.
+    double accepted, most;
+    const char* how;     ///< Description for the log.
+    Eigen::Vector4d by;  ///< Motion of pan, tilt, stage x and y per unit of `want`, or per step.
   };
 
   /// Takes a picture and measures it.
   [[nodiscard]] virtual Trouble look(std::size_t i) = 0;
-  /// Why there was nothing to be measured in the last one.
+  /// Returns why the last picture could not be measured.
   [[nodiscard]] virtual Trouble unmeasured(std::size_t /*i*/) const { return std::nullopt; }
-  /// Of the last picture: horizontal orientation and positioning, then vertical.
+  /// Returns the offsets of the last picture: horizontal orientation and positioning, then vertical.
   [[nodiscard]] virtual std::array<Offset, 4> offsets(std::size_t i) const = 0;
-  /// Whether the camera had to turn first, for what the picture shows.
+  /// Turns the camera first if the picture requires it; sets `is_turned` if it did.
   [[nodiscard]] virtual Trouble prepare(std::size_t i, std::size_t offset, bool& is_turned) = 0;
   /// Nulls all offsets of a camera.
   [[nodiscard]] virtual Trouble align(std::size_t i) = 0;
-  /// How much larger the first camera shows the cylinder.
+  /// Returns the size of the cylinder in the first camera relative to the second.
   [[nodiscard]] virtual double ratio() const = 0;
-  /// What follows the zooms, and why that is no good end.
+  /// Runs what follows the zooms; returns why the result is not acceptable, if so.
   [[nodiscard]] virtual Trouble finish() = 0;
 
   /// Looks and moves until these offsets hold in one picture, or nothing finer can be commanded.
@@ -62,13 +64,13 @@ class EtalonLoop {
   bool is_printed_;
 };
 
-/// As printed, slips included: pixels are counted, positioning looks at what does not depend on it, the test
-/// of the vertical calibration asks what was just made so, and the zoom goes the wrong way
-/// (docs/calibration-paper.md). Where a loop goes on for ever, or runs away, it says so.
+/// The method as printed, errors included (docs/calibration-paper.md): it counts pixels, and positioning uses
+/// a quantity that does not depend on it. The test of the vertical calibration checks what was just nulled,
+/// and the zoom goes the wrong way. It reports loops that never end or diverge.
 [[nodiscard]] std::unique_ptr<EtalonLoop> etalon_as_printed(LookLoop& loop);
-/// Corrected: borders to a part of a pixel, steps that shrink until all four hold in one picture, and again
-/// with the principal point that a longer focal length shows: where things stay; in the end, of the heads'
-/// positions around, those whose axes are the most nearly orthogonal.
+/// Corrected method: subpixel borders, and steps that shrink until all four offsets hold in one picture. This
+/// is repeated with the principal point, which a longer focal length shows as the fixed point. Finally it
+/// takes, of the neighbouring head positions, those whose axes are the most nearly orthogonal.
 [[nodiscard]] std::unique_ptr<EtalonLoop> etalon_corrected(LookLoop& loop);
 
 }  // namespace flexura

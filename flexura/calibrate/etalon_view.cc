@@ -11,7 +11,7 @@
 namespace flexura {
 namespace {
 
-// The middle of the largest figure's pixels, whatever it looks like.
+// Finds the centroid of the largest figure, whatever its shape.
 void find_centroid(const Image<std::uint8_t>& gray, EtalonView& view) {
   Components components;
   BlockThresholds blocks;
@@ -34,7 +34,7 @@ void find_centroid(const Image<std::uint8_t>& gray, EtalonView& view) {
                       (largest->top == 0 && largest->bottom == gray.height() - 1);
 }
 
-// Angles around the vertical, from the three places on the row of the principal point.
+// Computes angles around the vertical from the three positions on the row of the principal point.
 void find_bearing(const EtalonSighting& seen, const UprightLine& line, const Lens& lens, double radius,
                   EtalonView& view) {
   const double v = lens.intrinsics().cy;
@@ -48,7 +48,7 @@ void find_bearing(const EtalonSighting& seen, const UprightLine& line, const Len
   const double share = std::sin(0.5 * (right - left));  // radius over distance
   view.distance = radius / share;
   view.magnification = lens.intrinsics().fx / view.distance;
-  // The sines of the triangle of camera, axis and line: sin(off) / r = sin(off + around) / D.
+  // Law of sines in the triangle of camera, axis and line: sin(off) / r = sin(off + around) / D.
   const auto around = [&](double off) {
     return std::asin(std::clamp(std::sin(off) / share, -1.0, 1.0)) - off;
   };
@@ -59,14 +59,15 @@ void find_bearing(const EtalonSighting& seen, const UprightLine& line, const Len
   view.bearing_by_px = std::abs(1 / (view.magnification * radius / (1 - share)));
 }
 
-// And up and down, from the ends and the taper.
+// Computes vertical angles, from the ends and the taper.
 void find_climb(const EtalonSighting& seen, const Lens& lens, EtalonView& view) {
   const double v = 0.5 * (*seen.upper_edge + *seen.lower_edge);
   view.height = v - lens.intrinsics().cy;
   const auto ray = lens.unproject({seen.middle(v), v});
   view.drop = ray ? std::atan(ray->y()) : 0;
   view.taper = seen.width_above - seen.width_below;
-  // Widths go with the depth: the ends of the part between them, 4/5 of the height, are 2 y sin(climb) apart.
+  // Widths are inverse to depths; the ends of the measured part, 4/5 of the height, differ in depth by 2 y
+  // sin(climb).
   const double part = 0.8 * (*seen.lower_edge - *seen.upper_edge) / view.magnification;
   const double relative = view.taper / (0.5 * (seen.width_above + seen.width_below));
   view.climb = std::asin(std::clamp(relative * view.distance / part, -0.9, 0.9));

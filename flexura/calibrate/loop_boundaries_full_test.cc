@@ -1,5 +1,5 @@
-// Where the paper's loops end, and where not (docs/calibration-paper.md, "When a loop ends"): the loops
-// themselves before simulated rigs.
+// Where the paper's loops end and where they do not (docs/calibration-paper.md, "When a loop ends"), with the
+// loops themselves and simulated rigs.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -23,7 +23,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-// What the steps of this name were about, of the first camera, in order.
+// Offsets of the first camera's steps with this name, in order.
 std::vector<double> offsets_of(const LoopResult& result, const std::string& step) {
   std::vector<double> offsets;
   for (const LoopDecision& decision : result.steps)
@@ -31,13 +31,13 @@ std::vector<double> offsets_of(const LoopResult& result, const std::string& step
   return offsets;
 }
 
-// A side at random, and so far to it.
+// A random magnitude with a random sign.
 double to_a_side(TestRandom& random, double least, double most) {
   return (random.integer(0, 1) == 1 ? 1 : -1) * random.uniform(least, most);
 }
 
-// The first camera's stage is turned from across its sight, which nobody knows, in pan or in tilt, and starts
-// beside the line, or above or below the cylinder's middle.
+// The first camera's stage has an unmodelled rotation in pan or in tilt. The camera starts beside the line,
+// or above or below the cylinder's middle.
 std::string turned_stage(bool is_tilted, double turned, double off) {
   LoopRig rig;
   WrongStart& wrong = rig.wrong[0];
@@ -45,13 +45,13 @@ std::string turned_stage(bool is_tilted, double turned, double off) {
     wrong = {.tilt = turned, .shift = {0, off, 0}, .tilt_zero = -turned};
   else
     wrong = {.pan = turned, .shift = {off, 0, 0}, .pan_zero = -turned};
-  // Beyond upright a mount that looks along there hangs upside down.
+  // Tilted beyond a right angle, a mount that looks in this direction is upside down.
   if (is_tilted && std::abs(turned) > std::numbers::pi / 2) wrong.roll = std::numbers::pi;
   rig.travel = 1;
   return etalon_rig("method = \"etalon\"\nimages = 90\n", rig);
 }
 
-// What the first camera's slides were about, in order: the line's offsets, or ways downwards.
+// Offsets that the first camera's slides correct, in order: of the line, or downwards.
 std::vector<double> slides(const LoopResult& result, bool is_tilted) {
   if (!is_tilted) return offsets_of(result, "horizontal positioning");
   std::vector<double> slides;
@@ -71,7 +71,7 @@ void expect_end_of_turned_stage(bool is_tilted, bool is_beyond, TestRandom& rand
   EXPECT_EQ(result.is_done, !is_beyond) << result.reason;
   const std::vector<double> off = slides(result, is_tilted);
   ASSERT_GE(off.size(), 2U);
-  // Each step leaves the eigenvalue 1 - cos(turned); of ways that grow half is taken from there on.
+  // Each step multiplies the offset by 1 - cos(turned); steps that grow it are halved afterwards.
   if (is_beyond) {
     EXPECT_THAT(result.reason, HasSubstr("al positioning of camera front runs away"));
     EXPECT_NEAR((is_tilted ? 2 : 1) * off[1] / off[0], 1 - std::cos(turned), 0.15);
@@ -91,8 +91,8 @@ TEST(LoopBoundaries, EtalonEndsWhereTheStageIsTurnedByLessThanARightAngleAndRuns
   });
 }
 
-// Lenses whose focal lengths truly grow as the zoom's power `power`, before a cylinder that the first camera
-// sees from `nearer` m nearer.
+// Lenses whose true focal length grows with the zoom to the power `power`; the first camera is `nearer` m
+// closer to the cylinder.
 std::string wrong_zoom(double power, double nearer) {
   std::string rows;
   for (double ratio = 1; ratio < 10.05; ratio += 0.1)
@@ -107,7 +107,7 @@ std::string wrong_zoom(double power, double nearer) {
   return text;
 }
 
-// Logarithms of the ratios that were seen, in order.
+// Logarithms of the observed ratios, in order.
 std::vector<double> zoom_offsets(const LoopResult& result) {
   std::vector<double> offsets;
   for (const LoopDecision& decision : result.steps)
@@ -135,7 +135,7 @@ TEST(LoopBoundaries, EtalonsZoomEndsWhereLensesGrowByLessThanTwiceWhatIsBelieved
   });
 }
 
-// Carried around the circle's centre, to the side that is tried first or the other one.
+// Starts rotated around the circle's centre, to the side that is tried first or to the other.
 TEST(LoopBoundaries, ArcsPaperGoesBackAroundTheCentreFromEitherSide) {
   for_random_cases(8, [](TestRandom& random) {
     const double tilt = to_a_side(random, 8, 17) * degree;
@@ -158,13 +158,12 @@ TEST(LoopBoundaries, ArcsPaperGoesBackAroundTheCentreFromEitherSide) {
     const Eigen::Vector3d axis = bench.rig().camera(0).view(bench.rig().clock().now()).X_WC.rotation.col(2);
     const double left = std::acos(-axis.z()) / degree;
     EXPECT_LT(left, 2.5) << tilt / degree;
-    // A wrong side makes twice as much of it.
+    // A move to the wrong side doubles the tilt at most.
     for (std::size_t i = 1; i < tilts.size(); ++i) EXPECT_LT(tilts[i], 2.2 * tilts[i - 1]);
   });
 }
 
-// A lens that is `focal` times as long as it is believed to be: each turn goes too far by focal - 1 of
-// what is missing.
+// A lens that is `focal` times as long as modelled: each turn overshoots by the share focal - 1.
 std::string wrong_lens(TestRandom& random, double focal) {
   // To the side that no screen hides.
   const double tilt = -random.uniform(14, 17) * degree;

@@ -66,7 +66,7 @@ std::vector<MarkerFeature> features_of(const MarkerScene& scene, const MarkerPal
 
 std::vector<double> tolerances(const std::vector<MarkerFeature>& expected) {
   std::vector<double> result;
-  constexpr double third = 0.35, farthest = 40;  // Of the way; px.
+  constexpr double third = 0.35, farthest = 40;  // Share of the distance to the next feature; px.
   for (const MarkerFeature& one : expected) {
     double nearest = farthest / third;
     for (const MarkerFeature& other : expected)

@@ -11,15 +11,15 @@
 
 namespace flexura {
 
-/// What can be seen of an arm in a picture, px: u + i v.
+/// A visible feature of an arm in a picture, px: u + i v.
 struct MarkerFeature {
-  static constexpr int end_kind = -1;  ///< Markers of one colour count from 0.
+  static constexpr int end_kind = -1;  ///< Marker colours count from 0.
   std::complex<double> at;
   int kind = 0;
-  std::size_t number = 0;  ///< Of the marker, or 0 and 1: base and tip.
+  std::size_t number = 0;  ///< Number of the marker; for ends 0 (base) or 1 (tip).
 };
 
-/// The colours that can be told apart. A gray picture shows none.
+/// Classifies the colours that can be distinguished; a gray picture has only one kind.
 class MarkerPalette {
  public:
   MarkerPalette(const MarkerScene& expected, const MarkerScene& seen);
@@ -30,35 +30,37 @@ class MarkerPalette {
   bool has_colors_ = false;
 };
 
-/// Markers in their order, then the ends, as far as they are there.
+/// Returns the markers in order, then the ends, as far as present.
 [[nodiscard]] std::vector<MarkerFeature> features_of(const MarkerScene& scene, const MarkerPalette& palette);
 
-/// How far from each of these one of its kind may be seen, px: a third of the way to the
-/// nearest other one of its kind, and 40 px at most.
+/// Returns the distance, px, within which one of its kind may be seen, for each feature. It is a third of the
+/// distance to the nearest other feature of its kind, at most 40 px.
 [[nodiscard]] std::vector<double> tolerances(const std::vector<MarkerFeature>& expected);
 
-/// What may have turned and enlarged the expected picture (a factor), and brought one place in it to another.
+/// Receives a similarity that may map the expected to the seen picture: the factor `turn` (rotation and
+/// scale), and a point `from` that maps to `to`.
 using MarkerMove = std::function<void(const std::complex<double>& turn, const std::complex<double>& from,
                                       const std::complex<double>& to)>;
-/// Does that for each two expected features and two seen ones of their kinds. Of the seen ones the pairs that
-/// say most: the farthest apart, a dozen at most, and none of which any is in more than three.
+/// Calls `move` for each pair of expected features and each pair of seen ones of the same kinds. Of the seen
+/// ones it takes the most informative pairs: the farthest apart, at most a dozen, each feature in at most
+/// three.
 void for_likely_moves(const std::vector<MarkerFeature>& expected, const std::vector<MarkerFeature>& seen,
                       const MarkerMove& move);
 
-/// Which seen feature is which expected one, and what speaks for it.
+/// An assignment of seen to expected features, and its score.
 struct MarkerPairs {
   struct Pair {
     std::size_t seen = 0, expected = 0;
     bool operator==(const Pair&) const = default;
   };
-  std::vector<Pair> pairs;  ///< In the order of what is seen.
-  double score =
-      0;  ///< Found ones, less those seen and not expected, less half of those expected and not seen.
-  double off = 0;  ///< Sum of the pairs' distances squared, px^2.
+  std::vector<Pair> pairs;  ///< In the order of the seen features.
+  double score = 0;  ///< Number of pairs, minus seen features without partner, minus half of the expected
+                     ///< ones without partner.
+  double off = 0;    ///< Sum of the pairs' squared distances, px^2.
 };
 
-/// Each seen feature is the nearest expected one of its kind, if it is within that one's tolerance, times
-/// `scale`, and none is nearer to it.
+/// Pairs each seen feature with the nearest expected one of its kind. It must be within `scale` times that
+/// one's tolerance, and no other seen feature may be nearer to it.
 [[nodiscard]] MarkerPairs nearest_pairs(const std::vector<MarkerFeature>& expected,
                                         const std::vector<double>& tolerance, double scale,
                                         const std::vector<MarkerFeature>& seen,

@@ -13,7 +13,7 @@ namespace {
 
 using Point = std::complex<double>;
 
-// z -> turn z + shift, turn a complex number.
+// The map z -> turn z + shift of complex numbers.
 struct Similarity {
   Point turn{1, 0}, shift{0, 0};
   [[nodiscard]] Point operator()(const Point& z) const { return turn * z + shift; }
@@ -39,7 +39,7 @@ class Matcher {
 
   Trial best() {
     Trial best;
-    // As it is expected.
+    // The unmoved expected picture.
     if (!expected_.empty() && std::isfinite(doubt_.shift)) try_map({}, best);
     for_likely_moves(expected_, seen_, [&](const Point& turn, const Point& from, const Point& to) {
       try_map({turn, to - turn * from}, best);
@@ -59,7 +59,7 @@ class Matcher {
     if (trial.score > best.score || (trial.score == best.score && trial.found.off < best.found.off))
       best = std::move(trial);
   }
-  // How unlikely it is that the picture was moved so: a sum of squares, in standard deviations.
+  // Negative log-likelihood of this motion of the picture, doubled: a sum of squares in standard deviations.
   [[nodiscard]] double surprise(const Similarity& map) const {
     const double shift = std::abs(map(middle_) - middle_) / doubt_.shift,
                  turn = std::arg(map.turn) / doubt_.turn, scale = std::log(std::abs(map.turn)) / doubt_.scale;
@@ -78,7 +78,7 @@ class Matcher {
     return trial;
   }
 
-  // At least squares of what the pairs are off.
+  // Least-squares fit to the pairs.
   [[nodiscard]] Similarity fit(const std::vector<MarkerPairs::Pair>& pairs) const {
     Point from{0, 0}, to{0, 0};
     for (const auto& [i, a] : pairs) from += expected_[a].at, to += seen_[i].at;
@@ -114,7 +114,7 @@ MarkerMatch match_markers(const MarkerScene& expected, const MarkerScene& seen,
   const Trial best = Matcher(expected_features, seen_features, size, doubt).best();
   MarkerMatch match;
   match.markers.resize(seen.markers.size());
-  std::vector<std::pair<std::size_t, std::size_t>> order;  // Places along what is seen, and along the arm.
+  std::vector<std::pair<std::size_t, std::size_t>> order;  // Indices along the picture and along the arm.
   constexpr std::size_t last = std::numeric_limits<std::size_t>::max();
   for (const auto& [i, a] : best.found.pairs) {
     const MarkerFeature &one = seen_features[i], &other = expected_features[a];

@@ -9,44 +9,45 @@
 
 namespace flexura {
 
-/// A marker whose place on the arm is known.
+/// A marker with a known position on the arm.
 struct KnownMarker {
-  double s = 0;                       ///< Of its middle, m along the unstretched arm.
-  Eigen::Vector3d color = {1, 1, 1};  ///< Red, green, blue; their ratios count.
+  double s = 0;                       ///< Position of its middle, m along the unstretched arm.
+  Eigen::Vector3d color = {1, 1, 1};  ///< Red, green, blue; only their ratios matter.
 };
 
-/// What is expected or seen along an arm in a picture: markers in their order, and the arm's two ends.
+/// Features along an arm in a picture, expected or seen: markers in order and the two ends.
 struct MarkerScene {
   struct Place {
     Eigen::Vector2d pixel = {0, 0};
     Eigen::Vector3d color = {1, 1, 1};
   };
-  std::vector<std::optional<Place>> markers;           ///< None: not to be seen.
-  std::array<std::optional<Eigen::Vector2d>, 2> ends;  ///< Base and tip, where they are seen; px.
+  std::vector<std::optional<Place>> markers;           ///< Empty: not visible.
+  std::array<std::optional<Eigen::Vector2d>, 2> ends;  ///< Base and tip, px; empty if not visible.
 };
 
-/// Which of the expected markers each seen one is; none for what is nothing's.
+/// The identity of each seen marker; empty for a false detection.
 struct MarkerMatch {
   std::vector<std::optional<std::size_t>> markers;
-  bool is_reversed = false;  ///< What was seen runs from the tip to the base.
-  std::size_t count = 0;     ///< Markers that were recognised.
+  bool is_reversed = false;  ///< Whether the seen markers run from tip to base.
+  std::size_t count = 0;     ///< Number of identified markers.
 
   bool operator==(const MarkerMatch&) const = default;
 };
 
-/// How far off from what is expected a picture may be as a whole: standard deviations.
+/// Prior standard deviations of the motion of a whole picture relative to the expected one.
 struct MatchDoubt {
-  double shift = std::numeric_limits<double>::infinity();  ///< px
-  double turn = std::numeric_limits<double>::infinity();   ///< rad
-  double scale = std::numeric_limits<double>::infinity();  ///< Of the logarithm.
+  double shift = std::numeric_limits<double>::infinity();  ///< Shift, px.
+  double turn = std::numeric_limits<double>::infinity();   ///< Rotation, rad.
+  double scale = std::numeric_limits<double>::infinity();  ///< Logarithm of the scale.
 };
 
-/// Recognises markers by their pattern: the expected picture is moved, turned (up to 45 degrees) and scaled
-/// (by half to twice) until as much as possible of what is seen falls on something of its kind, where ends
-/// are of another kind than markers and markers of different colours are of different kinds. What is seen and
-/// not expected counts against a match, what is expected inside an image of `size` px and not seen counts by
-/// half, and moves that `doubt` makes unlikely by half their square: a chain of equal markers is not taken
-/// for the same shifted by one. Of equal matches the one whose points lie nearer, then the one found first.
+/// Identifies markers by their pattern. The expected picture is shifted, rotated (up to 45 degrees) and
+/// scaled (by half to twice) until most seen features coincide with one of their kind. Ends and markers are
+/// of different kinds, and so are markers of different colours. A seen feature that is not expected counts
+/// against a match. An expected one inside an image of `size` px that is not seen counts by half. Motions
+/// count by half the square of their size in standard deviations of `doubt`. This prevents matching a chain
+/// of equal markers shifted by one. Of equal matches the one with the smaller distances wins, then the one
+/// found first.
 [[nodiscard]] MarkerMatch match_markers(const MarkerScene& expected, const MarkerScene& seen,
                                         const std::array<int, 2>& size, const MatchDoubt& doubt = {});
 

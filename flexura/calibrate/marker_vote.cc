@@ -17,7 +17,7 @@ using Point = std::complex<double>;
 
 Point point(const Eigen::Vector2d& pixel) { return {pixel.x(), pixel.y()}; }
 
-// Places in W as a camera that is wrong sees them.
+// Points in W as seen by a camera with pose and lens errors.
 class WrongSight {
  public:
   WrongSight(const View& view, const SightError& error)
@@ -36,17 +36,17 @@ class WrongSight {
   double scale_;
 };
 
-// Of what a believed arm's markers are off, once its camera is right, px. What speaks for an error is counted
-// in pairs, and falls by half a pair for one that is so far off.
+// Standard deviation of the modelled arm's markers after the camera is corrected, px. Each matched pair votes
+// for an error; a pair this far off counts half a vote less.
 constexpr double pair_sigma = 20;
 
 struct Candidate {
   SightError error;
   double score = 0;
-  std::vector<std::vector<MarkerPairs::Pair>> pairs;  // Of each picture.
+  std::vector<std::vector<MarkerPairs::Pair>> pairs;  // By picture.
 
   [[nodiscard]] bool is_better_than(const Candidate& other) const { return score > other.score; }
-  // Whether what both name they name alike.
+  // Whether both assign the same identities where both have one.
   [[nodiscard]] bool names_like(const Candidate& other) const {
     bool is_any = false;
     for (std::size_t k = 0; k < pairs.size(); ++k) {
@@ -96,16 +96,16 @@ class Vote {
   }
 
  private:
-  // A picture's features, and where in W the expected ones are.
+  // Features of a picture, and the positions in W of the expected ones.
   struct Side {
     std::vector<MarkerFeature> expected, seen;
     std::vector<double> tolerance;
     std::vector<Eigen::Vector3d> places;
-    std::vector<MarkerFeature> moved;  // Scratch.
+    std::vector<MarkerFeature> moved;  // Scratch space.
   };
 
-  // Of the errors that bring two expected features of a picture onto two seen ones, those that explain most
-  // of that picture are tried on all.
+  // Collects the errors that map two expected features of a picture to two seen ones. Those that explain most
+  // of this picture are tried on all.
   void hypothesise(std::size_t k) {
     const Side& side = sides_[k];
     constexpr std::size_t most = 40;
@@ -116,7 +116,7 @@ class Vote {
     });
     for (const Candidate& one : likely) keep(tried(one.error, 0, sides_.size()), most_kept, best_);
   }
-  // The error that turns and scales a picture like this, and brings one place in it to another.
+  // Returns the error that rotates and scales a picture like this and maps one point in it to another.
   [[nodiscard]] std::optional<SightError> error_of(const View& view, const Point& turn, const Point& from,
                                                    const Point& to) const {
     const double scale = std::log(std::abs(turn)), roll = std::arg(turn);
@@ -133,13 +133,13 @@ class Vote {
     if (!error.turn.allFinite() || surprise(view, error) > unlikely) return std::nullopt;
     return error;
   }
-  // The rotation vector that takes one direction to another.
+  // Rotation vector from one direction to another.
   static Eigen::Vector3d between(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
     const Eigen::Vector3d axis = from.cross(to);
     const double sine = axis.norm();
     return sine > 0 ? Eigen::Vector3d(axis * (std::atan2(sine, from.dot(to)) / sine)) : axis;
   }
-  // A sum of squares, in standard deviations.
+  // Sum of squares, in standard deviations.
   [[nodiscard]] double surprise(const View& view, const SightError& error) const {
     const double roll = error.turn.dot(view.X_WC.rotation.col(2));
     const double sideways = (error.turn - roll * view.X_WC.rotation.col(2)).squaredNorm();
@@ -147,7 +147,7 @@ class Vote {
            error.scale * error.scale / (doubt_.scale * doubt_.scale);
   }
 
-  // By the pictures from `from` to before `to`.
+  // Evaluates an error on the pictures [from, to).
   [[nodiscard]] Candidate tried(const SightError& error, std::size_t from, std::size_t to) {
     Candidate result;
     result.error = error;
@@ -169,8 +169,7 @@ class Vote {
     return result;
   }
 
-  // Of those that take nothing for something else than one another only the best is kept, and so many at
-  // most.
+  // Keeps the best of the candidates with compatible identities, and at most `most` candidates.
   static void keep(Candidate candidate, std::size_t most, std::vector<Candidate>& kept) {
     const auto is_worse = [](const auto& a, const auto& b) { return b.is_better_than(a); };
     const auto worst = std::ranges::min_element(kept, is_worse);
@@ -186,7 +185,7 @@ class Vote {
       *worst = std::move(candidate);
   }
 
-  // At least squares of what its pairs are off, as long as that explains more.
+  // Least-squares fit to its pairs, repeated while that explains more.
   Candidate refined(Candidate candidate) {
     constexpr int rounds = 6;
     for (int round = 0; round < rounds; ++round) {

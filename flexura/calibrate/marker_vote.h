@@ -12,40 +12,40 @@
 
 namespace flexura {
 
-/// A picture of an arm, and where the arm's markers and ends are believed to be in W.
+/// A picture of an arm, and the modelled positions of its markers and ends in W.
 struct MarkerPicture {
   struct Place {
-    Eigen::Vector3d p_W = {0, 0, 0};  ///< m
+    Eigen::Vector3d p_W = {0, 0, 0};  ///< Position in W, m.
     Eigen::Vector3d color = {1, 1, 1};
   };
-  View view;  ///< As believed.
+  View view;  ///< View as modelled.
   std::vector<Place> markers;
-  std::array<Eigen::Vector3d, 2> ends;  ///< Base and tip, m.
+  std::array<Eigen::Vector3d, 2> ends;  ///< Base and tip in W, m.
   MarkerScene seen;
 };
 
-/// What is wrong with where a camera looks and with how long its lens is, the same in all its pictures: the
-/// arm is seen turned about the camera by `turn` (a rotation vector in W, rad), and larger by exp(`scale`). A
-/// camera that stands elsewhere shows an arm far away much as if it looked elsewhere and had another lens.
+/// Error of a camera's orientation and focal length, equal in all its pictures. The arm appears rotated about
+/// the camera by `turn` (a rotation vector in W, rad) and larger by exp(`scale`). A position error looks
+/// almost like such an error when the arm is far away.
 struct SightError {
   Eigen::Vector3d turn = {0, 0, 0};
   double scale = 0;
 };
 
-/// Standard deviations of that.
+/// Prior standard deviations of a SightError.
 struct SightDoubt {
-  double sideways = 0.25;  ///< Of turns that shift a picture, rad.
-  double roll = 0.17;      ///< Of turns about the line of sight, rad.
+  double sideways = 0.25;  ///< Rotations that shift a picture, rad.
+  double roll = 0.17;      ///< Rotations about the line of sight, rad.
   double scale = 0.22;
 };
 
-/// What is expected in a picture of a camera that is wrong like this.
+/// Returns what a picture of a camera with this error should show.
 [[nodiscard]] MarkerScene expected_scene(const MarkerPicture& picture, const SightError& error);
 
-/// The errors of one camera that explain most of what is seen in all of its pictures together, the best one
-/// first, `most` at most; those that take the same for the same count once. Of one picture alone a chain of
-/// markers that leaves it may be taken for the same shifted along the arm; arms bent in other ways would have
-/// to be shifted elsewhere. None without pictures; no error where nothing is seen. Doubts are above 0.
+/// Returns the errors of one camera that explain most of all its pictures together, best first, at most
+/// `most`. Errors with the same marker identities count once. In a single picture, a chain of markers that
+/// leaves the picture could be matched shifted along the arm. Other bends would need another shift. Empty
+/// without pictures; no error if nothing is seen. All values of `doubt` must be positive.
 [[nodiscard]] std::vector<SightError> likely_errors(std::span<const MarkerPicture> pictures,
                                                     const SightDoubt& doubt, std::size_t most);
 

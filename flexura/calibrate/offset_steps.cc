@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::size_t patience = 6;
 
-// The last offsets change sign each time and become no smaller.
+// Whether the last offsets alternate in sign without shrinking.
 bool goes_back_and_forth(std::span<const double> last) {
   for (std::size_t i = 1; i < last.size(); ++i)
     if (last[i] * last[i - 1] >= 0) return false;
@@ -20,7 +20,7 @@ bool goes_back_and_forth(std::span<const double> last) {
   return std::abs(last.back()) > as_large * std::abs(last.front());
 }
 
-// They only grow.
+// Whether the last offsets only grow.
 bool runs_away(std::span<const double> last) {
   for (std::size_t i = 1; i < last.size(); ++i)
     if (std::abs(last[i]) <= std::abs(last[i - 1])) return false;

@@ -5,28 +5,28 @@
 
 namespace flexura {
 
-/// Whether a loop that nulls one offset goes on.
+/// State of a loop that nulls one offset.
 enum class LoopState {
-  holds,  ///< The offset is accepted.
+  holds,  ///< The offset is within the tolerance.
   moves,
-  stuck,  ///< It will not end: the reason says why.
+  stuck,  ///< The loop will not end; see the reason.
 };
 
 /// Nulls an offset step by step, in one of two ways (docs/calibration-paper.md, "When a loop ends").
 class OffsetSteps {
  public:
-  /// As printed (section 3.4): steps of one size, to the side that the offset's sign says. They end from
-  /// everywhere if what is accepted is at least half of what one step changes; with less they may go back and
-  /// forth for ever, which is noticed.
+  /// As printed (section 3.4): steps of equal size against the offset's sign. They end from everywhere if the
+  /// tolerance is at least half of the change per step. With less they may alternate forever, which is
+  /// detected.
   explicit OffsetSteps(double accepted) : accepted_(accepted) {}
-  /// Corrected: steps in proportion to the offset, given as the motion that would null it by the behaviour
-  /// that is believed, `largest` at most; half as large from when the offset jumped over, or grew. They end
-  /// where the true behaviour has the believed one's sign.
+  /// Corrected: steps in proportion to the offset, given as the motion that would null it in the model, at
+  /// most `largest`. They are halved whenever the offset changes sign without halving, or grows. They end if
+  /// the true behaviour has the sign of the modelled one.
   OffsetSteps(double accepted, double largest) : accepted_(accepted), largest_(largest) {}
 
   /// Takes the next offset. A move lowers a positive offset by a positive amount.
   LoopState take(double offset);
-  /// What to move by, signed as the offset: in its unit, or 1 in size where steps are all alike.
+  /// Returns the next motion with the sign of the offset: in its unit, or +-1 for steps of equal size.
   [[nodiscard]] double move() const { return move_; }
   [[nodiscard]] const std::string& reason() const { return reason_; }
 

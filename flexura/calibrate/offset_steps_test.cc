@@ -18,7 +18,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-// How an offset went that each move changes by `behaviour` times itself.
+// Result for an offset that each move changes by `behaviour` times the move.
 struct LoopEnd {
   LoopState state = LoopState::moves;
   int moves = 0;
@@ -38,8 +38,8 @@ LoopEnd end_of(OffsetSteps steps, double offset, double behaviour, double resolu
   return {};
 }
 
-// From everywhere with half a step's change accepted; with the share a < 1 of that from the share a of all
-// starts.
+// Ends from everywhere if half of a step's change is accepted; with the share a < 1 of that, from the share a
+// of all starts.
 TEST(StepsAllAlike, EndOrNoticeThatTheyGoBackAndForth) {
   for (const double share : {0.25, 0.5, 0.9, 1.0001, 1.7}) {
     int ended = 0, tried = 0;
@@ -67,14 +67,14 @@ TEST(StepsThatShrink, EndForEveryBehaviourThatHasTheBelievedSign) {
     const LoopEnd end = end_of(OffsetSteps(1e-6, 100), random.uniform(-1, 1), behaviour);
     ASSERT_EQ(end.state, LoopState::holds) << behaviour;
     EXPECT_LE(std::abs(end.offset), 1e-6);
-    // Within half of the believed behaviour each step leaves half at most.
+    // With a behaviour within half of the modelled one, each step leaves at most half.
     if (behaviour > 0.5 && behaviour < 1.5) {
       EXPECT_LE(end.moves, 21);
     }
     const double near = random.uniform(0.6, 1.4), resolution = random.uniform(0.01, 0.1);
     const LoopEnd drawn = end_of(OffsetSteps(1e-9, 100), random.uniform(-3, 3), near, resolution);
     ASSERT_EQ(drawn.state, LoopState::holds);
-    // Half a step of a head; twice that where a last step jumped over, and was halved.
+    // Half a step of a head; twice that if the last step overshot and was halved.
     EXPECT_LE(std::abs(drawn.offset), resolution);
   });
 }
@@ -90,10 +90,10 @@ TEST(OffsetSteps, NoticeThatTheyRunAway) {
   });
 }
 
-// Two offsets of one picture, e -> e - K m, nulled as `etalon` does: the first until it holds, then a step of
-// the second, and the first again. Whether both come to hold; or what became of it.
+// Two offsets of one picture, e -> e - K m, nulled as in `etalon`. The first is nulled until it holds; then
+// one step of the second, and so on. Returns how the pair ended.
 std::string end_of_pair(const Eigen::Matrix2d& behaviour, Eigen::Vector2d offsets) {
-  // What is accepted of the first is not nulled, and there the second follows K_22 alone.
+  // The residual of the first offset is not nulled; there the second follows K_22 alone.
   constexpr std::array<double, 2> held = {1e-9, 1e-6};
   std::array<OffsetSteps, 2> steps = {OffsetSteps(held[0], 100), OffsetSteps(held[1], 100)};
   constexpr int most = 3000;
@@ -103,13 +103,14 @@ std::string end_of_pair(const Eigen::Matrix2d& behaviour, Eigen::Vector2d offset
     const LoopState state = chosen.take(offsets[i]);
     if (state == LoopState::holds) return "holds";
     if (state == LoopState::stuck) return chosen.reason();
-    if (i == 1) steps[0] = OffsetSteps(held[0], 100);  // What comes now is not what its last step left.
+    // The next offset is not the result of its own last step.
+    if (i == 1) steps[0] = OffsetSteps(held[0], 100);
     offsets -= behaviour.col(i) * chosen.move();
   }
   return "goes on";
 }
 
-// The second one follows det K / K_11 once the first is nulled after each of its steps.
+// With the first offset nulled after each of its steps, the second follows det K / K_11.
 TEST(StepsThatShrink, EndAsAPairWhereTheSecondOffsetFollowsWhenTheFirstIsHeld) {
   int ended = 0, ran = 0;
   for_random_cases(2000, [&](TestRandom& random) {

@@ -24,7 +24,8 @@ double focal_of(const Camera& camera, double zoom) {
   return std::sqrt(lens.fx * lens.fy);
 }
 
-// The lens's position at which a size that grows with its focal length is this, or comes nearest to it.
+// Returns the lens position at which a size that grows with the focal length equals `wanted`, or is nearest
+// to it.
 template <class Size>
 double zoom_where(const Camera& camera, double wanted, int halvings, const Size& size) {
   auto [low, high] = zoom_ends(camera);
@@ -41,7 +42,7 @@ double zoom_of(const Camera& camera, double focal) {
   return zoom_where(camera, focal, 100, [&](double zoom) { return focal_of(camera, zoom); });
 }
 
-// Two cameras on their way to the wanted configuration.
+// Moves two cameras towards the wanted configuration.
 class Seeker {
  public:
   Seeker(const RigModel& model, const RigWish& wish)
@@ -56,7 +57,7 @@ class Seeker {
   WantedRig seek(const RigModel& model) {
     for (const std::size_t i : {std::size_t{0}, std::size_t{1}})
       start_[i] = focal_of(cameras_[i], stances_[i].head.zoom) / depth(i);
-    constexpr int rounds = 5;  // The pupils shift with the zooms, a little.
+    constexpr int rounds = 5;  // The pupils shift a little with the zooms.
     for (int round = 0; round < rounds; ++round) {
       zoom();
       if (wish_.may_use_stages) slide();
@@ -94,7 +95,7 @@ class Seeker {
       stances_[i].head.zoom = zoom_of(cameras_[i], magnification_ * depth(i));
   }
 
-  // Newton's steps of least length towards orthogonal lines of sight, within the travels.
+  // Newton steps of least length towards orthogonal lines of sight, within the travel of the stages.
   void slide() {
     constexpr int most = 50;
     constexpr double enough = 1e-13;
@@ -117,7 +118,7 @@ class Seeker {
     }
   }
 
-  // d cosine / d stage offset, for the camera whose line of sight is `own`.
+  // d cosine / d stage offset, for the camera with the line of sight `own`.
   [[nodiscard]] Eigen::Vector3d by_stage(std::size_t i, const Eigen::Vector3d& own,
                                          const Eigen::Vector3d& other, double cosine) const {
     const Eigen::Vector3d by_pupil = (cosine * own.normalized() - other.normalized()) / own.norm();
@@ -132,7 +133,7 @@ class Seeker {
     return way > 0 ? offset >= limits[1] : offset <= limits[0];
   }
 
-  // Draws the stage and the zoom to what can be commanded.
+  // Clamps and quantises stage and zoom.
   void settle(std::size_t i) {
     for (Eigen::Index j = 0; j < 3; ++j) {
       double& offset = stances_[i].stage.offset[j];
@@ -141,7 +142,7 @@ class Seeker {
     stances_[i].head.zoom = commandable(cameras_[i].head_axes()[2], stances_[i].head.zoom);
   }
 
-  // Along the lines of sight, and what is missing to 90 degrees by half from each.
+  // Turns both axes along the lines of sight, then each by half of what is missing to 90 degrees.
   void turn() {
     for (const std::size_t i : {std::size_t{0}, std::size_t{1}}) aim(i);
     const Eigen::Vector3d a = sight(0).normalized(), b = sight(1).normalized();
@@ -155,8 +156,8 @@ class Seeker {
     stances_[i].head = cameras_[i].looking_along(direction, stances_[i].head.zoom);
   }
 
-  // Of the positions around the wanted one, those with the most nearly orthogonal axes, and of these the ones
-  // that look best at the target.
+  // Chooses, of the positions around the wanted one, those with the most nearly orthogonal axes; among these,
+  // those that aim best at the target.
   void draw_to_steps(const RigModel& model) {
     wanted_ = stances_;
     constexpr unsigned ways = 16;
@@ -238,7 +239,7 @@ double zoom_by(const Camera& camera, double from, double ratio) {
 HeadState aimed(const CameraConfig& model, const RigStance& stance, const Eigen::Vector3d& p_WP) {
   const Camera camera(model);
   HeadState head = stance.head;
-  // The pupil moves with the head; each round leaves a share of its lever over the distance.
+  // The pupil moves with the head; each round multiplies the error by the pupil's lever over the distance.
   constexpr int most = 60;
   for (int round = 0; round < most; ++round) {
     const HeadState next = camera.looking_along(p_WP - camera.pose({head, stance.stage}).position, head.zoom);

@@ -23,7 +23,7 @@ using ::testing::Contains, ::testing::Not;
 
 constexpr double step = 0.075 * degree;
 
-// A rig as calibrations find them: nothing is where it was meant to be.
+// A rig as calibrations find it, with errors everywhere.
 RigModel found_rig(TestRandom& random) {
   RigModel model = true_rig(believed_rig(), {}, random);
   for (CameraConfig& camera : model.cameras) {
@@ -61,8 +61,8 @@ MountConfig looking_down_z() {
   return mount;
 }
 
-// The camera's place is known from pictures each time, the turn of its mount is not: `turn` is wrong in what
-// the stage is sent by. How far the pupil is from where it should be, after each move.
+// The camera's position is known from each picture; the rotation of its mount is modelled wrong by `turn`.
+// Returns the distance of the pupil from its target after each move.
 std::vector<double> distances_by_stage(const Eigen::Vector3d& turn, const Eigen::Vector3d& start, int moves) {
   const MountConfig mount = looking_down_z();
   CameraConfig truth, believed;
@@ -92,7 +92,7 @@ TEST(StageTowards, ClosesInWhereTheMountsTurnIsKnownWithin60DegreesAndNowhereEls
     constexpr int moves = 10;
     const std::vector<double> closer = distances_by_stage(angle * axis, start, moves);
     for (std::size_t i = 1; i <= moves; ++i) EXPECT_LE(closer[i], by * closer[i - 1] + 1e-12);
-    // Of an offset along the axis nothing is left; one across it grows.
+    // An offset along the axis vanishes; one across it grows.
     const Eigen::Matrix3d R_WM = looking_down_z().pose().rotation;
     const Eigen::Vector3d across = R_WM.transpose() * axis.cross(random.vector<3>(-1, 1)).normalized();
     const std::vector<double> farther = distances_by_stage(least * axis, across, moves);
@@ -115,12 +115,12 @@ TEST(WantedRig, IsReachedExactlyWhereNothingHasStepsAndWithinHalfAStepOfHeads) {
     EXPECT_TRUE(wanted.notes.empty());
     EXPECT_NEAR(wanted.remainder.angle, 0, 1e-10);
     for (const Eigen::Vector2d& aim : wanted.remainder.aim) EXPECT_LE(aim.norm(), 1e-10);
-    EXPECT_NEAR(wanted.remainder.zoom_ratio, 1, 1e-4);  // The pupils' shift is followed in five rounds.
+    EXPECT_NEAR(wanted.remainder.zoom_ratio, 1, 1e-4);  // Five rounds follow the shift of the pupils.
     for (std::size_t i = 0; i < 2; ++i) {
       const auto limits = Camera(model.cameras[i]).stage_axes()[0].limits;
       EXPECT_LE(wanted.stances[i].stage.offset.cwiseAbs().maxCoeff(), limits[1]);
     }
-    // The heads do what the stages cannot.
+    // The heads make up for the stages.
     wish.may_use_stages = false;
     const WantedRig turned = wanted_rig(model, wish);
     EXPECT_NEAR(turned.remainder.angle, 0, 1e-10);

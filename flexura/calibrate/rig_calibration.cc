@@ -19,8 +19,8 @@
 namespace flexura {
 namespace {
 
-// The same observations without axis points: the others say themselves where they belong. All of them where
-// there are no others.
+// Returns the observations without axis points, since the others are already identified. Returns all if there
+// are no others.
 RigObservations marked(const RigObservations& seen) {
   RigObservations marked = seen;
   std::size_t count = 0;
@@ -28,7 +28,7 @@ RigObservations marked(const RigObservations& seen) {
   return count > 0 ? marked : seen;
 }
 
-// Frees, or holds, the columns that belong to the first `count` slots, from `first` on, of any camera.
+// Frees or holds the columns of `count` slots from `first` on, for all cameras.
 void free_slots(const RigVariables& variables, Eigen::Index first, Eigen::Index count,
                 std::vector<bool>& is_free, bool free = true) {
   for (std::size_t camera = 0; camera < variables.guess().cameras.size(); ++camera) {
@@ -40,8 +40,8 @@ void free_slots(const RigVariables& variables, Eigen::Index first, Eigen::Index 
   }
 }
 
-// A guess in which each camera stands `nearer` times as far from the arm's base, carried about the vertical
-// through it by `turn` and facing it as before.
+// A changed guess: each camera's distance from the arm base is scaled by `nearer`. The camera is rotated
+// about the vertical through the base by `turn`, facing it as before.
 struct Detour {
   double nearer = 1, turn = 0;
 };
@@ -65,8 +65,8 @@ Eigen::VectorXd start_of(const RigVariables& variables, const Detour& detour) {
   return x;
 }
 
-// First where the cameras look, then where they stand, then how long their lenses are, then everything: what
-// is rough before what is fine, so that the arm is not bent to make up for a camera.
+// Fits first where the cameras look, then their positions, then their focal lengths, then everything. Coarse
+// errors go first, so that the arm is not bent to compensate for a camera.
 RigDescent approach(RigProblem& coarse, RigProblem& problem, const Detour& detour,
                     const RigCalibrationConfig& config) {
   const RigVariables& variables = problem.variables();
@@ -81,14 +81,14 @@ RigDescent approach(RigProblem& coarse, RigProblem& problem, const Detour& detou
   descent.is_free.assign(static_cast<std::size_t>(variables.count()), false);
   constexpr std::array<std::array<Eigen::Index, 2>, 3> stages = {
       {{mount_rotation_slot, 3}, {mount_position_slot, 3}, {focal_slot, 1}}};
-  constexpr int enough = 15;  // iterations towards a minimum that is not the last
+  constexpr int enough = 15;  // Iterations towards an intermediate minimum.
   descent.most_iterations = std::min(enough, config.most_iterations);
   for (const auto& [first, count] : stages) {
     free_slots(variables, first, count, descent.is_free);
     go(coarse);
   }
   descent.most_iterations = config.most_iterations;
-  // A few markers tell a distortion with which the lens shows the arm beside the picture nowhere.
+  // A few markers may fit a distortion that makes the lens unable to show the arm outside the picture.
   descent.is_free.assign(static_cast<std::size_t>(variables.count()), true);
   constexpr Eigen::Index of_distortion = 5;
   free_slots(variables, distortion_slot, of_distortion, descent.is_free, false);
@@ -115,7 +115,7 @@ Eigen::MatrixXd covariance_of(const RigProblem& problem, double bound) {
   if (factors.is_definite() && factors.rcond() > dependent) {
     inverse = factors.inverse();
   } else {
-    // Directions of which nothing is known get a variance beyond all others.
+    // Undetermined directions get a variance larger than all others.
     const auto [values, vectors] = symmetric_eigen(scaled);
     const double least = dependent * values.maxCoeff();
     const auto unknown = [&](double value) { return value > least ? 1 / value : 1 / (dependent * least); };
@@ -156,7 +156,7 @@ void judge(const RigProblem& problem, const RigDescent& descent, const RigCalibr
   result.is_found = result.reason.empty();
 }
 
-// Leaves out what the fit does not explain and fits again, until that is the same.
+// Excludes outliers and fits again, until they no longer change.
 RigDescent without_doubtful(RigProblem& problem, RigDescent found, const RigCalibrationConfig& config) {
   RigDescentConfig descent;
   descent.bound = config.linear_beyond, descent.most_iterations = config.most_iterations;
@@ -171,7 +171,7 @@ RigDescent without_doubtful(RigProblem& problem, RigDescent found, const RigCali
   return found;
 }
 
-// Half of what is seen may be something else's and still leave a fit that is clearly the one.
+// Up to half of the observations may be outliers if the fit is still clearly the right one.
 bool is_clear(const RigProblem& problem, const RigDescent& found, const RigCalibrationConfig& config) {
   std::vector<double> sizes = problem.sizes();
   if (!std::isfinite(found.cost) || sizes.empty()) return false;

@@ -8,31 +8,33 @@
 
 namespace flexura {
 
-/// How long a descent may take, and which residuals it believes.
+/// Iteration limits of a descent and treatment of residuals.
 struct RigCalibrationConfig {
-  int most_iterations = 60;   ///< Of each descent.
-  double linear_beyond = 3;   ///< Residuals count linearly from here on, in standard deviations.
-  double doubted_beyond = 6;  ///< And not at all from here on.
-  double most_rms = 3;        ///< Fits whose residuals are larger than this explain nothing.
+  int most_iterations = 60;   ///< Per descent.
+  double linear_beyond = 3;   ///< Residuals count linearly beyond this, in standard deviations.
+  double doubted_beyond = 6;  ///< Residuals beyond this are excluded as outliers, in standard deviations.
+  double most_rms = 3;        ///< A fit with a larger root mean square of the residuals is rejected.
 };
 
-/// A rig as it was found.
+/// Result of a calibration.
 struct RigCalibration {
   bool is_found = false;
-  std::string reason;  ///< Why it is not.
+  std::string reason;  ///< Why it failed.
   RigModel model;
-  std::vector<ArmState> poses;     ///< How the arm stood.
-  std::vector<RigStance> stances;  ///< How the cameras stood.
-  Eigen::VectorXd x;               ///< Of the problem's variables.
-  Eigen::MatrixXd covariance;  ///< Of x. Infinite entries: the observations leave part of x without bound.
-  double rms = 0;              ///< Of the residuals' entries, in their own standard deviations.
-  double scale = 1;  ///< Of the residuals, for what was fitted; sigmas are larger by it where it is above 1.
-  std::vector<RigDoubt> doubts;    ///< What was taken for something else's.
-  int iterations = 0, starts = 0;  ///< Of all descents together; rough starts tried.
+  std::vector<ArmState> poses;     ///< Estimated arm poses.
+  std::vector<RigStance> stances;  ///< Estimated camera stances.
+  Eigen::VectorXd x;               ///< Values of the problem's variables.
+  /// Covariance of x. Infinite entries: the observations do not bound a part of x.
+  Eigen::MatrixXd covariance;
+  double rms = 0;    ///< Root mean square of the residual entries, in their standard deviations.
+  double scale = 1;  ///< Scale of the residuals, corrected for the number of fitted variables; sigmas are
+                     ///< multiplied by it if it is above 1.
+  std::vector<RigDoubt> doubts;    ///< Excluded outliers.
+  int iterations = 0, starts = 0;  ///< Iterations of all descents together; number of rough starts tried.
 };
 
-/// The rig that explains the observations best, from rough guesses on (docs/calibration.md): the least of
-/// `problem`, whose doubts it sets. The same problem gives the same bits.
+/// Estimates the rig that explains the observations best, starting from rough guesses (docs/calibration.md):
+/// the minimum of `problem`, whose outliers it sets. Equal problems give bit-identical results.
 [[nodiscard]] RigCalibration calibrate_rig(RigProblem& problem, const RigCalibrationConfig& config = {});
 
 }  // namespace flexura

@@ -26,7 +26,7 @@ RigTrial planned_trial(const RigTrialConfig& config, TestRandom& random, std::si
   return trial;
 }
 
-// Nothing but what is named may be wrong.
+// A prior that holds everything; tests free what they name.
 RigPrior all_held(const RigModel& model) {
   RigPrior prior = rough_prior(model);
   prior.arm = {.length = 0, .bend_gain = 0, .bend_share = 0, .bend = 0};
@@ -66,15 +66,15 @@ TEST(RigCalibration, ConvergesFromRoughGuessesAndKnowsHowWell) {
     }
   });
   RecordProperty("chi_square_share", std::to_string(sum / count));
-  // Chi square of many numbers, not all independent: 0.79 times their count. Its lower bound sees sigmas that
-  // are too large by the root of 2, with which it would be half of that.
+  // The chi-square sum of many correlated variables is 0.79 times their count. The lower bound detects sigmas
+  // that are too large by sqrt(2), which would halve it.
   EXPECT_GT(sum, (one_case_of > 1 ? 0.1 : 0.6) * count);
   EXPECT_LT(sum, (1 + 4 * std::sqrt(2.0 / count)) * count);
 }
 
 TEST(RigCalibration, SolvesMinimalCasesExactly) {
-  // One camera whose place and turn are unknown. Three markers of one pose are six equations for six numbers,
-  // with up to four answers, of which one near the guess is found; a fourth marker leaves one.
+  // One camera with unknown position and rotation. Three markers of one pose give six equations for six
+  // unknowns, with up to four solutions; the one near the guess is found. A fourth marker makes it unique.
   for_random_cases(20, [](TestRandom& random) {
     for (const std::size_t markers : {std::size_t{3}, std::size_t{4}}) {
       RigTrialConfig config;
@@ -105,7 +105,7 @@ TEST(RigCalibration, FindsEverythingWithoutNoise) {
   for_random_cases(3, [](TestRandom& random) {
     RigTrialConfig config;
     config.are_heads_exact = true, config.noise = 0, config.points = 0;
-    config.length = 0;  // Else the scale of everything is free.
+    config.length = 0;  // Otherwise the overall scale is free.
     RigTrial trial(true_rig(believed_rig(), config, random), config, random);
     take_plan(trial);
     RigPrior prior = all_held(believed_rig());
@@ -122,7 +122,7 @@ TEST(RigCalibration, FindsEverythingWithoutNoise) {
   });
 }
 
-// A row of one camera's zoom table whose focal length is one per cent off, and no other.
+// One row of one camera's zoom table has a focal length wrong by 1 %.
 TEST(RigCalibration, FindsTheRowOfAZoomTableThatIsWrong) {
   for_random_cases(4, [](TestRandom& random) {
     RigModel believed = believed_rig();
@@ -146,13 +146,13 @@ TEST(RigCalibration, FindsTheRowOfAZoomTableThatIsWrong) {
     const RigVariables& variables = problem.variables();
     for (std::size_t i = 0; i < 2; ++i) {
       const Eigen::Index rows = variables.column(variables.camera_slots(i) + zoom_row_slot);
-      // How much more the second row's focal length is than the first one's.
+      // Difference of the second row's focal length from the first one's.
       const double sigma = std::sqrt(found.covariance(rows, rows) + found.covariance(rows + 1, rows + 1) -
                                      2 * found.covariance(rows, rows + 1));
       EXPECT_LE(sigma, 0.002);
       EXPECT_LE(std::abs(found.x[rows + 1] - found.x[rows] - (i == wrong ? std::log(1 + off) : 0)),
                 4 * sigma);
-      // Nothing was seen at the last row's zoom.
+      // Nothing was observed at the last row's zoom.
       EXPECT_NEAR(std::sqrt(found.covariance(rows + 2, rows + 2)), prior.cameras[i].zoom_row, 1e-3);
     }
   });
@@ -250,7 +250,7 @@ TEST(RigObservability, SaysWhatThePicturesDoNotTell) {
   };
   EXPECT_TRUE(find("front: focal length").is_told);
   EXPECT_TRUE(find("side: mount's turn, y").is_told);
-  // Along the tilt axis, the pupil's place and the axis's are one.
+  // Along the tilt axis, shifts of pupil and axis are indistinguishable.
   EXPECT_FALSE(find("front: pupil, x").is_told);
   EXPECT_FALSE(find("front: tilt axis, x").is_told);
   ASSERT_FALSE(told.blindness.empty());

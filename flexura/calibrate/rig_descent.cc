@@ -13,7 +13,8 @@
 namespace flexura {
 namespace {
 
-// Where residuals begin to count linearly: far from the answer most are large, and have to draw.
+// Bound beyond which residuals count linearly. Far from the minimum most residuals are large and must keep
+// their pull.
 double bound_of(const RigProblem& problem, const RigDescentConfig& config) {
   if (!config.does_bound_rise) return config.bound;
   constexpr double spread = 2;
@@ -50,7 +51,7 @@ class RigSteps {
     levenberg_marquardt(prepare(), {.rise = 5, .eased = eased}, std::numeric_limits<int>::max(), try_step,
                         keep, leave);
     (void)problem_.linearise(result_.x);
-    // What has steps left made a last one, which led nowhere.
+    // If iterations are left, the last one found no descent.
     result_.is_settled = result_.iterations < config_.most_iterations || is_at_the_bottom();
     result_.iterations = std::min(result_.iterations + 1, config_.most_iterations);
     result_.cost = problem_.cost(config_.bound);
@@ -69,7 +70,7 @@ class RigSteps {
     if (!is_worth_it(promised) || !problem_.linearise(there_)) return {.promised = promised};
     return {problem_.cost(bound_), promised};
   }
-  // The normal equations where it stands; the cost there.
+  // Computes the normal equations at the present point; returns the cost there.
   double prepare() {
     bound_ = bound_of(problem_, config_);
     problem_.normal(bound_, gradient_, normal_);
@@ -77,8 +78,8 @@ class RigSteps {
     return cost_ = problem_.cost(bound_);
   }
   [[nodiscard]] bool is_worth_it(double promised) const { return promised > 1e-14 * cost_; }
-  // Whether a whole step would lower the cost by less than a thousandth of a standard deviation of anything
-  // does.
+  // Whether a full step would lower the cost by less than a thousandth of a standard deviation of any
+  // variable does.
   bool is_at_the_bottom() {
     constexpr double nothing = 1e-6;
     if (!factors_.compute(normal_)) return false;
@@ -99,9 +100,8 @@ class RigSteps {
 }  // namespace
 
 RigDescent descend(RigProblem& problem, const Eigen::VectorXd& start, const RigDescentConfig& config) {
-  // A camera at the height of a rim sees now this half of it, now that one; were they changed within a
-  // descent, its steps would be torn to and fro. Where they still change in the end it stands at that very
-  // height.
+  // For a camera at the height of a rim, the visible half of it may alternate. The halves are therefore fixed
+  // during a descent. If they still change at the end, the camera is at that very height.
   constexpr int most_rounds = 3;
   RigDescent result{.x = start};
   int iterations = 0;

@@ -7,22 +7,22 @@
 
 namespace flexura {
 
-/// What a descent may move, and how far residuals are believed.
+/// Free variables of a descent and its bound on residuals.
 struct RigDescentConfig {
-  std::vector<bool> is_free;  ///< By column of x; empty: all.
+  std::vector<bool> is_free;  ///< Free columns of x; empty: all are free.
   int most_iterations = 60;
-  double bound = 3;             ///< Residuals count linearly from here on, ...
-  bool does_bound_rise = true;  ///< ... or from where most of them are not, if that is further.
+  double bound = 3;             ///< Residuals count linearly beyond this ...
+  bool does_bound_rise = true;  ///< ... or beyond the size of most residuals, if that is larger.
 };
 
 struct RigDescent {
   Eigen::VectorXd x;
-  double cost = 0;  ///< With the bound as configured; infinite where nothing can be seen from the start.
-  bool is_settled = false;  ///< No step leads further down, or none by more than nothing.
+  double cost = 0;  ///< Cost with the configured bound; infinite if nothing is visible from the start.
+  bool is_settled = false;  ///< Whether no step lowers the cost noticeably.
   int iterations = 0;
 };
 
-/// Levenberg and Marquardt's method from `start` down. `problem` is left linearised at the end.
+/// Minimises by the Levenberg-Marquardt method from `start`. Leaves `problem` linearised at the result.
 [[nodiscard]] RigDescent descend(RigProblem& problem, const Eigen::VectorXd& start,
                                  const RigDescentConfig& config);
 

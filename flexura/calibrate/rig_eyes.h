@@ -13,60 +13,62 @@
 
 namespace flexura {
 
-/// A rig as it was found, and by what: markers that were taken for others count against it.
+/// A rig estimate with its evidence; misidentified markers count against it.
 struct RigReading {
-  std::optional<RigProblem> problem;  ///< Of what was recognised; there always is one.
+  std::optional<RigProblem> problem;  ///< Problem of the identified observations; always set.
   RigCalibration found;
-  double things = 0;     ///< What was taken for the arm's markers and axis points, or the cylinder's.
-  double amiss = 0;      ///< Of them those that the rig does not explain, and markers of nobody.
-  double explained = 0;  ///< Things, less twice those that it does not explain, and less markers of nobody.
+  /// Number of observations identified as markers and axis points, or as points of the cylinder.
+  double things = 0;
+  double amiss = 0;  ///< Number of them that the rig does not explain, plus unidentified markers.
+  /// `things`, minus twice those that it does not explain, minus unidentified markers.
+  double explained = 0;
 
-  /// Whether it is found, and no more than a twentieth is amiss.
+  /// Returns whether it was found with at most a twentieth amiss.
   [[nodiscard]] bool is_whole() const { return found.is_found && amiss <= 0.05 * things; }
 };
 
-/// What a session looks at, the arm or the calibration cylinder: measures it in pictures, keeps what was
-/// seen, and finds the rig that explains all of it.
+/// Observer of the target of a session, the arm or the calibration cylinder. It measures the target in
+/// pictures, stores the observations, and finds the rig that explains all of them.
 class RigEyes {
  public:
-  /// Of a rig that is known a few markers tell more, and are hardly taken for others.
+  /// For a known rig, a few markers give more information and are hardly misidentified.
   static constexpr std::size_t few = 2;
 
   virtual ~RigEyes() = default;
   RigEyes(const RigEyes&) = delete;
   RigEyes& operator=(const RigEyes&) = delete;
 
-  /// The session's camera `i` was sent there: what it sees from now on it sees from another stance.
+  /// Records that the session's camera `i` was commanded to move: later pictures have another stance.
   void sent(std::size_t i, const RigStance& stance);
-  /// Measures a picture of the session's camera `i`, keeps what it shows, if anything, and fills in what that
-  /// is, by all that is kept and the rig that was `found` before, if there is one.
+  /// Measures a picture of the session's camera `i` and stores what it shows, if anything. Fills in its
+  /// identification by all stored observations and the rig `found` before, if any.
   void see(std::size_t i, const RigModel* found, RigSight& sight);
-  /// From which of the kept stances the camera has looked since it was sent; none yet.
+  /// Returns the stored stance from which the camera has looked since its last move; empty if it has not yet.
   [[nodiscard]] const std::optional<std::size_t>& stance(std::size_t i) const { return cameras_[i].stance; }
-  /// Markers that can be recognised, in the last picture.
+  /// Returns the number of identifiable markers in the last picture.
   [[nodiscard]] virtual std::size_t markers() const { return 0; }
-  /// Where in the picture something of it was measured last, px, if anything was.
+  /// Returns the position of the last measured part in the picture, px; empty if nothing was measured.
   [[nodiscard]] virtual std::optional<Eigen::Vector2d> whereabouts() const { return std::nullopt; }
 
-  /// The rig that explains most of what was kept; `found`: the one before. None where a camera recognises
-  /// nothing.
+  /// Returns the rig that explains most of what is stored; `found` is the previous one. Not found if a camera
+  /// identifies nothing.
   [[nodiscard]] virtual RigReading read(const RigModel* found) const = 0;
-  /// What a picture that was kept shows, by the rig as found, for stance and pose 0.
+  /// Returns the content of a stored picture as identified by the estimated rig, with stance and pose 0.
   [[nodiscard]] virtual RigImage told(const RigModel& model, const RigSight& sight) const = 0;
 
  protected:
   explicit RigEyes(const RigModel& believed) : believed_(believed) {}
-  /// The commanded poses and the stances, as read, of what is kept.
+  /// Commanded poses, and stances as read, of the stored observations.
   [[nodiscard]] virtual std::vector<ArmState>& poses() = 0;
   [[nodiscard]] virtual std::vector<RigStance>& stances() = 0;
-  /// Measures a picture of the session's camera `i`. Whether it tells anything.
+  /// Measures a picture of the session's camera `i`; returns whether it contains information.
   [[nodiscard]] virtual bool look(std::size_t i, const Picture& picture) = 0;
-  /// What was measured last, as far as it says what it is without being kept. `view`: as far as it is known.
+  /// Returns what can be identified in the last measurement without storing it, for an approximate `view`.
   [[nodiscard]] virtual SeenArm unkept(const View& view) const = 0;
-  /// Keeps what was measured last, seen from this stance in this pose. What it is, by the rig that was found
-  /// before, if there is one.
+  /// Stores the last measurement with this stance and pose. Returns its identification by the rig found
+  /// before, if any.
   [[nodiscard]] virtual SeenArm keep(std::size_t stance, std::size_t pose, const RigModel* found) = 0;
-  /// The one that explains most.
+  /// Returns the reading that explains most.
   [[nodiscard]] static RigReading best_of(std::vector<RigReading>& readings);
   [[nodiscard]] const RigModel& model(const RigModel* found) const {
     return found != nullptr ? *found : believed_;
@@ -77,19 +79,19 @@ class RigEyes {
  private:
   struct Sent {
     RigStance to;
-    bool is_turned = true;                    // Since the last picture that was kept.
-    std::optional<std::size_t> stance, last;  // Of what is kept: since it was sent, and before.
+    bool is_turned = true;                    // Since the last stored picture.
+    std::optional<std::size_t> stance, last;  // Stored stances: since the last move, and before.
   };
   std::array<Sent, 2> cameras_;
 };
 
-/// Those of a session with this configuration, which outlives them as the others do. `target`: what the
-/// cameras are believed to look at, in W, m.
+/// Returns the observer of a session with this configuration. All arguments must outlive it. `target`:
+/// modelled target of the cameras, in W, m.
 [[nodiscard]] std::unique_ptr<RigEyes> session_eyes(const RigModel& believed, const RigPrior& prior,
                                                     const RigSessionConfig& config,
                                                     const Eigen::Vector3d& target);
 
-/// The same before the arm alone.
+/// Returns the observer for the arm alone.
 [[nodiscard]] std::unique_ptr<RigEyes> arm_eyes(const RigModel& believed, const RigPrior& prior,
                                                 const RigSessionConfig& config,
                                                 const Eigen::Vector3d& target);

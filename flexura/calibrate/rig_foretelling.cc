@@ -21,7 +21,7 @@ RigForetelling foretell(const RigProblem& problem, const RigCalibration& found, 
   x.head(own) = found.x.head(own);
   if (!fresh.linearise(x)) return {infinite, infinite};
   const RigRows& rows = fresh.rows().front();
-  // The rig's own numbers are known as they were found; what belongs to this picture, as by the prior.
+  // The covariance of the rig is that of the estimate; the variables of this picture have their priors.
   const auto known = static_cast<Eigen::Index>(rows.columns.size());
   Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(known, known);
   for (Eigen::Index a = 0; a < known; ++a) {
@@ -31,7 +31,7 @@ RigForetelling foretell(const RigProblem& problem, const RigCalibration& found, 
       if (const Eigen::Index j = rows.columns[static_cast<std::size_t>(b)]; j < own)
         covariance(a, b) = found.covariance(i, j);
   }
-  std::vector<double> sigmas;  // px, a row each.
+  std::vector<double> sigmas;  // px, one per row.
   for (const SeenMarker& marker : image.markers) sigmas.insert(sigmas.end(), 2, marker.sigma);
   for (const CurvePoint& point : image.points) sigmas.push_back(point.sigma);
   for (const EtalonPoint& point : image.etalon) sigmas.push_back(point.sigma);

@@ -14,7 +14,7 @@
 namespace flexura {
 namespace {
 
-// An axis stands where it was sent: within a step, and rounding.
+// Whether an axis is at its commanded position, within a step and rounding.
 bool stands(const AxisConfig& axis, double sent, double reads) {
   constexpr double rounding = 1e-6;
   return std::abs(commandable(axis, sent) - reads) <= axis.resolution + rounding;

@@ -12,38 +12,39 @@
 
 namespace flexura {
 
-/// How long to wait for what was asked for.
+/// Time limits and tolerances for moves and frames.
 struct RigPatience {
-  double settle = 20;  ///< For motions to end, s.
-  double frame = 3;    ///< For a frame, s.
-  double poll = 0.02;  ///< Between two looks at who still moves, s.
-  /// How far the arm's drives may say that a section is from where it was sent, rad.
+  double settle = 20;  ///< Time limit for motions to end, s.
+  double frame = 3;    ///< Time limit for a frame, s.
+  double poll = 0.02;  ///< Interval between checks for motion, s.
+  /// Largest deviation between measured and commanded bend of a section, rad.
   double bend = 0.02;
 };
 
-/// Moves a rig through its ports and waits until it stands, sees that what was commanded was done, and takes
-/// frames of what stands. Whatever goes wrong comes back as a sentence.
+/// Commander of a rig: moves it through its ports, waits for rest, checks that commands were carried out, and
+/// takes frames at rest. Errors are returned as a sentence.
 class RigHands {
  public:
   using Trouble = std::optional<std::string>;
 
-  /// `believed` tells what heads and stages can do; its cameras are the ports'.
+  /// `believed` gives ranges and resolutions of heads and stages; its cameras are those of the ports.
   RigHands(const RigPorts& ports, const RigModel& believed, const RigPatience& patience);
 
-  /// Where everything stands now.
+  /// Return the present positions.
   [[nodiscard]] std::variant<ArmState, std::string> arm() const;
   [[nodiscard]] std::variant<RigStance, std::string> stance(std::size_t camera) const;
 
-  /// Why a camera cannot be moved as the model has it: it has no head, or no stage.
+  /// Returns why a camera cannot be moved as modelled: it has no head, or no stage.
   [[nodiscard]] Trouble must_move(std::size_t camera) const;
 
-  /// Commands, which return at once.
+  /// Commands; these return at once.
   [[nodiscard]] Trouble bend(const ArmState& state, double duration);
   [[nodiscard]] Trouble go(const RigStance& stance);
-  /// Waits until nothing moves; what stands elsewhere than it was sent, or moves on and on, is trouble.
+  /// Waits until nothing moves. Returns an error if anything is not at its commanded position or does not
+  /// come to rest.
   [[nodiscard]] Trouble settle();
 
-  /// The next frame whose exposure begins at `time` s or later.
+  /// Returns the next frame whose exposure begins at `time` s or later.
   [[nodiscard]] std::variant<Frame, std::string> frame(std::size_t camera, double time) const;
   [[nodiscard]] double now() const { return ports_.clock->now(); }
 
@@ -55,7 +56,7 @@ class RigHands {
 
   RigPorts ports_;
   std::size_t sections_;
-  std::vector<Camera> cameras_;  // As they are believed to be.
+  std::vector<Camera> cameras_;  // As modelled.
   RigPatience patience_;
   std::optional<ArmState> sent_arm_;
   std::vector<std::optional<RigStance>> sent_;  // By camera.

@@ -13,10 +13,10 @@
 namespace flexura {
 namespace {
 
-// What is left of the prior when a number counts as told.
+// Share of the prior below which a variable counts as observed.
 constexpr double told = 0.5;
 
-// The largest parts of a direction, in words, the largest of them positive.
+// Describes the largest components of a direction; the largest is made positive.
 std::string words_of(const RigVariables& variables, const Eigen::VectorXd& direction) {
   constexpr std::size_t most = 4;
   constexpr double least = 0.25;

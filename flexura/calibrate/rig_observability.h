@@ -8,28 +8,28 @@
 
 namespace flexura {
 
-/// What observations tell of one of a rig's own numbers.
+/// Information of the observations on one of the rig's own variables.
 struct RigKnowledge {
   std::string name;             ///< "front: mount, x"
-  double prior = 0, sigma = 0;  ///< Standard deviation before and after, in the number's unit.
-  bool is_told = false;         ///< It is known at least twice as well as before.
+  double prior = 0, sigma = 0;  ///< Standard deviations before and after, in the variable's unit.
+  bool is_told = false;         ///< Whether sigma is at most half of the prior.
 };
 
-/// A combination of a rig's own numbers of which the observations tell little: moving them together, in these
-/// shares of their priors, changes next to nothing that was seen.
+/// A combination of the rig's own variables that the observations hardly determine. Changing them together,
+/// in these shares of their priors, changes almost nothing observable.
 struct RigBlindness {
-  double share = 0;   ///< Of the prior's standard deviation that is left: near 1, nothing was told.
+  double share = 0;   ///< Remaining share of the prior standard deviation: near 1, nothing was learned.
   std::string words;  ///< "front: pupil, z (-0.71) with front: tilt axis, z (+0.70)"
 };
 
-/// What observations tell of a rig, and what they cannot.
+/// What observations determine of a rig, and what they do not.
 struct RigObservability {
-  std::vector<RigKnowledge> numbers;    ///< In the order of x.
-  std::vector<RigBlindness> blindness;  ///< The blindest first; those of which over half is left.
+  std::vector<RigKnowledge> numbers;    ///< Variables in the order of x.
+  std::vector<RigBlindness> blindness;  ///< Combinations with over half of the prior left, largest first.
 };
 
-/// What a covariance of x says of the rig's own numbers. Numbers without a prior are compared with a size
-/// that matters (RigVariables::Variable::scale).
+/// Evaluates a covariance of x for the rig's own variables. Those without a prior are compared with a
+/// relevant size (RigVariables::Variable::scale).
 [[nodiscard]] RigObservability observability(const RigVariables& variables,
                                              const Eigen::MatrixXd& covariance);
 

@@ -11,24 +11,24 @@
 
 namespace flexura {
 
-/// What one camera saw in one picture: of the arm, or of the calibration cylinder.
+/// Observations of one camera in one picture: of the arm, or of the calibration cylinder.
 struct RigImage {
-  std::size_t stance = 0, pose = 0;      ///< Which of the observations'.
-  std::vector<SeenMarker> markers = {};  ///< Those that were recognised.
-  std::vector<CurvePoint> points = {};   ///< Where the backbone is seen, from base to tip.
-  std::vector<EtalonPoint> etalon = {};  ///< Of the cylinder's borders and red lines.
+  std::size_t stance = 0, pose = 0;      ///< Indices in RigObservations.
+  std::vector<SeenMarker> markers = {};  ///< Identified markers.
+  std::vector<CurvePoint> points = {};   ///< Points of the backbone, base to tip.
+  std::vector<EtalonPoint> etalon = {};  ///< Points of the cylinder's borders and red lines.
 
-  /// How many things were seen.
+  /// Returns the number of observations.
   [[nodiscard]] std::size_t things() const { return markers.size() + points.size() + etalon.size(); }
 };
 
-/// Everything that was seen. Pictures that were taken without moving the head share a stance, and those taken
-/// without moving the arm a pose: what is wrong with it is then wrong with all of them alike.
+/// All observations. Pictures taken without moving the head share a stance, and those taken without moving
+/// the arm share a pose. The errors of stance and pose are then common to them.
 struct RigObservations {
-  std::vector<ArmState> poses;     ///< As commanded.
-  std::vector<RigStance> stances;  ///< As read.
+  std::vector<ArmState> poses;     ///< Arm poses as commanded.
+  std::vector<RigStance> stances;  ///< Camera stances as read.
   std::vector<RigImage> images;
-  std::optional<EtalonConfig> etalon = {};  ///< If there is one: known to stand there.
+  std::optional<EtalonConfig> etalon = {};  ///< Known position of the cylinder, if there is one.
 };
 
 }  // namespace flexura

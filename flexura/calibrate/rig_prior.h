@@ -10,43 +10,43 @@
 
 namespace flexura {
 
-/// How wrong a camera may be: standard deviations of what its description says; 0 holds a number, infinity
-/// says that nothing is known of it.
+/// Prior standard deviations of the errors of a camera's description. 0 holds a variable, infinity leaves it
+/// without a prior.
 struct CameraPrior {
-  double position = 0.7;          ///< Of the mount, in each direction, m.
-  double rotation = 10 * degree;  ///< Of the mount, about each axis, rad.
-  double pan_zero = 0;            ///< rad; a turned mount does the same as long as the stage does not move.
-  double tilt_zero = 0.035;       ///< rad: 2 degrees.
+  double position = 0.7;          ///< Mount position in each direction, m.
+  double rotation = 10 * degree;  ///< Mount rotation about each axis, rad.
+  double pan_zero = 0;            ///< rad; equivalent to a rotated mount as long as the stage does not move.
+  double tilt_zero = 0.035;       ///< rad, 2 degrees.
   double tilt_axis = 0.003;       ///< m, in each direction.
   double pupil = 0.003;           ///< m, in each direction.
-  double pupil_shift = 0.001;     ///< m for each 1 of zoom ratio.
-  double focal = 0.1;             ///< Share of the focal length.
-  double aspect = 0.001;          ///< Share of fy alone.
+  double pupil_shift = 0.001;     ///< m per unit of zoom ratio.
+  double focal = 0.1;             ///< Relative error of the focal length.
+  double aspect = 0.001;          ///< Relative error of fy alone.
   double principal_point = 10;    ///< px, in each direction.
   std::array<double, 5> distortion = {0.02, 0, 0, 0, 0};  ///< k1, k2, p1, p2, k3.
-  double zoom_row = 0.01;  ///< Share of the focal length of each row of a zoom table.
-  /// Of the true place of an axis of the head or the stage, in steps of its resolution: evenly anywhere
-  /// within half a step. 0: counts are exact.
+  double zoom_row = 0.01;  ///< Relative error of the focal length of each row of a zoom table.
+  /// Error of an axis position of head or stage, in steps of its resolution: uniform within half a step. 0:
+  /// counts are exact.
   double steps = 0.288675134594812882;
 };
 
-/// How wrong an arm may be: standard deviations, 0 holds.
+/// Prior standard deviations of the errors of an arm; 0 holds a variable.
 struct ArmPrior {
-  double length = 0.005;     ///< Share of each section's length.
-  double bend_gain = 0.01;   ///< Share of each section's bend, the same in all poses.
-  double bend_share = 0.01;  ///< Share of each bend, another in each pose.
-  double bend = 0.001;       ///< And beside that, rad.
+  double length = 0.005;     ///< Relative error of each section's length.
+  double bend_gain = 0.01;   ///< Relative error of each section's bend, equal in all poses.
+  double bend_share = 0.01;  ///< Relative error of each bend, independent in each pose.
+  double bend = 0.001;       ///< Additional error of each bend, rad.
 };
 
-/// How far a rig may be off its guess: standard deviations.
+/// Prior standard deviations of the errors of a rig.
 struct RigPrior {
-  ArmPrior arm;                      ///< The same of every section.
-  std::vector<CameraPrior> cameras;  ///< One a camera.
+  ArmPrior arm;                      ///< Equal for all sections.
+  std::vector<CameraPrior> cameras;  ///< One per camera.
 };
 
-/// The rough guesses that a rig may start from: 10 degrees, `share` of each camera's distance from what it
-/// looks at (`seen` in W, m; the arm's base when left out), 10 % of its focal length, its principal point 10
-/// px off, the zeros of its tilt axis, and of its pan axis where its stage can move, 2 degrees.
+/// Returns the prior of a rough initial guess. Rotations have 10 degrees, positions `share` of each camera's
+/// distance from its target (`seen` in W, m; default: the arm's base). Focal lengths have 10 %, principal
+/// points 10 px. The zeros of tilt axes have 2 degrees, and so have those of pan axes whose stage can move.
 [[nodiscard]] RigPrior rough_prior(const RigModel& model, double share = 0.2,
                                    const std::optional<Eigen::Vector3d>& seen = {});
 

@@ -38,7 +38,7 @@ bool RigProblem::linearise(const Eigen::VectorXd& x) {
   return true;
 }
 
-// Calls visit(image, first row, rows, size of the residual) for each thing that is not doubted.
+// Calls visit(image, first row, rows, size of the residual) for each observation that is not excluded.
 template <class Visit>
 void RigProblem::for_each_thing(const Visit& visit) const {
   for (std::size_t i = 0; i < rows_.size(); ++i) {
@@ -85,7 +85,7 @@ void RigProblem::normal(double bound, Eigen::VectorXd& gradient, Eigen::MatrixXd
     for (Eigen::Index a = 0; a < part.cols(); ++a) {
       const Eigen::Index column = rows.columns[static_cast<std::size_t>(a)];
       gradient[column] += slope[a];
-      // Columns rise, so that this is the lower triangle.
+      // Columns are in ascending order, so this fills the lower triangle.
       for (Eigen::Index b = a; b < part.rows(); ++b)
         matrix(rows.columns[static_cast<std::size_t>(b)], column) += part(b, a);
     }

@@ -11,7 +11,8 @@
 namespace flexura {
 namespace {
 
-// Collects how an axis moves: each slot turns the camera about an axis through a point, or shifts it.
+// Accumulates the derivatives of an axis: each slot rotates the camera about an axis through a point, or
+// shifts it.
 class AxisMotion3 {
  public:
   AxisMotion3(const RigVariables& variables, OpticalAxis& axis) : variables_(variables), axis_(axis) {
@@ -42,7 +43,7 @@ class AxisMotion3 {
   OpticalAxis& axis_;
 };
 
-// How the logarithm of sqrt(fx fy) changes.
+// Adds the derivatives of log sqrt(fx fy).
 void add_focal(const CameraConfig& model, const ZoomTable& lens, double zoom, std::size_t camera_slots,
                AxisMotion3& motion) {
   const Intrinsics now = lens.at(zoom);
@@ -104,7 +105,7 @@ OpticalAxis optical_axis(const RigVariables& variables, const Eigen::VectorXd& x
 
 RigQuantity axes_angle(const OpticalAxis& a, const OpticalAxis& b) {
   const double cosine = a.direction.dot(b.direction), sine = a.direction.cross(b.direction).norm();
-  // For axes that are parallel the angle has no derivative; nothing changes it then, to first order.
+  // For parallel axes the angle has no derivative; use 0.
   const double slope = sine > 0 ? -1 / sine : 0;
   return {"angle between the axes", std::atan2(sine, cosine),
           slope * (a.direction_by_x.transpose() * b.direction + b.direction_by_x.transpose() * a.direction)};

@@ -10,7 +10,7 @@
 namespace flexura {
 namespace {
 
-// Knots of the backbone's image in each section: arcs of an eighth of a radian for sections that bend by one.
+// Intervals of the backbone's image per section: arcs of an eighth of a radian for sections that bend by one.
 constexpr std::size_t intervals = 8;
 
 ShapePrior known_arm(const Arm& arm) {
@@ -19,7 +19,7 @@ ShapePrior known_arm(const Arm& arm) {
   return prior;
 }
 
-// The way in which the points go on at point i, unit.
+// Unit direction of the curve at point i.
 Eigen::Vector2d heading(const std::vector<CurvePoint>& points, std::size_t i) {
   const std::size_t before = i > 0 ? i - 1 : i, after = std::min(i + 1, points.size() - 1);
   return (points[after].pixel - points[before].pixel).normalized();
@@ -103,7 +103,7 @@ void RigProjector::add_camera_slots(const CameraProjection& projection, std::siz
   by_stance.rightCols<3>() = projection.by_stage;
 }
 
-// The point's own motion stands in jacobian_.
+// The point's own Jacobian is in jacobian_.
 void RigProjector::add_arm_slots(const CameraProjection& projection, std::size_t pose, Shown& shown) const {
   const Shape& shape = shapes_[pose];
   const auto sections = static_cast<Eigen::Index>(shape.arm.sections.size());
@@ -162,8 +162,9 @@ bool RigProjector::add_markers(const RigImage& image, RigRows& rows) {
   return true;
 }
 
-// Each point belongs to the nearest one of the backbone's image, looked for a little way on from the one
-// before. It is compared across the image there, so that its own derivative by the place does not matter.
+// Each point is matched to the nearest one of the backbone's image, searched a little way on from the
+// previous one. Residuals are taken across the image there, so that the derivative by the curve parameter
+// does not matter.
 bool RigProjector::add_points(const RigImage& image, RigRows& rows) {
   if (image.points.empty()) return true;
   curve_.set(shapes_[image.pose]);
@@ -188,8 +189,8 @@ bool RigProjector::add_points(const RigImage& image, RigRows& rows) {
   return true;
 }
 
-// Compared across the part's image where it is nearest, for the same reason. The cylinder stands where it
-// stands: neither the arm nor its pose has a part in this.
+// Residuals are taken across the part's image at its nearest point, for the same reason. The cylinder is
+// fixed: neither the arm nor its pose matters.
 bool RigProjector::add_etalon(const RigImage& image, RigRows& rows) {
   if (image.etalon.empty()) return true;
   if (!etalon_) return false;

@@ -13,34 +13,34 @@
 
 namespace flexura {
 
-/// How far one image is from what a rig would show: residuals in units of their standard deviations, and
-/// their derivatives by those of x's numbers that matter to it.
+/// Residuals of one image in standard deviations, and their derivatives by the relevant variables of x.
 struct RigRows {
-  std::vector<Eigen::Index> columns;  ///< Of x.
+  std::vector<Eigen::Index> columns;  ///< Columns of x.
   Eigen::VectorXd residuals;          ///< (shown - seen)/sigma.
-  Eigen::MatrixXd derivatives;        ///< A row a residual, a column for each of `columns`.
-  /// Rows of each thing that was seen: 2 of a marker, then 1 of an axis point, then 1 of an etalon's point.
+  Eigen::MatrixXd derivatives;        ///< One row per residual, one column for each of `columns`.
+  /// Rows of each observation: 2 for a marker, 1 for an axis point, 1 for an etalon point, in this order.
   std::vector<int> sizes;
 };
 
-/// A rig as x says it is, and how its images would be.
+/// Predicts images of the rig that x describes.
 class RigProjector {
  public:
-  /// `variables` outlives it.
+  /// `variables` must outlive it.
   RigProjector(const RigVariables& variables, const Eigen::VectorXd& x,
                const std::optional<EtalonConfig>& etalon = {});
 
-  /// False where the rig would not show all that was seen: behind a camera, or outside what its lens maps.
+  /// Computes the rows of an image. Returns false if the rig would not show all that was seen: behind a
+  /// camera, or outside the range of its lens.
   [[nodiscard]] bool rows(const RigImage& image, RigRows& rows);
 
-  /// A point of the arm as a stance shows it, with derivatives by all slots of the camera, the arm, the pose
-  /// and the stance, in that order.
+  /// A point of the arm as seen from a stance, with derivatives by all slots. Their order is: camera, arm,
+  /// pose, stance.
   struct Shown {
     Eigen::Vector2d pixel;
     Eigen::Matrix<double, 2, Eigen::Dynamic> by_slots;
   };
   [[nodiscard]] std::optional<Shown> show(std::size_t pose, std::size_t stance, const MaterialPoint& point);
-  /// What a stance sees, and where it stands in truth.
+  /// Returns the view of a stance at its true position.
   [[nodiscard]] View view(std::size_t stance) const;
 
  private:
@@ -57,14 +57,14 @@ class RigProjector {
   Eigen::VectorXd x_;
   std::vector<CameraConfig> models_;
   std::vector<Camera> cameras_;
-  std::vector<RigStance> stances_;  // in truth, zeros added
+  std::vector<RigStance> stances_;  // True positions, with zero offsets added.
   std::vector<Shape> shapes_;
   std::vector<BackboneJacobian> jacobians_;
   Jacobian jacobian_;
   SpaceCurve curve_;
   CurveImage image_;
   std::optional<EtalonFigure> etalon_;
-  std::vector<Eigen::Index> picked_;  // local slots that have columns
+  std::vector<Eigen::Index> picked_;  // Local slots that have columns.
 };
 
 }  // namespace flexura

@@ -13,7 +13,7 @@
 namespace flexura {
 namespace {
 
-// A rig all of whose numbers may be wrong, and two pictures by cameras of which one has a zoom table.
+// A rig with errors in all variables, and two pictures by cameras of which one has a zoom table.
 struct Everything {
   RigModel model;
   RigPrior prior;
@@ -82,8 +82,8 @@ TEST(RigRows, AxisPointsFollowTheCurveAsItMoves) {
     const RigRows rows = problem.rows()[1];
     ASSERT_GT(rows.residuals.size(), 20);
     const NumericalJacobian numerical = row_differences(problem, x, 1, 1e-4);
-    // The normals of a curve that is cubic between knots turn a little otherwise than its own, and what is
-    // beyond its end is not off along them.
+    // The normals of the piecewise cubic curve turn slightly differently from those of the true curve. Points
+    // beyond its end have no residual along it.
     EXPECT_LE((numerical.value - rows.derivatives).norm(), 1e-2 * rows.derivatives.norm());
   });
 }
@@ -112,8 +112,7 @@ TEST(RigQuantities, DerivativesAreThoseOfDifferences) {
       EXPECT_LE(
           (numerical.value.row(i).transpose() - quantities(x)[static_cast<std::size_t>(i)].gradient).norm(),
           1e-7);
-    // The way in which an axis passes a point turns with the camera, so that at the point itself alone the
-    // two ways of deriving it agree.
+    // The aim directions rotate with the camera; hence both derivatives agree only at the point itself.
     const OpticalAxis axis = optical_axis(variables, x, observed_stance(variables, 0));
     const Eigen::Vector3d on_axis = axis.pupil + 2 * axis.direction;
     const auto aims = [&](const Eigen::VectorXd& at) -> Eigen::VectorXd {

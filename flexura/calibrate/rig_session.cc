@@ -81,7 +81,7 @@ class Session {
   }
   [[nodiscard]] const RigModel& model() const { return found_ ? found_->model : believed_; }
 
-  // Shows the arm in a pose and takes a picture from each stance.
+  // Bends the arm into a pose and takes a picture from each stance.
   Trouble look(const ViewCandidate& what) {
     if (watcher_.is_cancelled()) return "cancelled";
     if (!config_.etalon)
@@ -95,7 +95,7 @@ class Session {
     pose_ = std::get<ArmState>(arm);
     for (const std::size_t i : {std::size_t{0}, std::size_t{1}}) {
       if (auto trouble = picture(i)) return trouble;
-      // As long as nothing is known, the arm may have bent out of view.
+      // As long as no rig is found, the arm may be bent out of view.
       if (!found_ && misses_[i] > 0) {
         const bool is_there = eyes_->whereabouts().has_value();
         const std::string at_first = sight_.seen.reason;
@@ -126,7 +126,7 @@ class Session {
     return fmt::format("{}, also {:.3g} rad to all sides: {}", where, config_.search, why);
   }
 
-  // Takes a picture and measures it; what is of use becomes an image of the observations.
+  // Takes a picture and measures it; useful ones are added to the observations.
   Trouble picture(std::size_t i, bool is_search = false) {
     auto taken = trip_.picture(i, is_search ? 0 : result_.looks);
     if (const auto* why = std::get_if<std::string>(&taken)) return *why;
@@ -157,7 +157,7 @@ class Session {
     return picture(i, true);
   }
 
-  // Towards what is seen of it, as long as all of it is not.
+  // Turns towards the visible part of the target until all of it is visible.
   Trouble approach(std::size_t i) {
     constexpr int most = 4;
     for (int turn = 0; turn < most && misses_[i] > 0; ++turn) {
@@ -171,8 +171,8 @@ class Session {
     return std::nullopt;
   }
 
-  // Turns the head about where it stands until enough of the arm is seen, and back where it is not: that is
-  // one miss in all.
+  // Turns the head around its position until enough of the arm is visible; otherwise back. A failed search
+  // counts as one miss.
   Trouble search(std::size_t i) {
     const RigStance middle = trip_.stances()[i];
     const int misses = misses_[i];
@@ -212,7 +212,7 @@ class Session {
     return plan_.trouble_with(found_->model, wanted_, step, trip_.home());
   }
 
-  // What to look at next, if the session goes on.
+  // Chooses the next look, if the session continues.
   void choose(RigStep& step) {
     next_.reset();
     if (result_.looks + 1 >= config_.images || is_enough()) {
@@ -226,7 +226,7 @@ class Session {
   [[nodiscard]] ViewCandidate next() const {
     if (next_) return *next_;
     ViewCandidate another{pose(result_.looks), {trip_.stances()[0], trip_.stances()[1]}};
-    // What stands still looks the same from the same place.
+    // A fixed target looks the same from the same place.
     constexpr double aside = 0.03;  // rad
     for (RigStance& stance : another.stances) {
       if (!config_.etalon) break;
@@ -241,7 +241,7 @@ class Session {
            is.focal[1] <= wanted.focal[1] && is.zoom_ratio <= wanted.zoom_ratio;
   }
 
-  // Sends the cameras to the wanted configuration and verifies it on fresh pictures.
+  // Moves the cameras to the wanted configuration and verifies it with new pictures.
   Trouble move() {
     has_moved_ = true;
     result_.wanted = wanted_;
@@ -251,7 +251,7 @@ class Session {
         return fmt::format("the {} is not seen by camera {} after the move: {}", what_, name(i),
                            result_.after[i]->seen.reason);
       const RigSight& sight = *result_.after[i];
-      // Markers' and borders' middles are not known to nothing, whatever a picture's noise is.
+      // Marker and border positions have a minimum error, whatever the noise of a picture.
       constexpr double least = 0.5, most = 4;  // px; standard deviations.
       const RigForetelling foretelling =
           foretell(*problem_, *found_, sight.stance, sight.pose, eyes_->told(model(), sight), least);
@@ -279,7 +279,7 @@ class Session {
         remainder(found_->model, plan_.wanted(believed_, trip_.start()).stances, target);
     for (RigStep& step : result_.steps)
       if (step.is_found) step.remainder = remainder(found_->model, step.wanted, target);
-    // Where the cameras truly stand, as far as the pictures tell.
+    // Estimated true camera positions.
     if (eyes_->stance(0) && eyes_->stance(1) && result_.is_done)
       result_.remainder = remainder(
           found_->model, {found_->stances[*eyes_->stance(0)], found_->stances[*eyes_->stance(1)]}, target);
@@ -287,7 +287,7 @@ class Session {
     if (result_.is_done) note_what_is_unknown(result_.steps.back().sigmas);
   }
 
-  // What was wanted to be known better.
+  // Adds notes on what is known less precisely than wanted.
   void note_what_is_unknown(const RigSigmas& is) {
     const RigSigmas& wanted = config_.wanted;
     const auto note = [&](const std::string& what, double known, double asked, const char* unit) {
@@ -301,8 +301,7 @@ class Session {
       note(fmt::format("the focal length of camera {} is", name(i)), 100 * is.focal[i], 100 * wanted.focal[i],
            " %");
     note("the zoom ratio is", 100 * is.zoom_ratio, 100 * wanted.zoom_ratio, " %");
-    // Pictures of an arm that is what is believed of it fit to half of the stated uncertainty of each
-    // measurement.
+    // For an accurate arm model, residuals are about half of the stated standard deviations.
     constexpr double suspicious_rms = 1.2;
     if (result_.found.rms > suspicious_rms)
       result_.wanted.notes.push_back(fmt::format(
@@ -322,9 +321,9 @@ class Session {
   RigSessionResult result_;
 
   bool has_moved_ = false;
-  ArmState pose_;  // As the drives say of the last look.
+  ArmState pose_;  // Pose in the last look, as measured by the drives.
   std::array<int, 2> misses_ = {0, 0};
-  std::vector<ViewCandidate> missed_;  // Looks of one camera at which too little was seen.
+  std::vector<ViewCandidate> missed_;  // Looks of one camera at which too little was visible.
   RigSight sight_;                     // The last one.
   std::optional<RigProblem> problem_;
   std::optional<RigCalibration> found_;

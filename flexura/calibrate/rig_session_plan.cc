@@ -15,7 +15,7 @@ namespace flexura {
 
 namespace {
 
-// Whether a ray comes to a screen.
+// Whether a ray hits a screen.
 bool meets(const ScreenConfig& screen, const Eigen::Vector3d& from, const Eigen::Vector3d& way) {
   const Eigen::Vector3d normal = vector(screen.normal).normalized();
   Eigen::Vector3d right = Eigen::Vector3d::UnitY().cross(normal);
@@ -28,7 +28,7 @@ bool meets(const ScreenConfig& screen, const Eigen::Vector3d& from, const Eigen:
   return std::abs(at.dot(right)) <= 0.5 * screen.width && std::abs(at.dot(up)) <= 0.5 * screen.height;
 }
 
-// Whether there is a screen behind a picture's corners and the middles of its edges.
+// Whether a screen is behind a picture's corners and the midpoints of its edges.
 bool is_filled(const View& view, const std::vector<ScreenConfig>& screens) {
   for (const double u : {0.0, 0.5, 1.0}) {
     for (const double v : {0.0, 0.5, 1.0}) {
@@ -51,7 +51,7 @@ bool is_like(const RigModel& model, const ViewCandidate& candidate, const ViewCa
     if (a.camera != b.camera || !(std::abs(a.head.pan - b.head.pan) < turn) ||
         !(std::abs(a.head.tilt - b.head.tilt) < turn) || !((a.stage.offset - b.stage.offset).norm() < way))
       return false;
-    // Positions may be counts of a motor, which mean something else on every lens.
+    // Positions may be motor counts, which differ between lenses.
     const CameraConfig& camera = model.cameras.at(a.camera);
     const ZoomTable lens(camera.lens, camera.sensor.width, camera.sensor.height);
     return std::abs(std::log(lens.ratio(a.head.zoom) / lens.ratio(b.head.zoom))) <= std::log1p(larger);
@@ -79,7 +79,7 @@ WantedRig RigSessionPlan::wanted(const RigModel& model, const std::array<RigStan
   RigWish wish;
   wish.target = target(model), wish.now = stands, wish.may_use_stages = config_.may_use_stages;
   for (RigStance& stance : wish.now) {
-    // From the stages' and the zooms' beginnings: looks in between went elsewhere.
+    // From the initial positions of stage and zoom, as looks have moved them since.
     const Camera camera(believed_.cameras[stance.camera]);
     stance.stage = camera.initial_stage(), stance.head.zoom = camera.initial_head().zoom;
     stance = first(stance);
@@ -110,14 +110,14 @@ void RigSessionPlan::know(const RigVariables& variables, const RigCalibration& f
   }
 }
 
-// Ratios of a camera from its shortest to the longest that shows all of the cylinder, and how far beside the
-// image's middle it still does.
+// Three zooms of a camera, from the shortest ratio to the longest that shows the whole cylinder. Each has the
+// distance from the image's middle at which the cylinder still fits.
 std::array<std::array<double, 2>, 3> RigSessionPlan::etalon_zooms(const RigModel& model,
                                                                   std::size_t camera) const {
   constexpr double longer = 1.05, most = 20, margin = 20, spread = 0.6;
   const Camera optics(model.cameras[camera]);
   const EtalonFigure etalon(*config_.etalon);
-  // The share of half the picture by which the cylinder may be moved from the middle, if it fits at all.
+  // Share of half the picture by which the cylinder may be off the middle; empty if it does not fit.
   const auto room = [&](double ratio) -> std::optional<double> {
     RigStance stance{.camera = camera, .head = optics.initial_head(), .stage = optics.initial_stage()};
     stance.head.zoom = zoom_at(optics, ratio);
@@ -150,7 +150,7 @@ ViewGrid RigSessionPlan::grid(const RigModel& model) const {
   const Camera camera(believed_.cameras[config_.cameras[0]]);
   const double start = camera.lens().ratio(camera.initial_head().zoom);
   for (const double ratio : config_.zooms) {
-    // As far as the lens goes.
+    // Limited by the lens.
     const double reached = camera.lens().ratio(zoom_at(camera, start * ratio));
     if (std::ranges::find(grid.zooms, reached) == grid.zooms.end()) grid.zooms.push_back(reached);
   }
@@ -188,7 +188,7 @@ std::pair<std::optional<ViewCandidate>, std::string> RigSessionPlan::next(
     return std::ranges::any_of(missed,
                                [&](const ViewCandidate& one) { return is_like(believed_, candidate, one); });
   });
-  // Beside a screen it is as dark as the cylinder.
+  // Outside a screen the background is as dark as the cylinder.
   const auto lacks_screen = [&](const ViewCandidate& candidate) {
     return !std::ranges::all_of(candidate.stances, [&](const RigStance& stance) {
       return is_filled(view_of(found.model, stance), config_.screens);
@@ -197,7 +197,7 @@ std::pair<std::optional<ViewCandidate>, std::string> RigSessionPlan::next(
   if (config_.etalon && !std::ranges::all_of(candidates, lacks_screen))
     std::erase_if(candidates, lacks_screen);
   ViewConfig view;
-  if (config_.etalon) view.sigma = 0.05;  // Of borders and lines, px.
+  if (config_.etalon) view.sigma = 0.05;  // Borders and lines, px.
   view.markers = std::max<std::size_t>(config_.picture.markers.size(), 2), view.fewest = config_.fewest;
   const auto choice =
       next_best_view(problem, found, candidates, goals(problem.variables(), found, wanted), view);
@@ -239,8 +239,8 @@ RigHands::Trouble RigSessionPlan::trouble_with(const RigModel& model, const Want
   if (left > far_off + step_of_heads + likely * step.sigmas.angle)
     return fmt::format("where heads and stages end the axes would be {:.1f} deg from orthogonal{}",
                        left / degree, why);
-  // What the stages cannot do the heads do, and then look beside the arm.
-  constexpr double most_aside = 0.1;  // Of the distance.
+  // The heads make up for the stages and then look beside the arm.
+  constexpr double most_aside = 0.1;  // Share of the distance.
   for (std::size_t i = 0; i < 2; ++i) {
     const double aside = wanted.remainder.aim[i].norm();
     if (aside > most_aside * sights[i].norm())

@@ -17,7 +17,7 @@ ZoomRow row(double ratio, double count) {
   return row;
 }
 
-// Counts that fall from wide to long on the first camera, and rise on the second.
+// Motor counts that fall from wide to long on the first camera, and rise on the second.
 RigModel rig_of_two_lenses() {
   RigModel rig = believed_rig();
   rig.cameras[0].lens.zoom = {row(1, 9000), row(4, 8000)};
@@ -42,13 +42,14 @@ TEST(IsLike, GoesByWhatIsSeenOfThePoseAndFromWhere) {
   ViewCandidate bent = look;
   bent.pose = some_poses()[1];
   EXPECT_FALSE(is_like(rig, bent, look));
-  // One of its stances is enough.
+  // One similar stance is enough.
   ViewCandidate both = look_of(1, {});
   both.stances.push_back(look.stances[0]);
   EXPECT_TRUE(is_like(rig, both, look));
 }
 
-// On the first lens a ninth of the count is all of the zoom; on the second no share of a count of 0 is more.
+// A ninth of the count is the whole zoom range of the first lens; on the second, relative changes of a count
+// of 0 mean nothing.
 TEST(IsLike, ComparesZoomRatiosAndNotTheMotorsCounts) {
   const RigModel rig = rig_of_two_lenses();
   EXPECT_FALSE(is_like(rig, look_of(0, {.zoom = 8200}), look_of(0, {.zoom = 9000})));
@@ -57,7 +58,7 @@ TEST(IsLike, ComparesZoomRatiosAndNotTheMotorsCounts) {
   EXPECT_FALSE(is_like(rig, look_of(1, {.zoom = 60}), look_of(1, {.zoom = 0})));
 }
 
-// A session in which three pictures a camera were taken, about to choose the next.
+// A session about to choose its next look after three pictures per camera.
 struct Choice {
   explicit Choice(const RigModel& rig) : believed(rig) {
     TestRandom random(5);

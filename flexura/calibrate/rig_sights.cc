@@ -45,12 +45,12 @@ void RigSights::recognise(const RigModel& model, const SightDoubt& doubt, std::s
   if (errors.size() <= rank) return;
   for (std::size_t k = 0; k < places.size(); ++k) {
     const auto& size = looks[places[k]].arm.size;
-    // What one error for all pictures leaves: arms that bend otherwise than told, a camera that went.
+    // What one common error does not explain: arms bent differently from the readings, a moved camera.
     const MatchDoubt rest{.shift = 0.04 * size[0], .turn = 0.05, .scale = 0.05};
     const MarkerScene expected = expected_scene(pictures[k], errors[rank]);
     MarkerMatch& match = matches[places[k]];
     match = match_markers(expected, pictures[k].seen, size, rest);
-    // From where nothing was seen before a rig that is hardly known expects worse.
+    // A rig that is hardly known predicts worse for new viewpoints.
     constexpr double more = 3;
     const std::size_t count = markers_of(pictures[k].seen);
     if (2 * match.count >= count) continue;

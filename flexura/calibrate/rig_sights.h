@@ -11,42 +11,42 @@
 
 namespace flexura {
 
-/// How many of them can be recognised.
+/// Returns the number of visible markers.
 [[nodiscard]] std::size_t markers_of(const MarkerScene& scene);
 
-/// The pictures of a session, whose markers are recognised anew whenever more is known of the rig: a rig that
-/// was guessed wrong takes markers for others.
+/// The pictures of a session. Their markers are identified again whenever the rig estimate improves, as a
+/// wrong rig misidentifies markers.
 class RigSights {
  public:
   struct Look {
-    std::size_t stance = 0, pose = 0;  ///< Which of those below.
+    std::size_t stance = 0, pose = 0;  ///< Indices in `stances` and `poses`.
     ArmFigure arm;
   };
 
-  /// The arm as its markers' places are told, and what `cameras` of the rig look.
+  /// `marked`: the arm along which marker positions are measured; `cameras`: those of the rig that look.
   RigSights(const Arm& marked, ArmPictureConfig config, const std::array<std::size_t, 2>& cameras)
       : marked_(marked), config_(std::move(config)), cameras_(cameras) {}
 
-  std::vector<ArmState> poses;     ///< As commanded.
-  std::vector<RigStance> stances;  ///< As read.
+  std::vector<ArmState> poses;     ///< Arm poses as commanded.
+  std::vector<RigStance> stances;  ///< Camera stances as read.
   std::vector<Look> looks;
 
-  /// Which marker is which in each look, if the rig is `model` up to `doubt`: all looks of a camera together
-  /// tell what is wrong with it. `rank`: by which of the likely errors of each camera, the best one first;
-  /// nothing is recognised of a camera that has no so many.
+  /// Identifies the markers in each look, if the rig is `model` up to `doubt`; all looks of a camera together
+  /// determine its error. `rank` selects the likely error of each camera, 0 for the best; a camera with fewer
+  /// likely errors gets no identities.
   [[nodiscard]] std::vector<MarkerMatch> recognise(const RigModel& model, const SightDoubt& doubt,
                                                    const std::array<std::size_t, 2>& rank = {0, 0}) const;
-  /// Of the last look alone, by all looks of its camera and their likeliest error.
+  /// Identifies the markers of the last look alone, by the likeliest error from all looks of its camera.
   [[nodiscard]] MarkerMatch recognise_last(const RigModel& model, const SightDoubt& doubt) const;
-  /// What the looks tell, recognised so, that have this many markers at least.
+  /// Returns the observations of the looks with at least `fewest` identified markers.
   [[nodiscard]] RigObservations observations(const RigModel& model, const std::vector<MarkerMatch>& matches,
                                              std::size_t fewest) const;
-  /// What one of them tells.
+  /// Returns the observations of one look.
   [[nodiscard]] SeenArm seen(const RigModel& model, std::size_t look, const MarkerMatch& match) const;
 
  private:
   [[nodiscard]] MarkerPicture picture(const RigModel& model, const Look& look) const;
-  // The looks of one camera; the others' matches stay as they are.
+  // For the looks of one camera; leaves the other matches as they are.
   void recognise(const RigModel& model, const SightDoubt& doubt, std::size_t camera, std::size_t rank,
                  std::vector<MarkerMatch>& matches) const;
 

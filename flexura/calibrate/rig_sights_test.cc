@@ -1,4 +1,4 @@
-// Which marker is which, by one picture alone and by all pictures of a camera together.
+// Identification of markers by one picture alone and by all pictures of a camera together.
 #include "flexura/calibrate/rig_sights.h"
 
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@
 namespace flexura {
 namespace {
 
-// Equal markers in a row, of which a picture shows some: shifted by one they look the same.
+// A row of equal markers, partly visible: shifted by one it looks identical.
 TEST(MarkerMatch, TakesTheLikelierOfTwoShifts) {
   MarkerScene expected, seen;
   for (int i = 0; i < 12; ++i) {
@@ -39,15 +39,14 @@ TEST(LikelyErrors, AreTheCamerasWhereItIsTurnedAndItsLensIsLonger) {
     }
     const auto found = likely_errors(pictures, rough, 3);
     ASSERT_FALSE(found.empty());
-    // What is guessed counts a little.
+    // The prior pulls the estimate slightly.
     EXPECT_LT((found.front().turn - error.turn).norm(), 6e-3);
     EXPECT_NEAR(found.front().scale, error.scale, 6e-3);
   });
   EXPECT_TRUE(likely_errors({}, rough, 3).empty());
 }
 
-// What a camera truly sees of an arm, and which of its markers each one is: some are missed, some are
-// nobody's.
+// True view of an arm and the true identities of its markers; some are missed, some are false detections.
 struct TrueSight {
   MarkerScene scene;
   std::vector<std::optional<std::size_t>> names;
@@ -77,7 +76,7 @@ TrueSight look(const RigModel& truth, const Arm& told, const RigStance& stance, 
   return sight;
 }
 
-// Markers that are taken for others than they are.
+// Number of misidentified markers.
 int wrong_ones(const MarkerMatch& match, const TrueSight& sight) {
   int wrong = 0;
   for (std::size_t i = 0; i < sight.names.size(); ++i)
@@ -102,7 +101,7 @@ struct Session {
   }
 };
 
-// With lenses that show a part of the arm, and guesses as rough as they may be.
+// With lenses that show a part of the arm, and the roughest allowed guesses.
 TEST(RigSights, TogetherTellMarkersThatOnePictureTakesForOthers) {
   constexpr int trials = 100;
   int looks = 0, misled = 0, misled_alone = 0, recognised = 0, markers = 0;

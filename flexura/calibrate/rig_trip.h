@@ -10,34 +10,34 @@
 
 namespace flexura {
 
-/// Two cameras and an arm on their way through a session: sends them, knows where they stand and where they
-/// stood when it began, takes pictures, brings all of them back, and lets the session's watcher know of each
-/// command. Cameras are counted 0 and 1 here.
+/// Motion of two cameras and an arm through a session. Commands them, tracks their present and initial
+/// positions, takes pictures, brings everything back, and reports each command to the session's watcher.
+/// Cameras have the numbers 0 and 1 here.
 class RigTrip {
  public:
   using Trouble = RigHands::Trouble;
 
-  /// `move_duration`: of the arm from one shape to the next, s. std::invalid_argument: ports for other
-  /// cameras than the model's, one camera given for both.
+  /// `move_duration`: of the arm from one shape to the next, s. Throws std::invalid_argument if the ports are
+  /// for other cameras than the model's, or if both cameras are the same.
   RigTrip(const RigPorts& ports, const RigModel& believed, const std::array<std::size_t, 2>& cameras,
           const RigPatience& patience, double move_duration, RigSessionWatcher& watcher);
 
-  /// Waits for rest, and remembers where everything stands.
+  /// Waits for rest and stores all positions.
   [[nodiscard]] Trouble begin();
-  /// The arm to a pose by way of the shape in which it began: these ways are known before anything moves.
+  /// Moves the arm to a pose via its initial shape: these paths are known before anything moves.
   [[nodiscard]] Trouble show(const ArmState& pose);
-  /// Sends a camera; settle() waits for it.
+  /// Commands a camera; settle() waits for it.
   [[nodiscard]] Trouble send(std::size_t i, const RigStance& stance);
   [[nodiscard]] Trouble settle() { return hands_.settle(); }
-  /// Sends everything back to where it began, as far as it goes; says how it went.
+  /// Commands everything back to the start, as far as possible; returns a message about the outcome.
   [[nodiscard]] std::string retreat();
 
-  /// What a camera sees from now on, and how it stands, in which nothing is measured yet. Or why not.
+  /// Returns a new picture with the camera's position, not measured yet; or the error.
   [[nodiscard]] std::variant<RigSight, std::string> picture(std::size_t i, std::size_t look) const;
   [[nodiscard]] std::variant<ArmState, std::string> arm() const { return hands_.arm(); }
   [[nodiscard]] double now() const { return hands_.now(); }
 
-  /// As they were when it began, and as they were sent.
+  /// Initial positions, and the last commanded ones.
   [[nodiscard]] const ArmState& home() const { return home_; }
   [[nodiscard]] const std::array<RigStance, 2>& start() const { return start_; }
   [[nodiscard]] const std::array<RigStance, 2>& stances() const { return stands_; }

@@ -91,7 +91,7 @@ void RigVariables::add3(const std::string& name, double sigma, double scale) {
 }
 
 void RigVariables::add_camera(const CameraConfig& camera, const CameraPrior& prior) {
-  const CameraPrior usual;  // Sizes for what nothing is known of.
+  const CameraPrior usual;  // Default sizes for variables without a prior.
   const std::string name = camera.name + ": ";
   cameras_.push_back(slots_.size());
   add3(name + "mount's place", prior.position, usual.position);
@@ -139,7 +139,7 @@ void RigVariables::add_stance(std::size_t number, const RigStance& stance, const
   stances_.push_back(slots_.size());
   const Camera camera(guess_.cameras[stance.camera]);
   const auto add_axis = [&](const char* what, const AxisConfig& axis) {
-    // Play that the axis is known to have: on either side of where it counts.
+    // Known backlash of the axis: half of it to either side of the count.
     const double sigma = prior.steps > 0 ? std::hypot(prior.steps * axis.resolution, axis.backlash / 2) : 0;
     add(fmt::format("stance {}: {}", number + 1, what), sigma, std::max(axis.resolution, axis.backlash));
   };

@@ -11,8 +11,8 @@
 
 namespace flexura {
 
-/// The numbers that a camera's description may be wrong by, in the order of their slots. A zoom table's rows
-/// follow, one number each: the logarithm of the factor on their focal lengths.
+/// Slots of the variables of a camera's description, in order. The rows of a zoom table follow, one variable
+/// each: the logarithm of the factor on their focal lengths.
 enum CameraSlot : Eigen::Index {
   mount_position_slot = 0,  // 3: m, in W
   mount_rotation_slot = 3,  // 3: rotation vector in W, from the guess, rad
@@ -28,71 +28,72 @@ enum CameraSlot : Eigen::Index {
   zoom_row_slot = 24,
 };
 
-/// Of a stance: pan, tilt (rad), zoom (its own unit), the stage's x, y and z (m), beside what was read.
+/// Slots of a stance, offsets from what was read: pan, tilt (rad), zoom (its own unit), the stage's x, y and
+/// z (m).
 inline constexpr Eigen::Index stance_slots = 6;
 
-/// All that may be wrong with a rig and with what it says of itself while it is looked at, as one vector x:
-/// how far each number is from the guess, in its own unit; the guess is x = 0. What the prior holds has no
-/// place in x. In this order: each camera's numbers, the arm's (logarithms of the lengths, bend gains), each
-/// pose's (bends beside those commanded), each stance's. The first two are the rig's own, `globals()` of
-/// them; the others belong to the pictures.
+/// The unknown errors of a rig and of its readings as one vector x, where x = 0 is the guess. Each variable
+/// is an offset from the guess in its own unit. Variables that the prior holds have no place in x. The order
+/// is: each camera's variables, the arm's (logarithms of the lengths, bend gains), each pose's (bend offsets
+/// from the command), each stance's. The first two groups are the rig's own, `globals()` of them; the others
+/// belong to the pictures.
 class RigVariables {
  public:
-  /// std::invalid_argument: another number of priors than cameras, a prior that is negative or no number,
-  /// observations that speak of cameras, stances or poses which there are not, or of another arm, or in
-  /// another order; std::out_of_range: of a marker beyond its end.
+  /// Throws std::invalid_argument unless there is one prior per camera, or if a prior is negative or NaN.
+  /// Also if observations refer to missing cameras, stances or poses, to another arm, or are in another
+  /// order. Throws std::out_of_range for a marker beyond the arm's end.
   RigVariables(const RigModel& guess, const RigPrior& prior, const RigObservations& seen);
 
-  /// A number of the rig.
+  /// A variable of the rig.
   struct Variable {
-    std::string name;  ///< What it is, in words: "front: mount, x".
-    double sigma = 0;  ///< The prior's.
-    double scale = 0;  ///< A size that matters, in its unit: sigma, or something like it if that is infinite.
-    Eigen::Index column = -1;  ///< In x; -1: held.
+    std::string name;          ///< Name, such as "front: mount, x".
+    double sigma = 0;          ///< Prior standard deviation.
+    double scale = 0;          ///< Relevant size in its unit: sigma, or a similar size if that is infinite.
+    Eigen::Index column = -1;  ///< Column in x; -1: held.
   };
 
-  /// Numbers in x; those of them, the first, that are the rig's own.
+  /// Return the number of variables in x, and of those at its beginning that are the rig's own.
   [[nodiscard]] Eigen::Index count() const { return count_; }
   [[nodiscard]] Eigen::Index globals() const { return globals_; }
-  /// In the order of x.
+  /// By column of x.
   [[nodiscard]] const Variable& variable(Eigen::Index column) const {
     return slots_[slot_of_[static_cast<std::size_t>(column)]];
   }
   /// The rig at x = 0.
   [[nodiscard]] const RigModel& guess() const { return guess_; }
 
-  /// Where a camera's slots begin, to be looked up in `column` and `value`.
+  /// Returns a camera's first slot, for `column` and `value`.
   [[nodiscard]] std::size_t camera_slots(std::size_t camera) const { return cameras_.at(camera); }
-  /// The same of the arm.
+  /// Returns the arm's first slot.
   [[nodiscard]] std::size_t arm_slots() const { return arm_; }
-  /// Of a pose of the arm.
+  /// Returns the first slot of a pose of the arm.
   [[nodiscard]] std::size_t pose_slots(std::size_t pose) const { return poses_.at(pose); }
-  /// Of a stance of a camera.
+  /// Returns the first slot of a stance of a camera.
   [[nodiscard]] std::size_t stance_slots_of(std::size_t stance) const { return stances_.at(stance); }
-  /// How many slots a camera has.
+  /// Returns a camera's number of slots.
   [[nodiscard]] Eigen::Index slots_a_camera(std::size_t camera) const;
-  /// Where a slot's number stands in x; -1: held.
+  /// Returns the column of a slot in x; -1: held.
   [[nodiscard]] Eigen::Index column(std::size_t slot) const { return slots_[slot].column; }
-  /// A slot's number in x; 0 where it is held.
+  /// Returns a slot's value in x; 0 if held.
   [[nodiscard]] double value(const Eigen::VectorXd& x, std::size_t slot) const {
     return slots_[slot].column < 0 ? 0.0 : x[slots_[slot].column];
   }
-  /// Those of three slots that follow each other.
+  /// Returns the values of three successive slots.
   [[nodiscard]] Eigen::Vector3d value3(const Eigen::VectorXd& x, std::size_t slot) const {
     return {value(x, slot), value(x, slot + 1), value(x, slot + 2)};
   }
 
-  /// Whether x means a rig at all: its numbers within a thousand times what they may be wrong by, focal
-  /// lengths that rise with the zoom.
+  /// Returns whether x describes a valid rig: each variable within a thousand times its prior, focal lengths
+  /// rising with the zoom.
   [[nodiscard]] bool is_rig(const Eigen::VectorXd& x) const;
-  /// The rig that x means.
+  /// Returns the rig described by x.
   [[nodiscard]] RigModel model(const Eigen::VectorXd& x) const;
-  /// The observations' poses, the shapes as commanded, and stances, as read.
+  /// Poses of the observations, as commanded, and stances, as read.
   [[nodiscard]] const std::vector<ArmState>& commanded() const { return commanded_; }
   [[nodiscard]] const std::vector<RigStance>& read() const { return read_; }
-  /// How the arm stood in a pose.
+  /// Returns the estimated arm pose.
   [[nodiscard]] ArmState pose(const Eigen::VectorXd& x, std::size_t pose) const;
-  /// How a camera stood in a stance.
+  /// Returns the estimated camera stance.
   [[nodiscard]] RigStance stance(const Eigen::VectorXd& x, std::size_t stance) const;
 
  private:
@@ -109,7 +110,7 @@ class RigVariables {
   std::vector<ArmState> commanded_;
   std::vector<RigStance> read_;
   std::vector<Variable> slots_;
-  std::vector<std::size_t> slot_of_;  // by column
+  std::vector<std::size_t> slot_of_;  // By column.
   std::vector<std::size_t> cameras_, poses_, stances_;
   std::size_t arm_ = 0;
   Eigen::Index count_ = 0, globals_ = 0;

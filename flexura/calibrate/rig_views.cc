@@ -13,14 +13,14 @@
 namespace flexura {
 namespace {
 
-// What a candidate would show, as if the rig were what was found: only where things lie along the arm
-// matters, not what noise does to them. None where the arm is not in view.
+// Predicts what a candidate would show for the estimated rig, without noise: only the positions along the arm
+// matter. Empty if the arm is not in view.
 class Forecast {
  public:
   Forecast(const RigProblem& problem, const RigCalibration& found, const ViewConfig& config)
       : problem_(problem), found_(found), config_(config) {}
 
-  // What is known of the rig's own numbers after the candidate.
+  // Returns the information on the rig's own variables after the candidate.
   [[nodiscard]] std::optional<Eigen::MatrixXd> information(const Eigen::MatrixXd& before,
                                                            const ViewCandidate& candidate) const {
     RigObservations next;
@@ -81,8 +81,8 @@ class Forecast {
     return image;
   }
 
-  // The rig's own numbers keep what was known of them; what belongs to the candidate's pictures alone is
-  // eliminated. The prior of the rig's own numbers, which the new problem brings again, is taken out.
+  // The rig's own variables keep their information; those of the candidate's pictures are eliminated. The
+  // prior of the rig's own variables is subtracted, as the new problem contains it again.
   [[nodiscard]] static Eigen::MatrixXd marginal(const Eigen::MatrixXd& before, const RigProblem& ahead,
                                                 const Eigen::VectorXd& x) {
     constexpr double all = 1e300;
@@ -107,7 +107,7 @@ class Forecast {
   const ViewConfig& config_;
 };
 
-// Rows: the goals' gradients by the rig's own numbers, in units of what is wanted.
+// One row per goal: its gradient by the rig's own variables, in units of the wanted standard deviation.
 Eigen::MatrixXd goal_rows(std::span<const ViewGoal> goals, Eigen::Index own) {
   Eigen::MatrixXd rows(static_cast<Eigen::Index>(goals.size()), own);
   for (std::size_t i = 0; i < goals.size(); ++i)
@@ -145,7 +145,7 @@ RigStance looking_at(const RigModel& model, std::size_t number, const Eigen::Vec
   const Camera optics(camera);
   RigStance stance = commanded(optics, {number, {0, 0, zoom_at(optics, ratio)}, {slide}});
   stance.head = aimed(camera, stance, target);
-  // What lies to the right and below of the middle is brought there by turning left and up.
+  // Points to the right and below the middle move there by turning left and up.
   const Intrinsics lens = optics.lens().at(stance.head.zoom);
   stance.head.pan += std::atan(0.5 * place.x() * static_cast<double>(camera.sensor.width) / lens.fx);
   stance.head.tilt += std::atan(0.5 * place.y() * static_cast<double>(camera.sensor.height) / lens.fy);

@@ -15,7 +15,7 @@
 namespace flexura {
 namespace {
 
-// The middle of what is on the figure's side of the threshold.
+// Returns the centroid of the pixels on the figure's side of the threshold.
 std::optional<Eigen::Vector2d> figure_middle(const Image<std::uint8_t>& gray) {
   const Threshold threshold = threshold_of(gray, {});
   if (!threshold.reason.empty()) return std::nullopt;
@@ -31,14 +31,14 @@ std::optional<Eigen::Vector2d> figure_middle(const Image<std::uint8_t>& gray) {
   return sum / count;
 }
 
-// Normalised cross-correlation of pictures, one of them enlarged.
+// Normalised cross-correlation of two pictures, one of them enlarged.
 class Correlator {
  public:
   Correlator(const Image<std::uint8_t>& real, const Image<std::uint8_t>& ideal, const Eigen::Vector2d& at,
              const Eigen::Vector2d& from)
       : real_(real), ideal_(ideal), at_(at), from_(from) {}
 
-  // `pitch`: every so many pixels of every so many rows.
+  // `pitch`: uses every pitch-th pixel of every pitch-th row.
   [[nodiscard]] double at(double ratio, int pitch) const {
     double n = 0, sa = 0, sb = 0, saa = 0, sbb = 0, sab = 0;
     for (int v = 0; v < real_.height(); v += pitch) {
@@ -53,7 +53,7 @@ class Correlator {
   }
 
  private:
-  // Linear between pixels; beyond the border as on it.
+  // Bilinear interpolation; constant beyond the border.
   [[nodiscard]] double ideal(double u, double v) const {
     u = std::clamp(u, 0.0, ideal_.width() - 1.0), v = std::clamp(v, 0.0, ideal_.height() - 1.0);
     const int i = std::min(static_cast<int>(u), ideal_.width() - 2),
@@ -79,7 +79,7 @@ ZoomCorrelation correlate_zoom(const Image<std::uint8_t>& real, const Image<std:
     return found;
   }
   const Correlator correlator(real, ideal, *at, *from);
-  // All around in steps of 3 %, on every third pixel; then golden sections between the neighbours.
+  // Full search in steps of 3 %, on every third pixel; then golden sections between the neighbours.
   constexpr int steps = 24, coarse = 3;
   const double step = std::numbers::ln2 / steps;
   int best = 0;

@@ -7,16 +7,16 @@
 
 namespace flexura {
 
-/// How much larger one picture shows a figure than another.
+/// Size of a figure in one picture relative to another.
 struct ZoomCorrelation {
-  std::string reason;  ///< Why that is not known; "" when it is.
-  double ratio = 1;    ///< The real one's size over the ideal one's.
-  double peak = 0;     ///< The normalised cross-correlation there, 1 at most.
+  std::string reason;  ///< Why it is unknown; "" if it is known.
+  double ratio = 1;    ///< Size in the real picture over that in the ideal one.
+  double peak = 0;     ///< Normalised cross-correlation at this ratio, at most 1.
 };
 
-/// The ratio between 1/2 and 2 at which the ideal picture, enlarged by it about its figure's centroid and
-/// laid upon that of the real one, has the largest normalised cross-correlation with the real one (step 13 of
-/// section 3.4). Both are gray, and of the same size: std::invalid_argument otherwise.
+/// Finds the ratio between 1/2 and 2 with the largest normalised cross-correlation (step 13 of section 3.4).
+/// The ideal picture is enlarged by it about its figure's centroid and laid onto the real figure's centroid.
+/// Throws std::invalid_argument unless both are gray and of equal size.
 [[nodiscard]] ZoomCorrelation correlate_zoom(const Image<std::uint8_t>& real,
                                              const Image<std::uint8_t>& ideal);
 

@@ -18,7 +18,7 @@ namespace {
 
 constexpr int zoomed_width = 160, zoomed_height = 120;
 
-// A dark figure before a bright ground; `distance` is a pixel's from its border, px, positive outside.
+// A dark figure on a bright background; `distance` of a pixel from its border, px, is positive outside.
 template <class Distance>
 Image<std::uint8_t> picture_of(const Distance& distance, TestRandom& random) {
   Image<std::uint8_t> picture(zoomed_width, zoomed_height);
@@ -32,7 +32,7 @@ Image<std::uint8_t> picture_of(const Distance& distance, TestRandom& random) {
   return picture;
 }
 
-// All of whose border is seen from its middle.
+// A star-shaped figure: all of its border is visible from its middle.
 Image<std::uint8_t> star(double size, double depth, const Eigen::Vector2d& middle, TestRandom& random) {
   return picture_of(
       [&](const Eigen::Vector2d& pixel) {
@@ -62,7 +62,7 @@ TEST(ZoomCorrelation, FindsEveryRatioBetweenHalfAndTwoAndBeyondTheEndThatIsNeare
   });
 }
 
-// An arm bent into an arc lies upon itself by half until it is rolled by some angle: there 1/2 is correlated.
+// At some roll angle an arc-shaped arm overlaps itself by half; the correlation there is 1/2.
 TEST(ZoomCorrelation, RefusesAnArcThatIsRolledOffHalfOfItself) {
   for_random_cases(24, [](TestRandom& random) {
     const double half = random.uniform(0.8, 1.2), radius = random.uniform(34, 40),
@@ -78,7 +78,7 @@ TEST(ZoomCorrelation, RefusesAnArcThatIsRolledOffHalfOfItself) {
           },
           random);
     };
-    // The figure's share of the picture, and what of it lies upon itself after a roll: pieces move across
+    // Share of the figure in the picture, and its overlap with itself after a roll. Pieces move across
     // themselves by roll centroid sin(angle).
     const double share = (2 * half * radius * width + 0.25 * std::numbers::pi * width * width) /
                          (zoomed_width * zoomed_height);

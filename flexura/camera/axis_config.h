@@ -5,17 +5,17 @@
 
 namespace flexura {
 
-/// How one motor-driven axis of a camera may move, in the units of its position: rad, m, or a zoom's.
+/// Motion limits of one motor-driven axis of a camera, in the units of its position: rad, m, or the zoom's.
 struct AxisConfig {
   std::array<double, 2> limits = {0, 0};                              ///< Smallest and largest position.
-  double max_rate = std::numeric_limits<double>::infinity();          ///< A second.
-  double max_acceleration = std::numeric_limits<double>::infinity();  ///< A second squared.
+  double max_rate = std::numeric_limits<double>::infinity();          ///< Per second.
+  double max_acceleration = std::numeric_limits<double>::infinity();  ///< Per second squared.
   double resolution = 0;  ///< Distance of the positions that can be commanded; 0: any.
-  double backlash = 0;    ///< Play: what the motor moves in vain when it turns back.
+  double backlash = 0;    ///< Motion of the motor without effect on reversal.
 };
 
-/// The position nearest to `position` that can be commanded: within the limits, and a whole number of steps
-/// of the resolution from 0 where there is one within the limits.
+/// Returns the position nearest to `position` that can be commanded. It is within the limits, and a whole
+/// number of resolution steps from 0 if there is one within the limits.
 [[nodiscard]] double commandable(const AxisConfig& axis, double position);
 
 }  // namespace flexura

@@ -8,12 +8,12 @@
 
 namespace flexura {
 
-/// The units in which an axis is written.
+/// Units of an axis in a file.
 struct AxisUnits {
-  Unit position, rate, acceleration;  ///< Of a position, a second and a second squared.
+  Unit position, rate, acceleration;  ///< Units of position, velocity and acceleration.
 };
 
-/// Adds what all axes have: rates, resolution, backlash. S has the members of AxisConfig.
+/// Adds the fields common to all axes: rates, resolution, backlash. S has the members of AxisConfig.
 template <class S, class Rate>
 void add_axis_fields(Table<S>& table, const AxisUnits& units, Rate S::* max_rate, const char* default_rate) {
   using Number = double S::*;
@@ -43,7 +43,7 @@ void check_limits(const std::array<double, 2>& limits, Reader& reader);
 /// Of the angles of a head's axes, rad.
 inline constexpr NumberRange turn_range = {.min = -10, .max = 10};
 
-/// The table of fields of an axis type S, an AxisConfig with defaults of its own; its limits lie within
+/// Returns the table of fields of an axis type S, an AxisConfig with its own defaults; its limits lie within
 /// `range`.
 template <class S>
 Table<S> axis_table(const char* name, const char* meaning, const AxisUnits& units, const NumberRange& range) {

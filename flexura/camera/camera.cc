@@ -50,7 +50,7 @@ Pose Camera::pose(const CameraStance& stance) const {
 
 HeadState Camera::looking_along(const Eigen::Vector3d& direction, double zoom) const {
   const Eigen::Vector3d u = (X_WM_.rotation.transpose() * direction).normalized();
-  // Of the pans that differ by whole turns the one nearest to the middle of its limits.
+  // Of the pans that differ by full turns, the one nearest to the middle of its limits.
   const auto& [least, most] = config_.head.pan.limits;
   const double middle = 0.5 * (least + most), pan = std::atan2(-u.x(), u.z()) - config_.head.pan.zero;
   return {middle + std::remainder(pan - middle, 2 * std::numbers::pi),
@@ -82,7 +82,7 @@ std::optional<CameraProjection> Camera::project(const Eigen::Vector3d& p_WP,
   result.by_point = by_C * R_CW;
   result.by_mount << -result.by_point, result.by_point * skew(from_mount);
   result.by_stage = -by_C * R_CM;
-  // The point turns the other way than the camera: d/dpan about P's -y, d/dtilt about C's x.
+  // The point rotates opposite to the camera: d/dpan about P's -y, d/dtilt about C's x.
   result.by_pan = by_C * (R_CP * Eigen::Vector3d::UnitY().cross(panned));
   result.by_tilt = -by_C * Eigen::Vector3d::UnitX().cross(tilted);
   result.by_tilt_axis = -by_C * R_CP;

@@ -18,7 +18,7 @@ using ::testing::HasSubstr;
 
 Node node(const CameraConfig& camera) { return Codec<CameraConfig>::write(camera); }
 
-// What is said of a camera's table in which the value at `path` is replaced.
+// Error message for a camera's table in which the value at `path` is replaced.
 std::string error_of(const CameraConfig& camera, const std::string& path, Node::Value value) {
   Node table = node(camera);
   EXPECT_EQ(set_at_path(table, path, {std::move(value), {}}), "");

@@ -18,7 +18,8 @@ TEST(Head, PansToTheLeftAndTiltsUp) {
   const Eigen::Vector3d forward(0, 0, 1);
   EXPECT_LE((pan_rotation(0.3) * forward - Eigen::Vector3d(-std::sin(0.3), 0, std::cos(0.3))).norm(), 1e-15);
   EXPECT_LE((tilt_rotation(0.3) * forward - Eigen::Vector3d(0, -std::sin(0.3), std::cos(0.3))).norm(), 1e-15);
-  // Pan first, about the mount's axis: a head that looks up by 90 degrees does not move its axis by panning.
+  // Pan comes first, about the mount's axis: panning a head that looks up by 90 degrees does not move its
+  // axis.
   EXPECT_LE((head_pose({}, 1.0, 90 * degree).rotation.col(2) - Eigen::Vector3d(0, -1, 0)).norm(), 1e-15);
 }
 
@@ -54,7 +55,7 @@ TEST(Mount, LooksAtItsPointUpright) {
     EXPECT_NEAR(X_WM.rotation.determinant(), 1, 1e-14);
     EXPECT_NEAR(*roll_of(X_WM.rotation), mount.roll, 1e-9);
     const Eigen::Matrix3d without_roll = X_WM.rotation * so3_exp({0, 0, -mount.roll});
-    EXPECT_NEAR(without_roll.col(0).y(), 0, 1e-14);  // its x is level, its y points down
+    EXPECT_NEAR(without_roll.col(0).y(), 0, 1e-14);  // Its x is level, its y points down.
     EXPECT_LT(without_roll.col(1).y(), 0);
   });
 }
@@ -110,7 +111,7 @@ TEST(Camera, SeesAsTheChainOfItsFramesSays) {
   });
 }
 
-// Everything that a camera's pixel depends on, as one vector.
+// All parameters of a camera's pixel, as one vector.
 class EveryParameter {
  public:
   EveryParameter(const CameraConfig& config, const StageState& stage, const HeadState& head,
@@ -119,7 +120,7 @@ class EveryParameter {
 
   static constexpr int count = 3 + 6 + 3 + 3 + 3 + 3 + 1;
 
-  // The pixel at offsets x from the parameters as they are.
+  // The pixel at offsets x from the present parameters.
   [[nodiscard]] Eigen::VectorXd pixel(const Eigen::VectorXd& x) const {
     CameraConfig config = config_;
     Pose X_WM = config.mount.pose();

@@ -15,13 +15,13 @@ void require(bool holds, const char* message) {
   if (!holds) throw std::invalid_argument(message);
 }
 
-// The smallest positive root of the derivative 1 + 3 k1 q + 5 k2 q^2 + 7 k3 q^3 of the radial part by the
-// radius, where q = r^2; infinite when there is none. Between its own turning points the cubic is monotone,
-// so bisection finds the first change of sign.
+// Returns the smallest positive root of the derivative 1 + 3 k1 q + 5 k2 q^2 + 7 k3 q^3 of the radial part,
+// where q = r^2. Infinite if there is no such root. The cubic is monotone between its turning points, so
+// bisection finds the first change of sign.
 double largest_radius_of(const std::array<double, 5>& distortion) {
   const double c1 = 3 * distortion[0], c2 = 5 * distortion[1], c3 = 7 * distortion[4];
   const auto slope = [&](double q) { return 1 + q * (c1 + q * (c2 + q * c3)); };
-  std::array<double, 3> ends = {infinity, infinity, infinity};  // of the monotone pieces
+  std::array<double, 3> ends = {infinity, infinity, infinity};  // Of the monotone pieces.
   int count = 0;
   const auto add_turn = [&](double q) {
     if (std::isfinite(q) && q > 0) ends[static_cast<std::size_t>(count++)] = q;
@@ -59,7 +59,7 @@ double largest_radius_of(const std::array<double, 5>& distortion) {
   return infinity;
 }
 
-// The point whose radial part alone is distorted to `wanted`; one near the rim when there is none.
+// Returns the point whose radial distortion gives `wanted`; one near the rim if no point does.
 Eigen::Vector2d undistort_radially(const Eigen::Vector2d& wanted, const std::array<double, 5>& distortion,
                                    double largest_radius) {
   const double radius = wanted.norm();
@@ -74,7 +74,7 @@ Eigen::Vector2d undistort_radially(const Eigen::Vector2d& wanted, const std::arr
     const double slope = 1 + q * (3 * k1 + q * (5 * k2 + q * 7 * k3));
     (excess > 0 ? high : low) = r;
     const double next = r - excess / slope;
-    // Newton's step where it stays in the bracket, half the bracket otherwise.
+    // Newton's step if it stays in the bracket, otherwise bisection.
     const double middle = 0.5 * (low + high);
     const double last = r;
     r = next > low && next < high ? next : middle;
@@ -93,7 +93,7 @@ Distorted distort(const Eigen::Vector2d& normal, const std::array<double, 5>& di
   const auto [k1, k2, p1, p2, k3] = distortion;
   const double a = normal.x(), b = normal.y(), q = a * a + b * b;
   const double radial = 1 + q * (k1 + q * (k2 + q * k3));
-  const double slope = 2 * (k1 + q * (2 * k2 + q * 3 * k3));  // of the radial factor by q, times 2
+  const double slope = 2 * (k1 + q * (2 * k2 + q * 3 * k3));  // Of the radial factor by q, times 2.
   Distorted result;
   result.point = {a * radial + 2 * p1 * a * b + p2 * (q + 2 * a * a),
                   b * radial + p1 * (q + 2 * b * b) + 2 * p2 * a * b};
@@ -148,7 +148,7 @@ std::optional<Projection> Lens::project_with_derivatives(const Eigen::Vector3d& 
   return result;
 }
 
-// Number by number: matrices that are written in parts and read as a whole keep the processor waiting.
+// Written by components: matrices written in parts and read as a whole would stall the processor.
 bool Lens::project_by_point(const Eigen::Vector3d& p_CP, PointProjection& result) const {
   const double z = p_CP.z();
   if (!(z > 0)) return false;
@@ -178,8 +178,8 @@ std::optional<Eigen::Vector2d> Lens::unproject(const Eigen::Vector2d& pixel) con
                          (pixel.y() - intrinsics_.cy) / intrinsics_.fy);
   if (!wanted.allFinite()) return std::nullopt;
   if (!intrinsics_.is_distorted()) return wanted;
-  // From the radial part alone, which is inverted for certain, by Newton's method, damped so that the error
-  // falls; a guess outside the field is drawn back into it.
+  // Starts from the radial part alone, whose inversion always succeeds. Then Newton's method, damped so that
+  // the error falls; steps outside the field are pulled back into it.
   constexpr int most_steps = 60;
   constexpr double tolerance = 1e-15;
   const auto inside = [this](const Eigen::Vector2d& normal) {
@@ -203,7 +203,7 @@ std::optional<Eigen::Vector2d> Lens::unproject(const Eigen::Vector2d& pixel) con
     }
     if (!fell) break;
   }
-  // At the rim rounding may keep it from coming closer than this.
+  // At the rim, rounding may keep it from coming closer than this.
   if (!(error <= 1e-12 * (1 + wanted.norm()))) return std::nullopt;
   return normal;
 }

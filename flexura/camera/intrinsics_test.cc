@@ -19,8 +19,8 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-// From none to strong barrel and pincushion: at the corner of a wide lens (a radius of 1) the image moves by
-// up to 60 % of the radius.
+// From no distortion to strong barrel and pincushion. At the corner of a wide lens (a radius of 1) the image
+// moves by up to 60 % of the radius.
 Intrinsics random_intrinsics(TestRandom& random) {
   Intrinsics intrinsics;
   intrinsics.fx = random.uniform(200, 5000), intrinsics.fy = intrinsics.fx * random.uniform(0.9, 1.1);
@@ -53,11 +53,11 @@ TEST(Lens, UnprojectsWhatItProjects) {
 TEST(Lens, ProjectsBackToThePixelUpToItsRim) {
   for_random_cases(2000, [](TestRandom& random) {
     Intrinsics intrinsics = random_intrinsics(random);
-    intrinsics.distortion[0] = random.uniform(-0.5, -0.1);  // so that there is a rim
+    intrinsics.distortion[0] = random.uniform(-0.5, -0.1);  // So that there is a rim.
     intrinsics.distortion[1] = intrinsics.distortion[4] = 0;
     intrinsics.distortion[2] = intrinsics.distortion[3] = 0;
     const Lens lens(intrinsics);
-    // Near the rim the radius moves by the square root of what the pixel moves.
+    // Near the rim the radius changes with the square root of the pixel's change.
     const double inward = std::pow(10.0, random.uniform(-14, -1));
     const Eigen::Vector3d direction = at(lens.largest_radius() * (1 - inward), random.uniform(-3.2, 3.2));
     const auto pixel = lens.project(direction);
@@ -87,7 +87,7 @@ TEST(Lens, ShowsNothingBeyondItsRim) {
   EXPECT_FALSE(lens.unproject({intrinsics.cx, intrinsics.cy - 1e9}));
 }
 
-// OpenCV's order: k1, k2, p1, p2, k3. What a tenth of each one alone moves the point (0.5, 0.25) by.
+// OpenCV's order: k1, k2, p1, p2, k3. The motion of the point (0.5, 0.25) by a tenth of each alone.
 TEST(Lens, HasItsCoefficientsInTheirOrder) {
   constexpr std::array<std::array<double, 2>, 5> moved = {{{0.015625, 0.0078125},
                                                            {0.0048828125, 0.00244140625},
@@ -168,7 +168,7 @@ TEST(Lens, ItsDerivativesAreThoseOfItsPixels) {
     const NumericalJacobian numeric = numerical_jacobian(pixel, x, 0.01);
     EXPECT_EQ(projection.pixel, pixel(x));
     EXPECT_LE((analytic - numeric.value).cwiseAbs().maxCoeff(), 1e-7 * (1 + intrinsics.fx));
-    // By the point alone it is the same but for rounding.
+    // With the derivative by the point alone, results agree up to rounding.
     PointProjection alone;
     ASSERT_TRUE(Lens(intrinsics).project_by_point(p_CP, alone));
     EXPECT_LE((alone.pixel - projection.pixel).norm(), 1e-12 * intrinsics.fx);
@@ -176,18 +176,18 @@ TEST(Lens, ItsDerivativesAreThoseOfItsPixels) {
   });
 }
 
-// A circle of radius R in a plane whose top edge leans towards the camera; the camera stands at a distance in
+// A circle of radius R in a plane whose top edge leans towards the camera. The camera is at a distance in
 // front of the plane's middle.
 constexpr double focal_length = 800, circle_radius = 0.5, distance = 2.5;
-constexpr double half_side = circle_radius / std::numbers::sqrt2;  // of the inscribed square
+constexpr double half_side = circle_radius / std::numbers::sqrt2;  // Of the inscribed square.
 constexpr double twenty_degrees = std::numbers::pi / 9;
 
-// In the image's axes from the principal point: the point (x, y) of the plane (right, up), leaning by `tilt`;
-// the camera itself looks up by `camera_tilt`.
+// In the image's axes from the principal point: the point (x, y) of the plane (right, up), leaning by `tilt`.
+// The camera itself looks up by `camera_tilt`.
 Eigen::Vector2d pixel(double x, double y, double tilt, double camera_tilt) {
   View view;
   view.lens = Lens({focal_length, focal_length, 0, 0, {}});
-  view.X_WC.rotation << 1, 0, 0, 0, -1, 0, 0, 0, -1;  // looks along -Z, W's Y up
+  view.X_WC.rotation << 1, 0, 0, 0, -1, 0, 0, 0, -1;  // Looks along -Z, W's Y up.
   view.X_WC.rotation *= so3_exp({camera_tilt, 0, 0});
   view.X_WC.position = {0, 0, distance};
   return *view.project(so3_exp({tilt, 0, 0}) * Eigen::Vector3d(x, y, 0));

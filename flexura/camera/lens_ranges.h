@@ -4,10 +4,10 @@
 
 namespace flexura {
 
-// What files may say of a lens.
+// Ranges of lens parameters in files.
 inline constexpr NumberRange focal_length_range = {.min = 1e-3, .max = 1e7};     ///< px
 inline constexpr NumberRange principal_point_range = {.min = -1e7, .max = 1e7};  ///< px
-/// Of each coefficient: long lenses that were measured by boards have some of ten thousands.
+/// Of each coefficient: calibrations of long lenses give some of ten thousands.
 inline constexpr NumberRange distortion_range = {.min = -1e9, .max = 1e9};
 
 }  // namespace flexura

@@ -19,7 +19,7 @@ namespace {
 using Rows = std::array<std::array<double, 3>, 3>;
 using Quaternion = std::array<double, 4>;
 
-// A rotation written with four digits is still one.
+// Tolerance for rotations written with four digits.
 constexpr double largest_error = 2e-3;
 
 Eigen::Matrix3d matrix_of(const Rows& rows) {

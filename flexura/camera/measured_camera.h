@@ -14,20 +14,20 @@
 
 namespace flexura {
 
-/// A rotation as one writes it: the rows of its matrix, or the quaternion (w, x, y, z).
+/// A rotation as written in a file: the rows of its matrix, or the quaternion (w, x, y, z).
 struct RotationConfig {
-  /// The rows, or the quaternion; as written, not yet brought to a rotation.
+  /// The rows, or the quaternion; as written, not yet normalised.
   std::variant<std::array<std::array<double, 3>, 3>, std::array<double, 4>> value =
       std::array<double, 4>{1, 0, 0, 0};
 
-  /// How far the matrix is from a rotation (the largest entry of R R^T - 1, and the determinant less 1), or
-  /// the quaternion from one of norm 1. 0: a rotation.
+  /// Returns the deviation from a rotation. For a matrix, the largest entry of R R^T - 1 and of the
+  /// determinant minus 1; for a quaternion, of its norm from 1.
   [[nodiscard]] double error() const;
-  /// A rotation by either: a matrix that is off one is drawn to one, a quaternion brought to norm 1.
+  /// Returns the rotation: the one nearest to the matrix, or that of the normalised quaternion.
   [[nodiscard]] Eigen::Matrix3d matrix() const;
 };
 
-/// Both forms are lists in a file: of three rows, or of four numbers.
+/// In a file, both forms are lists: of three rows, or of four numbers.
 template <>
 struct Codec<RotationConfig> {
   static Type type();
@@ -35,13 +35,12 @@ struct Codec<RotationConfig> {
   static Node write(const RotationConfig& value);
 };
 
-/// One `[[camera]]` of a file of cameras as they were measured: a lens that stands still, and where it
-/// stands.
+/// One `[[camera]]` of a file of measured cameras: a fixed lens and its pose.
 struct MeasuredCamera {
-  std::string name;                                    ///< For messages.
-  double fx = 800;                                     ///< px
-  std::optional<double> fy;                            ///< px; fx when left out.
-  double cx = 319.5, cy = 239.5;                       ///< px
+  std::string name;                                    ///< Name for messages.
+  double fx = 800;                                     ///< Focal length, px.
+  std::optional<double> fy;                            ///< Focal length, px; default: fx.
+  double cx = 319.5, cy = 239.5;                       ///< Principal point, px.
   std::array<double, 5> distortion = {0, 0, 0, 0, 0};  ///< k1, k2, p1, p2, k3: OpenCV's order.
   std::array<double, 3> position = {0, 0, 0};          ///< p_WC, m.
   RotationConfig rotation;                             ///< R_WC: C's x right, y down, z forward.
@@ -49,15 +48,16 @@ struct MeasuredCamera {
   std::optional<std::array<std::int64_t, 2>> size;     ///< Width and height of the pictures meant, px.
   ViewDoubt prior;                                     ///< Of its orientation and focal lengths.
 
-  /// std::invalid_argument: as Lens says.
+  /// Throws std::invalid_argument as Lens does.
   [[nodiscard]] Lens lens() const;
   /// X_WC.
   [[nodiscard]] Pose pose() const;
-  /// Why a picture of this size, px, is none of those that are described; none where no size is said.
+  /// Returns why a picture of this size, px, does not match the camera; empty if it does, or if the camera
+  /// has no size.
   [[nodiscard]] std::optional<std::string> other_size(int width, int height) const;
 };
 
-/// Such a file.
+/// A file of measured cameras.
 struct MeasuredCameras {
   std::vector<MeasuredCamera> camera;
 };

@@ -23,7 +23,7 @@ struct Fault {
   std::string path, what;
 };
 
-// What keeps the mount from having one orientation; an empty text when nothing does.
+// Returns why the mount does not have exactly one orientation; an empty text if it does.
 Fault orientation_fault(const MountConfig& mount) {
   if (mount.look_at && mount.rotation) return {"rotation", "stands beside look_at: expected one of the two"};
   if (!mount.look_at && !mount.rotation) return {"", "has no orientation: expected look_at or rotation"};
@@ -119,7 +119,7 @@ Pose MountConfig::pose() const {
 std::optional<Eigen::Matrix3d> upright(const Eigen::Vector3d& forward) {
   const Eigen::Vector3d z = forward.stableNormalized();
   const Eigen::Vector3d across = z.cross(Eigen::Vector3d::UnitY());
-  // Nearer to the vertical than this, its direction is rounding.
+  // Nearer to the vertical than this, its direction is determined by rounding.
   if (!(across.norm() > 1e-9)) return std::nullopt;
   Eigen::Matrix3d R;
   R.col(0) = across.normalized();

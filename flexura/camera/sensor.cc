@@ -11,7 +11,7 @@
 namespace flexura {
 namespace {
 
-// More than cameras have; keep a mistaken file from filling the memory.
+// Larger than any camera's; they keep a faulty file from filling the memory.
 constexpr double max_side = 16384;
 constexpr double max_pixels = 1 << 26;
 
@@ -48,7 +48,7 @@ void check_sensor(const SensorConfig& sensor, Reader& reader) {
   }
 }
 
-// What the sensor delivers, and when.
+// Format and timing of frames.
 void add_frames(Table<SensorConfig>& table) {
   table.field("width", &SensorConfig::width, {.meaning = "Image width, px.", .range = between(1, max_side)})
       .field("height", &SensorConfig::height, {.meaning = "Image height, px.", .range = between(1, max_side)})
@@ -89,7 +89,7 @@ void add_frames(Table<SensorConfig>& table) {
               .range = between(0, 1)});
 }
 
-// What happens to the light, in that order.
+// Effects on the light, in this order.
 void add_effects(Table<SensorConfig>& table) {
   table
       .field("vignetting", &SensorConfig::vignetting,
@@ -125,7 +125,7 @@ double last_row_delay(const SensorConfig& sensor) {
 }
 
 FrameTimes times_of_frame_at(const SensorConfig& sensor, double start) {
-  const double last_row = last_row_delay(sensor);  // after the first one
+  const double last_row = last_row_delay(sensor);  // After the first one.
   FrameTimes times;
   times.start = start;
   times.middle = start + 0.5 * (last_row + sensor.exposure);

@@ -9,20 +9,20 @@
 
 namespace flexura {
 
-/// What one camera sees at one instant: its lens as it stands, the pose of its optical frame and its image's
-/// size.
+/// View of one camera at one instant: its lens at the present zoom, the pose of its optical frame and its
+/// image's size.
 struct View {
   Lens lens{Intrinsics{}};
   Pose X_WC;         ///< Origin: the entrance pupil, m; x right, y down, z forward.
-  int width = 640;   ///< px
-  int height = 480;  ///< px
+  int width = 640;   ///< Width of the image, px.
+  int height = 480;  ///< Height of the image, px.
 
-  /// The pixel of a point in W, m, inside the image or not; none where the lens shows it nowhere.
+  /// Returns the pixel of a point in W, m, inside the image or not; empty if the lens does not show it.
   [[nodiscard]] std::optional<Eigen::Vector2d> project(const Eigen::Vector3d& p_WP) const {
     return lens.project(X_WC.inverse() * p_WP);
   }
-  /// The way `pixels` px from one pixel to another as a parallel projection shows it: in W, at depth 1,
-  /// without the part along the view.
+  /// Returns the vector in W of a pixel difference `pixels`, px, under parallel projection: at depth 1,
+  /// without the component along the view.
   [[nodiscard]] Eigen::Vector3d parallel_way(const Eigen::Vector2d& pixels) const {
     const Intrinsics& by = lens.intrinsics();
     return X_WC.rotation * Eigen::Vector3d(pixels.x() / by.fx, pixels.y() / by.fy, 0);
@@ -38,8 +38,8 @@ struct ViewDoubt {
   [[nodiscard]] bool is_any() const { return rotation_std > 0 || focal_std > 0; }
 };
 
-/// Whether two cameras stand for the planes XOY and ZOY: `front` looks along Z and `side` along X, each
-/// within 45 degrees or so.
+/// Returns whether two cameras represent the planes XOY and ZOY: `front` looks along Z and `side` along X,
+/// each within about 45 degrees.
 [[nodiscard]] inline bool stand_for_planes(const Pose& front, const Pose& side) {
   constexpr double roughly = 0.7;
   return std::abs(front.rotation(2, 2)) > roughly && std::abs(side.rotation(0, 2)) > roughly;

@@ -86,7 +86,7 @@ TEST(Zoom, ItsSlopeIsItsDerivative) {
       y << numbers_of(zoom.at(x[0])), zoom.ratio(x[0]);
       return y;
     };
-    // Rows are corners of the second derivative: steps that may cross one find the slope to first order.
+    // The second derivative jumps at rows: steps that may cross one are accurate to first order only.
     const double step = 1e-4 * (last - first);
     const Eigen::VectorXd low = function(Eigen::VectorXd::Constant(1, std::max(first, at - step)));
     const Eigen::VectorXd high = function(Eigen::VectorXd::Constant(1, std::min(last, at + step)));
@@ -102,7 +102,7 @@ TEST(Zoom, ItsSlopeIsItsDerivative) {
   });
 }
 
-// The change of the lens at a zoom when `change` adds a step to one of the file's numbers.
+// Change of the lens at a zoom when `change` adds a step to one of the file's values.
 template <class Change>
 Eigen::VectorXd difference(const LensConfig& config, double zoom, double step, Change&& change) {
   const auto at = [&](double offset) {
@@ -113,7 +113,7 @@ Eigen::VectorXd difference(const LensConfig& config, double zoom, double step, C
   return (at(step) - at(-step)) / (2 * step);
 }
 
-// What number i of a lens or row with everything written changes by.
+// Adds an offset to value i of a complete lens or row.
 template <class Lens>
 void add(Lens& lens, int i, double offset) {
   if (i == 0) lens.fx = *std::optional<double>(lens.fx) + offset;
@@ -126,7 +126,7 @@ void add(Lens& lens, int i, double offset) {
   lens.distortion = *distortion;
 }
 
-// One without numbers that stay the same from row to row: there the slopes between them have a corner.
+// A lens without values that stay constant from row to row: there the slopes between them have a corner.
 LensConfig changing_lens(TestRandom& random) {
   LensConfig config = random_lens(random);
   config.distortion[4] = random.uniform(0.001, 0.01);
@@ -159,7 +159,7 @@ TEST(Zoom, KnowsHowItsLensChangesWithThatAtRatioOne) {
     LensConfig config = changing_lens(random);
     config.cx = 320, config.cy = 240;
     for (ZoomRow& row : config.zoom) {
-      // What is left out follows from the lens; focal lengths in proportion still rise.
+      // Omitted values follow from the lens; proportional focal lengths still rise.
       if (random.integer(0, 1) == 0) row.fx.reset();
       if (random.integer(0, 1) == 0) row.fy.reset();
       if (random.integer(0, 4) == 0) row.cx.reset();
@@ -178,7 +178,7 @@ TEST(Zoom, KnowsHowItsLensChangesWithThatAtRatioOne) {
   });
 }
 
-// With this camera's counts a zoom that is linear in them is wrong by 242 % at 2x.
+// With this camera's counts, a zoom linear in them is wrong by 242 % at 2x.
 TEST(Zoom, AMotorsCountsAreFarFromLinear) {
   LensConfig config;
   config.zoom = sony_zoom();

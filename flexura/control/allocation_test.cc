@@ -10,7 +10,7 @@
 #include "tests/support/random_cases.h"
 #include "tests/support/servo_views.h"
 
-// Sanitizers have an allocator of their own.
+// Sanitizers have their own allocator.
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
 
 #include "tests/support/malloc_count.h"
@@ -35,7 +35,7 @@ TEST(Allocation, HappensInNoStepOfTheArmOrItsLaw) {
   const long before = mallocs;
   for (int i = 0; i < 10; ++i) EXPECT_TRUE(step());
   EXPECT_EQ(mallocs - before, 0);
-  // The count counts.
+  // Checks that allocations are counted.
   const Eigen::VectorXd other = 2 * x;
   EXPECT_GT(mallocs - before, 0);
   EXPECT_EQ(other[0], 0.02);

@@ -10,12 +10,12 @@
 namespace flexura {
 namespace {
 
-// In (0, 1], a function of the numbers alone.
+// Returns a number in (0, 1], a function of the arguments only.
 double uniform(std::uint64_t seed, std::uint64_t time, std::uint64_t node, std::uint64_t which) {
   return static_cast<double>((hash(seed, time, node, which) >> 11) + 1) * 0x1p-53;
 }
 
-// Normally distributed, of variance 1 (G. Box, M. Muller).
+// Returns a normally distributed number of variance 1 (G. Box, M. Muller).
 double normal_deviate(std::uint64_t seed, std::uint64_t time, std::uint64_t node) {
   const double radius = std::sqrt(-2 * std::log(uniform(seed, time, node, 0)));
   return radius * std::cos(2 * std::numbers::pi * uniform(seed, time, node, 1));
@@ -48,7 +48,7 @@ double MeasuredCoordinates::deviate(std::uint64_t which) const {
   return normal_deviate(measurement_.seed, count_ - 1, which);
 }
 
-// Between two moments on the cubic that has their places and rates.
+// Between two moments, interpolates by the cubic with their positions and rates.
 Eigen::VectorXd MeasuredCoordinates::at(double time) const {
   const Moment& first = moments_.front();
   if (time <= first.time || moments_.size() == 1) return first.x;

@@ -30,7 +30,7 @@ double cardinal_slope(const Eigen::VectorXd& nodes, Eigen::Index i, double s) {
   return slope;
 }
 
-// The function that is 1 at nodes[i] and linear down to its neighbours, and its slope.
+// The function that is 1 at nodes[i] and falls linearly to 0 at its neighbours, and its slope.
 double hat(const Eigen::VectorXd& nodes, Eigen::Index i, double s) {
   const bool rises = s <= nodes[i];
   const Eigen::Index other = rises ? i - 1 : i + 1;
@@ -43,7 +43,7 @@ double hat_slope(const Eigen::VectorXd& nodes, Eigen::Index i, double s) {
   return 0;
 }
 
-// The nodes with the base's place first, whether it is one of the numbers or the clamp's.
+// Returns the nodes with the base first, whether it is one of the numbers or clamped.
 Eigen::VectorXd with_base(const AngleShapes& shapes) {
   if (!shapes.is_clamped) return shapes.nodes;
   Eigen::VectorXd all(shapes.nodes.size() + 1);
@@ -70,7 +70,7 @@ Eigen::VectorXd node_places(const AngleShapes& shapes, int nodes) {
   return ends;
 }
 
-// Points, weights and running integrals, section by section.
+// Computes points, weights and running integrals, section by section.
 void place_points(AngleShapes& shapes, int points) {
   const Quadrature rule = gauss_legendre(points);
   const Eigen::VectorXd x = Eigen::Map<const Eigen::VectorXd>(rule.nodes.data(), points);

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double no_contour = std::numeric_limits<double>::quiet_NaN();
 
-// Of normals that are each other's opposite there is no middle: such an edge says nothing.
+// The middle of opposite normals is undefined: such an edge gives no information.
 Eigen::Vector2d halfway(const Eigen::Vector2d& one, const Eigen::Vector2d& other) {
   const Eigen::Vector2d both = one + other;
   return both / both.norm();
@@ -45,10 +45,11 @@ void ContourImages::set(const ArmState& state) {
   }
 }
 
-// With c the ring's middle seen from the camera, t the tangent and n the way out to the skin, the skin's
-// normal is n - w t, w = r'/(1 - r curvature . n), and rays touch where it is square to c + r n:
+// Let c be the ring's middle seen from the camera, t the tangent and n the direction outwards to the skin.
+// The skin's normal is n - w t, with w = r'/(1 - r curvature . n). Rays touch where it is perpendicular to c
+// + r n:
 //   n . c = -r + w (t . c).
-// What w asks of n is little, so a few rounds from w = r' settle it.
+// w depends little on n, so a few iterations from w = r' converge.
 bool ContourImages::touch(const Ring& ring, const View& view, double side, Eigen::Vector3d& arm,
                           Eigen::Vector3d& normal) {
   const auto R_CW = view.X_WC.rotation.transpose();
@@ -74,8 +75,8 @@ bool ContourImages::touch(const Ring& ring, const View& view, double side, Eigen
   return true;
 }
 
-// Of the three ways in which the skin's point may move, that along the ray shows as nothing, and that along
-// the skin across the ray as a slide of the curve on itself: what is left is the skin's normal.
+// The skin's point has three directions of motion. Motion along the ray is invisible, and motion along the
+// skin across the ray slides the curve along itself. So only motion along the skin's normal is visible.
 bool ContourImages::see(const Ring& ring, const View& view, Eigen::Index i, ContourImage& image) {
   Eigen::Vector3d arm, normal;
   if (!touch(ring, view, i % 2 == 0 ? 1 : -1, arm, normal)) {

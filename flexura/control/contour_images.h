@@ -10,59 +10,62 @@
 
 namespace flexura {
 
-/// Points of the two curves along which one camera's rays touch an arm's side, two a cross-section: right of
-/// the way from base to tip as the picture shows it, then left (docs/control.md, eq. 19a and 19b). All are
-/// not numbers where rays touch the section nowhere: the arm points at the camera there.
+/// Points of the two curves along which one camera's rays touch an arm's side, two per cross-section. The
+/// first is right of the direction from base to tip in the picture, then the left one (docs/control.md, eq.
+/// 19a and 19b). All values are not numbers where rays do not touch the section: the arm points at the camera
+/// there.
 struct ContourImage {
-  Eigen::Matrix2Xd pixels;   ///< px, a column a point.
+  Eigen::Matrix2Xd pixels;   ///< px, a column per point.
   Eigen::Matrix2Xd normals;  ///< Unit, across the curve in the picture, away from the arm.
   Eigen::Matrix3Xd places;   ///< p_CP, m.
   Eigen::Matrix3Xd arms;     ///< From the section's middle to P, in C, m.
-  /// By how much the curve moves along `normals` as the surface at P moves, by p_CP, px/m.
+  /// Derivatives of the curve's motion along `normals` by p_CP of the surface at P, px/m.
   Eigen::Matrix3Xd slopes;
-  /// And P's pixel along the curve, the normal turned from v to u.
+  /// Derivatives of the motion of P's pixel along the curve, in the direction of the normal turned from v to
+  /// u, px/m.
   Eigen::Matrix3Xd slides;
 
-  /// Whether the contour has point i.
+  /// Returns true if the contour has point i.
   [[nodiscard]] bool has(Eigen::Index i) const { return pixels.col(i).allFinite(); }
 };
 
-/// The contours of an arm before cameras, and how they move across themselves. Reused, it allocates no more.
+/// Contours of an arm in cameras, and their motion across themselves. Allocates only at the first use.
 class ContourImages {
  public:
-  /// Of the cross-sections at `shares` of the unstretched arm's length, from its base. std::invalid_argument:
-  /// one outside [0, 1].
+  /// For the cross-sections at `shares` of the unstretched arm's length, from its base. Throws
+  /// std::invalid_argument if one is outside [0, 1].
   ContourImages(Arm arm, const std::vector<double>& shares);
 
-  /// Points of one image: two a share.
+  /// Returns the number of points in one image: two per share.
   [[nodiscard]] Eigen::Index count() const { return 2 * static_cast<Eigen::Index>(points_.size()); }
-  /// Columns of derivatives: each section's bend_x, bend_y (rad), stretch.
+  /// Returns the number of columns of derivatives: each section's bend_x, bend_y (rad), stretch.
   [[nodiscard]] Eigen::Index columns() const { return 3 * static_cast<Eigen::Index>(arm_.sections.size()); }
 
-  /// The arm as it stands now. std::invalid_argument: a state that does not fit.
+  /// Sets the arm's state. Throws std::invalid_argument if it does not fit.
   void set(const ArmState& state);
-  /// Its contours. False where the lens shows one of their points nowhere. set() comes before.
+  /// Computes its contours. Returns false if the lens does not show one of their points. Requires set().
   [[nodiscard]] bool see(const View& view, ContourImage& image) const;
   // NOLINTNEXTLINE(performance-unnecessary-value-param): an Eigen::Ref is written through.
-  /// By how much the curves that `view` showed move along their normals, by the state: count() x columns(),
-  /// px/rad and px; rows of zeros where there is no contour.
+  /// Computes the derivatives of the motion of the curves in `view` along their normals by the state: count()
+  /// x columns(), px/rad and px. Rows without a contour are zero.
   void derive(const View& view, const ContourImage& image, Eigen::Ref<Eigen::MatrixXd> by_state);
   // NOLINTBEGIN(performance-unnecessary-value-param): as above.
-  /// The same along other `directions` (unit, a column a point) than the normals, of the surface under the
-  /// curve; rows of zeros where these are not numbers.
+  /// Computes the derivatives along other `directions` (unit, a column per point) than the normals, for the
+  /// surface under the curve. Rows are zero where these are not numbers.
   void derive(const View& view, const ContourImage& image,
               const Eigen::Ref<const Eigen::Matrix2Xd>& directions, Eigen::Ref<Eigen::MatrixXd> by_state);
   // NOLINTEND(performance-unnecessary-value-param)
 
  private:
-  // A cross-section as it stands.
+  // A cross-section in the current state.
   struct Ring {
     Pose X_WS;
     double radius = 0;
     double widening = 0;          // By arc length.
     Eigen::Vector3d curvature_W;  // Towards the arc's middle, 1/m.
   };
-  // Which of the two points of a ring, in C: 1 to the right, -1 to the left. False where there is none.
+  // Computes one of the two points of a ring, in C: 1 for the right one, -1 for the left one. Returns false
+  // if it does not exist.
   [[nodiscard]] static bool touch(const Ring& ring, const View& view, double side, Eigen::Vector3d& arm,
                                   Eigen::Vector3d& normal);
   [[nodiscard]] static bool see(const Ring& ring, const View& view, Eigen::Index i, ContourImage& image);
@@ -74,17 +77,18 @@ class ContourImages {
   Jacobian by_;
 };
 
-/// How far what is seen lies from what is desired, across the edges: pixels of at.pixels' order, whose
-/// normals are those of the contours `at` and, where it shall be, `desired_normals`; along the direction
-/// half-way between the two, which is the way of a piece of edge that turns as evenly as it goes. 0 where one
-/// of the three has no edge. std::invalid_argument: other numbers of points.
+/// Computes the distance of the measured from the desired edges, across the edges, px. The pixels are in the
+/// order of at.pixels. The normals are those of the contours `at` and, for the desired ones,
+/// `desired_normals`. The distance is along the direction half-way between the two normals: that is the way
+/// of a piece of edge that turns evenly. 0 where one of the three has no edge. Throws std::invalid_argument
+/// for other numbers of points.
 // NOLINTBEGIN(performance-unnecessary-value-param): an Eigen::Ref is written through.
 void contour_error(const ContourImage& at, const Eigen::Ref<const Eigen::Matrix2Xd>& seen,
                    const Eigen::Ref<const Eigen::Matrix2Xd>& desired,
                    const Eigen::Ref<const Eigen::Matrix2Xd>& desired_normals,
                    Eigen::Ref<Eigen::VectorXd> error);
-/// The directions half-way between two normals of each point; not numbers where one of them is none, or they
-/// are each other's opposite.
+/// Computes the directions half-way between two normals of each point. They are not numbers if one of the
+/// normals is not, or they are opposite.
 void halfway_normals(const Eigen::Ref<const Eigen::Matrix2Xd>& one,
                      const Eigen::Ref<const Eigen::Matrix2Xd>& other, Eigen::Ref<Eigen::Matrix2Xd> middle);
 // NOLINTEND(performance-unnecessary-value-param)

@@ -21,7 +21,7 @@
 namespace flexura {
 namespace {
 
-// A view of an arm of 1 m from anywhere around, by a lens with distortion.
+// Returns a view of an arm of 1 m from a random direction, with a distorting lens.
 View bent_view_of(TestRandom& random, const Backbone& backbone) {
   View view = random_view_of(random, backbone);
   view.lens = Lens({.fx = 250, .fy = 240, .distortion = {-0.1, 0.02, 0.001, -0.001, 0}});
@@ -35,7 +35,7 @@ Scene scene_of(const BentArm& bent) {
   return scene;
 }
 
-// The contour's pixel and normal at a share of the arm, on one side.
+// Pixel and normal of the contour at a share of the arm, on one side.
 struct EdgePoint {
   Eigen::Vector2d pixel, normal;
 };
@@ -48,8 +48,8 @@ EdgePoint edge_point(const Arm& arm, const ArmState& state, const View& view, do
   return {image.pixels.col(side), image.normals.col(side)};
 }
 
-// How far a contour lies from `from` along its normal there: it is followed to where it crosses that line,
-// whichever share of the arm that is.
+// Returns the distance of a contour from `from` along its normal there: follows the contour to where it
+// crosses that line, at any share of the arm.
 double crossing(const Arm& arm, const ArmState& state, const View& view, const EdgePoint& from, double share,
                 Eigen::Index side) {
   const Eigen::Vector2d heading(-from.normal.y(), from.normal.x());
@@ -86,7 +86,7 @@ TEST(ContourImages, AreWhereTheRendererHasTheOutline) {
           contours.set(bent.state);
           ContourImage image;
           ASSERT_TRUE(contours.see(view, image));
-          // Where a contour turns back on itself rounding says whether there is one.
+          // Where a contour turns back on itself, rounding decides whether it exists.
           if (!image.has(0)) continue;
           const double off =
               std::min((image.places.col(0) - point.p_CP).norm(), (image.places.col(1) - point.p_CP).norm());
@@ -102,8 +102,8 @@ TEST(ContourImages, AreWhereTheRendererHasTheOutline) {
   EXPECT_GT(compared, 200 / one_case_of);
 }
 
-// The curve as a whole, in another state, against the row of derivatives: nothing says which of its points
-// were which.
+// Compares the whole curve in another state with the derivatives: the correspondence of its points is
+// unknown.
 TEST(ContourImages, MoveAlongTheirNormalsAsTheirDerivativesSay) {
   int compared = 0;
   for (const double taper : {0.0, 0.006}) {
@@ -111,7 +111,7 @@ TEST(ContourImages, MoveAlongTheirNormalsAsTheirDerivativesSay) {
       BentArm bent = random_bent_arm(random, taper);
       for (double& stretch : bent.state.stretches) stretch = random.uniform(0.9, 1.1);
       const View view = bent_view_of(random, bent.backbone());
-      // Away from where sections meet: there the contour has a kink in its curvature.
+      // Away from the ends of sections, where the contour's curvature is discontinuous.
       const std::vector<double> shares = {0.15, 0.5, 0.85};
       ContourImages contours(bent.arm, shares);
       contours.set(bent.state);
@@ -120,7 +120,7 @@ TEST(ContourImages, MoveAlongTheirNormalsAsTheirDerivativesSay) {
       Eigen::MatrixXd by_state(contours.count(), contours.columns());
       contours.derive(view, image, by_state);
       for (Eigen::Index i = 0; i < contours.count(); ++i) {
-        // Near a turn of the contour its normal turns within what differences are taken over.
+        // Near a turn of the contour its normal turns within the step of the differences.
         if (!image.has(i) || (image.places.col(i) - image.places.col(i ^ 1)).norm() < 0.02) continue;
         const double share = shares[static_cast<std::size_t>(i / 2)];
         const EdgePoint from{image.pixels.col(i), image.normals.col(i)};
@@ -150,29 +150,30 @@ TEST(ContourImages, OfAStraightTubeAreInClosedForm) {
   ContourImage image;
   ASSERT_TRUE(contours.see(view, image));
   const double off = 150 * 0.05 / std::sqrt(2 * 2 - 0.05 * 0.05);
-  // The arm goes up in the picture: right of its way is right.
+  // The arm is upright in the picture: right of its direction is right.
   EXPECT_NEAR(image.pixels(0, 2), 99.5 + off, 1e-9);
   EXPECT_NEAR(image.pixels(0, 3), 99.5 - off, 1e-9);
   EXPECT_NEAR(image.normals(0, 2), 1, 1e-12);
   EXPECT_NEAR(image.normals(0, 3), -1, 1e-12);
-  // The whole arm leans to the right by bend/2 at its middle: both edges go along, one out and one in.
+  // The whole arm leans to the right, by bend/2 at its middle: both edges move with it, one outwards and one
+  // inwards.
   Eigen::MatrixXd by_state(4, 3);
   contours.derive(view, image, by_state);
-  const double depth = 2 - 0.05 * 0.05 / 2;  // Of the points where rays touch.
+  const double depth = 2 - 0.05 * 0.05 / 2;  // Depth of the points where rays touch.
   const double rate = 150 * 0.125 / depth * std::sqrt(1 - 0.05 * 0.05 / 4);
   EXPECT_NEAR(std::abs(by_state(2, 0)), rate, 0.01 * rate);
   EXPECT_NEAR(by_state(2, 0), -by_state(3, 0), 1e-9);
 }
 
-// A piece of edge that turns about a point by any angle short of half a turn is off by the chord of its way,
-// whichever way it slipped meanwhile along its middle direction.
+// A piece of edge turns about a point by any angle below half a turn. Its error must be the chord of its way,
+// for any slip along its middle direction.
 TEST(ContourError, IsTheWayOfAnEdgeThatTurns) {
   for_random_cases(100, [](TestRandom& random) {
     const double from = random.uniform(-3, 3), turn = random.uniform(-3, 3), radius = random.uniform(1, 50);
     const auto unit = [](double angle) { return Eigen::Vector2d(std::cos(angle), std::sin(angle)); };
     const Eigen::Vector2d pivot = random.vector<2>(0, 100);
     ContourImage at;
-    // The edge lies along the radius: its normal is across it.
+    // The edge is along the radius: its normal is perpendicular to it.
     at.normals = unit(from + turn + 0.5 * std::numbers::pi);
     const Eigen::Vector2d slip = random.uniform(-5, 5) * unit(from + 0.5 * turn);
     const Eigen::Matrix2Xd seen = pivot + radius * unit(from + turn) + slip,
@@ -217,7 +218,7 @@ TEST(ContourImages, AreNoneWhereTheArmPointsAtTheCamera) {
   EXPECT_FALSE(image.has(0) || image.has(3));
   EXPECT_EQ(by_state.norm(), 0);
   EXPECT_EQ(error.norm(), 0);
-  // Behind the camera a lens shows nothing.
+  // Behind the camera, the lens shows nothing.
   EXPECT_FALSE(
       contours.see(pinhole_view(look_at({0.5, 3, 0}, {0.5, 4, 0}, {1, 0, 0}), 100, 100, 100), image));
   EXPECT_THROW(ContourImages(arm, {-0.1}), std::invalid_argument);

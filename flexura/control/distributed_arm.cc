@@ -20,7 +20,7 @@ void require_arm(const DistributedArmModel& model) {
   if (!model.gravity.allFinite()) throw std::invalid_argument("a distributed arm's gravity must be finite");
   constexpr double most_q = 1.57;
   const auto is_clamp = [](const std::array<double, 2>& clamp) {
-    return std::isfinite(clamp[0]) && std::abs(clamp[1]) < most_q;  // Not where it is no number.
+    return std::isfinite(clamp[0]) && std::abs(clamp[1]) < most_q;  // False if it is not a number.
   };
   if (model.clamp && !is_clamp(*model.clamp))
     throw std::invalid_argument("a distributed arm's base must have |q| below 1.57 rad");
@@ -48,7 +48,7 @@ DistributedArm::DistributedArm(const DistributedArmModel& model)
     of_x->setZero(size_);
   flow_.setZero(3 * points, size_), mass_.setZero(size_, size_);
   flow_rate_.setZero(3 * points), bias_.setZero(3 * points);
-  factor_.compute(Eigen::MatrixXd::Identity(size_, size_));  // Room for that of the mass.
+  factor_.compute(Eigen::MatrixXd::Identity(size_, size_));  // Allocates for the factor of the mass matrix.
   set(Eigen::VectorXd::Zero(size_), Eigen::VectorXd::Zero(size_));
 }
 

@@ -34,14 +34,14 @@ Eigen::VectorXd arc_of(const DistributedArm& arm, double bend) {
   return arm.coordinates([&](double s) { return Eigen::Vector2d(bend * s, 0); });
 }
 
-// rad/s, rising: of small motions about the state that is set.
+// Returns the frequencies of small motions about the current state, rad/s, increasing.
 Eigen::VectorXd frequencies(const DistributedArm& arm) {
   const Cholesky mass(arm.mass_matrix());
   const Eigen::MatrixXd half = mass.solve_lower(arm.stiffness());
   return symmetric_eigen(mass.solve_lower(half.transpose())).values.cwiseMax(0).cwiseSqrt();
 }
 
-// A step of Newton's method towards where the arm rests under generalized forces.
+// A Newton step towards the equilibrium under generalized forces.
 void go_to_rest(DistributedArm& arm, Eigen::VectorXd& x, const Eigen::VectorXd& force) {
   const Eigen::VectorXd still = Eigen::VectorXd::Zero(x.size());
   arm.set(x, still);
@@ -151,7 +151,7 @@ TEST(DistributedArm, ObeysLagrangesEquations) {
     const Eigen::VectorXd rest = arm.mass_matrix() * a + momentum.value * v -
                                  0.5 * momentum.value.transpose() * v + arm.gravity_gradient() +
                                  arm.elastic_gradient() - Q;
-    // What is left is the damping's force: its power is the damping's.
+    // The rest is the damping's force: its power is the dissipation.
     EXPECT_NEAR(-v.dot(rest), power, 1e-8 * (1 + power));
     if (model.damping == 0) {
       EXPECT_LE(rest.cwiseAbs().maxCoeff(), 1e-8);
@@ -192,7 +192,7 @@ TEST(DistributedArm, VibratesAsAClampedBeam) {
   const std::array<double, 4> expected = {5.595912, 35.068983, 98.194166, 192.421376};
   for (std::size_t mode = 0; mode < expected.size(); ++mode)
     EXPECT_NEAR(found[static_cast<Eigen::Index>(2 * mode)], expected[mode], 2e-6 * expected[mode]);
-  // Arms bent section by section come near with the square of the sections' length.
+  // Arms bent section by section converge with the square of the sections' length.
   const auto error = [&](int sections) {
     rod.basis = AngleBasis::sections, rod.points = 4;
     rod.lengths.assign(static_cast<std::size_t>(sections), 0.5 / sections);
@@ -216,7 +216,7 @@ TEST(DistributedArm, RestsAsACantileverUnderItsWeight) {
        std::vector<std::array<double, 2>>{{1, .12347}, {10, .70020}, {50, .90792}}) {
     Eigen::VectorXd x;
     DistributedArm arm({});
-    // Loaded by and by, from straight on.
+    // Loaded gradually from straight.
     for (int share = 1; share <= 10; ++share) {
       arm = DistributedArm(
           {.gravity = {0.1 * share * load, 0, 0}, .bending_stiffness = 1, .nodes = 18, .points = 24});
@@ -229,8 +229,9 @@ TEST(DistributedArm, RestsAsACantileverUnderItsWeight) {
 }
 
 TEST(DistributedArm, SwingsAsASolverOfAnotherKindHasIt) {
-  // A steel rod held level, bent by 20 g at its tip and let go: the tip's height by an independent rod solver
-  // (total wrench of the rod for the start, a spectral model in strains, DOP853), to 5e-5 m.
+  // A steel rod held level, bent by 20 g at its tip and released. The tip's height is compared with an
+  // independent rod solver, to 5e-5 m. The solver uses the total wrench of the rod for the start, a spectral
+  // model in strains, and DOP853.
   DistributedArm arm({.lengths = {0.5},
                       .density = 8000 * pi * 1e-6,
                       .gravity = {-9.81, 0, 0},
@@ -266,7 +267,7 @@ TEST(DistributedArm, KeepsItsEnergy) {
     const double start = energy(motion.arm());
     double least = motion.arm().gravity_energy() + motion.arm().elastic_energy(), top = least, moved = 0;
     for (int i = 1; i <= 20; ++i) {
-      if (!motion.advance(0.05 * i)) break;  // At |q| = 90 degrees the coordinates end.
+      if (!motion.advance(0.05 * i)) break;  // At |q| = 90 degrees the coordinates are singular.
       EXPECT_NEAR(energy(motion.arm()), start, 1e-7 * (1 + std::abs(start)));
       most = std::max(most, std::abs(energy(motion.arm()) - start));
       const double potential = motion.arm().gravity_energy() + motion.arm().elastic_energy();
@@ -274,7 +275,7 @@ TEST(DistributedArm, KeepsItsEnergy) {
       moved = motion.time();
     }
     EXPECT_GT(moved, 0.04);
-    EXPECT_GT(top - least, 1e-3);  // Energy did go to and fro.
+    EXPECT_GT(top - least, 1e-3);  // Energy was indeed exchanged.
   });
   std::printf("largest drift of the energy over a second: %.1e J\n", most);
   DistributedArm chain({.gravity = {0, 9.81, 0}, .clamp = std::nullopt, .nodes = 6, .points = 8});
@@ -302,7 +303,8 @@ TEST(DistributedArm, LosesWhatDampingTakes) {
 }
 
 TEST(DistributedArm, ConvergesWithAHighOrderOfItsNodes) {
-  // Pushed along its whole length, softly at first: what is let go from any shape rings in all its modes.
+  // Pushed along its whole length, smoothly at first: released from an arbitrary shape, it would oscillate in
+  // all modes.
   const auto push = [](double t, const DistributedArm& arm, const Eigen::VectorXd&, const Eigen::VectorXd&,
                        Eigen::VectorXd& Q) {
     const double wave = std::sin(pi * t), torque = 4 * wave * wave * wave * wave;
@@ -339,7 +341,7 @@ TEST(DistributedArm, RefusesWhatIsNoArm) {
   EXPECT_THROW(DistributedArm({.nodes = 9, .points = 8}), std::invalid_argument);
   DistributedArm arm({});
   EXPECT_THROW(arm.set(Eigen::VectorXd::Zero(3), Eigen::VectorXd::Zero(3)), std::invalid_argument);
-  // Where q is 90 degrees everywhere, theta is no coordinate.
+  // If q is 90 degrees everywhere, theta is not a coordinate.
   DistributedArm upright({.clamp = std::nullopt, .nodes = 2});
   upright.set(upright.coordinates([](double) { return Eigen::Vector2d(0, pi / 2); }),
               Eigen::VectorXd::Zero(4));

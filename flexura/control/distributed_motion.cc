@@ -10,7 +10,7 @@
 namespace flexura {
 namespace {
 
-// The second derivatives of V_g + V_e at one point by (theta, q, theta_s, q_s, stretch).
+// Returns the second derivatives of V_g + V_e at one point by (theta, q, theta_s, q_s, stretch).
 Eigen::Matrix<double, 5, 5> stiffness_at(const DistributedArmModel& model, double weight, double weigh,
                                          const Eigen::Vector4d& angles, double stretch) {
   const double a = std::cos(angles[0]), b = std::sin(angles[0]), c = std::cos(angles[1]),
@@ -76,7 +76,7 @@ void DistributedMotion::slope(double t, const Eigen::VectorXd& y, Eigen::VectorX
   x_ = y.head(n), v_ = y.segment(n, n);
   arm_.set(x_, v_);
   const double power = force_(t, arm_, x_, v_, Q_);
-  if (!arm_.accelerate(Q_, acceleration_))  // The step is taken back.
+  if (!arm_.accelerate(Q_, acceleration_))  // The step is rejected.
     acceleration_.setConstant(std::numeric_limits<double>::quiet_NaN());
   slope.head(n) = v_, slope.segment(n, n) = acceleration_;
   slope[2 * n] = arm_.damping_power(), slope[2 * n + 1] = power;

@@ -8,7 +8,7 @@
 namespace flexura {
 namespace {
 
-// Each place once, but for the polygon's corners, which stand in a row at the end.
+// Returns each share once, except for the polygon's corners, which are consecutive at the end.
 std::vector<double> places_of(const FeatureSet& set) {
   std::vector<double> shares;
   const auto add = [&shares](double share) {
@@ -95,7 +95,7 @@ bool FeatureImages::derive(const ArmState& state, std::span<const View> views, E
   by_state.resize(all, points_.columns());
   for (std::size_t i = 0; i < views.size(); ++i) {
     const Eigen::Index first = static_cast<Eigen::Index>(i) * rows;
-    // Where only points count, each once, their rows are the features' own.
+    // If only points count, each once, their rows are those of the features.
     const bool is_plain = 2 * points_.count() == rows && ends_.empty() && !set_.has_moments;
     if (!is_plain) by_.resize(2 * points_.count(), points_.columns());
     const Rows seen = is_plain ? Rows(by_state.middleRows(first, rows)) : Rows(by_);

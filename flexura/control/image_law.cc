@@ -11,17 +11,18 @@
 namespace flexura {
 namespace {
 
-// Least over greatest singular value; below it some motion shows in nothing.
+// Limit of the least over the greatest singular value; below it some motion changes no feature.
 constexpr double singular_condition = 1e-6;
 
-// J^T J, its lower triangle.
+// Computes J^T J, its lower triangle.
 void normal_matrix(const Eigen::MatrixXd& J, Eigen::MatrixXd& H) {
   H.resize(J.cols(), J.cols());
   for (Eigen::Index j = 0; j < J.cols(); ++j)
     for (Eigen::Index i = j; i < J.cols(); ++i) H(i, j) = J.col(i).dot(J.col(j));
 }
 
-// The lower factor of a symmetric matrix, in its lower triangle; false where that is not definite.
+// Computes the lower factor of a symmetric matrix, in its lower triangle; returns false if it is not
+// definite.
 bool cholesky(Eigen::MatrixXd& A) {
   const Eigen::Index n = A.cols();
   for (Eigen::Index j = 0; j < n; ++j) {
@@ -39,7 +40,7 @@ bool cholesky(Eigen::MatrixXd& A) {
   return true;
 }
 
-// b becomes L^-1 b, of which the first `first` are 0.
+// Replaces b by L^-1 b, with the first `first` elements 0.
 void solve_lower(const Eigen::MatrixXd& L, Eigen::VectorXd& b, Eigen::Index first) {
   for (Eigen::Index i = first; i < L.cols(); ++i) {
     double sum = b[i];
@@ -48,7 +49,7 @@ void solve_lower(const Eigen::MatrixXd& L, Eigen::VectorXd& b, Eigen::Index firs
   }
 }
 
-// Of J^T J = L L^T: the sum of its inverse's eigenvalues, which is that of the squares in L^-1.
+// Returns the sum of the eigenvalues of the inverse of J^T J = L L^T, which is that of the squares in L^-1.
 double inverse_trace(ImageLaw::Work& work) {
   const Eigen::Index n = work.factor.cols();
   double sum = 0;
@@ -61,8 +62,9 @@ double inverse_trace(ImageLaw::Work& work) {
   return sum;
 }
 
-// The normal matrix has the singular values' squares, of which it keeps those above 1e-16 of the greatest:
-// what its traces say to be far from singular is so for certain, and all else is asked of J itself.
+// The normal matrix has the squares of the singular values, precise above 1e-16 of the greatest. If its
+// traces prove that it is far from singular, that is certain; otherwise the singular values of J itself
+// decide.
 double reciprocal_condition(const Eigen::MatrixXd& J, double trace, ImageLaw::Work& work) {
   if (J.rows() < J.cols() || !(trace > 0)) return 0;
   constexpr double surely = 10 * singular_condition;
@@ -75,11 +77,11 @@ double reciprocal_condition(const Eigen::MatrixXd& J, double trace, ImageLaw::Wo
   return singular.minCoeff() / singular.maxCoeff();
 }
 
-// dx becomes the solution for the right side dx.
+// Replaces the right side dx by the solution.
 void solve_normal(ImageLaw::Work& work) {
   work.factor = work.normal;
   if (!cholesky(work.factor)) {
-    // Singular but for rounding, and not damped: some answer, as long as it is one.
+    // Singular up to rounding, and not damped: any finite solution suffices.
     PivotedCholesky(work.normal).solve_in_place(work.dx);
     return;
   }
@@ -140,7 +142,7 @@ void ImageLaw::step(const ArmState& sent, const Eigen::VectorXd& error, const Ei
   work.dx.resize(size);
   for (Eigen::Index i = 0; i < size; ++i) work.dx[i] = J.col(i).dot(error);
   const double trace = work.normal.trace();
-  // What is no number in J or in the error is none in these.
+  // If a number in J or in the error is not finite, these are not either.
   if (std::isfinite(trace) && work.dx.allFinite()) {
     step.reciprocal_condition = reciprocal_condition(J, trace, work);
     const double scale = trace / static_cast<double>(size);

@@ -7,50 +7,52 @@
 
 namespace flexura {
 
-/// How a law of images goes about it.
+/// Gains of an image-based law.
 struct ImageLawGains {
-  double rate = 4;         ///< Errors fall as exp(-rate t) where the model is right, 1/s; > 0.
-  double damping = 0.01;   ///< Of the least squares, share of the Jacobian's root mean square gain; >= 0.
-  double most_step = 0.5;  ///< The longest step of the variables at a time, rad; > 0.
+  double rate = 4;         ///< Errors decay as exp(-rate t) if the model is right, 1/s; > 0.
+  double damping = 0.01;   ///< Of the least squares, share of the Jacobian's rms gain; >= 0.
+  double most_step = 0.5;  ///< Largest step of the variables at a time, rad; > 0.
 };
 
-/// What a law asks for, and how sure its Jacobian is of it.
+/// Command of a law, and the condition of its Jacobian.
 struct ImageStep {
-  ArmState asked;  ///< To be sent next, through a limiter; within the sections' limits.
-  /// Least over greatest singular value of the Jacobian: of n variables never more than that and at least an
-  /// n-th of it, and just that where it is 1e-5 or less.
+  ArmState asked;  ///< Next command, for a limiter; within the sections' limits.
+  /// Least over greatest singular value of the Jacobian. For n variables it is a lower bound, at least an
+  /// n-th of the ratio; exact if it is 1e-5 or less.
   double reciprocal_condition = 0;
-  bool is_singular = false;  ///< Some motion of the arm shows in no feature: the ratio is below 1e-6.
+  bool is_singular = false;  ///< Some motion of the arm changes no feature: the ratio is below 1e-6.
 };
 
-/// Steers features to their desired values by damped least squares (docs/control.md, eq. 20; C. W. Wampler,
+/// Moves features to their desired values by damped least squares (docs/control.md, eq. 20; C. W. Wampler,
 /// 1986; Y. Nakamura, H. Hanafusa, 1986):
 ///   dx = -(1 - exp(-rate dt)) (J^T J + mu^2 I)^-1 J^T e.
 class ImageLaw {
  public:
-  /// std::invalid_argument: numbers out of their ranges or not finite, an arm without sections.
+  /// Throws std::invalid_argument for numbers out of their ranges or not finite, or an arm without sections.
   ImageLaw(const Arm& arm, const ImageLawGains& gains);
 
-  /// What the arm may change: bends, of planar arms bend_x alone, and stretches whose limits leave them free.
+  /// Returns the variables of the arm: bends (of planar arms bend_x only), and stretches that are not fixed
+  /// by their limits.
   [[nodiscard]] const ArmVariables& variables() const { return variables_; }
-  /// The columns of a derivative by (bend_x, bend_y, stretch) of every section that belong to these.
+  /// Returns the columns of these variables from a derivative by (bend_x, bend_y, stretch) of every section.
   [[nodiscard]] Eigen::MatrixXd by_variables(const Eigen::MatrixXd& by_state) const;
-  /// The same, into what is made to fit.
+  /// Computes these columns into J, which it resizes if needed.
   void by_variables(const Eigen::MatrixXd& by_state, Eigen::MatrixXd& J) const;
 
-  /// Where to send an arm that was last sent to `sent`, dt s later. `error`: features seen less desired; J:
-  /// their derivatives by the variables (by_variables, or an estimate's). Within the sections' limits.
-  /// std::invalid_argument: sizes that do not fit, dt not positive. Numbers that are not finite come out as
-  /// such, for the limiter to stop at.
+  /// Returns the command for an arm that was last commanded to `sent`, dt s later. `error`: measured features
+  /// minus desired; J: their derivatives by the variables (by_variables, or from an estimate). Within the
+  /// sections' limits. Throws std::invalid_argument for sizes that do not fit, or dt not positive. Numbers
+  /// that are not finite stay so, for the limiter to stop.
   [[nodiscard]] ImageStep step(const ArmState& sent, const Eigen::VectorXd& error, const Eigen::MatrixXd& J,
                                double dt) const;
 
-  /// What a step works on: one for each thread.
+  /// Buffers of a step: one per thread.
   struct Work {
-    Eigen::MatrixXd normal, factor;  // J^T J, its lower triangle; Cholesky's of that.
+    Eigen::MatrixXd normal, factor;  // Lower triangle of J^T J; Cholesky factor of it.
     Eigen::VectorXd x, dx, column;
   };
-  /// The same, without allocation once `work` and `step` have served, unless J is nearly singular.
+  /// Computes the step without allocation after the first use of `work` and `step`, unless J is nearly
+  /// singular.
   void step(const ArmState& sent, const Eigen::VectorXd& error, const Eigen::MatrixXd& J, double dt,
             Work& work, ImageStep& step) const;
 

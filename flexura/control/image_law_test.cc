@@ -20,7 +20,7 @@ namespace {
 constexpr double dt = 1.0 / 30;
 
 TEST(ImageLaw, TellsWhatItCannotSee) {
-  // One camera that sees a straight arm end on: nothing of its stretch.
+  // One camera sees a straight arm end on: nothing of its stretch.
   Arm arm = servo_arm();
   for (Section& section : arm.sections) section.stretch_limits = {0.9, 1.1};
   const ImageLaw law(arm, {});
@@ -37,7 +37,7 @@ TEST(ImageLaw, TellsWhatItCannotSee) {
   const ImageStep step = law.step(straight, Eigen::VectorXd::Ones(12), J, dt);
   EXPECT_TRUE(step.is_singular);
   EXPECT_TRUE(step.asked.bends[0].allFinite());
-  // What is no number goes on to the limiter as it is.
+  // A value that is not a number must reach the limiter unchanged.
   const ImageStep lost = law.step(straight, Eigen::VectorXd::Constant(12, std::nan("")), J, dt);
   EXPECT_FALSE(lost.asked.bends[0].allFinite());
   CommandLimiter limiter(arm, {.looks_ahead = false}, straight);
@@ -47,7 +47,7 @@ TEST(ImageLaw, TellsWhatItCannotSee) {
   EXPECT_THROW(ImageLaw(arm, {.rate = 0}), std::invalid_argument);
 }
 
-// J with singular values that fall evenly, in powers, to `least`.
+// Returns J with singular values that decrease evenly, in powers, to `least`.
 Eigen::MatrixXd with_singular_values(TestRandom& random, Eigen::Index rows, Eigen::Index columns,
                                      double least) {
   const auto orthogonal = [&random](Eigen::Index n) {
@@ -119,7 +119,7 @@ TEST(JacobianEstimates, FindALinearMapAfterAsManyMotionsAsItHasColumns) {
     BroydenEstimate broyden(any(m, n));
     RecursiveEstimate recursive(any(m, n), 1, 1e8);
     for (Eigen::Index k = 0; k < n; ++k) {
-      // Broyden's forgets nothing of motions at right angles to the newest.
+      // Broyden's update keeps everything about motions perpendicular to the newest.
       const Eigen::VectorXd dx = 0.3 * Eigen::VectorXd::Unit(n, k), other = any(n, 1);
       EXPECT_TRUE(broyden.learn(dx, truth * dx));
       EXPECT_LE((broyden.jacobian() * dx - truth * dx).norm(), 1e-12);
@@ -148,7 +148,7 @@ TEST(JacobianEstimates, FollowAMapThatChanges) {
   Eigen::Matrix2d truth = Eigen::Matrix2d::Identity();
   for (int k = 0; k < 400; ++k) {
     if (k == 200) truth << 0, 2, -1, 0;
-    // It stands for a while: what it knows must not blow up.
+    // The arm rests for a while: the estimate must not grow without bound.
     if (k > 50 && k < 150) recursive.learn(Eigen::Vector2d(1e-5, 0), truth * Eigen::Vector2d(1e-5, 0));
     const Eigen::Vector2d dx = random.vector<2>(-0.1, 0.1);
     recursive.learn(dx, truth * dx);

@@ -1,5 +1,5 @@
-// Loops without pictures: features of the true arm by the true cameras, the law's Jacobian by the cameras as
-// they are believed to be, the limiter in between.
+// Loops without pictures: features of the true arm by the true cameras, the law's Jacobian by the nominal
+// cameras, with the limiter.
 #include <gtest/gtest.h>
 
 #include <Eigen/Core>
@@ -25,9 +25,9 @@
 namespace flexura {
 namespace {
 
-constexpr double servo_step = 1.0 / 30;  // s
+constexpr double servo_step = 1.0 / 30;  // In s.
 
-// The largest distance between two shapes' points, share of the length.
+// Returns the largest distance between two shapes' points, share of the length.
 double shape_error(const Arm& arm, const ArmState& a, const ArmState& b) {
   const Backbone one(arm, a), other(arm, b);
   double most = 0;
@@ -42,7 +42,7 @@ struct ServoLoop {
   Arm arm = servo_arm();
   std::array<View, 2> truth = servo_views(), model = servo_views();
   FeatureSet set = FeatureSet::of_points(6);
-  // What the arm makes of the bends that it is sent to.
+  // True shape for commanded bends.
   std::function<ArmState(const ArmState&)> mechanism = [](const ArmState& sent) { return sent; };
   double rate = 4;
   double most_step = 0.3;
@@ -51,15 +51,15 @@ struct ServoLoop {
     return {arm, {.rate = rate, .damping = 0.002, .most_step = most_step}};
   }
 };
-// How a run ended.
+// Result of a run.
 struct ServoEnd {
-  double error = 1;    // share of the length
-  double settled = 0;  // s, when the error fell below 2 % for good
+  double error = 1;    // Share of the length.
+  double settled = 0;  // Time from which the error stays below 2 %, s.
   bool is_lost = false;
 };
 
-// From `start` towards `target` for so many seconds: asked(k, state, sent) is what the law asks for in step
-// k, none where a lens shows nothing.
+// Runs from `start` towards `target` for this number of seconds. asked(k, state, sent) returns the law's
+// command in step k; std::nullopt if a lens does not show a point.
 template <class Asked>
 ServoEnd run_loop(const ServoLoop& loop, const ArmState& start, const ArmState& target, double seconds,
                   const Asked& asked) {
@@ -77,7 +77,7 @@ ServoEnd run_loop(const ServoLoop& loop, const ArmState& start, const ArmState& 
   return ended;
 }
 
-// None, or what learns the Jacobian.
+// Estimate of the Jacobian, if any.
 using JacobianEstimate = std::variant<std::monostate, BroydenEstimate, RecursiveEstimate>;
 
 Eigen::MatrixXd learned(JacobianEstimate& estimate, const Eigen::VectorXd& dx, const Eigen::VectorXd& df) {
@@ -111,15 +111,15 @@ ServoEnd servo(const ServoLoop& loop, const ArmState& start, const ArmState& tar
                       J = law.by_variables(by_state);
                     }
                     x_before = x, f_before = seen;
-                    // What is learned starts with a nudge of each variable.
+                    // Learning starts with a small motion of each variable.
                     if (learns && k < x.size())
                       return law.variables().state(x + 0.03 * Eigen::VectorXd::Unit(x.size(), k));
                     return law.step(sent, feature_error(loop.set, seen, desired), J, servo_step).asked;
                   });
 }
 
-// By the edges of both images, six places along the arm; derivatives and normals are those of the arm that
-// the cameras are believed to see.
+// Uses the edges of both images, six places along the arm; derivatives and normals are those of the nominal
+// cameras.
 ServoEnd servo_by_edges(const ServoLoop& loop, const ArmState& start, const ArmState& target,
                         double seconds) {
   const ImageLaw law = loop.law();
@@ -153,9 +153,9 @@ ServoEnd servo_by_edges(const ServoLoop& loop, const ArmState& start, const ArmS
                   });
 }
 
-// How many runs of a kind came to their targets.
+// Number of runs of a kind that reached their targets.
 struct ServoShare {
-  double enough = 1e-5;  // share of the length
+  double enough = 1e-5;  // Share of the length.
   int converged = 0, all = 0;
   double worst = 0, latest = 0;
   void add(const ServoEnd& ended) {
@@ -187,7 +187,7 @@ TEST(ImageLoop, BringsTheArmToRandomTargets) {
   }
 }
 
-// Edges of the images alone bring the arm wherever points bring it.
+// Edges alone must bring the arm wherever points do.
 TEST(ImageLoop, OfSilhouettesReachesWhatPointsReach) {
   ServoShare edges, points;
   for_random_cases(20, [&](TestRandom& random) {
@@ -216,7 +216,7 @@ TEST(ImageLoop, BringsTheArmToTargetsNearByWithMomentsAlone) {
   EXPECT_GE(share.converged, 0.8 * share.all);
 }
 
-// Of targets that the same cameras recorded.
+// For targets recorded by the same cameras.
 TEST(ImageLoop, ReachesItsTargetsHoweverWrongTheCamerasAreBelievedToBe) {
   ServoShare share;
   for_random_cases(20, [&](TestRandom& random) {
@@ -229,8 +229,8 @@ TEST(ImageLoop, ReachesItsTargetsHoweverWrongTheCamerasAreBelievedToBe) {
   EXPECT_EQ(share.converged, share.all);
 }
 
-// An arm whose tendons are mounted turned by 100 degrees, and whose sections bend by 1.3 of what they are
-// told.
+// Returns the shape of an arm whose tendons are mounted turned by 100 degrees, with sections that bend by 1.3
+// of the command.
 ArmState turned_state(const ArmState& sent) {
   ArmState state = sent;
   const double c = std::cos(1.75), s = std::sin(1.75);

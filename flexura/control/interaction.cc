@@ -22,15 +22,15 @@ CurveMoments curve_moments(const Eigen::Matrix2Xd& polygon) {
   return moments;
 }
 
-// Of a straight piece from a to b, with m = (a + b)/2, d = b - a and length l: integrals l m and
-// l (m m^T + d d^T/12).
+// For a straight piece from a to b, with m = (a + b)/2, d = b - a and length l: integrals l m and l (m m^T +
+// d d^T/12).
 void curve_moments(const Eigen::Ref<const Eigen::Matrix2Xd>& polygon, CurveMoments& moments) {
   const Eigen::Index count = polygon.cols();
   // Sums over the pieces: of l, l m_u, l m_v, and the three second moments about the origin.
   Eigen::Vector<double, 6> sums = Eigen::Vector<double, 6>::Zero();
   auto& by_pixels = moments.by_pixels;
   by_pixels.setZero(6, 2 * count);
-  // About the first pixel: what is far from the image's corner loses no digits.
+  // Relative to the first pixel, which preserves digits far from the image's corner.
   const Eigen::Vector2d origin = count > 0 ? Eigen::Vector2d(polygon.col(0)) : Eigen::Vector2d::Zero();
   for (Eigen::Index i = 0; i + 1 < count; ++i) {
     const Eigen::Vector2d m = 0.5 * (polygon.col(i) + polygon.col(i + 1)) - origin,
@@ -64,7 +64,7 @@ void curve_moments(const Eigen::Ref<const Eigen::Matrix2Xd>& polygon, CurveMomen
   by_pixels.row(3) -= 2 * u * by_pixels.row(1);
   by_pixels.row(4) -= u * by_pixels.row(2) + v * by_pixels.row(1);
   by_pixels.row(5) -= 2 * v * by_pixels.row(2);
-  // The values are the image's own again; the derivatives held the origin still.
+  // Moves the values back to the image's origin; the derivatives kept it fixed.
   moments.values[1] += origin.x(), moments.values[2] += origin.y();
 }
 

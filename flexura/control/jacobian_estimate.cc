@@ -48,7 +48,7 @@ bool RecursiveEstimate::learn(const Eigen::VectorXd& dx, const Eigen::VectorXd& 
   J_.noalias() += missed * gain.transpose();
   P_ -= (gain * seen.transpose()).eval();
   P_ /= forgetting_;
-  // Rounding must not make it lopsided, nor rest make it grow.
+  // Keeps the matrix symmetric despite rounding, and limits its growth at rest.
   P_ = (0.5 * (P_ + P_.transpose())).eval();
   const double most = P_.diagonal().maxCoeff();
   if (most > doubt_) P_ *= doubt_ / most;

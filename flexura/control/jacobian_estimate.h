@@ -2,22 +2,23 @@
 
 #include <Eigen/Core>
 
-// Feature Jacobians learned while the arm moves, for when the model of arm or cameras is wrong
-// (docs/control.md, eq. 21 and 22).
+// Feature Jacobians learned while the arm moves, for a wrong model of arm or cameras (docs/control.md, eq. 21
+// and 22).
 namespace flexura {
 
-/// Broyden's rank-one update: J becomes the matrix nearest to itself that explains the last motion (C. G.
-/// Broyden, 1965; for servoing: M. Jagersand, O. Fuentes, R. Nelson, 1997).
+/// Broyden's rank-one update: J becomes the nearest matrix that explains the last motion (C. G. Broyden,
+/// 1965; for servoing: M. Jagersand, O. Fuentes, R. Nelson, 1997).
 class BroydenEstimate {
  public:
-  /// `share` in (0, 1] of each correction is taken; motions of the variables below `least` teach nothing.
-  /// std::invalid_argument: numbers out of these ranges or not finite.
+  /// Applies the share `share` in (0, 1] of each correction; ignores motions of the variables below `least`.
+  /// Throws std::invalid_argument for numbers out of these ranges or not finite.
   explicit BroydenEstimate(Eigen::MatrixXd J, double share = 1, double least = 1e-6);
 
-  /// Features by variables: as it was given, with what was learned.
+  /// Returns the derivatives of features by variables: the given ones, with the corrections.
   [[nodiscard]] const Eigen::MatrixXd& jacobian() const { return J_; }
-  /// The variables moved by dx, the features by df. False: too small a motion, or numbers that are not
-  /// finite; nothing is learned. std::invalid_argument for other sizes.
+  /// Learns from a motion of the variables by dx and of the features by df. Returns false, and learns
+  /// nothing, if the motion is too small or a number is not finite. Throws std::invalid_argument for other
+  /// sizes.
   bool learn(const Eigen::VectorXd& dx, const Eigen::VectorXd& df);
 
  private:
@@ -25,19 +26,19 @@ class BroydenEstimate {
   double share_, least_;
 };
 
-/// Recursive least squares with forgetting: J is what explains all motions best, the older the less (L.
-/// Ljung, "System Identification", 11.2).
+/// Recursive least squares with forgetting: J explains all motions best, with smaller weights for older ones
+/// (L. Ljung, "System Identification", 11.2).
 class RecursiveEstimate {
  public:
-  /// forgetting in (0, 1]: the weight of a motion falls by it with each that follows. `doubt` > 0: how little
-  /// the first J is believed, in units of motion^-2; it is also the most that is ever doubted, so that
-  /// nothing runs away while the arm stands. std::invalid_argument: numbers out of these ranges or not
+  /// forgetting in (0, 1]: factor on the weight of a motion for each later one. `doubt` > 0: initial
+  /// covariance of J, in units of motion^-2. It is also the upper limit, so that the covariance does not grow
+  /// without bound while the arm rests. Throws std::invalid_argument for numbers out of these ranges or not
   /// finite.
   explicit RecursiveEstimate(Eigen::MatrixXd J, double forgetting = 0.95, double doubt = 1e4,
                              double least = 1e-6);
 
   [[nodiscard]] const Eigen::MatrixXd& jacobian() const { return J_; }
-  /// As BroydenEstimate's.
+  /// Learns from a motion, like BroydenEstimate::learn.
   bool learn(const Eigen::VectorXd& dx, const Eigen::VectorXd& df);
 
  private:

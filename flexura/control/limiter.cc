@@ -19,9 +19,9 @@
 namespace flexura {
 namespace {
 
-// Within which a change of rate from one command to the next counts as acceleration, s. In a list whose rows
-// are shorter than a step, one row; in one whose rows are longer, several changes fall into two rows, at most
-// with the weights 1, and 1 - k step/row to both sides.
+// Returns the time over which a change of rate between two commands counts as acceleration, s. In a list with
+// rows shorter than a step, it is one row. If rows are longer, two rows contain several changes, at most with
+// the weights 1, and 1 - k step/row on both sides.
 double turning_time(double step, double row) {
   const double ratio = row / step, others = std::max(0.0, std::ceil(ratio) - 1);
   return row / (1 + 2 * others - others * (others + 1) / ratio);
@@ -64,7 +64,7 @@ LimitedCommand CommandLimiter::next(const ArmState& asked) {
   Plan whole = plan(wanted, config_.looks_ahead);
   if (whole.is_allowed) return send(std::move(whole), reason, reason.empty());
   if (reason.empty()) reason = whole.reason;
-  // From braking, which is allowed, as far towards the law's wish as is allowed too.
+  // From braking, which is allowed, as far towards the law's command as allowed.
   const ArmState braked = way_to_rest_.empty() ? sent_ : way_to_rest_.front();
   double low = 0, high = 1;
   Plan best;
@@ -75,7 +75,7 @@ LimitedCommand CommandLimiter::next(const ArmState& asked) {
     (trial.is_allowed ? low : high) = middle;
     if (trial.is_allowed) best = std::move(trial);
   }
-  // Contact is looked for last, and from farther back, for it costs more.
+  // Contact is checked last, and from farther back, because it is slower.
   for (int i = 0; config_.looks_ahead && best.is_allowed && i < 4; ++i) {
     const std::string touched = contact(best.way);
     if (touched.empty()) break;
@@ -89,7 +89,7 @@ LimitedCommand CommandLimiter::next(const ArmState& asked) {
   return command;
 }
 
-// Of a way w in one step the speed is w/step and the distance that is left w/(rate step): a share k of it has
+// For a way w in one step, the speed is w/step and the remaining distance w/(rate step). A share k of it has
 // k w/step = sqrt(2 a w/(rate step)).
 ArmState CommandLimiter::within_braking(const ArmState& asked, double rate) const {
   if (!config_.drive || !fits(arm_, asked) || !is_possible(asked)) return asked;
@@ -156,7 +156,7 @@ ArmState CommandLimiter::within_limits(const ArmState& asked, std::string& reaso
   return state;
 }
 
-// The way from `next` to rest at evenly falling rates, in as few steps as the motors allow.
+// Plans the way from `next` to rest at evenly decreasing rates, in as few steps as the motors allow.
 CommandLimiter::Plan CommandLimiter::plan(const ArmState& next, bool looks_ahead) const {
   Plan plan;
   const int fewest = braking_steps(next);
@@ -180,7 +180,7 @@ int CommandLimiter::braking_steps(const ArmState& next) const {
   double steps = 1;
   for (std::size_t i = 0; i < config_.drive->axes.size(); ++i) {
     const StepperMotor& motor = config_.drive->axes[i].motor;
-    const double change = motor_acceleration(motor) * turning_time_;  // microsteps/s in one step
+    const double change = motor_acceleration(motor) * turning_time_;  // In microsteps/s per step.
     steps = std::max(steps, std::ceil(std::abs(rates[static_cast<Eigen::Index>(i)]) / change * (1 + 1e-9)));
   }
   return static_cast<int>(std::min(steps, 1e6));
@@ -206,8 +206,8 @@ std::string CommandLimiter::breach(const std::vector<ArmState>& way) const {
   return config_.drive ? breach_of_motors(way) : std::string();
 }
 
-// A step's rates are even where tendons go with the bends, and where they do not (guide disks) they rise or
-// fall by `swing` to both sides of their mean.
+// A step's rates are constant if tendons are linear in the bends. Otherwise (guide disks) they vary by
+// `swing` to both sides of their mean.
 CommandLimiter::MotorStep CommandLimiter::motor_step(const ArmState& from, const Eigen::VectorXd& motors_from,
                                                      const ArmState& to) const {
   MotorStep step;
@@ -225,7 +225,7 @@ std::string CommandLimiter::breach_of_motors(const std::vector<ArmState>& way) c
   constexpr double slack = 1 + 0.5 * limit_tolerance;
   const ArmState* from = &sent_;
   MotorStep before = last_step_;
-  // One step more at the end: the arm stands.
+  // One additional step at the end: the arm is at rest.
   for (std::size_t k = 0; k <= way.size(); ++k) {
     const ArmState& to = way[std::min(k, way.size() - 1)];
     const MotorStep now = motor_step(*from, before.motors, to);
@@ -235,8 +235,8 @@ std::string CommandLimiter::breach_of_motors(const std::vector<ArmState>& way) c
       const auto say = [&](const char* what) {
         return fmt::format("motor {}: {}", drive.axis_name(i), what);
       };
-      // A stop stands where it stands: the list goes to it with play and rounding. Where the arm begins
-      // nearer to it than that, it goes no nearer.
+      // A stop is a hard limit: the list has to stay within it with backlash and rounding. If the arm starts
+      // nearer to it than that, it must not get nearer.
       const double beyond = drive.axes[i].play() + 0.5;
       const double already = std::min(std::abs(before.motors[at]), motor.max_position);
       if (!(std::abs(now.motors[at]) <= std::max(motor.max_position - beyond, already)))

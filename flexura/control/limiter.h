@@ -13,89 +13,89 @@
 
 namespace flexura {
 
-/// What a limiter keeps to besides the arm's own limits.
+/// Limits of a limiter in addition to the arm's own.
 struct LimiterConfig {
-  double step = 1.0 / 30;           ///< Time from one command to the next, s; > 0.
-  std::optional<Drive> drive = {};  ///< Its motors' speeds, step rates, accelerations and positions.
-  /// From row to row of the command list that the motors follow, s: a rate that changes changes within that.
-  /// 0: as `step`.
+  double step = 1.0 / 30;           ///< Time between commands, s; > 0.
+  std::optional<Drive> drive = {};  ///< Limits of its motors' speed, step rate, acceleration, position.
+  /// Time between rows of the command list that the motors follow, s: rates change within that. 0: `step`.
   double list_step = 0;
-  std::vector<Obstacle> obstacles = {};  ///< Which no way may touch, with looks_ahead.
+  std::vector<Obstacle> obstacles = {};  ///< Obstacles that no way may touch, with looks_ahead.
   bool looks_ahead = true;  ///< Every way is checked for contact (check_motions) until the arm would rest.
-  int most_braking = 200;   ///< The most steps that coming to rest may take.
+  int most_braking = 200;   ///< Most steps to come to rest.
 };
 
-/// What a limiter makes of a command.
+/// Command of a limiter.
 struct LimitedCommand {
-  ArmState state;             ///< To be sent: where the arm is to be one step from now.
-  bool is_untouched = false;  ///< It is what the law asked for, bit for bit.
-  bool is_at_rest = false;    ///< The arm stays where the last command sent it.
-  std::string reason;         ///< What held the law back; empty when it was not.
+  ArmState state;             ///< Command to send: the arm's state one step from now.
+  bool is_untouched = false;  ///< Equal to the law's command, bit for bit.
+  bool is_at_rest = false;    ///< The arm stays at the last command.
+  std::string reason;         ///< Why the law was held back, or "".
 };
 
-/// What is kept of a fault.
+/// Record of a fault.
 struct LimiterFault {
-  double time = 0;                   ///< s since the limiter was made: its steps.
+  double time = 0;                   ///< Time since the limiter was made, s: its steps.
   std::string reason;                ///< Why the arm was stopped.
-  std::optional<ArmState> observed;  ///< The last that observe() was told.
-  ArmState sent;                     ///< The last command before it.
-  std::optional<ArmState> asked;     ///< What the law asked for then.
+  std::optional<ArmState> observed;  ///< Last state from observe().
+  ArmState sent;                     ///< Last command before it.
+  std::optional<ArmState> asked;     ///< Command of the law at that time.
 };
 
-/// Stands between a law and an arm's drives. Whatever the law asks for, what is sent
+/// Limits commands between a law and an arm's drives. For any command of the law, the command sent
 ///   - is finite, within the arm's bends, stretches and folding, and changes no faster than its bends and
 ///     stretches may;
-///   - keeps to the motors' speeds, step rates and accelerations (play and rounding are the drive's own), and
-///     to their positions with both;
+///   - respects the motors' speeds, step rates and accelerations (backlash and rounding are up to the drive),
+///     and their positions with both;
 ///   - can be brought to rest from there within all of these, and with `looks_ahead` without a contact on the
-///     way: that way is kept, and gone when nothing else will do (docs/control.md, "The limiter").
-/// A command that is not finite or of another arm, and every fault() from outside, stops the arm: it goes
+///     way. That way is kept, and followed if nothing else is allowed (docs/control.md, "The limiter").
+/// A command that is not finite or of another arm, and every fault() from outside, stops the arm. It follows
 /// that way to rest and stays there until reset().
 class CommandLimiter {
  public:
-  /// At rest in `start`, a command. std::invalid_argument: a state that does not fit the arm, breaks a limit
-  /// or (with looks_ahead) touches something, a step that is not positive.
+  /// Starts at rest in `start`, a command. Throws std::invalid_argument for a state that does not fit the
+  /// arm, breaks a limit or (with looks_ahead) touches something. Also for a step that is not positive.
   CommandLimiter(ArmModel arm, LimiterConfig config, const ArmState& start);
   CommandLimiter(const Arm& driven, LimiterConfig config, const ArmState& start)
       : CommandLimiter(ArmModel(driven), std::move(config), start) {}
 
-  /// The command for the next step, as near to `asked` as it can be: on the straight line in the rates from
-  /// braking to the law's.
+  /// Returns the command for the next step, as near to `asked` as possible: on the straight line in the rates
+  /// from braking to the law's.
   [[nodiscard]] LimitedCommand next(const ArmState& asked);
-  /// For laws that go the share `rate` times the step of what is left in each step (rate in 1/s): what such a
-  /// law asks for, or less of it, so that every motor can still brake to where that leads, at half of its
-  /// acceleration. Where no motor has one, `asked` itself.
+  /// Returns a law's command, or less of it, so that every motor can still brake to its target, at half of
+  /// its acceleration. For laws that cover the share `rate` times the step of the rest in each step (rate in
+  /// 1/s). Returns `asked` if no motor has an acceleration limit.
   [[nodiscard]] ArmState within_braking(const ArmState& asked, double rate) const;
-  /// The command for the next step of an arm that is to come to rest.
+  /// Returns the command for the next step of an arm that has to come to rest.
   [[nodiscard]] LimitedCommand brake();
 
-  /// Tells what was seen last, for the record of a fault.
+  /// Stores the last observation, for the record of a fault.
   void observe(const ArmState& observed) { observed_ = observed; }
-  /// Stops the arm: a port's fault, a lost estimate. Of several the first one is kept.
+  /// Stops the arm: a port's fault, a lost estimate. Keeps the first of several faults.
   void fault(const std::string& reason);
-  /// What would be kept of a fault for this reason now.
+  /// Returns the record of a fault for this reason now.
   [[nodiscard]] LimiterFault record(std::string reason) const {
     return {static_cast<double>(steps_) * config_.step, std::move(reason), observed_, sent_, asked_};
   }
-  /// What stopped the arm; none since the start or the last reset().
+  /// Returns the fault that stopped the arm; std::nullopt if there was none since the start or the last
+  /// reset().
   [[nodiscard]] const std::optional<LimiterFault>& fault() const { return fault_; }
-  /// Goes on after a fault. std::logic_error before the arm rests.
+  /// Continues after a fault. Throws std::logic_error before the arm is at rest.
   void reset();
 
-  /// The last command.
+  /// Returns the last command.
   [[nodiscard]] const ArmState& sent() const { return sent_; }
-  /// The arm stays where the last command sent it.
+  /// Returns true if the arm stays at the last command.
   [[nodiscard]] bool is_at_rest() const { return way_to_rest_.empty(); }
 
  private:
   struct Plan {
-    std::vector<ArmState> way;  // the next state, and those on to rest
+    std::vector<ArmState> way;  // The next state, and the following ones to rest.
     bool is_allowed = false;
-    std::string reason;  // why not
+    std::string reason;  // Why not.
   };
   struct MotorStep {
     Eigen::VectorXd motors;        // At its end, microsteps.
-    Eigen::VectorXd rates, swing;  // microsteps/s
+    Eigen::VectorXd rates, swing;  // In microsteps/s.
   };
   [[nodiscard]] MotorStep motor_step(const ArmState& from, const Eigen::VectorXd& motors_from,
                                      const ArmState& to) const;
@@ -109,12 +109,12 @@ class CommandLimiter {
   LimitedCommand send(Plan plan, std::string reason, bool is_untouched);
 
   ArmModel model_;
-  Arm arm_;  // As its drives see it.
+  Arm arm_;  // Arm as its drives see it.
   LimiterConfig config_;
   std::vector<LimitWatch> limits_;
   ArmState sent_;
   std::vector<ArmState> way_to_rest_;
-  double row_ = 0, turning_time_ = 0;  // s
+  double row_ = 0, turning_time_ = 0;  // In s.
   MotorStep last_step_;                // Empty without drives.
   long steps_ = 0;
   std::optional<ArmState> observed_, asked_;

@@ -28,7 +28,7 @@ namespace {
 
 using testing::HasSubstr;
 
-// Spatial sections whose every limit may be met.
+// Returns spatial sections with finite values for all limits.
 Arm limited_arm(TestRandom& random) {
   Arm arm;
   arm.kind = ArmKind::spatial;
@@ -48,7 +48,7 @@ Drive limited_drive(TestRandom& random, const Arm& arm) {
   constexpr std::int64_t finer = 1'000'000'000;
   Drive drive = random_drive(random, arm);
   for (Axis& axis : drive.axes) {
-    axis.spool.backlash = 0;  // Taking it up is the drive's own, and so is rounding:
+    axis.spool.backlash = 0;  // Backlash compensation is up to the drive, and so is rounding.
     axis.motor.microsteps *= finer;
     axis.motor.max_speed = random.uniform(5, 60);
     axis.motor.max_acceleration = random.uniform(20, 400);
@@ -59,7 +59,7 @@ Drive limited_drive(TestRandom& random, const Arm& arm) {
   return drive;
 }
 
-// What a law may ask for: a walk, with leaps, beyond every limit at times.
+// Returns commands of a law: a random walk, with jumps, beyond every limit at times.
 ArmState next_wish(TestRandom& random, const Arm& arm, const ArmState& before) {
   ArmState wish = before;
   const double size = random.integer(0, 9) == 0 ? 3 : 0.1;
@@ -69,7 +69,7 @@ ArmState next_wish(TestRandom& random, const Arm& arm, const ArmState& before) {
   return wish;
 }
 
-// Everything that a run's check finds in a sequence of commands.
+// Returns all findings of a run's check in a sequence of commands.
 SafetyReport judged(const Arm& arm, const LimiterConfig& config, const std::vector<ArmState>& sent) {
   std::vector<double> times, rows;
   times.reserve(sent.size());
@@ -104,7 +104,7 @@ TEST(Limiter, SendsNothingThatBreaksALimitWhateverIsAskedFor) {
     const Arm arm = limited_arm(random);
     LimiterConfig config{.step = random.uniform(0.01, 0.1), .looks_ahead = false};
     if (random.integer(0, 3) > 0) config.drive = limited_drive(random, arm);
-    // A command list by another clock.
+    // A command list with a different clock.
     if (random.integer(0, 2) > 0) config.list_step = config.step * random.uniform(0.2, 3);
     const ArmState straight = ArmState::straight(arm.sections.size());
     CommandLimiter limiter(arm, config, straight);
@@ -190,8 +190,8 @@ TEST(Limiter, ArrivesAtAWishWithinTheLimits) {
   });
 }
 
-// A law at this rate has way/(rate step) left to go: of the motors one is as fast as it can still brake
-// there, with half of its acceleration, and none is faster.
+// A law at this rate has way/(rate step) left. One of the motors must be as fast as it can still brake over
+// that, with half of its acceleration, and none faster.
 TEST(Limiter, GoesNoFasterThanItsMotorsBrakeInTheWayThatIsLeft) {
   int slowed = 0;
   for_random_cases(60, [&](TestRandom& random) {
@@ -253,7 +253,7 @@ TEST(Limiter, StopsAtAFaultAndKeepsWhatWasKnown) {
     EXPECT_EQ(limiter.fault()->sent.bends, before.bends);
     EXPECT_EQ(limiter.fault()->observed->bends, seen.bends);
     EXPECT_EQ(limiter.fault()->asked->bends.size(), kind == 2 ? wish.bends.size() + 1 : wish.bends.size());
-    // Whatever the law says, the arm comes to rest, within all limits, and stays.
+    // For any commands of the law, the arm must come to rest, within all limits, and stay.
     for (int i = 0; i < 300 && !limiter.is_at_rest(); ++i) {
       EXPECT_THROW(limiter.reset(), std::logic_error);
       sent.push_back(limiter.next(wish).state);
@@ -304,8 +304,8 @@ TEST(Limiter, StartsWithinTheLimitsOnly) {
   EXPECT_THAT(limiter.next({{{0.1, 0.1}}, {1}}).reason, HasSubstr("out of the plane"));
 }
 
-// An arm that begins nearer to a motor's stop than the list could come back to by play and rounding is
-// steered away from it, and not back.
+// An arm that starts nearer to a motor's stop than backlash and rounding of the list must be moved away from
+// it, and not back.
 TEST(Limiter, BeginsAtAMotorsStopAndGoesNoNearer) {
   for_random_cases(20, [](TestRandom& random) {
     Arm arm;

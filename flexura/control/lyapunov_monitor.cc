@@ -15,8 +15,7 @@ namespace {
 
 double lyapunov_value(const LyapunovSample& sample) { return sample.kinetic + sample.potential; }
 
-// The energies that came into play: what 1 is measured by. Of an arm that stays where it is these are
-// rounding.
+// Scale of the energies in the run. For an arm at rest they are rounding errors.
 constexpr double rounding_share = 1e-12;
 double energy_scale(const std::vector<LyapunovSample>& samples) {
   double scale =
@@ -63,10 +62,10 @@ LyapunovVerdict LyapunovMonitor::verdict() const {
   return verdict;
 }
 
-// docs/control.md, eq. 11: the imbalance is a sum of three known courses, each times its share.
+// docs/control.md, eq. 11: the imbalance is a sum of three known curves, each times its share.
 void LyapunovMonitor::explain(LyapunovVerdict& verdict, double scale) const {
   const LyapunovSample &start = samples_.front(), &end = samples_.back();
-  double least_taken = 0;  // Of what damping took from any time to a later one.
+  double least_taken = 0;  // Least energy that damping removed between two samples.
   for (std::size_t i = 1; i < samples_.size(); ++i)
     least_taken = std::min(least_taken, samples_[i].taken - samples_[i - 1].taken);
   if (least_taken < -tolerance_ * scale)

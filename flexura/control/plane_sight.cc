@@ -31,7 +31,7 @@ void PlaneSight::look(const DistributedArm& arm, const Eigen::VectorXd& x,
                  off_2 = noise_[1] * deviate(static_cast<std::uint64_t>(points + j));
     PlaneView seen = plane_view(arm.theta()[j], arm.q()[j]), desired = plane_view(theta_d_[j], q_d_[j]);
     seen.alpha_1 += off_1, seen.alpha_2 += off_2;
-    // Azimuths go on beyond half a turn; the other plane's angles do not.
+    // Azimuths continue beyond half a turn; the other plane's angles do not.
     desired.alpha_2 = seen.alpha_2 - std::remainder(seen.alpha_2 - desired.alpha_2, 2 * std::numbers::pi);
     const PlaneError error = plane_error(seen, desired);
     if (!planes_contradict(seen) && planes_tell({error.theta, error.q}, {theta_d_[j], q_d_[j]})) {

@@ -23,7 +23,7 @@ DistributedArm set_to(DistributedArm arm, const Eigen::VectorXd& x) {
   return arm;
 }
 
-// Of the angles' errors as a potential has them, at the arm's points: the largest difference.
+// Returns the largest difference between the angles' errors and those in a potential, at the arm's points.
 double off(const PlaneSight& sight, const DistributedArm& arm, const DistributedArm& target) {
   return std::max((sight.e_theta() - (arm.theta() - target.theta())).cwiseAbs().maxCoeff(),
                   (sight.e_q() - (arm.q() - target.q())).cwiseAbs().maxCoeff());
@@ -48,7 +48,7 @@ TEST(PlaneSight, ReadsTheArmAndErrsInTheSecondOrderOnly) {
       EXPECT_LE(off(sight, here, there), 0.05 * share * share);
     }
   });
-  EXPECT_LT(largest_ratio, 0.3);  // A quarter, and what is of third order.
+  EXPECT_LT(largest_ratio, 0.3);  // A quarter, plus terms of third order.
 }
 
 TEST(PlaneSight, HasTheNoiseOfItsPlanes) {
@@ -60,7 +60,7 @@ TEST(PlaneSight, HasTheNoiseOfItsPlanes) {
   double of_theta = 0, of_q = 0;
   constexpr int looks = 4000;
   for (std::uint64_t k = 0; k < looks; ++k) {
-    // Even, of variance 1.
+    // Uniform, of variance 1.
     sight.look(still, straight, [&](std::uint64_t i) {
       return std::numbers::sqrt3 * (2 * static_cast<double>(hash(k, i) >> 11) * 0x1p-53 - 1);
     });
@@ -80,7 +80,7 @@ TEST(PlaneSight, TriangulatesWhereThePlanesDoNotTell) {
   const auto bent = [&](double theta, double q) {
     return arm.coordinates([=](double s) { return Eigen::Vector2d(theta * s, q * s); });
   };
-  // None; those between 80 and 100 degrees; all that are across a quarter turn.
+  // Triangulated points: no points; those between 80 and 100 degrees; all that cross a quarter turn.
   for (const auto& [theta, theta_d] :
        {std::array{70.0, 75.0}, {160.0, 160.0}, {60.0, 140.0}, {120.0, 120.0}}) {
     const Eigen::VectorXd x = bent(theta * degree, 0.3), x_d = bent(theta_d * degree, -0.2);
@@ -107,7 +107,7 @@ TEST(PlaneSight, TriangulatesWhereThePlanesDoNotTell) {
   }
 }
 
-// Noise that takes alpha_2 across a quarter turn would turn q about.
+// Noise that moves alpha_2 across a quarter turn would reverse q.
 TEST(PlaneSight, TriangulatesWhereThePlanesContradictEachOther) {
   const DistributedArm arm({.lengths = {1}, .nodes = 4, .points = 20});
   const Eigen::VectorXd x =
@@ -139,7 +139,7 @@ TEST(PlaneSight, LeadsTheArmWithGravityAndDamping) {
     PotentialRun by_planes(arm, law, start, measurement);
     ASSERT_TRUE(by_planes.advance(4)) << by_planes.stopped();
     EXPECT_LE((by_planes.motion().x() - law.target()).cwiseAbs().maxCoeff(), 0.02);
-    // Late and with noise it comes near, and the same way each time.
+    // With delay and noise it must come near, reproducibly.
     measurement.delay = 0.06, measurement.noise = {0.01, 0.01};
     PotentialRun noisy(arm, law, start, measurement), again(arm, law, start, measurement);
     ASSERT_TRUE(noisy.advance(0.5) && again.advance(0.5)) << noisy.stopped();
@@ -150,7 +150,7 @@ TEST(PlaneSight, LeadsTheArmWithGravityAndDamping) {
   });
 }
 
-// From -70 degrees to 290 there are two quarter turns, beyond which the cosine is the same.
+// From -70 degrees to 290 there are two quarter turns, beyond which the cosine is equal.
 TEST(PlaneSight, TriangulatesWholeTurns) {
   EXPECT_TRUE(planes_tell({-1.2, 0.3}, {0.8, -0.2}));
   EXPECT_FALSE(planes_tell({-1.2, 0.3}, {-1.2 + 2 * std::numbers::pi, 0.3}));
@@ -166,7 +166,7 @@ TEST(PlaneSight, TriangulatesWholeTurns) {
   EXPECT_LE((run.motion().x() - law.target()).cwiseAbs().maxCoeff(), 0.05);
 }
 
-// In the plane XOY the first view shows the angle itself.
+// In the plane XOY the first view has the angle itself.
 TEST(PlaneSight, IsTheLawsOwnInOnePlane) {
   const DistributedArm arm({.lengths = {0.5, 0.5}, .bending_stiffness = 0.2, .basis = AngleBasis::sections});
   const auto bent = [&](double theta) {

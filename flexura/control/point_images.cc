@@ -10,8 +10,8 @@
 namespace flexura {
 namespace {
 
-// Power series take over below this bend of a section, rad: beyond it the closed forms lose no digit that
-// counts, for what cancels in them is multiplied by the bend.
+// Power series are used below this bend of a section, rad. Beyond it the closed forms lose no significant
+// digit, because terms with cancellation are multiplied by the bend.
 constexpr double series_bend = 0.3;
 constexpr std::size_t series_terms = 6;  // The next one is below 1e-16 of the first.
 using Series = std::array<double, series_terms>;
@@ -43,7 +43,7 @@ double sum_of(const Series& c, double square) {
 
 using Columns23 = Eigen::Matrix<double, 2, 3>;
 
-// P with P w = G (w x p).
+// Returns P with P w = G (w x p).
 [[gnu::always_inline]] inline Columns23 turned(const Columns23& G, const Eigen::Vector3d& p) {
   Columns23 M;
   M.col(0) = p.y() * G.col(2) - p.z() * G.col(1);
@@ -52,7 +52,7 @@ using Columns23 = Eigen::Matrix<double, 2, 3>;
   return M;
 }
 
-// Term by term: two rows are one register.
+// Term by term: two rows fit into one register.
 [[gnu::always_inline]] inline Eigen::Vector2d times(const Columns23& G, const Eigen::Vector3d& v) {
   return G.col(0) * v.x() + G.col(1) * v.y() + G.col(2) * v.z();
 }

@@ -10,45 +10,47 @@
 
 namespace flexura {
 
-/// Where cameras see points of an arm's material, and how that changes with the arm's state (docs/control.md,
-/// eq. 16): BackboneJacobian's numbers to rounding, of places alone, for many points before a few cameras.
-/// Once it has seen an arm it allocates no more.
+/// Pixels of points of an arm's material in cameras, and their derivatives by the arm's state
+/// (docs/control.md, eq. 16). Equal to BackboneJacobian's up to rounding, for positions only, for many points
+/// in a few cameras. Allocates only at the first use.
 class PointImages {
  public:
-  /// At `shares` of the unstretched arm's length, from its base. std::invalid_argument: one outside [0, 1].
+  /// For points at `shares` of the unstretched arm's length, from its base. Throws std::invalid_argument if
+  /// one is outside [0, 1].
   PointImages(Arm arm, const std::vector<double>& shares);
 
-  /// Points: one a share, in their order.
+  /// Returns the number of points: one per share, in their order.
   [[nodiscard]] Eigen::Index count() const { return static_cast<Eigen::Index>(points_.size()); }
-  /// Columns of derivatives: each section's bend_x, bend_y (rad), stretch.
+  /// Returns the number of columns of derivatives: each section's bend_x, bend_y (rad), stretch.
   [[nodiscard]] Eigen::Index columns() const { return 3 * static_cast<Eigen::Index>(arm_.sections.size()); }
 
-  /// The arm as it stands now. std::invalid_argument: a state that does not fit.
+  /// Sets the arm's state. Throws std::invalid_argument if it does not fit.
   void set(const ArmState& state);
-  /// p_WP of point i, m.
+  /// Returns p_WP of point i, m.
   [[nodiscard]] Eigen::Vector3d place(Eigen::Index i) const;
 
-  /// The points' pixels. False where the lens shows one of them nowhere. set() comes before.
+  /// Computes the points' pixels. Returns false if the lens does not show one of them. Requires set().
   [[nodiscard]] bool see(const View& view, Eigen::Matrix2Xd& pixels) const;
   // NOLINTNEXTLINE(performance-unnecessary-value-param): an Eigen::Ref is written through.
-  /// And their derivatives, two rows a point, into 2 count() x columns().
+  /// Computes the pixels and their derivatives, two rows per point, into 2 count() x columns().
   [[nodiscard]] bool see(const View& view, Eigen::Matrix2Xd& pixels, Eigen::Ref<Eigen::MatrixXd> by_state);
 
  private:
   struct Point {
     std::size_t section = 0;
-    double fraction = 0;  // Of the section.
-    // Of an arc of unit length bent by (b_x, b_y), t = |b|: the place at the fraction f is across * b aside
-    // and `along` on, with across = (1 - cos ft)/t^2 and along = sin ft/t; and their derivatives by t, over
-    // t.
+    double fraction = 0;  // Share of the section.
+    // For an arc of unit length bent by (b_x, b_y), t = |b|: the point at the fraction f is at across * b
+    // sideways and `along` forwards, with across = (1 - cos ft)/t^2 and along = sin ft/t. The slopes are
+    // their derivatives by t, over t.
     double across = 0, along = 0, across_slope = 0, along_slope = 0;
   };
-  // A section as a camera sees it, in C.
+  // A section in a camera, in C.
   struct SeenSection {
     Eigen::Vector3d origin = {0, 0, 0}, x = {0, 0, 0}, y = {0, 0, 0}, z = {0, 0, 0};  // Its base and axes.
-    // What lies beyond it turns with its end, by bend_x and bend_y; how fast it would move at C's origin.
+    // Motion of everything beyond it with its end, by bend_x and bend_y: rotation, and velocity at C's
+    // origin.
     Eigen::Vector3d turn_x = {0, 0, 0}, turn_y = {0, 0, 0}, shift_x = {0, 0, 0}, shift_y = {0, 0, 0};
-    Eigen::Vector3d stretch = {0, 0, 0};  // And how it moves by the stretch.
+    Eigen::Vector3d stretch = {0, 0, 0};  // Motion by the stretch.
   };
   static void place_in(Point& point, double bend);
   [[nodiscard]] Eigen::Vector3d place_in(const SeenSection& seen, const Point& point) const;

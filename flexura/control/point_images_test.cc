@@ -17,7 +17,7 @@
 namespace flexura {
 namespace {
 
-// The places' own derivatives and the lens's, multiplied out.
+// Returns the product of the positions' derivatives and the lens's.
 Eigen::MatrixXd multiplied_out(const Arm& arm, const ArmState& state, const View& view,
                                const std::vector<double>& shares) {
   const BackboneJacobian backbone(arm, state);
@@ -35,7 +35,7 @@ Eigen::MatrixXd multiplied_out(const Arm& arm, const ArmState& state, const View
   return by_state;
 }
 
-// Bends of all sizes: where the series take over, and far below.
+// Bends of all sizes: around the switch to the series, and far below.
 TEST(PointImages, AreThoseOfTheBackbonesJacobian) {
   const std::vector<double> shares = {0, 1e-6, 0.01, 0.2, 0.5, 1.0 / 3, 0.77, 1};
   double worst = 0;

@@ -13,9 +13,9 @@
 namespace flexura {
 namespace {
 
-// Whether elasticity has its least energy there, but for rounding.
+// Returns true if elasticity has its least energy there, up to rounding.
 bool is_unstrained(const DistributedArm& arm) {
-  constexpr double rounding = 1e-9;  // rad; share of a length
+  constexpr double rounding = 1e-9;  // In rad; share of a length.
   const DistributedArmModel& model = arm.model();
   const double turn = (arm.direction().colwise() - arm.direction().col(0).eval()).cwiseAbs().maxCoeff();
   const double strain = (arm.stretch().array() - 1).abs().maxCoeff();
@@ -47,7 +47,7 @@ PotentialLaw::PotentialLaw(const DistributedArm& arm, Eigen::VectorXd target, co
   damping_.diagonal().tail(lengths).setConstant(gains.length_damping);
   DistributedArm there = arm;
   there.set(target_, Eigen::VectorXd::Zero(arm.size()));
-  // There is nothing to add then: V_e as it is has its minimum where Pi has its own.
+  // Nothing has to be added: V_e itself has its minimum where Pi has its own.
   if (gains_.elasticity == ElasticityRule::ignored && is_unstrained(there))
     gains_.elasticity = ElasticityRule::shaped;
   elastic_at_target_ = there.elastic_gradient();

@@ -24,7 +24,7 @@ using testing::Contains;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-// A run from rest, until where the coordinates end at most.
+// A run from rest, until the coordinates become singular at most.
 LyapunovVerdict watched_run(const DistributedArm& arm, const PotentialLaw& law, const Eigen::VectorXd& start,
                             double until, Eigen::VectorXd& end) {
   PotentialRun run(arm, law, start, {}, {.relative = 1e-9, .absolute = 1e-11});
@@ -42,8 +42,9 @@ Eigen::VectorXd bent(const DistributedArm& arm, double theta, double q) {
 }
 
 TEST(PotentialLaw, IsThePapersAtEveryPoint) {
-  // F_theta = -k e_theta - rho g (L - s) sin theta cos q - K theta_t, F_q likewise, Y up, e measured less
-  // desired: at the nodes where these are the points, a force a length times the point's weight.
+  // F_theta = -k e_theta - rho g (L - s) sin theta cos q - K theta_t, and F_q correspondingly, Y up, e
+  // measured minus desired. At nodes that are also the points, a force per length is multiplied by the
+  // point's weight.
   for_random_cases(20, [](TestRandom& random) {
     DistributedArmModel model{
         .density = random.uniform(0.5, 2), .clamp = std::nullopt, .nodes = 6, .points = 6};
@@ -135,11 +136,11 @@ TEST(PotentialLaw, BringsLengthsToTheirTargetsToo) {
   EXPECT_LE((end - target).cwiseAbs().maxCoeff(), 1e-3);
 }
 
-// Runs a law that violates something: what it says of itself, what the run shows of it.
+// A run of a law that violates a condition: violations that it reports, and result of the run.
 struct Violated {
   std::vector<std::string> said;
   LyapunovVerdict shown;
-  double off = 0;  // rad, at the end
+  double off = 0;  // In rad, at the end.
 };
 Violated violated(const DistributedArm& arm, const PotentialGains& gains) {
   const Eigen::VectorXd target = bent(arm, 1, 0.5);
@@ -196,7 +197,7 @@ TEST(PotentialLaw, FailsWithItsReasonWhereAConditionIsViolated) {
   }
 }
 
-// A straight arm at its own length is where elasticity draws to anyway.
+// Elasticity pulls towards the straight arm at its own length anyway.
 TEST(PotentialLaw, MayIgnoreElasticityThatIsAtRestAtTheTarget) {
   DistributedArmModel model{.lengths = {0.5, 0.4},
                             .has_variable_lengths = true,
@@ -218,7 +219,7 @@ TEST(PotentialLaw, MayIgnoreElasticityThatIsAtRestAtTheTarget) {
     EXPECT_THAT(verdict.reasons, IsEmpty());
     EXPECT_TRUE(verdict.is_monotone);
     EXPECT_LE((end - straight).cwiseAbs().maxCoeff(), 1e-2);
-    // Longer than at rest, or bent by a little, it is drawn away.
+    // From slightly stretched or bent targets, elasticity pulls it away.
     Eigen::VectorXd stretched = straight, tilted = straight;
     stretched[arm.size() - 1] += 1e-4, tilted[arm.nodes() - 1] += 1e-4;
     for (const Eigen::VectorXd& target : {stretched, tilted})
@@ -228,7 +229,7 @@ TEST(PotentialLaw, MayIgnoreElasticityThatIsAtRestAtTheTarget) {
 }
 
 TEST(PotentialLaw, NeedsAMinimumOfPotentialAndElasticityTogether) {
-  // An arc of 2.6 rad in one plane, held in that plane by nothing: elasticity turns it out.
+  // An arc of 2.6 rad in one plane, which nothing holds in that plane: elasticity turns it out.
   const DistributedArm arm({.bending_stiffness = 4, .nodes = 4, .points = 10});
   const Eigen::VectorXd target = bent(arm, 2.6, 0);
   PotentialGains gains{.stiffness = {0.2, 0.2}, .elasticity = ElasticityRule::shaped};

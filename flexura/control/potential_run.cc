@@ -16,10 +16,10 @@ namespace flexura {
 namespace {
 
 constexpr double quarter_turn = std::numbers::pi / 2;
-constexpr double most_theta = 100;      // rad
+constexpr double most_theta = 100;      // In rad.
 constexpr double least_stretch = 0.01;  // A section's length over that at rest.
 
-// Where the two angles and the lengths are coordinates of an arm.
+// Returns true where the two angles and the lengths are valid coordinates of an arm.
 bool is_regular(const DistributedArm& arm) {
   return arm.q().cwiseAbs().maxCoeff() < quarter_turn && arm.stretch().minCoeff() > least_stretch &&
          arm.theta().cwiseAbs().maxCoeff() < most_theta;
@@ -65,7 +65,7 @@ double PotentialRun::force(const DistributedArm& arm, const Eigen::VectorXd& x, 
     Q.noalias() = given_ * wanted_;
     largest_ = std::max(largest_, wanted_.norm()), left_over_ = std::max(left_over_, (wanted_ - Q).norm());
   }
-  // No step leads beyond: the last one ends right before it.
+  // No step goes beyond: the last one ends just before it.
   if (!is_regular(arm)) Q.setConstant(std::numeric_limits<double>::quiet_NaN());
   return law_.dissipation(v);
 }
@@ -98,7 +98,7 @@ bool PotentialRun::advance(double until, const std::function<bool()>& go_on) {
   return stopped_.empty();
 }
 
-// What is nearest to the end of the coordinates tells why a motion ended.
+// Returns why a motion ended: the coordinate nearest to its limit.
 std::string PotentialRun::reason() const {
   constexpr double near = 0.99;
   const DistributedArm& arm = motion_.arm();

@@ -80,10 +80,10 @@ TEST(PotentialRun, ShowsWhatLateAndNoisyAnglesDo) {
   EXPECT_FALSE(verdict.is_monotone);
   EXPECT_FALSE(verdict.is_balanced);
   EXPECT_GT(verdict.largest_rise, 1e-5);
-  EXPECT_LT((run.motion().x() - law.target()).cwiseAbs().maxCoeff(), 0.05);  // It comes there all the same,
-  ASSERT_TRUE(again.advance(4));                                             // each time alike.
+  EXPECT_LT((run.motion().x() - law.target()).cwiseAbs().maxCoeff(), 0.05);  // It still gets there.
+  ASSERT_TRUE(again.advance(4));                                             // Reproducibly.
   EXPECT_EQ(again.motion().x(), run.motion().x());
-  // Where the delay is large against the damping's time it swings up instead.
+  // If the delay is large against the damping's time, it swings up instead.
   PotentialRun late(arm, PotentialLaw(arm, evenly_bent(arm, 1.2, -0.6), {.stiffness = {100, 100}}),
                     evenly_bent(arm, 0, 0), {{.delay = 0.2}});
   const LyapunovVerdict swung = watched(late, 2);
@@ -93,7 +93,7 @@ TEST(PotentialRun, ShowsWhatLateAndNoisyAnglesDo) {
 
 TEST(PotentialRun, EndsWhereTheAnglesDo) {
   const DistributedArm arm = three_section_arm();
-  // The damping has the wrong sign: the arm swings up until an angle is none.
+  // The damping has the wrong sign: the arm swings up until an angle is singular.
   const PotentialLaw wild(arm, evenly_bent(arm, 0.3, 1.2), {.damping = -2 * Eigen::Matrix2d::Identity()});
   PotentialRun run(arm, wild, evenly_bent(arm, 0, 0.3));
   const LyapunovVerdict verdict = watched(run, 5);
@@ -106,7 +106,7 @@ TEST(PotentialRun, EndsWhereTheAnglesDo) {
   EXPECT_EQ(run.motion().time(), ended);
 }
 
-// In its own plane it finds no end of the angles: it turns faster and faster.
+// In its own plane the angles have no limit: it turns faster and faster.
 TEST(PotentialRun, EndsWhereTheArmRunsAway) {
   const DistributedArm arm = three_section_arm();
   const PotentialLaw wild(arm, evenly_bent(arm, 0.3, 0), {.damping = -2 * Eigen::Matrix2d::Identity()});

@@ -6,7 +6,7 @@
 namespace flexura {
 namespace {
 
-// G of drives of which each has one column of numbers for an angle's nodes.
+// Returns G of drives; each has one column of numbers for an angle's nodes.
 Eigen::MatrixXd drive_map(const DistributedArm& arm, const Eigen::MatrixXd& of_an_angle) {
   const Eigen::Index n = arm.nodes(), sections = of_an_angle.cols(), lengths = arm.size() - 2 * n;
   Eigen::MatrixXd G = Eigen::MatrixXd::Zero(arm.size(), 2 * sections + lengths);
@@ -37,7 +37,7 @@ Eigen::MatrixXd section_moments(const DistributedArm& arm) {
   double start = 0;
   for (std::size_t k = 0; k < shapes.lengths.size(); ++k) {
     const double end = start + shapes.lengths[k];
-    // The last end where rounding keeps it: the nodes' own.
+    // Keeps the last end from exceeding the length by rounding.
     numbers.col(static_cast<Eigen::Index>(k)) =
         (shapes.at(end).head(n) - shapes.at(start).head(n)).transpose();
     start = end;

@@ -62,7 +62,7 @@ TEST(SectionDrives, MoveTheNumbersThatTheySayTheyDo) {
   });
 }
 
-// Two drives an angle, four numbers: the law's force cut down to the drives does not let W fall.
+// Two drives per angle, four numbers: with the law's force projected onto the drives, W does not decrease.
 TEST(SectionDrives, LeaveForcesOverOfAnArmThatHasMoreThanTheyMove) {
   const DistributedArm arm(
       {.lengths = {0.5, 0.5}, .bending_stiffness = 2, .damping = 0.5, .nodes = 4, .points = 8});

@@ -31,7 +31,8 @@ FeatureSet all_features() {
   return set;
 }
 
-// Cameras with distortion and zoom, heads turned, that look at the arm's middle from about four lengths off.
+// Returns cameras with distortion, zoom and turned heads that look at the arm's middle from about four
+// lengths away.
 std::vector<View> random_views(TestRandom& random, const Arm& arm, const ArmState& state) {
   const Backbone backbone(arm, state);
   const Eigen::Vector3d middle = backbone.pose(0.5 * backbone.length()).position;
@@ -63,7 +64,7 @@ TEST(ShapeFeatures, HaveTheDerivativesOfTheirValues) {
     FeatureImages images(arm, set);
     Eigen::VectorXd desired, there;
     Eigen::MatrixXd by_state;
-    if (!images.derive(state, views, desired, by_state)) return;  // Outside of what a lens shows.
+    if (!images.derive(state, views, desired, by_state)) return;  // Outside the lens's view.
     ++seen;
     const auto wanted = numerical_jacobian(
         [&](const Eigen::VectorXd& q) -> Eigen::VectorXd {
@@ -108,7 +109,7 @@ TEST(CurveMoments, OfACircleAndALineAreInClosedForm) {
   EXPECT_NEAR(moments[3], 1250, 1e-2);
   EXPECT_NEAR(moments[4], 0, 1e-9);
   EXPECT_NEAR(moments[5], 1250, 1e-2);
-  // A line's do not ask where its points are.
+  // Those of a line must not depend on its points.
   line << 0, 3, 60, 90, 0, 4, 80, 120;
   const auto straight = curve_moments(line).values;
   EXPECT_NEAR(straight[0], 150, 1e-12);
@@ -136,7 +137,7 @@ TEST(ShapeFeatures, AreNoneWhereACameraShowsNone) {
   const ArmState straight = ArmState::straight(3);
   View below = servo_views()[0];
   below.X_WC = {rotation_from_z(Eigen::Vector3d::UnitY()), {0, -2, 0}};
-  // The arm points away from this camera: its images of chords are points.
+  // The arm points away from this camera: the images of its chords are points.
   Eigen::VectorXd values;
   EXPECT_FALSE(FeatureImages(arm, FeatureSet::of_chords(3)).values(straight, std::array{below}, values));
   below.X_WC.position.y() = 0.5;  // Behind it.

@@ -24,8 +24,8 @@ VispPoint visp_point(const Eigen::Vector3d& p_CP) {
   return {p_CP.x() / p_CP.z(), p_CP.y() / p_CP.z(), p_CP.z()};
 }
 
-// A point's interaction matrix in the literature (F. Chaumette, S. Hutchinson, "Visual servo control I",
-// 2006, eq. 11).
+// Returns a point's interaction matrix from the literature (F. Chaumette, S. Hutchinson, "Visual servo
+// control I", 2006, eq. 11).
 Eigen::Matrix<double, 2, 6> point_interaction(const Eigen::Vector3d& p) {
   const double x = p.x() / p.z(), y = p.y() / p.z(), Z = p.z();
   Eigen::Matrix<double, 2, 6> L;
@@ -33,7 +33,7 @@ Eigen::Matrix<double, 2, 6> point_interaction(const Eigen::Vector3d& p) {
   return L;
 }
 
-// The corners of a square and a point above its middle, before a camera at X_WC.
+// Returns the corners of a square and a point above its middle, in a camera at X_WC.
 std::vector<Eigen::Vector3d> seen_from(const Pose& X_WC) {
   std::vector<Eigen::Vector3d> places = {
       {-0.1, -0.1, 0}, {0.1, -0.1, 0}, {0.1, 0.1, 0}, {-0.1, 0.1, 0}, {0, 0, 0.05}};
@@ -48,9 +48,9 @@ std::vector<VispPoint> visp_points(const std::vector<Eigen::Vector3d>& seen) {
   return points;
 }
 
-constexpr double gain = 0.8, dt = 0.05;  // 1/s, s
+constexpr double gain = 0.8, dt = 0.05;  // 1/s, s.
 
-// A law's velocity [v; w] for a free camera, m/s and rad/s.
+// Returns a law's velocity [v; w] for a free camera, m/s and rad/s.
 using FreeLaw = std::function<Eigen::Vector<double, 6>(const std::vector<Eigen::Vector3d>& seen,
                                                        const std::vector<Eigen::Vector3d>& goal)>;
 
@@ -61,9 +61,9 @@ FreeLaw of_visp() {
   };
 }
 
-// The servo's own law. The six variables of an arm of three sections stand for the way that the camera goes
-// until the next step: what the law is told are an error and its Jacobian, and whose they are makes no
-// difference to it. 1 - exp(-rate dt) is what gain times dt is to vpServo.
+// The servo's law. The six variables of an arm of three sections stand for the camera's motion until the next
+// step: the law needs only an error and its Jacobian, of any system. 1 - exp(-rate dt) corresponds to gain
+// times dt in vpServo.
 FreeLaw of_image_law(double damping) {
   const ImageLaw law(servo_arm(), {.rate = -std::log1p(-gain * dt) / dt, .damping = damping});
   return [law](const auto& seen, const auto& goal) {
@@ -97,12 +97,12 @@ Pose moved(const Pose& X_WC, const Eigen::Vector<double, 6>& velocity) {
           X_WC.position + X_WC.rotation * velocity.head<3>() * dt};
 }
 
-// m and rad, the larger.
+// In m and rad, the larger.
 double apart(const Pose& a, const Pose& b) {
   return std::max((a.position - b.position).norm(), so3_log(a.rotation.transpose() * b.rotation).norm());
 }
 
-// Each drives a camera of its own from the same place.
+// Each moves its own camera from the same pose.
 TEST(AgainstViSP, TheImageLawBringsAFreeCameraTheSameWay) {
   constexpr int steps = 300;
   int theirs_there = 0, ours_there = 0, damped_there = 0, count = 0;

@@ -19,8 +19,8 @@ std::optional<Aside> aside_of_beginning(const Sighting& seen, const Eigen::Vecto
     length += (points[count].pixel - points[count - 1].pixel).norm();
   if (count < fewest || length < stretch) return std::nullopt;
   const auto step = [&](std::size_t i) { return (points[i].pixel - points[i - 1].pixel).normalized(); };
-  constexpr double straight =
-      0.88;  // The cosine of half a radian: a parabola is no image of what bends more.
+  // The cosine of half a radian: the image of a stronger bend is no parabola.
+  constexpr double straight = 0.88;
   for (std::size_t i = 2; i < count; ++i)
     if (step(i).dot(step(1)) < straight) return std::nullopt;
   const Eigen::Vector2d way = (points[count - 1].pixel - points[0].pixel).normalized();
@@ -40,12 +40,12 @@ std::optional<Aside> aside_of_beginning(const Sighting& seen, const Eigen::Vecto
     sigma = std::max(sigma, points[i].sigma);
   }
   const Eigen::Vector3d curve = solve_definite(normal, right), row = row_at(x);
-  // Where the arm's image is no parabola, that is what the curve is uncertain by.
+  // Where the arm's image deviates from a parabola, the deviation is the curve's uncertainty.
   double squares = 0;
   for (std::size_t i = 0; i < count; ++i)
     squares += std::pow(across(points[i].pixel) - curve.dot(row_at(along(points[i].pixel))), 2);
   sigma = std::max(sigma, std::sqrt(squares / static_cast<double>(count - 3)));
-  // Neighbours whose errors go together tell no more than one of them.
+  // Correlated neighbours count as one point.
   const double spacing = length / static_cast<double>(count - 1),
                alike = std::max(1.0, 2 * seen.reach.sigma / spacing);
   return Aside{std::abs(across(pixel) - curve.dot(row)) / std::hypot(1, curve[1] + 2 * curve[2] * x),

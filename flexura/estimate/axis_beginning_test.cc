@@ -9,7 +9,7 @@
 namespace flexura {
 namespace {
 
-// Points on a circle, `spacing` px apart along it, from (100, 100) on towards `way` (rad); curvature per px.
+// Points on a circle, `spacing` px apart along it, from (100, 100) on towards `way` (rad); curvature in 1/px.
 Sighting arc(double spacing, double length, double curvature, double way = 0.3) {
   Sighting seen;
   for (double s = 0; s <= length; s += spacing) {
@@ -27,7 +27,7 @@ Eigen::Vector2d beside(double along, double across, double way = 0.3) {
          across * Eigen::Vector2d(-std::sin(way), std::cos(way));
 }
 
-// However large the picture is, and so however far the points of it are apart.
+// For any size of the picture, and hence any distance between its points.
 TEST(AxisBeginning, TellsHowFarAPixelIsAside) {
   for (const double spacing : {1.0, 3.0, 8.0, 24.0}) {
     const Sighting seen = arc(spacing, 100 * spacing, 0.2 / (100 * spacing));
@@ -51,7 +51,7 @@ TEST(AxisBeginning, SaysNothingOfWhatIsShortOrCurledOrElsewhere) {
   EXPECT_FALSE(aside_of_beginning(arc(2, 200, 0), beside(6, 1)));
 }
 
-// A kink that is no parabola is told as uncertain.
+// A kink, which is no parabola, is reported as uncertain.
 TEST(AxisBeginning, CountsWhatIsNoParabola) {
   Sighting kinked = arc(2, 100, 0);
   for (std::size_t i = 10; i < kinked.points.size(); ++i)

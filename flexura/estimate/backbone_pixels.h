@@ -8,8 +8,8 @@
 
 namespace flexura {
 
-/// Where a view sees an arm in this state: `count` + 1 points of equal shares of its length from base to tip,
-/// px, without those behind the camera.
+/// Returns the image of an arm in this state, px: `count` + 1 points at equal shares of its length from base
+/// to tip. Points behind the camera are omitted.
 [[nodiscard]] std::vector<Eigen::Vector2d> backbone_pixels(const Arm& arm, const ArmState& state,
                                                            const View& view, int count);
 

@@ -15,11 +15,11 @@
 namespace flexura {
 namespace {
 
-// A place along the arm where something is seen, or known to be.
+// A position along the arm of an observed band or a known marker.
 struct Place {
   double s = 0;                          // m along the unstretched arm.
-  std::optional<Eigen::Vector3d> color;  // Of what is seen.
-  std::size_t index = 0;                 // The band's in its sighting; the marker's.
+  std::optional<Eigen::Vector3d> color;  // Of an observed band.
+  std::size_t index = 0;                 // Index of the band in its observation, or of the marker.
 };
 using Places = std::vector<Place>;
 
@@ -38,7 +38,7 @@ Places places_of(const Sighting& seen, const SpaceCurve& curve, const Shape& sha
   return places;
 }
 
-// How far apart neighbours usually are; of one alone nothing is known but the arm's length.
+// Returns the usual distance between neighbours; for a single one, a share of the arm's length.
 double spacing(const Places& places, double length) {
   constexpr double of_one = 0.2;
   if (places.size() < 2) return of_one * length;
@@ -48,7 +48,7 @@ double spacing(const Places& places, double length) {
   return median(std::span(gaps));
 }
 
-// What it costs to take two for the same: leaving both out costs 1.
+// Cost of matching two; leaving both out costs 1.
 double strangeness(const Place& a, const Place& b, double gate) {
   constexpr double other_color = 120;
   const double off = (a.s - b.s) / gate;
@@ -58,7 +58,7 @@ double strangeness(const Place& a, const Place& b, double gate) {
 
 using Pairs = std::vector<std::array<std::size_t, 2>>;
 
-// The cheapest pairing of two rising series that keeps their order.
+// Returns the cheapest order-preserving pairing of two ascending series.
 Pairs paired(const Places& a, const Places& b, double gate) {
   const std::size_t rows = a.size() + 1, columns = b.size() + 1;
   constexpr double alone = 0.5;
@@ -91,12 +91,12 @@ Pairs counted(std::size_t count) {
   return pairs;
 }
 
-// All sections of an arm whose length is not known stretch alike.
+// All sections of an arm of unknown length have a common stretch.
 double stretch_of(const Shape& shape) {
   return shape.state.stretches.empty() ? 1.0 : shape.state.stretches.front();
 }
 
-// Markers as they become known, from sighting to sighting.
+// Markers found so far, extended from observation to observation.
 class Matching {
  public:
   Matching(const ShapePrior& prior, double sigma)
@@ -135,7 +135,7 @@ class Matching {
 
  private:
   [[nodiscard]] Pairs pairs_with(const Places& seen) const {
-    // Of the way from one marker to the next: a shape that is farther off does not tell them apart.
+    // Share of the distance between markers: a less accurate shape does not distinguish them.
     constexpr double share = 0.4, surely = 0.25;
     const double gate = share * spacing(markers_, length_);
     if (sigma_ < surely * gate) return paired(markers_, seen, gate);

@@ -16,7 +16,7 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 
 struct SeenRay {
   Eigen::Vector3d eye, direction;  // W; of any length.
-  std::size_t point = 0;           // Of the sighting's.
+  std::size_t point = 0;           // Index of the point in the observation.
 };
 
 std::vector<SeenRay> rays_of(const Sighting& seen) {
@@ -34,8 +34,8 @@ double focal_length(const Sighting& seen) {
   return 0.5 * (seen.view.lens.intrinsics().fx + seen.view.lens.intrinsics().fy);
 }
 
-// The cheapest way through a table of costs from its first row and column to its last; a curve that is cut
-// may be entered, or left, anywhere on the other one's.
+// The cheapest path through a table of costs from its first row and column to its last. A curve that is cut
+// may begin or end anywhere on the other one.
 class Alignment {
  public:
   Alignment(std::size_t rows, std::size_t columns)
@@ -47,7 +47,7 @@ class Alignment {
 
   double& cost(std::size_t i, std::size_t j) { return costs_[i * columns_ + j]; }
 
-  // Fills `pairs`, from the start on. `is_free`: whether the way may start, end, away from the corner.
+  // Fills `pairs`, from the start on. `is_free`: whether the path may start or end away from the corner.
   void solve(std::array<bool, 2> is_free, std::vector<std::array<std::size_t, 2>>& pairs) {
     for (std::size_t i = 0; i < rows_; ++i)
       for (std::size_t j = 0; j < columns_; ++j) enter(i, j, is_free[0]);
@@ -63,7 +63,7 @@ class Alignment {
   }
 
  private:
-  static constexpr std::uint8_t none = 0;  // Otherwise 1 a row, 2 a column, 3 both back.
+  static constexpr std::uint8_t none = 0;  // Otherwise 1: back by a row, 2: by a column, 3: by both.
 
   void enter(std::size_t i, std::size_t j, bool is_free_start) {
     const std::size_t here = i * columns_ + j;
@@ -77,7 +77,7 @@ class Alignment {
     totals_[here] = least + costs_[here];
   }
 
-  // In the last row or column, by the mean cost of the way there: a short one is not cheaper for that.
+  // In the last row or column, by the mean cost of the path: a short path has no advantage.
   [[nodiscard]] std::array<std::size_t, 2> cheapest_end() const {
     std::array<std::size_t, 2> best{rows_ - 1, columns_ - 1};
     double least = infinity;
@@ -95,7 +95,7 @@ class Alignment {
   std::vector<std::uint8_t> from_;
 };
 
-// The middle of where two rays come nearest; none of parallel ones.
+// Returns the midpoint of two rays where they are nearest; empty for parallel rays.
 std::optional<Eigen::Vector3d> meeting_of(const SeenRay& a, const SeenRay& b) {
   const double aa = a.direction.squaredNorm(), bb = b.direction.squaredNorm(),
                ab = a.direction.dot(b.direction);
@@ -118,7 +118,7 @@ std::vector<SpacePoint> correspondence(const Sighting& a, const Sighting& b) {
   const double scale = 0.5 * (focal_length(a) + focal_length(b));
   Alignment alignment(left.size(), right.size());
   for (std::size_t i = 0; i < left.size(); ++i) {
-    // The epipolar plane of the left ray; the sine of the right ray's angle with it.
+    // The epipolar plane of the left ray; sine of the right ray's angle to it.
     const Eigen::Vector3d normal = baseline.cross(left[i].direction).normalized();
     for (std::size_t j = 0; j < right.size(); ++j) {
       const double off = scale * normal.dot(right[j].direction) / right[j].direction.norm();

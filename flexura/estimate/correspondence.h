@@ -12,12 +12,12 @@ namespace flexura {
 /// A point in space seen by two cameras.
 struct SpacePoint {
   Eigen::Vector3d position = {0, 0, 0};      ///< p_WP, m.
-  std::array<std::size_t, 2> seen = {0, 0};  ///< Which point of either sighting it is.
+  std::array<std::size_t, 2> seen = {0, 0};  ///< Index of its point in each observation.
 };
 
-/// Which points of two sightings of one curve belong together, along it: the pairing, monotonous along both
-/// curves, with the least sum of squared distances from the epipolar lines (dynamic programming); ends that
-/// both see belong together. Empty where the lenses show nothing.
+/// Returns corresponding points of two observations of one curve. The pairing is monotonic along both curves
+/// and has the least sum of squared distances from the epipolar lines (dynamic programming). Ends visible in
+/// both correspond. Empty where the lenses have no rays.
 [[nodiscard]] std::vector<SpacePoint> correspondence(const Sighting& a, const Sighting& b);
 
 }  // namespace flexura

@@ -10,7 +10,7 @@
 namespace flexura {
 namespace {
 
-// The direction in which a curve's image goes on at point i, in W, as a parallel projection shows it.
+// Direction in W of a curve's image at point i, as in a parallel projection.
 Eigen::Vector3d image_direction(const Sighting& seen, std::size_t i) {
   constexpr std::size_t reach = 3;
   const std::size_t first = i - std::min(i, reach), last = std::min(i + reach, seen.points.size() - 1);
@@ -26,7 +26,7 @@ std::vector<DirectionAngles> direction_angles(const Backbone& backbone, std::siz
     const Eigen::Vector3d e = backbone.pose(share * backbone.length()).rotation.col(2);
     const double across = std::hypot(e.x(), e.y());
     const double before = i > 0 ? angles[i - 1].azimuth : 0;
-    // Along Z the azimuth is whatever it was.
+    // Along Z the azimuth is undefined and keeps its value.
     const Eigen::Vector2d own = angles_of_direction(e);
     angles[i].azimuth = across > 1e-12 ? nearest_turn(own[0], before) : before;
     angles[i].elevation = own[1];

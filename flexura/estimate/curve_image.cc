@@ -49,7 +49,8 @@ bool CurveImage::set(const View& view, const ViewError& error, const SpaceCurve&
   return true;
 }
 
-// The cubic through two points with its slopes there. It lies within its four control points' hull.
+// Returns the cubic through two points with these slopes. It lies in the convex hull of its four control
+// points.
 CurveImage::Piece CurveImage::piece(const Eigen::Vector2d& a, const Eigen::Vector2d& da,
                                     const Eigen::Vector2d& b, const Eigen::Vector2d& db) {
   Piece piece{a, da, 3 * (b - a) - 2 * da - db, 2 * (a - b) + da + db, 0.5 * (a + b), 0};
@@ -60,7 +61,7 @@ CurveImage::Piece CurveImage::piece(const Eigen::Vector2d& a, const Eigen::Vecto
   return piece;
 }
 
-// Where the piece is nearest to the pixel, from 0 to 1.
+// Returns the position on the piece nearest to the pixel, from 0 to 1.
 double CurveImage::foot(const Piece& piece, const Eigen::Vector2d& pixel) {
   const Eigen::Vector2d chord = 2 * (piece.middle - piece.a);
   double f = std::clamp((pixel - piece.a).dot(chord) / chord.squaredNorm(), 0.0, 1.0);
@@ -68,7 +69,7 @@ double CurveImage::foot(const Piece& piece, const Eigen::Vector2d& pixel) {
   constexpr double small = 1e-7;
   for (int step = 0; step < most; ++step) {
     const Eigen::Vector2d off = piece.at(f) - pixel, along = piece.slope(f);
-    // The distance's curvature along the curve; where it is not convex the tangent alone serves.
+    // Curvature of the distance along the curve; where it is not convex, only the tangent is used.
     const double slope = off.dot(along), square = along.squaredNorm();
     const double curving = square + off.dot(piece.bend(f));
     const double next = std::clamp(f - slope / (curving > 0.1 * square ? curving : square), 0.0, 1.0);
@@ -90,12 +91,12 @@ CurveImage::Point CurveImage::at(double place) const {
 
 CurveImage::Point CurveImage::nearest(const Eigen::Vector2d& pixel, const Eigen::Vector2d& heading,
                                       const Window& window) const {
-  // A branch that runs the other way counts as so much farther, px.
+  // Penalty for a branch in the opposite direction, px.
   constexpr double astray = 10;
   double least = std::numeric_limits<double>::infinity(), place = static_cast<double>(window.first);
   const auto consider = [&](std::size_t i) {
     const Piece& piece = pieces_[i];
-    // What lies in a disc that is farther away is so, too.
+    // Everything inside a disc that is farther away is farther away.
     const double away = (pixel - piece.middle).norm() - piece.radius;
     if (away > 0 && away * away >= least) return;
     const double f = foot(piece, pixel);
@@ -110,7 +111,7 @@ CurveImage::Point CurveImage::nearest(const Eigen::Vector2d& pixel, const Eigen:
   return at(place);
 }
 
-// Quadratic through three knots of the section: where sections meet, derivatives have kinks.
+// Quadratic through three knots of the section: derivatives have kinks where sections meet.
 void CurveImage::along(const Eigen::Vector2d& direction, double place,
                        Eigen::Ref<Eigen::RowVectorXd> row) const {
   const auto i = std::min(static_cast<std::size_t>(std::max(place, 0.0)), pieces_.size() - 1);

@@ -10,45 +10,45 @@
 
 namespace flexura {
 
-/// The image of a backbone: through the images of its knots with their tangents, cubic between them (for arcs
-/// of an eighth of a radian: to 1e-6 of their radius).
+/// The image of a backbone: cubic between the images of its knots with their tangents. For arcs of an eighth
+/// of a radian it is accurate to 1e-6 of their radius.
 class CurveImage {
  public:
-  /// False when a knot is not seen by the lens.
+  /// Sets the curve; returns false if the lens does not see a knot.
   bool set(const View& view, const SpaceCurve& curve) { return set(view, {}, curve, -1, -1); }
-  /// The same with a view that is wrong by `error`, whose derivatives stand from column `own` on of `count`;
-  /// -1: nowhere.
+  /// Sets the curve for a view with this `error`. Derivatives by the error are in the columns from `own` on,
+  /// of `count`; -1: no such derivatives.
   bool set(const View& view, const ViewError& error, const SpaceCurve& curve, Eigen::Index own,
            Eigen::Index count);
 
-  /// The place of the last knot; places count from 0 at the base.
+  /// Returns the position of the last knot; positions count from 0 at the base.
   [[nodiscard]] double last() const { return static_cast<double>(pieces_.size()); }
 
-  /// A place of the image.
+  /// A point of the image.
   struct Point {
-    double place = 0;         ///< Counted in knots.
-    Eigen::Vector2d pixel;    ///< Of the curve there.
-    Eigen::Vector2d tangent;  ///< Unit.
-    double speed = 0;         ///< px a knot.
-    double scale = 0;         ///< px a metre across the line of sight, there.
+    double place = 0;         ///< Position, in knots.
+    Eigen::Vector2d pixel;    ///< Image point of the curve, px.
+    Eigen::Vector2d tangent;  ///< Unit tangent.
+    double speed = 0;         ///< Speed along the curve, px per knot.
+    double scale = 0;         ///< Scale across the line of sight, px per metre.
   };
-  /// `place` from 0 to last(); beyond, the last piece's cubic goes on.
+  /// `place` from 0 to last(); beyond, the last piece's cubic is extended.
   [[nodiscard]] Point at(double place) const;
-  /// Where to look: from one knot to another, and first in the interval after a third.
+  /// Range of a search in knots, and the interval after `likely` that is searched first.
   struct Window {
     std::size_t first = 0, last = 0, likely = 0;
   };
-  /// All of the curve, looked at from the first knot.
+  /// The whole curve, searched from the first knot.
   [[nodiscard]] Window everywhere() const { return {0, pieces_.size(), 0}; }
-  /// The curve's point nearest to a pixel, within a window, that runs about as `heading` does (unit): of a
-  /// hairpin's branches the one that is meant.
+  /// Returns the curve's point nearest to a pixel within a window whose direction is about `heading` (unit).
+  /// This selects the right branch of a hairpin.
   [[nodiscard]] Point nearest(const Eigen::Vector2d& pixel, const Eigen::Vector2d& heading,
                               const Window& window) const;
-  /// direction . d pixel/d unknowns at a place, as a row.
+  /// Sets a row to direction . d pixel/d unknowns at a position.
   void along(const Eigen::Vector2d& direction, double place, Eigen::Ref<Eigen::RowVectorXd> row) const;
 
  private:
-  // From one knot to the next: a + f (da + f (c2 + f c3)) for f from 0 to 1, all of it in a disc.
+  // From one knot to the next: a + f (da + f (c2 + f c3)) for f from 0 to 1, inside a disc.
   struct Piece {
     Eigen::Vector2d a, da, c2, c3, middle;
     double radius = 0;
@@ -63,7 +63,7 @@ class CurveImage {
   using Unknowns = Eigen::Matrix<double, 2, Eigen::Dynamic, Eigen::RowMajor>;
   std::vector<Piece> pieces_;
   std::vector<Unknowns> unknowns_;  // Of the knots' pixels.
-  std::vector<double> scales_;      // At the knots, px a metre.
+  std::vector<double> scales_;      // At the knots, px per metre.
   std::size_t in_section_ = 2;      // Pieces in each section.
 };
 

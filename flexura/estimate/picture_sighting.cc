@@ -14,22 +14,22 @@
 namespace flexura {
 namespace {
 
-// No axis is known better, px: lenses are not.
+// Smallest standard deviation of an axis, px: the error of lenses.
 constexpr double least_sigma = 0.007;
-// Of a silhouette, px: a tube's is nearly as far from the backbone's image as its radius is large there.
+// Standard deviation of a silhouette, px: a tube's is about its radius from the backbone's image.
 constexpr double border_sigma = 0.5;
-// Of a band's middle, px: what skin and shading do to it.
+// Standard deviation of a band's middle, px, by skin and shading.
 constexpr double band_sigma = 0.2;
 
-// Over which axes are smoothed, px.
+// Smoothing distance of axes, px.
 constexpr double smoothed = 5.4;
-// Whole axes are off together, over more than a hundred pixels: the borders' model is not the picture's. As
-// measured against drawn arms (docs/estimation.md), px: of any tube, by its blur and the root of blur over
-// width, for the light falls off at the border of a round one as the root of the distance does; of thin ones,
-// whose borders are one in the other's blur, by the square of blur over width; and of straight ones along
-// rows or columns, whose borders are at one place between two pixels all the way.
+// Errors common to a whole axis, over more than a hundred pixels, because the border model is approximate.
+// Measured on drawn arms (docs/estimation.md), px. `of_any`: any tube, by its blur and the root of blur over
+// width. (The light at the border of a round tube falls with the root of the distance.) `of_thin`: thin
+// tubes, whose borders are within each other's blur, by the square of blur over width. `of_locked`: straight
+// tubes along rows or columns, whose borders have a constant subpixel position.
 constexpr double of_any = 0.0064, of_thin = 0.35, of_locked = 0.011;
-// Over how much of the axis the last is looked for, px.
+// Length of the axis over which the last is determined, px.
 constexpr double stretch = 60;
 
 double offset_at(const ArmSighting& arm, std::size_t i, std::size_t samples) {
@@ -37,30 +37,30 @@ double offset_at(const ArmSighting& arm, std::size_t i, std::size_t samples) {
   const std::size_t before = i - std::min(i, samples / 2),
                     after = std::min(before + samples, axis.size() - 1);
   const Eigen::Vector2d way = axis[after].pixel - axis[before].pixel;
-  // The rows or columns that so much of it crosses, px.
+  // Number of rows or columns that this part crosses, px.
   const double crossed = way.cwiseAbs().minCoeff() * stretch / std::max(way.norm(), 1.0);
   const double locked = of_locked / (1 + 5 * crossed * crossed);
   const double thin = arm.blur / std::max(axis[i].width, 1.0);
   return std::hypot(of_any * arm.blur * std::sqrt(thin) + of_thin * thin * thin, locked);
 }
 
-// The length of the axis from sample `from` to sample `to`, px.
+// Length of the axis from sample `from` to sample `to`, px.
 double length_between(const std::vector<AxisSample>& axis, std::size_t from, std::size_t to) {
   double length = 0;
   for (std::size_t i = from; i < to; ++i) length += (axis[i + 1].pixel - axis[i].pixel).norm();
   return length;
 }
 
-// Whether samples tell where the axis is: those that are seen, but for a few between two long stretches that
-// it bridges. There borders of something else were taken for the tube's, pixels off. (A cross-section that
-// noise hides is bridged over what axes are smoothed over; it says nothing of those between two such.)
+// Returns which samples determine the axis: all visible ones, except a few between two long bridged
+// stretches. There the borders of something else were taken for the tube's, pixels away. (A cross-section
+// hidden by noise is bridged over the smoothing distance only; samples between two such bridges are kept.)
 std::vector<bool> telling(const std::vector<AxisSample>& axis) {
   std::vector<bool> tells(axis.size());
   const auto next_seen = [&](std::size_t i, bool is_seen) {
     while (i < axis.size() && axis[i].is_seen != is_seen) ++i;
     return i;
   };
-  std::size_t before = 0;  // The last sample seen before the stretch.
+  std::size_t before = 0;  // The last visible sample before the stretch.
   for (std::size_t first = next_seen(0, true), end = first; first < axis.size();
        first = next_seen(end, true)) {
     end = next_seen(first, false);
@@ -74,14 +74,14 @@ std::vector<bool> telling(const std::vector<AxisSample>& axis) {
   return tells;
 }
 
-// The way in which the axis goes on where it is nearest to a pixel.
+// Direction of the axis where it is nearest to a pixel.
 Eigen::Vector2d heading_at(const std::vector<AxisSample>& axis, const Eigen::Vector2d& pixel) {
   const auto nearest = std::ranges::min_element(
       axis, {}, [&](const AxisSample& sample) { return (sample.pixel - pixel).squaredNorm(); });
   return {nearest->normal.y(), -nearest->normal.x()};
 }
 
-// What a lens has no ray for is no place of the arm.
+// A pixel without a ray shows no point of the arm.
 void leave_out_what_has_no_ray(const Lens& lens, Sighting& seen) {
   const auto has_no_ray = [&](const Eigen::Vector2d& pixel) {
     const bool has_none = !lens.unproject(pixel);
@@ -95,7 +95,7 @@ void leave_out_what_has_no_ray(const Lens& lens, Sighting& seen) {
     if (end && is_out(*end)) end.reset();
 }
 
-// Where the backbone is seen. A lens that shows all of its picture has rays for all of the axis.
+// Returns the image of the backbone. A lens that shows its whole picture has rays for the whole axis.
 BackboneAxis backbone_of(const ArmSighting& arm, const View& view) {
   if (!shows_all(view)) return backbone_axis(view.lens, arm.axis);
   BackboneAxis axis{arm.axis, std::vector<bool>(arm.axis.size(), true)};
@@ -122,7 +122,7 @@ Sighting sighting_along(const ArmSighting& arm, const BackboneAxis& backbone, co
     const AxisSample& sample = arm.axis[i];
     const Eigen::Vector2d half = 0.5 * sample.width * sample.normal;
     const std::array<Eigen::Vector2d, 2> borders = {sample.pixel + half, sample.pixel - half};
-    // The axis lies half-way between the borders: each is known by the root of two worse.
+    // The axis is half-way between the borders: each has sqrt(2) times its standard deviation.
     const double sigma = std::max(std::numbers::sqrt2 * sample.sigma, least_sigma);
     for (std::size_t side = 0; side < 2; ++side) seen.edges[side].push_back({borders[side], sigma});
     seen.points.push_back({axis[i].pixel, std::max(sample.sigma, least_sigma), offset_at(arm, i, samples)});
@@ -152,7 +152,7 @@ Sighting sighting_of(const ArmSighting& arm, const View& view, const Image<std::
   const BackboneAxis backbone = backbone_of(arm, view);
   corrected.axis = backbone.samples;
   Sighting seen = sighting_along(arm, backbone, view);
-  constexpr bool with_spots = false;  // Nothing is known of the backbone there.
+  constexpr bool with_spots = false;  // They give no backbone position.
   for (const MarkerSighting& marker : find_markers(picture, corrected, with_spots).markers) {
     if (!marker.tells_place()) continue;
     if (!view.lens.unproject(marker.pixel)) {

@@ -14,7 +14,8 @@
 namespace flexura {
 namespace {
 
-// A straight axis along a row, 10 px wide, bridged from 30 to 70 px but for `chance` samples in the middle.
+// A straight axis along a row, 10 px wide, bridged from 30 to 70 px except for `chance` samples in the
+// middle.
 ArmSighting bridged_axis(std::size_t chance) {
   ArmSighting arm;
   arm.blur = 0.8, arm.covered = 1;
@@ -27,7 +28,7 @@ ArmSighting bridged_axis(std::size_t chance) {
   return arm;
 }
 
-// A foreshortened arm's axis may meet something like a tube for a pixel or two, far from where the arm is.
+// The axis of a foreshortened arm may meet a tube-like structure for a pixel or two, far from the arm.
 TEST(PictureSighting, LeavesOutWhatIsSeenByChanceBetweenTwoBridges) {
   EXPECT_EQ(sighting_of(bridged_axis(0), View{}).points.size(), 60U);
   const Sighting few = sighting_of(bridged_axis(3), View{});
@@ -37,14 +38,14 @@ TEST(PictureSighting, LeavesOutWhatIsSeenByChanceBetweenTwoBridges) {
   EXPECT_EQ(sighting_of(bridged_axis(8), View{}).points.size(), 68U);
 }
 
-// Noise hides single samples anywhere; those between tell all the same.
+// Noise hides single samples anywhere; those in between still count.
 TEST(PictureSighting, KeepsWhatIsSeenBetweenShortBridges) {
   ArmSighting arm = bridged_axis(40);
   for (std::size_t i = 0; i < arm.axis.size(); i += 3) arm.axis[i].is_seen = false;
   EXPECT_EQ(sighting_of(arm, View{}).points.size(), 53U);
 }
 
-// Where distortion folds the picture back no ray comes from: that is no place of the backbone.
+// Pixels where distortion folds the image back have no ray and are not points of the backbone.
 TEST(PictureSighting, LeavesOutWhatTheLensHasNoRayFor) {
   const ArmSighting arm = bridged_axis(40);
   View view;
@@ -67,7 +68,7 @@ TEST(PictureSighting, LeavesOutWhatTheLensHasNoRayFor) {
     for (const CurvePoint& point : edge) EXPECT_TRUE(has_ray(point.pixel));
 }
 
-// Neither the arm's ends, nor its border, nor its figure count there.
+// There, the arm's ends, its border and its silhouette do not count either.
 TEST(PictureSighting, LeavesOutEndsAndBordersWithoutARay) {
   ArmSighting arm = bridged_axis(40);
   arm.ends[0] = {AxisEndKind::free, {100, 200}, 0, 0.2},
@@ -88,7 +89,7 @@ TEST(PictureSighting, LeavesOutEndsAndBordersWithoutARay) {
   EXPECT_EQ(seen.figure[0].x(), 197);
 }
 
-// The backbone is where a calibration and `measure` take it to be.
+// The backbone is where calibration and `measure` expect it.
 TEST(PictureSighting, HasTheBackboneAsFarAsTheLensTells) {
   View view;
   view.lens = Lens({.fx = 400, .fy = 400, .cx = 199.5, .cy = 200, .distortion = {-5, 0, 0, 0, 0}});

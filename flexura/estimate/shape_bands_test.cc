@@ -15,7 +15,7 @@
 namespace flexura {
 namespace {
 
-// In a sanitized build, too: they are judged together.
+// Also in a sanitized build, since the cases are evaluated together.
 template <typename Body>
 void for_five_cases(Body&& body) {
   for (int index = 0; index < 5; ++index) {
@@ -26,7 +26,7 @@ void for_five_cases(Body&& body) {
 
 const std::vector<double> band_places = {0.1, 0.22, 0.37, 0.5, 0.66, 0.81, 0.9};
 
-// A band at arc length s as a camera sees it, `off` px along the curve from where it is.
+// A band at arc length s as seen by a camera, with an error of `off` px along the curve.
 SeenBand band_at(const Backbone& backbone, const View& view, double s, double off) {
   const Pose X_WS = backbone.pose(s);
   const Eigen::Vector2d pixel = view.project(X_WS.position).value(),
@@ -42,7 +42,7 @@ struct BandedCase {
 
   explicit BandedCase(TestRandom& random)
       : truth(arm, random_bends(random, arm, 1.3)), plain(sightings_of(truth, random, 0.05)) {
-    // Ends are seen to 0.3 px along the curve.
+    // Ends have an error of 0.3 px along the curve.
     for (Sighting& seen : plain)
       for (const std::size_t end : {std::size_t{0}, std::size_t{1}})
         seen.ends[end]->pixel =
@@ -54,14 +54,14 @@ struct BandedCase {
   }
 };
 
-// The errors of many fits.
+// Errors of many fits.
 struct Errors {
   double sum = 0, worst = 0;
   void add(double error) { sum += error, worst = std::max(worst, error); }
 };
 
-// The ends, known to half a pixel, say how the curve lies along itself; so do bands, and there are more of
-// them.
+// The ends, known to half a pixel, determine the position of the curve along itself; so do bands, and there
+// are more of them.
 TEST(ShapeBands, TellWhereAnArmOfUnknownMakeLiesAlongItself) {
   Errors plain, shared, known;
   for_five_cases([&](TestRandom& random) {
@@ -75,7 +75,7 @@ TEST(ShapeBands, TellWhereAnArmOfUnknownMakeLiesAlongItself) {
     ShapePrior prior = unknown_arm(std::nullopt, std::nullopt, 12);
     plain.add(error(prior, one.plain, 0));
     shared.add(error(prior, one.banded, band_places.size()));
-    // Its length counts as 1.
+    // The length is 1.
     prior.markers = band_places;
     known.add(error(prior, one.banded, band_places.size()));
   });
@@ -87,7 +87,7 @@ TEST(ShapeBands, ThatAreFalseOrHiddenDoNoHarm) {
   Errors plain, shared, known;
   for_five_cases([&](TestRandom& random) {
     BandedCase one(random);
-    // One is hidden in each picture, one seen far off its place, and one is no band.
+    // One is hidden in each picture, one is displaced, and one is a false detection.
     one.banded[0].bands.erase(one.banded[0].bands.begin() + random.integer(0, 6));
     one.banded[1].bands.erase(one.banded[1].bands.begin() + random.integer(0, 6));
     for (Sighting& seen : one.banded) {
@@ -118,7 +118,7 @@ TEST(ShapeBands, AtPlacesThatAreToldWronglyDoNoHarm) {
     const BandedCase one(random);
     ShapePrior prior{.arm = one.arm};
     plain.add(shape_error(ShapeEstimator(prior).estimate(one.plain).shape, one.truth));
-    // Counted from the other end.
+    // Measured from the other end.
     for (const double s : band_places) prior.markers.push_back(1 - s);
     std::ranges::sort(prior.markers);
     const ShapeEstimate found = ShapeEstimator(prior).estimate(one.banded);
@@ -129,7 +129,7 @@ TEST(ShapeBands, AtPlacesThatAreToldWronglyDoNoHarm) {
   EXPECT_LT(told.worst, 1.5 * plain.worst);
 }
 
-// The band of each look, by marker; none: not seen.
+// The band of each observation, by marker; -1: not visible.
 std::vector<std::array<int, 2>> table(const std::vector<BandLook>& looks, std::size_t markers) {
   std::vector<std::array<int, 2>> result(markers, {-1, -1});
   for (const BandLook& look : looks) result.at(look.marker).at(look.sighting) = static_cast<int>(look.band);
@@ -149,11 +149,12 @@ TEST(MatchBands, LeavesOutWhatHasNoCounterpart) {
   using Pair = std::array<int, 2>;
   const auto known = table(match_bands(prior, near, 1e-4, one.banded), 7);
   EXPECT_EQ(known, (std::vector<Pair>{{0, 1}, {1, 2}, {-1, 3}, {2, 4}, {3, 5}, {4, 6}, {5, 7}}));
-  // Unknown ones are counted as the first picture shows them.
+  // Unknown markers are numbered as in the first picture.
   prior.markers.clear();
   const auto shared = table(match_bands(prior, near, 1e-4, one.banded), 6);
   EXPECT_EQ(shared, (std::vector<Pair>{{0, 1}, {1, 2}, {2, 4}, {3, 5}, {4, 6}, {5, 7}}));
-  // A shape that is too far off tells nothing where the pictures show another number, and counts otherwise.
+  // An inaccurate shape gives no match if the pictures have different numbers of bands; otherwise they are
+  // counted.
   EXPECT_TRUE(match_bands(prior, shape, 0.05, one.banded).empty());
   one.banded[1].bands.erase(one.banded[1].bands.begin());
   one.banded[1].bands.erase(one.banded[1].bands.begin() + 2);
@@ -166,7 +167,7 @@ TEST(MatchBands, GoesByColourWherePlacesAreAlike) {
   BandedCase one(random);
   TestRandom again(5);
   const Shape near{one.arm, random_bends(again, one.arm, 1.3)};
-  // A green band a little beside a red one, seen by one camera only.
+  // A green band slightly beside a red one, seen by one camera only.
   SeenBand green = band_at(one.truth, one.banded[1].view, 0.5, 0);
   green.color = {30, 200, 30};
   one.banded[1].bands[3] = band_at(one.truth, one.banded[1].view, 0.51, 0);

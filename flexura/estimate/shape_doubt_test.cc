@@ -1,4 +1,4 @@
-// Cameras that are turned and zoomed otherwise than believed: their errors are found with the shape.
+// Cameras with errors of rotation and zoom: these are estimated with the shape.
 #include <gtest/gtest.h>
 
 #include <Eigen/Core>
@@ -28,7 +28,7 @@ TEST(ShapeWithDoubtfulViews, IsFoundWithTheErrorsOfTheViews) {
     ShapeEstimator estimator(prior);
     const ShapeEstimate found = estimator.estimate(cameras.seen);
     ASSERT_TRUE(found.is_found) << found.reason;
-    // The doubts draw the errors towards none, against what the ends say to a tenth of a pixel.
+    // The priors pull the errors towards zero, against ends with 0.1 px.
     EXPECT_LT(shape_error(found.shape, truth), 5e-4);
     ASSERT_EQ(found.shape.views.size(), 2U);
     for (std::size_t i = 0; i < 2; ++i) {
@@ -38,7 +38,7 @@ TEST(ShapeWithDoubtfulViews, IsFoundWithTheErrorsOfTheViews) {
   });
 }
 
-// Pictures of two shapes: what explains little of them tells nothing of where cameras stand.
+// Pictures of two different shapes: a poor fit gives no information on the cameras.
 TEST(ShapeWithDoubtfulViews, SaysHowACameraStandsOnlyWhereThatExplainsThePictures) {
   int unsaid = 0;
   for_random_cases(24, [&](TestRandom& random) {
@@ -58,7 +58,7 @@ TEST(ShapeWithDoubtfulViews, SaysHowACameraStandsOnlyWhereThatExplainsThePicture
   EXPECT_GT(unsaid * one_case_of, 3);
 }
 
-// Errors of bends and views together, in units of what the covariance expects.
+// Errors of bends and views together, normalised by the covariance.
 TEST(ShapeWithDoubtfulViews, IsWithinItsOwnSigmas) {
   double squares = 0;
   int count = 0;
@@ -79,7 +79,7 @@ TEST(ShapeWithDoubtfulViews, IsWithinItsOwnSigmas) {
   EXPECT_LT(squares, 1.5 * count);
 }
 
-// The border of a straight or bent tube about its backbone's image, of three_section_arm's radius.
+// The border of a straight or bent tube about its backbone's image, with three_section_arm's radius.
 std::vector<SeenBorder> borders_of(const Backbone& backbone, const View& view) {
   std::vector<SeenBorder> borders;
   constexpr int count = 30;
@@ -94,7 +94,7 @@ std::vector<SeenBorder> borders_of(const Backbone& backbone, const View& view) {
   return borders;
 }
 
-// A picture without an axis: its silhouette's border counts, if it is the arm's.
+// A picture without an axis: its silhouette's border is used if it fits the arm.
 TEST(ShapeFromABorder, IsFollowed) {
   for_random_cases(20, [](TestRandom& random) {
     const ShapePrior prior{.arm = three_section_arm()};
@@ -148,8 +148,7 @@ TEST(ShapeFromABorder, IsNoneWhereItIsOfSomethingElse) {
   }
 }
 
-// Magnified until a thin arm's width is less than the way between the places along it at which it is looked
-// for.
+// Magnified until a thin arm's width is less than the distance of the sample points along it.
 TEST(ShapeFromABorder, IsFollowedOfAThinArmInALargePicture) {
   for_random_cases(8, [](TestRandom& random) {
     ShapePrior prior{.arm = three_section_arm()};
@@ -212,7 +211,7 @@ TEST(ShapeEstimator, FindsNothingWhereNothingIsSeen) {
   }
 }
 
-// Something before the base in one picture: where the arm comes out is no base.
+// Something covers the base in one picture: where the arm emerges is not the base.
 TEST(ShapeWithDoubtfulViews, AreNotTurnedToWhereTheArmComesOut) {
   int count = 0;
   for_random_cases(40, [&](TestRandom& random) {

@@ -24,7 +24,7 @@
 namespace flexura {
 namespace {
 
-// The end nearer to where the base is seen comes first.
+// Orders the observation so that the end nearer to the base's image comes first.
 Sighting from_base(Sighting seen, const Eigen::Vector3d& p_WB) {
   const auto base = seen.view.project(p_WB);
   if (!base || seen.points.empty()) return seen;
@@ -37,7 +37,7 @@ bool have_axes(std::span<const Sighting> sightings) {
   return std::ranges::all_of(sightings, [](const Sighting& seen) { return are_enough({&seen, 1}); });
 }
 
-// Fills the places of the knots and their standard deviations; returns the arm's length.
+// Fills in the knots' positions and their standard deviations; returns the arm's length.
 double add_sigmas(const ShapeProblem& problem, const Eigen::MatrixXd& covariance, ShapeEstimate& result) {
   double s = 0;
   const auto& knots = problem.curve().knots();
@@ -51,11 +51,11 @@ double add_sigmas(const ShapeProblem& problem, const Eigen::MatrixXd& covariance
   return s;
 }
 
-// Why the arm may begin or end elsewhere on the same curve; "" where two of its ends, its length and places
-// of markers tell. Else an axis that stops short draws the shape's end to its last point, and rows across
-// that are then taken for what they are not: its place along the curve, to a hundredth of a pixel.
+// Returns why the arm may begin or end elsewhere on the same curve; "" if two of base, tip, length and marker
+// positions are known. Otherwise an axis that stops short pulls the shape's end to its last point. The rows
+// across that end would then determine its position along the curve, to a hundredth of a pixel.
 std::string doubt_of_ends(const ShapePrior& prior, const ShapeProblem& problem) {
-  std::set<double> places;  // Of markers that are known, m.
+  std::set<double> places;  // Of known markers, m.
   std::array<bool, 2> is_seen = {};
   for (const Sighting& seen : problem.sightings()) {
     for (std::size_t end = 0; end < 2; ++end) is_seen[end] = is_seen[end] || seen.ends[end].has_value();
@@ -73,8 +73,8 @@ std::string doubt_of_ends(const ShapePrior& prior, const ShapeProblem& problem) 
   return fmt::format("no picture shows {} of the arm: it may go on unseen", what);
 }
 
-// Pictures that show something else than the shape, beyond disks and rings that its arm may bear, and by more
-// than cameras that are a little wrong would do.
+// Adds notes on pictures that differ from the shape by more than the arm's disks and rings, or slightly wrong
+// cameras, explain.
 void add_misfit(std::span<const Sighting> sightings, ShapeEstimate& result) {
   constexpr double little = 0.01;  // px^2
   constexpr double with_disks = 2;
@@ -86,10 +86,10 @@ void add_misfit(std::span<const Sighting> sightings, ShapeEstimate& result) {
   }
 }
 
-// Pictures in which an arm of unknown make begins aside of its base: what was said of that, or of the camera,
-// is wrong. Such an arm bends to whatever base it is given, and nothing else tells.
+// Adds notes on pictures in which an arm without a kinematic model begins beside its base: the given base or
+// camera is wrong. Such an arm adapts to any base, and nothing else would show the error.
 void add_base_aside(const ShapePrior& prior, std::span<const Sighting> sightings, ShapeEstimate& result) {
-  constexpr double most = 0.5, sigmas = 5;  // px, beside so many standard deviations
+  constexpr double most = 0.5, sigmas = 5;  // px, plus this many standard deviations
   if (!prior.is_base_position_known || prior.is_base_direction_known) return;
   for (std::size_t i = 0; i < sightings.size(); ++i) {
     const auto base =
@@ -104,7 +104,8 @@ void add_base_aside(const ShapePrior& prior, std::span<const Sighting> sightings
   }
 }
 
-// Why no arm has the shape: a section that is bent by more than a whole turn meets itself. "" where none is.
+// Returns why no arm has the shape: a section bent by more than a full turn intersects itself. "" if none
+// does.
 std::string bent_beyond_arms(const Shape& shape) {
   constexpr double most_bend = 2 * std::numbers::pi;
   const auto& bends = shape.state.bends;
@@ -115,7 +116,7 @@ std::string bent_beyond_arms(const Shape& shape) {
                      most - bends.begin() + 1, most->norm() / degree);
 }
 
-// What explains little tells nothing of cameras.
+// Returns whether the fit is good enough to give information on the cameras.
 bool tells_of_cameras(const ShapeFit& fit) {
   constexpr double most_doubted = 0.1;
   return fit.doubted < most_doubted && fit.scale < ShapeFit::most_scale;
@@ -129,7 +130,7 @@ std::string elsewhere(std::size_t picture, const ViewError& error) {
       error.focal < 0 ? "shorter" : "longer");
 }
 
-// The first picture most of which is somewhere else than the shape; of a few points that says little.
+// Returns the first picture in which most points are outliers; a few points do not count.
 std::optional<std::size_t> picture_of_another(std::span<const Sighting> sightings, const ShapeFit& fit) {
   constexpr double most_doubted = 0.6;
   constexpr std::size_t few = 8;
@@ -188,7 +189,7 @@ std::vector<Sighting> ShapeEstimator::prepared(std::span<const Sighting> sightin
     for (auto& end : whole.ends)
       if (end && is_none(*end)) end.reset();
     Sighting thin = thinned(std::move(whole), config_.most_points);
-    // Of an arm that is no wider than its backbone borders tell nothing.
+    // Borders give no information on an arm without a radius.
     const auto has_radius = [](const Section& section) {
       return section.radius[0] > 0 || section.radius[1] > 0;
     };
@@ -248,7 +249,7 @@ ShapeEstimate ShapeEstimator::with_bands(std::span<const Sighting> sightings, Sh
   if (looks.empty()) return first;
   ShapeProblem problem(prior_, sightings, looks, belief);
   ShapeFit fit = descent_.descend(problem, first.shape, config_.most_iterations, StartKind::near);
-  // Of the axes: markers move the shape along where they lie on them, not away.
+  // Of the axes: markers may shift the shape along itself but not off the axes.
   constexpr double worse = 1.5, little = 1e-4;
   const bool is_worse = !(fit.cost < worse * cost + little);
   ShapeEstimate result = answer(problem, std::move(fit));
@@ -336,9 +337,9 @@ ShapePrior unknown_arm(std::optional<Eigen::Vector3d> base, std::optional<double
   prior.is_length_known = length.has_value();
   if (base) prior.arm.X_WB.position = *base;
   const double whole = length.value_or(1.0);
-  // No radius: borders tell nothing of it.
+  // Without a radius: borders are not used.
   prior.arm.sections.resize(sections, {.length = whole / static_cast<double>(sections), .radius = {0, 0}});
-  // Of a turn a length, from one section to the next.
+  // A radian per length, from one section to the next.
   prior.curvature_step = 1.0 / whole;
   return prior;
 }

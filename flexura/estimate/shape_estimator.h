@@ -13,70 +13,70 @@
 
 namespace flexura {
 
-/// How an estimate is made.
+/// Settings of an estimate.
 struct EstimatorConfig {
-  std::size_t most_points = 100;  ///< Of each sighting; more are thinned out.
-  int most_iterations = 60;       ///< Of each descent.
-  /// Estimates whose standard deviation, root mean square along the arm, is larger are marked; share of its
+  std::size_t most_points = 100;  ///< Per observation; more are thinned out.
+  int most_iterations = 60;       ///< Per descent.
+  /// Estimates with a larger standard deviation, root mean square along the arm, get a note; share of the
   /// length.
   double uncertain = 1.1e-4;
-  /// Shapes whose images lie farther from the points are none, unless their noise explains it; px, root mean
-  /// square. Cameras that are known badly need more.
+  /// Largest distance of the points from the shape's images, root mean square, px, unless their noise
+  /// explains it. Inaccurate cameras need more.
   double most_rms = 1;
 };
 
-/// The arm's shape from what cameras see of it.
+/// An estimate of the arm's shape from camera observations.
 struct ShapeEstimate {
-  Shape shape;  ///< Where it was not found no more than a guess.
+  Shape shape;  ///< If not found, only a guess.
   bool is_found = false;
-  std::string reason;         ///< Why it is not.
-  bool is_elsewhere = false;  ///< It is not, for the cameras would have to stand otherwise than is doubted.
-  std::vector<std::string> notes;  ///< Why it is to be doubted; empty when nothing speaks against it.
-  double rms = 0;                  ///< Of the points' distances from the shape's images, px.
-  double doubted = 0;              ///< The share of the points that are taken for something else's.
-  double scale = 1;                ///< Of the residuals, in units of their sigmas: at least 1; in `sigma`.
-  /// Of the position at the knots `s` (m of arc length), standard deviation, m: the root of the trace.
+  std::string reason;         ///< Why it was not found.
+  bool is_elsewhere = false;  ///< Not found because the cameras' errors would be far beyond their priors.
+  std::vector<std::string> notes;  ///< Reasons against the estimate; empty if there are none.
+  double rms = 0;                  ///< Root mean square of the points' distances from the shape's images, px.
+  double doubted = 0;              ///< Share of the points that are outliers.
+  double scale = 1;  ///< Scale of the residuals, in units of their sigmas: at least 1; included in `sigma`.
+  /// Standard deviation of the position at the knots `s` (m of arc length), m: the root of the trace.
   std::vector<double> s, sigma;
-  Eigen::MatrixXd covariance;         ///< Of the unknowns (ShapeVariables).
-  double surprise = 0;                ///< ShapeFit::surprise
-  int iterations = 0;                 ///< Of the descent that ended in it.
-  std::vector<PlacedMarker> markers;  ///< That the fit used, from the base on.
+  Eigen::MatrixXd covariance;         ///< Covariance of the unknowns (ShapeVariables).
+  double surprise = 0;                ///< Normalised innovation (ShapeFit::surprise).
+  int iterations = 0;                 ///< Iterations of the final descent.
+  std::vector<PlacedMarker> markers;  ///< Markers used by the fit, from the base on.
 
-  /// Root mean square of `sigma` along the arm, m; 0 where there is none.
+  /// Returns the root mean square of `sigma` along the arm, m; 0 if `sigma` is empty.
   [[nodiscard]] double rms_sigma() const;
-  /// Found, and nothing speaks against it.
+  /// Returns whether the shape was found without notes.
   [[nodiscard]] bool is_trusted() const { return is_found && notes.empty(); }
 };
 
-/// Fits shapes to sightings by one or more cameras: least squares of the distances in all images at once,
-/// under the full camera model (docs/estimation.md). The same sightings give the same answer, but for
-/// `follow`, which starts from the shape that it is given. Bands count where a fit without them tells which
-/// is which (band_match.h), as long as the axes do not speak against them. Points of the sightings that are
-/// not finite, or whose sigma is not positive, count as not seen; what cannot be told is an estimate that is
-/// not found, with the reason. One for each thread: it keeps its storage.
+/// Fits shapes to observations by one or more cameras: least squares of the distances in all images at once,
+/// with the full camera model (docs/estimation.md). Equal observations give equal results, except that
+/// `follow` depends on its start. Bands are used if a fit without them identifies them (band_match.h) and the
+/// axes do not contradict them. Points that are not finite, or with a sigma that is not positive, are
+/// ignored. If there is no answer, the estimate is not found and has a reason. Use one per thread: it keeps
+/// its storage.
 class ShapeEstimator {
  public:
-  /// Of the arm that `prior` describes, as far as it does.
+  /// `prior` describes what is known of the arm.
   explicit ShapeEstimator(ShapePrior prior, EstimatorConfig config = {});
 
-  /// From nothing: of the two sightings whose lines of sight cross most squarely and that show the most of
-  /// the arm points are paired by epipolar geometry and their order, and triangulated.
-  /// Where the base's position is known, each sighting is followed from the end nearer to it; otherwise the
-  /// order of the first one's points holds, and the others are followed from either end.
+  /// Estimates without a start. Uses the two observations with the most perpendicular lines of sight and the
+  /// largest visible arm. Their points are paired by epipolar geometry and order, and triangulated. If the
+  /// base's position is known, each observation is ordered from the end nearer to it. Otherwise the order of
+  /// the first one's points holds, and the others are tried both ways.
   [[nodiscard]] ShapeEstimate estimate(std::span<const Sighting> sightings);
 
-  /// From the shape a moment ago: of the prior's arm, with any `views`.
+  /// Estimates from the shape a moment ago, of the prior's arm, with any `views`.
   [[nodiscard]] ShapeEstimate follow(std::span<const Sighting> sightings, const Shape& before);
 
-  /// From what is known of it, which counts as much as what is seen. It knows the views' errors as well: the
-  /// sightings' own doubts tell only which there are.
+  /// Updates a previous belief, which is weighted like an observation. It includes the views' errors: the
+  /// observations' own priors only show which views have them.
   [[nodiscard]] ShapeEstimate update(std::span<const Sighting> sightings, const ShapeBelief& before);
 
  private:
-  // `problem` is that at the fit's shape.
+  // `problem` must be linearised at the fit's shape.
   [[nodiscard]] ShapeEstimate answer(const ShapeProblem& problem, ShapeFit fit) const;
-  // `first` without the bands, again with those that it can tell apart; their words on it where they cannot
-  // be.
+  // Repeats the fit `first`, made without bands, with those that it identifies. Adds a note to it if they
+  // cannot be used.
   [[nodiscard]] ShapeEstimate with_bands(std::span<const Sighting> sightings, ShapeEstimate first,
                                          double cost, const ShapeBelief* belief);
   [[nodiscard]] std::vector<Sighting> prepared(std::span<const Sighting> sightings) const;
@@ -86,10 +86,11 @@ class ShapeEstimator {
   ShapeDescent descent_;
 };
 
-/// What is known of an arm that a file describes: all but its length, if the limits let a section stretch.
+/// Returns the prior of an arm described by a file: all is known, except the length if the limits let a
+/// section stretch.
 [[nodiscard]] ShapePrior described_arm(const Arm& arm);
 
-/// What is known of an arm of which nothing is: `sections` equal, short, smooth ones.
+/// Returns the prior of an arm without a kinematic model: `sections` equal, short, smooth sections.
 [[nodiscard]] ShapePrior unknown_arm(std::optional<Eigen::Vector3d> base, std::optional<double> length,
                                      std::size_t sections = 30);
 

@@ -51,15 +51,15 @@ TEST(ShapeEstimator, IsWithinItsOwnSigmasUnderNoise) {
       squares += off * off / (found.sigma[i] * found.sigma[i]);
     }
   });
-  // Two sigmas of three coordinates hold 85 to 97 % as the errors lie in space.
+  // Two sigmas of three coordinates contain 85 to 97 %, depending on the direction of the errors.
   EXPECT_GT(within, 0.8 * count);
-  // Sigmas that are much too large would hold all of them easily.
+  // Far too large sigmas would satisfy the tests above easily.
   EXPECT_GT(squares, 0.4 * count);
   EXPECT_LT(squares, 1.6 * count);
   EXPECT_LT(worst, 3e-4);
 }
 
-// A series whose values go together over `reach` of what lies between them, of standard deviation 1.
+// A series with standard deviation 1 and correlation length `reach`.
 class Together {
  public:
   double next(TestRandom& random, double way, double reach) {
@@ -109,7 +109,7 @@ TEST(ShapeEstimator, IsWithinItsOwnSigmasWhereErrorsGoTogether) {
     }
     untold += square_of();
   });
-  // The mean of chi^2 over its degrees of freedom, of 600: one to a sixteenth.
+  // The mean of chi^2 over its degrees of freedom, over 600: 1 to a sixteenth.
   EXPECT_GT(told / count, 0.75);
   EXPECT_LT(told / count, 1.25);
   EXPECT_GT(untold / count, 1.5);
@@ -168,13 +168,13 @@ TEST(ShapeEstimator, KnowsLessWhereTheArmIsCut) {
     const ShapeEstimate cut = estimator.estimate(seen);
     ASSERT_TRUE(cut.is_found) << cut.reason;
     EXPECT_GT(cut.sigma.back(), 2 * whole.sigma.back());
-    // What only one camera sees may bend towards it or away from it.
+    // A part seen by one camera only may bend towards it or away from it.
     EXPECT_FALSE(cut.notes.empty());
     EXPECT_LT(cut.rms, 0.1);
   });
 }
 
-// The last section is in neither picture: how it bends is not known to nothing, but not known.
+// The last section is in neither picture: its bend is undetermined, up to the prior.
 TEST(ShapeEstimator, DoesNotTellASectionThatNoPictureShows) {
   for_random_cases(40, [](TestRandom& random) {
     const ShapePrior prior{.arm = three_section_arm()};
@@ -189,8 +189,8 @@ TEST(ShapeEstimator, DoesNotTellASectionThatNoPictureShows) {
   });
 }
 
-// An axis that stops short in both pictures, as at a tip that points away from them: the arm's length is then
-// that of what is seen of it, however exactly that is known.
+// An axis that stops short in both pictures, as at a tip that points away from them. The arm's length is then
+// that of the visible part, however precise the estimate.
 TEST(ShapeEstimator, TrustsNoLengthOfAnArmWhoseTipIsNowhereSeen) {
   for_random_cases(10, [](TestRandom& random) {
     const Arm arm = three_section_arm();
@@ -204,7 +204,7 @@ TEST(ShapeEstimator, TrustsNoLengthOfAnArmWhoseTipIsNowhereSeen) {
       return std::ranges::any_of(
           found.notes, [](const std::string& note) { return note.find("the tip") != std::string::npos; });
     };
-    // Doubts for uncertainty alone are left aside.
+    // Notes on uncertainty alone are switched off.
     const EstimatorConfig sure{.uncertain = 1};
     const Eigen::Vector3d base = arm.X_WB.position;
     ShapeEstimator of_base(unknown_arm(base, {}), sure), of_length(unknown_arm(base, truth.length()), sure);
@@ -213,10 +213,10 @@ TEST(ShapeEstimator, TrustsNoLengthOfAnArmWhoseTipIsNowhereSeen) {
     EXPECT_GT(shape_error(cut.shape, truth), 1e-3);
     EXPECT_TRUE(speaks_of_tip(cut));
     EXPECT_FALSE(cut.is_trusted());
-    // One picture that shows it is enough, and so is a length that is known.
+    // One picture of the tip is enough, and so is a known length.
     EXPECT_FALSE(speaks_of_tip(of_base.estimate(seen_to({1, 0.98}))));
     EXPECT_FALSE(speaks_of_tip(of_length.estimate(seen_to({0.98, 0.98}))));
-    // Or a marker of which is known how far along it is.
+    // Or a marker at a known position.
     std::vector<Sighting> marked = seen_to({0.98, 0.98});
     for (Sighting& one : marked)
       one.markers.push_back({one.view.project(truth.pose(0.5 * truth.length()).position).value(), 0.5, 0.1});
@@ -229,12 +229,12 @@ TEST(ShapeEstimator, DoubtsOrRefusesWhatNoShapeExplains) {
     const ShapePrior prior{.arm = three_section_arm()};
     const Backbone one(prior.arm, random_bends(random, prior.arm, 1.0));
     std::vector<Sighting> seen = sightings_of(one, random, 0.02);
-    // Doubts for uncertainty alone are left aside.
+    // Notes on uncertainty alone are switched off.
     ShapeEstimator estimator(prior, {.uncertain = 1e-2});
     const ShapeEstimate right = estimator.estimate(seen);
     EXPECT_TRUE(right.is_found) << right.reason;
     EXPECT_TRUE(right.notes.empty()) << right.notes.front();
-    // The second camera stands elsewhere than is believed: no shape has both images.
+    // The second camera is elsewhere than modelled: no shape has both images.
     std::vector<Sighting> moved = seen;
     for (CurvePoint& point : moved[1].points) point.pixel.y() += 60;
     for (auto& end : moved[1].ends) end->pixel.y() += 60;
@@ -244,7 +244,7 @@ TEST(ShapeEstimator, DoubtsOrRefusesWhatNoShapeExplains) {
     } else {
       EXPECT_NE(wrong.reason, "");
     }
-    // Nothing is seen.
+    // Nothing is visible.
     seen[1].points.clear();
     const ShapeEstimate none = estimator.estimate(seen);
     EXPECT_FALSE(none.is_found);
@@ -252,8 +252,8 @@ TEST(ShapeEstimator, DoubtsOrRefusesWhatNoShapeExplains) {
   });
 }
 
-// Where no picture shows the tip, what is beyond may be bent one way or another: another shape that explains
-// all as well is no answer, nor one that the arm cannot take.
+// If no picture shows the tip, the part beyond may be bent in different ways. Neither another shape that
+// explains everything equally well nor one that the arm cannot take may be returned.
 TEST(ShapeEstimator, IsNotSureOfAnotherShapeWhereNoPictureShowsTheTip) {
   int found = 0;
   for_random_cases(60, [&](TestRandom& random) {
@@ -272,7 +272,7 @@ TEST(ShapeEstimator, IsNotSureOfAnotherShapeWhereNoPictureShowsTheTip) {
   EXPECT_GT(found * one_case_of, 30);
 }
 
-// A lens whose distortion is described so that it folds back within the arm's picture.
+// A lens whose described distortion folds back within the arm's picture.
 TEST(ShapeEstimator, NamesThePictureThatItsLensShowsTheArmInNoPartOf) {
   TestRandom random(1);
   const ShapePrior prior{.arm = three_section_arm()};
@@ -295,7 +295,7 @@ TEST(ShapeEstimator, SaysWhereASectionWouldBendFartherThanItGoes) {
   ArmState state = ArmState::straight(3);
   state.bends[1] = {0.9, 1.2};
   const std::vector<Sighting> seen = sightings_of(Backbone(prior.arm, state), random, 0.02);
-  // Doubts for uncertainty alone are left aside.
+  // Notes on uncertainty alone are switched off.
   const auto notes = [&] { return ShapeEstimator(prior, {.uncertain = 1}).estimate(seen).notes; };
   EXPECT_THAT(notes(), testing::IsEmpty());
   for (Section& section : prior.arm.sections) section.max_bend = 1.5;

@@ -15,11 +15,11 @@ namespace {
 
 using RowKind = ShapeProblem::RowKind;
 
-// The median of |x| of a normal deviate.
+// Median of |x| of a standard normal deviate.
 constexpr double median_size = 0.6745;
-// In standard deviations: from there on a residual counts less with every step away.
+// In standard deviations: beyond this a residual's weight decreases with its size.
 constexpr double doubtful = 4;
-// px; the cost of a point that is farther from the shape than that is no larger.
+// px; limits the cost of a point far from the shape.
 constexpr double far_away = 3;
 
 double bounded_square(double r, double cutoff) {
@@ -27,8 +27,8 @@ double bounded_square(double r, double cutoff) {
   return r * r / (1 + ratio * ratio);
 }
 
-// How much more the mean of a series varies than that of independent values: 1 + 2 sum of its correlations,
-// as far as these are positive (C. J. Geyer, 1992).
+// Ratio of the variance of a series' mean to that of independent values: 1 + 2 sum of its correlations, as
+// long as these are positive (C. J. Geyer, 1992).
 double correlation_factor(std::span<const double> series) {
   const std::size_t count = series.size();
   double square = 0;
@@ -58,7 +58,7 @@ double eased(double damping, double ratio) {
   return ratio < 0.25 ? 8 * damping : damping;
 }
 
-// Pivots below this of the greatest are those of a singular matrix.
+// Relative to the largest pivot; smaller ones make the matrix singular.
 constexpr double rounding = 1e-15;
 
 }  // namespace
@@ -84,7 +84,7 @@ void ShapeDescent::weigh(const ShapeProblem& problem, double cutoff) {
   gradient_.noalias() = weighted_ * weights_.cwiseSqrt().cwiseProduct(problem.residuals());
 }
 
-// Whether there is one.
+// Returns false if there is no step.
 bool ShapeDescent::find_step(double damping) {
   damped_ = normal_;
   damped_.diagonal() += damping * (normal_.diagonal().array() + 1e-12).matrix();
@@ -102,10 +102,10 @@ ShapeFit ShapeDescent::descend(ShapeProblem& problem, const Shape& start, int mo
   fit.cost = std::numeric_limits<double>::infinity();
   if (!problem.linearise(fit.shape)) return fit;
   double limit = cutoff(problem);
-  // At first all points are believed, however far off the start is; then fewer and fewer that are far.
+  // At first all points are inliers, however far off the start is; then fewer and fewer distant ones.
   if (!is_near) limit = std::max(limit, 2 * problem.residuals().lpNorm<Eigen::Infinity>());
   weigh(problem, limit);
-  // After a step that gained so much of the cost; whether it was the last.
+  // Narrows the limit after a step that reduced the cost by `gain`; returns whether it was the last.
   const auto narrow = [&](double gain, double cost) {
     constexpr double slow = 0.3, narrowing = 0.25;
     const double least = cutoff(problem), scale = limit / doubtful;
@@ -135,7 +135,7 @@ ShapeFit ShapeDescent::descend(ShapeProblem& problem, const Shape& start, int mo
   while (levenberg_marquardt(cost_of(problem, limit), damping, std::numeric_limits<int>::max(), try_step,
                              keep, leave) == DescentEnd::stuck) {
     (void)problem.linearise(fit.shape);
-    // With fewer points believed another step may lead down.
+    // With fewer inliers another step may reduce the cost.
     if (narrow(0, 0)) break;
     damping.start = 1;
   }
@@ -170,12 +170,12 @@ void ShapeDescent::finish(const ShapeProblem& problem, double cutoff, ShapeFit& 
   for (std::size_t i = 0; i < seen_in.size(); ++i)
     fit.doubted_in.push_back(seen_in[i] > 0 ? 1 - believed_in[i] / seen_in[i] : 0.0);
   fit.surprise = std::sqrt(against / std::max(beliefs, 1.0));
-  // What comes after a belief is a filter's, which weighs points as independent and counts on it.
+  // After a belief, the estimate belongs to a filter, which treats points as independent.
   fit.covariance =
       beliefs > 0 ? filtered_covariance(problem, square, weight) : covariance(problem, square, weight);
 }
 
-// The inverse of what was known before and of what is seen, this as far as its residuals say.
+// Inverse of the sum of the previous information and that of the observations, scaled by their residuals.
 Eigen::MatrixXd ShapeDescent::filtered_covariance(const ShapeProblem& problem, double square, double weight) {
   const Eigen::Index count = normal_.rows();
   const double freedom = std::max(1.0, weight - static_cast<double>(problem.variables().count()));
@@ -190,7 +190,8 @@ Eigen::MatrixXd ShapeDescent::filtered_covariance(const ShapeProblem& problem, d
   return solver_.inverse();
 }
 
-// N^-1 (what is told + f A + max(1, f) O) N^-1, with N the normal matrix (docs/estimation.md, How sure).
+// N^-1 (P + f A + max(1, f) S) N^-1, with N the normal matrix and P the prior's information
+// (docs/estimation.md, "How sure").
 Eigen::MatrixXd ShapeDescent::covariance(const ShapeProblem& problem, double square, double weight) {
   const Eigen::Index count = normal_.rows();
   solver_.compute(normal_);
@@ -200,9 +201,9 @@ Eigen::MatrixXd ShapeDescent::covariance(const ShapeProblem& problem, double squ
   load_scatter(problem);
   // With A = G B^T + B G^T and so on: N^-1 G once.
   followed_.noalias() = damped_ * parts_;
-  // Of the residuals' squares the fit takes as many as it follows.
+  // Degrees of freedom: the fit absorbs part of the residuals' squares.
   const double freedom = std::max(1.0, weight - 2 * followed_.cwiseProduct(alike_).sum());
-  // Axes are not known to be better than a floor: where they are, their residuals tell.
+  // A floor on the precision of axes; beyond it the residuals decide.
   constexpr double least = 0.8;
   const double factor =
       std::max(least, square / freedom) * std::max(1.0, correlation_factor(sizes_) / promised_);
@@ -217,10 +218,11 @@ Eigen::MatrixXd ShapeDescent::covariance(const ShapeProblem& problem, double squ
   return result;
 }
 
-// Of each row that is seen its part of the gradient; what goes together with it of the points before, and
-// half of itself: as the errors of `sigma` do, and for all the others. Those that were told, as they are.
+// Loads the gradient part of each observed row. Also loads the correlated parts of the previous points plus
+// half of its own: for the errors of `sigma`, and for all others. Rows of prior and belief are loaded
+// unchanged.
 void ShapeDescent::load_scatter(const ShapeProblem& problem) {
-  // Ends' errors have long tails: tips hide.
+  // The errors of ends have long tails: tips may be hidden.
   constexpr double of_ends = 2.5;
   Eigen::Index all_seen = 0, all_told = 0;
   for (Eigen::Index i = 0; i < problem.rows(); ++i) ++(problem.is_seen(i) ? all_seen : all_told);
@@ -261,7 +263,7 @@ void ShapeDescent::load_scatter(const ShapeProblem& problem) {
     apart = offset * (far_ + 0.5 * offset * part);
     near_ += part, far_ += offset * part;
   }
-  // As correlation_factor() has it.
+  // As in correlation_factor().
   constexpr double most = 0.95;
   const double like = std::min(likes / std::max(pairs, 1.0), most);
   promised_ = (1 + like) / (1 - like);

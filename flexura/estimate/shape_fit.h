@@ -8,33 +8,34 @@
 
 namespace flexura {
 
-/// Where a descent came to.
+/// Result of a descent.
 struct ShapeFit {
   Shape shape;
-  bool is_settled = false;  ///< No step leads further down.
+  bool is_settled = false;  ///< Whether no step reduces the cost further.
   int iterations = 0;
-  double scale = 1;    ///< Of the residuals, in units of their sigmas: robust, at least 1.
-  double cost = 0;     ///< Mean over the points of their distances squared, bounded for each, px^2.
-  double rms = 0;      ///< Of the believed points' distances, px.
-  double doubted = 0;  ///< The share of the points that are taken for something else's.
-  std::vector<double> doubted_in = {};  ///< The same of each sighting.
-  double surprise = 0;         ///< Of a belief: root mean square of what speaks against it, in its sigmas.
-  int contradicted = 0;        ///< Ends and markers that are seen elsewhere than the shape has them.
-  Eigen::MatrixXd covariance;  ///< Of the unknowns; of infinite entries where the sightings tell nothing.
+  double scale = 1;    ///< Robust scale of the residuals, in units of their sigmas; at least 1.
+  double cost = 0;     ///< Mean of the points' squared distances, each bounded, px^2.
+  double rms = 0;      ///< Root mean square of the inlier points' distances, px.
+  double doubted = 0;  ///< Share of the points that are outliers.
+  std::vector<double> doubted_in = {};  ///< Share of outliers in each observation.
+  double surprise = 0;   ///< Normalised innovation of a belief: root mean square of its residuals in sigmas.
+  int contradicted = 0;  ///< Number of ends and markers observed elsewhere than on the shape.
+  /// Covariance of the unknowns; infinite if the observations do not determine them.
+  Eigen::MatrixXd covariance;
 
-  static constexpr double most_scale = 8;  ///< In sigmas: what lies farther from its points is no fit.
-  /// Whether nothing better need be looked for. `most_rms`: of points that are believed, px.
+  static constexpr double most_scale = 8;  ///< In sigmas: a larger scale is no fit.
+  /// Returns whether no better fit is needed. `most_rms`: of inlier points, px.
   [[nodiscard]] bool is_good(double most_rms) const {
     return is_settled && doubted < 0.1 && (scale < most_scale || rms < 0.5 * most_rms);
   }
 };
 
-/// Whether all that is seen is believed at first, however far off the start is, or what lies beyond the
-/// residuals' spread is doubted at once.
+/// Whether all points are inliers at first, however far off the start is, or points beyond the residuals'
+/// spread are outliers from the start.
 enum class StartKind { far, near };
 
-/// The Levenberg-Marquardt method from `start` down, with residuals beyond what their spread allows weighted
-/// down (S. Geman and D. McClure, 1985). Reused, it allocates no more.
+/// Minimises by the Levenberg-Marquardt method from `start`, with Geman-McClure weights for residuals beyond
+/// their spread (S. Geman and D. McClure, 1985). After the first use it allocates no more.
 class ShapeDescent {
  public:
   [[nodiscard]] ShapeFit descend(ShapeProblem& problem, const Shape& start, int most_iterations,
@@ -53,9 +54,9 @@ class ShapeDescent {
 
   std::vector<double> sizes_;
   Eigen::VectorXd weights_, gradient_, step_, near_, far_;
-  Eigen::MatrixXd weighted_, normal_, damped_;                         // Of symmetric ones the lower half.
-  Eigen::MatrixXd parts_, alike_, apart_, told_, followed_, scatter_;  // Of the covariance, whole.
-  double promised_ = 1;  // How much more the points' mean varies than that of independent ones.
+  Eigen::MatrixXd weighted_, normal_, damped_;                         // Lower halves of symmetric matrices.
+  Eigen::MatrixXd parts_, alike_, apart_, told_, followed_, scatter_;  // For the covariance, complete.
+  double promised_ = 1;  // Ratio of the variance of the points' mean to that of independent ones.
   PivotedCholesky solver_;
 };
 

@@ -1,5 +1,5 @@
-// Shapes and views that tell little: the answer is as good as its sigma says, or it is refused or doubted
-// with the reason. Pictures are drawn, and seen as real ones are.
+// Shapes and views with little information: the answer is within its sigma, or refused, or has notes with the
+// reason. Pictures are drawn and measured like real ones.
 #include <gtest/gtest.h>
 
 #include <Eigen/Core>
@@ -21,7 +21,7 @@ namespace {
 
 constexpr double radius = 0.015;
 
-// An arm of sections of 0.25 m that stands upright, or is turned by R_WB = `turn` times upright.
+// An arm with sections of 0.25 m that stands upright.
 BentArm arm_of(const std::vector<Eigen::Vector2d>& bends) {
   BentArm bent;
   bent.arm.kind = ArmKind::spatial;
@@ -56,10 +56,11 @@ std::vector<Sighting> photographed(const BentArm& bent, const std::vector<View>&
 struct Outcome {
   ShapeEstimate found;
   double sigma = 0;   // Root mean square along the arm, m.
-  double error = 0;   // Likewise.
-  double square = 0;  // The mean along the arm of the squares of errors in sigmas.
+  double error = 0;   // Root mean square along the arm, m.
+  double square = 0;  // Mean along the arm of the squared errors in sigmas.
   [[nodiscard]] bool is_told() const { return !found.is_found || !found.notes.empty(); }
-  // Three coordinates of few independent numbers: a mean square of nine is beyond the 0.1 % of chi-square.
+  // Three coordinates depend on few independent variables: a mean square of nine is beyond the 0.1 % quantile
+  // of chi-square.
   [[nodiscard]] bool is_covered() const { return found.is_found && square < 9; }
 };
 
@@ -84,7 +85,7 @@ ShapePrior unknown(const BentArm& bent) { return unknown_arm(bent.arm.X_WB.posit
 
 constexpr double quarter = 1.5707963267948966;
 
-// Where the answer is given without a word, its sigma covers the error; otherwise the reason is told.
+// If the answer has no notes, its sigma covers the error; otherwise the reason is given.
 void expect_honest(const Outcome& one) {
   if (!one.found.is_found) {
     EXPECT_NE(one.found.reason, "");
@@ -93,7 +94,7 @@ void expect_honest(const Outcome& one) {
   EXPECT_TRUE(one.is_covered() || one.is_told()) << one.error << " m, sigma " << one.sigma;
 }
 
-// Of a known arm and of an unknown one, by hard views and by plain ones.
+// Results for a known arm and for one without a kinematic model, with difficult and with ordinary views.
 struct Comparison {
   std::array<Outcome, 2> hard, plain;
 
@@ -110,7 +111,7 @@ struct Comparison {
 };
 
 TEST(HardShapes, APlaneSeenEdgeOnByOneCamera) {
-  // bend_x turns towards +X: the plane is XY, and a camera on X sees a line. The other one is not far from
+  // bend_x turns towards +X: the plane is XY, and a camera on X sees a line. The other camera is not far from
   // it.
   const BentArm bent = arm_of({{0.9, 0}, {-1.1, 0}, {1.0, 0}});
   for (std::uint64_t seed = 1; seed < 4; ++seed) {
@@ -124,7 +125,7 @@ TEST(HardShapes, APlaneSeenEdgeOnByOneCamera) {
 }
 
 TEST(HardShapes, APlaneThroughBothCameras) {
-  // Both see a line: how far apart its points are is all that tells the shape.
+  // Both see a line: only the distances of its points determine the shape.
   BentArm bent = arm_of({{0, 0.9}, {0, -1.1}, {0, 1.0}});
   bent.arm.X_WB.rotation = rotation_from_z({1, 0, 0});
   for (std::uint64_t seed = 1; seed < 4; ++seed) {
@@ -137,16 +138,16 @@ TEST(HardShapes, APlaneThroughBothCameras) {
 }
 
 TEST(HardShapes, TheArmBeforeItself) {
-  // A hairpin in the plane YZ: the camera on Z sees its two branches one before the other.
+  // A hairpin in the plane YZ: the camera on Z sees one branch in front of the other.
   const BentArm bent = arm_of({{0, 0.2}, {0, 2.6}, {0, 0.2}});
   for (std::uint64_t seed = 1; seed < 4; ++seed) {
     const Comparison views(bent, {view_from_side(bent, 0), view_from_side(bent, quarter)},
                            {view_from_side(bent, quarter), view_from_side(bent, 0.5 * quarter)}, seed);
-    // Of the known arm the branch that one camera does not see is told by its length.
+    // For the known arm, the length determines the branch that one camera does not see.
     EXPECT_TRUE(views.hard[0].is_covered());
     for (std::size_t i = 0; i < 2; ++i) {
       EXPECT_TRUE(views.hard[i].is_told());
-      // Of the unknown one there may be no answer at all: others explain the images, too.
+      // For the unknown one there may be no answer: other shapes explain the images, too.
       if (i == 0 || views.hard[i].found.is_found) {
         EXPECT_GT(views.hard[i].sigma, 5 * views.plain[i].sigma);
       }

@@ -19,7 +19,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-// A place of the arm: its direction from a camera, how far it is, and the radius described there, m.
+// A point of the arm: its direction and distance from a camera, and the described radius there, m.
 struct BackbonePlace {
   Vector3d direction = {0, 0, 1};
   double distance = 0, radius = 0;
@@ -50,8 +50,8 @@ std::optional<Vector3d> direction_of(const Lens& lens, const Eigen::Vector2d& pi
   return ray->homogeneous().normalized();
 }
 
-// The radii seen over those described, where both edges of the tube are. The chord between their directions
-// is 2 r over the distance (backbone_depths).
+// Adds the ratios of observed to described radii where both edges of the tube are visible. The chord between
+// their directions is 2 r over the distance (backbone_depths).
 void add_ratios(const Sighting& seen, const ViewError& error, const Shape& shape,
                 std::vector<double>& ratios) {
   const View view = corrected(seen.view, error);
@@ -68,7 +68,7 @@ void add_ratios(const Sighting& seen, const ViewError& error, const Shape& shape
   }
 }
 
-// Whether it is the one described.
+// Returns a hint if the observed radius differs from the described one.
 std::optional<std::string> hint_of_radius(std::span<const Sighting> sightings, const Shape& shape) {
   constexpr double most_off = 0.15;
   constexpr std::size_t fewest = 20;
@@ -89,9 +89,9 @@ std::optional<std::string> hint_of_radius(std::span<const Sighting> sightings, c
   return fmt::format("the pictures show an arm {:.2f} times as thick as it is described", ratio);
 }
 
-// Whether the base, p_WB, would be near what is seen.
+// Returns a hint if the base, p_WB, would not be near the observed points.
 std::optional<std::string> hint_of_base(std::span<const Sighting> sightings, const Vector3d& p_WB) {
-  constexpr double far = 0.05;  // Of the picture's diagonal.
+  constexpr double far = 0.05;  // Share of the picture's diagonal.
   for (std::size_t i = 0; i < sightings.size(); ++i) {
     const Sighting& seen = sightings[i];
     const auto base = seen.view.project(p_WB);

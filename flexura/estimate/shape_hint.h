@@ -9,10 +9,11 @@
 
 namespace flexura {
 
-/// What may be wrong with that which was said of the arm, as far as the pictures tell: of a known arm that is
-/// found, that it is seen much thicker or thinner than it is described, and what radius is seen (none of arms
-/// without a radius); of one that is not found, behind which camera its base is, or in which picture it would
-/// be seen far from all that is seen (none where it is near in all, or beside them).
+/// Returns what may be wrong in the description of the arm, as far as the pictures show it. For a known arm
+/// that was found: that it looks much thicker or thinner than described, with the observed radius (not for
+/// arms without a radius). For one that was not found: the camera that has the base behind it, or the picture
+/// in which the base is far from all observed points. Empty if, in each picture, the base is near these
+/// points or outside.
 [[nodiscard]] std::optional<std::string> hint_of(const ShapePrior& prior, std::span<const Sighting> sightings,
                                                  const ShapeEstimate& estimate);
 

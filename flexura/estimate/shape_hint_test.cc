@@ -21,7 +21,7 @@ View seen_from_origin() {
   return {Lens(lens), Pose{}, 640, 480};
 }
 
-// Two sections, bent, some two metres before the camera.
+// Two bent sections, some two metres in front of the camera.
 Shape shape_of(double radius) {
   Shape shape;
   shape.arm.kind = ArmKind::spatial;
@@ -48,7 +48,7 @@ Sighting edges_of(const Shape& shape, double radius) {
   return seen;
 }
 
-// What is said where the arm of this shape is found.
+// Returns the hint if the arm of this shape is found.
 std::string found_hint(std::span<const Sighting> sightings, const Shape& shape) {
   ShapeEstimate estimate;
   estimate.is_found = true, estimate.shape = shape;
@@ -64,7 +64,7 @@ TEST(ShapeHint, TellsTheRadiusThatIsSeen) {
   tapered.arm.sections[1].radius = {0.024, 0.012};
   const std::array<Sighting, 1> twice = {edges_of(described, 0.048)};
   EXPECT_THAT(found_hint(twice, tapered), HasSubstr("times as thick as it is described"));
-  // An arm without a radius, or of which no edge is seen, says nothing.
+  // No hint for an arm without a radius or without visible edges.
   EXPECT_EQ(found_hint(other, shape_of(0)), "none");
   std::array<Sighting, 1> none;
   none[0].view = seen_from_origin();

@@ -1,4 +1,4 @@
-// Whether the figure in a picture is a shape's.
+// Tests whether the foreground of a picture is the image of a shape.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -19,7 +19,7 @@ namespace {
 
 constexpr double spacing = 4;  // px
 
-// Places on the image of a tube of three_section_arm's radius.
+// Points on the image of a tube of three_section_arm's radius.
 std::vector<Eigen::Vector2d> figure_of(const Backbone& backbone, const View& view) {
   std::vector<Eigen::Vector2d> figure;
   constexpr int count = 120;
@@ -51,7 +51,7 @@ TEST(ShapeMisfit, IsNoneOfTheShapeAndSomeOfAnother) {
   for_random_cases(100, [](TestRandom& random) {
     const Seen seen = random_seen(random);
     EXPECT_LT(misfit(seen.sightings, seen.truth), 1e-6);
-    // At the tip by some 5 px and more: two ways and back are seen by one camera at least.
+    // Some 5 px or more at the tip: at least one camera sees a shift there and back.
     const Eigen::Vector2d bend = seen.truth.state.bends[2];
     for (Shape& other : bent_otherwise(seen.truth, 2, bend.norm() + 0.3, 4))
       if ((other.state.bends[2] - bend).norm() > 0.3) {
@@ -68,12 +68,12 @@ TEST(ShapeMisfit, CountsWhatTheShapeDoesNotExplainAndNotWhatIsHidden) {
   std::erase_if(less.figure,
                 [&](const Eigen::Vector2d& place) { return (place - less.ends[1]->pixel).norm() < 60; });
   none.figure.clear();
-  // All that is more is far off, and bounded: 3 px each.
+  // The additional part is far off, and each point is bounded at 3 px.
   EXPECT_NEAR(misfit(more, {}, seen.truth), 9.0 * 10 / static_cast<double>(more.figure.size()), 0.2);
-  // Something may hide the tip.
+  // The tip may be hidden.
   EXPECT_LT(misfit(less, {}, seen.truth), 1e-6);
   EXPECT_EQ(misfit(none, {}, seen.truth), 0);
-  // The picture's border cuts the arm: what is beyond is not missing.
+  // The picture's border cuts the arm: the part beyond is not missing.
   Sighting cut = seen.sightings[0];
   const double middle = 0.5 * (cut.ends[0]->pixel.x() + cut.ends[1]->pixel.x());
   ASSERT_GT(std::abs(cut.ends[1]->pixel.x() - middle), 60);
@@ -103,8 +103,8 @@ TEST(ShapeMisfit, IsToldWhereThePictureShowsSomethingElse) {
   });
 }
 
-// A picture that shows the first seven tenths: where the arm is lost there may look like its tip, and what is
-// wrong then is told.
+// A picture that shows the first seven tenths. The end of the visible part may look like the tip; notes
+// report the resulting errors.
 TEST(ShapeMisfit, LeavesArmsThatAreHiddenInPart) {
   constexpr int cases = 200;
   int right = 0, wrong = 0;
@@ -124,11 +124,11 @@ TEST(ShapeMisfit, LeavesArmsThatAreHiddenInPart) {
     EXPECT_FALSE(is_taken_for_tip && found.is_trusted());
   });
   EXPECT_GE(right, 0.8 * cases);
-  // Of those that two shapes explain, farther apart than that, most are not found.
+  // If two distant shapes explain the pictures, most arms are not found.
   EXPECT_LE(wrong, 0.075 * cases);
 }
 
-// A tube whose tip is a fifth as wide as its base is seen as wide as it is there.
+// A tube whose tip is a fifth as wide as its base is expected with the local width.
 TEST(ShapeMisfit, GoesByTheWidthOfTaperedArms) {
   for_random_cases(20, [](TestRandom& random) {
     const Seen seen = random_seen(random);
@@ -138,8 +138,7 @@ TEST(ShapeMisfit, GoesByTheWidthOfTaperedArms) {
       for (std::size_t end = 0; end < 2; ++end)
         tapered.arm.sections[i].radius.at(end) =
             0.02 * (1 - 0.8 * static_cast<double>(i + end) / static_cast<double>(count));
-    // The figure is of the whole width: what is beside the tip is not explained any more, what is at the base
-    // is.
+    // The silhouette has the full width: the part beside the tip is no longer explained, that at the base is.
     Sighting base = seen.sightings[0], tip = base;
     base.figure.resize(30), tip.figure.erase(tip.figure.begin(), tip.figure.end() - 30);
     EXPECT_LT(misfit(base, {}, tapered), 1e-6);
@@ -148,8 +147,7 @@ TEST(ShapeMisfit, GoesByTheWidthOfTaperedArms) {
   });
 }
 
-// Guide disks and rings are wider than the arm that bears them, and wide lenses stretch what is far from
-// their middle.
+// Guide disks and rings are wider than the arm, and wide lenses stretch objects far from their middle.
 TEST(ShapeMisfit, IsNotToldOfDisksOrOfWideLenses) {
   for_random_cases(20, [](TestRandom& random) {
     Seen seen = random_seen(random);

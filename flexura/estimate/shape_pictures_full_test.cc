@@ -1,4 +1,5 @@
-// Random arms before two cameras, drawn, seen and estimated: a small docs/studies/seeing.md.
+// Random arms in front of two cameras, drawn, measured and estimated: a small version of
+// docs/studies/seeing.md.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -16,7 +17,7 @@
 namespace flexura {
 namespace {
 
-// Which end is the base is told.
+// The base end is given.
 std::vector<Sighting> sightings_of(const SeenShape& one) {
   std::vector<Sighting> seen;
   for (std::size_t i = 0; i < 2; ++i) {
@@ -26,7 +27,7 @@ std::vector<Sighting> sightings_of(const SeenShape& one) {
   return seen;
 }
 
-// Errors of bends against the covariances that came with them.
+// Errors of bends relative to their covariances.
 struct Consistency {
   std::vector<double> shares;
   double squares = 0, freedom = 0;
@@ -35,7 +36,7 @@ struct Consistency {
     shares.push_back(expected_share(found, truth));
     squares += error_square(found, truth), freedom += static_cast<double>(2 * truth.bends.size());
   }
-  // What one in a thousand exceeds by chance where the covariance is right.
+  // Deviation that one in a thousand exceeds by chance if the covariance is correct.
   [[nodiscard]] double chance() const { return 3.29 * std::sqrt(2 / freedom); }
   [[nodiscard]] double within(double share) const {
     const auto count = std::ranges::count_if(shares, [&](double value) { return value < share; });
@@ -57,11 +58,11 @@ TEST(ShapesInPictures, OfKnownArmsAreAsGoodAsTheirCovarianceSays) {
       thin.add(found, one.bent.state);
   });
   EXPECT_GE(errors.size(), 0.8 * cases);
-  // All of them together, those that are farthest off too.
+  // Over all of them, including the worst.
   EXPECT_LT(root_mean_square(errors), 1e-4);
   EXPECT_LT(std::ranges::max(errors), 5e-4);
-  // The squares of the errors are what the covariances expect, and their regions hold as many as they should:
-  // chi^2 both. Thin arms of many sections show most of what axes are off by.
+  // Squared errors agree with the covariances, and confidence regions contain the expected shares (chi^2).
+  // Thin arms of many sections show most of the axes' errors.
   EXPECT_NEAR(all.squares / all.freedom, 1, all.chance());
   EXPECT_LT(unevenness(all.shares), 27.88);
   EXPECT_GT(all.within(0.95), 0.91);
@@ -70,8 +71,8 @@ TEST(ShapesInPictures, OfKnownArmsAreAsGoodAsTheirCovarianceSays) {
   EXPECT_GT(thin.within(0.95), 0.84);
 }
 
-// Of which not even base and length are known: what is wrong is refused or told. The last seed's fit goes far
-// astray, and did so by shrinking the arm to a point once.
+// Not even base and length are known: wrong answers are refused or have notes. The fit of the last seed
+// diverges; it once shrank the arm to a point.
 TEST(ShapesInPictures, OfWhichNothingIsKnownAreRefusedOrTold) {
   for (const std::uint64_t seed : {1U, 2U, 3U, 4U, 5U, 6U, 7U, 8U, 82U, 89U, 123U, 309U, 3199U}) {
     SCOPED_TRACE(seed);
@@ -83,7 +84,7 @@ TEST(ShapesInPictures, OfWhichNothingIsKnownAreRefusedOrTold) {
   }
 }
 
-// Neither picture shows the tip of these, and what is seen of them fits to a hundredth of a pixel.
+// Neither picture shows the tips of these arms, and the visible parts fit to a hundredth of a pixel.
 TEST(ShapesInPictures, OfUnknownLengthWithoutATipAreNotTrusted) {
   for (const std::uint64_t seed : {8776U, 8802U}) {
     SCOPED_TRACE(seed);
@@ -97,8 +98,8 @@ TEST(ShapesInPictures, OfUnknownLengthWithoutATipAreNotTrusted) {
   }
 }
 
-// One picture shows these end on, folded over themselves, and the fold looks like their tip: the axes alone
-// fit other shapes as well, 2 to 9 % of the length off, which the figures speak against.
+// One picture shows these arms end-on, folded over themselves, and the fold looks like their tip. The axes
+// alone also fit other shapes, 2 to 9 % of the length off, which the silhouettes exclude.
 TEST(ShapesInPictures, ThatHideTheirTipsAreFoundByTheirFigures) {
   for (const std::uint64_t seed : {719U, 2025U, 3646U, 4123U, 5666U, 6531U, 7855U, 9146U, 9988U}) {
     SCOPED_TRACE(seed);
@@ -110,8 +111,8 @@ TEST(ShapesInPictures, ThatHideTheirTipsAreFoundByTheirFigures) {
   }
 }
 
-// Each camera sees all of it in one place, and the two places are none in space: what fits best may be an arm
-// of no length, of which no look-alikes can be made.
+// Each camera sees the whole arm at one point, and the two lines of sight do not meet. The best fit may be an
+// arm of zero length, of which no alternatives can be made.
 TEST(ShapesOfPlaces, AreDoubtedOrRefused) {
   double shortest = 1;
   for (std::uint64_t seed = 1; seed < 9; ++seed) {
@@ -128,7 +129,7 @@ TEST(ShapesOfPlaces, AreDoubtedOrRefused) {
     shortest = std::min(shortest, Backbone(found.shape.arm, found.shape.state).length());
     EXPECT_TRUE(found.is_found ? !found.notes.empty() : !found.reason.empty());
   }
-  // Otherwise none of them is what this is about.
+  // Otherwise the cases do not test this.
   EXPECT_LT(shortest, 1e-9);
 }
 

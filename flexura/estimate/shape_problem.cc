@@ -11,7 +11,7 @@
 namespace flexura {
 namespace {
 
-// The way in which the points go on at point i, unit.
+// Unit direction of the points at point i.
 Eigen::Vector2d heading(const Sighting& seen, std::size_t i) {
   const std::size_t before = i > 0 ? i - 1 : i, after = std::min(i + 1, seen.points.size() - 1);
   return (seen.points[after].pixel - seen.points[before].pixel).normalized();
@@ -37,7 +37,7 @@ ShapeProblem::ShapeProblem(const ShapePrior& prior, std::span<const Sighting> si
     const Eigen::Index count = variables_.count();
     if (known.is_definite()) {
       believed_ = belief->mean;
-      // Any root of the inverse serves: here that of L L^T.
+      // Any root of the inverse works: here that of L L^T.
       belief_ = known.solve_lower(Eigen::MatrixXd::Identity(count, count));
       rows += static_cast<std::size_t>(count);
     }
@@ -81,8 +81,8 @@ void ShapeProblem::add_row(RowKind kind, const Eigen::Vector2d& direction, const
   ++count_;
 }
 
-// Points follow each other along the curve, so that each is looked for a little way on from the one before:
-// where the curve's image crosses itself the nearest point may be on the wrong branch.
+// Points follow each other along the curve, so each is searched a little way on from the previous one. Where
+// the curve's image crosses itself, the nearest point may be on the wrong branch.
 void ShapeProblem::add_points(const Sighting& seen) {
   const auto knots = static_cast<std::size_t>(image_.last());
   const std::size_t back = 1 + knots / 16, ahead = 2 + knots / 6;
@@ -94,15 +94,15 @@ void ShapeProblem::add_points(const Sighting& seen) {
     window = {at > back ? at - back : 0, at + ahead, at};
     const Eigen::Vector2d off = point.pixel - near.pixel;
     Eigen::Vector2d direction(-near.tangent.y(), near.tangent.x());
-    // Beyond the curve's end: towards that.
+    // Beyond the curve's end, the direction is towards the end.
     const bool is_beyond = near.place <= 0 || near.place >= image_.last();
     if (is_beyond && off.squaredNorm() > 0) direction = off.normalized();
     add_row(RowKind::point, direction, off, near.place, point.sigma);
   }
 }
 
-// A tube's silhouette is as far from its backbone's image as its radius is large there. Beyond the curve's
-// ends caps are seen, whose points are no farther than that.
+// A tube's silhouette is about its radius away from its backbone's image. Beyond the curve's ends caps are
+// visible, at the same distance.
 void ShapeProblem::add_borders(const Sighting& seen, const Arm& arm) {
   for (const SeenBorder& border : seen.borders) {
     const CurveImage::Point near = image_.nearest(border.pixel, Eigen::Vector2d::Zero(), image_.everywhere());
@@ -148,7 +148,7 @@ void ShapeProblem::add_bands(std::size_t sighting, const Arm& arm) {
     const CurveImage::Point near = image_.nearest(band.pixel, band.heading, image_.everywhere());
     const double place = near.place + near.tangent.dot(band.pixel - near.pixel) / near.speed,
                  sigma = band.sigma / near.speed;
-    // With the curve's point the place of what is seen moves the other way.
+    // The observed position along the curve moves opposite to the curve's point.
     image_.along(near.tangent / -near.speed, near.place, row_);
     FirstLook& first = first_looks_[look.marker];
     if (!first.is_there) {
@@ -164,9 +164,9 @@ void ShapeProblem::add_bands(std::size_t sighting, const Arm& arm) {
   }
 }
 
-// What is wrong with a view is about as much as it was doubted.
+// Prior of a view's error.
 void ShapeProblem::add_doubt(std::size_t sighting, const ViewError& error) {
-  // Instead of 0: a thousandth of a pixel at the border of a picture of a thousand.
+  // Replaces 0: a thousandth of a pixel at the border of a picture of a thousand.
   constexpr double least = 1e-6;
   const ViewDoubt& doubt = sightings_[sighting].doubt;
   for (Eigen::Index k = 0; k < 4; ++k) {

@@ -14,28 +14,28 @@
 
 namespace flexura {
 
-/// A band that is one of the arm's markers.
+/// A band that was identified as one of the arm's markers.
 struct BandLook {
-  std::size_t sighting = 0, band = 0;  ///< Which band it is.
-  std::size_t marker = 0;              ///< Counted from 0; of all looks at one marker the same.
-  std::optional<double> s;             ///< Where that is, m along the unstretched arm, when it is known.
+  std::size_t sighting = 0, band = 0;  ///< Indices of the observation and of its band.
+  std::size_t marker = 0;   ///< Number of the marker, from 0; equal for all observations of one marker.
+  std::optional<double> s;  ///< Position, m along the unstretched arm, if known.
 };
 
-/// How far a shape is from what was seen: distances of the seen points from the shape's images, of borders
-/// from its silhouettes, of ends and markers from theirs, and the prior's own, each in units of its standard
-/// deviation.
+/// Residuals of a shape, each in units of its standard deviation. These are: distances of observed points
+/// from the shape's images, of borders from its silhouettes, of ends and markers from theirs, and the prior's
+/// own.
 class ShapeProblem {
  public:
-  /// `sightings` outlive the problem. Of the bands those of `looks` count: where a marker is known they are
-  /// compared with that place along the curve, otherwise with each other's. A belief stands for the doubts in
-  /// the sightings' views, too; of a covariance that is none nothing counts.
+  /// `sightings` must outlive the problem. Only the bands in `looks` are used. A known marker is compared
+  /// with its position along the curve, an unknown one between pictures. A belief also replaces the priors of
+  /// the observations' views; it is ignored unless its covariance is positive definite.
   ShapeProblem(const ShapePrior& prior, std::span<const Sighting> sightings, std::vector<BandLook> looks = {},
                const ShapeBelief* belief = nullptr);
 
-  /// What a row compares; the last two are not seen.
+  /// What a row compares; the last two are not observations.
   enum class RowKind { point, border, end, marker, prior, belief };
 
-  /// False when part of the shape is out of a lens's sight.
+  /// Linearises at a shape; returns false if part of it is outside a lens's field.
   bool linearise(const Shape& shape);
 
   [[nodiscard]] const ShapeVariables& variables() const { return variables_; }
@@ -44,9 +44,9 @@ class ShapeProblem {
   [[nodiscard]] auto derivatives() const { return derivatives_.topRows(count_); }
   [[nodiscard]] bool is_seen(Eigen::Index row) const { return kind(row) < RowKind::prior; }
   [[nodiscard]] RowKind kind(Eigen::Index row) const { return kinds_[static_cast<std::size_t>(row)]; }
-  /// Standard deviation that a row was divided by: px, but for the prior's.
+  /// Returns the standard deviation by which a row was divided: px, except for the prior's.
   [[nodiscard]] double sigma(Eigen::Index row) const { return sigmas_[static_cast<std::size_t>(row)]; }
-  /// Whose row it is, of those that are seen.
+  /// Returns the observation of an observed row.
   [[nodiscard]] std::size_t sighting(Eigen::Index row) const {
     return of_sighting_[static_cast<std::size_t>(row)];
   }
@@ -82,11 +82,11 @@ class ShapeProblem {
   std::vector<double> sigmas_;
   std::vector<std::size_t> of_sighting_;
   Eigen::RowVectorXd row_;
-  // Where along the curve a marker was seen first.
+  // Position along the curve of a marker's first observation.
   struct FirstLook {
     bool is_there = false;
-    double place = 0, sigma = 0;  // Knots.
-    Eigen::RowVectorXd unknowns;  // Of the place.
+    double place = 0, sigma = 0;  // In knots.
+    Eigen::RowVectorXd unknowns;  // Derivative of the position.
   };
   std::vector<FirstLook> first_looks_;
 };

@@ -42,7 +42,7 @@ TEST(ShapeProblem, HasTheDerivativesOfItsResiduals) {
     ASSERT_TRUE(problem.linearise(shape));
     for (Eigen::Index row = 0; row < problem.rows(); ++row) {
       const Eigen::RowVectorXd there = problem.derivatives().row(row);
-      // That a part of the tube looks larger when it comes nearer is left out.
+      // The change of the tube's apparent radius with its distance is neglected.
       const double close = problem.kind(row) == ShapeProblem::RowKind::border ? 5e-2 : 2e-3;
       EXPECT_LT((there - expected.value.row(row)).norm(), close * (1 + there.norm()))
           << row << ": " << there << "\n"

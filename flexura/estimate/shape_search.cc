@@ -17,7 +17,7 @@
 namespace flexura {
 namespace {
 
-// The turn of a view that is in doubt after which the base is seen where the arm begins.
+// Returns the rotation of a view with a prior that moves the base's image to the arm's beginning.
 ViewError aimed_at_base(const Sighting& seen, const Eigen::Vector3d& p_WB) {
   ViewError error;
   if (!(seen.doubt.rotation_std > 0) || !seen.ends[0]) return error;
@@ -25,15 +25,15 @@ ViewError aimed_at_base(const Sighting& seen, const Eigen::Vector3d& p_WB) {
   if (!ray) return error;
   const Eigen::Vector3d looked = ray->homogeneous().normalized(),
                         there = (seen.view.X_WC.inverse() * p_WB).normalized();
-  // Farther off it is no base, but where the arm comes out from behind something.
-  constexpr double most = 3;  // Of the doubt.
+  // If it is farther away, it is not the base but where the arm emerges from behind something.
+  constexpr double most = 3;  // Standard deviations of the prior.
   const Eigen::Vector3d turn = looked.cross(there);
   if (turn.norm() < most * seen.doubt.rotation_std) error.turn = turn;
   return error;
 }
 
-// How far ends are seen from where a shape has them, each bounded: of a tip that hides, what is taken for it
-// may lie anywhere, px^2.
+// Returns the squared distances of observed ends from a shape's ends, each bounded, px^2. If a tip is hidden,
+// what is taken for it may lie anywhere.
 double ends_elsewhere(std::span<const Sighting> sightings, const Shape& shape) {
   constexpr double most = 1;  // px^2
   const Backbone backbone(shape.arm, shape.state);
@@ -51,7 +51,7 @@ double ends_elsewhere(std::span<const Sighting> sightings, const Shape& shape) {
   return sum;
 }
 
-// From this shape downhill by the bend of its last section, to what figures and ends speak against least.
+// Improves the bend of the last section by descent on the misfit of silhouettes and ends.
 Shape last_bent_to_fit(std::span<const Sighting> sightings, Shape shape) {
   constexpr double first = 0.1, last = 0.01;  // rad
   Eigen::Vector2d& bend = shape.state.bends.back();
@@ -77,7 +77,7 @@ Shape last_bent_to_fit(std::span<const Sighting> sightings, Shape shape) {
   return shape;
 }
 
-// Of the shapes whose last section is bent otherwise the few that figures and ends speak against least.
+// Returns the few shapes with another bend of the last section that fit silhouettes and ends best.
 std::vector<Shape> last_bent_otherwise(std::span<const Sighting> sightings, const Shape& shape) {
   constexpr double step = 0.2;  // rad
   constexpr int steps = 8, ways = 12;
@@ -94,7 +94,7 @@ std::vector<Shape> last_bent_otherwise(std::span<const Sighting> sightings, cons
       others.push_back({std::move(other), against});
     }
   std::ranges::stable_sort(others, {}, &Other::against);
-  // Of an arm without radius and ends nothing speaks against any.
+  // Without radius and ends there is no evidence against any shape.
   if (!(others.back().against > others.front().against)) return {};
   std::vector<Shape> shapes;
   for (std::size_t i = 0; i < std::min(few, others.size()); ++i)
@@ -102,7 +102,7 @@ std::vector<Shape> last_bent_otherwise(std::span<const Sighting> sightings, cons
   return shapes;
 }
 
-// The largest of places at the same shares of both, m.
+// Returns the largest distance of points at equal shares of both lengths, m.
 double distance(const Shape& one, const Shape& other) {
   constexpr int count = 20;
   const Backbone a(one.arm, one.state), b(other.arm, other.state);
@@ -135,7 +135,7 @@ Shape scaled(Shape shape, double factor) {
 
 std::optional<std::size_t> view_elsewhere(std::span<const Sighting> sightings, const Shape& shape) {
   constexpr double most = 5;         // standard deviations
-  constexpr double rounding = 1e-4;  // Of what is not doubted at all.
+  constexpr double rounding = 1e-4;  // Of views without a prior.
   for (std::size_t i = 0; i < std::min(sightings.size(), shape.views.size()); ++i) {
     const auto& [turn, focal] = sightings[i].doubt;
     const ViewError& error = shape.views[i];
@@ -146,20 +146,20 @@ std::optional<std::size_t> view_elsewhere(std::span<const Sighting> sightings, c
 }
 
 std::optional<std::size_t> bent_too_far(const Shape& shape) {
-  constexpr double share = 1.02, more = 0.02;  // rad; of what pictures tell of bends
+  constexpr double share = 1.02, more = 0.02;  // rad; the precision of bends from pictures.
   for (std::size_t i = 0; i < shape.arm.sections.size(); ++i)
     if (shape.state.bends[i].norm() > share * shape.arm.sections[i].max_bend + more) return i;
   return std::nullopt;
 }
 
 ShapeSearch::Try ShapeSearch::tried(ShapeProblem& problem, const Start& start, double most) {
-  // Where points and figure tell shapes apart these decide.
+  // Points and silhouette decide where they distinguish shapes.
   constexpr double of_ends = 0.001;
   Try one;
   one.fit = descent_.descend(problem, start.shape, most_iterations_, start.kind);
   const Shape& shape = one.fit.shape;
   const std::span<const Sighting> seen = problem.sightings();
-  // A fit may run away to lengths that are none.
+  // A fit may diverge to invalid lengths.
   if (!has_lengths(shape)) {
     one.merit = one.misfit = std::numeric_limits<double>::infinity();
     return one;
@@ -178,7 +178,7 @@ ShapeSearch::Try ShapeSearch::tried(ShapeProblem& problem, const Start& start, d
 
 bool ShapeSearch::is_better(const Try& one, const Try& other) {
   if (one.is_as_doubted != other.is_as_doubted) return one.is_as_doubted;
-  // One that bends no section too far may explain a little less.
+  // One whose bends are all possible may explain slightly less.
   constexpr double most = 2, little = 0.01;  // px^2
   if (one.is_possible && !other.is_possible) return one.merit < most * other.merit + little;
   if (other.is_possible && !one.is_possible) return !(other.merit < most * one.merit + little);
@@ -186,14 +186,14 @@ bool ShapeSearch::is_better(const Try& one, const Try& other) {
 }
 
 bool ShapeSearch::is_explained(const Try& one) const {
-  // One tip that hides is nothing unusual.
+  // One hidden tip is not unusual.
   constexpr double most = 0.02, most_misfit = 0.0005, most_ends = 1.3;  // px^2
   constexpr double most_scale = 2;
   return one.fit.is_good(most_rms_) && one.fit.scale < most_scale && one.unexplained < most &&
          one.misfit < most_misfit && one.ends < most_ends;
 }
 
-// By far more than is_explained allows.
+// Leaves far more unexplained than is_explained allows.
 bool ShapeSearch::leaves_much(const Try& one) const {
   constexpr double most = 0.02, most_misfit = 0.01, most_ends = 2.3;  // px^2
   constexpr double most_scale = 4;
@@ -202,7 +202,7 @@ bool ShapeSearch::leaves_much(const Try& one) const {
 }
 
 ShapeSearch::Result ShapeSearch::best(const std::vector<Sighting>& sightings) {
-  // `otherwise`: one that explains all, by cameras that stand otherwise than is doubted.
+  // `otherwise`: one that explains everything with camera errors beyond their priors.
   std::optional<Try> best, otherwise;
   std::vector<Sighting> best_seen, seen_otherwise;
   const auto most = [&] {
@@ -214,8 +214,8 @@ ShapeSearch::Result ShapeSearch::best(const std::vector<Sighting>& sightings) {
     if (!one.is_as_doubted && !otherwise && is_explained(one)) otherwise = one, seen_otherwise = as_seen;
   };
   const auto is_end = [&] { return best->is_as_doubted && best->is_possible && is_explained(*best); };
-  // Which end of the others' axes is the first one's first is not known without a base: two are tried against
-  // each other, and the others follow the places that these tell.
+  // Without a base it is unknown which ends of the axes correspond. Both orders are tried for two pictures;
+  // the others follow the resulting points.
   const bool has_base = prior_.is_base_position_known, has_pair = sightings.size() >= 2;
   const SightingPair pair = has_pair ? best_pair(sightings) : SightingPair{0, 0};
   for (const bool against : {false, true}) {
@@ -230,11 +230,10 @@ ShapeSearch::Result ShapeSearch::best(const std::vector<Sighting>& sightings) {
       if (is_last) break;
     }
   }
-  // What one picture shows in part may be one of several shapes: where all is not explained the others are
-  // tried.
+  // A part seen in one picture may have several shapes: if not all is explained, alternatives are tried.
   constexpr int rounds = 2;
   constexpr double worse = 1.5, little = 0.01;  // px
-  constexpr double one_end = 0.9;               // px^2, of ends that lie elsewhere
+  constexpr double one_end = 0.9;               // px^2, of displaced ends
   const double most_rms = worse * best->fit.rms + little;
   bool has_moved = true;
   for (int round = 0; round < rounds && has_moved && !is_end(); ++round) {
@@ -249,7 +248,7 @@ ShapeSearch::Result ShapeSearch::best(const std::vector<Sighting>& sightings) {
   }
   if (otherwise && (!best->is_as_doubted || leaves_much(*best)))
     return {std::move(otherwise->fit), std::move(seen_otherwise)};
-  // Nor is there anything to say so where no picture shows the tip.
+  // Alternatives are also checked if no picture shows the tip.
   const auto shows_tip = [](const Sighting& seen) { return seen.ends[1].has_value(); };
   const bool may_be_another =
       is_explained(*best) && (best->ends > one_end || std::ranges::none_of(best_seen, shows_tip));
@@ -258,8 +257,8 @@ ShapeSearch::Result ShapeSearch::best(const std::vector<Sighting>& sightings) {
   return result;
 }
 
-// One end of the arm is not where it is seen: that something hides it is one explanation, another shape that
-// is seen alike another.
+// One end of the arm is displaced: it may be hidden, or the true shape may be another one with a similar
+// image.
 double ShapeSearch::apart(const Result& found) {
   const auto is_doubtful = [](const Sighting& seen) {
     return seen.doubt.is_any() || !seen.bands.empty() || !seen.markers.empty();
@@ -307,14 +306,14 @@ std::vector<Shape> ShapeSearch::starts(std::span<const Sighting> sightings, cons
 std::vector<ShapeSearch::Start> ShapeSearch::look_alikes(std::span<const Sighting> sightings,
                                                          const Shape& shape) const {
   std::vector<Start> shapes;
-  // A fit that went astray may have shrunk an arm of unknown length to nothing.
+  // A diverged fit may have shrunk an arm of unknown length to zero.
   constexpr double least = 1e-6;  // m
   double length = 0;
   for (std::size_t i = 0; i < shape.arm.sections.size(); ++i)
     length += shape.arm.sections[i].length * shape.state.stretches[i];
   if (!(length > least) || !std::isfinite(length)) return shapes;
   const std::size_t sections = prior_.arm.sections.size();
-  constexpr std::size_t most = 4;  // Of many short sections every so many.
+  constexpr std::size_t most = 4;  // Of many short sections, only every nth.
   for (std::size_t i = 0; i < sections; i += 1 + (sections - 1) / most)
     for (const Sighting& seen : sightings) shapes.push_back({mirrored(prior_, shape, i, seen.view)});
   if (sections > most) return shapes;
@@ -323,7 +322,7 @@ std::vector<ShapeSearch::Start> ShapeSearch::look_alikes(std::span<const Sightin
   };
   for (const double bend : {0.0, 0.6, 1.2})
     append(bent_otherwise(shape, sections - 1, bend, bend > 0 ? 8 : 1), StartKind::far);
-  // They lie on the figure: what the axis has beside it is to be doubted at once.
+  // These lie on the silhouette: axis points beside them are outliers at once.
   append(last_bent_otherwise(sightings, shape), StartKind::near);
   return shapes;
 }

@@ -12,11 +12,11 @@
 namespace flexura {
 namespace {
 
-// Where a shape is seen in one picture, and how far its borders are from there.
+// Image of a shape's point in one picture, and the distance of its borders from there.
 struct SeenPlace {
   std::optional<Eigen::Vector2d> pixel;
   double half_width = 0;  // px
-  double widest = 0;      // The same in the direction in which a pinhole's picture is stretched most, px.
+  double widest = 0;      // Half width in the direction of the largest stretch of a pinhole image, px.
 };
 std::vector<SeenPlace> seen_places(const Sighting& seen, const ViewError& error, const Shape& shape) {
   constexpr int count = 80;
@@ -24,7 +24,7 @@ std::vector<SeenPlace> seen_places(const Sighting& seen, const ViewError& error,
   const View view = corrected(seen.view, error);
   const double focal = std::max(view.lens.intrinsics().fx, view.lens.intrinsics().fy);
   std::vector<SeenPlace> places;
-  // How far along the arm the section begins, and goes on, m.
+  // Start and length of the section along the arm, m.
   std::size_t section = 0;
   double begin = 0, length = shape.arm.sections[0].length * shape.state.stretches[0];
   for (int k = 0; k <= count; ++k) {
@@ -43,7 +43,7 @@ std::vector<SeenPlace> seen_places(const Sighting& seen, const ViewError& error,
   return places;
 }
 
-// How far from each other the points are that are left of what is seen, on average, px.
+// Mean distance between the remaining observed points, px.
 double spacing(const Sighting& seen) {
   double way = 0;
   const auto count = static_cast<double>(std::max<std::size_t>(1, seen.points.size() + seen.borders.size()));
@@ -59,8 +59,7 @@ double bounded(double off) {
   return std::isfinite(off) ? off * off / (1 + off * off / (far * far)) : far * far;
 }
 
-// How much of a shape's image lies where nothing is seen: mean square of the distances, bounded for each,
-// px^2.
+// Returns the part of a shape's image without observation: mean square of the distances, each bounded, px^2.
 double astray(const Sighting& seen, const ViewError& error, const Shape& shape) {
   constexpr double gap = 2;  // px
   const std::vector<SeenPlace> places = seen_places(seen, error, shape);
@@ -78,12 +77,12 @@ double astray(const Sighting& seen, const ViewError& error, const Shape& shape) 
   return sum / static_cast<double>(places.size());
 }
 
-// The image of a tube as wide as is asked for: links between two places next to each other, and chains of
-// some such. All of one lies within `reach` of its middle, px.
+// The image of a tube of the given width: links between successive points, and chains of several links. A
+// chain is within `reach` of its middle, px.
 struct Link {
   Eigen::Vector2d from = {0, 0}, way = {0, 0}, middle = {0, 0};
   double square = 0;               // Of `way`.
-  double half_width = 0, end = 0;  // Half its width where it begins, and ends.
+  double half_width = 0, end = 0;  // Half width at its start and end.
   double reach = 0;
 };
 struct Chain {
@@ -111,8 +110,9 @@ std::vector<Chain> tube_of(const std::vector<SeenPlace>& places, double wider) {
   return tube;
 }
 
-// How far a pixel is from the image of a tube, px; 0 within it. `near` is which chain to look at first,
-// and becomes those where that was. Most are farther than the nearest so far, whatever of them is nearest.
+// Returns the distance of a pixel from the image of a tube, px; 0 inside. `near` is the chain to search first
+// and becomes the nearest one. Most chains are farther than the nearest so far, whichever of their links is
+// nearest.
 double outside(const std::vector<Chain>& tube, const Eigen::Vector2d& pixel, double wider,
                std::size_t& near) {
   double nearest = std::numeric_limits<double>::infinity();
@@ -143,7 +143,7 @@ double misfit(const Sighting& seen, const ViewError& error, const Shape& shape, 
     return section.radius[0] > 0 || section.radius[1] > 0;
   };
   if (seen.figure.empty() || !std::ranges::any_of(shape.arm.sections, has_radius)) return 0;
-  constexpr double close = 1.5;  // px: the figure's border is that of whole pixels, of a blurred picture.
+  constexpr double close = 1.5;  // px: the foreground has whole pixels of a blurred picture.
   const std::vector<Chain> tube = tube_of(seen_places(seen, error, shape), wider);
   double sum = 0;
   std::size_t near = 0;
@@ -173,7 +173,7 @@ bool explains_border(const Sighting& seen, const ViewError& error, const Shape& 
   constexpr double most_astray = 1, close = 2, enough = 0.7;  // px^2, px, share
   if (astray(seen, error, shape) > most_astray) return false;
   const std::vector<SeenPlace> places = seen_places(seen, error, shape);
-  // Within the stretch between two places.
+  // Within the stretch between two points.
   const auto is_between = [&](const SeenPlace& a, const SeenPlace& b, const Eigen::Vector2d& pixel) {
     if (!a.pixel || !b.pixel) return false;
     const Eigen::Vector2d way = *b.pixel - *a.pixel;

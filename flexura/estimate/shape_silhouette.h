@@ -8,22 +8,23 @@
 
 namespace flexura {
 
-/// What is wrong with the view of a shape's sighting `sighting`; nothing where that is not told.
+/// Returns the view error of a shape's observation `sighting`; zero if it is not estimated.
 [[nodiscard]] ViewError error_of(const Shape& shape, std::size_t sighting);
 
-/// How much of a shape's image lies where nothing is seen: mean square of the distances, bounded for each,
-/// px^2; summed over the pictures that show more than an axis (Sighting::borders).
+/// Returns the part of a shape's image without observation: mean square of the distances, each bounded, px^2.
+/// It is summed over the pictures with more than an axis (Sighting::borders).
 [[nodiscard]] double astray(std::span<const Sighting> sightings, const Shape& shape);
 
-/// How much of the figure (Sighting::figure) is no image of the shape: mean square of its places' distances
-/// from that, bounded for each, px^2. The image counts as `wider` times as wide. What is not seen of the
-/// shape does not count: something may hide it. 0 where no figure is known, or the arm has no radius.
+/// Returns the misfit: how much of the foreground (Sighting::figure) is not the shape's image, as the mean
+/// square of its points' distances, each bounded, px^2. The image is widened by the factor `wider`. Invisible
+/// parts of the shape do not count: they may be hidden. 0 if no foreground is known, or the arm has no
+/// radius.
 [[nodiscard]] double misfit(const Sighting& seen, const ViewError& error, const Shape& shape,
                             double wider = 1);
-/// The sum over the pictures.
+/// Returns the sum over the pictures.
 [[nodiscard]] double misfit(std::span<const Sighting> sightings, const Shape& shape);
 
-/// Whether the borders of a sighting are the shape's, most of them, and the shape is seen within them.
+/// Returns whether most borders of an observation are the shape's, and the shape is inside them.
 [[nodiscard]] bool explains_border(const Sighting& seen, const ViewError& error, const Shape& shape);
 
 }  // namespace flexura

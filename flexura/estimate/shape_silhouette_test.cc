@@ -14,7 +14,7 @@
 namespace flexura {
 namespace {
 
-// The same by every one of many places along the arm.
+// The misfit by exhaustive search over many points along the arm.
 double misfit_by_places(const Sighting& seen, const Shape& shape) {
   constexpr int count = 4000;
   constexpr double close = 1.5, far = 3;  // px
@@ -36,7 +36,7 @@ double misfit_by_places(const Sighting& seen, const Shape& shape) {
   return sum / static_cast<double>(seen.figure.size());
 }
 
-// Nothing of the arm is passed over, however it winds: the nearest part of it counts for each pixel.
+// No part of the arm is missed, whatever its shape: the nearest part counts for each pixel.
 TEST(ShapeSilhouette, CountsTheNearestPartOfTheArmForEachPixel) {
   for_random_cases(12, [](TestRandom& random) {
     const auto between = [&](double low, double high) { return random.uniform(low, high); };

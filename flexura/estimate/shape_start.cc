@@ -13,7 +13,7 @@
 namespace flexura {
 namespace {
 
-// Points joined by lines, by the share of the way along them.
+// Points joined by lines, by the share of the length.
 class Polyline {
  public:
   explicit Polyline(std::span<const Eigen::Vector3d> points) : points_(points) {
@@ -58,7 +58,7 @@ Shape shape_along(const ShapePrior& prior, std::span<const Eigen::Vector3d> poin
   const Polyline line(points);
   Shape shape = straight_shape(prior);
   const double length = prior.arm.length();
-  // Of an arm of known length that is cut in a picture the points are a part: it goes on straight.
+  // If an arm of known length is cut in a picture, the points cover a part of it: it is extended straight.
   constexpr double cut = 0.95;
   const bool is_cut = prior.is_length_known && line.length() < cut * length;
   const double whole = is_cut ? line.length() : length;

@@ -9,22 +9,22 @@
 
 namespace flexura {
 
-/// A shape that lies roughly along points in space, base first: each section bends from the curve's tangent
-/// at its start to that at its end. What the prior knows of the base stays. At least two points, not all the
-/// same, else std::invalid_argument.
+/// Returns a shape roughly along points in space, base first: each section bends from the curve's tangent at
+/// its start to that at its end. The prior's knowledge of the base is kept. Throws std::invalid_argument
+/// without two different points.
 [[nodiscard]] Shape shape_along(const ShapePrior& prior, std::span<const Eigen::Vector3d> points);
 
-/// `shape` with all that follows the start of a section mirrored in the plane through that across the line of
-/// sight: what `view` shows stays about the same, and what others show does not.
+/// Returns `shape` with the part after the start of a section mirrored in the plane through that point
+/// perpendicular to the line of sight. What `view` shows stays about the same, unlike in other views.
 [[nodiscard]] Shape mirrored(const ShapePrior& prior, const Shape& shape, std::size_t section,
                              const View& view);
 
-/// `shape` with one section bent otherwise, `ways` of them around by so much, rad: for parts that are hidden
-/// or seen end on, of which no picture tells at first where they go.
+/// Returns `ways` shapes with another bend of one section, `bend` rad in evenly spaced directions. For parts
+/// that are hidden or seen end-on, whose direction no picture shows at first.
 [[nodiscard]] std::vector<Shape> bent_otherwise(const Shape& shape, std::size_t section, double bend,
                                                 int ways);
 
-/// The prior's arm, straight.
+/// Returns the prior's arm, straight.
 [[nodiscard]] Shape straight_shape(const ShapePrior& prior);
 
 }  // namespace flexura

@@ -29,7 +29,7 @@ ShapeBelief ShapeTracker::gone_on(std::span<const Sighting> sightings, double ti
     variances.segment(static_cast<Eigen::Index>(i) * bends, bends).array() +=
         config_.drift * config_.drift * since + astray * astray;
   }
-  // What is not doubted stays as it is.
+  // Variables without a prior stay fixed.
   const ShapeVariables variables(prior_, sightings);
   for (std::size_t i = 0; i < sightings.size() && variables.count() == variances.size(); ++i) {
     const Eigen::Index at = variables.of_view(i);
@@ -43,7 +43,7 @@ ShapeBelief ShapeTracker::gone_on(std::span<const Sighting> sightings, double ti
   return belief;
 }
 
-// Views that are wrong leave residuals, in one picture about as many as in the one before.
+// View errors leave residuals that are similar in successive pictures.
 bool ShapeTracker::is_as_usual(const ShapeEstimate& estimate) const {
   constexpr double few = 0.5, as_usual = 2;  // px, times
   return estimate.is_found && estimate.rms <= std::max(few, as_usual * usual_rms_);
@@ -60,7 +60,7 @@ ShapeEstimate ShapeTracker::followed(std::span<const Sighting> sightings, double
                            Shape{arm_, expected, belief_ ? belief_->mean.views : std::vector<ViewError>{}});
 }
 
-// A fit that begins beside the arm and leaves out what does not suit it would be followed for good.
+// A fit that begins beside the arm and treats the contradictions as outliers would persist.
 bool ShapeTracker::is_to_be_checked(const ShapeEstimate& estimate) {
   if (estimate.doubted > config_.most_doubted)
     ++doubtful_;
@@ -70,7 +70,7 @@ bool ShapeTracker::is_to_be_checked(const ShapeEstimate& estimate) {
 }
 
 ShapeEstimate ShapeTracker::from_nothing(std::span<const Sighting> sightings) {
-  // What the last pictures were explained by, if cameras stood otherwise, is likely to explain these.
+  // The explanation of the last pictures, with cameras beyond their priors, probably explains these.
   const auto explains = [&](const ShapeEstimate& one) {
     return one.is_elsewhere && one.doubted < config_.most_doubted && one.scale < ShapeFit::most_scale;
   };
@@ -100,7 +100,7 @@ ShapeEstimate ShapeTracker::found(std::span<const Sighting> sightings, double ti
   }
   doubtful_ = 0;
   ShapeEstimate anew = from_nothing(sightings);
-  // Where there is none, it is the second that says why, unless it could not be tried.
+  // If none is found, the second one gives the reason, unless it could not be tried.
   const bool is_tried = !expected || std::ranges::all_of(sightings, [](const Sighting& seen) {
     return are_enough({&seen, 1});
   });

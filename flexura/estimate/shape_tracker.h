@@ -10,43 +10,43 @@
 
 namespace flexura {
 
-/// How much an arm and the cameras' views change beside what is expected: standard deviations.
+/// Process noise of an arm and of the cameras' views: standard deviations.
 struct TrackerConfig {
-  double drift = 0.005;       ///< Of each bend, rad in a second, growing with the root of time.
-  double astray = 0.1;        ///< Of each bend, share of how far its section was expected to bend meanwhile.
-  double turn_drift = 1e-4;   ///< Of a view's error, rad in a second, growing likewise.
-  double focal_drift = 1e-4;  ///< Likewise.
-  /// Expectations that what is seen speaks more against are given up; ShapeEstimate::surprise.
+  double drift = 0.005;  ///< Process noise of each bend, rad per root second.
+  double astray = 0.1;   ///< Motion-proportional noise of each bend: share of its section's predicted change.
+  double turn_drift = 1e-4;   ///< Process noise of a view's rotation error, rad per root second.
+  double focal_drift = 1e-4;  ///< Process noise of a view's focal error, per root second.
+  /// Predictions with a larger normalised innovation (ShapeEstimate::surprise) are discarded.
   double most_surprise = 2.5;
-  /// Where more of the points than this share belong to something else, in so many looks one after another,
-  /// the arm is looked for from nothing as well.
+  /// If more than this share of the points are outliers in `patience` successive observations, the arm is
+  /// also estimated without a start.
   double most_doubted = 0.1;
   int patience = 10;
 };
 
-/// An arm whose shape is seen again and again: what earlier sightings told of it, and of what is wrong with
-/// the cameras' views, counts in the next estimate (a Kalman filter whose update is the estimator's fit).
-/// What one pair of pictures hardly tells comes out of many. One thread at a time uses it.
+/// Tracks the shape of an arm. Earlier observations of it, and of the view errors, count in the next
+/// estimate: a Kalman filter whose update is the estimator's fit. Information that is weak in one pair of
+/// pictures accumulates over many. Use it from one thread at a time.
 class ShapeTracker {
  public:
-  /// std::invalid_argument: of the arm's base or length something is not known.
+  /// Throws std::invalid_argument if the arm's base or length is not known.
   ShapeTracker(ShapePrior prior, const EstimatorConfig& estimator, const TrackerConfig& config = {});
 
-  /// The shape at `time` (s), expected to be `expected`, if anything is: that of the estimate before, moved
-  /// on by what is known of the arm's motion since. Without that nothing earlier counts. Estimates that are
+  /// Returns the shape at `time` (s). `expected` is its prediction, if any: the previous estimate, advanced
+  /// by the known motion of the arm since. Without it, earlier observations are discarded. Estimates that are
   /// found have the views' errors in `shape.views`.
   [[nodiscard]] ShapeEstimate look(std::span<const Sighting> sightings, double time,
                                    const std::optional<ArmState>& expected);
 
-  /// The next sightings are of an arm that nothing is known of.
+  /// Resets the tracker: the next observations are of an unknown arm.
   void forget() { belief_.reset(), usual_rms_ = 0, doubtful_ = 0, elsewhere_.reset(); }
 
  private:
-  // What is believed of an arm that is expected to have gone on so.
+  // The predicted state of the filter.
   [[nodiscard]] ShapeBelief gone_on(std::span<const Sighting> sightings, double time,
                                     const ArmState& expected) const;
   [[nodiscard]] bool is_as_usual(const ShapeEstimate& estimate) const;
-  // From what is expected of it; and whether that speaks against what was believed.
+  // Estimates from the prediction, and sets whether the observations contradict it.
   [[nodiscard]] ShapeEstimate followed(std::span<const Sighting> sightings, double time,
                                        const ArmState& expected);
   [[nodiscard]] bool is_to_be_checked(const ShapeEstimate& estimate);
@@ -60,11 +60,11 @@ class ShapeTracker {
   ShapeVariables variables_;
   ShapeEstimator estimator_;
   std::optional<ShapeBelief> belief_;
-  double time_ = 0;       // Of that, s.
+  double time_ = 0;       // Of `belief_`, s.
   double usual_rms_ = 0;  // Of the last estimate's residuals, px.
   bool is_surprising_ = false;
-  int doubtful_ = 0;  // Looks of which much is something else's, up to the last one.
-  // By what the last look from nothing was explained, if cameras would have to stand otherwise for it.
+  int doubtful_ = 0;  // Number of successive observations with many outliers, up to the last one.
+  // Explanation of the last estimate without a start, if it needs camera errors beyond their priors.
   std::optional<Shape> elsewhere_;
 };
 

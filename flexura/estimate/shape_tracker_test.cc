@@ -1,4 +1,4 @@
-// An arm that is looked at again and again, by cameras that are turned and zoomed otherwise than believed.
+// An arm observed repeatedly by cameras with errors of rotation and zoom.
 #include "flexura/estimate/shape_tracker.h"
 
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@
 namespace flexura {
 namespace {
 
-// The same arm, seen again and again by cameras whose views are doubted.
+// The same arm, observed repeatedly by cameras whose views have priors.
 TEST(ShapeTracker, KnowsMoreWithEverySighting) {
   double once = 0, tracked = 0;
   for_random_cases(20, [&](TestRandom& random) {
@@ -37,7 +37,7 @@ TEST(ShapeTracker, KnowsMoreWithEverySighting) {
         for (auto& end : seen[i].ends) end->pixel += 0.1 * random.vector<2>(-1.7, 1.7), end->sigma = 0.1;
         seen[i].view = first.seen[i].view, seen[i].doubt = a_degree_and_two_percent;
       }
-      // As drives tell: how far each section has gone, but for a hundredth.
+      // As drives report it: the motion of each section, to a hundredth.
       if (expected)
         for (std::size_t i = 0; i < 3; ++i) expected->bends[i] += 0.99 * (state.bends[i] - told.bends[i]);
       const ShapeEstimate found = tracker.look(seen, k / 30.0, expected);
@@ -51,8 +51,8 @@ TEST(ShapeTracker, KnowsMoreWithEverySighting) {
   EXPECT_LT(std::sqrt(tracked), 0.6 * std::sqrt(once));
 }
 
-// Errors that go together along an axis, from picture to picture others: an arm that stands still is known
-// better the longer it is looked at, as much better as is claimed.
+// Errors correlated along an axis, independent between pictures: an arm at rest is known better with every
+// picture, as much as is claimed.
 TEST(ShapeTracker, KnowsHowMuchMoreItKnows) {
   constexpr double noise = 0.05, reach = 5.4;  // px
   double first_sigma = 0, last_sigma = 0, first_error = 0, last_error = 0;
@@ -96,7 +96,7 @@ TEST(ShapeTracker, KnowsHowMuchMoreItKnows) {
   EXPECT_GT(last_error, 0.2 * last_sigma);
 }
 
-// An arm that is where nobody expects it is seen where it is.
+// An arm far from its prediction is found where it is.
 TEST(ShapeTracker, GivesUpWhatTheSightingsSpeakAgainst) {
   for_random_cases(20, [](TestRandom& random) {
     const ShapePrior prior{.arm = three_section_arm()};
@@ -115,8 +115,8 @@ TEST(ShapeTracker, GivesUpWhatTheSightingsSpeakAgainst) {
   });
 }
 
-// A fit that leaves out what does not suit it is not followed for good: after a few looks that the arm should
-// be elsewhere is found out from nothing.
+// A fit that treats contradictions as outliers does not persist: after some observations a new estimate shows
+// that the arm is elsewhere.
 TEST(ShapeTracker, FindsOutThatACameraIsWrongFarBeyondDoubt) {
   int named = 0;
   for_random_cases(20, [&](TestRandom& random) {
@@ -142,7 +142,7 @@ TEST(ShapeTracker, FindsOutThatACameraIsWrongFarBeyondDoubt) {
 }
 
 TEST(ShapeTracker, ForgetsWhenTold) {
-  // Of so many seeds some tell a tracker that forgets from one that does not.
+  // This many seeds are enough to distinguish a tracker that forgets from one that does not.
   constexpr std::uint64_t seeds = 10;
   int kept = 0;
   for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
@@ -180,7 +180,7 @@ TEST(ShapeTracker, LeavesAloneWhatIsNotDoubted) {
   });
 }
 
-// A few points of something else say little: the other picture tells the shape.
+// A few outlier points are ignored: the other picture determines the shape.
 TEST(ShapeTracker, PassesOverAFewPointsOfSomethingElse) {
   for_random_cases(20, [](TestRandom& random) {
     const ShapePrior prior{.arm = three_section_arm()};
@@ -202,7 +202,7 @@ TEST(ShapeTracker, NeedsAnArmWhoseLengthIsKnown) {
                std::invalid_argument);
 }
 
-// A short axis of something else in one picture: the other one alone would tell the shape.
+// A short false axis in one picture: the other picture alone would determine the shape.
 TEST(ShapeTracker, RefusesAnAxisOfSomethingElse) {
   for_random_cases(20, [](TestRandom& random) {
     const ShapePrior prior{.arm = three_section_arm()};

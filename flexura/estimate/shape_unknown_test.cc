@@ -1,4 +1,4 @@
-// Arms of unknown make: a base or a camera that is not as it was said; more than two pictures.
+// Arms without a kinematic model: a wrong base or camera; more than two pictures.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -26,14 +26,14 @@ using testing::Contains;
 using testing::HasSubstr;
 using testing::Not;
 
-// An arm of unknown make bends to whatever base it is given: what it is seen to begin at has to tell.
+// An arm without a kinematic model adapts to any base: only its visible beginning shows the error.
 TEST(ShapeOfUnknownMake, IsNotTrustedWhereTheBaseIsElsewhere) {
   for_random_cases(30, [](TestRandom& random) {
     const Arm arm = three_section_arm();
     const Backbone truth(arm, random_bends(random, arm, 1.2));
     const std::vector<Sighting> seen = sightings_of(truth, random, 0.02);
     const auto estimate = [&](const Eigen::Vector3d& base, const std::vector<Sighting>& sightings) {
-      // Doubts for uncertainty alone are left aside.
+      // Notes on uncertainty alone are switched off.
       return ShapeEstimator(unknown_arm(base, truth.length()), {.uncertain = 1}).estimate(sightings);
     };
     const auto speaks_of_base = Contains(HasSubstr("aside of where its base would be"));
@@ -44,7 +44,7 @@ TEST(ShapeOfUnknownMake, IsNotTrustedWhereTheBaseIsElsewhere) {
     const ShapeEstimate beside = estimate({0.003 * std::cos(angle), 0, 0.003 * std::sin(angle)}, seen);
     EXPECT_FALSE(beside.is_trusted());
     EXPECT_THAT(beside.notes, speaks_of_base);
-    // A camera that is turned by a tenth of a degree: 1.4 px.
+    // A camera rotated by a tenth of a degree: 1.4 px.
     std::vector<Sighting> turned = seen;
     const int one = random.integer(0, 1);
     View& view = turned[static_cast<std::size_t>(one)].view;
@@ -52,13 +52,13 @@ TEST(ShapeOfUnknownMake, IsNotTrustedWhereTheBaseIsElsewhere) {
     const ShapeEstimate aside = estimate({0, 0, 0}, turned);
     EXPECT_FALSE(aside.is_trusted());
     EXPECT_THAT(aside.notes, speaks_of_base);
-    // Unless that much of it was doubted: then it is found.
+    // With a prior of that size the error is estimated.
     for (Sighting& doubtful : turned) doubtful.doubt = {0.2 * degree, 0.001};
     EXPECT_THAT(estimate({0, 0, 0}, turned).notes, Not(speaks_of_base));
   });
 }
 
-// Where an arm's beginning is not seen, nothing is said of it.
+// If the arm's beginning is not visible, there is no note about it.
 TEST(ShapeOfUnknownMake, SaysNothingOfABaseThatNoPictureShows) {
   TestRandom random(1);
   const Arm arm = three_section_arm();
@@ -71,7 +71,7 @@ TEST(ShapeOfUnknownMake, SaysNothingOfABaseThatNoPictureShows) {
   EXPECT_THAT(found.notes, Not(Contains(HasSubstr("aside of where its base would be"))));
 }
 
-// The first two cameras stand beside each other and tell no depth; the others' axes run either way.
+// The first two cameras stand beside each other and give no depth; the others' axes run either way.
 TEST(ShapeOfUnknownMake, IsFoundInMoreThanTwoPictures) {
   for_random_cases(20, [](TestRandom& random) {
     const Arm arm = three_section_arm();
@@ -91,7 +91,7 @@ TEST(ShapeOfUnknownMake, IsFoundInMoreThanTwoPictures) {
   });
 }
 
-// Of three pictures one shows a fragment, in whichever direction: the start is by the others.
+// One of three pictures shows a fragment, in either direction: the start uses the others.
 TEST(ShapeOfUnknownMake, IsFoundBesideAPictureOfAFragment) {
   for_random_cases(20, [](TestRandom& random) {
     const Arm arm = three_section_arm();
@@ -115,7 +115,7 @@ TEST(ShapeOfUnknownMake, IsFoundBesideAPictureOfAFragment) {
   });
 }
 
-// Of an arm that turns back a fragment's far end may be the nearer one to the base.
+// On an arm that turns back, a fragment's far end may be nearer to the base.
 TEST(ShapeOfUnknownMake, TellsWhichWayAFragmentOfAHairpinRuns) {
   for_random_cases(40, [](TestRandom& random) {
     Arm arm = three_section_arm();

@@ -12,55 +12,55 @@
 
 namespace flexura {
 
-/// What is known of an arm before it is looked at.
+/// Prior knowledge of an arm.
 struct ShapePrior {
-  Arm arm;                              ///< Its sections, and its base as far as it is known.
-  bool is_base_position_known = true;   ///< Arm::X_WB's position holds.
-  bool is_base_direction_known = true;  ///< And how the arm is turned about it.
-  bool is_length_known = true;          ///< Otherwise all sections stretch alike.
+  Arm arm;                              ///< Its sections, and its base as far as known.
+  bool is_base_position_known = true;   ///< Whether the position of Arm::X_WB holds.
+  bool is_base_direction_known = true;  ///< Whether the rotation of Arm::X_WB holds.
+  bool is_length_known = true;          ///< Otherwise all sections have a common stretch.
   /// Standard deviation of the change of curvature from one section to the next, 1/m; infinite: sections bend
-  /// as they like. Smooth arms of unknown make are many short sections with a small one.
+  /// independently. Smooth arms without a kinematic model are many short sections with a small one.
   double curvature_step = std::numeric_limits<double>::infinity();
-  /// Where its markers' middles are, m along the unstretched arm, rising; empty: not known.
+  /// Positions of its markers' middles, m along the unstretched arm, ascending; empty: not known.
   std::vector<double> markers = {};
 };
 
-/// An arm as it may be: a point in the space of what is not known.
+/// A possible arm: a point in the space of the unknowns.
 struct Shape {
-  Arm arm;  ///< With what is found of its base.
+  Arm arm;  ///< With the estimated base.
   ArmState state;
-  std::vector<ViewError> views = {};  ///< Of the cameras that see it; of those that are not here, none.
+  std::vector<ViewError> views = {};  ///< Errors of the cameras' views; missing entries mean no error.
 };
 
-/// What is known of a shape from before it is looked at.
+/// Previous knowledge of a shape.
 struct ShapeBelief {
   Shape mean;
-  Eigen::MatrixXd covariance;  ///< Of the unknowns (ShapeVariables), views in doubt among them.
+  Eigen::MatrixXd covariance;  ///< Covariance of the unknowns (ShapeVariables), including views with a prior.
 };
 
 /// The unknowns of a prior, in this order: the bends (x and y of each section; of planar arms x alone), the
-/// base's position (m, W), its turn about its own x and y (rad), the logarithm of the stretch; then of every
-/// view that is in doubt its error (turn in rad, focal).
+/// base's position (m, W). Then its rotation about its own x and y (rad), and the logarithm of the stretch.
+/// Then the error of each view with a prior (turn in rad, focal).
 class ShapeVariables {
  public:
-  /// `sightings` say which views are in doubt.
+  /// `sightings` show which views have a prior.
   explicit ShapeVariables(const ShapePrior& prior, std::span<const Sighting> sightings = {});
 
-  /// Of all unknowns.
+  /// Returns the number of all unknowns.
   [[nodiscard]] Eigen::Index count() const { return count_; }
-  /// Of these the ones that the arm's shape depends on come first.
+  /// Returns the number of unknowns of the arm's shape, which come first.
   [[nodiscard]] Eigen::Index of_shape() const { return of_shape_; }
-  /// Where the error of a sighting's view begins; -1: it has none.
+  /// Returns the first index of the error of an observation's view; -1: it has none.
   [[nodiscard]] Eigen::Index of_view(std::size_t sighting) const {
     return sighting < views_.size() ? views_[sighting] : -1;
   }
-  /// 1 of a planar arm, 2 of a spatial one.
+  /// Returns 1 for a planar arm, 2 for a spatial one.
   [[nodiscard]] Eigen::Index bends_a_section() const { return bends_; }
-  /// The step that leads to `to` from `from`: the inverse of plus(), to first order in turns of the base.
+  /// Returns the step from `from` to `to`: the inverse of plus(), to first order in rotations of the base.
   [[nodiscard]] Eigen::VectorXd minus(const Shape& to, const Shape& from) const;
-  /// `shape` moved by `step`.
+  /// Returns `shape` moved by `step`.
   [[nodiscard]] Shape plus(const Shape& shape, const Eigen::VectorXd& step) const;
-  /// From the derivatives by all bends and stretches (3 a section, as jacobian.h has them) of a point p_WP to
+  /// Converts the derivatives of a point p_WP by all bends and stretches (3 per section, as in jacobian.h) to
   /// those by the unknowns: 3 x of_shape().
   void by_unknowns(const Shape& shape, const Eigen::Vector3d& p_WP,
                    const Eigen::Ref<const Eigen::Matrix<double, 6, Eigen::Dynamic>>& by_state,
@@ -68,8 +68,8 @@ class ShapeVariables {
 
  private:
   Eigen::Index sections_, bends_;
-  Eigen::Index position_ = -1, direction_ = -1, stretch_ = -1;  // Where they begin; -1: known.
-  std::vector<Eigen::Index> views_;                             // Likewise, of each sighting.
+  Eigen::Index position_ = -1, direction_ = -1, stretch_ = -1;  // First index; -1: known.
+  std::vector<Eigen::Index> views_;                             // First index by observation; -1: no error.
   Eigen::Index of_shape_, count_;
 };
 

@@ -37,7 +37,7 @@ Sighting reversed(Sighting sighting) {
 
 namespace {
 
-// At most `most` of them, evenly taken, the first and the last among them.
+// Returns at most `most` of them, evenly spaced, including the first and the last.
 template <class Value>
 std::vector<Value> some_of(const std::vector<Value>& values, std::size_t most) {
   const std::size_t count = values.size();

@@ -11,90 +11,90 @@
 
 namespace flexura {
 
-/// A point where the backbone is seen.
+/// An image point of the backbone.
 struct CurvePoint {
-  Eigen::Vector2d pixel = {0, 0};  ///< px
+  Eigen::Vector2d pixel = {0, 0};  ///< Image position, px.
   double sigma = 0.1;              ///< Standard deviation across the curve, px; > 0.
-  /// Standard deviation of what the points of a long stretch are off by together, beside that, px.
+  /// Additional standard deviation of the error common to the points of a long stretch, px.
   double offset = 0;
 };
 
-/// How far along the curve the errors of an axis's points go together: the correlation of two is
-/// exp(-distance / reach), distances in px. Of points that are measured each for itself: not at all.
+/// Correlation of the errors of an axis's points along the curve: exp(-distance / reach), distances in px.
+/// Individually measured points are independent.
 struct ErrorReach {
-  double sigma = 0;     ///< Of what CurvePoint::sigma says, px; 0: each is wrong by itself.
-  double offset = 120;  ///< Of CurvePoint::offset, px; > 0.
+  double sigma = 0;     ///< Reach of the errors of CurvePoint::sigma, px; 0: independent.
+  double offset = 120;  ///< Reach of the errors of CurvePoint::offset, px; > 0.
 };
 
-/// A marker whose place on the arm is known.
+/// A marker at a known position on the arm.
 struct SeenMarker {
-  Eigen::Vector2d pixel = {0, 0};  ///< Where the backbone is seen at its middle.
-  double s = 0;                    ///< Of its middle, m along the unstretched arm.
-  double sigma = 0.1;              ///< px, in each direction; > 0.
+  Eigen::Vector2d pixel = {0, 0};  ///< Image of the backbone at its middle.
+  double s = 0;                    ///< Position of its middle, m along the unstretched arm.
+  double sigma = 0.1;              ///< Standard deviation in each direction, px; > 0.
 };
 
-/// A coloured band around the arm, wherever on it that is.
+/// A coloured band around the arm at an unknown position.
 struct SeenBand {
-  Eigen::Vector2d pixel = {0, 0};     ///< Where the backbone is seen in its middle.
-  Eigen::Vector2d heading = {1, 0};   ///< Unit: the way in which the curve goes on there.
+  Eigen::Vector2d pixel = {0, 0};     ///< Image of the backbone in its middle.
+  Eigen::Vector2d heading = {1, 0};   ///< Unit direction of the curve there.
   double sigma = 0.2;                 ///< Standard deviation along the curve, px; > 0.
-  Eigen::Vector3d color = {0, 0, 0};  ///< Red, green, blue, of 0 to 255.
+  Eigen::Vector3d color = {0, 0, 0};  ///< Red, green, blue, from 0 to 255.
 };
 
-/// Where an end of the arm is seen.
+/// Image of an end of the arm.
 struct SeenEnd {
-  Eigen::Vector2d pixel = {0, 0};  ///< px
+  Eigen::Vector2d pixel = {0, 0};  ///< Image position, px.
   double sigma = 0.3;              ///< Standard deviation along the curve, px; > 0.
 };
 
 /// A point of the arm's silhouette.
 struct SeenBorder {
-  Eigen::Vector2d pixel = {0, 0};  ///< px
+  Eigen::Vector2d pixel = {0, 0};  ///< Image position, px.
   double sigma = 0.5;              ///< Standard deviation across the border, px; > 0.
 };
 
-/// What a camera's view may be wrong by, as far as pictures of an arm can tell it from where the camera is:
-/// its frame is turned by exp(turn), its focal lengths are those of the view times exp(focal).
+/// Error of a camera's view that pictures of an arm can determine for a known camera position. The true frame
+/// is rotated by exp(turn); the true focal lengths are those of the view times exp(focal).
 struct ViewError {
-  Eigen::Vector3d turn = {0, 0, 0};  ///< About the axes of the optical frame as it is believed to be, rad.
-  double focal = 0;                  ///< The logarithm of the factor on both focal lengths.
+  Eigen::Vector3d turn = {0, 0, 0};  ///< About the axes of the modelled optical frame, rad.
+  double focal = 0;                  ///< Logarithm of the factor on both focal lengths.
 };
 
-/// The view without its error.
+/// Returns the view corrected by its error.
 [[nodiscard]] View corrected(View view, const ViewError& error);
 
-/// What one camera sees of an arm's backbone.
+/// Observation of an arm's backbone by one camera.
 struct Sighting {
-  View view;                       ///< As the camera is believed to stand.
-  std::vector<CurvePoint> points;  ///< Along the arm, in the order from base to tip where that is known.
-  /// The base and the tip; none where the arm goes on unseen (out of the picture, behind something).
+  View view;                       ///< View as modelled.
+  std::vector<CurvePoint> points;  ///< Points along the arm, from base to tip if that is known.
+  /// Base and tip; empty if the arm continues unseen (out of the picture, behind something).
   std::array<std::optional<SeenEnd>, 2> ends;
-  std::vector<SeenMarker> markers;   ///< Those that were recognised.
-  std::vector<SeenBand> bands = {};  ///< In any order; which is which the estimator finds out.
-  ViewDoubt doubt = {};              ///< In the view.
-  /// Points of the silhouette where no axis was found, in any order: of arms of known radius.
+  std::vector<SeenMarker> markers;   ///< Identified markers.
+  std::vector<SeenBand> bands = {};  ///< Bands in any order; the estimator identifies them.
+  ViewDoubt doubt = {};              ///< Prior of the view's error.
+  /// Points of the silhouette where no axis was found, in any order; for arms of known radius.
   std::vector<SeenBorder> borders = {};
-  /// The two edges of the tube where both are seen: right of the way from base to tip as the picture shows
-  /// it, then left; as measured, not where the backbone is.
+  /// The two edges of the tube where both are visible: right of the direction from base to tip in the
+  /// picture, then left. They are as measured, without correction to the backbone.
   std::array<std::vector<CurvePoint>, 2> edges = {};
-  ErrorReach reach = {};  ///< Of the points' errors.
-  /// Places strewn over the figure that the arm is, px; none where it is not known.
+  ErrorReach reach = {};  ///< Reach of the points' errors.
+  /// Sample points of the arm's foreground, px; empty if not known.
   std::vector<Eigen::Vector2d> figure = {};
-  /// Whether the lens has no ray for some of the arm's pixels: these are left out.
+  /// Whether the lens has no ray for some of the arm's pixels; these are omitted.
   bool leaves_out = false;
 };
 
-/// Whether each of them shows the arm, and one of them its axis: where a picture has no axis, the border of
-/// what it shows is enough.
+/// Returns whether each of them shows the arm, and at least one its axis. In a picture without an axis the
+/// border is enough.
 [[nodiscard]] bool are_enough(std::span<const Sighting> sightings);
 
-/// The same, followed from the other end.
+/// Returns the observation in the order from the other end.
 [[nodiscard]] Sighting reversed(Sighting sighting);
 
-/// At most `most` points of a curve, evenly taken, the first and the last among them.
+/// Returns at most `most` points of a curve, evenly spaced, including the first and the last.
 [[nodiscard]] std::vector<CurvePoint> thinned(const std::vector<CurvePoint>& points, std::size_t most);
 
-/// The same sighting with so many points at most, and as many of the borders and of each edge.
+/// Returns the observation with at most `most` points, borders, and points of each edge.
 [[nodiscard]] Sighting thinned(Sighting sighting, std::size_t most);
 
 }  // namespace flexura

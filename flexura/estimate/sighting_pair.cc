@@ -10,10 +10,10 @@
 namespace flexura {
 namespace {
 
-// Where a picture sees the arm, and how much of it.
+// Direction and apparent size of the arm in a picture.
 struct Outlook {
-  Eigen::Vector3d direction = {0, 0, 0};  // Towards the middle of what is seen, unit; 0: none.
-  double angle = 0;                       // Under which its axis is seen, rad; less where the arm is cut off.
+  Eigen::Vector3d direction = {0, 0, 0};  // Towards the middle of the visible part, unit; 0: not visible.
+  double angle = 0;                       // Angle subtended by its axis, rad; less where the arm is cut off.
 };
 Outlook outlook(const Sighting& seen) {
   Outlook result;
@@ -24,14 +24,13 @@ Outlook outlook(const Sighting& seen) {
   if (rays.empty()) return result;
   result.direction = seen.view.X_WC.rotation * rays[rays.size() / 2];
   for (std::size_t i = 1; i < rays.size(); ++i) result.angle += (rays[i] - rays[i - 1]).norm();
-  constexpr double cut = 0.5;  // For each end: what is cut off has any length.
+  constexpr double cut = 0.5;  // For each end: the part cut off has an unknown length.
   for (const auto& end : seen.ends) result.angle *= end ? 1 : cut;
   return result;
 }
 
-// Whether it is followed the other way than these places, as far as the picture tells: by the order of those
-// that are nearest to its points. (Of a fragment of a bent arm the ends alone may be nearer to the other
-// ends.)
+// Returns whether an observation runs opposite to these points, by the order of the nearest ones. (On a
+// fragment of a bent arm, the ends alone may be nearer to the wrong ends.)
 bool runs_against(const Sighting& seen, std::span<const Eigen::Vector3d> places) {
   std::vector<Eigen::Vector2d> pixels;
   for (const Eigen::Vector3d& p_WP : places)

@@ -10,20 +10,20 @@
 
 namespace flexura {
 
-/// Two sightings by their places among all, rising.
+/// Two observations by their indices, ascending.
 using SightingPair = std::array<std::size_t, 2>;
 
-/// The two whose lines of sight cross most squarely and that show the most of the arm: together they tell
-/// places best. At least two sightings; of two, these.
+/// Returns the two observations with the most perpendicular lines of sight and the largest visible arm, which
+/// determine positions best. Needs at least two observations.
 [[nodiscard]] SightingPair best_pair(std::span<const Sighting> sightings);
 
-/// Where two see the arm, in W, m, along it as `one` is followed.
+/// Returns the points where two observations see the arm, in W, m, in the order of `one`.
 [[nodiscard]] std::vector<Eigen::Vector3d> places_seen(const Sighting& one, const Sighting& other);
 
-/// All followed alike: the second of the pair as it is or, `against`, from its other end; the others the way
-/// of the places that the pair then tells. With `from_base` each is followed from the base on as far as its
-/// pixel tells, and those that show an end of the arm there stay; otherwise the first of all stays as it is,
-/// and all are turned if need be.
+/// Returns all observations in a common order. The second of the pair keeps its order or, with `against`, is
+/// reversed. The others follow the order of the points that the pair then determines. With `from_base` each
+/// starts at the base, as far as its pixel shows that, and those that show an end of the arm there stay.
+/// Otherwise the first of all stays unchanged, and all are reversed if necessary.
 [[nodiscard]] std::vector<Sighting> run_alike(std::vector<Sighting> sightings, const SightingPair& pair,
                                               bool against, bool from_base);
 

@@ -1,4 +1,4 @@
-// Bad tables [drive]: each gets clear lines that say where, what, and what was expected.
+// Invalid tables [drive]: each must give clear lines with the place, the error and the expectation.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -35,7 +35,7 @@ section = 2
 angle_deg = 150
 )";
 
-// The good file with the first `from` replaced.
+// Returns the good file with the first `from` replaced.
 std::string drive_with(const std::string& from, const std::string& to) {
   return replaced(good_drive, from, to);
 }

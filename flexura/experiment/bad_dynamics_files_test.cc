@@ -84,7 +84,7 @@ TEST(BadDynamics, EachIsOneClearLineAtItsPlace) {
   EXPECT_EQ(error_of_file(dynamics_arm() + dynamics_task(angles)), "no error");
 }
 
-// A polynomial that rises to 85 deg and stays there for a while goes beyond; straight lines do not.
+// A polynomial that rises to 85 deg and stays there for a while exceeds it; straight lines do not.
 TEST(BadDynamics, ATargetIsTheCurveThatThePolynomialMakesOfIt) {
   const auto error = [](const std::string& target, const std::string& basis, int nodes) {
     return error_of_file(dynamics_arm() +
@@ -97,7 +97,7 @@ TEST(BadDynamics, ATargetIsTheCurveThatThePolynomialMakesOfIt) {
                   "x.toml:[0-9]+:[0-9]+: task\\[0\\].target: leads, as a polynomial \\(nodes = 4\\), through "
                   "an elevation of [0-9.]+ deg: expected less than 90 deg, where the azimuth is none"));
   EXPECT_EQ(error(angles, "polynomial", 5), "no error");
-  // Bends too.
+  // With bends too.
   const std::string bends = "target.bends = [[0, -1.5], [0, 0], [0, 0]]\n";
   EXPECT_EQ(error(bends, "sections", 3), "no error");
   EXPECT_THAT(error(bends, "polynomial", 4), HasSubstr("task[0].target: leads, as a polynomial (nodes = 4)"));
@@ -109,7 +109,7 @@ TEST(BadDynamics, WholeTurnsOfAzimuthsAreNone) {
     return error_of_file(
         arm + dynamics_task("target.elevations_deg = [0, 0, 0]\ntarget.azimuths_deg = " + azimuths + "\n"));
   };
-  // Of an arm that hangs the base's azimuth is half a turn, either way round.
+  // For an arm that hangs, the base's azimuth is half a turn, in either direction.
   const std::string hanging = replaced(
       dynamics_arm(), "[[arm", "base.rotation = [0.7071067811865476, 0.7071067811865476, 0, 0]\n[[arm");
   for (const char* azimuths : {"[180, 170, 160]", "[-180, -190, -200]", "[540, 550, 560]"})

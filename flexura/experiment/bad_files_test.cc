@@ -1,4 +1,4 @@
-// Bad experiment files: each gets clear lines that say where, what, and what was expected.
+// Invalid experiment files: each must give clear lines with the place, the error and the expectation.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -24,7 +24,7 @@ duration = 2.0
 to.archings_pi = [0.1, 0.2]
 )";
 
-// The good file with the first `from` replaced.
+// Returns the good file with the first `from` replaced.
 std::string file_with(const std::string& from, const std::string& to) {
   return replaced(good_file, from, to);
 }

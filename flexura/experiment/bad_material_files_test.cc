@@ -1,5 +1,5 @@
-// Bad materials, tendons and loads of an arm: each gets clear lines that say where, what, and what was
-// expected.
+// Invalid materials, tendons and loads of an arm: each must give clear lines with the place, the error and
+// the expectation.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -43,7 +43,7 @@ section = 2
 force = [1, 0, 0]
 )";
 
-// The good file with the first `from` replaced.
+// Returns the good file with the first `from` replaced.
 std::string rods_with(const std::string& from, const std::string& to) {
   return replaced(good_rods, from, to);
 }

@@ -135,7 +135,7 @@ TEST(BadServo, PicturesThatComeAfterItIsGivenUp) {
   EXPECT_EQ(late("give_up_after = 100\n", "59"), "");
 }
 
-// What is wrong with a target of two pictures that are this file.
+// Returns the error of a target whose two pictures are this file.
 std::string complaint_of_pictures(const std::string& picture) {
   const TemporaryFolder folder;
   for (const char* name : {"a.pgm", "b.pgm"}) std::ofstream(folder.path() / name) << picture;

@@ -1,4 +1,4 @@
-// What the report shows of a calibration: offsets falling, and both cameras before and after.
+// Tests a calibration in the report: decreasing offsets, and both cameras before and after.
 #include <gtest/gtest.h>
 
 #include <Eigen/Core>
@@ -25,13 +25,13 @@ const Content& content_of(const Chapter& chapter, const std::string& name) {
   return std::get<Content>(found->content);
 }
 
-// The part of a drawing's text between `from` and the next `to`.
+// Returns the part of a drawing's text between `from` and the next `to`.
 std::string part(const Drawing& drawing, const std::string& from, const std::string& to) {
   const std::size_t begin = drawing.body.find(from) + from.size();
   return drawing.body.substr(begin, drawing.body.find(to, begin) - begin);
 }
 
-// The corners of the first line of this class, px of the page.
+// Returns the corners of the first line of this class, px of the page.
 std::vector<Eigen::Vector2d> line_of(const Drawing& drawing, const std::string& css_class) {
   std::size_t at = drawing.body.find("class=\"line " + css_class);
   if (at == std::string::npos) return {};
@@ -68,15 +68,15 @@ TEST(CalibrationChapter, ShowsOffsetsFallingAndBothCamerasBeforeAndAfter) {
     const Drawing& before = content_of<Drawing>(chapter, "calibration-1-" + camera + "-before");
     const Drawing& after = content_of<Drawing>(chapter, "calibration-1-" + camera + "-after");
     EXPECT_NE(part(before, "href=\"", "\""), part(after, "href=\"", "\"")) << "the same picture";
-    // The silhouette is beside the cross in the middle before, and around it after.
+    // Before, the silhouette is beside the cross in the middle; afterwards, around it.
     const double middle_before = middle_column(line_of(before, "s5")),
                  middle_after = middle_column(line_of(after, "s5"));
     EXPECT_GT(std::abs(middle_column(line_of(before, "s2")) - middle_before), 15);
     EXPECT_LT(std::abs(middle_column(line_of(after, "s2")) - middle_after), 2);
-    // Powers of ten: from tens of pixels to what is accepted, or what a head's step leaves.
+    // Powers of ten: from tens of pixels to the accepted offset, or the error that a head's step leaves.
     const auto& offsets = content_of<LineChart>(chapter, "calibration-1-offsets-" + camera);
     EXPECT_EQ(offsets.series.at(0).name, "horizontal orientation (px)");
-    std::vector<double> seen = offsets.series[0].values;  // Where another offset was looked at: no number.
+    std::vector<double> seen = offsets.series[0].values;  // Not a number while another offset was measured.
     std::erase_if(seen, [](double value) { return std::isnan(value); });
     ASSERT_GE(seen.size(), 2U);
     EXPECT_LT(seen.back(), seen.front() - 1);

@@ -45,20 +45,20 @@ TEST(CalibrateTaskFully, BringsTheExamplesWrongCamerasToOrthogonalAxesWithinThei
   const double sigma = number_at(*calibration.find("sigma"), "angle");
   EXPECT_LT(sigma, 0.06 * degree);
   const Node &found = *calibration.find("remainder"), &truth = *calibration.find("remainder_in_truth");
-  // Half a step of each of two heads' axes, and what is not known.
+  // Half a step of each axis of two heads, plus the remaining uncertainty.
   EXPECT_LT(std::abs(number_at(truth, "angle_from_square")), 0.1 * degree);
   EXPECT_LT(std::abs(number_at(truth, "angle_from_square") - number_at(found, "angle_from_square")),
             5 * sigma);
   EXPECT_NEAR(number_at(truth, "zoom_ratio"), 1, 0.01);
-  // The same bytes again.
+  // Equal bytes when repeated.
   (void)run_experiment(load_experiment(file), again.path(), quiet);
   for (const char* name : {"log.mcap", "summary.json", "rig.toml", "report.html"})
     EXPECT_EQ(read_text_file(folder.path() / name, 1U << 30), read_text_file(again.path() / name, 1U << 30))
         << name;
 }
 
-// Rough guesses of which markers are easily taken for others: of where the arm leaves the pictures, or of the
-// first looks, all of one camera's shifted by one.
+// Rough guesses with which markers are easily confused: of where the arm leaves the pictures, or in the first
+// looks, all of one camera's shifted by one.
 TEST(CalibrateTaskFully, IsNotMisledByMarkersThatOnePictureTakesForOthers) {
   for (const std::uint64_t seed : {7000036U, 7000053U}) {
     const testing::ScopedTrace trace(__FILE__, __LINE__, seed);
@@ -78,7 +78,7 @@ TEST(CalibrateTaskFully, IsNotMisledByMarkersThatOnePictureTakesForOthers) {
   }
 }
 
-// From all that a guess may be off by together, focal lengths by a tenth among it.
+// With all errors of a guess together, including focal lengths off by a tenth.
 TEST(CalibrateTaskFully, FindsFocalLengthsThatAreATenthOff) {
   for_random_cases(2, [](TestRandom& random) {
     WrongRig wrong = wrong_rig(random);
@@ -108,7 +108,7 @@ const std::string three_poses =
     "pose = [{ bends = [[0.5, 0], [0.5, 0], [0.5, 0]] }, { bends = [[0, 0.5], [0, 0.5], [0, 0.5]] }, "
     "{ bends = [[-0.6, 0.3], [0.7, 0.1], [0.5, -0.8]] }]\n";
 
-// Where each camera's stage was sent, m.
+// Records the stage commands of each camera, m.
 class StageMoves : public NobodyWatches {
  public:
   void camera_sent(double, const RigStance& stance) override {
@@ -117,7 +117,7 @@ class StageMoves : public NobodyWatches {
   std::array<std::set<double>, 2> places;
 };
 
-// By the cylinder, from starts as the study draws them: principal points and zeros of heads wrong as well.
+// With the cylinder, from random starts of the study: principal points and zeros of heads are wrong as well.
 TEST(CalibrateTaskFully, FindsWrongCamerasBeforeTheCylinder) {
   for (std::size_t start = 0; start < 2; ++start) {
     const CalibrationTrial trial = run_trial("bundle-etalon", 1, start);
@@ -129,7 +129,7 @@ TEST(CalibrateTaskFully, FindsWrongCamerasBeforeTheCylinder) {
   }
 }
 
-// Holds what pictures tell of the cylinder against where it truly is.
+// Compares measurements of the cylinder in pictures with its true position.
 class TruePoints : public NobodyWatches {
  public:
   explicit TruePoints(const Experiment& experiment)
@@ -160,7 +160,7 @@ class TruePoints : public NobodyWatches {
   std::map<EtalonPart, std::vector<double>> off_;
 };
 
-// The second rig stands higher, sees the upper end's face and has its red lines aside.
+// The second rig is higher, sees the upper end's face, and has its red lines off centre.
 TEST(CalibrateTaskFully, SeesTheCylindersPartsWhereTheyAre) {
   for (const double up : {0.0, 0.35}) {
     LoopRig rig;
@@ -205,11 +205,11 @@ TEST(CalibrateTaskFully, StopsWhereTheCylinderIsSeenElsewhereAfterTheMove) {
   EXPECT_FALSE(result.is_done);
   EXPECT_NE(result.reason.find("from where it was foretold after the move"), std::string::npos)
       << result.reason;
-  EXPECT_GT(result.verified[0], 4);  // Half a degree of 800 px is 7.
+  EXPECT_GT(result.verified[0], 4);  // Half a degree at 800 px is 7 px.
   CalibrationBench::expect_back(ports);
 }
 
-// What play leads to hangs on the sides that heads come from: pictures that it spoils are left out.
+// The effect of backlash depends on the side from which heads arrive: affected pictures must be left out.
 TEST(CalibrateTaskFully, EndsDoneOnlyWhereItIsRightWhenHeadsHavePlay) {
   int refused = 0;
   for (const double backlash : {0.2, 0.5, 1.0, 1.4}) {
@@ -231,7 +231,8 @@ TEST(CalibrateTaskFully, EndsDoneOnlyWhereItIsRightWhenHeadsHavePlay) {
   EXPECT_LT(refused, 4);
 }
 
-// Without stages too few places tell a focal length as well as is wanted; it says how well it is known.
+// Without stages, there are too few positions to determine a focal length to the required precision. The
+// result must state its uncertainty.
 TEST(CalibrateTaskFully, KnowsHowWellItKnowsCamerasBeforeTheCylinderWithoutStages) {
   LoopRig rig;
   rig.travel = 0;
@@ -301,7 +302,7 @@ TEST(CalibrateTaskFully, SavesARigBesideWhatIsNone) {
   EXPECT_EQ(read_text_file(folder.path() / "wrong-2.toml", 1 << 20), rig);
 }
 
-// A rig that is found anew leaves the one before under another name, the oldest under the first.
+// A new rig must preserve the previous ones under other names, the oldest with the first number.
 TEST(CalibrateTaskFully, KeepsOlderRigs) {
   const TemporaryFolder folder;
   Quiet quiet;
@@ -324,8 +325,7 @@ TEST(CalibrateTaskFully, KeepsOlderRigs) {
   EXPECT_FALSE(std::filesystem::exists(folder.path() / "rig.toml.new"));
 }
 
-// Play that the file declares is no surprise: stances are doubted by that much, so the angle is known less
-// well.
+// Declared backlash is expected: the axis positions get a prior of that size, so the angle is less certain.
 TEST(CalibrateTaskFully, ExpectsThePlayThatHeadsAreKnownToHave) {
   std::array<double, 2> sigma{};
   for (const bool is_declared : {false, true}) {
@@ -344,7 +344,7 @@ TEST(CalibrateTaskFully, ExpectsThePlayThatHeadsAreKnownToHave) {
   EXPECT_GT(sigma[1], 1.5 * sigma[0]);
 }
 
-// What is known less well than was wanted is told.
+// Results less certain than required must be reported.
 TEST(CalibrateTaskFully, TellsWhatItDoesNotKnowAsWellAsIsWanted) {
   CalibrationBench bench(small_calibration(
       "images = 4\nwanted = { angle_deg = 0.001, focal = 0.5 }\n" + three_poses, wrong_cameras));
@@ -359,7 +359,8 @@ TEST(CalibrateTaskFully, TellsWhatItDoesNotKnowAsWellAsIsWanted) {
   EXPECT_FALSE(tells("focal length"));
 }
 
-// Whites to the left and to the right are there; those above and below are not, and nothing as printed asks.
+// White is visible to the left and to the right, but not above and below, and the printed method does not
+// check that.
 TEST(EtalonPaperLoopFully, IsNotDoneWhereTheBorderCutsTheCylinder) {
   LoopRig rig;
   rig.size = 0.5;
@@ -370,7 +371,7 @@ TEST(EtalonPaperLoopFully, IsNotDoneWhereTheBorderCutsTheCylinder) {
   bench.expect_back();
 }
 
-// From so near that it is cut above and below: no white on either side is no sign of a level camera.
+// From so near that it is cut off above and below: missing white on both sides does not prove a level camera.
 TEST(EtalonPaperLoopFully, StopsWhereTheCylinderIsCutAboveAndBelow) {
   LoopRig rig;
   rig.size = 0.5, rig.wrong[0].shift = {0, 0, -0.88};
@@ -381,8 +382,8 @@ TEST(EtalonPaperLoopFully, StopsWhereTheCylinderIsCutAboveAndBelow) {
   bench.expect_back();
 }
 
-// Starts from which one picture alone takes markers for others: such as then ended degrees off, or saw
-// nothing more of the arm.
+// Starts from which one picture alone confuses markers. Formerly such calibrations ended degrees off, or lost
+// the arm.
 TEST(ArcsLoopFully, IsNotMisledByMarkersThatOnePictureTakesForOthers) {
   for (const std::size_t start : {0U, 20U, 850U}) {
     const testing::ScopedTrace trace(__FILE__, __LINE__, start);

@@ -47,7 +47,7 @@ TEST(CalibrateTask, FindsARigThatIsWrongInEveryWayAndSquaresItsAxes) {
   EXPECT_LT(result.steps.back().sigmas.angle, result.steps.front().sigmas.angle);
 }
 
-// How the cameras of small_calibration truly are but for what `head` says of both.
+// Returns the true cameras of small_calibration with `head` for both.
 std::string both_heads(const std::string& head) {
   return fmt::format(
       "[[truth.camera]]\nname = \"front\"\nhead = {0}\n[[truth.camera]]\nname = \"side\"\nhead = {0}\n",
@@ -99,7 +99,7 @@ TEST(CalibrateTask, StopsWhereTheArmIsOutOfView) {
   bench.expect_back();
 }
 
-// Counts pictures that looked for the arm, and keeps where cameras missed it.
+// Counts pictures of the search for the arm, and records where cameras missed it.
 class SeenLooks : public NobodyWatches {
  public:
   void seen(const RigSight& sight) override {
@@ -110,7 +110,7 @@ class SeenLooks : public NobodyWatches {
   std::vector<ViewCandidate> missed;
 };
 
-// A side camera that truly looks beside the arm, by m at its distance of 2.5 m.
+// Returns a file with a side camera that truly looks beside the arm, by `aside` m at its distance of 2.5 m.
 std::string looking_beside(double aside, const std::string& poses) {
   return small_calibration(
       "images = 6\n" + poses,
@@ -128,7 +128,7 @@ TEST(CalibrateTask, SearchesForAnArmThatItDoesNotSeeAtFirst) {
   EXPECT_LT(std::abs(bench.truth(result.target).angle), 0.01);
 }
 
-// Seen in the first pose, and bent out of view in those that follow.
+// Visible in the first pose, and bent out of view in the following ones.
 TEST(CalibrateTask, SearchesForAnArmThatBendsOutOfViewBeforeAnythingIsKnown) {
   CalibrationBench bench(looking_beside(
       0.8,
@@ -142,7 +142,7 @@ TEST(CalibrateTask, SearchesForAnArmThatBendsOutOfViewBeforeAnythingIsKnown) {
   EXPECT_LT(std::abs(bench.truth(result.target).angle), 0.01);
 }
 
-// The camera's pictures are empty where it zooms in.
+// The camera's pictures are empty when it zooms in.
 TEST(CalibrateTask, DoesNotLookAgainFromWhereACameraSawNothing) {
   CalibrationBench bench(small_calibration("images = 9\n" + three_poses, wrong_cameras));
   RigPorts ports = bench.ports();
@@ -178,8 +178,8 @@ TEST(CalibrateTask, StopsWhereBothCamerasLookFromOneSide) {
   bench.expect_back();
 }
 
-// Stages that travel a little farther leave more between the lines of sight, and the heads would turn away
-// from the arm for the rest.
+// Stages with a little more travel leave a larger angle between the lines of sight. For the rest, the heads
+// would turn away from the arm.
 TEST(CalibrateTask, StopsWhereOrthogonalAxesPassBesideTheArm) {
   std::string text = small_calibration("images = 5\n" + three_poses, "");
   const std::string side = "position = [-2.5, 0.5, 0]", stage = "limits = [-0.5, 0.5]";
@@ -194,7 +194,7 @@ TEST(CalibrateTask, StopsWhereOrthogonalAxesPassBesideTheArm) {
   bench.expect_back();
 }
 
-// One pose, a straight one.
+// One straight pose.
 TEST(CalibrateTask, StopsWhereThePicturesDoNotTellTheAngle) {
   CalibrationBench bench(
       small_calibration("images = 3\npose = [{ bends = [[0, 0], [0, 0], [0, 0]] }]\n", wrong_cameras));
@@ -243,7 +243,7 @@ TEST(CalibrateTask, WaitsForAnotherFrameWhereSomeAreLost) {
   EXPECT_GT(some.rig().clock().now(), all.rig().clock().now());
 }
 
-// Keeps what a watcher is told of the cameras.
+// Records the cameras that a watcher receives.
 class LastCameras : public RunWatcher {
  public:
   void state(double, const ArmState&, std::span<const CameraReading> cameras) override {
@@ -283,7 +283,7 @@ TEST(CalibrateTask, LeavesALogASummaryAReportAndARigToInclude) {
   EXPECT_GE(counts["/camera/front"], 4U);
   EXPECT_NEAR(states.back().time, *result.summary.find("duration")->as<double>(), 1e-6);
 
-  // Those who watch, and the log, have the cameras where they went.
+  // Watcher and log have the cameras' final axis positions.
   ASSERT_EQ(seen.cameras().size(), 2U);
   EXPECT_NE(seen.cameras()[0].head.pan, 0);
   EXPECT_GT(seen.pans().size(), 2U);
@@ -293,7 +293,7 @@ TEST(CalibrateTask, LeavesALogASummaryAReportAndARigToInclude) {
   EXPECT_EQ(std::ranges::adjacent_find(heads, {}, &HeadReadingMessage::time), heads.end())
       << "once for each time";
 
-  // The rig as found is an experiment's arm and cameras, and starts where it was sent.
+  // The calibrated rig is an experiment's arm and cameras, with initial positions where they were sent.
   const Experiment found = load_experiment(result.folder / rig_file_name);
   EXPECT_EQ(found.cameras().size(), 2U);
   EXPECT_NEAR(found.cameras()[0].lens.fx, 424, 12);

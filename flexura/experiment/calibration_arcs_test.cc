@@ -29,7 +29,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-// Tendons at three angles around each section, each on a spool of its own.
+// Tendons at three angles around each section, each on its own spool.
 const char* const tendon_drive =
     "[drive]\nradius_mm = 14\ntendon = [\n"
     "{ section = 1, angle_deg = 0 }, { section = 1, angle_deg = 120 }, { section = 1, angle_deg = 240 },\n"
@@ -48,7 +48,7 @@ TEST(ArcsCalibration, LogsAndReportsItsArcsDriveCommandsAndIdealImages) {
   const auto arcs = logged<CalibrationArcMessage>(result, calibration_arcs_topic);
   const auto commands = logged<DriveCommandsMessage>(result, drive_commands_topic);
   const auto last = logged<CalibrationDecisionMessage>(result, calibration_decisions_topic).back();
-  std::map<std::string, CalibrationSightingMessage> first;  // by camera
+  std::map<std::string, CalibrationSightingMessage> first;  // By camera.
   for (const auto& sighting : logged<CalibrationSightingMessage>(result, calibration_sightings_topic))
     first.emplace(sighting.camera, sighting);
   ASSERT_EQ(arcs.size(), 2U);
@@ -62,10 +62,10 @@ TEST(ArcsCalibration, LogsAndReportsItsArcsDriveCommandsAndIdealImages) {
       EXPECT_NEAR(std::atan2(arc.bends[i][1], arc.bends[i][0]), arc.rotations.at(i), 1e-12);
     }
     EXPECT_NEAR(bend, 2 * std::numbers::pi / 3, 1e-9);
-    // What the motors were truly sent when the camera looked.
+    // The motors' actual commands when the camera took the picture.
     const auto after = std::ranges::upper_bound(commands, sighting.time, {}, &DriveCommandsMessage::time);
     EXPECT_EQ(arc.positions, std::prev(after)->positions) << arc.camera;
-    // The ideal axis lies along the ideal picture's arm, and in the real picture a circle is fitted.
+    // The ideal axis is along the ideal picture's arm, and a circle is fitted in the real picture.
     const Picture ideal =
         read_png(logged<ImageMessage>(result, ideal_image_topic(arc.camera)).front().data.data);
     const auto& picture = std::get<Image<std::uint8_t>>(ideal);
@@ -139,7 +139,7 @@ TEST(ArcsLoop, TakesTheRigForAsWrongAsTheFileSays) {
   }
 }
 
-// Of the distance from what is looked at: the cylinder may stand far from the arm's base.
+// Relative to the distance from the target: the cylinder may be far from the arm's base.
 TEST(EtalonLoop, DoubtsPlacesByTheDistanceFromTheCylinder) {
   const CalibrationBench bench(
       etalon_rig("method = \"bundle-etalon\"\ncamera_prior.position_std = 0.1\n", {}, "height = 0.4\n"));

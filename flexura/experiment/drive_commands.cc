@@ -13,7 +13,7 @@
 namespace flexura {
 namespace {
 
-// Long lists go to the file in pieces, so that they need not fit the memory.
+// Long lists are written in pieces, to limit the memory.
 constexpr std::size_t piece = std::size_t{256} << 10;
 
 }  // namespace

@@ -15,17 +15,17 @@
 
 namespace flexura {
 
-/// The command list of a run: for every step of the clock the position each motor is to reach by then and its
-/// mean step rate on the way, as a table and in the log (docs/results.md). The first row is where the motors
-/// stand when the run starts.
+/// Command list of a run, as a table and in the log (docs/results.md). For every clock step it has each
+/// motor's position at that time and its mean step rate up to there. The first row has the motors' positions
+/// at the start of the run.
 class DriveCommands {
  public:
-  /// Starts the new table `file`; std::system_error when it exists or cannot be written.
+  /// Starts the new table `file`. Throws std::system_error if it exists or cannot be written.
   DriveCommands(Arm arm, Drive drive, const std::filesystem::path& file);
 
-  /// The arm's state that the motors are to reach by `time` s, later than the one before.
+  /// Adds the arm's state that the motors have to reach by `time` s, later than the previous one.
   void step(double time, const ArmState& state, Recorder& recorder);
-  /// The motors' positions after the arm has gone on through these states.
+  /// Returns the motors' positions after the arm's motion through these states.
   [[nodiscard]] std::vector<std::int64_t> positions_after(std::span<const ArmState> way) const;
   /// Completes the table.
   void close();
@@ -36,9 +36,9 @@ class DriveCommands {
   Arm arm_;
   Drive drive_;
   AppendFile file_;
-  CsvText rows_;  // not in the file yet
+  CsvText rows_;  // Not yet in the file.
   double time_ = 0;
-  std::optional<MotorCommander> commander_;  // from the first state on
+  std::optional<MotorCommander> commander_;  // From the first state on.
 };
 
 }  // namespace flexura

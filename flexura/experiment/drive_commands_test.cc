@@ -1,4 +1,4 @@
-// Runs of an arm with a drive: the command list beside the log, and the mechanism that follows it.
+// Runs of an arm with a drive: the command list in addition to the log, and the mechanism that follows it.
 #include "flexura/experiment/drive_commands.h"
 
 #include <gmock/gmock.h>
@@ -102,8 +102,8 @@ TEST_F(LaboratoryArm, FollowsItsCommandsToHalfAMicrostepThroughThePlay) {
   }
 }
 
-// What commands.csv asks of a motor, against its limits: single microsteps in rows too short for one are let
-// pass, and told.
+// Compares the commands of a motor in commands.csv with its limits: single microsteps in rows too short for
+// one are accepted with a caveat.
 ::testing::AssertionResult keeps_to(const std::vector<Row>& rows, std::size_t axis,
                                     const StepperMotor& motor) {
   const double most =
@@ -131,7 +131,7 @@ TEST_F(LaboratoryArm, ASafeListKeepsToTheLimitsOfItsMotors) {
   int safe = 0;
   constexpr int limits = 8;
   for (int k = 0; k < limits; ++k) {
-    // About the fastest row of the list, and by less than one microstep a row from it.
+    // Around the fastest row of the list, less than one microstep per row away from it.
     const double limit = fastest + (k - 0.5 * (limits - 1)) * 0.3 / experiment.clock.step;
     experiment.drive->motor.max_step_rate = limit;
     const RunResult result = run(experiment);

@@ -43,7 +43,7 @@ TEST_F(DynamicArm, SwingsWhenItIsLetGoAndComesToRest) {
   for (std::size_t i = 0; i < energy.size(); ++i) {
     greatest = std::max(greatest, energy[i].kinetic);
     least = std::min(least, side(i)), most = std::max(most, side(i));
-    // The tendons take energy while they are let out, and nothing gives it any afterwards.
+    // The tendons remove energy while they are paid out, and nothing adds any afterwards.
     if (energy[i].time > 0.35) {
       EXPECT_LE(total(energy[i]), total(energy[i - 1]) + 1e-5) << energy[i].time;
     }
@@ -64,7 +64,7 @@ TEST_F(DynamicArm, GraspsAPostAndHoldsOnToIt) {
   ASSERT_FALSE(contacts.empty());
   EXPECT_GT(contacts.front().time, 0.3);
   ASSERT_GE(contacts.back().contacts.size(), 3U);
-  // It lies around the post, which pushes back from the side and from above.
+  // It is bent around the post, which pushes back from the side and from above.
   double left = 0, up = 0;
   for (const ContactMessage& contact : contacts.back().contacts) {
     EXPECT_EQ(contact.with, "post");

@@ -134,7 +134,7 @@ TEST_F(Dynamics, CanBeCancelledBetweenTwoSamples) {
   EXPECT_LT(cancelled.told().back(), 0.2);
 }
 
-// The run ends with the first that fails; what is known of those after it is told.
+// The run ends with the first failed task; known facts about later tasks must be reported.
 TEST_F(Dynamics, TellsWhatIsWrongAfterATaskThatFailsToo) {
   const std::string text =
       dynamics_arm() + dynamics_task("name = \"first\"\nlaw.gravity_compensation = 0.5\n" + bent_target) +

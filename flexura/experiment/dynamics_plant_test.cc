@@ -35,7 +35,7 @@ TEST(DynamicsPlant, IsTheArmItselfInAPlane) {
   for_random_cases(40, [](TestRandom& random) {
     const Arm arm = uneven_arm(random, ArmKind::planar);
     ArmState state = ArmState::straight(arm.sections.size());
-    // More than half a turn a section too, and stretched.
+    // Including more than half a turn per section, and stretch.
     for (Eigen::Vector2d& bend : state.bends) bend.x() = random.uniform(-5, 5);
     for (double& stretch : state.stretches) stretch = random.uniform(0.8, 1.2);
     const bool has_lengths = random.integer(0, 1) == 1;
@@ -47,7 +47,7 @@ TEST(DynamicsPlant, IsTheArmItselfInAPlane) {
       EXPECT_NEAR((back.bends[i] - state.bends[i]).norm(), 0, 1e-9);
       EXPECT_NEAR(back.stretches[i], state.stretches[i], 1e-12);
     }
-    // And its places are those of the arcs.
+    // Its positions must be those of the arcs.
     DistributedArm distributed = plant.distributed();
     distributed.set(plant.start(), Eigen::VectorXd::Zero(plant.start().size()));
     EXPECT_LE((plant.base() + distributed.tip() - Backbone(arm, state).tip().position).norm(), 1e-4);
@@ -87,7 +87,7 @@ TEST(DynamicsPlant, TakesAPolynomialThroughManyNodes) {
   EXPECT_LE((distributed.tip() - Backbone(arm, state).tip().position).norm(), 1e-6);
 }
 
-// An azimuth is an angle: with whole turns more it is the same direction.
+// An azimuth is an angle: additional whole turns are the same direction.
 TEST(DynamicsPlant, TakesNoTurnsForAnotherShape) {
   constexpr double turn = 2 * std::numbers::pi;
   for_random_cases(40, [](TestRandom& random) {
@@ -124,7 +124,7 @@ TEST(AnglesAlongArm, GoOnContinuouslyFromTheBase) {
   EXPECT_NEAR(AnglesAlongArm(arm, {{{0, -1}, {0, 0}}, {1, 1}}).largest_elevation(), 1, 1e-9);
 }
 
-// By nearly half a turn and out of a plane a section is no arc.
+// With nearly half a turn and out of a plane, a section is not an arc.
 TEST(DynamicsPlant, IsToldOfWhereTheCheckJudgesAnotherShape) {
   const auto caveats = [&](int degrees) {
     const std::string file =

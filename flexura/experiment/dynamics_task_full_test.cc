@@ -28,7 +28,8 @@ std::string nine_tendons() {
   return text;
 }
 
-// After a servo it starts wherever that has ended: what the check could not know is told when it is known.
+// After a servo it starts wherever that ended: violations that the check could not know must be reported when
+// known.
 TEST(DynamicsFully, WhatBreaksALimitAfterAServoIsUnsafe) {
   for (const bool is_fast : {true, false}) {
     SCOPED_TRACE(is_fast);

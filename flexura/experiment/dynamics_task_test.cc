@@ -34,7 +34,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::StartsWith;
 
-// Any arm, start, target and gains for which the theory's conditions hold.
+// Random arms, starts, targets and gains that satisfy the theory's conditions.
 std::string random_dynamics_file(TestRandom& random) {
   const bool is_planar = random.integer(0, 2) == 0;
   const int sections = random.integer(1, 3);
@@ -47,7 +47,7 @@ std::string random_dynamics_file(TestRandom& random) {
   };
   std::string text =
       fmt::format("[record]\nreport = false\n[arm]\nkind = \"{}\"\n", is_planar ? "planar" : "spatial");
-  // What a polynomial of few numbers cannot have would be a jump at the start.
+  // Otherwise shapes that a polynomial of few numbers cannot represent would jump at the start.
   const bool has_sections = random.integer(0, 1) == 0;
   if (has_sections) text += "initial." + bends();
   for (int i = 0; i < sections; ++i)
@@ -119,7 +119,7 @@ TEST_F(Dynamics, EachViolatedConditionFailsWithItsReason) {
                   "the damping K is not positive: its least eigenvalue is -0.05",
                   "it gave the arm energy"}}) {
     SCOPED_TRACE(violation.set);
-    // Without the medium's damping, which would take for the law.
+    // Without the medium's damping, which would hide the law's.
     const RunResult result = run(dynamics_arm() + dynamics_task("duration = 0.5\n" + bent_target),
                                  {violation.set, "task.0.damping=0", "record.report=false"});
     EXPECT_EQ(result.outcome, RunOutcome::failed);
@@ -133,8 +133,8 @@ TEST_F(Dynamics, EachViolatedConditionFailsWithItsReason) {
   }
 }
 
-// Finitely many drives give all of the law's force where they move all that moves, and W falls as before;
-// where they do not, the run tells how much was left over.
+// Finitely many drives produce all of the law's force if they move all coordinates, and W decreases as
+// before. Otherwise the run must report the remainder.
 TEST_F(Dynamics, FewDrivesAreAsGoodAsTheyMoveAllThatMoves) {
   const std::string all =
       dynamics_arm() + dynamics_task("duration = 4\nbasis = \"sections\"\n" + bent_target);
@@ -157,7 +157,7 @@ TEST_F(Dynamics, FewDrivesAreAsGoodAsTheyMoveAllThatMoves) {
   }
 }
 
-// W has no q in it then, so the energies tell nothing; what is not led stays where it comes to.
+// W does not contain q then, so the energies reveal nothing; uncontrolled coordinates stay where they end up.
 TEST_F(Dynamics, LeavesAloneWhatNoStiffnessLeads) {
   const RunResult result = run(dynamics_arm() + dynamics_task(bent_target), {"task.0.law.stiffness=[20, 0]"});
   EXPECT_EQ(result.outcome, RunOutcome::failed);
@@ -168,7 +168,7 @@ TEST_F(Dynamics, LeavesAloneWhatNoStiffnessLeads) {
   EXPECT_GT(all.back().elevation_error, 0.1);
 }
 
-// Nothing but rounding is left of W, whatever else comes into play.
+// Only rounding remains of W, whatever other energies there are.
 TEST_F(Dynamics, AnArmAtItsTargetIsThereWithoutWeightToo) {
   for (const char* off : {"0", "1e-8", "-1e-7"}) {
     const std::string target = fmt::format("target.bends = [[0.5, 0], [0.4, 0], [{}, 0]]\n", off);
@@ -180,7 +180,7 @@ TEST_F(Dynamics, AnArmAtItsTargetIsThereWithoutWeightToo) {
   }
 }
 
-// Of weak springs in strong gravity no more may be left than of any others.
+// The accepted final W is relative, also for weak springs in strong gravity.
 TEST_F(Dynamics, IsDoneByItsOwnEnergyAlone) {
   const RunResult result =
       run(dynamics_arm() + dynamics_task("duration = 0.5\nlaw.stiffness = 0.1\n" + bent_target),
@@ -198,7 +198,7 @@ TEST_F(Dynamics, EndsWhereAnAngleIsNone) {
   EXPECT_THAT(result.reasons.back(), HasSubstr("|q| reached 90 deg at "));
   const double end = number(dynamics(result), "duration");
   EXPECT_LT(end, 5);
-  EXPECT_EQ(number(result.summary, "duration"), end);  // What comes after it is not done.
+  EXPECT_EQ(number(result.summary, "duration"), end);  // Later tasks are not done.
   const auto events = logged<EventMessage>(result, events_topic);
   EXPECT_EQ(events[events.size() - 2].level, 4);
   EXPECT_THAT(events[events.size() - 2].message, HasSubstr("|q| reached 90 deg"));
@@ -249,7 +249,7 @@ TEST_F(Dynamics, ReportsDelayAndNoise) {
   EXPECT_FALSE(truth(verdict, "monotone"));
   EXPECT_FALSE(truth(verdict, "balanced"));
   EXPECT_TRUE(truth(verdict, "settled"));
-  // The largest rise from any logged time to a later one.
+  // Largest rise from any logged time to a later one.
   double least = HUGE_VAL, rise = 0;
   for (const DynamicsSampleMessage& sample : samples(result)) {
     least = std::min(least, sample.lyapunov);
@@ -260,14 +260,13 @@ TEST_F(Dynamics, ReportsDelayAndNoise) {
   const std::string page = text_of(result, report_file_name);
   EXPECT_THAT(page, HasSubstr(fmt::format("its largest rise is {:.2g} J", rise)));
   EXPECT_THAT(page, HasSubstr("The law had measured angles"));
-  // Too late is too late.
+  // With a larger delay it must fail.
   const RunResult late = run(text, {"task.0.measurement.delay=0.4", "record.report=false"});
   EXPECT_EQ(late.outcome, RunOutcome::failed);
   EXPECT_GT(number(*dynamics(late).find("verdict"), "largest_rise"), 100 * rise);
 }
 
-// The paper's law as it has it: two plane errors, gravity's compensation and damping, on the arm of the
-// theory.
+// The paper's law: two plane errors, gravity compensation and damping, on the arm of the theory.
 TEST_F(Dynamics, GoesByTheErrorsInTwoImagePlanes) {
   const std::string text =
       dynamics_arm() +
@@ -280,7 +279,7 @@ TEST_F(Dynamics, GoesByTheErrorsInTwoImagePlanes) {
   EXPECT_GT(all.front().spatial_error, 0.2);
   EXPECT_LT(all.back().spatial_error, 2e-3);
   EXPECT_EQ(number(*dynamics(result).find("remaining"), "spatial"), all.back().spatial_error);
-  // It is not the law that reads the angles themselves, and ends where that one does.
+  // It differs from the law that measures the angles themselves, and ends at the same target.
   const RunResult read = run(text, {"task.0.measurement.reading=\"angles\"", "record.report=false"});
   EXPECT_EQ(read.outcome, RunOutcome::done);
   EXPECT_EQ(number(dynamics(read), "triangulated"), 0);
@@ -295,7 +294,7 @@ TEST_F(Dynamics, GoesByTheErrorsInTwoImagePlanes) {
   EXPECT_THAT(text_of(far, report_file_name), HasSubstr("there both pictures were triangulated"));
 }
 
-// Where the arm rises by a radian along its one section and the azimuth is off by half of that, the azimuth's
+// The arm rises by a radian along its one section, and the azimuth is off by half of that. The azimuth's
 // error counts less towards the tip: by sqrt(3 int_0^1 u^2 cos^2 u du).
 TEST_F(Dynamics, AzimuthsCountByTheCosineOfTheElevationInSpace) {
   const std::string task = "[[task]]\nkind = \"dynamics\"\nduration = 6\n";
@@ -312,7 +311,7 @@ TEST_F(Dynamics, AzimuthsCountByTheCosineOfTheElevationInSpace) {
   EXPECT_NEAR(second->spatial_error / second->azimuth_error, share, 1e-3);
 }
 
-// The straight way to the target is free; that of an arm which its weight draws down is not.
+// The straight way to the target is free; that of an arm pulled down by its weight is not.
 TEST_F(Dynamics, ItsTrueMotionIsJudgedBeforeItIsPlayed) {
   const std::string text =
       "[[obstacle]]\nkind = \"plane\"\nname = \"table\"\npoint = [0, 0.6, 0]\nignore_base = 0.65\n" +
@@ -334,7 +333,7 @@ TEST_F(Dynamics, ItsTrueMotionIsJudgedBeforeItIsPlayed) {
   EXPECT_THAT(result.reasons.back(), HasSubstr("gravity"));
 }
 
-// Elasticity draws to a straight arm by itself, and is part of the potential then.
+// Elasticity pulls towards a straight arm by itself, and is then part of the potential.
 TEST_F(Dynamics, MayIgnoreElasticityOnTheWayToAStraightArm) {
   const RunResult result =
       run(replaced(dynamics_arm(), "[[arm", "initial.bends = [[0.5, -0.3], [0.4, 0.2], [0.3, -0.2]]\n[[arm") +

@@ -16,10 +16,10 @@ namespace flexura {
 namespace {
 
 constexpr double max_steps = 1e6;
-// An hour of two cameras at 30 Hz and more; no log should hold so many.
+// An hour of two cameras at 30 Hz and more: limits the size of a log.
 constexpr double max_frames = 250000;
 
-// The nodes of the document's tasks.
+// Returns the nodes of the document's tasks.
 const Node::Array& task_nodes(const Node& document) {
   static const Node::Array none;
   const Node* list = document.find("task");
@@ -27,13 +27,13 @@ const Node::Array& task_nodes(const Node& document) {
   return tasks == nullptr ? none : *tasks;
 }
 
-// The file that a task takes its motion from; null where it names none.
+// Returns the file with a task's motion; null if it names none.
 const Node* file_of(const Node& task) {
   const Node* file = task.find("file");
   return file == nullptr || file->as<std::string>() == nullptr ? nullptr : file;
 }
 
-// The files that tasks of the document take their motions from and that are not there.
+// Returns the problems of missing files with motions of the document's tasks.
 std::vector<Problem> missing_files(const Node& document, const std::filesystem::path& folder) {
   std::vector<Problem> problems;
   const Node::Array& tasks = task_nodes(document);
@@ -49,7 +49,7 @@ std::vector<Problem> missing_files(const Node& document, const std::filesystem::
   return problems;
 }
 
-// A table's member, made where it is missing.
+// Returns a table's member, which it creates if missing.
 Node& made(Node& table, std::string_view key, Node::Value empty) {
   if (Node* found = table.find(key)) return *found;
   auto& members = *table.as<Node::Table>();
@@ -64,7 +64,7 @@ Node entries_of(const std::vector<T>& values) {
   return {std::move(entries), {}};
 }
 
-// The document with the default cameras and screens written out where a truth is to be laid upon them.
+// Returns the document with the default cameras and screens written out if a truth overlays them.
 Node with_defaults_below(const Node& truth, Node document) {
   const auto is_left_out = [](const Node* table, std::string_view key) {
     return table == nullptr || table->find(key) == nullptr;
@@ -86,7 +86,7 @@ Node with_defaults_below(const Node& truth, Node document) {
   return document;
 }
 
-// The document with each table of [truth] completed by what the rest of the file says.
+// Returns the document with each table of [truth] completed by the rest of the file.
 Node with_whole_truth(Node document) {
   Node* truth = document.find("truth");
   if (truth == nullptr || truth->as<Node::Table>() == nullptr) return document;
@@ -104,7 +104,8 @@ void append(std::vector<Problem>& problems, const InputError& error) {
   problems.insert(problems.end(), error.problems().begin(), error.problems().end());
 }
 
-// What the truth has from the rest of the file is wrong there too, and told once.
+// Removes repeated problems: values that the truth inherits from the rest of the file have equal errors
+// there.
 void drop_inherited(std::vector<Problem>& problems) {
   constexpr std::string_view truth = "truth.";
   const std::vector<Problem> all = problems;
@@ -118,7 +119,7 @@ void drop_inherited(std::vector<Problem>& problems) {
   });
 }
 
-// The document's experiment. Whatever is wrong with it is told at once, after the problems there were before.
+// Returns the document's experiment. Throws all its problems at once, after the given ones.
 Experiment read_document(const Node& document, std::vector<Problem> problems) {
   Experiment experiment;
   try {
@@ -131,7 +132,7 @@ Experiment read_document(const Node& document, std::vector<Problem> problems) {
   return experiment;
 }
 
-// The same, with what its tasks' files in `folder` hold.
+// Returns the document's experiment with the content of its tasks' files in `folder`.
 Experiment read_with_files(const Node& document, const std::filesystem::path& folder,
                            std::vector<Problem> problems) {
   std::ranges::move(missing_files(document, folder), std::back_inserter(problems));
@@ -145,7 +146,7 @@ Experiment read_with_files(const Node& document, const std::filesystem::path& fo
   return experiment;
 }
 
-// Where the value at `table`.`key` was written, or the nearest of what it stands in.
+// Returns the place of the value `table`.`key`, or of the nearest enclosing value.
 SourcePosition place_of(const Node& document, std::string_view table, std::string_view key) {
   const Node* outer = document.find(table);
   const Node* inner = outer == nullptr ? nullptr : outer->find(key);
@@ -153,7 +154,7 @@ SourcePosition place_of(const Node& document, std::string_view table, std::strin
   return outer == nullptr ? document.where : outer->where;
 }
 
-// The checks that need every file read; reported at the places in `document`.
+// Makes the checks that need every file; reports them at places in `document`.
 void check_whole(const Experiment& experiment, const Node& document) {
   const double duration = Schedule(experiment).duration();
   const auto refuse = [&](std::string_view table, std::string_view key, const std::string& what) {
@@ -175,7 +176,7 @@ void check_whole(const Experiment& experiment, const Node& document) {
   }
 }
 
-// Puts the value of `set` (path=value) into `document`.
+// Stores the value of `set` (path=value) in `document`.
 void set_value(Node& document, const std::string& set) {
   const std::string source = "--set " + set.substr(0, set.find('\n'));
   const std::size_t equals = set.find('=');

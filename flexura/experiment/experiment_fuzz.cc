@@ -1,5 +1,5 @@
-// Any bytes as an experiment file: an experiment or an InputError, and what is read survives being written
-// and read. First lines that begin with "--set " change what follows, as on the command line.
+// Any bytes as an experiment file must give an experiment or an InputError, and an experiment must survive
+// writing and reading. First lines that begin with "--set " override values, as on the command line.
 #include <cstdint>
 #include <cstdlib>
 #include <string_view>
@@ -15,7 +15,7 @@ namespace {
 
 using namespace flexura;
 
-// Takes the lines of `text` that are no part of the file.
+// Removes the override lines from `text`.
 Overrides take_overrides(std::string_view& text) {
   constexpr std::string_view option = "--set ";
   Overrides overrides;

@@ -17,7 +17,7 @@
 namespace flexura {
 namespace {
 
-// A row a command; before the first pictures came there is nothing to say of the arm.
+// One row per command; before the first pictures, the arm's values are missing.
 TEST(ExportCsv, HasTheErrorsOfAServoOverTime) {
   const TemporaryFolder folder;
   Arm arm;

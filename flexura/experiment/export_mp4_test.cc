@@ -42,7 +42,7 @@ kind = "move"
 to = {{ archings = [0.5] }}
 )";
 
-// Films made by a program called ffmpeg that writes its arguments and its input.
+// Films made by a program named ffmpeg that writes its arguments and its input.
 class ExportMp4 : public ::testing::Test {
  protected:
   void SetUp() override {

@@ -76,7 +76,7 @@ TEST(Filming, DeliversEveryFrameOfEveryCameraInTheOrderOfTime) {
     last = frame.received;
     numbers[camera].push_back(frame.number);
   }
-  // 20 ms late, the frame of 1 s does not come any more.
+  // With a delay of 20 ms, the frame of 1 s does not arrive in time.
   EXPECT_EQ(numbers["front"], (std::vector<std::int64_t>{0, 1, 2, 3, 4, 5, 6, 7, 8, 9}));
   EXPECT_EQ(numbers["side"], (std::vector<std::int64_t>{0, 1, 2, 3, 4}));
   for (const auto& [camera, frame] : film) {
@@ -147,14 +147,14 @@ TEST(Filming, SeesNothingBehindACover) {
       continue;
     }
     const int lightest = *std::ranges::max_element(gray(frame).values());
-    EXPECT_LT(lightest, 10);  // Nothing but its own noise,
-    EXPECT_GT(lightest, 0);   // which it has.
+    EXPECT_LT(lightest, 10);  // Only noise.
+    EXPECT_GT(lightest, 0);   // The noise is present.
     ++dark;
   }
   EXPECT_EQ(dark, 2);
 }
 
-// One camera of 10 Hz, and what its arm does.
+// Returns a file with one camera of 10 Hz, and the arm's tasks.
 std::string one_camera(const std::string& sensor, const std::string& rest) {
   return fmt::format(R"(
 [arm]
@@ -176,7 +176,7 @@ const std::string swing =
 
 TEST(Filming, ARollingShutterShowsEachRowAtItsOwnTime) {
   const Film rolling = film_of(one_camera("readout = \"rolling\", row_time = 0.002", swing));
-  // A camera of 500 Hz has each row's instant in a frame of its own.
+  // A camera of 500 Hz has each row's instant in a separate frame.
   const Film fast =
       film_of(replaced(one_camera("read_noise = 0", swing), "frame_rate = 10", "frame_rate = 500"));
   ASSERT_EQ(rolling.size(), 4U);
@@ -201,7 +201,7 @@ TEST(Filming, ARollingShutterShowsWhatStandsStillAsAnyOther) {
   EXPECT_EQ(*rolling[1].second.picture, *global[1].second.picture);
 }
 
-// The number of values between the arm's and the screen's.
+// Returns the number of values between the arm's and the screen's.
 int blurred_values(const Film& film, std::size_t frame) {
   return static_cast<int>(std::ranges::count_if(
       gray(film[frame].second).values(), [](std::uint8_t value) { return value > 80 && value < 190; }));

@@ -21,12 +21,12 @@ namespace {
 
 double turned_by(double to, double from) { return std::remainder(to - from, 2 * std::numbers::pi); }
 
-// Root mean squares, rad: of what is off from the truth, at the last sights of the carried angles; and of
-// what the turns from picture to picture are off, as the flow has them and as two pictures' angles do.
+// Root mean square errors, rad, in the last observations with carried angles. Angles are compared with the
+// truth; turns from picture to picture are by the flow and by the difference of two pictures' angles.
 struct FlowErrors {
   double measured = 0, carried = 0, turned = 0, differed = 0;
-  double most_measured = 0, most_carried = 0, most_turned = 0;  // The largest of all, rad.
-  int unknown = 0;                                              // Turns that the flow did not tell.
+  double most_measured = 0, most_carried = 0, most_turned = 0;  // Largest of all, rad.
+  int unknown = 0;                                              // Turns that the flow did not give.
 };
 
 class FlowTrial {
@@ -81,7 +81,7 @@ class FlowTrial {
   static std::string file(const std::string& sensor) {
     ServoSetup rig;
     rig.sensor = sensor;
-    // A slow way, so that there are many pictures of an arm that moves.
+    // A slow motion, to have many pictures of a moving arm.
     return servo_file(
         "tolerance = 0.002\nsettle = 1\ncamera_prior = { rotation_std = 0, focal_std = 0 }\n"
         "target = [{ time = 0, bends = [[0.1, 0.0], [0.0, 0.1], [-0.1, 0.0]] },\n"
@@ -119,23 +119,23 @@ TEST(FlowMeasure, DriftsWithoutAnAnchorAndStaysBoundedWithOne) {
         "turns from picture to picture %.5f by flow, %.5f by difference\n",
         sensor, trial.count(), never.measured, never.carried, anchored.carried, at_once.carried, never.turned,
         never.differed);
-    // Carried alone, errors add up; drawn back they stay below what (25) says of the largest ones.
+    // Carried without anchor, errors add up; with an anchor they stay below the bound of (25).
     EXPECT_GT(never.carried, 2 * anchored.carried);
     EXPECT_EQ(anchored.unknown, 0);
     const double left = std::exp(-1 / (30 * 0.1));
     const double bound = left * anchored.most_turned / (1 - left) + anchored.most_measured;
     EXPECT_LT(anchored.most_carried, bound);
     EXPECT_LT(anchored.carried, 0.3 * bound);
-    // At once they are the picture's.
+    // With a zero anchor time they are the picture's.
     EXPECT_NEAR(at_once.most_carried, at_once.most_measured, 1e-9);
-    // What a chord turned is told better by two pictures' angles than by the flow between them; carried
-    // angles are the better ones in pictures that are much noisier than cameras are.
+    // Two pictures' angles give a chord's turn better than the flow between them. Carried angles are better
+    // in pictures with much more noise than cameras have.
     EXPECT_GT(never.turned, never.differed);
     EXPECT_EQ(anchored.carried < at_once.carried, std::string(sensor).starts_with("read_noise = 12"));
   }
 }
 
-// The laws that look at chords come to their shape by carried angles as well.
+// The laws with chords must reach their shape with carried angles as well.
 TEST(FlowMeasure, BringsTheArmToAShape) {
   const ArmState wanted = {{{0.8, 0.3}, {-0.7, 0.9}, {1.0, -0.6}}, {1, 1, 1}};
   for (const char* law : {"chords", "potential"}) {

@@ -1,4 +1,4 @@
-// Servos that learn how an arm answers its drives.
+// Servos that learn the arm's response to its drives.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -15,8 +15,8 @@ const ArmState wanted = {{{0.8, 0.3}, {-0.7, 0.9}, {1.0, -0.6}}, {1, 1, 1}};
 
 class LearningServo : public testing::TestWithParam<std::string> {};
 
-// What is learned of an arm that does what its model says takes nothing from the model: the arm comes as near
-// and as fast, to targets that are a rad and more away in each section too.
+// For an arm that follows its model, learning must not worsen the result. The arm gets as near and as fast,
+// even to targets a rad and more away in each section.
 TEST_P(LearningServo, IsAsGoodAsTheModelWhereThatIsRight) {
   const std::string far = "[[task.target]]\nbends = [[-1.0, 1.1], [1.15, -0.3], [-0.9, -1.1]]\n";
   for (const std::string& target : {servo_target, far}) {
@@ -33,8 +33,7 @@ TEST_P(LearningServo, IsAsGoodAsTheModelWhereThatIsRight) {
   }
 }
 
-// The servo of an arm whose drives are mounted a quarter turn round from where the model has them, and bend
-// it 1.3 times as far.
+// A servo of an arm whose drives are mounted a quarter turn from the model, and bend it 1.3 times as far.
 ServoResult servo_of_turned_arm(ServoBench& bench) {
   RigPorts ports = bench.ports();
   TurnedArm turned(*ports.arm, std::numbers::pi / 2, 1.3);
@@ -58,7 +57,7 @@ TEST_P(LearningServo, SteersAnArmOfWhichTheModelIsWrong) {
 
 INSTANTIATE_TEST_SUITE_P(Both, LearningServo, testing::Values("broyden", "recursive"));
 
-// Which the model's derivatives bring nowhere.
+// With the model's derivatives, the arm does not get anywhere.
 TEST(Servo, IsLostWithAModelThatIsWrong) {
   ServoBench bench(servo_file("timeout = 1\n" + servo_target));
   EXPECT_FALSE(servo_of_turned_arm(bench).is_done);

@@ -1,5 +1,5 @@
-// What stops the paper's loops, each of them, and the bundle before the cylinder: the reason is said, and
-// everything is sent back.
+// Errors that stop each of the paper's loops, and the bundle with the cylinder. The reason must be reported,
+// and everything sent back.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -18,7 +18,7 @@ using ::testing::HasSubstr;
 struct StoppedLoop : testing::TestWithParam<const char*> {
   static bool sees_arm() { return std::string(GetParam()).starts_with("arcs"); }
 
-  // One that is right but for `wrong`, with pictures of half the size.
+  // Returns a rig that is right except for `wrong`, with pictures of half the size.
   static std::string rig(const WrongStart& wrong, const std::string& task = "",
                          const std::string& sensor = "") {
     LoopRig rig;
@@ -57,7 +57,7 @@ TEST_P(StoppedLoop, WhoseHeadDoesNotTurn) {
               HasSubstr("the head of camera front does not follow: pan was sent to"));
 }
 
-// The arm says of itself that it moves, on and on.
+// The arm permanently reports that it moves.
 TEST_P(StoppedLoop, WhoseArmMovesOn) {
   CalibrationBench bench(rig({}));
   RigPorts ports = bench.ports();
@@ -79,7 +79,7 @@ INSTANTIATE_TEST_SUITE_P(OfThePaper, StoppedLoop,
                            return name;
                          });
 
-// By the arm that is seen; four equal lines cannot tell (docs/calibration-paper.md, "etalon").
+// With the arm as target; four equal lines cannot reveal it (docs/calibration-paper.md, "etalon").
 TEST(ArcsLoop, StopsWhereBothCamerasTrulyLookFromOneSide) {
   LoopRig rig = arcs_cameras({});
   rig.wrong[1] = {.pan = 1.41, .shift = {-0.4 - rig.at[1][0], 0, 2.45 - rig.at[1][2]}}, rig.size = 0.5;
@@ -91,7 +91,7 @@ TEST(ArcsLoop, StopsWhereBothCamerasTrulyLookFromOneSide) {
   bench.expect_back();
 }
 
-// They take the next line for their own, a right angle around.
+// They take the next line for their own, at a right angle.
 TEST(EtalonLoop, CannotTellThatACameraStandsARightAngleAround) {
   LoopRig rig;
   rig.wrong[1] = {.pan = 1.41, .shift = {1.1, 0, 1.45}}, rig.size = 0.5;
@@ -133,7 +133,7 @@ TEST(BundleEtalon, StopsWhereTheCylinderTouchesTheBorder) {
                              HasSubstr("camera front does not see all of the cylinder"));
 }
 
-// With the screens that are there when none are named, whose borders come into pictures that are aimed aside.
+// With the default screens, whose borders appear in pictures aimed aside.
 TEST(BundleEtalon, KeepsToWhatTheScreensFill) {
   std::string text = etalon_rig("method = \"bundle-etalon\"\nimages = 6\n", arcs_cameras({}));
   for (std::size_t at = text.find("[[stand.screen]]"); at != std::string::npos;

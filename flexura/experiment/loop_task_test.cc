@@ -21,7 +21,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-// With pictures of half the size, which are quickly drawn.
+// Returns a rig with pictures of half the size, which are rendered fast.
 LoopRig small(const std::array<WrongStart, 2>& wrong, const std::string& sensor = "") {
   LoopRig rig;
   rig.wrong = wrong, rig.size = 0.5, rig.sensor = sensor;
@@ -35,7 +35,7 @@ TEST(EtalonLoop, SquaresTheAxesFromRandomStarts) {
     const LoopResult result = bench.calibrate();
     ASSERT_TRUE(result.is_done) << result.reason;
     const RigRemainder left = bench.truth(result);
-    // Half a step of the head, and what the pictures do not tell.
+    // Half a step of the head, plus the uncertainty of the pictures.
     EXPECT_LT(std::abs(left.angle), 0.1 * degree);
     EXPECT_NEAR(left.angle, *result.angle, 0.07 * degree);
     EXPECT_NEAR(left.zoom_ratio, 1, 0.003);
@@ -60,7 +60,7 @@ TEST(EtalonLoop, SeesPrincipalPointsByZooming) {
   EXPECT_LT((*result.principal_point[1] - Eigen::Vector2d(-8, 6)).norm(), 0.3);
 }
 
-// One that is far off carries the cylinder out of the picture: half of the way is tried then.
+// A distant principal point moves the cylinder out of the picture: half of the zoom is tried then.
 TEST(EtalonLoop, ZoomsLessWhereThePrincipalPointIsFarOff) {
   const LoopRig rig = {.wrong = {WrongStart{.cx = 40, .cy = -40}, WrongStart{}}};
   CalibrationBench bench(etalon_rig("method = \"etalon\"\n", rig));
@@ -99,7 +99,7 @@ TEST(EtalonLoop, StopsWhereBothCamerasLookFromOneSide) {
   LoopRig rig = small({WrongStart{}, WrongStart{}});
   rig.at[1] = {1.5, 0.5, 0.3};
   std::string text = etalon_rig("method = \"etalon\"\n", rig);
-  // Beside the first one, and looking as it does.
+  // Beside the first one, with the same direction.
   for (std::size_t at = text.find("2.5, 0.5, 0.3"); at != std::string::npos; at = text.find("2.5, 0.5, 0.3"))
     text.replace(at, 13, "1.5, 0.5, -10");
   CalibrationBench bench(text);
@@ -162,16 +162,15 @@ TEST(EtalonLoop, LeavesALogASummaryAndAReportTheSameEachTime) {
   EXPECT_EQ(files_in(runs.run(experiment).folder), files_in(result.folder));
 }
 
-// As printed, without a bearing and with cylinders that are equally large, all procedures stop where they
-// should.
+// The printed method has no bearing and needs equally large cylinders; then all procedures must stop where
+// they should.
 TEST(EtalonPaperLoop, CentresTheCylinderWhereNothingElseIsWrong) {
   const WrongStart front{.pan = 0.05, .tilt = -0.03}, side{.pan = -0.04, .tilt = 0.05};
   CalibrationBench bench(etalon_rig("method = \"etalon-paper\"\n", small({front, side})));
   const LoopResult result = bench.calibrate();
   ASSERT_TRUE(result.is_done) << result.reason;
   const RigRemainder left = bench.truth(result);
-  // 3 px of whites to the left less those to the right are 1.5 px, or 0.11 deg, of a camera that turns by
-  // 0.2.
+  // The whites on the left and right differ by 3 px: 1.5 px, or 0.11 deg, for a camera that turns by 0.2.
   EXPECT_LT(std::abs(left.angle), 0.5 * degree);
   for (std::size_t i = 0; i < 2; ++i) EXPECT_LT(left.aim[i].norm(), 0.02);
   EXPECT_FALSE(result.notes.empty());
@@ -207,7 +206,7 @@ TEST(EtalonPaperLoop, StopsWhereTheZoomRunsAway) {
 }
 
 TEST(EtalonPaperLoop, StopsWhereItsStepIsTooLargeToStop) {
-  const WrongStart front{.pan = 0.0436};  // Two steps and a half.
+  const WrongStart front{.pan = 0.0436};  // Two and a half steps.
   CalibrationBench bench(etalon_rig("method = \"etalon-paper\"\nloop.accepted = 1\nloop.turn_deg = 1\n",
                                     small({front, WrongStart{}})));
   const LoopResult result = bench.calibrate();
@@ -229,7 +228,8 @@ TEST(ArcsLoop, SquaresTheAxesFromARandomStart) {
     EXPECT_LT(std::abs(left.angle), 0.1 * degree);
     EXPECT_NEAR(left.angle, *result.angle, 0.1 * degree);
     EXPECT_NEAR(left.zoom_ratio, 1, 0.01);
-    // Both lenses zoom, and tell their principal points; how close zooms come by correlation is told of each.
+    // Both lenses zoom and give their principal points. The precision of zooms by correlation must be
+    // reported for each.
     const auto is_of_zoom = [](const std::string& note) { return note.starts_with("zoom of camera"); };
     EXPECT_EQ(result.notes.size(),
               1U + static_cast<std::size_t>(std::ranges::count_if(result.notes, is_of_zoom)));
@@ -243,7 +243,7 @@ TEST(ArcsLoop, SquaresTheAxesFromARandomStart) {
   });
 }
 
-// A small slip can be made up for by more pictures from where the head stands then.
+// A small slip can be compensated by more pictures from the head's new position.
 TEST(ArcsLoop, EndsDoneOnlyWhereItIsRightWhenAHeadSlips) {
   for (const double slip : {0.8 * degree, 4 * degree}) {
     const LoopRig rig = arcs_cameras({WrongStart{.pan = 0.08}, WrongStart{.tilt = 0.05}});
@@ -263,7 +263,7 @@ TEST(ArcsLoop, EndsDoneOnlyWhereItIsRightWhenAHeadSlips) {
   }
 }
 
-// Zooms that are to be closer than correlation tells are told of, not said to hold.
+// If zooms have to be closer than correlation can measure, this must be reported, and success not claimed.
 TEST(ArcsLoop, TellsWhereZoomsAreNotAsCloseAsIsAccepted) {
   CalibrationBench bench(arcs_rig("method = \"arcs\"\nloop = { zoom_accepted = 1e-9 }\n",
                                   arcs_cameras({WrongStart{.pan = 0.01}, WrongStart{}})));
@@ -295,7 +295,7 @@ TEST(ArcsPaperLoop, StopsAtACircleWhereverItLooksAndSaysWhatThatIsWorth) {
   EXPECT_NEAR(bench.truth(result).zoom_ratio, 1, 0.05);
 }
 
-// What is said of a file, without where.
+// Returns the error of a file, without its place.
 std::string problem_of(const std::string& text) {
   const std::string told = error_of_file(text);
   return told.substr(told.find(": ") + 2);

@@ -21,7 +21,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-// Small cameras around an arm that moves for a second.
+// Returns a file with small cameras around an arm that moves for a second.
 std::string around(const std::vector<std::string>& names, const std::string& task) {
   std::string text = "[arm]\nkind = \"spatial\"\n[[arm.section]]\nlength = 1\n";
   for (std::size_t i = 0; i < names.size(); ++i)
@@ -65,7 +65,7 @@ TEST(CameraCount, ServosAndCalibrationsSayThatTheyNeedTwo) {
         << task;
 }
 
-// Whoever calls without a file.
+// For callers without a file.
 TEST(CameraCount, AtThePortsOfOneCameraNothingIsBegun) {
   ServoBench servo(servo_file(servo_target));
   RigPorts one = servo.ports();
@@ -85,7 +85,7 @@ TEST(CameraCount, AtThePortsOfOneCameraNothingIsBegun) {
                std::invalid_argument);
 }
 
-// A third camera is there beside the servo's two, and has nothing that moves it.
+// A third camera exists beside the servo's two, and has nothing that moves it.
 TEST(CameraCount, AServoByTwoOfThreeCamerasArrives) {
   const std::string third =
       "[[camera]]\nname = \"behind\"\nmount = { position = [0, 0.5, -3], look_at = [0, 0.5, 0] }\n";

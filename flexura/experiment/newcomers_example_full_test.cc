@@ -12,7 +12,7 @@
 namespace flexura {
 namespace {
 
-// Cameras that are wrong are calibrated, then the arm is steered through three shapes and along a way.
+// Wrong cameras are calibrated, then the arm is servoed through three shapes and along a path.
 TEST(NewcomersExample, CalibratesItsCamerasAndReachesItsShapes) {
   const std::filesystem::path file = checkout_file("examples/06_shape_servo/experiment.toml");
   const TemporaryFolder folder;
@@ -23,7 +23,7 @@ TEST(NewcomersExample, CalibratesItsCamerasAndReachesItsShapes) {
   ASSERT_EQ(servos.size(), 3U);
   for (const Node& servo : servos) {
     EXPECT_TRUE(*servo.find("done")->as<bool>());
-    // Of the length, as the simulated truth has it.
+    // Share of the length, by the simulated truth.
     EXPECT_LT(*servo.find("remaining_in_truth")->find("rms")->as<double>(), 0.002);
   }
 }

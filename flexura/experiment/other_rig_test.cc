@@ -1,4 +1,4 @@
-// Experiments on a rig that somebody else made: the player and the tasks know its interface alone.
+// Experiments on a rig with another implementation: the player and the tasks use only its interface.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -20,7 +20,7 @@ using ::testing::Contains;
 using ::testing::Key;
 using ::testing::Not;
 
-// Equipment as far as a run can tell: what is true of it nobody says.
+// Like real equipment: a rig without a known truth.
 class SilentRig : public Rig {
  public:
   SilentRig(const Setup& setup, int& passes) : rig_(simulated_rig(setup)), passes_(passes) {}
@@ -67,7 +67,7 @@ TEST(OtherRig, DoesATaskOfWhichNobodyKnowsTheTruth) {
   EXPECT_EQ(servo.find("remaining_in_truth"), nullptr);
 }
 
-// What would harm it is looked at without it.
+// Harmful motions must be checked without moving it.
 TEST(OtherRig, DoesNotMoveWhereTheMotionIsUnsafe) {
   const std::string unsafe = "[[task]]\nkind = \"move\"\nto = { bends = [[3, 0], [0, 0], [0, 0]] }\n";
   for (const bool has_servo : {false, true}) {
@@ -82,7 +82,7 @@ TEST(OtherRig, DoesNotMoveWhereTheMotionIsUnsafe) {
     EXPECT_EQ(result.outcome, RunOutcome::unsafe);
     EXPECT_EQ(passes, 0);
     EXPECT_EQ(logged_counts(result).count(std::string(arm_reading_topic)), 0U);
-    // A simulated one shows what would happen.
+    // A simulated rig shows what would happen.
     TemporaryFolder other;
     EXPECT_EQ(run_experiment(parse_experiment(text, "x.toml"), other.path(), quiet).outcome,
               RunOutcome::unsafe);

@@ -1,4 +1,4 @@
-// Tasks at rigs whose devices have clocks of their own, which are a thousand seconds apart and drift.
+// Tasks with devices that have their own clocks, a thousand seconds apart and with drift.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -32,7 +32,8 @@ TEST(OwnClocks, AServoGoesAsByTheRigsClock) {
   EXPECT_NEAR(bench.truth(target).rms, plain.truth(target).rms, 5e-4);
   EXPECT_NEAR(*result.settled, *wanted.settled, 0.1);
   EXPECT_EQ(result.missed_steps, 0);
-  // A picture's time is where the arm then was: an error of it would be one of the estimate on the way.
+  // A picture's time determines the arm's position: an error of it would be an error of the estimate in
+  // motion.
   for (const ServoStep& step : result.steps) {
     if (!step.seen_at) continue;
     const double frame = 30 * (*step.seen_at - 0.001);

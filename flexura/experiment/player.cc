@@ -11,13 +11,12 @@
 namespace flexura {
 namespace {
 
-constexpr double same_time = 1e-9;  // s
+constexpr double same_time = 1e-9;  // In s.
 
-// What is told of work between two steps of a run: how far that is, in words, for nothing is played
-// meanwhile.
+// Progress of work between two steps of a run, in words, because nothing is played meanwhile.
 class Aside : public Progress {
  public:
-  // `played`: how far the run is, of 1.
+  // `played`: progress of the run, up to 1.
   Aside(Progress& run, double played, std::string_view verb) : run_(run), played_(played), verb_(verb) {}
   void update(double fraction, std::string_view what) override {
     run_.update(played_, fmt::format("{} {}, {:.0f} %", verb_, what, 100 * fraction));
@@ -46,7 +45,7 @@ Player::Player(const Experiment& experiment, Witness& witness, Progress& progres
   for (const auto& task : tasks_)
     if (task->way() == TaskWay::simulated) telling_.push_back(task.get());
   const auto is_by_rig = [](const auto& task) { return task->way() == TaskWay::by_rig; };
-  // Where an arm comes that is not what is believed is known of its rig alone.
+  // Only the rig gives the motion of an arm that differs from the model.
   const bool is_other = experiment.true_rig().arm.mechanics != ArmMechanics::kinematic ||
                         (experiment.truth && experiment.truth->arm);
   if (experiment.record.cameras || is_other || std::ranges::any_of(tasks_, is_by_rig))
@@ -56,7 +55,7 @@ Player::Player(const Experiment& experiment, Witness& witness, Progress& progres
   plan(0);
 }
 
-// With what tasks do that are simulated and begin where it is known.
+// Includes simulated tasks with a known start.
 Schedule Player::scheduled(double played) {
   Aside progress(progress_, played, "simulating");
   if (auto ended = simulate_tasks(experiment_, tasks_, done_, progress)) ended_by_ = std::move(ended);
@@ -68,8 +67,7 @@ SafetyReport Player::judged() {
   return checked(schedule_, tasks_, ended_by_, &progress);
 }
 
-// What is to be told from that time on; violations and the starts of tasks at one time in this order of
-// tasks.
+// Plans the events from that time on. Violations and starts of tasks at one time are in this order.
 void Player::plan(double from) {
   witness_.expect(schedule_.steps());
   events_.clear();
@@ -117,7 +115,7 @@ Played Player::play() {
   return played_;
 }
 
-// What is unsafe is looked at by simulation alone.
+// Unsafe motions are only simulated.
 bool Player::is_rig_played() const { return rig_ && (safety_.is_safe() || rig_->is_simulated()); }
 
 void Player::play_to(double time, const ArmState& state) {
@@ -151,7 +149,7 @@ void Player::tell_watcher(double time, const ArmState& state) {
                   is_rig_played() ? camera_readings(rig_->ports(), optics_) : std::vector<CameraReading>());
   RigTruth* truth = is_rig_played() ? rig_->truth() : nullptr;
   if (truth == nullptr || !watcher_->wants_truth()) return;
-  // While a task waits for the rig, several steps of the clock are at one time of the rig's.
+  // While a task waits for the rig, several clock steps have one time of the rig.
   const double now = rig_->ports().clock->now();
   watcher_->truth(time, {.backbone = truth->backbone(now),
                          .pulled = truth->pulled(now),
@@ -165,7 +163,7 @@ void Player::tell_tasks(double time) {
   for (TaskRunner* task : telling_) task->tell_up_to(time, witness_.log());
 }
 
-// Whether the simulated task with which the run ends is over.
+// Returns true if the simulated task that ends the run is over.
 bool Player::ends_with_simulated(double time) {
   if (!ended_by_) return false;
   const Leg leg = schedule_.legs()[ended_by_->task];
@@ -175,7 +173,7 @@ bool Player::ends_with_simulated(double time) {
   return true;
 }
 
-// The run ends here: with the state at the end, which belongs to no step.
+// Ends the run with the state at the task's end, which belongs to no step.
 void Player::stop_after(const Leg& leg, const std::string& failure) {
   played_ = {step_, leg.end(), leg.motion->at(leg.motion->duration()), progress_.is_cancelled(), failure};
   witness_.expect(step_);
@@ -184,7 +182,7 @@ void Player::stop_after(const Leg& leg, const std::string& failure) {
   if (is_rig_played()) witness_.readings(*rig_);
 }
 
-// The task for the rig that begins at `time` or before, if it was not done yet and may be done.
+// Returns the task for the rig that begins at `time` or before, if it is not done and permitted.
 std::optional<std::size_t> Player::rig_task_due(double time) const {
   if (!rig_ || !safety_.is_safe()) return std::nullopt;
   for (std::size_t i = 0; i < tasks_.size(); ++i) {
@@ -194,14 +192,14 @@ std::optional<std::size_t> Player::rig_task_due(double time) const {
   return std::nullopt;
 }
 
-// Whether the run goes on after it.
+// Returns true if the run continues after it.
 bool Player::perform(std::size_t task) {
   const Leg leg = schedule_.legs()[task];
   tell_up_to(leg.start);
   const ArmState from = leg.motion->at(0);
   play_to(leg.start, from);
   const RecordSteps record_steps = [this](double until, const std::function<ArmState(double)>& state_at) {
-    // A step at the end is the next task's.
+    // A step at the end belongs to the next task.
     for (double time = experiment_.clock.step * static_cast<double>(step_); time < until - same_time;
          time = experiment_.clock.step * static_cast<double>(step_))
       step(time, state_at(time));

@@ -16,31 +16,31 @@
 
 namespace flexura {
 
-/// How far a run came.
+/// Progress of a run.
 struct Played {
-  std::size_t states = 0;  ///< Of the clock's steps, from time 0.
+  std::size_t states = 0;  ///< Number of clock steps, from time 0.
   double time = 0;         ///< Of the last one, s.
   ArmState last;
   bool is_cancelled = false;
-  std::string failure;  ///< Why a task stopped and the run with it; "": none did.
+  std::string failure;  ///< Why a task failed and ended the run, or "".
 };
 
-/// Plays an experiment's schedule, step by step, before the eyes of a witness.
+/// Plays an experiment's schedule step by step, and records it with a Witness.
 class Player {
  public:
-  /// Nothing that is unsafe is done by rigs: then tasks that they would do are only gone through, and none
-  /// but a simulated one moves. `make_rig` is asked for a rig where cameras are recorded, a task is done by
-  /// one, or the true arm is another than the believed one.
+  /// A rig does nothing unsafe: its tasks are then only stepped through, and only a simulated rig moves.
+  /// `make_rig` is called if cameras are recorded, a task needs a rig, or the true arm differs from the
+  /// model.
   Player(const Experiment& experiment, Witness& witness, Progress& progress, RunWatcher* watcher,
          const RigFactory& make_rig);
 
   [[nodiscard]] const Schedule& schedule() const { return schedule_; }
   [[nodiscard]] const SafetyReport& safety() const { return safety_; }
-  /// With what came of each.
+  /// Returns the tasks with their results.
   [[nodiscard]] const TaskRunners& tasks() const { return tasks_; }
 
-  /// Plays every step, or those before the first state that no arm can take, or until the run ends with a
-  /// task or it is cancelled.
+  /// Plays every step, or those before the first impossible state, or until the run ends with a task or is
+  /// cancelled.
   Played play();
 
  private:
@@ -68,16 +68,16 @@ class Player {
   Progress& progress_;
   RunWatcher* watcher_;
   TaskRunners tasks_;
-  std::vector<TaskRunner*> telling_;  // Of these: who tells the log on the way.
+  std::vector<TaskRunner*> telling_;  // Those of tasks_ that log during the run.
   DoneTasks done_;
   std::optional<EndedBy> ended_by_;  // A simulated task.
   Schedule schedule_;
   SafetyReport safety_;
-  std::unique_ptr<Rig> rig_;    // Null where none plays.
-  std::vector<Camera> optics_;  // Its cameras, as they are believed to be.
-  std::vector<Event> events_;   // Still to be told, in the order of time.
+  std::unique_ptr<Rig> rig_;    // Null if no rig plays.
+  std::vector<Camera> optics_;  // Camera models.
+  std::vector<Event> events_;   // Pending, in the order of time.
   BelievedRig believed_;
-  std::size_t step_ = 0;  // The next one.
+  std::size_t step_ = 0;  // Next step.
   Played played_;
 };
 

@@ -29,7 +29,7 @@ ReportData::Safety shown_safety(const SafetyReport& safety) {
 
 void add_state(double time, const Schedule& schedule, ReportData& data) {
   const auto next = std::ranges::lower_bound(data.times, time);
-  constexpr double same = 1e-9;  // s: nobody tells such times apart
+  constexpr double same = 1e-9;  // In s: smaller differences are irrelevant.
   const bool is_there = next != data.times.begin() && time - *(next - 1) <= same;
   if (is_there || next == data.times.end() || *next - time <= same) return;
   ArmState state = schedule.state_at(time);
@@ -40,12 +40,12 @@ void add_state(double time, const Schedule& schedule, ReportData& data) {
 
 void add_safety(const SafetyReport& safety, const Schedule& schedule, ReportData& data) {
   data.safety = shown_safety(safety);
-  SafetyReport worst;  // One of each group: what comes again and again looks the same each time.
+  SafetyReport worst;  // One of each group: repeated violations look alike.
   for (const ViolationGroup& group : grouped(safety))
     worst.violations.push_back(safety.violations[group.worst]);
   for (const std::size_t i : most_telling(worst, max_pictured_violations)) {
     const double when = worst.violations[i].worst_time;
-    // What else is at its worst then stands in the same picture.
+    // Other violations with their worst value at that time are in the same picture.
     for (std::size_t k = 0; k < safety.violations.size(); ++k) {
       if (safety.violations[k].worst_time == when) data.safety->violations[k].pictured_at = when;
     }

@@ -8,16 +8,16 @@
 
 namespace flexura {
 
-/// At most so many violations are drawn in pictures of their own.
+/// Most violations with separate pictures.
 inline constexpr std::size_t max_pictured_violations = 4;
 
-/// Adds the schedule's state at `time` to a report whose times and states are there, where none is of that
-/// time: between the steps of the clock and of the log, too. Nothing beyond the last of them, and nothing
-/// that is not possible.
+/// Adds the schedule's state at `time` to a report with times and states, unless it has one at that time. The
+/// time may be between the steps of the clock and of the log. Adds nothing beyond the last of them, and no
+/// impossible state.
 void add_state(double time, const Schedule& schedule, ReportData& data);
 
-/// Adds what the check found to a report whose times and states are there, and the states of the schedule at
-/// the worst moments of those violations that tell most, one of each group, as far as the run came.
+/// Adds the result of the check to a report with times and states. Also adds the schedule's states at the
+/// worst moments of the most informative violations, one of each group, as far as the run got.
 void add_safety(const SafetyReport& safety, const Schedule& schedule, ReportData& data);
 
 }  // namespace flexura

@@ -45,7 +45,7 @@ Node task_nodes(const Experiment& experiment, const ArmModel& arm, const Schedul
   return {std::move(tasks), {}};
 }
 
-// Each camera, what it gave, and how it is turned about its optical axis: a head cannot correct that.
+// Returns each camera with its frames and its roll about the optical axis, which a head cannot correct.
 Node camera_nodes(const std::vector<CameraConfig>& cameras,
                   const std::map<std::string, std::int64_t>& frames) {
   Node::Array list;
@@ -86,7 +86,7 @@ Node summary_of(const Experiment& experiment, const ArmModel& arm, const Player&
 
 bool has_failed(const Played& played) { return !played.failure.empty() && !played.is_cancelled; }
 
-// The outcome of a run that did not come to its end, and the reason.
+// Sets the outcome of a run that did not finish, and the reason.
 void conclude(const Played& played, RunResult& result) {
   if (has_failed(played)) result.outcome = RunOutcome::failed, result.reasons.push_back(played.failure);
   if (!played.is_cancelled) return;
@@ -94,7 +94,7 @@ void conclude(const Played& played, RunResult& result) {
   result.reasons.insert(result.reasons.begin(), fmt::format("it was told to stop at {:.6g} s", played.time));
 }
 
-// Of each kind of task what came of those of it, in the order of the kinds.
+// Adds the results of the tasks, kind by kind, in the order of the kinds.
 void add_results(const Experiment& experiment, const TaskRunners& tasks, Node::Table& summary) {
   for (std::size_t kind = 0; kind < std::variant_size_v<TaskConfig>; ++kind) {
     Node::Array list;
@@ -108,7 +108,7 @@ void add_results(const Experiment& experiment, const TaskRunners& tasks, Node::T
   }
 }
 
-// In the order of the tasks.
+// Adds the chapters in the order of the tasks.
 void add_chapters(const Experiment& experiment, const TaskRunners& tasks, std::vector<Chapter>& chapters) {
   std::map<std::size_t, std::size_t> of_kind;
   for (std::size_t i = 0; i < tasks.size(); ++i) {
@@ -159,11 +159,11 @@ RunResult run_experiment(const Experiment& as_read, const std::filesystem::path&
   result.reasons = violation_lines(player.safety());
   const bool is_safe = player.safety().is_safe();
   if (!is_safe) result.outcome = RunOutcome::unsafe;
-  // Nobody should send motors where the arm would come to harm: an unsafe motion is simulated only.
+  // No motor commands for harmful motions: an unsafe motion is only simulated.
   if (experiment.drive && is_safe)
     witness.write_commands(experiment.drive->drive(), folder / commands_file_name);
   const Played played = player.play();
-  // What came of a task that decides on the way may lead elsewhere than what was looked at first.
+  // A task that decides its motion during the run may differ from the first check.
   const bool became_unsafe = is_safe && !player.safety().is_safe() && !has_failed(played);
   if (became_unsafe) result.outcome = RunOutcome::unsafe, result.reasons = violation_lines(player.safety());
   conclude(played, result);

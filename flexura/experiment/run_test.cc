@@ -87,7 +87,7 @@ TEST_F(Run, PassesThroughThePapersIntermediatePoses) {
   }
 }
 
-// Ends a run early, and keeps what it has seen.
+// Ends a run early, and keeps what it received.
 class CancelAfter : public Progress, public RunWatcher {
  public:
   explicit CancelAfter(std::size_t states) : most_(states) {}

@@ -15,7 +15,7 @@ namespace {
 
 Node section_node(std::size_t section) { return {static_cast<std::int64_t>(section) + 1, {}}; }
 
-// What a violation's name is the name of.
+// Returns the key of a violation's name.
 const char* name_key(Hazard hazard) {
   if (hazard == Hazard::obstacle) return "obstacle";
   const bool is_of_task =
@@ -23,7 +23,7 @@ const char* name_key(Hazard hazard) {
   return is_of_task ? "task" : "axis";
 }
 
-// `text` is what is said of it, or of all of its kind.
+// `text` describes the violation, or all of its kind.
 Node::Table violation_table(const Violation& violation, const std::string& text) {
   Node::Table table{{"hazard", {}, {std::string(name_of(violation.hazard)), {}}},
                     {"start", {}, {violation.start, {}}},
@@ -42,7 +42,7 @@ Node::Table violation_table(const Violation& violation, const std::string& text)
   return table;
 }
 
-// Its worst violation, with the times and the number of all.
+// Returns its worst violation, with the times and the number of all.
 Node group_node(const SafetyReport& report, const ViolationGroup& group) {
   Violation all = report.violations[group.worst];
   all.start = report.violations[group.members.front()].start;

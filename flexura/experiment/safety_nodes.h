@@ -7,11 +7,11 @@
 
 namespace flexura {
 
-/// At most so many violations are listed one by one, though the first and the worst of every group are.
+/// Most violations listed individually; the first and the worst of every group are always listed.
 inline constexpr std::size_t max_listed_violations = 500;
 
-/// What a check found, as `flexura check --json` prints it: "safe", "violation_count", and the lists
-/// "groups", "violations", "caveats" and "notes" (docs/safety.md). Sections count from 1 as in texts.
+/// Returns the result of a check, as `flexura check --json` prints it: "safe", "violation_count", and the
+/// lists "groups", "violations", "caveats" and "notes" (docs/safety.md). Sections count from 1 as in texts.
 [[nodiscard]] Node safety_node(const SafetyReport& report);
 
 }  // namespace flexura

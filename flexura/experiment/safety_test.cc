@@ -1,4 +1,4 @@
-// What files say about safety: obstacles, targets of the tip, limits of motors; and what a check answers.
+// Safety in files: obstacles, targets of the tip, limits of motors; and results of checks.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -155,7 +155,7 @@ TEST(Report, ShowsWhatIsMissedAndTheSectionThatAMotorBends) {
 }
 
 TEST(Report, PicturesWhatComesAgainAndAgainOnce) {
-  // Four swings beyond the limit of section 1, the third of which is the widest, and one of section 2's.
+  // Four swings beyond the limit of section 1, the third of which is the widest, and one of section 2.
   Experiment experiment = parse(
       "[[task]]\nkind = 'keyframes'\ncolumns = ['time', 'bend_x_1', 'bend_y_1', 'bend_x_2', 'bend_y_2']\n"
       "rows = [[0, 0, 0, 0, 0], [1, 1.2, 0, 0, 0], [2, 0, 0, 0, 0], [3, 1.3, 0, 0, 0], [4, 0, 0, 0, 0], "

@@ -10,7 +10,7 @@
 #include "tests/support/checkout.h"
 #include "tests/support/runs.h"
 
-// The example whose true arm is three elastic rods under their weight, of which tasks believe arcs.
+// The example whose true arm is three elastic rods under their weight, with arcs as the tasks' model.
 namespace flexura {
 namespace {
 
@@ -31,7 +31,7 @@ TEST_F(SaggingArmExample, IsCalibratedAndSteeredIntoBothShapes) {
     EXPECT_LT(number_in(summary, "remaining_in_truth", "rms"), 0.01);
     EXPECT_GT(number_in(summary, "remaining_in_truth", "rms"), number_in(summary, "remaining", "rms") / 4);
   }
-  // It sags: the rod's tip is centimetres from that of the arcs that were sent.
+  // It sags: the rod's tip is centimetres from that of the commanded arcs.
   const auto truth = logged<PosesMessage>(result, arm_truth_topic);
   const auto sent = logged<PosesMessage>(result, arm_poses_topic);
   const VectorMessage is = truth.back().poses.back().position, was = sent.back().poses.back().position;

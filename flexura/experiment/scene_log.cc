@@ -14,9 +14,9 @@
 namespace flexura {
 namespace {
 
-constexpr double flat = 0.001;  // m: how thick what is flat is drawn
+constexpr double flat = 0.001;  // Drawn thickness of flat objects, m.
 
-// To the micrometre: texts of numbers as short as a drawing needs.
+// Rounds to the micrometre: texts of numbers as short as a drawing needs.
 double rounded(double metres) { return std::round(metres * 1e6) / 1e6 + 0.0; }
 
 VectorMessage point_message(const Eigen::Vector3d& p) {
@@ -25,7 +25,7 @@ VectorMessage point_message(const Eigen::Vector3d& p) {
 
 ColorMessage color_message(const Color& color) { return {color.x(), color.y(), color.z(), 1}; }
 
-// A pose in `p` whose z has this direction.
+// Returns a pose in `p` whose z has this direction.
 Pose along(const Eigen::Vector3d& p, const Eigen::Vector3d& z) { return {rotation_from_z(z), p}; }
 
 EntityMessage entity(const std::string& id, double time) {
@@ -93,9 +93,9 @@ FrameMessage frame(const std::string& name, const Pose& X_WF) {
   return message;
 }
 
-// Points along an arc after its start, so near to each other that a strip through them looks like it.
+// Adds points along an arc after its start, dense enough for a strip through them to look like it.
 void add_points(const Arc& arc, std::vector<VectorMessage>& points) {
-  constexpr double largest_turn = 0.2, most = 64;  // rad
+  constexpr double largest_turn = 0.2, most = 64;  // rad.
   const auto pieces = static_cast<int>(std::clamp(std::ceil(arc.bend.norm() / largest_turn), 1.0, most));
   for (int i = 1; i <= pieces; ++i)
     points.push_back(point_message(arc.pose(arc.length * i / pieces).position));
@@ -129,7 +129,7 @@ FramesMessage frames_message(const Experiment& experiment) {
 
 SceneMessage arm_message(const ColorConfig& color, double time, const Backbone& backbone) {
   EntityMessage drawn = entity("arm", time);
-  const std::array<double, 2>* radius = nullptr;  // Of the line that is drawn.
+  const std::array<double, 2>* radius = nullptr;  // Of the line being drawn.
   for (const Arc& arc : backbone.arcs()) {
     if (radius == nullptr || arc.radius != *radius) {
       LineMessage line;
@@ -145,7 +145,7 @@ SceneMessage arm_message(const ColorConfig& color, double time, const Backbone& 
 }
 
 bool SceneTimes::is_next(double time) {
-  constexpr double interval = 0.1, rounding = 1e-9;  // s
+  constexpr double interval = 0.1, rounding = 1e-9;  // In s.
   if (last_ && time < *last_ + interval - rounding) return false;
   last_ = time;
   return true;

@@ -9,19 +9,19 @@
 
 namespace flexura {
 
-/// What stands around the arm at the start of a run: screens, etalon, obstacles.
+/// Returns the objects around the arm at the start of a run: screens, etalon, obstacles.
 [[nodiscard]] SceneMessage stand_message(const Experiment& experiment);
 
-/// Where the arm's base ("base") and the cameras' optical frames ("camera/NAME") stand at the start.
+/// Returns the poses of the arm's base ("base") and the cameras' optical frames ("camera/NAME") at the start.
 [[nodiscard]] FramesMessage frames_message(const Experiment& experiment);
 
-/// The arm along `backbone`: strips as thick as its sections are on average, in micrometres.
+/// Returns the arm along `backbone`: strips with the mean thickness of its sections, in micrometres.
 [[nodiscard]] SceneMessage arm_message(const ColorConfig& color, double time, const Backbone& backbone);
 
-/// Which states have the arm drawn: the first, and then ten a second of simulated time.
+/// Selects the states with a drawing of the arm: the first, and then ten per second of simulated time.
 class SceneTimes {
  public:
-  /// Whether a state at `time` s, after all that were asked for before, is one.
+  /// Returns true if a state at `time` s, after those of all previous calls, is selected.
   [[nodiscard]] bool is_next(double time);
 
  private:

@@ -1,4 +1,4 @@
-// A run's log read by @mcap/core, a program of others (tests/node).
+// A run's log read by @mcap/core, an independent program (tests/node).
 #include <gtest/gtest.h>
 
 #include <cstdio>

@@ -43,12 +43,12 @@ Schedule::Schedule(const Experiment& experiment, const TaskRunners& tasks, const
     for (const MissedTarget& missed : plan.missed) add_missed(missed);
   }
   if (legs_.empty()) legs_.push_back({"start", "hold", 0.0, hold_motion(initial_, 0.0)});
-  // A duration of a whole number of steps, but for rounding, takes just that many.
+  // A duration of a whole number of steps, up to rounding, takes exactly that many.
   constexpr double rounding = 1e-9;
   steps_ = static_cast<std::size_t>(std::max(0.0, std::ceil(duration_ / step_ - rounding)));
 }
 
-// Of the last task.
+// For the last task.
 void Schedule::add_missed(const MissedTarget& missed) {
   const Leg& leg = legs_.back();
   missed_targets_.push_back({.hazard = Hazard::workspace,

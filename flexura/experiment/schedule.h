@@ -21,50 +21,51 @@ class Rig;
 class TaskRunner;
 struct MissedTarget;
 
-/// One task, placed in time.
+/// A task with its time.
 struct Leg {
-  std::string name;         ///< The task's; its kind where it has none (task_name).
+  std::string name;         ///< Name of the task, or its kind (task_name).
   std::string kind;         ///< "move", ...
-  double start = 0;         ///< s
+  double start = 0;         ///< In s.
   MotionPtr motion;         ///< Never null; its times count from `start`.
-  bool is_steered = false;  ///< By sight: a limiter decides on the way what is sent.
-  bool is_foreseen = true;  ///< What it does is known; a servo's way is only once it has been done.
+  bool is_steered = false;  ///< By cameras: a limiter decides the commands during the run.
+  bool is_foreseen = true;  ///< The motion is known before the run; a servo's only afterwards.
 
-  [[nodiscard]] double end() const { return start + motion->duration(); }  ///< s
+  [[nodiscard]] double end() const { return start + motion->duration(); }  ///< In s.
 };
 
 using TaskRunners = std::vector<std::unique_ptr<TaskRunner>>;
-/// The runners of an experiment's tasks, in their order. The experiment outlives them.
+/// Returns the runners of an experiment's tasks, in their order. The experiment must outlive them.
 [[nodiscard]] TaskRunners task_runners(const Experiment& experiment);
 
-/// What tasks did whose motion is decided on the way or simulated before (TaskWay), by their numbers.
+/// Motions of completed tasks that are decided during the run or simulated before (TaskWay), by their
+/// numbers.
 using DoneTasks = std::map<std::size_t, MotionPtr>;
 
-/// What an experiment is going to do: the arm's state at every time, known before anything moves.
+/// Planned motion of an experiment: the arm's state at every time, known before anything moves.
 class Schedule {
  public:
-  /// Before anything was done: tasks are taken to do everything that they may.
+  /// Schedule before the run: tasks have their largest possible motion.
   explicit Schedule(const Experiment& experiment);
-  /// `tasks` are its runners; those that are not among the `done` ones are taken to do everything that they
-  /// may.
+  /// `tasks` are its runners; those that are not in `done` have their largest possible motion.
   Schedule(const Experiment& experiment, const TaskRunners& tasks, const DoneTasks& done);
 
-  /// At least one: without tasks, a hold of no duration.
+  /// Returns the legs, at least one: without tasks, a hold of no duration.
   [[nodiscard]] const std::vector<Leg>& legs() const { return legs_; }
-  [[nodiscard]] double duration() const { return duration_; }  ///< s
-  /// Steps of the clock after time 0; the last one is at duration(), the others at whole steps before it.
+  [[nodiscard]] double duration() const { return duration_; }  ///< In s.
+  /// Returns the number of clock steps after time 0; the last one is at duration(), the others at whole steps
+  /// before it.
   [[nodiscard]] std::size_t steps() const { return steps_; }
-  [[nodiscard]] double time_of_step(std::size_t step) const;  ///< s
-  /// The leg under way at `time`; a leg owns its start, the last one its end too.
+  [[nodiscard]] double time_of_step(std::size_t step) const;  ///< In s.
+  /// Returns the leg at `time`; a leg includes its start, the last one its end too.
   [[nodiscard]] std::size_t leg_at(double time) const;
-  /// The state in which the arm starts.
+  /// Returns the arm's state at the start.
   [[nodiscard]] const ArmState& initial() const { return initial_; }
-  /// The arm's state at `time` in [0, duration()] s.
+  /// Returns the arm's state at `time` in [0, duration()] s.
   [[nodiscard]] ArmState state_at(double time) const;
-  /// Bounds on how fast each section changes in [start, end] s; empty where a leg knows none.
+  /// Returns bounds on each section's rates in [start, end] s; std::nullopt if a leg has no known rates.
   [[nodiscard]] std::optional<std::vector<SectionRates>> rates(double start, double end) const;
-  /// What would harm the arm or be too much for its motors, and targets out of reach; known before anything
-  /// moves. `progress` may be null, and may end the check early.
+  /// Returns the hazards for the arm and its motors, and unreachable targets; known before anything moves.
+  /// `progress` may be null, and may end the check early.
   [[nodiscard]] SafetyReport check(Progress* progress = nullptr) const;
 
  private:
@@ -81,26 +82,26 @@ class Schedule {
   std::vector<Leg> legs_;
 };
 
-/// The task with which a run ends, and why.
+/// Task that ends a run, and the reason.
 struct EndedBy {
   std::size_t task = 0;  ///< Its number.
   std::string failure;
 };
-/// Simulates every task that is simulated and whose start is known: those before the first that the rig is
-/// yet to do, or before one with which the run ends, which is answered. Adds what they did to `done`.
+/// Simulates every simulated task whose start is known: those before the first task that the rig still has to
+/// do, or up to one that ends the run, which is returned. Adds their motions to `done`.
 [[nodiscard]] std::optional<EndedBy> simulate_tasks(const Experiment& experiment, const TaskRunners& tasks,
                                                     DoneTasks& done, Progress& progress);
 
-/// What the motions of this schedule of these tasks would harm (Schedule::check), with what each task adds.
+/// Returns the hazards of this schedule of these tasks (Schedule::check), with additions of each task.
 [[nodiscard]] SafetyReport checked(const Schedule& schedule, const TaskRunners& tasks,
                                    const std::optional<EndedBy>& ended_by, Progress* progress = nullptr);
 
-/// The same of an experiment as it stands, with the tasks simulated that can be. Why the run ends with one of
-/// them is a note, the first one.
+/// Returns the hazards of an experiment, after simulating the tasks for which this is possible. If the run
+/// ends with one of them, the first note has the reason.
 [[nodiscard]] SafetyReport check_experiment_safety(const Experiment& experiment, Progress& progress);
 
-/// Plays the schedule on the rig from its start to its first step at `until` s or later, to its end, or to
-/// the last step before a state that no arm can take, and films nothing. Returns the time of that step, s.
+/// Plays the schedule on the rig without filming. Plays from its start to its first step at `until` s or
+/// later, to its end, or to the last step before an impossible state. Returns the time of that step, s.
 [[nodiscard]] double play_unfilmed(double until, const Schedule& schedule, Rig& rig);
 
 }  // namespace flexura

@@ -17,8 +17,7 @@
 namespace flexura {
 namespace {
 
-// The edges that pictures show, against the contours of the arm as it truly stands before the cameras as they
-// truly are.
+// Compares the edges in pictures with the contours of the true arm in the true cameras.
 TEST(MeasuredEdges, AreTheTrueContours) {
   ServoSetup rig;
   rig.sensor = "read_noise = 1, delay = 0, exposure = 0";
@@ -51,7 +50,7 @@ TEST(MeasuredEdges, AreTheTrueContours) {
   EXPECT_LT(rms, 0.15);
 }
 
-// From straight to targets anywhere, by pictures: the edges bring the arm wherever points bring it.
+// From straight to random targets, by pictures: edges must bring the arm wherever points do.
 TEST(Servo, ComesBySilhouettesFromWhereverItComesByPoints) {
   int by_points = 0, by_edges = 0;
   for_random_cases(8, [&](TestRandom& random) {

@@ -1,4 +1,4 @@
-// Servos whose devices' clocks stand still, go back or run ahead.
+// Servos whose devices' clocks stop, go back or run ahead.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -16,7 +16,7 @@ namespace {
 
 using Shown = std::function<double(double now)>;
 
-// What says from 0.4 s on what `shown` makes of the time.
+// Returns a function that replaces the time of readings by `shown` from 0.4 s on.
 auto odd_clock(const Shown& shown) {
   return [shown](auto said) {
     if (said.time >= 0.4) said.time = shown(said.time);
@@ -26,7 +26,7 @@ auto odd_clock(const Shown& shown) {
 
 struct OddClock {
   Shown shown;
-  const char* reason;  // Of the arm and of heads.
+  const char* reason;  // For the arm and for heads.
 };
 
 const std::vector<OddClock>& odd_clocks() {
@@ -39,7 +39,7 @@ const std::vector<OddClock>& odd_clocks() {
   return list;
 }
 
-// Brought to rest, and with a reason.
+// Expects that the arm was brought to rest, and with a reason.
 void expect_stopped(ServoBench& bench, const ServoResult& result, const ServoNotes& notes,
                     const std::string& reason) {
   EXPECT_FALSE(result.is_done);
@@ -78,7 +78,7 @@ TEST(ServoClocks, AHeadWhoseClockIsOddStopsTheArm) {
   }
 }
 
-// From the start: nothing is sent.
+// From the start: no commands.
 TEST(ServoClocks, AnArmThatBeginsInAnotherTimeIsNotMoved) {
   for (const double off : {-1000.0, 1000.0}) {
     ServoBench bench(servo_file(servo_target));
@@ -92,7 +92,7 @@ TEST(ServoClocks, AnArmThatBeginsInAnotherTimeIsNotMoved) {
   }
 }
 
-// A reading that is shown twice, or a little late, does no harm.
+// A reading that is repeated, or slightly late, does no harm.
 TEST(ServoClocks, ReadingsThatAreRepeatedDoNoHarm) {
   const std::vector<Shown> harmless = {[](double now) { return 0.1 * std::floor(now / 0.1); },
                                        [](double now) { return now - 0.01; }};
@@ -110,7 +110,7 @@ TEST(ServoClocks, ReadingsThatAreRepeatedDoNoHarm) {
   }
 }
 
-// Of its pictures nothing is believed: the arm waits, and is given up.
+// Its pictures are ignored: the arm waits, and the servo ends.
 TEST(ServoClocks, ACameraWhoseClockIsOddIsNotBelieved) {
   const std::vector<std::pair<Shown, std::string>> cases = {
       {[](double now) { return now + 1000; }, "camera side: its picture tells of a time that is "},
@@ -131,7 +131,7 @@ TEST(ServoClocks, ACameraWhoseClockIsOddIsNotBelieved) {
   }
 }
 
-// For a moment: what comes after it is as good as before.
+// For a moment: later pictures must be used again.
 TEST(ServoClocks, ACameraWhoseClockWasOddIsBelievedAgain) {
   for (const auto& [off, said] : {std::pair{1000.0, " a time that is "},
                                   std::pair{std::numeric_limits<double>::quiet_NaN(), " no time"}}) {

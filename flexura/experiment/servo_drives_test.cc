@@ -1,4 +1,4 @@
-// Servos of an arm whose motors have limits: what was sent passes the check of the command list.
+// Servos of an arm whose motors have limits: the commands must pass the check of the command list.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -15,7 +15,7 @@
 namespace flexura {
 namespace {
 
-// Three tendons a section, on spools that are wound by steppers.
+// Three tendons per section, on spools driven by steppers.
 std::string drive_with(const std::string& motor, double backlash_deg = 0) {
   std::string text = "[drive]\nradius_mm = 14\ntendon = [";
   for (int section = 1; section <= 3; ++section)
@@ -27,7 +27,7 @@ std::string drive_with(const std::string& motor, double backlash_deg = 0) {
                     motor, backlash_deg);
 }
 
-// Of an experiment that ends as it shall, with a list for the motors.
+// Expects success of an experiment, with a list for the motors.
 void expect_done(const std::string& text) {
   Runs runs;
   const RunResult result = runs.run(text);
@@ -65,7 +65,7 @@ INSTANTIATE_TEST_SUITE_P(
                                   0.1}),
     [](const auto& one) { return std::string(one.param.name); });
 
-// A law that asks for more speed than its motors can brake would go past what is wanted, farther each time.
+// A law that requests more speed than its motors can brake would pass the target, farther each time.
 TEST(ServoWithDrive, ArrivesWithoutOvershootHoweverWeakItsMotorsAre) {
   for (const char* law : {"shape", "potential"}) {
     SCOPED_TRACE(law);
@@ -79,7 +79,7 @@ TEST(ServoWithDrive, ArrivesWithoutOvershootHoweverWeakItsMotorsAre) {
   }
 }
 
-// How fast a servo goes is not known before it has gone: slow motors are no reason not to begin.
+// The speed of a servo is unknown before it runs: slow motors must not keep it from starting.
 TEST(ServoWithDrive, IsNotRefusedBecauseOfAWayThatNobodyGoes) {
   ServoSetup rig;
   rig.rest = drive_with("max_acceleration = 0.4");
@@ -87,7 +87,7 @@ TEST(ServoWithDrive, IsNotRefusedBecauseOfAWayThatNobodyGoes) {
   EXPECT_TRUE(Schedule(experiment).check().is_safe());
 }
 
-// What drives say of themselves is rounded to their steps; the next task begins where the last one sent them.
+// Readings of drives are rounded to their steps; the next task must begin where the last one sent them.
 TEST(ServoWithDrive, GoesOnFromWhereTheTaskBeforeEnded) {
   ServoSetup rig;
   rig.rest = drive_with("max_acceleration = 1000", 0.1) +

@@ -1,4 +1,4 @@
-// How servos end: by cameras that are believed or silent, and with what is kept of one that is given up.
+// Tests ends of servos: cameras without a prior, silent cameras, and the record of a servo that ends early.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -15,7 +15,7 @@
 namespace flexura {
 namespace {
 
-// Nothing is doubted, and cameras are wrong by what is many pixels: the arm comes to where they have it.
+// Without priors, and with cameras wrong by many pixels, the arm goes to the target by the camera model.
 TEST(ServoEnds, CamerasThatAreNotDoubtedAreBelieved) {
   ServoSetup rig;
   rig.rest = "[[truth.camera]]\nname = \"side\"\nhead = { pan = { zero_deg = 0.5 } }\n";
@@ -31,7 +31,7 @@ TEST(ServoEnds, CamerasThatAreNotDoubtedAreBelieved) {
   EXPECT_LT(result.steps.back().sigma, 5 * sigma);
 }
 
-// And cameras that are right lose nothing by it.
+// Exact cameras must lose nothing by this.
 TEST(ServoEnds, CamerasThatAreRightNeedNoDoubt) {
   ServoBench bench(
       servo_file("camera_prior = { rotation_std = 0, focal_std = 0 }\ntolerance = 0.0005\nsettle = 0.5\n" +
@@ -41,8 +41,7 @@ TEST(ServoEnds, CamerasThatAreRightNeedNoDoubt) {
   EXPECT_LT(bench.truth(std::get<ArmState>(bench.config().goals.front().shape)).rms, 0.001);
 }
 
-// A lens 20 % shorter than the file has it, where 2 % are doubted: no law comes to rest in what it takes for
-// the wanted shape.
+// A lens 20 % shorter than in the file, with a prior of 2 %: no law settles at the wrong shape.
 TEST(ServoEnds, ACameraThatIsWrongFarBeyondDoubtIsNamed) {
   ServoSetup rig;
   rig.rest = "[[truth.camera]]\nname = \"side\"\nlens = { fx = 320, fy = 320 }\n";
@@ -57,7 +56,7 @@ TEST(ServoEnds, ACameraThatIsWrongFarBeyondDoubtIsNamed) {
   }
 }
 
-// Pictures that were taken before anything was known of the arm are of a shape that nobody can say.
+// Pictures from before anything was known of the arm have an unknown shape.
 TEST(ServoEnds, PicturesFromBeforeItBeganAreNotGoneBy) {
   ServoSetup rig;
   rig.sensor = "read_noise = 1, delay = 0.5, exposure = 0.002";
@@ -72,7 +71,7 @@ TEST(ServoEnds, PicturesFromBeforeItBeganAreNotGoneBy) {
   for (const ServoStep& step : result.steps) EXPECT_GE(step.seen_at.value_or(result.start), result.start);
 }
 
-// A head that counts how often it was told to stop.
+// A head that counts its stop commands.
 class CountingHead : public HeadPort {
  public:
   explicit CountingHead(HeadPort& head) : head_(head) {}
@@ -86,7 +85,7 @@ class CountingHead : public HeadPort {
   HeadPort& head_;
 };
 
-// However it ends; heads that nobody told to move are left alone.
+// In any case of the end; heads that were not commanded to move are left alone.
 TEST(ServoEnds, HeadsThatFollowAreHalted) {
   for (const bool follows : {true, false}) {
     for (const bool refuses : {false, true}) {
@@ -103,7 +102,7 @@ TEST(ServoEnds, HeadsThatFollowAreHalted) {
   }
 }
 
-// A camera that is silent without saying why.
+// A camera that is silent without an error.
 class SilentCamera : public CameraPort {
  public:
   Outcome<std::optional<Frame>> newest() override { return std::optional<Frame>(); }
@@ -123,7 +122,7 @@ TEST(ServoEnds, ACameraThatSendsNothingIsNamed) {
   EXPECT_NEAR(result.fault->time, bench.config().give_up_after, 0.1);
 }
 
-// Whatever ends it: what was seen, sent and asked for last is kept, and in the summary.
+// Whatever ends it: the last observation, command and request are kept, and in the summary.
 TEST(ServoEnds, WhatIsGivenUpKeepsItsLastObservationsAndCommands) {
   Runs runs;
   const RunResult result = runs.run(servo_file("timeout = 1.5\nrate = 0.2\n" + servo_target));
@@ -143,7 +142,7 @@ TEST(ServoEnds, WhatIsGivenUpKeepsItsLastObservationsAndCommands) {
   }
 }
 
-// A ball where the wanted shape would be: the arm comes as near as it may, and stands there.
+// A ball at the target shape: the arm gets as near as allowed, and stops.
 TEST(ServoEnds, AnObstacleHoldsTheArmBack) {
   ServoSetup rig;
   rig.rest = "[[obstacle]]\nname = \"ball\"\nkind = \"sphere\"\ncenter = [0.3, 0.75, 0]\nradius = 0.1\n";

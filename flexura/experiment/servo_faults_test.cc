@@ -1,4 +1,4 @@
-// Servos whose devices answer with what is no number, late or in the wrong order.
+// Servos whose devices answer with invalid numbers, late or in the wrong order.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -22,7 +22,7 @@ namespace {
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
 const ArmState servo_wish = {{{0.8, 0.3}, {-0.7, 0.9}, {1.0, -0.6}}, {1, 1, 1}};
 
-// A head says from a time on that its tilt is no number.
+// A head whose tilt is not a number from a time on.
 OddHead::Said lost_from(double from) {
   return [from](HeadReading reading) {
     if (reading.time >= from) reading.state.tilt = none;
@@ -30,7 +30,7 @@ OddHead::Said lost_from(double from) {
   };
 }
 
-// A camera that takes its time to answer, now and then.
+// A camera that sometimes answers slowly.
 class SlowCamera : public CameraPort {
  public:
   SlowCamera(CameraPort& camera, ClockPort& clock, double takes, int every)
@@ -48,7 +48,7 @@ class SlowCamera : public CameraPort {
   int every_, asked_ = 0;
 };
 
-// An arm that says from a time on that it is where it is at no time.
+// An arm whose readings have an invalid time from a time on.
 class TimelessArm : public ArmPort {
  public:
   TimelessArm(ArmPort& arm, ClockPort& clock, double from) : arm_(arm), clock_(clock), from_(from) {}
@@ -68,7 +68,7 @@ class TimelessArm : public ArmPort {
   double from_;
 };
 
-// A camera whose pictures tell from one time to another that they were taken at none.
+// A camera whose pictures have an invalid time between two times.
 class TimelessCamera : public CameraPort {
  public:
   TimelessCamera(CameraPort& camera, ClockPort& clock, double from, double to)
@@ -105,7 +105,7 @@ TEST(ServoFaults, AHeadThatTellsNoNumberStopsTheArm) {
   EXPECT_FALSE(bench.ports().arm->read().value().moving);
   for (const auto& [time, state] : notes.sent)
     for (const Eigen::Vector2d& bend : state.bends) EXPECT_TRUE(bend.allFinite()) << "at " << time;
-  // From the start nothing is sent at all.
+  // From the start: no commands at all.
   OddHead never(*bench.ports().cameras[0].head, lost_from(0));
   ports = bench.ports();
   ports.cameras[0].head = &never;
@@ -114,7 +114,7 @@ TEST(ServoFaults, AHeadThatTellsNoNumberStopsTheArm) {
   EXPECT_TRUE(silent.sent.empty());
 }
 
-// A step that takes longer than it may: what it missed is not made up for.
+// A step that takes too long: missed steps are not made up for.
 TEST(ServoFaults, StepsThatArePassedAreLeftOut) {
   ServoBench bench(servo_file(servo_target));
   RigPorts ports = bench.ports();
@@ -131,7 +131,7 @@ TEST(ServoFaults, StepsThatArePassedAreLeftOut) {
     const double ticks = (result.steps[i].time - result.start) / step,
                  gone = (result.steps[i].time - result.steps[i - 1].time) / step;
     EXPECT_NEAR(ticks, std::round(ticks), 1e-6);
-    // None sooner than a step after the one before: the limiter counts on it.
+    // Never sooner than a step after the previous one: the limiter relies on it.
     EXPECT_GT(gone, 1 - 1e-6);
     missed += std::lround(gone) - 1;
   }
@@ -143,7 +143,7 @@ TEST(ServoFaults, StepsThatArePassedAreLeftOut) {
   EXPECT_TRUE(notes.has(fmt::format("{} steps of 0.03333 s were missed", missed)));
 }
 
-// Two pictures of the wanted shape, in their order and in the other one.
+// Two pictures of the target shape, in their order and swapped.
 TEST(ServoFaults, PicturesInTheWrongOrderAreRefused) {
   ServoBench bench(servo_file(servo_target));
   RigBench other(
@@ -165,7 +165,7 @@ TEST(ServoFaults, PicturesInTheWrongOrderAreRefused) {
   EXPECT_LT(bench.truth(servo_wish).rms, 0.006);
 }
 
-// What shows no shape says why.
+// Pictures without a shape must give a reason.
 TEST(ServoFaults, PicturesOfTwoShapesAreRefusedWithAReason) {
   ServoBench bench(servo_file(servo_target));
   RecordedViews views;
@@ -223,13 +223,13 @@ TEST(ServoFaults, BandsCountAndOneThatIsLostDoesNoHarm) {
                 100 * bench.truth(servo_wish).rms);
     EXPECT_LT(bench.truth(servo_wish).rms, 0.006);
     EXPECT_LT(*result.settled, 2);
-    // The one that is lost is not taken for another one.
+    // The missing band must not be confused with another one.
     EXPECT_EQ(notes.gone_by.contains(4), !is_one_lost);
     EXPECT_GE(notes.gone_by.size(), 6u);
   }
 }
 
-// At its last target, as it is truly.
+// Expects the true arm at its last target.
 void expect_arrival(const std::string& file) {
   ServoBench bench(file);
   const ServoResult result = bench.servo();
@@ -237,7 +237,7 @@ void expect_arrival(const std::string& file) {
   EXPECT_LT(bench.truth(std::get<ArmState>(bench.config().goals.back().shape)).rms, 0.006);
 }
 
-// What is wanted goes on at once, the arm at its sections' rates: it is left behind, and comes after.
+// The target moves on at once, the arm at its sections' rates: it is left behind, and follows later.
 TEST(ServoFaults, AnArmThatIsLeftBehindByItsTargetIsNotDiverging) {
   ServoSetup slow;
   slow.arm = "max_bend_deg = 120\nmax_bend_rate_deg = 30";
@@ -247,7 +247,7 @@ TEST(ServoFaults, AnArmThatIsLeftBehindByItsTargetIsNotDiverging) {
                  slow));
 }
 
-// The way that is judged beforehand is as slow as the arm.
+// The motion in the check before the run is as slow as the arm.
 TEST(ServoFaults, SlowSectionsAreNotUnsafe) {
   ServoSetup rig;
   rig.arm = "max_bend_deg = 120\nmax_bend_rate_deg = 5";
@@ -261,7 +261,7 @@ TEST(ServoFaults, SlowSectionsAreNotUnsafe) {
                 step * arm.sections[i].max_bend_rate);
 }
 
-// Between two pictures of a slow camera the arm is not unseen.
+// Between two pictures of a slow camera the arm does not count as unobserved.
 TEST(ServoFaults, SettlesByCamerasThatAreSlowerThanItsSteps) {
   std::string file = servo_file("step = 0.05\ntimeout = 20\n" + servo_target);
   for (std::size_t at = 0; (at = file.find("frame_rate = 30", at)) != std::string::npos; ++at)
@@ -269,7 +269,7 @@ TEST(ServoFaults, SettlesByCamerasThatAreSlowerThanItsSteps) {
   expect_arrival(file);
 }
 
-// Exposures of 2 and 30 ms: the pictures' middles are 14 ms apart, more than a step's half.
+// Exposures of 2 and 30 ms: the pictures' middles are 14 ms apart, more than half a step.
 TEST(ServoFaults, PairsPicturesByTheCamerasPeriodAndNotByItsStep) {
   std::string file = servo_file("step = 0.02\n" + servo_target);
   file.replace(file.rfind("exposure = 0.002"), 16, "exposure = 0.030");
@@ -282,7 +282,7 @@ TEST(ServoFaults, ArrivesWhereFramesAreDropped) {
   expect_arrival(servo_file(servo_target, rig));
 }
 
-// A log that is full throws at every step from then on.
+// A full log throws at every step from then on.
 TEST(ServoFaults, AWatcherThatFailsLeavesTheArmAtRestAndIsTheReason) {
   class Failing : public ServoNotes {
    public:

@@ -39,7 +39,7 @@ TEST_P(StretchingArm, ComesToAShapeOfOtherLengths) {
 INSTANTIATE_TEST_SUITE_P(By, StretchingArm,
                          testing::Values("shape", "points", "chords", "potential", "silhouettes"));
 
-// The arm's second section changes its length by half of what it is sent, which it does not know.
+// The arm's second section changes its length by half of the command, unknown to the model.
 TEST(StretchingArm, SaysWhichSectionIsStretchedAsFarAsItGoes) {
   ServoSetup rig;
   rig.arm += "\nstretch_limits = [0.8, 1.3]\nmax_stretch_rate = 0.5";

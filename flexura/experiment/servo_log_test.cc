@@ -1,4 +1,4 @@
-// What a servo's log keeps.
+// Tests the content of a servo's log.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -16,7 +16,7 @@
 namespace flexura {
 namespace {
 
-// Every command to a head that follows stands in the log, as every stretch does.
+// Every command to a head that follows must be in the log, and every stretch.
 TEST(ServoLog, HasWhatHeadsAndStretchesWereSentTo) {
   const std::string task =
       "follow = true\nhold_after = 1\n[[task.target]]\nbends = [[1.2, 0.9], [0.8, 0.6], [0.2, 0.1]]\n"
@@ -48,7 +48,7 @@ TEST(ServoLog, HasWhatHeadsAndStretchesWereSentTo) {
   EXPECT_NEAR(stretches.at(2), 0.9, 0.01);
 }
 
-// Mean distance, px, of the pixels that the law compares from where they shall be.
+// Returns the mean distance, px, of the pixels that the law compares from their targets.
 double to_go(const ServoSightingMessage& sighting) {
   double sum = 0;
   for (const FeatureMarkMessage& mark : *sighting.features)
@@ -73,7 +73,7 @@ TEST(ServoLog, HasWhatTheLawCompares) {
   EXPECT_LT(to_go(sightings.back()), 0.5);
 }
 
-// Four pixels cannot tell six bends.
+// Four pixels cannot determine six bends.
 TEST(ServoLog, HasWhereSomeMotionShowsInNothing) {
   for (const bool are_enough : {false, true}) {
     Runs runs;
@@ -91,7 +91,7 @@ TEST(ServoLog, HasWhereSomeMotionShowsInNothing) {
   }
 }
 
-// Ends of tasks are sums of durations, an ulp before the clock at times: so after these.
+// Ends of tasks are sums of durations, sometimes an ulp before the clock, also after these.
 TEST(ServoLog, ManyServosFollowEachOther) {
   std::string tasks;
   for (int k = 0; k < 4; ++k)

@@ -1,4 +1,4 @@
-// What a task of a file asks of a session.
+// Tests the session configuration of a task in a file.
 #include "flexura/tasks/servo/servo_run.h"
 
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@
 namespace flexura {
 namespace {
 
-// Each of its settings is another than it would be untold, and than any other.
+// Each setting differs from its default and from all others.
 TEST(ServoConfig, HasEverySettingOfItsTask) {
   ServoSetup rig;
   rig.rest = "[[obstacle]]\nkind = \"sphere\"\ncenter = [3, 3, 3]\nradius = 0.1\n";
@@ -55,7 +55,8 @@ TEST(ServoConfig, HasEverySettingOfItsTask) {
   EXPECT_EQ(std::get<ArmState>(config.goals[0].shape).bends[2].x(), 0.3);
 }
 
-// A picture every fifth of a second: between two of them nobody is blind, whatever the task says.
+// A picture every fifth of a second: between two of them the servo must not count as blind, whatever the
+// task's settings.
 TEST(ServoConfig, WaitsForThePicturesOfItsSlowerCamera) {
   std::string file = servo_file("hold_after = 0.1\ngive_up_after = 0.4\n" + servo_target);
   file.replace(file.rfind("frame_rate = 30"), 15, "frame_rate = 5");

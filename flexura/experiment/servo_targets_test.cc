@@ -1,4 +1,4 @@
-// Wanted shapes as a servo's file says them, and the ends that it has for those that it never comes to.
+// Target shapes in a servo's file, and ends of servos that never reach them.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -23,11 +23,11 @@
 namespace flexura {
 namespace {
 
-// In the plane XOY, where each section's azimuth grows evenly.
+// In the plane XOY, where each section's azimuth changes linearly.
 const std::array<double, 3> leanings = {0.8, -0.7, 1.0};
 const ArmState leaning = {{{leanings[0], 0}, {leanings[1], 0}, {leanings[2], 0}}, {1, 1, 1}};
 
-// The backbone at shares of 1/20, of which sections of 0.35, 0.35 and 0.3 m end on the 7th and the 14th.
+// The backbone at shares of 1/20; sections of 0.35, 0.35 and 0.3 m end on the 7th and the 14th.
 std::string leaning_curve() {
   const ServoBench bench(servo_file(servo_target));
   const Backbone backbone(bench.experiment().arm.arm(), leaning);
@@ -68,7 +68,7 @@ std::string curve_file(double tolerance, const std::vector<Eigen::Vector3d>& poi
       fmt::format("tolerance = {}\nsettle = 1\n[[task.target]]\ncurve = [{}]\n", tolerance, text));
 }
 
-// One arc, of which a chord is up to 3 cm aside.
+// One arc, from which a chord deviates by up to 3 cm.
 TEST(ServoTargets, AFewPointsMeanTheSmoothCurveThroughThem) {
   constexpr int count = 4;
   constexpr double bend = 2.4;
@@ -104,7 +104,7 @@ TEST(ServoTargets, APlaceForTheTipIsReached) {
   EXPECT_LT((bench.rig().arm().backbone(bench.rig().clock().now()).tip().position - place).norm(), 0.008);
 }
 
-// Files that the same cameras made; and a way from there to another shape, which is said otherwise.
+// Files from the same cameras, and a motion from there to a target of another form.
 TEST(ServoTargets, PictureFilesAreReachedAndGoneOnFrom) {
   const TemporaryFolder folder;
   RigBench other(
@@ -126,8 +126,8 @@ TEST(ServoTargets, PictureFilesAreReachedAndGoneOnFrom) {
   EXPECT_LT(*servo.find("remaining_in_truth")->find("rms")->as<double>(), 0.005);
 }
 
-// Four pixels cannot tell six bends: of an arm that truly stands elsewhere than where they agree, no law on
-// them can say where to go.
+// Four pixels cannot determine six bends. If the arm truly is elsewhere than where they agree, no law on them
+// can compute a command.
 TEST(ServoTargets, FeaturesThatAreTooFewAreToldAsSingular) {
   ServoBench bench(
       servo_file("law = \"points\"\npoints = 1\ntolerance = 0.002\ntimeout = 3\n" + servo_target));
@@ -140,7 +140,7 @@ TEST(ServoTargets, FeaturesThatAreTooFewAreToldAsSingular) {
   EXPECT_FALSE(bench.ports().arm->read().value().moving);
 }
 
-// Drives that are mounted half a turn round lead every step the other way.
+// Drives mounted half a turn round move every step in the opposite direction.
 TEST(ServoTargets, AnArmThatGoesTheOtherWayIsToldAsDiverging) {
   ServoBench bench(servo_file("[[task.target]]\nbends = [[0.3, 0.1], [-0.2, 0.2], [0.2, -0.3]]\n"));
   RigPorts ports = bench.ports();

@@ -32,8 +32,8 @@ TEST_P(ServoLaws, BringTheArmToAShape) {
 INSTANTIATE_TEST_SUITE_P(All, ServoLaws,
                          testing::Values("shape", "points", "chords", "potential", "silhouettes"));
 
-// Chords near a quarter turn of the azimuth, on the way across one, and along a camera's sight, where two
-// parallel readings say little or the opposite: targets of the servo's study.
+// Chords near a quarter turn of the azimuth, on the way across one, and along a camera's line of sight. There
+// two parallel readings give little or wrong information: targets of the servo's study.
 TEST(Servo, FollowsThePotentialAcrossQuarterTurns) {
   for (const char* bends :
        {"[0.73, 1.13], [0.36, -0.06], [0.77, -0.41]", "[-0.09, 1.01], [-0.91, -0.55], [-1.19, 0.10]",
@@ -50,7 +50,7 @@ TEST(Servo, FollowsThePotentialAcrossQuarterTurns) {
   }
 }
 
-// Without delay and noise an arm that does what it is sent leaves its law's potential falling.
+// Without delay and noise, an arm that follows its commands must have a decreasing potential.
 class IdealServo : public testing::TestWithParam<std::string> {};
 
 TEST_P(IdealServo, PotentialFallsAllTheWay) {
@@ -60,8 +60,8 @@ TEST_P(IdealServo, PotentialFallsAllTheWay) {
       fmt::format("law = \"{}\"\ntolerance = 0.002\nsettle = 1\n", GetParam()) + servo_target, rig));
   const ServoResult result = bench.servo();
   ASSERT_TRUE(result.is_done) << result.reason;
-  // Of what is that small, pictures of 320 x 240 tell little more; of `potential`, whose chords are 30 px
-  // long and told to a hundredth of a rad, less.
+  // Limit of precision of pictures of 320 x 240. It is larger for `potential`, whose chords are 30 px long
+  // and measured to a hundredth of a rad.
   const double least = GetParam() == "potential" ? 3e-3 : 1e-3;
   double before = 1e300, first = 0;
   int fell = 0;
@@ -82,7 +82,7 @@ TEST_P(IdealServo, PotentialFallsAllTheWay) {
 INSTANTIATE_TEST_SUITE_P(All, IdealServo,
                          testing::Values("shape", "points", "chords", "potential", "silhouettes"));
 
-// Pictures that are later than the way takes: nothing is done before it is seen to be.
+// Pictures with a larger delay than the motion takes: each effect is observed before the next action.
 TEST(Servo, IsPatientWithLatePictures) {
   ServoSetup setup;
   setup.sensor = "read_noise = 1, delay = 1, exposure = 0.002";
@@ -93,7 +93,7 @@ TEST(Servo, IsPatientWithLatePictures) {
   EXPECT_LT(result.overshoot, 0.05);
 }
 
-// Heads that follow an arm that leaves the middle of their pictures, though these are late, and come to rest.
+// Heads follow an arm that leaves the middle of their pictures, in spite of the delay, and come to rest.
 TEST(Servo, HeadsFollowTheArm) {
   ServoSetup setup;
   setup.sensor = "read_noise = 1, delay = 0.3, exposure = 0.002";
@@ -104,7 +104,7 @@ TEST(Servo, HeadsFollowTheArm) {
   ASSERT_TRUE(result.is_done) << result.reason;
   const ArmState bent = {{{1.2, 0.9}, {0.8, 0.6}, {0.2, 0.1}}, {1, 1, 1}};
   EXPECT_LT(bench.truth(bent).rms, 0.006);
-  // The middle of what is seen is near the middle of the picture, which it had left.
+  // The middle of the visible arm is near the middle of the picture, which it had left.
   const Backbone backbone(bench.experiment().arm.arm(), bent);
   const View turned = bench.rig().camera(0).view(bench.rig().clock().now());
   const View straight = ServoBench(servo_file(servo_target, setup)).rig().camera(0).view(0);
@@ -131,7 +131,7 @@ TEST(Servo, GoesAlongATrajectory) {
   const ServoResult result = bench.servo();
   ASSERT_TRUE(result.is_done) << result.reason;
   EXPECT_LT(bench.truth({{{0, 0.5}, {0.5, 0}, {0, -0.5}}, {1, 1, 1}}).rms, 0.004);
-  // On the way it keeps up: what is wanted next is sent ahead of the error.
+  // During the motion it keeps up: the target's motion is commanded in addition to the error.
   double worst = 0;
   for (const ServoStep& step : result.steps)
     if (step.error) worst = std::max(worst, step.error->rms);
@@ -139,7 +139,7 @@ TEST(Servo, GoesAlongATrajectory) {
   EXPECT_LT(worst, 0.02);
 }
 
-// What is true of the camera "side".
+// Returns a setup with this true sensor of the camera "side".
 ServoSetup side_camera(const std::string& sensor) {
   return {.rest = "[[truth.camera]]\nname = \"side\"\nsensor." + sensor + "\n"};
 }
@@ -151,7 +151,7 @@ TEST(Servo, WaitsWhileACameraIsCovered) {
   ASSERT_TRUE(result.is_done) << result.reason;
   EXPECT_TRUE(notes.has("camera side does not see the arm")) << notes.lines.size();
   EXPECT_TRUE(notes.has("the arm is seen again"));
-  // It stopped on the way: commands that differ in nothing.
+  // It stopped during the motion: equal consecutive commands.
   int still = 0;
   for (std::size_t i = 1; i < notes.sent.size(); ++i)
     if (notes.sent[i].first < 1.3 && notes.sent[i].second.bends == notes.sent[i - 1].second.bends) ++still;
@@ -201,7 +201,7 @@ TEST(Servo, RefusesWhatIsOutOfReachBeforeItMoves) {
 }
 
 TEST(Servo, SaysThatItIsHeldBack) {
-  // An arm that truly bends half of what it is told cannot come there within its limits.
+  // An arm that truly bends by half of the command cannot reach the target within its limits.
   ServoSetup rig;
   rig.arm = "max_bend_deg = 60";
   ServoBench bench(servo_file("timeout = 3\n[[task.target]]\nbends = [[1.0, 0], [0, 0], [0, 0]]\n", rig));
@@ -214,7 +214,7 @@ TEST(Servo, SaysThatItIsHeldBack) {
 }
 
 TEST(Servo, ReachesPicturesByCamerasThatAreElsewhere) {
-  // Both cameras are turned by half a degree, of which nobody knows; the pictures were taken by them.
+  // Both cameras are turned by half a degree, unknown to the model; the pictures are from them.
   ServoSetup rig;
   rig.rest =
       "[[truth.camera]]\nname = \"front\"\ninitial = { pan_deg = 0.5, tilt_deg = -0.3 }\n"
@@ -234,7 +234,7 @@ TEST(Servo, ReachesPicturesByCamerasThatAreElsewhere) {
   EXPECT_LT(bench.truth(wanted).rms, 0.003);
 }
 
-// What is said of a servo is the same whether its steps are kept or not.
+// The result of a servo must not depend on whether its steps are kept.
 TEST(Servo, KeepsNoStepsWhereNoneAreAskedFor) {
   ServoResult kept, left;
   for (ServoResult* result : {&kept, &left}) {

@@ -52,7 +52,7 @@ to.bends = [[1.2, 0.4]]
 
 class StaticArm : public Runs, public testing::Test {};
 
-// No task looks and nothing is filmed: what forces do is played all the same.
+// No task uses cameras and nothing is filmed: the effect of forces is still played.
 TEST_F(StaticArm, IsPlayedAndLogsItsTensionsAndItsSag) {
   const RunResult result = run(rod_text);
   const auto pulls = logged<TensionsMessage>(result, arm_tensions_topic);
@@ -66,8 +66,8 @@ TEST_F(StaticArm, IsPlayedAndLogsItsTensionsAndItsSag) {
     for (const double tension : at.tensions) EXPECT_GE(tension, 0);
   EXPECT_GT(pulls.back().tensions[0], 1);
   EXPECT_LT(pulls.front().tensions[0], pulls.back().tensions[0]);
-  // It is not as it was sent; its weight brings it lower, where its tendons let it, and that needs less of a
-  // pull.
+  // It differs from the command: its weight moves it lower, as far as its tendons allow, and that needs less
+  // tension.
   const VectorMessage tip = truth.back().poses.back().position, sent = commanded.back().poses.back().position;
   EXPECT_GT(std::abs(tip.y - sent.y), 1e-4);
   const RunResult light = run(rod_text, {"truth.arm.gravity=[0,0,0]"});
@@ -77,7 +77,7 @@ TEST_F(StaticArm, IsPlayedAndLogsItsTensionsAndItsSag) {
   EXPECT_LT(pulls.back().tensions[0], logged<TensionsMessage>(light, arm_tensions_topic).back().tensions[0]);
 }
 
-// Wants the truth at every other step.
+// Requests the truth at every other step.
 class SeesTheTruth : public RunWatcher {
  public:
   void state(double time, const ArmState&, std::span<const CameraReading>) override { time_ = time; }
@@ -108,7 +108,7 @@ TEST_F(StaticArm, IsToldToAWatcherAsItTrulyLies) {
     EXPECT_TRUE(seen.lost_steps.empty()) << "it has no motors";
   }
   EXPECT_NEAR(watcher.seen.back().pulled[0], 1.2 * 0.01, 1e-9);
-  // Who watches changes nothing.
+  // A watcher must not influence the run.
   EXPECT_EQ(files_in(run(rod_text).folder), files_in(result.folder));
 }
 
@@ -128,7 +128,7 @@ TEST_F(StaticArm, GivesTheSameLogEachTime) {
   EXPECT_EQ(text_of(one, "log.mcap"), text_of(other, "log.mcap"));
 }
 
-// Its motors are too weak for the bend: events name the axes as the command list does.
+// Its motors are too weak for the bend: events name the axes like the command list.
 TEST_F(StaticArm, SaysWhichAxesLoseSteps) {
   std::string text = rod_text;
   text.erase(text.find("[[truth.arm.tendon]]"), text.find("[[task]]") - text.find("[[truth.arm.tendon]]"));
@@ -145,7 +145,7 @@ pull_out = [[0, 0.05]]
   EXPECT_THAT(text_of(result, "report.html"), testing::HasSubstr("the motor of axis 1.1 loses"));
 }
 
-// What is believed to be a rod, with nothing else said of the truth, is one in truth.
+// With a rod as the model and an empty [truth], the true arm must be the rod.
 TEST_F(StaticArm, NeedsNoTruthOfItsOwn) {
   std::string text = rod_text;
   for (std::size_t at = text.find("truth."); at != std::string::npos; at = text.find("truth."))

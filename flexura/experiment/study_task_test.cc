@@ -44,7 +44,7 @@ std::string study_with(const std::string& from, const std::string& to) {
   return replaced(good_study, from, to);
 }
 
-// What the first task, a study, finds.
+// Returns the result of the first task, a study.
 ImageStudy images_of(const Experiment& experiment) {
   return study_images(std::get<StudyTask>(experiment.task.front()), experiment.cameras(),
                       static_cast<std::uint64_t>(experiment.seed));
@@ -52,7 +52,7 @@ ImageStudy images_of(const Experiment& experiment) {
 
 class Study : public ::testing::Test, public Runs {
  protected:
-  // Values at which the first study has all features.
+  // Returns the number of values at which the first study has all features.
   static std::int64_t seen(const RunResult& result) {
     return *entry_of(result, "studies").find("seen")->as<std::int64_t>();
   }
@@ -185,7 +185,8 @@ TEST_F(Study, VariesDownwardsAsWell) {
 }
 
 TEST_F(Study, TheExampleGivesTheFiguresOfThePaper) {
-  // Its drawn pictures, which say nothing of the formulas, take half a minute: the documents' test has them.
+  // Its rendered pictures, which do not affect the formulas, take half a minute: the documents' test has
+  // them.
   const Overrides formulas_alone = {.sets = {"task.1.measure=false", "task.3.measure=false"}, .seed = {}};
   const RunResult result = run(load_experiment(example, formulas_alone));
   EXPECT_EQ(result.outcome, RunOutcome::done);

@@ -1,4 +1,4 @@
-// The kinds of tasks: what they do, and what is said of bad ones.
+// The kinds of tasks: their motions, and errors of invalid ones.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -48,8 +48,8 @@ TEST(Tasks, AMoveFollowsItsLaw) {
 }
 
 TEST(Tasks, ATrapezoidFindsItsTime) {
-  // The farthest section bends by 2 rad (an arching of 1): at 0.5 rad/s and 1 rad/s^2, 0.5 s up, 3.5 s even,
-  // 0.5 s down.
+  // The section with the largest motion bends by 2 rad (an arching of 1): at 0.5 rad/s and 1 rad/s^2, 0.5 s
+  // up, 3.5 s constant, 0.5 s down.
   const Experiment experiment = experiment_of_task(
       "kind='move'\nlaw='trapezoid'\nmax_rate=0.5\nmax_acceleration=1\nto.archings=[1, -0.5]\n");
   const Schedule schedule(experiment);
@@ -59,12 +59,12 @@ TEST(Tasks, ATrapezoidFindsItsTime) {
 }
 
 TEST(Tasks, ATrapezoidKeepsTheLimitsOfEachSectionAndAllArriveTogether) {
-  // Section 1 bends by 2 rad at 1 rad/s, section 2 by 1 rad at 0.25 rad/s: the second decides on the rate.
-  // The first may speed up by 1 rad/s^2, the second by 2 rad/s^2: the first decides on that.
+  // Section 1 bends by 2 rad at 1 rad/s, section 2 by 1 rad at 0.25 rad/s: the second limits the rate. The
+  // first may accelerate by 1 rad/s^2, the second by 2 rad/s^2: the first limits the acceleration.
   const Experiment experiment = experiment_of_task(
       "kind='move'\nlaw='trapezoid'\nmax_rate=[1, 0.25]\nmax_acceleration=[1, 2]\nto.archings=[1, -0.5]\n");
   const Schedule schedule(experiment);
-  EXPECT_DOUBLE_EQ(schedule.duration(), 4.5);  // 0.5 s up, 3.5 s even, 0.5 s down
+  EXPECT_DOUBLE_EQ(schedule.duration(), 4.5);  // 0.5 s up, 3.5 s constant, 0.5 s down.
   const MotionPtr motion = schedule.legs()[0].motion;
   EXPECT_DOUBLE_EQ(motion->rates(0, 0, 4.5)->bend, 0.5);
   EXPECT_DOUBLE_EQ(motion->rates(1, 0, 4.5)->bend, 0.25);
@@ -84,8 +84,8 @@ TEST(Tasks, ASineSwingsCordAnglesAsAsked) {
       "kind='sine'\nduration=3\nperiod=2\namplitude.cord_angles_deg=[10, 20]\nphase_deg=[0, 90]\n");
   const ArmState state = Schedule(experiment).state_at(0.5);
   const std::vector<double> cords = cord_angles(experiment.arm.arm(), state);
-  // At a quarter of the period section 1 stands at its full swing of 10 deg, and section 2, which started at
-  // its own, in the middle: 20 deg lower.
+  // At a quarter of the period section 1 is at its full swing of 10 deg. Section 2, which started at its own,
+  // is in the middle: 20 deg lower.
   EXPECT_NEAR(cords[0] / degree, 100, 1e-12);
   EXPECT_NEAR(cords[1] / degree, 70, 1e-12);
 }

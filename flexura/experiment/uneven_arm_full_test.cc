@@ -22,14 +22,14 @@
 #include "tests/support/servo_bench.h"
 #include "tests/support/temporary_folder.h"
 
-// The truth is an arm that no model of one arc a section fits.
+// The true arm does not fit any model with one arc per section.
 namespace flexura {
 namespace {
 
 constexpr double uneven = 0.3;
 const ArmState uneven_goal = {{{0.8, 0.3}, {-0.7, 0.9}, {1.0, -0.6}}, {1, 1, 1}};
 
-// Sections that truly bend more near their bases; what is believed of them.
+// Returns a file with sections that truly bend more near their bases, and with their model.
 std::string uneven_file(const std::string& task, const std::string& believed) {
   ServoSetup rig;
   rig.arm += "\n" + believed;
@@ -40,8 +40,8 @@ std::string uneven_file(const std::string& task, const std::string& believed) {
 
 struct Reached {
   ServoResult result;
-  ServoError estimated;  // The estimate, from the arm as it truly was then.
-  ServoError left;       // The arm, from what is wanted.
+  ServoError estimated;  // Error of the estimate, relative to the true arm at that time.
+  ServoError left;       // Error of the arm, relative to the target.
 };
 
 Reached servo(const std::string& law, const std::string& believed) {
@@ -66,13 +66,13 @@ class UnevenArm : public testing::TestWithParam<std::string> {};
 TEST_P(UnevenArm, IsSteeredWhateverIsBelievedAndSeenAsItIsByTheFinerModel) {
   const Reached plain = servo(GetParam(), ""), fine = servo(GetParam(), "bend_profile = [1, 1, 1]"),
                 right = servo(GetParam(), fmt::format("bend_profile = [{}, 1, {}]", 1 + uneven, 1 - uneven));
-  // A shape of one arc a section is not what the arm has; one of three is.
+  // A shape of one arc per section does not fit the arm; one of three does.
   EXPECT_GT(plain.estimated.rms, 0.003);
   EXPECT_LT(fine.estimated.rms, 0.0015);
   EXPECT_LT(right.estimated.rms, 0.0015);
   EXPECT_LT(plain.left.rms, 0.03);
   EXPECT_LT(fine.left.rms, 0.03);
-  // What is wanted can be had where it is known how sections bend.
+  // The target is reachable if the distribution of the bend is known.
   EXPECT_LT(right.left.rms, 0.004);
 }
 
@@ -84,7 +84,7 @@ TEST(UnevenArmLearning, GoesByWhatIsLearnedOfTheDrivesToo) {
   EXPECT_LT(learned.left.rms, 0.006);
 }
 
-// Calibrated, steered, recorded and exported.
+// Calibrated, servoed, recorded and exported.
 TEST(UnevenArmExample, FindsHowItsSectionsBend) {
   const TemporaryFolder folder;
   Quiet quiet;
@@ -108,8 +108,8 @@ TEST(UnevenArmExample, FindsHowItsSectionsBend) {
   EXPECT_GT(std::ranges::count(table, '\n'), 500);
 }
 
-// An arm that bends a little unevenly is calibrated as one of one arc a section: the rig that fits best is
-// taken, and the summary says that it does not fit.
+// An arm that bends slightly unevenly is calibrated with one arc per section: the best-fit rig is taken, and
+// the summary states that it does not fit.
 TEST(UnevenArmExample, IsCalibratedAsNearlyOneArcASectionWithANote) {
   Experiment experiment = load_experiment(checkout_file("examples/08_uneven_arm/experiment.toml"),
                                           {{"task.0.images=8", "record.report=false"}, {}});
@@ -126,7 +126,7 @@ TEST(UnevenArmExample, IsCalibratedAsNearlyOneArcASectionWithANote) {
   EXPECT_NE(last.as<std::string>()->find("the arm may bend otherwise"), std::string::npos);
 }
 
-// Believed to be one arc a section: what it sees then has no explanation, and no rig is made up.
+// With a model of one arc per section, its observations have no explanation, and no rig must be returned.
 TEST(UnevenArmExample, IsNotCalibratedAsAnArmOfOneArcASection) {
   Experiment experiment = load_experiment(checkout_file("examples/08_uneven_arm/experiment.toml"),
                                           {{"task.0.images=5", "record.report=false"}, {}});

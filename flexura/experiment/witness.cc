@@ -17,7 +17,7 @@
 namespace flexura {
 namespace {
 
-// The log has every state; the report draws no more than this, and a long run should not fill the memory.
+// The log has every state; the report shows at most this many, which limits the memory of long runs.
 constexpr std::size_t max_kept_states = 10000;
 
 LineChart energy_chart(const std::vector<double>& times, const std::vector<RodEnergy>& energies) {
@@ -145,7 +145,7 @@ double Witness::contact_readings(RigTruth& truth, double now) {
   return sum;
 }
 
-// What a rod has beside its shape.
+// Logs a rod's values in addition to its shape.
 void Witness::rod_readings(RigTruth& truth, double now, const Backbone& backbone) {
   std::vector<double> tensions = truth.tensions(now);
   const std::optional<RodEnergy> energy = truth.energy(now);
@@ -178,8 +178,8 @@ void Witness::rod_readings(RigTruth& truth, double now, const Backbone& backbone
 }
 
 void Witness::readings(Rig& rig) {
-  // While a task waits for the rig, several steps of the clock are recorded at one time of the rig's.
-  // Times that the log cannot tell apart are one.
+  // While a task waits for the rig, several clock steps are recorded at one time of the rig. Times that are
+  // equal in the log count as one.
   const RigPorts ports = rig.ports();
   const double now = ports.clock->now();
   const std::int64_t told = std::llround(now * 1e9);
@@ -252,7 +252,7 @@ ReportData Witness::report_data(const Experiment& experiment, const Schedule& sc
   if (auto chapter = rod_.chapter(data.arm, data.obstacles, model_.backbone(data.states.back())))
     data.chapters.push_back(std::move(*chapter));
   add_safety(safety, schedule, data);
-  // However few states are recorded, the picture in the middle is of the middle.
+  // Even with few recorded states, the picture of the middle must be of the middle.
   if (!data.times.empty()) add_state((data.times.front() + data.times.back()) / 2, schedule, data);
   return data;
 }

@@ -8,12 +8,12 @@ namespace flexura {
 namespace {
 
 // With t = |bend|: S = sin t/t, A = (1 - cos t)/t^2, C = (1 - S)/t^2, D = (1/2 - A)/t^2. The slopes follow
-// from these without a quotient: S'/t = C - A and A'/t = 2 D - C.
+// without a quotient: S'/t = C - A and A'/t = 2 D - C.
 struct Coefficients {
   double S, A, C, D;
 };
 
-// Terms 1/(2k + first)! with alternating signs; for t^2 < 1/4 seven leave less than 1e-17.
+// Terms 1/(2k + first)! with alternating signs; for t^2 < 1/4 seven leave an error below 1e-17.
 template <int first>
 constexpr std::array<double, 7> alternating_factorials() {
   std::array<double, 7> terms{};

@@ -18,7 +18,7 @@ using Rows = Eigen::Map<const Eigen::Matrix<double, rows, Eigen::Dynamic>>;
 template <int rows>
 using Column = Eigen::Map<const Eigen::Matrix<double, rows, 1>>;
 
-// Calls `what` with J and r, of a size that the compiler knows where there is a problem of that size.
+// Calls `what` with J and r, of a fixed size where problems of that size exist.
 template <class What>
 auto by_rows(const MatrixXd& J, const VectorXd& r, const What& what) {
   const auto as = [&]<int rows>() {
@@ -35,7 +35,7 @@ double square_of(const MatrixXd& J, const VectorXd& r) {
   return by_rows(J, r, []<int rows>(const Rows<rows>&, const Column<rows>& as) { return as.squaredNorm(); });
 }
 
-// |r + J way|^2, with the sum in `sum`.
+// Returns |r + J way|^2, with the sum in `sum`.
 double foreseen(const MatrixXd& J, const VectorXd& r, const VectorXd& way, VectorXd& sum) {
   return by_rows(J, r, [&]<int rows>(const Rows<rows>& slope, const Column<rows>& here) {
     Eigen::Map<Eigen::Matrix<double, rows, 1>> there(sum.data(), sum.size());
@@ -44,7 +44,7 @@ double foreseen(const MatrixXd& J, const VectorXd& r, const VectorXd& way, Vecto
   });
 }
 
-// step = argmin |J step + r|^2 + damping |step|^2, in the smaller of its two forms.
+// Computes step = argmin |J step + r|^2 + damping |step|^2, in the smaller of its two forms.
 void damped_step(const MatrixXd& all, const VectorXd& residual, double damping, VectorXd& step) {
   by_rows(all, residual, [&]<int rows>(const Rows<rows>& J, const Column<rows>& r) {
     if constexpr (rows != Eigen::Dynamic) {
@@ -64,8 +64,8 @@ void damped_step(const MatrixXd& all, const VectorXd& residual, double damping, 
   });
 }
 
-// Adds to the held bounds those that x + step breaks: their variables go onto the bound (`offset`) and lose
-// the direction out of it (columns of J). Whether there were any.
+// Adds to the held bounds those that x + step violates. Their variables move onto the bound (`offset`) and
+// lose the outward direction (columns of J). Returns true if there were any.
 bool hold_broken(const Bounds& bounds, const VectorXd& x, const VectorXd& step, std::vector<char>& is_held,
                  VectorXd& offset, MatrixXd& J) {
   constexpr double slack = 1e-12;
@@ -103,7 +103,7 @@ void find_gradient(const MatrixXd& J, const VectorXd& r, VectorXd& gradient) {
   });
 }
 
-// H. B. Nielsen (1999): the better the model foresees, the less.
+// H. B. Nielsen (1999): the better the prediction, the lower the damping.
 double eased(double damping, double ratio) {
   const double off = 2.0 * ratio - 1.0;
   return std::clamp(damping * std::max(0.2, 1.0 - off * off * off), 1e-6, 1e12);
@@ -156,8 +156,8 @@ Descent BoundedDescent::descend(const DescentLimits& limits, VectorXd& x) {
   square = square_of(J, r);
   if (problem.is_met(r)) return Descent::met;
   const auto tried = [&](double damping) -> TriedStep {
-    constexpr double least_damping = 1e-14;  // Keeps the factorisation of a singular arm sound.
-    // Of |r|^2: vanishes towards a solution, so that the last steps are Newton's.
+    constexpr double least_damping = 1e-14;  // Keeps the factorisation regular for a singular arm.
+    // Relative to |r|^2: vanishes towards a solution, so that the last steps are Newton's.
     try_step(bounds, x, damping * square + least_damping);
     step = trial - x;
     const double foreseen_square = foreseen(J, r, step, trial_r);

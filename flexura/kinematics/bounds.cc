@@ -6,10 +6,10 @@
 namespace flexura {
 namespace {
 
-// Of the bound's size: nearer than this is at the bound.
+// Share of the bound's size: values nearer than this are at the bound.
 constexpr double touching = 1e-9;
 
-// The unit vector out of the bound at x where x is held by it against -gradient; zero elsewhere.
+// Returns the outward unit normal of the bound at x if the bound holds x against -gradient; otherwise zero.
 Eigen::Vector2d outward(const Bound& bound, const Eigen::VectorXd& x, const Eigen::VectorXd& gradient) {
   Eigen::Vector2d normal = Eigen::Vector2d::Zero();
   if (bound.size == 1) {

@@ -50,8 +50,7 @@ class CordPointToPointMotion : public Motion {
     return state;
   }
 
-  // Eq. 5 backwards for rates that are known to lie in intervals: they come down to the rate itself as those
-  // do.
+  // Inverts eq. 5 for rates in known intervals. The bounds converge to the rate as the intervals shrink.
   [[nodiscard]] std::optional<SectionRates> rates(std::size_t section, double start,
                                                   double end) const override {
     using Interval = std::array<double, 2>;
@@ -74,7 +73,7 @@ class CordPointToPointMotion : public Motion {
  private:
   ArmState from_;
   ArmState to_;
-  std::vector<double> cord_changes_;  // rad
+  std::vector<double> cord_changes_;  // In rad.
   std::vector<Profile> profiles_;
 };
 
@@ -86,8 +85,8 @@ MotionPtr cord_point_to_point_motion(ArmState from, ArmState to, std::vector<dou
                                                         std::move(cord_changes), std::move(profiles));
 }
 
-// Each bend is a sum of the cords' swings, and sines of one period add up to a sine, as complex numbers
-// amplitude exp(i phase): so this is a sine of the bends, with other amplitudes and phases.
+// Each bend is a sum of the cords' sines. Sines of one period add up to a sine, as complex numbers amplitude
+// exp(i phase). So this is a sine motion of the bends, with other amplitudes and phases.
 MotionPtr cord_sine_motion(ArmState from, const std::vector<double>& amplitudes,
                            const std::vector<double>& phases, double period, double duration) {
   if (amplitudes.size() != from.bends.size() || phases.size() != from.bends.size()) {

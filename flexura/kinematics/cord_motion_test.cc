@@ -22,7 +22,7 @@ Arm random_cord_arm(TestRandom& random) {
   return arm;
 }
 
-// Laws of one duration, in turn.
+// Returns profiles of one duration, all kinds in turn.
 std::vector<Profile> mixed_profiles(TestRandom& random, std::size_t count) {
   const double duration = random.uniform(0.2, 5);
   std::vector<Profile> profiles;
@@ -60,7 +60,7 @@ TEST(CordMotion, EveryCordFollowsItsOwnLaw) {
     }
     EXPECT_EQ(motion->at(0).bends, from.bends);
     EXPECT_EQ(motion->at(motion->duration()).bends, to.bends);
-    // Continuous at the end, where the state is the one given.
+    // Continuous at the end, where the state is the given one.
     const ArmState before = motion->at(motion->duration() * (1 - 1e-13));
     for (std::size_t i = 0; i < cords.size(); ++i) EXPECT_NEAR(before.bends[i].x(), to.bends[i].x(), 1e-9);
   });

@@ -8,7 +8,7 @@
 namespace flexura {
 namespace {
 
-// Points compared: enough that no section can hide between two, few enough for long arms.
+// Number of compared points: enough that no section falls between two, few enough for long arms.
 std::size_t point_count(std::size_t sections) { return std::clamp<std::size_t>(6 * sections, 24, 300); }
 
 }  // namespace
@@ -36,13 +36,14 @@ Eigen::Vector3d CurveProblem::at(double fraction) const {
   return points_[i - 1] + f * (points_[i] - points_[i - 1]);
 }
 
-// From the chord between nearby points on either side: a polyline's own direction jumps at its corners.
+// Returns the direction from the chord between nearby points on either side: a polyline's own direction jumps
+// at its corners.
 Eigen::Vector3d CurveProblem::tangent_at(double fraction) const {
   constexpr double nearby = 0.02;
   const double before = std::max(0.0, fraction - nearby);
   const double after = std::min(1.0, fraction + nearby);
   const Eigen::Vector3d here = at(std::clamp(fraction, 0.0, 1.0));
-  // At an end: the parabola through three points.
+  // At an end: from the parabola through three points.
   if (fraction <= 0.0) return 4.0 * at(nearby) - 3.0 * here - at(2 * nearby);
   if (fraction >= 1.0) return 3.0 * here - 4.0 * at(1 - nearby) + at(1 - 2 * nearby);
   return at(after) - at(before);
@@ -104,8 +105,8 @@ void CurveProblem::linearise(const Eigen::VectorXd& x, Eigen::VectorXd& r, Eigen
   J *= scale_;
 }
 
-// A stretch moves the point at a fixed part of the arc length in two ways: it carries the material along, and
-// it moves the point through the material, along the tangent.
+// A stretch moves the point at a fixed share of the arc length in two ways. It moves the material, and it
+// moves the point through the material along the tangent.
 void CurveProblem::point_rows(double fraction, std::size_t section, Eigen::Index row,
                               const Eigen::Vector3d& wanted, Eigen::VectorXd& r, Eigen::MatrixXd& J) const {
   const Placed& own = placed_[section];

@@ -9,10 +9,10 @@
 
 namespace flexura {
 
-/// The residual of "the backbone shall lie along this curve", as a function of ArmVariables' x: for evenly
-/// spaced parts f of the backbone's arc length, the distance (x, y, z in the base's axes) of its point there
-/// from the polyline's point at the same part of its own length, over the arm's greatest length and over the
-/// root of the number of points: |r|^2 is the mean square.
+/// Residual of "the backbone follows this curve", as a function of ArmVariables' x. It compares points at
+/// evenly spaced shares f of the backbone's arc length with the polyline's points at the same shares of its
+/// length. Each difference (x, y, z in base axes) is divided by the arm's greatest length and by the root of
+/// the number of points. So |r|^2 is the mean square.
 class CurveProblem final : public BoundedProblem {
  public:
   /// `points` in the base's frame, two or more with a length; `length` is the scale of distances, m.
@@ -22,25 +22,25 @@ class CurveProblem final : public BoundedProblem {
     return 3 * static_cast<Eigen::Index>(wanted_.size());
   }
   void linearise(const Eigen::VectorXd& x, Eigen::VectorXd& r, Eigen::MatrixXd& J) override;
-  /// A curve is fitted as well as it can be: met only where nothing is left to gain.
+  /// Returns true if nothing is left to gain: a curve is fitted as well as possible.
   [[nodiscard]] bool is_met(const Eigen::VectorXd& r) const override { return r.squaredNorm() < 1e-26; }
-  /// How far the backbone of state x is from the polyline, m: the largest distance of points at the same
-  /// parts of either's length, at all of the polyline's own points and at many between them, where the
-  /// residual looks at a few.
+  /// Returns the distance of the backbone in state x from the polyline, m. This is the largest distance of
+  /// points at equal shares of both lengths. It includes all points of the polyline and many between them,
+  /// more than the residual.
   [[nodiscard]] double largest_distance(const Eigen::VectorXd& x);
 
-  /// The state that turns each section's end along the curve's tangent there.
+  /// Returns the state that turns each section's end along the curve's tangent there.
   [[nodiscard]] Eigen::VectorXd start_along_tangents() const;
-  /// The curve's last point, m.
+  /// Returns the curve's last point, m.
   [[nodiscard]] const Eigen::Vector3d& end() const { return wanted_.back(); }
 
  private:
-  /// A section as it stands.
+  /// A section in a state.
   struct Placed {
     Pose X_BS;
     Eigen::Vector2d bend;
     double stretch = 1.0;
-    double s = 0.0;       // Of its base, m.
+    double s = 0.0;       // Arc length of its base, m.
     double length = 0.0;  // Stretched, m.
     Eigen::Vector3d end;
     Eigen::Matrix<double, 3, 2> linear, angular;  // Of its end, per bend.
@@ -53,7 +53,7 @@ class CurveProblem final : public BoundedProblem {
 
   const ArmVariables& variables_;
   std::vector<Eigen::Vector3d> points_;
-  std::vector<double> parts_;  // Of the polyline's length, at each point.
+  std::vector<double> parts_;  // Share of the polyline's length up to each point.
   std::vector<Eigen::Vector3d> wanted_;
   std::vector<Placed> placed_;
   double scale_;

@@ -14,8 +14,8 @@
 namespace flexura {
 namespace {
 
-// In the arc's plane the nearest point of the whole circle lies towards p from its centre; where the arc does
-// not reach it, one of its ends is nearest.
+// Returns the distance of p from the arc. In the arc's plane the nearest point of the whole circle is towards
+// p from its centre. If the arc does not contain it, one of its ends is nearest.
 double distance(const Arc& arc, const Eigen::Vector3d& p) {
   const auto distance_at = [&](double s) { return (p - arc.pose(s).position).norm(); };
   const double nearer_end = std::min(distance_at(0.0), distance_at(arc.length));
@@ -34,7 +34,8 @@ double distance(const Backbone& backbone, const Eigen::Vector3d& p) {
   return nearest;
 }
 
-// A circular arc's best tangent handle is (4/3) R tan(theta/4); with R = length / theta this has no 0/0.
+// Returns a circular arc's best tangent handle, (4/3) R tan(theta/4); with R = length / theta this has no
+// 0/0.
 double handle_length(double theta, double length) {
   const double quarter = 0.25 * theta;
   return length / 3.0 * sinc(quarter) / std::cos(quarter);

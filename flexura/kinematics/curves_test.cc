@@ -48,8 +48,8 @@ TEST(CatmullRom, OnlyTheStandardTensionKeepsEvenPointsOfALineEven) {
 
 // The table of docs/kinematic-model.md: the paper's arm in its final position, length 16.
 struct Deviation {
-  double distance;  // Of the arm's length.
-  double shorter;   // Of the arm's length.
+  double distance;  // Share of the arm's length.
+  double shorter;   // Share of the arm's length.
 };
 Deviation of_paper_arm(const std::vector<CubicBezier>& curve) {
   const CurveDeviation found = deviation(curve, Backbone(paper_arm(), paper_state()));

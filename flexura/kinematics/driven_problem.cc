@@ -8,10 +8,10 @@
 namespace flexura {
 namespace {
 
-// A residual above all that a shape has.
+// A residual above that of any shape.
 constexpr double far_away = 1e3;
 
-// Of the variables of an arm: where each stands among three for each section (bend_x, bend_y, stretch).
+// Returns the index of each of an arm's variables among three per section (bend_x, bend_y, stretch).
 std::vector<Eigen::Index> columns_of(const ArmVariables& variables) {
   std::vector<Eigen::Index> columns(static_cast<std::size_t>(variables.size()));
   for (std::size_t i = 0; i < variables.parts().size(); ++i) {
@@ -69,7 +69,7 @@ DrivenProblem::DrivenProblem(const DrivenVariables& variables, BoundedProblem& o
 
 void DrivenProblem::linearise(const Eigen::VectorXd& x, Eigen::VectorXd& r, Eigen::MatrixXd& J) {
   variables_.shape(x, shape_);
-  // Where the arm comes to no rest there is no shape: far from any that is wanted.
+  // If the arm has no equilibrium, there is no shape: the residual is far from any target.
   if (!shape_.allFinite()) {
     r.setConstant(far_away);
     J.setZero();

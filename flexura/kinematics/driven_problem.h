@@ -8,38 +8,40 @@
 
 namespace flexura {
 
-/// What inverse kinematics varies of an arm whose drives bend several arcs at once: commands, where questions
-/// are put to shapes.
+/// Variables of inverse kinematics for an arm whose drives bend several arcs at once: commands, while targets
+/// are for shapes.
 class DrivenVariables {
  public:
   explicit DrivenVariables(const ArmModel& model);
 
-  /// Of commands, and of shapes.
+  /// driven() returns the variables of commands, shaped() those of shapes.
   [[nodiscard]] const ArmVariables& driven() const { return driven_; }
   [[nodiscard]] const ArmVariables& shaped() const { return shaped_; }
-  /// The shape's variables that a command's make, into what is made to fit; NaN where it has no shape.
+  /// Computes the shape's variables from a command's, into `shape`, which it resizes if needed; NaN if the
+  /// command has no shape.
   void shape(const Eigen::VectorXd& command, Eigen::VectorXd& shape) const;
-  /// The same.
+  /// Returns the shape's variables for a command's; NaN if the command has no shape.
   [[nodiscard]] Eigen::VectorXd shape(const Eigen::VectorXd& command) const {
     Eigen::VectorXd made;
     shape(command, made);
     return made;
   }
-  /// The command's, within their limits, whose shape is nearest to one of these.
+  /// Returns the command's variables, within their limits, with the shape nearest to the given one.
   [[nodiscard]] Eigen::VectorXd command(const Eigen::VectorXd& shape) const;
-  /// The derivatives of a shape's by a command's, at that: into what is made to fit.
+  /// Computes the derivatives of a shape's variables by a command's at that command, into `by_command`, which
+  /// it resizes if needed.
   void slopes(const Eigen::VectorXd& command, Eigen::MatrixXd& by_command) const;
 
  private:
   Actuation actuation_;
   ArmVariables driven_, shaped_;
-  Eigen::MatrixXd shares_;  // where shapes are linear in commands
+  Eigen::MatrixXd shares_;  // If shapes are linear in commands.
 };
 
-/// A problem of shapes as one of the commands that make them.
+/// A problem of shapes as a problem of the commands that make them.
 class DrivenProblem final : public BoundedProblem {
  public:
-  /// Both outlive it.
+  /// Both must outlive this object.
   DrivenProblem(const DrivenVariables& variables, BoundedProblem& of_shape);
 
   [[nodiscard]] Eigen::Index row_count() const override { return of_shape_.row_count(); }

@@ -14,7 +14,8 @@ namespace {
 
 constexpr std::size_t longest_expression = 1000;
 
-// muParser lets a formula assign to its variables ("t = 3"); here that is a slip for "==".
+// Returns the position of an assignment. muParser lets a formula assign to its variables ("t = 3"); here that
+// is a typing error for "==".
 std::size_t find_assignment(const std::string& text) {
   for (std::size_t at = text.find('='); at != std::string::npos; at = text.find('=', at + 1)) {
     const bool compares_before =
@@ -25,7 +26,7 @@ std::size_t find_assignment(const std::string& text) {
   return std::string::npos;
 }
 
-// Brackets and signs in a row are what muParser could be made to recurse on or to stack without end.
+// Limits the input: muParser recurses or grows its stack without limit on consecutive brackets and signs.
 void check_text(const std::string& text) {
   if (text.size() > longest_expression) {
     throw ExpressionError(fmt::format("is longer than {} characters", longest_expression),
@@ -44,8 +45,8 @@ void check_text(const std::string& text) {
   }
 }
 
-// muParser tells positions within its messages, from 0, and as its own: one behind a call for what is wrong
-// with its arguments. Here the message tells what, and the position where.
+// Returns the error without its position. muParser writes positions into its messages, from 0, and one behind
+// a call if its arguments are wrong. Here the message has the error, and `position` the place.
 std::string message_of(const mu::ParserError& error) {
   std::string message = error.GetMsg();
   for (const char* place : {" found at position", " at position", " at expression position",
@@ -53,13 +54,13 @@ std::string message_of(const mu::ParserError& error) {
     message.resize(std::min(message.find(place), message.size()));
   }
   while (!message.empty() && (message.back() == '.' || message.back() == '\n')) message.pop_back();
-  // It puts a space behind the formula.
+  // muParser adds a space after the formula.
   if (message.ends_with(" \"")) message.erase(message.size() - 2, 1);
   if (!message.empty()) message[0] = static_cast<char>(std::tolower(static_cast<unsigned char>(message[0])));
   return message;
 }
 
-// Where the name of the function stands whose brackets close last up to `position`.
+// Returns the position of the name of the function whose brackets close last up to `position`.
 std::size_t find_call(const std::string& text, const std::string& function, std::size_t position) {
   std::size_t at = text.find_last_of(')', position);
   if (at == std::string::npos) return text.rfind(function, position);
@@ -73,7 +74,7 @@ std::size_t find_call(const std::string& text, const std::string& function, std:
 
 std::size_t position_of(const mu::ParserError& error, const std::string& text) {
   const auto told = static_cast<std::size_t>(error.GetPos());
-  if (error.GetPos() < 0) return 0;  // what is wrong with the whole
+  if (error.GetPos() < 0) return 0;  // Error of the whole formula.
   const bool is_of_call = error.GetCode() == mu::ecTOO_MANY_PARAMS || error.GetCode() == mu::ecTOO_FEW_PARAMS;
   const std::size_t found = is_of_call ? find_call(text, error.GetToken(), told) : told;
   return std::min(found == std::string::npos ? told : found, text.size());
@@ -91,7 +92,7 @@ struct Expression::Parser {
 Expression::Expression(const std::string& text) : parser_(std::make_unique<Parser>()) {
   check_text(text);
   try {
-    parser_->parser.ClearConst();  // Its own _pi is off in the 13th digit.
+    parser_->parser.ClearConst();  // muParser's own _pi is wrong in the 13th digit.
     parser_->parser.DefineConst("pi", std::numbers::pi);
     parser_->parser.DefineVar("t", &parser_->t);
     parser_->parser.DefineVar("T", &parser_->T);
@@ -116,7 +117,7 @@ double Expression::value(double t, double T, std::size_t section_number) const {
   try {
     return parser_->parser.Eval();
   } catch (const mu::ParserError&) {
-    // Some functions refuse arguments rather than return NaN.
+    // Some functions refuse arguments instead of returning NaN.
     return std::numeric_limits<double>::quiet_NaN();
   }
 }

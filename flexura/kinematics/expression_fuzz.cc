@@ -1,4 +1,4 @@
-// Any bytes as an expression: a value at every time, finite or not, or an ExpressionError.
+// Any bytes as an expression must give a value at every time, finite or not, or an ExpressionError.
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>

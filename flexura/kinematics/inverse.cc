@@ -21,12 +21,12 @@ namespace flexura {
 namespace {
 
 constexpr int nearest_starts = 16;
-// Most questions are answered by the first descent or two, for less than it costs to look for a proof.
+// Most targets are solved by the first descent or two, faster than a proof of unreachability.
 constexpr int starts_before_proof = 2;
 
-// A question in the base's frame, with all that its answer needs.
+// A target in the base's frame, with all data for its solution.
 struct Question {
-  // `the_arm` is that of shapes; of a model commands are varied, else the shapes themselves.
+  // `the_arm` is that of the shapes. With a model, commands are varied, otherwise shapes.
   Question(const Arm& the_arm, const TipTarget& the_target, const InverseConfig& the_config,
            const ArmModel* the_model = nullptr)
       : arm(the_arm),
@@ -46,14 +46,16 @@ struct Question {
     if (config.start) start = variables.pack(*config.start);
   }
 
-  // Each look at a rod with derivatives is several equilibria: a thousand times as long as of arcs.
+  // Limits iterations for rods. One evaluation with derivatives needs several equilibria, a thousand times as
+  // long as for arcs.
   [[nodiscard]] int most_iterations() const {
     constexpr int of_rods = 400;
     return model != nullptr && !model->actuation().is_linear() ? of_rods : std::numeric_limits<int>::max();
   }
   [[nodiscard]] InverseStarts starts() const { return {variables, X_BT.position, start, config.seed}; }
   [[nodiscard]] bool is_position_out_of_reach() const {
-    // Rounding leaves the bounds a few units in the last place of the arm's length and the target's distance.
+    // Rounding errors of the bounds are a few units in the last place of the arm's length and the target's
+    // distance.
     const double rounding = 1e-14 * (length + X_BT.position.norm());
     return least_distance(arm, X_BT.position) > position_tolerance + rounding;
   }
@@ -63,7 +65,7 @@ struct Question {
     const double angle = target.rotation ? least_angle(arm, X_BT.rotation)
                                          : least_angle(arm, Eigen::Vector3d(X_BT.rotation.col(2)));
     if (angle > config.angle_tolerance + rounding) return true;
-    // A direction that is a little off moves the far end by that much of the arm's length.
+    // A small angle error moves the far end by that angle times the arm's length.
     return least_distance_along(arm, X_BT) >
            position_tolerance + (config.angle_tolerance + rounding) * (length + X_BT.position.norm());
   }
@@ -85,7 +87,7 @@ TipRows rows_of(const TipTarget& target) {
   return target.direction ? TipRows::direction : TipRows::position;
 }
 
-// The question as a problem of what is varied.
+// The target as a problem of the variables.
 class VariedTip {
  public:
   VariedTip(const Question& q, TipRows rows)
@@ -102,7 +104,7 @@ class VariedTip {
   std::optional<DrivenProblem> driven_;
 };
 
-// What is said of a state, from the model's own forward kinematics.
+// Returns the result for a state, from the model's forward kinematics.
 InverseResult describe(const Question& q, const Found& found) {
   InverseResult result;
   result.state = q.variables.state(found.x);
@@ -157,8 +159,8 @@ InverseResult answer(const Question& q) {
   return result;
 }
 
-// Whether the target, a point on the base's axis with at most a direction along it, looks the same from all
-// around: then so do its solutions, each a whole ring of them.
+// Returns true if the target is symmetric about the base's axis: a point on it with at most a direction along
+// it. Then each solution is a whole ring of solutions.
 bool is_round(const Question& q) {
   constexpr double on_axis = 1e-9;
   if (q.arm.kind != ArmKind::spatial || q.target.rotation) return false;
@@ -166,14 +168,14 @@ bool is_round(const Question& q) {
   return q.X_BT.position.head<2>().norm() <= on_axis * q.length;
 }
 
-/// A solution among others.
+/// One of several solutions.
 struct Solution {
   Found found;
   double wish = 0.0;
   std::vector<Eigen::Vector3d> points;
 };
 
-// The solutions that are apart from each other, each the least of its wish nearby.
+// Distinct solutions, each a local minimum of its preference.
 class SolutionList {
  public:
   SolutionList(const Question& q, BoundedDescent& descent)
@@ -184,7 +186,7 @@ class SolutionList {
 
   void add(Found found) {
     follow_wish(descent_, scale_, found.x);
-    // Most starts come to the same few solutions: no need to run down to those again.
+    // Most starts lead to the same few solutions, which need not be minimised again.
     if (is_known(solution(found))) return;
     run_down_to_minimum(descent_, scale_, found.x);
     Solution lowest = solution(std::move(found));
@@ -206,7 +208,7 @@ class SolutionList {
     return {std::move(found), wish, std::move(points)};
   }
   [[nodiscard]] bool is_known(const Solution& other) const {
-    constexpr double same_arm = 1e-4;  // Of its length.
+    constexpr double same_arm = 1e-4;  // Share of the arm's length.
     return std::ranges::any_of(solutions_, [&](const Solution& known) {
       return backbone_distance(known.points, other.points) < same_arm * q_.length;
     });
@@ -243,7 +245,7 @@ std::vector<InverseResult> all_solutions(const Question& q) {
   InverseStarts starts = q.starts();
   SolutionList list(q, descent);
   for (int i = 0; i < config.max_starts; ++i) {
-    // As patient with the i-th start as a search for one answer is, which is then among all.
+    // The i-th start gets as many iterations as in a search for one solution, which is then among all.
     Found found;
     found.starts = i;
     search(descent, starts, i + 1, found);

@@ -8,102 +8,102 @@
 
 #include "flexura/model/arm_model.h"
 
-// Inverse kinematics: the state that puts the tip, or the whole backbone, where it is wanted
-// (docs/inverse-kinematics.md). The same question has the same answer, bit for bit.
+// Inverse kinematics: finds the state that brings the tip, or the whole backbone, to a target
+// (docs/inverse-kinematics.md). Equal inputs give equal results, bit for bit.
 namespace flexura {
 
-/// Where the tip shall be, in world axes.
+/// Target of the tip, in world axes.
 struct TipTarget {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< p_WT, m.
-  std::optional<Eigen::Vector3d> direction = {};       ///< Of the tip's z axis; not zero, of any length.
-  std::optional<Eigen::Matrix3d> rotation = {};        ///< R_WT; with it `direction` must be left out.
+  std::optional<Eigen::Vector3d> direction = {};  ///< Direction of the tip's z axis; not zero, of any length.
+  std::optional<Eigen::Matrix3d> rotation = {};   ///< R_WT; excludes `direction`.
 };
 
-/// The curve along which the whole backbone shall lie, as a polyline in world axes, m: the backbone's point
-/// at a part f of its arc length belongs to the polyline's at a part f of its length.
+/// Target curve of the whole backbone, as a polyline in world axes, m. The backbone's point at a share f of
+/// its arc length corresponds to the polyline's at a share f of its length.
 struct CurveTarget {
-  std::vector<Eigen::Vector3d> points;  ///< Two or more, not all the same.
+  std::vector<Eigen::Vector3d> points;  ///< Two or more, not all equal.
 };
 
-/// What to do with freedom that the target leaves.
+/// Preference among the solutions of a target.
 enum class InverseWish {
-  none,           ///< Take the solution first found.
-  least_bending,  ///< Make the sum of squares of the bends (rad) and of the stretches' distances from 1
-                  ///< small.
-  mid_range,      ///< The same, each relative to its limit: a bend to max_bend (pi without one), a stretch to
-                  ///< half its range about the middle of it.
+  none,           ///< Take the first solution found.
+  least_bending,  ///< Minimise the sum of squares of the bends (rad) and of the stretches' distances from 1.
+  mid_range,      ///< Minimise the same sum relative to the limits: a bend to max_bend (pi without one), a
+                  ///< stretch to half its range, about the middle of the range.
 };
 
-/// How far a polyline may be from the smooth curve that its points are taken from, m: the largest height of
-/// an arc above its chord, and by how much arcs are longer than their chords in all (which moves the points
-/// at a part of the length along the curve), each arc turning by as much as the polyline does at its ends.
-/// Turns of 60 degrees and more are corners and mean what they say.
+/// Returns the largest distance of a polyline from the smooth curve through its points, m. It is the largest
+/// height of an arc above its chord, plus the total difference in length of arcs and chords. The latter moves
+/// points at a share of the length along the curve. Each arc turns by as much as the polyline does at its
+/// ends. Turns of 60 degrees and more are corners and contribute nothing.
 [[nodiscard]] double polyline_error(const std::vector<Eigen::Vector3d>& points);
 
-/// Where the search begins, and what counts as found.
+/// Start and tolerances of the search.
 struct InverseConfig {
-  /// Where the search begins; one arc towards the target when left out.
+  /// Start of the search; by default one arc towards the target.
   std::optional<ArmState> start = {};
-  InverseWish wish = InverseWish::none;  ///< For the freedom that the target leaves.
-  /// m; when left out 1e-9 of the arm's greatest length, and for curves 1e-3 of it and twice
-  /// polyline_error(), together at most 1e-2 of it: what a coarse polyline leaves open beyond that is the
-  /// caller's to allow.
+  InverseWish wish = InverseWish::none;  ///< Preference for redundant freedom.
+  /// In m; default 1e-9 of the arm's greatest length. For curves the default is 1e-3 of it plus twice
+  /// polyline_error(), together at most 1e-2 of it. A coarser polyline needs a tolerance from the caller.
   std::optional<double> position_tolerance = {};
-  double angle_tolerance = 1e-9;  ///< rad.
-  int max_starts = 400;           ///< Descents from different states, the first from `start`; >= 1.
-  std::uint64_t seed = 1;         ///< Of the starts after the first two.
+  double angle_tolerance = 1e-9;  ///< In rad.
+  int max_starts = 400;           ///< Number of descents from different states, the first from `start`; >= 1.
+  std::uint64_t seed = 1;         ///< Seed of the starts after the first two.
 };
 
-/// How a search ended.
+/// Result of a search.
 enum class InverseOutcome {
   converged,       ///< Within the tolerances.
-  not_reachable,   ///< Proven so (is_proven), or no limit is in the way and no state comes nearer.
-  at_limit,        ///< The best state found is held by a limit: without it the arm would come nearer.
+  not_reachable,   ///< Proven (is_proven), or no limit is active and no state is nearer.
+  at_limit,        ///< The best state found is held by a limit, without which the arm would come nearer.
   no_convergence,  ///< Undecided.
 };
 
-/// As answers call it: "converged", "not_reachable", "at_limit", "no_convergence".
+/// Returns the name in results: "converged", "not_reachable", "at_limit", "no_convergence".
 [[nodiscard]] std::string_view name_of(InverseOutcome outcome);
 
-/// What a search found, or why nothing.
+/// The state found, or the reason of the failure.
 struct InverseResult {
   InverseOutcome outcome = InverseOutcome::no_convergence;
   bool is_proven = false;       ///< The target is out of reach of every state within the limits.
-  ArmState state;               ///< Within the limits: the solution, or the nearest found.
+  ArmState state;               ///< Within the limits: the solution, or the nearest state found.
   Eigen::Vector3d tip;          ///< p_WT of `state`, m.
-  double position_error = 0.0;  ///< Of `state`, m: the tip's distance; the largest along the arm for a curve.
-  double angle_error = 0.0;     ///< Of `state`, rad, from the direction or rotation asked for; else 0.
-  double position_tolerance = 0.0;  ///< The largest position_error that converges, m.
-  int iterations = 0;               ///< Evaluations of the arm and its Jacobian.
-  int starts = 0;                   ///< Descents made.
+  double position_error = 0.0;  ///< Distance of the tip, m; for a curve the largest along the arm.
+  double angle_error = 0.0;  ///< Error of `state`, rad, from the target's direction or rotation; otherwise 0.
+  double position_tolerance = 0.0;  ///< Largest position_error that counts as converged, m.
+  int iterations = 0;               ///< Number of evaluations of the arm and its Jacobian.
+  int starts = 0;                   ///< Number of descents.
 
   [[nodiscard]] bool converged() const { return outcome == InverseOutcome::converged; }
 };
 
-/// Finds a state of `arm` within its limits for the target. A target that is proven out of reach is always
-/// answered by not_reachable and the nearest state found: in position, when the position is out of reach.
-/// std::invalid_argument: a target or start that is not finite or does not fit, a direction of zero, both a
-/// direction and a rotation, a rotation that is not one, a curve without length, tolerances not positive.
+/// Returns a state of `arm` within its limits for the target. For a target proven out of reach, the result is
+/// always not_reachable with the nearest state found; nearest in position if the position is out of reach.
+/// Throws std::invalid_argument if a target or start is not finite or does not fit, or a tolerance is not
+/// positive. Also throws it for a zero direction, both a direction and a rotation, an invalid rotation
+/// matrix, or a curve without length.
 [[nodiscard]] InverseResult solve_inverse(const Arm& arm, const TipTarget& target,
                                           const InverseConfig& config = {});
 [[nodiscard]] InverseResult solve_inverse(const Arm& arm, const CurveTarget& target,
                                           const InverseConfig& config = {});
 
-/// The same for an arm whose sections may be several arcs: the state of the result is a command, a state of
-/// model.driven() within its limits; the tip and the curve are those of the shape that it makes.
+/// Returns a command for the target, for an arm whose sections may be several arcs. The command is a state of
+/// model.driven() within its limits; the target is for the tip or curve of the resulting shape.
 [[nodiscard]] InverseResult solve_inverse(const ArmModel& model, const TipTarget& target,
                                           const InverseConfig& config = {});
 [[nodiscard]] InverseResult solve_inverse(const ArmModel& model, const CurveTarget& target,
                                           const InverseConfig& config = {});
 
-/// The distinct solutions that config.max_starts descents find, least bent first; empty when there is none.
-/// Where the target leaves freedom each is first run down to the wish (least_bending when it is none), so
-/// that one is found for each valley of the wish. Two are the same when their backbones are nowhere further
-/// apart than 1e-4 of the arm's length. Of a target that looks the same from all around the base's axis, each
-/// stands for its turns about that: the first section that is bent bends towards the base's x.
+/// Returns the distinct solutions that config.max_starts descents find, least bent first; empty if there are
+/// none. If the target leaves freedom, each is first minimised by the preference (least_bending by default),
+/// so there is one per local minimum. Two solutions are equal if their backbones differ by less than 1e-4 of
+/// the arm's length everywhere. For a target symmetric about the base's axis, each solution represents its
+/// rotations about it. Its first bent section bends towards the base's x.
 [[nodiscard]] std::vector<InverseResult> all_inverse_solutions(const Arm& arm, const TipTarget& target,
                                                                const InverseConfig& config = {});
-/// The same of commands: two are the same when the backbones are that arms of single arcs would have of them.
+/// Returns the distinct commands for a target. Two are equal if the backbones of single-arc arms with these
+/// commands are.
 [[nodiscard]] std::vector<InverseResult> all_inverse_solutions(const ArmModel& model, const TipTarget& target,
                                                                const InverseConfig& config = {});
 

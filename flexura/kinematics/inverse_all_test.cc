@@ -1,4 +1,4 @@
-// All solutions: which there are, each of them once.
+// Tests that all solutions are found, each once.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -19,7 +19,7 @@
 namespace flexura {
 namespace {
 
-// The largest distance of two arms at the same parts of their lengths, m.
+// Returns the largest distance of two arms at equal shares of their lengths, m.
 double apart(const Arm& arm, const ArmState& a, const ArmState& b) {
   const Backbone first(arm, a);
   const Backbone second(arm, b);
@@ -49,8 +49,8 @@ Arm arm_of(ArmKind kind, const std::vector<double>& lengths, double max_bend) {
   return arm;
 }
 
-// By how much the second of two planar sections is too short to reach (x, y) of the base's plane, where x is
-// along the base's x and y along its z, and the bend that points it there.
+// Returns a pair for a planar arm of two sections: by how much the second one is too short to reach (x, y) of
+// the base's plane, and the bend that points it there. x is along the base's x and y along its z.
 std::pair<double, double> shortfall(const Arm& arm, double bend, double x, double y) {
   const double length = arm.sections[0].length;
   const double chord = length * sinc(bend / 2);
@@ -60,7 +60,8 @@ std::pair<double, double> shortfall(const Arm& arm, double bend, double x, doubl
   return {arm.sections[1].length * sinc(half) - std::hypot(dx, dy), 2 * half};
 }
 
-// First bends of all the states that reach the point: the zeros of the above between 20,000 places.
+// Returns the first bends of all states that reach the point: the zeros of shortfall() between 20,000
+// samples.
 std::vector<double> brute_force(const Arm& arm, double x, double y) {
   constexpr int places = 20000;
   std::vector<double> found;
@@ -69,7 +70,7 @@ std::vector<double> brute_force(const Arm& arm, double x, double y) {
   for (int k = 0; k < places; ++k) {
     const auto [before, bend_before] = shortfall(arm, at(k), x, y);
     const auto [after, bend_after] = shortfall(arm, at(k + 1), x, y);
-    const bool is_smooth = std::abs(bend_after - bend_before) < 1;  // no jump of a whole turn
+    const bool is_smooth = std::abs(bend_after - bend_before) < 1;  // No jump of a whole turn.
     if ((before < 0) == (after < 0) || !is_smooth) continue;
     if (std::abs(bend_before) <= arm.sections[1].max_bend) found.push_back(at(k));
   }
@@ -100,8 +101,8 @@ TEST(Inverse, OfTwoPlanarSectionsListsWhatBruteForceFinds) {
   EXPECT_GE(most, 2) << "no case had two solutions";
 }
 
-// With limits below a whole turn: the direction of a section that is bent into a circle does hardly anything
-// for the wish, and where such a ravine ends is known to fewer digits (the next test).
+// With limits below a whole turn. The direction of a section that is bent into a circle hardly changes the
+// preference. So the end of such a valley is known to fewer digits (see the next test).
 TEST(Inverse, ListsNoMinimumOfTheWishTwice) {
   int compared = 0, cases = 0;
   for_random_cases(20, [&](TestRandom& random) {
@@ -117,7 +118,7 @@ TEST(Inverse, ListsNoMinimumOfTheWishTwice) {
     expect_distinct(arm, target, solutions);
     ASSERT_FALSE(solutions.empty());
     ++cases;
-    // From other starts come the same minima (or some that these have not found), not others beside them.
+    // Other starts must lead to the same minima (or to some not found before), not to others next to them.
     for (const InverseResult& other : all_inverse_solutions(arm, target, {.max_starts = 150, .seed = 7})) {
       for (const InverseResult& one : solutions) {
         const double distance = apart(arm, one.state, other.state);
@@ -130,7 +131,7 @@ TEST(Inverse, ListsNoMinimumOfTheWishTwice) {
 }
 
 TEST(Inverse, ListsRollsOfAWholeTurnOnceAndNotInEveryDirection) {
-  // 32 had been listed.
+  // Formerly 32 were listed.
   const Arm arm = arm_of(ArmKind::spatial, {0.3, 0.3, 0.3}, 6.5);
   const TipTarget target{.position = {-0.390251, 0.427663, -0.0089057}};
   for (const std::uint64_t seed : {1U, 7U}) {
@@ -142,7 +143,7 @@ TEST(Inverse, ListsRollsOfAWholeTurnOnceAndNotInEveryDirection) {
 }
 
 TEST(Inverse, ListsEachMinimumOfThreePlanarSectionsOnce) {
-  // Two of eight had differed by 5e-5 rad only.
+  // Formerly two of eight differed by only 5e-5 rad.
   const Arm arm = arm_of(ArmKind::planar, {0.3, 0.3, 0.3}, std::numeric_limits<double>::infinity());
   const TipTarget target{.position = {0.2, 0.5, 0}};
   const auto solutions = all_inverse_solutions(arm, target);
@@ -164,7 +165,7 @@ TEST(Inverse, ListsOneOfTheRingThatReachesATargetOnTheAxis) {
       EXPECT_NEAR(solution.state.bends[0].y(), 0, 1e-9);
     }
     if (!has_direction) continue;
-    // The bends a, -2 a, a of a plane come back to the axis and along it, at 0.9 sin(a) / a.
+    // The bends a, -2 a, a in a plane come back to the axis, along it, at 0.9 sin(a) / a.
     EXPECT_TRUE(std::ranges::any_of(solutions, [](const InverseResult& solution) {
       const double a = solution.state.bends[0].x();
       return std::abs(0.9 * std::sin(a) / a - 0.78) < 1e-6 &&

@@ -16,10 +16,10 @@
 namespace flexura {
 namespace {
 
-// A curve says much about the arm: a few starts are enough, and each costs a whole backbone an iteration.
+// A curve determines much of the arm, so a few starts suffice. Each iteration evaluates the whole backbone.
 constexpr int most_starts = 8;
 constexpr int most_iterations = 100;  // From one start.
-// Of the arm's length: an arm further off would not be called "along the curve" by whoever sees it.
+// Share of the arm's length: a larger error would be visible.
 constexpr double most_allowance = 1e-2;
 
 std::vector<Eigen::Vector3d> in_base(const Arm& arm, const std::vector<Eigen::Vector3d>& points) {
@@ -30,8 +30,8 @@ std::vector<Eigen::Vector3d> in_base(const Arm& arm, const std::vector<Eigen::Ve
   return result;
 }
 
-// Of all starts together: an iteration of hundreds of sections takes a good part of a second, and an answer
-// that never comes is worse than one that says no_convergence.
+// Returns the iterations for all starts together. One for hundreds of sections takes a good part of a second,
+// and no_convergence is better than no result.
 int affordable_iterations(const CurveProblem& problem, const ArmVariables& variables, int most) {
   constexpr double most_products = 5e9;
   const auto size = static_cast<double>(variables.size());
@@ -39,7 +39,7 @@ int affordable_iterations(const CurveProblem& problem, const ArmVariables& varia
   return static_cast<int>(std::clamp(most_products / products, 40.0, static_cast<double>(most)));
 }
 
-// What no state can do for the curve's two ends is not to be had for the whole.
+// Returns true if the curve is out of reach because one of its ends is.
 bool is_out_of_reach(const Arm& arm, const std::vector<Eigen::Vector3d>& points, double tolerance) {
   const double rounding = 1e-14 * points.back().norm();
   return points.front().norm() > tolerance + 1e-14 * points.front().norm() ||
@@ -48,7 +48,7 @@ bool is_out_of_reach(const Arm& arm, const std::vector<Eigen::Vector3d>& points,
 
 }  // namespace
 
-// What a polyline turns by at a point, the curve that it stands for turns by from the middle of one piece to
+// A polyline turns at its points. The smooth curve turns by the same angle from the middle of one piece to
 // that of the next.
 double polyline_error(const std::vector<Eigen::Vector3d>& points) {
   constexpr double corner = std::numbers::pi / 3;
@@ -56,7 +56,7 @@ double polyline_error(const std::vector<Eigen::Vector3d>& points) {
   for (std::size_t i = 1; i < points.size(); ++i) {
     if (points[i] != points[i - 1]) pieces.emplace_back(points[i] - points[i - 1]);
   }
-  const auto turn = [&](std::size_t i) {  // between the pieces i - 1 and i
+  const auto turn = [&](std::size_t i) {  // Between the pieces i - 1 and i.
     if (i == 0 || i >= pieces.size()) return 0.0;
     const double angle = std::atan2(pieces[i - 1].cross(pieces[i]).norm(), pieces[i - 1].dot(pieces[i]));
     return angle < corner ? angle : 0.0;
@@ -74,7 +74,7 @@ double polyline_error(const std::vector<Eigen::Vector3d>& points) {
 
 namespace {
 
-// A curve's problem as one of what is varied: commands of a model, else shapes.
+// A curve's problem in the variables: commands of a model, otherwise shapes.
 class VariedCurve {
  public:
   VariedCurve(const Arm& arm, const ArmModel* model, const std::vector<Eigen::Vector3d>& points)
@@ -110,7 +110,7 @@ class VariedCurve {
   std::optional<DrivenProblem> of_command_;
 };
 
-// `arm` is that of shapes.
+// `arm` is that of the shapes.
 InverseResult answer(const Arm& arm, const ArmModel* model, const CurveTarget& target,
                      const InverseConfig& config) {
   check_question(target, config);
@@ -121,7 +121,7 @@ InverseResult answer(const Arm& arm, const ArmModel* model, const CurveTarget& t
   const double allowance = std::min(1e-3 * length + 2.0 * polyline_error(points), most_allowance * length);
   const double tolerance = config.position_tolerance.value_or(allowance);
   BoundedDescent descent(curve.problem(), variables.bounds(), variables.size());
-  // As of tips.
+  // Limits iterations for rods, as for tips.
   if (model != nullptr && !model->actuation().is_linear()) descent.most_iterations = 400;
   std::optional<Eigen::VectorXd> first = curve.start_along_tangents();
   if (config.start) first = variables.pack(*config.start);

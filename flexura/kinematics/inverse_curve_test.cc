@@ -1,4 +1,4 @@
-// Inverse kinematics of the whole arm: along a curve, or as near as it comes.
+// Tests inverse kinematics of the whole arm: along a curve, or as near as possible.
 #include <gtest/gtest.h>
 
 #include <Eigen/Core>
@@ -69,7 +69,7 @@ TEST(Inverse, SaysThatALimitKeepsItFromACurve) {
   EXPECT_TRUE(is_within_limits(stiff, result.state));
 }
 
-// The point of a polyline at a part of its length.
+// Returns the point of a polyline at a share of its length.
 Eigen::Vector3d point_at(const std::vector<Eigen::Vector3d>& points, double part) {
   double length = 0.0;
   for (std::size_t i = 1; i < points.size(); ++i) length += (points[i] - points[i - 1]).norm();
@@ -82,7 +82,7 @@ Eigen::Vector3d point_at(const std::vector<Eigen::Vector3d>& points, double part
   return points.back();
 }
 
-// How far the arm is from the polyline, by the parts of either's length.
+// Returns the largest distance of the arm from the polyline at equal shares of both lengths.
 double distance_from_curve(const Arm& arm, const ArmState& state, const CurveTarget& target) {
   const Backbone backbone(arm, state);
   double largest = 0.0;
@@ -93,7 +93,7 @@ double distance_from_curve(const Arm& arm, const ArmState& state, const CurveTar
   return largest;
 }
 
-// Of a random state of the arm, `pieces` of the same length for each section.
+// Returns the polyline of a random state of the arm, with `pieces` of equal length per section.
 CurveTarget random_polyline(TestRandom& random, const Arm& arm, int pieces) {
   const Backbone backbone(arm, random_state_within(random, arm));
   CurveTarget target;
@@ -102,8 +102,7 @@ CurveTarget random_polyline(TestRandom& random, const Arm& arm, int pieces) {
   return target;
 }
 
-// Whether a piece took all of a short section's bend, so that what was an arc is a corner that means what it
-// says.
+// Returns true if a piece took all of a short section's bend, so that an arc became a corner.
 bool has_corner(const std::vector<Eigen::Vector3d>& points) {
   for (std::size_t i = 2; i < points.size(); ++i) {
     const Eigen::Vector3d before = (points[i - 1] - points[i - 2]).normalized();
@@ -126,7 +125,7 @@ TEST(Inverse, LaysTheArmAlongACurveThatIsGivenByAFewPoints) {
     const double error = result.position_error;
     const double cap = 1e-2 * arm.length();
     EXPECT_NEAR(result.position_tolerance, std::min(open * arm.length(), cap), 1e-12 * arm.length());
-    // What its points leave open is within what is allowed.
+    // The uncertainty of its points is within the tolerance.
     if (open <= 1e-2 && !has_corner(target.points)) {
       EXPECT_TRUE(result.converged()) << error / arm.length() << " of " << open;
       ++fitting;
@@ -138,7 +137,7 @@ TEST(Inverse, LaysTheArmAlongACurveThatIsGivenByAFewPoints) {
     EXPECT_GE(sampled, 0.9 * error - 1e-9);
     coarse += result.converged() && error > 1e-3 * arm.length() ? 1 : 0;
     too_coarse += result.converged() ? 0 : 1;
-    // What the caller allows is what counts.
+    // The caller's tolerance applies.
     if (error < 1e-6) return;
     EXPECT_TRUE(solve_inverse(arm, target, {.position_tolerance = 1.01 * error}).converged());
     EXPECT_FALSE(solve_inverse(arm, target, {.position_tolerance = 0.3 * error}).converged());
@@ -165,7 +164,7 @@ TEST(Inverse, NeverFollowsACoarseCurveThatItMisses) {
 }
 
 TEST(Inverse, DecidesOnCurvesThatTheArmCannotFollow) {
-  // Curves of other arms: a minimum is found, and said to be one, but for the odd case.
+  // Curves of other arms: a minimum must be found and reported as one, with few exceptions.
   int asked = 0;
   int undecided = 0;
   for_random_cases(150, [&](TestRandom& random) {

@@ -34,9 +34,9 @@ double backbone_distance(const std::vector<Eigen::Vector3d>& a, const std::vecto
   return largest;
 }
 
-// Sections do not twist, so that all bends turn by the same angle.
+// Sections do not twist, so all bends rotate by the same angle.
 void turn_to_x(const ArmVariables& variables, Eigen::VectorXd& x) {
-  constexpr double bent = 1e-6;  // rad
+  constexpr double bent = 1e-6;  // In rad.
   const auto& parts = variables.parts();
   const auto first = std::ranges::find_if(
       parts, [&](const ArmVariables::Part& part) { return part.is_spatial && part.bend(x).norm() > bent; });

@@ -13,10 +13,10 @@ class WishMinimum {
  public:
   WishMinimum(BoundedDescent& descent, const WishScale& scale) : descent_(descent), scale_(scale) {}
 
-  // Newton's step, made downhill where the surface of the wish is bent downwards (a saddle is left to either
-  // side); whether x is not at the minimum yet.
+  // Makes a Newton step, downhill where the preference is concave on the surface (a saddle is left to either
+  // side). Returns false if x is at the minimum.
   bool step(Eigen::VectorXd& x) {
-    constexpr double level = 1e-5;  // A curvature below this is not told from none.
+    constexpr double level = 1e-5;  // A curvature below this counts as zero.
     constexpr double still = 1e-9;
     const Slope here = slope(x);
     if (here.tangents.cols() == 0) return false;
@@ -41,13 +41,13 @@ class WishMinimum {
 
  private:
   struct Slope {
-    Eigen::MatrixXd tangents;  // Orthonormal columns: directions that stay on the surface of solutions.
-    Eigen::VectorXd gradient;  // Of half the wish, in relative values, along the surface.
+    Eigen::MatrixXd tangents;  // Orthonormal columns: directions along the surface of solutions.
+    Eigen::VectorXd gradient;  // Gradient of half the preference, in relative values, along the surface.
   };
 
   [[nodiscard]] double wish(const Eigen::VectorXd& x) const { return scale_.relative(x).squaredNorm(); }
 
-  // At the bounds that hold x, the surface goes along them.
+  // At the bounds that hold x, the surface follows them.
   Slope slope(const Eigen::VectorXd& x) {
     constexpr double on_the_bound = 1e-9;
     descent_.problem.linearise(x, descent_.r, descent_.J);
@@ -69,7 +69,7 @@ class WishMinimum {
     return result;
   }
 
-  // The solution where a step in relative values leads.
+  // Returns the solution reached by a step in relative values.
   std::optional<Eigen::VectorXd> moved(const Eigen::VectorXd& x, const Eigen::VectorXd& step) {
     constexpr DescentLimits back{.iterations = 12, .slope = 1e-6};
     Eigen::VectorXd there = x + scale_.range.cwiseProduct(step);
@@ -78,7 +78,8 @@ class WishMinimum {
     return there;
   }
 
-  // Second derivatives of half the wish along the surface, by differences; empty where there are none.
+  // Returns the second derivatives of half the preference along the surface, by differences; std::nullopt if
+  // they do not exist.
   std::optional<Eigen::MatrixXd> curvature(const Eigen::VectorXd& x, const Eigen::MatrixXd& tangents) {
     constexpr double h = 1e-4;
     Eigen::MatrixXd result(tangents.cols(), tangents.cols());
@@ -91,7 +92,7 @@ class WishMinimum {
     return 0.5 * (result + result.transpose());
   }
 
-  // Along `way` as far as it leads down; false where it does not.
+  // Moves x along `way` as far as it leads down; returns false if it does not.
   bool go(Eigen::VectorXd& x, const Eigen::VectorXd& way) {
     constexpr double least_gain = 1e-14;
     const double enough = (1.0 - least_gain) * wish(x);
@@ -111,7 +112,7 @@ class WishMinimum {
 }  // namespace
 
 void run_down_to_minimum(BoundedDescent& descent, const WishScale& scale, Eigen::VectorXd& x) {
-  // The long ravines of sections bent by a whole turn, whose direction hardly matters, take the most.
+  // Long valleys of sections bent by a whole turn, whose direction hardly matters, take the most steps.
   constexpr int most_steps = 200;
   WishMinimum minimum(descent, scale);
   for (int i = 0; i < most_steps && minimum.step(x); ++i) {

@@ -1,4 +1,4 @@
-// What inverse kinematics is made of: derivatives, bounds, and the proofs of what is out of reach.
+// Tests the parts of inverse kinematics: derivatives, bounds, and proofs of unreachability.
 #include <gtest/gtest.h>
 
 #include <numbers>
@@ -39,7 +39,7 @@ TEST(ArcMotion, IsTheArcsPoseAndItsDerivativeAtEverySizeOfBend) {
   }
 }
 
-// An arm of one to four sections, some stretchable, planar or spatial.
+// Returns an arm of one to four sections, some stretchable, planar or spatial.
 Arm some_arm(TestRandom& random) {
   Arm arm;
   arm.kind = random.integer(0, 2) == 0 ? ArmKind::planar : ArmKind::spatial;
@@ -115,7 +115,7 @@ TEST(CurveProblem, GivesTheDerivativeOfItsResidual) {
       problem.linearise(at, r, J);
       return Eigen::VectorXd::Constant(1, 0.5 * r.squaredNorm());
     };
-    // Where a point crosses from one section into the next its second derivative jumps: less digits.
+    // If a point crosses from one section into the next, its second derivative jumps: fewer digits.
     const Eigen::MatrixXd numerical = numerical_jacobian(half_square, x, 1e-3).value;
     problem.linearise(x, r, J);
     EXPECT_LE((numerical.transpose() - J.transpose() * r).norm(), 1e-6);
@@ -156,7 +156,7 @@ TEST(Reach, ProvesNothingAboutWhatIsReached) {
     Arm arm = some_arm(random);
     if (random.integer(0, 3) == 0) arm.sections.back().max_bend = std::numeric_limits<double>::infinity();
     if (random.integer(0, 3) == 0) arm.sections.front().max_bend = random.uniform(3.0, 6.2);
-    // Half the states at the limits, where the bounds are tight.
+    // Half the states are at the limits, where the bounds are tight.
     ArmState state = random_state_within(random, arm);
     for (std::size_t i = 0; i < arm.sections.size(); ++i) {
       if (random.integer(0, 1) == 0 || std::isinf(arm.sections[i].max_bend)) continue;
@@ -178,7 +178,7 @@ TEST(Reach, IsTightWhereTheNearestPoseIsKnown) {
     arm.sections.emplace_back().length = 0.3;
     arm.sections.back().max_bend = 0.9;
   }
-  // Straight ahead; and the middle of the hole, from where the arc bent fully is the nearest.
+  // Straight ahead; and the middle of the hole, to which the fully bent arc is the nearest.
   EXPECT_NEAR(least_distance(arm, {0.0, 0.0, 1.0}), 0.1, 1e-12);
   const double chord = 0.9 * std::sin(1.35) / 1.35;
   EXPECT_NEAR(least_distance(arm, Eigen::Vector3d::Zero()), chord, 1e-12);

@@ -6,8 +6,8 @@
 namespace flexura {
 namespace {
 
-// Whether x is the bottom of a valley but for its last digits: along the slope that the bounds leave, |r|
-// changes by no more than a millionth of itself a radian.
+// Returns true if x is a minimum up to its last digits: along the free gradient, |r| changes by at most a
+// millionth of itself per radian.
 bool is_level(BoundedDescent& descent, const Eigen::VectorXd& x) {
   constexpr double least_slope = 1e-6;
   descent.linearise(x);
@@ -19,7 +19,7 @@ bool is_level(BoundedDescent& descent, const Eigen::VectorXd& x) {
 }  // namespace
 
 void search(BoundedDescent& descent, InverseStarts& starts, int max_starts, Found& found) {
-  // Short descents answer all but the tightly rolled arms, which need patience.
+  // Short descents solve all except tightly rolled arms, which need long ones.
   constexpr int patient_from = 30;
   constexpr DescentLimits brief{.iterations = 60};
   constexpr DescentLimits patient{.iterations = 250};
@@ -41,7 +41,7 @@ void settle(BoundedDescent& descent, int iterations, Found& found) {
     Eigen::VectorXd x = found.x;
     const Descent ended = descent.descend_gradient(by_gradient, x);
     found.keep_better(x, descent.square, ended);
-    // Not better and yet at the bottom: it was there already.
+    // No improvement at a minimum: x was the minimum already.
     if (found.ended != Descent::met) found.ended = ended;
     if (ended != Descent::exhausted) return;
     x = found.x;
@@ -70,7 +70,7 @@ Found nearest(BoundedDescent& descent, InverseStarts& starts, int max_starts) {
 
 InverseOutcome outcome_of_missed(BoundedDescent& descent, const Found& found) {
   if (found.ended == Descent::exhausted) return InverseOutcome::no_convergence;
-  constexpr double least_pressure = 1e-6;  // Of the residual's norm.
+  constexpr double least_pressure = 1e-6;  // Share of the residual's norm.
   descent.linearise(found.x);
   return pressure(descent.bounds, found.x, descent.gradient) > least_pressure * std::sqrt(descent.square)
              ? InverseOutcome::at_limit

@@ -9,13 +9,13 @@
 
 namespace flexura {
 
-/// What a state may take to come to the bottom of its valley.
+/// Most iterations to bring a state to its minimum.
 inline constexpr int settling_iterations = 6000;
 
-/// The best that a search has found.
+/// Best result of a search so far.
 struct Found {
   Eigen::VectorXd x;
-  double square = std::numeric_limits<double>::infinity();  ///< |r|^2 there.
+  double square = std::numeric_limits<double>::infinity();  ///< |r|^2 at x.
   Descent ended = Descent::exhausted;
   int starts = 0;
 
@@ -28,20 +28,19 @@ struct Found {
   }
 };
 
-/// Descends from one start after another until the problem is met or `max_starts` are made, those that
-/// `found` has already counted in.
+/// Descends from one start after another until the problem is met or `max_starts` starts are made, including
+/// those already counted in `found`.
 void search(BoundedDescent& descent, InverseStarts& starts, int max_starts, Found& found);
 
-/// Brings what was not met to the bottom of its valley, within some `iterations`. Gradients and
-/// Gauss-Newton's steps take turns: in a long valley the ones creep, in a valley whose bottom is far from the
-/// target the others.
+/// Brings an unmet result to its local minimum, within `iterations`. Gradient and Gauss-Newton steps
+/// alternate: gradients are slow in a long valley, Gauss-Newton in one whose minimum is far from the target.
 void settle(BoundedDescent& descent, int iterations, Found& found);
 
-/// The nearest state to a problem known not to be met: the best of the valleys below a few starts.
+/// Returns the nearest state for a problem known to be unreachable: the best minimum from a few starts.
 Found nearest(BoundedDescent& descent, InverseStarts& starts, int max_starts);
 
-/// Why what was found misses its target: the descent did not come to an end, or limits keep it from going on,
-/// or nothing does and the target is out of reach.
+/// Returns the reason why the result misses its target: the descent did not finish, limits hold it, or the
+/// target is out of reach.
 InverseOutcome outcome_of_missed(BoundedDescent& descent, const Found& found);
 
 }  // namespace flexura

@@ -10,8 +10,8 @@ namespace flexura {
 namespace {
 
 using std::numbers::pi;
-// Where a section has no limit, or a wider one, starts are bent up to one of these in turn: most arms are
-// asked for bends up to a half turn, and tightly rolled ones are found from rolled ones only.
+// For sections without a limit, or a wider one: starts are bent up to these values in turn. Most targets need
+// bends up to half a turn, and tightly rolled solutions are found only from rolled starts.
 constexpr std::array<double, 2> widest_starts = {1.25 * pi, 2.0 * pi};
 
 }  // namespace
@@ -33,8 +33,8 @@ void InverseStarts::next(Eigen::VectorXd& x) {
   project(variables_.bounds(), x);
 }
 
-// The chord of an arc leaves its tangent by half the bend. Exactly straight is never begun with: there an arm
-// that shall shorten does not know to which side to bend.
+// The chord of an arc deviates from its tangent by half the bend. Never returns an exactly straight arm: from
+// there, shortening has no preferred side to bend to.
 void InverseStarts::one_arc(Eigen::VectorXd& x) const {
   const double across = std::hypot(p_BT_.x(), p_BT_.y());
   const double bend = std::max(0.1, 2.0 * std::atan2(across, p_BT_.z()));

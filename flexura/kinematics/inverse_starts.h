@@ -8,11 +8,11 @@
 
 namespace flexura {
 
-/// Where the descents of inverse kinematics begin, always the same for the same question: the state given;
-/// the arm as one arc to the target; then states spread at random (SplitMix64) over the limits.
+/// Starts of the descents of inverse kinematics, equal for equal targets. First the given state, then one arc
+/// to the target, then random states (SplitMix64) over the limits.
 class InverseStarts {
  public:
-  /// `p_BT` is the wanted tip in the base's frame, m; `first` a packed state.
+  /// `p_BT` is the target of the tip in the base's frame, m; `first` a packed state.
   InverseStarts(const ArmVariables& variables, const Eigen::Vector3d& p_BT,
                 std::optional<Eigen::VectorXd> first, std::uint64_t seed);
 

@@ -15,7 +15,7 @@
 namespace flexura {
 namespace {
 
-// The model's forward kinematics of an answer, against the question.
+// Checks a result against its target with the model's forward kinematics.
 void expect_solves(const Arm& arm, const TipTarget& target, const InverseResult& result) {
   ASSERT_TRUE(result.converged()) << static_cast<int>(result.outcome);
   EXPECT_FALSE(result.is_proven);
@@ -81,7 +81,7 @@ TEST(Inverse, RefusesTargetsProvablyOutOfReachWithTheNearestPose) {
     EXPECT_TRUE(is_within_limits(arm, result.state));
     EXPECT_GE(result.position_error, at_least * (1 - 1e-12));
     EXPECT_EQ(result.tip, tip_pose(arm, result.state).position);
-    // Neither local descents, from there and from elsewhere, nor chance find anything nearer.
+    // Neither local descents, from there and from elsewhere, nor random states must find anything nearer.
     const auto miss = [&](const ArmState& state) { return miss_of(arm, target, state); };
     for (int i = 0; i < 3; ++i) {
       const ArmState start = i == 0 ? result.state : random_state_within(random, arm);
@@ -151,7 +151,7 @@ TEST(Inverse, LeastBendingBendsLeastNearby) {
     const InverseResult wished = solve_inverse(arm, target, {.wish = InverseWish::least_bending});
     expect_solves(arm, target, wished);
     EXPECT_LE(bending(wished.state), bending(plain.state) + 1e-9);
-    // No solution close by bends less.
+    // No solution close by may bend less.
     for (int i = 0; i < 10; ++i) {
       ArmState start = wished.state;
       for (Eigen::Vector2d& bend : start.bends) bend += random.vector<2>(-0.02, 0.02);
@@ -162,7 +162,7 @@ TEST(Inverse, LeastBendingBendsLeastNearby) {
   });
 }
 
-// The squares of bends and stretches relative to their ranges, as mid_range weighs them.
+// Returns the squares of bends and stretches relative to their ranges, as weighted by mid_range.
 double distance_from_middle(const Arm& arm, const ArmState& state) {
   double sum = 0.0;
   for (std::size_t i = 0; i < arm.sections.size(); ++i) {
@@ -189,7 +189,8 @@ TEST(Inverse, MidRangeTradesBendingForStretchesAwayFromTheirLimits) {
 }
 
 TEST(Inverse, SaysThatALimitHoldsIt) {
-  // Within the hull of what the arm reaches, but in the hollow that its limits leave; not proven, yet held.
+  // Within the hull of the reachable set, but in the hollow due to the limits: not proven, yet held by a
+  // limit.
   Arm arm;
   arm.kind = ArmKind::planar;
   for (int i = 0; i < 3; ++i) {

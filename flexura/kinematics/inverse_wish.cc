@@ -37,7 +37,7 @@ void follow_wish(BoundedDescent& descent, const WishScale& scale, Eigen::VectorX
   Eigen::VectorXd candidate(x.size());
   for (int i = 0; i < 100; ++i) {
     descent.problem.linearise(x, descent.r, descent.J);
-    // In relative values: from the ideal, 0, the shortest step onto the linear problem's solutions.
+    // In relative values: the shortest step from the ideal, 0, to the linear problem's solutions.
     descent.J *= scale.range.asDiagonal();
     descent.r -= descent.J.lazyProduct(scale.relative(x));
     descent.try_step(relative_bounds, ideal, 1e-12);

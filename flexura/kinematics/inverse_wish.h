@@ -8,7 +8,7 @@
 
 namespace flexura {
 
-/// A wish in numbers: |(x - middle) / range|^2, entry by entry, shall be small.
+/// Scale of a preference: minimises |(x - middle) / range|^2, element by element.
 struct WishScale {
   WishScale(const ArmVariables& variables, InverseWish wish);
 
@@ -21,20 +21,19 @@ struct WishScale {
   [[nodiscard]] Eigen::VectorXd absolute(const Eigen::VectorXd& y) const {
     return middle + y.cwiseProduct(range);
   }
-  /// Bounds of the relative values.
+  /// Returns the bounds of the relative values.
   [[nodiscard]] Bounds relative(Bounds bounds) const;
 };
 
-/// Moves the solution x along its problem's solutions to where the wish is smallest nearby. Each step takes
-/// the problem as linear, for which the wish has its minimum in closed form, goes there or part of the way,
-/// and comes back to the problem by a descent; it counts when the problem is met again and the wish is
-/// smaller. x stays a solution.
+/// Moves the solution x along its problem's solutions to a local minimum of the preference. Each step
+/// linearises the problem, for which the minimum has a closed form, and goes there or part of the way. A
+/// descent then returns to the problem. The step counts if the problem is met again and the preference is
+/// smaller. x remains a solution.
 void follow_wish(BoundedDescent& descent, const WishScale& scale, Eigen::VectorXd& x);
 
-/// Brings a solution that follow_wish has led near a minimum of the wish to the minimum itself, by Newton's
-/// steps on the surface of solutions: x is one afterwards too, and no worse. follow_wish knows that surface's
-/// tangents but not how it bends, and comes nearer by a factor an iteration: it ends some 1e-5 away, each
-/// time elsewhere.
+/// Brings a solution from follow_wish() to the minimum of the preference, by Newton steps on the surface of
+/// solutions. x remains a solution and gets no worse. follow_wish() uses the surface's tangents but not its
+/// curvature, and converges linearly. It ends about 1e-5 away, each time elsewhere.
 void run_down_to_minimum(BoundedDescent& descent, const WishScale& scale, Eigen::VectorXd& x);
 
 }  // namespace flexura

@@ -19,7 +19,7 @@ struct PointOfSection {
   Columns V_S;
 };
 
-// A point a fraction f along is the end of an arc with bend f * bend and length f * stretch * rest_length.
+// A point at the fraction f is the end of an arc with bend f * bend and length f * stretch * rest_length.
 PointOfSection point_of(const BackboneJacobian::Part& part, double fraction) {
   const Eigen::Vector2d bend = fraction * part.bend;
   const double x = bend.x(), y = bend.y(), length = fraction * part.stretch * part.rest_length;
@@ -44,7 +44,7 @@ Columns turned(const Eigen::Matrix3d& rotation, const Columns& V) {
   Columns result;
   result.topRows<3>() = rotation * V.topRows<3>();
   result.bottomLeftCorner<3, 2>() = rotation * V.bottomLeftCorner<3, 2>();
-  result.bottomRightCorner<3, 1>().setZero();  // A stretch turns nothing.
+  result.bottomRightCorner<3, 1>().setZero();  // A stretch rotates nothing.
   return result;
 }
 

@@ -12,7 +12,7 @@
 namespace flexura {
 namespace {
 
-// The Jacobian by differences of poses that know nothing of its derivation.
+// Returns the Jacobian from differences of poses, independent of its derivation.
 NumericalJacobian by_differences(const Arm& arm, const ArmState& state, const MaterialPoint& point) {
   const auto pose_of = [&](const ArmState& at) {
     return Backbone(arm, at).pose(arc_length_of(arm, at, point));

@@ -86,7 +86,7 @@ class SineMotion : public Motion {
     return state;
   }
 
-  // The rate is amplitude frequency |cos|, largest at a multiple of pi or at an end.
+  // The rate is amplitude * frequency * |cos|, largest at a multiple of pi or at an end.
   [[nodiscard]] std::optional<SectionRates> rates(std::size_t section, double start,
                                                   double end) const override {
     const double from = frequency_ * start + phases_[section];
@@ -100,11 +100,11 @@ class SineMotion : public Motion {
   ArmState from_;
   std::vector<Eigen::Vector2d> amplitudes_;
   std::vector<double> phases_;
-  double frequency_;  // rad/s
+  double frequency_;  // rad/s.
   double duration_;
 };
 
-// A section's bend and stretch as one vector, so that keyframes treat them alike.
+// Returns a section's bend and stretch as one vector, so that keyframes handle both.
 Eigen::Vector3d section_vector(const ArmState& state, std::size_t section) {
   return {state.bends[section].x(), state.bends[section].y(), state.stretches[section]};
 }
@@ -162,9 +162,9 @@ class KeyframeMotion : public Motion {
         include(mean, most);
         continue;
       }
-      // The rate of a cubic is a quadratic Bezier curve: its control points are the slopes at the ends and
-      // 3 mean - (their sum) in the middle. A part of it, from a to b, is one too, with the control points
-      // (a, a), (a, b) and (b, b) of its blossom, and stays within their hull.
+      // The rate of a cubic is a quadratic Bezier curve: its control points are the slopes at the ends and 3
+      // mean - (their sum) in the middle. A part of it, from a to b, is one too, within the hull of its
+      // control points. These are the values (a, a), (a, b) and (b, b) of its blossom.
       const Eigen::Vector3d& p0 = slopes_[k][section];
       const Eigen::Vector3d& p2 = slopes_[k + 1][section];
       const Eigen::Vector3d p1 = 3 * mean - p0 - p2;
@@ -182,7 +182,7 @@ class KeyframeMotion : public Motion {
     most.stretch = std::max(most.stretch, std::abs(rate.z()));
   }
 
-  // Of the parabola through the keyframes k - 1, k and k + 1, at k.
+  // Returns the slope at k of the parabola through the keyframes k - 1, k and k + 1.
   [[nodiscard]] Eigen::Vector3d slope(std::size_t k, std::size_t i) const {
     const double before = times_[k] - times_[k - 1];
     const double after = times_[k + 1] - times_[k];
@@ -204,8 +204,8 @@ class KeyframeMotion : public Motion {
   }
 
   std::vector<double> times_;
-  std::vector<std::vector<Eigen::Vector3d>> values_;  // by keyframe and section
-  std::vector<std::vector<Eigen::Vector3d>> slopes_;  // per s
+  std::vector<std::vector<Eigen::Vector3d>> values_;  // By keyframe and section.
+  std::vector<std::vector<Eigen::Vector3d>> slopes_;  // Per s.
   bool is_linear_ = true;
 };
 

@@ -11,13 +11,13 @@
 
 namespace flexura {
 
-/// Upper bounds on how fast a section changes.
+/// Upper bounds on a section's rates.
 struct SectionRates {
   double bend = 0;     ///< |d bend/dt|, rad/s.
   double stretch = 0;  ///< |d stretch/dt|, 1/s.
 };
 
-/// A law of motion: the arm's state over the time of one task. A value that does not change; safe to share.
+/// A law of motion: the arm's state over the time of one task. Immutable; safe to share.
 class Motion {
  public:
   virtual ~Motion() = default;
@@ -25,41 +25,43 @@ class Motion {
   Motion(const Motion&) = delete;
   Motion& operator=(const Motion&) = delete;
 
-  [[nodiscard]] virtual double duration() const = 0;  ///< s, >= 0.
-  /// The state at `time` in [0, duration()] s. What a law does not compute to a finite number comes out as it
-  /// is.
+  [[nodiscard]] virtual double duration() const = 0;  ///< In s, >= 0.
+  /// Returns the state at `time` in [0, duration()] s. Values of a law that are not finite are returned as
+  /// they are.
   [[nodiscard]] virtual ArmState at(double time) const = 0;
-  /// Bounds that hold for `section` everywhere in [start, end] s; empty where the law has none that is known.
+  /// Returns bounds for `section` in all of [start, end] s; std::nullopt if they are unknown.
   [[nodiscard]] virtual std::optional<SectionRates> rates(std::size_t section, double start,
                                                           double end) const = 0;
 };
 
-/// Shared by who plays it and who checks it.
+/// Shared by the player and the checks.
 using MotionPtr = std::shared_ptr<const Motion>;
 
-/// The arm stays in `state` for `duration` s.
+/// Returns a motion that stays in `state` for `duration` s.
 [[nodiscard]] MotionPtr hold_motion(ArmState state, double duration);
 
-/// From one state to another, every section on a straight line in bend and stretch, each with its own time
-/// profile (one a section, all of one duration; else std::invalid_argument).
+/// Returns a motion between two states. Every section moves on a straight line in bend and stretch, each with
+/// its own time profile. Throws std::invalid_argument unless there is one profile per section, all of one
+/// duration.
 [[nodiscard]] MotionPtr point_to_point_motion(ArmState from, ArmState to, std::vector<Profile> profiles);
 
-/// bend_i(t) = from_i + amplitude_i (sin(2 pi t / period + phase_i) - sin(phase_i)) for `duration` s: starts
-/// where the arm is. One amplitude (rad) and phase (rad) a section, else std::invalid_argument; the period,
-/// s, is above 0.
+/// Returns bend_i(t) = from_i + amplitude_i (sin(2 pi t / period + phase_i) - sin(phase_i)) for `duration` s,
+/// which starts at the arm's state. Throws std::invalid_argument unless there are one amplitude (rad) and one
+/// phase (rad) per section. The period, s, is above 0.
 [[nodiscard]] MotionPtr sine_motion(ArmState from, std::vector<Eigen::Vector2d> amplitudes,
                                     std::vector<double> phases, double period, double duration);
 
-/// How a motion passes from one keyframe to the next: in a straight line, or without a corner (cubic Hermite
-/// pieces whose slopes are the parabola's through three neighbouring keyframes, and zero at both ends).
+/// Interpolation between keyframes: linear, or smooth. Smooth has cubic Hermite pieces with the slopes of the
+/// parabola through three neighbouring keyframes, and zero at both ends.
 enum class Interpolation { linear, smooth };
 
-/// Through `states` at `times` (s, rising from 0, at least two; else std::invalid_argument).
+/// Returns a motion through `states` at `times` (s). Throws std::invalid_argument unless there are at least
+/// two times, increasing from 0.
 [[nodiscard]] MotionPtr keyframe_motion(std::vector<double> times, const std::vector<ArmState>& states,
                                         Interpolation interpolation);
 
-/// Any function of the time from 0 to `duration`, s, such as an expression a user wrote; it may do anything,
-/// so no rates are known.
+/// Returns a motion by any function of the time from 0 to `duration`, s, such as a user's expression. Its
+/// rates are unknown.
 [[nodiscard]] MotionPtr function_motion(double duration, std::function<ArmState(double time)> state_at);
 
 }  // namespace flexura

@@ -58,7 +58,7 @@ TEST(Profile, BoundsItsRateExactly) {
       }
       EXPECT_LE(most, profile.max_rate(start, end) * (1 + 1e-14));
       EXPECT_GE(most, profile.max_rate(start, end) * (1 - 1e-2));
-      EXPECT_DOUBLE_EQ(least, profile.min_rate(start, end));  // taken at one of the ends
+      EXPECT_DOUBLE_EQ(least, profile.min_rate(start, end));  // Taken at one of the ends.
     }
   });
 }
@@ -67,15 +67,15 @@ TEST(Profile, MinimumJerkHasItsKnownPeakAndRestsAtItsEnds) {
   const Profile profile = Profile::minimum_jerk(2);
   EXPECT_DOUBLE_EQ(profile.max_rate(0, 2), 1.875 / 2);
   EXPECT_EQ(profile.rate(0), 0);
-  EXPECT_NEAR(profile.fraction(1e-4), 10 * std::pow(0.5e-4, 3), 1e-15);  // no velocity, no acceleration
+  EXPECT_NEAR(profile.fraction(1e-4), 10 * std::pow(0.5e-4, 3), 1e-15);  // No velocity, no acceleration.
 }
 
 TEST(Profile, TrapezoidUsesItsLimitsAndNoMore) {
-  const Profile reaches = Profile::trapezoid(1.0, 0.5, 1.0);  // 0.5 s up, 1.5 s even, 0.5 s down
+  const Profile reaches = Profile::trapezoid(1.0, 0.5, 1.0);  // 0.5 s up, 1.5 s constant, 0.5 s down.
   EXPECT_DOUBLE_EQ(reaches.duration(), 2.5);
   EXPECT_DOUBLE_EQ(reaches.max_rate(0, 2.5), 0.5);
   EXPECT_DOUBLE_EQ(reaches.fraction(0.5), 0.125);
-  const Profile falls_short = Profile::trapezoid(1.0, 10.0, 1.0);  // 1 s up, 1 s down
+  const Profile falls_short = Profile::trapezoid(1.0, 10.0, 1.0);  // 1 s up, 1 s down.
   EXPECT_DOUBLE_EQ(falls_short.duration(), 2.0);
   EXPECT_DOUBLE_EQ(falls_short.max_rate(0, 2), 1.0);
 }

@@ -10,16 +10,16 @@
 namespace flexura {
 namespace {
 
-// Below this a movement is the rounding of a computation, in microsteps.
+// Microsteps: a smaller movement is a rounding error.
 constexpr double rounding = 1e-6;
-// Doubles count exactly up to here.
+// Doubles represent all integers up to this value.
 constexpr double max_position = 9007199254740992.0;
 
 void require_one_an_axis(std::size_t axes, std::size_t given) {
   if (given != axes) throw std::invalid_argument(fmt::format("{} axes cannot take {} values", axes, given));
 }
 
-// Positive is pulling in; a reversed motor counts the other way.
+// Positive values pull in; a reversed motor counts the other way.
 double sense(const Axis& axis) { return axis.reversed ? -1.0 : 1.0; }
 
 }  // namespace
@@ -62,7 +62,7 @@ void MotorCommander::command(std::size_t axis, double target) {
         fmt::format("axis {}: the position {} microsteps cannot be counted", axis, target));
   }
   targets_[axis] = sense(axes_[axis]) * target;
-  // A target halfway between two microsteps stays at the one it was given first.
+  // A target halfway between two microsteps keeps the previous position.
   if (std::abs(target - sense(axes_[axis]) * static_cast<double>(positions_[axis])) <= 0.5 + rounding) return;
   positions_[axis] = static_cast<std::int64_t>(sense(axes_[axis]) * std::round(target));
 }

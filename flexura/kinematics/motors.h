@@ -6,38 +6,40 @@
 
 #include "flexura/model/drive.h"
 
-// Displacements to motor positions and back (docs/drives.md). A position counts microsteps in
-// the motor's own sense; all are 0 where the arm is straight and unstretched and the play is taken up for
-// pulling in.
+// Converts displacements to motor positions and back (docs/drives.md). A position counts microsteps in the
+// motor's own direction. All are 0 where the arm is straight and unstretched, with the backlash compensated
+// for pulling in.
 namespace flexura {
 
-/// Each motor's position for these displacements, not rounded, without regard to play.
-/// std::invalid_argument when there is not one displacement an axis.
+/// Returns each motor's position for these displacements, not rounded, without backlash. Throws
+/// std::invalid_argument unless there is one displacement per axis.
 [[nodiscard]] std::vector<double> motor_positions(const Drive& drive,
                                                   const TendonDisplacements& displacements);
 
-/// The displacements at these positions (one an axis, else std::invalid_argument), without regard to play.
+/// Returns the displacements at these positions, without backlash. Throws std::invalid_argument unless there
+/// is one position per axis.
 [[nodiscard]] TendonDisplacements displacements_at(const Drive& drive, std::span<const double> positions);
 
-/// Which positions to command so that the tendons follow wanted displacements: to the nearest microstep, and
-/// with the play taken up at once where a tendon reverses. Behind these commands every tendon stays within
-/// half a microstep of what is wanted.
+/// Computes the positions to command so that the tendons follow target displacements. Rounds to the nearest
+/// microstep and compensates the backlash at once where a tendon reverses. Every tendon then stays within
+/// half a microstep of its target.
 class MotorCommander {
  public:
-  /// At `start`, with the play taken up for pulling in. std::invalid_argument when it does not fit the drive.
+  /// Starts at `start`, with the backlash compensated for pulling in. Throws std::invalid_argument if `start`
+  /// does not fit the drive.
   MotorCommander(const Drive& drive, const TendonDisplacements& start);
 
-  /// The positions now, microsteps.
+  /// Returns the current positions, microsteps.
   [[nodiscard]] const std::vector<std::int64_t>& positions() const { return positions_; }
-  /// What they are rounded from: the way of the motors without the steps of counting.
+  /// Returns the positions before rounding.
   [[nodiscard]] const std::vector<double>& targets() const { return targets_; }
-  /// Goes on to `wanted`. std::out_of_range when a position is beyond 2^53, or not a number.
+  /// Moves to `wanted`. Throws std::out_of_range if a position is beyond 2^53 or not a number.
   void follow(const TendonDisplacements& wanted);
 
  private:
   struct Side {
-    bool letting_out = false;  // and the play is taken up for that
-    double farthest = 0;       // how far the tendon has come on this side, microsteps pulled in
+    bool letting_out = false;  // Pays out, with the backlash compensated for that.
+    double farthest = 0;       // Extreme position of the tendon on this side, microsteps pulled in.
   };
   void command(std::size_t axis, double target);
 

@@ -26,7 +26,7 @@ std::vector<double> reals(const std::vector<std::int64_t>& positions) {
   return {positions.begin(), positions.end()};
 }
 
-// 300 * 10 microsteps a turn, gear 10, spool of 10 mm: 30000 microsteps for 62.8 mm of cable.
+// 300 * 10 microsteps per turn, gear 10, spool of 10 mm: 30000 microsteps for 62.8 mm of cable.
 Drive one_axis(double backlash = 0) {
   Drive drive;
   drive.tendons = {{}};
@@ -35,7 +35,7 @@ Drive one_axis(double backlash = 0) {
   return drive;
 }
 
-constexpr double one_turn = 2 * std::numbers::pi * 0.01;  // m of cable
+constexpr double one_turn = 2 * std::numbers::pi * 0.01;  // In m of cable.
 
 TEST(Motors, CountSpoolTurnsThroughTheGear) {
   Drive drive = one_axis();
@@ -49,9 +49,9 @@ TEST(Motors, CountSpoolTurnsThroughTheGear) {
 TEST(Motors, LimitsBoundTheCable) {
   Axis axis = one_axis().axes[0];
   EXPECT_EQ(axis.max_cable_speed(), std::numeric_limits<double>::infinity());
-  axis.motor.max_speed = 4 * std::numbers::pi;  // two turns a second, a fifth of a turn of the spool
+  axis.motor.max_speed = 4 * std::numbers::pi;  // Two turns per second, a fifth of a turn of the spool.
   EXPECT_DOUBLE_EQ(axis.max_cable_speed(), one_turn / 5);
-  axis.motor.max_step_rate = 3000;  // one turn a second
+  axis.motor.max_step_rate = 3000;  // One turn per second.
   EXPECT_DOUBLE_EQ(axis.max_cable_speed(), one_turn / 10);
 }
 
@@ -80,7 +80,7 @@ TEST(Motors, RoundTripsToHalfAMicrostepOverRandomArms) {
   });
 }
 
-// Tendons of a section at `angles`, on motors of 30000 microsteps a turn of a 10 mm spool.
+// Tendons of a section at `angles`, on motors with 30000 microsteps per turn of a 10 mm spool.
 Drive drive_at(const std::vector<double>& angles, std::size_t sections) {
   Drive drive;
   for (std::size_t section = 0; section < sections; ++section) {
@@ -92,7 +92,8 @@ Drive drive_at(const std::vector<double>& angles, std::size_t sections) {
   return drive;
 }
 
-// The pseudo-inverse of what the tendons of a section do with a sum of bends, by the normal equations.
+// Returns the pseudo-inverse of the map from a sum of bends to the tendons of a section, by the normal
+// equations.
 Eigen::MatrixXd bends_of_cables(const Drive& drive, std::size_t section) {
   Eigen::MatrixXd offsets(0, 2);
   for (const Tendon& tendon : drive.tendons) {
@@ -103,9 +104,9 @@ Eigen::MatrixXd bends_of_cables(const Drive& drive, std::size_t section) {
   return (offsets.transpose() * offsets).inverse() * offsets.transpose();
 }
 
-// Bends to cables, spools, whole microsteps and back, with as many tendons as real arms have. What comes back
-// is the least-squares fit to the rounded cables, here computed without the code under test, and no further
-// from the bends than all roundings together can carry it.
+// Bends to cables, spools, whole microsteps and back, with as many tendons as real arms have. The result must
+// be the least-squares fit to the rounded cables, computed here without the code under test. It must be no
+// further from the bends than all roundings together can move it.
 TEST(Motors, RoundTripWithThreeFourOrFiveTendonsEvenAndUneven) {
   const double turn = 2 * std::numbers::pi;
   const std::vector<std::vector<double>> placements{{0, turn / 3, 2 * turn / 3},
@@ -169,7 +170,7 @@ TEST(Motors, WithPlayTakenUpFollowToHalfAMicrostepWhateverTheWay) {
 }
 
 TEST(Motors, TakeUpThePlayWhenATendonReverses) {
-  const double play = 100.25;  // microsteps
+  const double play = 100.25;  // Microsteps.
   const Drive drive = one_axis(play / 30000 * 2 * std::numbers::pi);
   const double microstep = one_turn / 30000;
   EXPECT_NEAR(drive.axes[0].play(), play, 1e-12);
@@ -191,7 +192,7 @@ TEST(Motors, StayWhereTheyAreWhileTheArmHolds) {
   MotorCommander commander(drive, {{-20 * half_step}});
   commander.follow({{-21 * half_step}});
   const std::vector<std::int64_t> before = commander.positions();
-  // Rounding in what computes the displacement is no movement, even where it decides between two steps.
+  // Rounding errors in the displacements are no movement, even where they decide between two steps.
   for (int i = 0; i < 10; ++i) {
     commander.follow({{-21 * half_step * (1 + (i % 3 - 1) * 1e-15)}});
     EXPECT_EQ(commander.positions(), before);

@@ -23,7 +23,8 @@ std::vector<double> lengths(const Arm& arm) {
   return result;
 }
 
-// E of the paper's arm, the cord angles a fraction of the way from upright to their final values.
+// Returns E of the paper's arm, with the cord angles a fraction of the way from upright to their final
+// values.
 Eigen::Vector2d paper_end_effector(double fraction) {
   std::vector<double> cord_angles;
   for (const double final_angle : paper_cord_angles()) {
@@ -77,7 +78,7 @@ TEST(Planar, AnErrorInOneCordAlternatesWithGain2) {
 }
 
 TEST(Planar, ANoisyCordIsFivefoldInTheArchingOfTheEighthSection) {
-  // Errors of the same size in every cord, each on its own: the root of the sum of their squared effects.
+  // Independent errors of equal size in every cord: the root of the sum of their squared effects.
   double squares = 0.0;
   const std::vector<double> exact = archings_from_cord_angles(paper_cord_angles(), pi / 2);
   for (std::size_t i = 0; i < 8; ++i) {
@@ -92,7 +93,7 @@ TEST(Planar, ANoisyCordIsFivefoldInTheArchingOfTheEighthSection) {
 }
 
 TEST(Planar, Equations9And10AsPrintedEndElsewhere) {
-  // Every cord at the angle that eq. 5 gives for n = 8, the end effector: it has no arching of its own.
+  // Every cord at the angle that eq. 5 gives for n = 8, the end effector, which has no arching of its own.
   const Arm arm = paper_arm();
   const std::vector<double> archings = archings_from_cord_angles(paper_cord_angles(), pi / 2);
   double angle = pi / 2;
@@ -103,7 +104,7 @@ TEST(Planar, Equations9And10AsPrintedEndElsewhere) {
   }
   EXPECT_NEAR(sum * std::cos(angle), 9.038, 5e-4);
   EXPECT_NEAR(sum * std::sin(angle), 12.440, 5e-4);
-  // With the angle of the section that is being summed, the same sum is the paper's E.
+  // With the angle of the section that is being summed, the sum is the paper's E.
   EXPECT_NEAR(paper_end_effector(1.0).x(), -10.738, 5e-4);
   EXPECT_NEAR(paper_end_effector(1.0).y(), 5.201, 5e-4);
 }

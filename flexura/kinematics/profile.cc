@@ -24,7 +24,7 @@ Profile Profile::trapezoid(double distance, double max_rate, double max_accelera
         fmt::format("a trapezoid needs a distance, a rate and an acceleration above 0, not {}, {}, {}",
                     distance, max_rate, max_acceleration));
   }
-  // Over a short way the rate is not reached: half of the way speeding up, half slowing down.
+  // Over a short distance the rate is not reached: half of the distance accelerating, half decelerating.
   const double ramp = std::min(max_rate / max_acceleration, std::sqrt(distance / max_acceleration));
   const double even_rate = ramp * max_acceleration;
   return {Kind::trapezoid, distance / even_rate + ramp, ramp};
@@ -33,7 +33,7 @@ Profile Profile::trapezoid(double distance, double max_rate, double max_accelera
 double Profile::fraction(double time) const {
   if (time <= 0) return 0;
   if (time >= duration_) return 1;
-  // The second half mirrors the first, so that both ends are met exactly.
+  // The second half mirrors the first, so that both ends are exact.
   if (time > duration_ / 2) return 1 - fraction(duration_ - time);
   const double x = time / duration_;
   switch (kind_) {

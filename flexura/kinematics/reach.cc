@@ -23,9 +23,9 @@ double total_bend(const Arm& arm) {
   return sum;
 }
 
-// The farthest that any tip gets along a direction at the angle `beta` in [0, pi] from the base's z. At a
-// part f of section i the tangent has turned by at most psi = (bends before) + f max_bend_i, so that its
-// component along the direction is at most cos(max(0, beta - psi)); this is the integral of that.
+// Returns the farthest position of any tip along a direction at the angle `beta` in [0, pi] from the base's
+// z. At a fraction f of section i the tangent has turned by at most psi = (bends before) + f max_bend_i. So
+// its component along the direction is at most cos(max(0, beta - psi)); the result is the integral of that.
 double support(const Arm& arm, double beta) {
   double left = beta;  // beta - psi at the section's start.
   double sum = 0.0;
@@ -33,7 +33,7 @@ double support(const Arm& arm, double beta) {
     double mean = 1.0;
     if (left > 0.0) {
       const double turning =
-          std::min(1.0, left / section.max_bend);  // Part of the section; 0 without a limit.
+          std::min(1.0, left / section.max_bend);  // Fraction of the section; 0 without a limit.
       const double turn = turning > 0.0 ? turning * section.max_bend : 0.0;
       mean = turning * std::cos(left - 0.5 * turn) * sinc(0.5 * turn) + (1.0 - turning);
       left -= section.max_bend;
@@ -43,8 +43,9 @@ double support(const Arm& arm, double beta) {
   return sum;
 }
 
-// How far p lies beyond the support plane that it breaks most: its distance from the convex hull of all tips
-// at least. The hull is round about z, so directions in the plane of z and p are enough.
+// Returns the distance of p beyond the support plane that it violates most. It is a lower bound on the
+// distance of p from the convex hull of all tips. The hull is symmetric about z, so directions in the plane
+// of z and p suffice.
 double beyond_hull(const Arm& arm, const Eigen::Vector3d& p) {
   const double across = std::hypot(p.x(), p.y());
   const auto beyond = [&](double beta) {
@@ -69,7 +70,7 @@ double beyond_hull(const Arm& arm, const Eigen::Vector3d& p) {
   return largest;
 }
 
-// The shortest chord of the whole arm by links: each section's chord is one link of a chain.
+// Returns the shortest chord of the whole arm as a chain of links, one per section's chord.
 double hole_of_chain(const Arm& arm) {
   double all = 0.0;
   for (const Section& section : arm.sections) all += longest(section);
@@ -81,8 +82,8 @@ double hole_of_chain(const Arm& arm) {
   return hole;
 }
 
-// Schur's comparison theorem: of all curves with these lengths and no more curvature anywhere, the plane arc
-// bent fully to one side has the shortest chord, as long as arc and chord together are convex.
+// Schur's comparison theorem: among all curves with these lengths and no more curvature anywhere, the plane
+// arc bent fully to one side has the shortest chord. This holds if arc and chord together are convex.
 double hole_by_schur(const Arm& arm) {
   const double turn = total_bend(arm);
   if (!(turn < 2 * pi)) return 0.0;
@@ -128,7 +129,7 @@ double least_angle(const Arm& arm, const Eigen::Matrix3d& R_BT) {
 }
 
 double least_distance_along(const Arm& arm, const Pose& X_BT) {
-  // Seen from the tip, looking back, the arm is one of the same sections in reverse order.
+  // Seen from the tip backwards, the arm has the same sections in reverse order.
   Arm reverse = arm;
   std::ranges::reverse(reverse.sections);
   const Pose turned{Eigen::Vector3d(-1.0, 1.0, -1.0).asDiagonal(), Eigen::Vector3d::Zero()};

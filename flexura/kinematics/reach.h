@@ -5,22 +5,22 @@
 #include "flexura/math/pose.h"
 #include "flexura/model/arm.h"
 
-// What an arm can be proven not to reach (docs/inverse-kinematics.md, "What is proven"): from its lengths,
-// stretch limits and largest bends alone, without any search. All points and directions are in the base's
-// frame B; every bound holds for every state within the limits, and 0 proves nothing.
+// Proofs that an arm cannot reach a target (docs/inverse-kinematics.md, "What is proven"). They use only its
+// lengths, stretch limits and largest bends, without any search. All points and directions are in the base's
+// frame B. Every bound holds for every state within the limits, and 0 proves nothing.
 namespace flexura {
 
-/// A lower bound on the distance of the tip from `p_BP`, m.
+/// Returns a lower bound on the distance of the tip from `p_BP`, m.
 [[nodiscard]] double least_distance(const Arm& arm, const Eigen::Vector3d& p_BP);
 
-/// A lower bound on the angle between the tip's z axis and the unit vector `d_B`, rad.
+/// Returns a lower bound on the angle between the tip's z axis and the unit vector `d_B`, rad.
 [[nodiscard]] double least_angle(const Arm& arm, const Eigen::Vector3d& d_B);
 
-/// A lower bound on the angle of the turn between the tip's frame and `R_BT`, rad.
+/// Returns a lower bound on the rotation angle between the tip's frame and `R_BT`, rad.
 [[nodiscard]] double least_angle(const Arm& arm, const Eigen::Matrix3d& R_BT);
 
-/// A lower bound on the distance of the tip from the origin of `X_BT` when it points along the z of `X_BT`,
-/// m: least_distance from either end of the arm.
+/// Returns a lower bound on the distance of the tip from the origin of `X_BT` if it points along the z of
+/// `X_BT`, m: least_distance from either end of the arm.
 [[nodiscard]] double least_distance_along(const Arm& arm, const Pose& X_BT);
 
 }  // namespace flexura

@@ -8,22 +8,23 @@
 
 namespace flexura {
 
-/// Angle of the straight arm (the base's z axis) from +X in the XOY plane, counter-clockwise, rad: the
-/// paper's alpha_Ox^0 of eq. 5. Of those that differ by whole turns, the one nearest to Arm::near_tangent.
+/// Returns the angle of the straight arm (the base's z axis) from +X in the XOY plane, counter-clockwise,
+/// rad: the paper's alpha_Ox^0 of eq. 5. Of angles that differ by whole turns, the one nearest to
+/// Arm::near_tangent.
 [[nodiscard]] double base_tangent_angle(const Arm& arm);
 
-/// The state of `arm` that `shape` means; what is left out is straight and unstretched. `shape` fits the arm
-/// (check_shape); std::invalid_argument otherwise.
+/// Returns the state of `arm` for `shape`; omitted values are straight and unstretched. Throws
+/// std::invalid_argument if `shape` does not fit the arm (check_shape).
 [[nodiscard]] ArmState arm_state(const Arm& arm, const ShapeConfig& shape);
 
 /// Reports to `reader` the sections that `shape` at `path`, which fits the arm, bends by more than
-/// largest_bend: what no range of a table can say of cord angles and of bends in two directions.
+/// largest_bend. A table's range cannot check this for cord angles and for bends in two directions.
 void check_bends(const Arm& arm, const ShapeConfig& shape, const std::string& path, Reader& reader);
 
-/// Each section's arching of a planar arm, rad, counter-clockwise.
+/// Returns each section's arching of a planar arm, rad, counter-clockwise.
 [[nodiscard]] std::vector<double> archings(const ArmState& state);
 
-/// Each section's cord's angle from +X of a planar arm, rad, counter-clockwise.
+/// Returns the angle of each section's cord from +X of a planar arm, rad, counter-clockwise.
 [[nodiscard]] std::vector<double> cord_angles(const Arm& arm, const ArmState& state);
 
 }  // namespace flexura

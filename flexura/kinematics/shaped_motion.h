@@ -5,8 +5,8 @@
 
 namespace flexura {
 
-/// The shapes that an arm goes through when it is commanded to follow `command`. It knows the rates that the
-/// command knows.
+/// Returns the motion of shapes of an arm that follows the commands `command`. Its rates are known if those
+/// of the command are.
 [[nodiscard]] MotionPtr shaped_motion(const Actuation& actuation, MotionPtr command);
 
 }  // namespace flexura

@@ -29,8 +29,8 @@ TEST(Spatial, FramesTipAndBackboneAreOneArm) {
   });
 }
 
-// An independent way: what turns is only the tangent's direction, in closed form for each arc (sines and
-// cosines, no series), and the curve is its integral. The pose at a fraction of the last section.
+// Independent computation: only the tangent's direction turns, in closed form for each arc (sines and
+// cosines, no series), and the curve is its integral. Returns the pose at a fraction of the last section.
 Pose integrated_pose(const Arm& arm, const ArmState& state, double last_fraction) {
   const Quadrature rule = gauss_legendre(20);
   Eigen::Vector3d p = arm.X_WB.position;

@@ -27,11 +27,11 @@ void require_fit(const Arm& arm, const Drive& drive, std::size_t bends, std::siz
   }
 }
 
-// How much shorter straight pieces between disks are than the channel: each piece of an arc that turns by
+// How much shorter straight pieces between disks are than the channel. Each piece of an arc that turns by
 // |bend| / n is the chord of the offset arc of the same turn.
 struct Chords {
-  double ratio = 1;                                 // 1 in a channel
-  Eigen::Vector2d slope = Eigen::Vector2d::Zero();  // of the ratio by the bend, 1/rad
+  double ratio = 1;                                 // 1 in a channel.
+  Eigen::Vector2d slope = Eigen::Vector2d::Zero();  // Of the ratio by the bend, 1/rad.
 };
 
 Chords chords(const Drive& drive, const Eigen::Vector2d& bend) {
@@ -41,10 +41,10 @@ Chords chords(const Drive& drive, const Eigen::Vector2d& bend) {
   return {sinc(half_turn), sinc_slope(half_turn) * per_angle * per_angle * bend};
 }
 
-// A section as a tendon sees it: the tendon at `offset` has the length `centre` - offset . `turn` in it.
+// A section for a tendon: the tendon at `offset` has the length `centre` - offset . `turn` in it.
 struct Passage {
-  double centre = 0;                               // m
-  Eigen::Vector2d turn = Eigen::Vector2d::Zero();  // rad
+  double centre = 0;                               // m.
+  Eigen::Vector2d turn = Eigen::Vector2d::Zero();  // rad.
 };
 
 Passage passage(const Drive& drive, const Section& section, const Eigen::Vector2d& bend, double stretch) {
@@ -52,7 +52,7 @@ Passage passage(const Drive& drive, const Section& section, const Eigen::Vector2
   return {ratio * section.length * stretch, ratio * bend};
 }
 
-// The passages of all sections up to each, its own included.
+// Returns the sums of the passages up to and including each section.
 std::vector<Passage> passages(const Arm& arm, const Drive& drive, const ArmState& state) {
   std::vector<Passage> sums;
   Passage sum;
@@ -64,7 +64,7 @@ std::vector<Passage> passages(const Arm& arm, const Drive& drive, const ArmState
   return sums;
 }
 
-// Length to the end of each section when the arm is straight, m.
+// Returns the length to the end of each section of the straight arm, m.
 std::vector<double> straight_lengths(const Arm& arm) {
   std::vector<double> sums;
   sums.reserve(arm.sections.size());
@@ -73,7 +73,7 @@ std::vector<double> straight_lengths(const Arm& arm) {
   return sums;
 }
 
-// Derivative of one section's displacement by its (bend_x, bend_y, stretch).
+// Returns the derivative of one section's displacement by its (bend_x, bend_y, stretch).
 Eigen::RowVector3d displacement_slope(const Drive& drive, const Section& section, const Eigen::Vector2d& bend,
                                       double stretch, const Eigen::Vector2d& offset) {
   const auto [ratio, slope] = chords(drive, bend);
@@ -82,18 +82,18 @@ Eigen::RowVector3d displacement_slope(const Drive& drive, const Section& section
   return {by_bend.x(), by_bend.y(), -ratio * section.length};
 }
 
-// A section of which the bend and, where it may stretch, the stretch are sought.
+// A section with unknown bend and, if it may stretch, unknown stretch.
 struct Unknown {
   const Drive& drive;
   const Section& section;
   ArmKind kind;
-  std::vector<Eigen::Vector2d> offsets;   // of the tendons that end there, m
-  std::vector<double> pulled;             // and their displacements, m
-  double shortened_below = 0;             // by the sections below, along the centre, m
-  Eigen::Vector2d turned_below = {0, 0};  // rad
+  std::vector<Eigen::Vector2d> offsets;   // Of the tendons that end there, m.
+  std::vector<double> pulled;             // Their displacements, m.
+  double shortened_below = 0;             // By the sections below, along the centre, m.
+  Eigen::Vector2d turned_below = {0, 0};  // rad.
 };
 
-// Gauss-Newton; in a channel the first step is exact but for rounding.
+// Gauss-Newton; in a channel the first step is exact up to rounding.
 bool solve(const Unknown& unknown, Eigen::Vector2d& bend, double& stretch) {
   const auto rows = static_cast<Eigen::Index>(unknown.offsets.size());
   const Eigen::Index bend_columns = unknown.kind == ArmKind::planar ? 1 : 2;
@@ -117,7 +117,7 @@ bool solve(const Unknown& unknown, Eigen::Vector2d& bend, double& stretch) {
     bend.head(bend_columns) += change.head(bend_columns);
     if (stretching) stretch += change(bend_columns);
     if (!bend.allFinite() || !std::isfinite(stretch)) return false;
-    // Near a solution the next step is its square.
+    // Near a solution the next step is the square of this one.
     constexpr double small = 1e-10;
     if (change.norm() <= small * (1 + bend.norm())) return true;
   }
@@ -187,11 +187,12 @@ TendonFit fit_state(const Arm& arm, const Drive& drive, const TendonDisplacement
 std::vector<double> tendon_speed_bounds(const Arm& arm, const Drive& drive,
                                         std::span<const SectionRates> rates) {
   require_fit(arm, drive, rates.size(), rates.size());
-  // Of |sinc'(h)| and |h sinc'(h)| = |cos h - sinc h| over all h: what disks can add (docs/drives.md).
+  // Maxima of |sinc'(h)| and |h sinc'(h)| = |cos h - sinc h| over all h: the contribution of disks
+  // (docs/drives.md).
   constexpr double max_slope = 0.4363;
   constexpr double max_scaled_slope = 1.0632;
-  std::vector<double> bend_speeds;    // sum of the bend rates up to each section, rad/s
-  std::vector<double> centre_speeds;  // what the lengths along the centre add, m/s
+  std::vector<double> bend_speeds;    // Sum of the bend rates up to each section, rad/s.
+  std::vector<double> centre_speeds;  // Contribution of the lengths along the centre, m/s.
   double bend = 0;
   double centre = 0;
   for (std::size_t i = 0; i < rates.size(); ++i) {

@@ -31,7 +31,7 @@ Eigen::Vector3d on_tendon(const Backbone& backbone, const Tendon& tendon, double
   return backbone.pose(s) * Eigen::Vector3d(offset.x(), offset.y(), 0);
 }
 
-// The speed along the curve that runs at the tendon's offset from the backbone, per metre of backbone.
+// Returns the speed along the curve at the tendon's offset from the backbone, per metre of backbone.
 double speed_along(const Arc& arc, const Tendon& tendon, double distance) {
   const Eigen::Vector2d curvature = arc.bend / arc.length;
   const Eigen::Vector2d offset = tendon.offset();
@@ -42,7 +42,7 @@ double speed_along(const Arc& arc, const Tendon& tendon, double distance) {
   return velocity.norm();
 }
 
-// How long a tendon is when it is pulled in by so much.
+// Returns the length of a tendon with this displacement.
 double length_of(const Arm& arm, const Tendon& tendon, double pulled) {
   double straight = 0;
   for (std::size_t i = 0; i <= tendon.section; ++i) straight += arm.sections[i].length;

@@ -8,11 +8,11 @@
 namespace flexura {
 namespace {
 
-// The rotation vector, without turn about z, from the direction d to z; both in the tip's frame.
+// Returns the rotation vector, without rotation about z, from the direction d to z; both in the tip's frame.
 Eigen::Vector2d turn_from(const Eigen::Vector3d& d) {
   const double sine = std::hypot(d.x(), d.y());
   const double angle = std::atan2(sine, d.z());
-  // Of all the half turns from -z the one about x.
+  // For -z, which has many half turns, takes the one about x.
   if (sine < 1e-300) return {angle, 0.0};
   return Eigen::Vector2d(d.y(), -d.x()) * (angle / sine);
 }

@@ -21,12 +21,12 @@
 namespace flexura {
 namespace {
 
-// "base_1_x" and so on: sections are counted from 1, as people count them.
+// Adds "base_1_x" and so on: users count sections from 1.
 void name_columns(CsvText& csv, std::string_view stem, std::size_t count) {
   for (std::size_t i = 1; i <= count; ++i) csv.cell(fmt::format("{}_{}", stem, i));
 }
 
-// The places of the base of each `part`, and of the tip, and how that is turned.
+// Adds the columns of the base positions of each `part`, and of the tip with its orientation.
 void name_places(CsvText& csv, std::string_view part, std::size_t count) {
   for (std::size_t i = 0; i <= count; ++i) {
     const std::string stem = i < count ? fmt::format("{}_{}", part, i + 1) : "tip";
@@ -66,7 +66,7 @@ void add_row(CsvText& csv, const ArmStateMessage& state, const PosesMessage& pos
   csv.end_row();
 }
 
-// A column is a number of the arm; one log has one arm.
+// Checks the sizes: columns are those of one arm.
 void check_sizes(const ArmStateMessage& state, std::size_t sections, const PosesMessage& poses) {
   const bool fits = state.bends.size() == sections && state.stretches.size() == sections &&
                     (!state.archings || state.archings->size() == sections) &&
@@ -96,16 +96,16 @@ class StatesTable : public LogTable {
     }
   }
   [[nodiscard]] std::string text() const override {
-    return sections_ ? csv_.text() : "time\n";  // Of a run that was stopped at once.
+    return sections_ ? csv_.text() : "time\n";  // For a run that was stopped at once.
   }
 
  private:
   CsvText csv_;
-  std::optional<ArmStateMessage> state_;  // waiting for its poses
+  std::optional<ArmStateMessage> state_;  // Waiting for its poses.
   std::optional<std::size_t> sections_;
 };
 
-// /arm/truth: the arm as it truly was, as many arcs in each row.
+// /arm/truth: the true arm, with equal numbers of arcs in all rows.
 class TruthTable : public LogTable {
  public:
   [[nodiscard]] std::string file_name() const override { return "truth.csv"; }
@@ -202,7 +202,7 @@ class EventsTable : public LogTable {
   CsvText csv_;
 };
 
-// What the log has of these tables.
+// Fills the tables from the log.
 void fill(LogTables& tables, const McapReader& log, const std::string& name) {
   for (const McapMessage& message : log.messages()) {
     const std::string& topic = message.channel->topic;

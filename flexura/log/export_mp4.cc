@@ -36,14 +36,14 @@ void for_each_image(const McapReader& log, See&& see) {
   }
 }
 
-// When the run ended, s: its last state is always in the log.
+// Returns the end of the run, s: its last state is always in the log.
 double end_of(const McapReader& log) {
   std::uint64_t last = 0;
   for (const McapMessage& message : log.messages()) last = std::max(last, message.log_time);
   return 1e-9 * static_cast<double>(last);
 }
 
-// The cameras that filmed the run; InputError when there is nothing to show.
+// Returns the sensors of the cameras that filmed the run. Throws InputError if there are no images.
 std::map<std::string, SensorConfig> sensors_of(const McapReader& log,
                                                const std::vector<CameraConfig>& cameras,
                                                const std::filesystem::path& results) {
@@ -61,7 +61,7 @@ std::map<std::string, SensorConfig> sensors_of(const McapReader& log,
 
 class Film {
  public:
-  // The same images give the same bytes: one thread, no date, no version.
+  // For equal images the bytes are equal: one thread, no date, no version.
   Film(const std::filesystem::path& file, const SensorConfig& sensor)
       : frame_rate_(sensor.frame_rate),
         first_(frame_times(sensor, 0).middle),
@@ -86,7 +86,7 @@ class Film {
     put(image.data.data);
     shown_ = image.data.data;
   }
-  // With the frames that began up to the run's end.
+  // Includes the frames that began up to the run's end.
   void finish(double end) {
     constexpr double rounding = 1e-6;
     fill(static_cast<std::int64_t>(std::floor(end * frame_rate_ + rounding)) + 1);
@@ -94,10 +94,10 @@ class Film {
   }
 
  private:
-  // More than a run makes: keeps a damaged log from filling the disk.
+  // More than any run makes: keeps a damaged log from filling the disk.
   static constexpr std::int64_t most_frames = 1000000;
 
-  // Shows what was shown before until there are so many frames.
+  // Repeats the last picture until there are this many frames.
   void fill(std::int64_t frames) {
     while (frames_ < std::min(frames, most_frames)) put(shown_);
   }
@@ -112,7 +112,7 @@ class Film {
   }
 
   double frame_rate_;
-  double first_;  // time stamp of frame 0, s
+  double first_;  // Timestamp of frame 0, s.
   ChildProcess program_;
   std::int64_t frames_ = 0;
   std::string shown_;

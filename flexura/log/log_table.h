@@ -9,7 +9,7 @@
 
 namespace flexura {
 
-/// A table that an export makes of some messages of a log.
+/// A table that an export makes from some messages of a log.
 class LogTable {
  public:
   virtual ~LogTable() = default;
@@ -17,13 +17,13 @@ class LogTable {
   LogTable(const LogTable&) = delete;
   LogTable& operator=(const LogTable&) = delete;
 
-  [[nodiscard]] virtual std::string file_name() const = 0;  ///< "servo.csv"
-  /// Whether messages of this topic go into it.
+  [[nodiscard]] virtual std::string file_name() const = 0;  ///< Returns its name: "servo.csv".
+  /// Returns true if messages of this topic belong to it.
   [[nodiscard]] virtual bool takes(std::string_view topic) const = 0;
-  /// A message of such a topic, in the order of the log: its topic, its time in the log, s, and its text.
-  /// InputError or std::runtime_error where it is no such message.
+  /// Adds a message of such a topic, in the order of the log: its topic, its time in the log, s, and its
+  /// text. Throws InputError or std::runtime_error if it is not a valid message.
   virtual void add(std::string_view topic, double time, const Node& message) = 0;
-  /// The file's text; empty: no file.
+  /// Returns the file's text; "" means no file.
   [[nodiscard]] virtual std::string text() const = 0;
 };
 

@@ -9,11 +9,11 @@
 
 namespace flexura {
 
-/// A message on its way into a log, whatever its type, which has a table of fields. It refers to the message
-/// and to its topic: for one call.
+/// A message for a log, of any type with a table of fields. It refers to the message and to its topic: valid
+/// for one call.
 class LoggedMessage {
  public:
-  /// `time`: the log's, s since the experiment's start.
+  /// `time`: of the log, s since the experiment's start.
   template <HasFields M>
   LoggedMessage(std::string_view topic, double time, const M& message)
       : topic_(topic),
@@ -26,9 +26,9 @@ class LoggedMessage {
   [[nodiscard]] std::string_view topic() const { return topic_; }
   [[nodiscard]] double time() const { return time_; }
   [[nodiscard]] const TableInfo& schema() const { return schema_; }
-  /// As it is written.
+  /// Returns the message as written.
   [[nodiscard]] Node node() const { return write_(message_); }
-  /// The message, where it is an M; else null.
+  /// Returns the message if it is an M, otherwise null.
   template <class M>
   [[nodiscard]] const M* as() const {
     return type_ == typeid(M) ? static_cast<const M*>(message_) : nullptr;

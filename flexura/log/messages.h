@@ -13,23 +13,22 @@
 
 namespace flexura {
 
-// The messages of a run's log. Their tables of fields give the log's JSON schemas, the writing and the
-// reading back. The foxglove.* ones are laid out as that collection of schemas has them, for other programs
-// to show.
+// Messages of a run's log. Their tables of fields give the log's JSON schemas and read and write them. The
+// foxglove.* messages follow the layout of that collection of schemas, for display in other programs.
 
 /// foxglove.Time: the experiment's time since its start.
 struct TimeMessage {
   std::int64_t sec = 0;
-  std::int64_t nsec = 0;  ///< Beyond sec, from 0 to 999999999.
+  std::int64_t nsec = 0;  ///< Remainder, from 0 to 999999999.
 };
 
 /// flexura.ArmState, on /arm/state.
 struct ArmStateMessage {
-  double time = 0;                                 ///< s
-  std::vector<std::array<double, 2>> bends;        ///< rad
-  std::vector<double> stretches;                   ///< Factors, one a section.
-  std::optional<std::vector<double>> archings;     ///< rad; planar arms.
-  std::optional<std::vector<double>> cord_angles;  ///< rad; planar arms.
+  double time = 0;                                 ///< In s.
+  std::vector<std::array<double, 2>> bends;        ///< In rad.
+  std::vector<double> stretches;                   ///< Factors, one per section.
+  std::optional<std::vector<double>> archings;     ///< In rad; planar arms.
+  std::optional<std::vector<double>> cord_angles;  ///< In rad; planar arms.
 };
 
 /// foxglove.Vector3
@@ -44,12 +43,12 @@ struct QuaternionMessage {
 
 /// foxglove.Pose
 struct PoseMessage {
-  VectorMessage position;         ///< m
-  QuaternionMessage orientation;  ///< A unit quaternion; w stands last.
+  VectorMessage position;         ///< In m.
+  QuaternionMessage orientation;  ///< Unit quaternion; w is last.
 };
 
-/// foxglove.PosesInFrame, on /arm/poses as commanded and on /arm/truth as it is: each section's base frame
-/// (the truth: each arc's) and, last, the tip, in the world.
+/// foxglove.PosesInFrame, on /arm/poses (commanded) and /arm/truth (true): each section's base frame (for the
+/// truth, each arc's) and, last, the tip, in the world.
 struct PosesMessage {
   TimeMessage timestamp;
   std::string frame_id;  ///< "world"
@@ -61,49 +60,48 @@ struct EventMessage {
   TimeMessage timestamp;
   std::int64_t level = 2;  ///< 2 info, 3 warning, 4 error.
   std::string message;
-  std::string name;  ///< What speaks: a task's name, "run".
-  std::string file;  ///< Empty; line 0: for other programs' sake.
+  std::string name;  ///< Source: a task's name, "run".
+  std::string file;  ///< Empty, with line 0: for compatibility with other programs.
   std::int64_t line = 0;
 };
 
-/// "info", "warning" or "error", for one of foxglove.Log's levels: other programs' debug messages count as
-/// information, their fatal ones as errors.
+/// Returns "info", "warning" or "error" for a level of foxglove.Log. Debug messages of other programs count
+/// as information, fatal ones as errors.
 [[nodiscard]] std::string level_name(std::int64_t level);
 
-/// flexura.DriveCommands, on /drive/commands: the motors' command at one step of the clock.
+/// flexura.DriveCommands, on /drive/commands: the motors' command at one clock step.
 struct DriveCommandsMessage {
-  double time = 0;                      ///< s, by when the positions are to be reached.
-  std::vector<std::int64_t> positions;  ///< Microsteps, one an axis.
-  std::vector<double> rates;            ///< Microsteps/s, the mean since the command before.
+  double time = 0;                      ///< Time at which the positions are to be reached, s.
+  std::vector<std::int64_t> positions;  ///< Microsteps, one per axis.
+  std::vector<double> rates;            ///< Microsteps/s, mean since the previous command.
 };
 
-/// flexura.ArmReading, on /arm/reading where a run plays the rig: what the simulated drives say of
-/// themselves.
+/// flexura.ArmReading, on /arm/reading if a run plays the rig: reading of the simulated drives.
 struct ArmReadingMessage {
-  double time = 0;                                     ///< s
-  std::vector<std::array<double, 2>> bends;            ///< rad, as the model makes of the motors.
-  std::vector<double> stretches;                       ///< Likewise.
-  std::optional<std::vector<std::int64_t>> positions;  ///< Microsteps, one an axis; arms with drives.
+  double time = 0;                                     ///< In s.
+  std::vector<std::array<double, 2>> bends;            ///< In rad; by the model from the motors.
+  std::vector<double> stretches;                       ///< By the model from the motors.
+  std::optional<std::vector<std::int64_t>> positions;  ///< Microsteps, one per axis; arms with drives.
   bool moving = false;
 };
 
-/// flexura.Tensions, on /arm/tensions beside the true arm, where that is an elastic rod.
+/// flexura.Tensions, on /arm/tensions with the true arm, if it is an elastic rod.
 struct TensionsMessage {
-  double time = 0;               ///< s
-  std::vector<double> tensions;  ///< By which each tendon pulls at the arm's base, N.
+  double time = 0;               ///< In s.
+  std::vector<double> tensions;  ///< Tension of each tendon at the arm's base, N.
   /// Microsteps that each motor has lost so far, unknown to its controller; arms with drives.
   std::optional<std::vector<double>> lost_steps;
 };
 
-/// flexura.Energy, on /arm/energy beside the true arm, where that is an elastic rod in motion.
+/// flexura.Energy, on /arm/energy with the true arm, if it is an elastic rod in motion.
 struct EnergyMessage {
-  double time = 0;     ///< s
-  double kinetic = 0;  ///< J
-  double strain = 0;   ///< J
+  double time = 0;     ///< In s.
+  double kinetic = 0;  ///< In J.
+  double strain = 0;   ///< In J.
   double gravity = 0;  ///< Of its weight and of loads along it, J; 0 at the height of the arm's base.
 };
 
-/// flexura.Contact: where the true arm touches something.
+/// flexura.Contact: a contact of the true arm.
 struct ContactMessage {
   double s = 0;                             ///< Place on the arm: arc length from its base at rest, m.
   std::string with;                         ///< The obstacle's name, or "the arm".
@@ -113,32 +111,32 @@ struct ContactMessage {
   std::optional<double> normal_force = {};  ///< Across the surface, N.
   std::optional<bool> sticks = {};          ///< It does not slide along the other.
 };
-/// flexura.Contacts, on /arm/contacts beside the true arm, where that is an elastic rod in motion that
-/// touches something or did so at the time before.
+/// flexura.Contacts, on /arm/contacts with the true arm, if it is an elastic rod in motion. Logged while it
+/// touches something, and once afterwards.
 struct ContactsMessage {
-  double time = 0;  ///< s
+  double time = 0;  ///< In s.
   std::vector<ContactMessage> contacts;
 };
 
-/// flexura.HeadReading, on /head/NAME where a run plays the rig: where a camera's head says that it stands.
+/// flexura.HeadReading, on /head/NAME if a run plays the rig: reading of a camera's head.
 struct HeadReadingMessage {
-  double time = 0;           ///< s
-  double pan = 0, tilt = 0;  ///< rad
-  double zoom = 1;           ///< A position of the lens's table.
+  double time = 0;           ///< In s.
+  double pan = 0, tilt = 0;  ///< In rad.
+  double zoom = 1;           ///< Position in the lens's table.
   bool moving = false;
 };
 
-/// flexura.StageReading, on /stage/NAME beside it: where a camera's stage says that it stands.
+/// flexura.StageReading, on /stage/NAME if a run plays the rig: reading of a camera's stage.
 struct StageReadingMessage {
-  double time = 0;                           ///< s
+  double time = 0;                           ///< In s.
   std::array<double, 3> offset = {0, 0, 0};  ///< Along its axes (right, down, forward), m.
   bool moving = false;
 };
 
-/// A point of the median axis as it was measured in a picture; `sigma` across it.
+/// A point of the centerline as measured in a picture; `sigma` across it.
 struct AxisPointMessage {
-  double u = 0, v = 0;  ///< px
-  double sigma = 0;     ///< px
+  double u = 0, v = 0;  ///< In px.
+  double sigma = 0;     ///< In px.
 };
 
 /// foxglove.CompressedImage, on /camera/NAME: one frame of a camera.
@@ -149,7 +147,7 @@ struct ImageMessage {
   std::string format = "png";
 };
 
-/// Where a run's log has its messages.
+/// Topics of the messages in a run's log.
 inline constexpr std::string_view arm_state_topic = "/arm/state";
 inline constexpr std::string_view arm_poses_topic = "/arm/poses";
 inline constexpr std::string_view arm_truth_topic = "/arm/truth";
@@ -178,28 +176,28 @@ const Table<StageReadingMessage>& fields_of(const StageReadingMessage*);
 const Table<ImageMessage>& fields_of(const ImageMessage*);
 const Table<AxisPointMessage>& fields_of(const AxisPointMessage*);
 
-/// The topic of a camera's images.
+/// Returns the topic of a camera's images.
 [[nodiscard]] std::string image_topic(std::string_view camera);
-/// Of the readings of its head.
+/// Returns the topic of the readings of its head.
 [[nodiscard]] std::string head_topic(std::string_view camera);
-/// Of the readings of its stage.
+/// Returns the topic of the readings of its stage.
 [[nodiscard]] std::string stage_topic(std::string_view camera);
 
-/// Nanoseconds of `time` s >= 0, rounded to the nearest.
+/// Returns `time` s >= 0 in nanoseconds, rounded to the nearest.
 [[nodiscard]] std::uint64_t nanoseconds(double time);
-/// The same time as whole seconds and what is beyond them.
+/// Returns the time as whole seconds and the remainder.
 [[nodiscard]] TimeMessage time_message(std::uint64_t nanoseconds);
-/// A pose in the world: its position, m, and its unit quaternion, w >= 0.
+/// Returns a pose in the world as position, m, and unit quaternion, w >= 0.
 [[nodiscard]] PoseMessage pose_message(const Pose& X_WP);
 
-/// Each section's bend, rad.
+/// Returns each section's bend, rad.
 [[nodiscard]] std::vector<std::array<double, 2>> bends_of(const ArmState& state);
-/// The same as [[bend_x, bend_y], ...].
+/// Returns each section's bend as [[bend_x, bend_y], ...], rad.
 [[nodiscard]] Node bends_node(const ArmState& state);
 
-/// [x, y, z], m in the world.
+/// Returns [x, y, z], m in the world.
 [[nodiscard]] Node point_node(const Eigen::Vector3d& p);
-/// {"position": [x, y, z], "rotation": [w, x, y, z]}: a pose as summaries and the command line print it.
+/// Returns {"position": [x, y, z], "rotation": [w, x, y, z]}: a pose as in summaries and on the command line.
 [[nodiscard]] Node pose_node(const Pose& X_WP);
 
 }  // namespace flexura

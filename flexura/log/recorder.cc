@@ -16,9 +16,9 @@
 namespace flexura {
 namespace {
 
-// An ImageMessage of a topic, as JSON.
+// Returns an ImageMessage of a topic as JSON.
 std::string image_text(const std::string& topic, double time, const Picture& picture) {
-  // A run waits for every frame: quickly made rather than small.
+  // A run waits for every frame: speed matters more than size.
   constexpr PngConfig quick{.level = 1};
   const ImageMessage message{time_message(nanoseconds(time)),
                              topic.substr(1),
@@ -31,7 +31,7 @@ PosesMessage poses_message(double time) { return {time_message(nanoseconds(time)
 }  // namespace
 
 struct Recorder::Channels {
-  // These are there from the start, in this order.
+  // Opens the channels that exist from the start, in this order.
   explicit Channels(const std::filesystem::path& file) : log(file) {
     (void)channel(arm_state_topic, info_of<ArmStateMessage>());
     (void)channel(arm_poses_topic, info_of<PosesMessage>());

@@ -17,41 +17,41 @@ namespace flexura {
 
 class LoggedMessage;
 
-/// What logs have of a camera's frame: an ImageMessage as JSON.
+/// Returns the logged form of a camera's frame: an ImageMessage as JSON.
 [[nodiscard]] std::string logged_image(const std::string& camera, const Frame& frame);
 
-/// Writes a run's log.mcap: the arm's state, the poses of its sections, events (docs/log-format.md), and
-/// whatever else has a table of fields. Times are the experiment's, in s from its start. The first message of
-/// a topic opens its channel.
+/// Writes a run's log.mcap: the arm's state, the poses of its sections, events (docs/log-format.md), and any
+/// message with a table of fields. Times are in s from the experiment's start. The first message of a topic
+/// opens its channel.
 class Recorder {
  public:
-  /// Starts a new log; std::runtime_error when the file exists or cannot be written.
+  /// Starts a new log. Throws std::runtime_error if the file exists or cannot be written.
   Recorder(const std::filesystem::path& file, const Arm& arm);
   ~Recorder();
   Recorder(const Recorder&) = delete;
   Recorder& operator=(const Recorder&) = delete;
 
   void state(double time, const ArmState& state, const Backbone& backbone);
-  enum class Level : std::uint8_t { info = 2, warning = 3, error = 4 };  ///< foxglove.Log's numbers.
+  enum class Level : std::uint8_t { info = 2, warning = 3, error = 4 };  ///< Numbers of foxglove.Log.
   void event(double time, Level level, std::string_view source, std::string_view text);
 
-  /// Anything else.
+  /// Writes any other message.
   void write(const LoggedMessage& message);
 
-  /// The arm as it truly is, where a rig plays that knows it.
+  /// Writes the true arm, if the rig has it.
   void truth(double time, const Backbone& backbone);
 
-  /// What a rig's devices say of themselves.
+  /// Write the readings of a rig's devices.
   void reading(const ArmReading& reading);
   void reading(const std::string& camera, const HeadReading& reading);
   void reading(const std::string& camera, const StageReading& reading);
 
-  /// A frame; `message` is its logged_image, which takes longest and needs no log.
+  /// Writes a frame. `message` is its logged_image, which takes longest to make and needs no log.
   void image(const std::string& camera, const Frame& frame, std::string_view message);
-  /// A picture that no camera took.
+  /// Writes a picture that is not a camera's.
   void picture(const std::string& topic, double time, const Picture& picture);
 
-  /// Completes the log. Without it, as after a crash, the log reads up to its last complete chunk.
+  /// Completes the log. Without it, as after a crash, the log is readable up to its last complete chunk.
   void close();
 
  private:

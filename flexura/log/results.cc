@@ -12,7 +12,7 @@ namespace flexura {
 
 std::filesystem::path make_new_folder(const std::filesystem::path& wanted) {
   std::filesystem::path base = wanted.lexically_normal();
-  if (!base.has_filename()) base = base.parent_path();  // "results/" means "results"
+  if (!base.has_filename()) base = base.parent_path();  // "results/" means "results".
   if (base.filename() == "." || base.filename() == ".." || base.filename().empty())
     throw input_error(wanted.string(), "names no new folder: expected a path that ends in a name");
   const auto fail = [](const std::filesystem::path& folder, const std::error_code& error) {
@@ -21,7 +21,7 @@ std::filesystem::path make_new_folder(const std::filesystem::path& wanted) {
   std::error_code error;
   if (base.has_parent_path()) std::filesystem::create_directories(base.parent_path(), error);
   if (error) fail(base.parent_path(), error);
-  // Making the folder is the test whether its name is free, so two runs at once never share one.
+  // The name is free if the folder can be made, so two runs at once never share one.
   for (int number = 1;; ++number) {
     std::filesystem::path folder = base;
     if (number > 1) folder += fmt::format("-{}", number);

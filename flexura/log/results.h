@@ -4,16 +4,16 @@
 
 namespace flexura {
 
-/// Makes the new folder `wanted`, or `wanted`-2, -3, ... when that exists: results never overwrite. Makes
-/// missing folders above it. Returns the folder made; std::runtime_error with the path when the system
-/// refuses.
+/// Makes the new folder `wanted`, or `wanted`-2, -3, ... if that exists: results are never overwritten. Makes
+/// missing folders above it. Returns the new folder. Throws std::runtime_error with the path on a system
+/// error.
 [[nodiscard]] std::filesystem::path make_new_folder(const std::filesystem::path& wanted);
 
-/// Where an experiment's results go when nothing else is said: results/NAME, where NAME is the file's, or its
-/// folder's for a file called experiment.toml.
+/// Returns the default folder of an experiment's results: results/NAME. NAME is the file's, or its folder's
+/// for a file named experiment.toml.
 [[nodiscard]] std::filesystem::path default_results_folder(const std::filesystem::path& experiment_file);
 
-// What a run writes into its folder (docs/results.md); the last two are folders.
+// Contents of a run's folder (docs/results.md); the last two are folders.
 inline constexpr const char* experiment_file_name = "experiment.toml";
 inline constexpr const char* log_file_name = "log.mcap";
 inline constexpr const char* commands_file_name = "commands.csv";

@@ -9,7 +9,7 @@
 
 namespace flexura {
 
-/// What `read` gives; a damaged log is bad input like any other.
+/// Returns the result of `read`; reports a damaged log as an input error.
 template <class Read>
 auto from_log(Read&& read) {
   try {
@@ -21,11 +21,11 @@ auto from_log(Read&& read) {
   }
 }
 
-/// The file `name` of a results folder. InputError when there is none, or where it is a link that leads out
-/// of the folder: such a file is none of the results.
+/// Returns the path of the file `name` in a results folder. Throws InputError if it is missing, or a link
+/// that leads out of the folder.
 [[nodiscard]] std::filesystem::path file_of_results(const std::filesystem::path& results, const char* name);
 
-/// The log of a results folder. InputError when there is none or it is damaged.
+/// Opens the log of a results folder. Throws InputError if it is missing or damaged.
 [[nodiscard]] McapReader open_log(const std::filesystem::path& results);
 
 }  // namespace flexura

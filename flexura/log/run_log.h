@@ -14,11 +14,11 @@ namespace flexura {
 
 class LoggedMessage;
 
-/// What a run and its tasks tell: it goes into the log and to who watches.
+/// Messages of a run and its tasks, for the log and the watcher.
 class RunLog {
  public:
   struct Event {
-    double time = 0;  ///< s
+    double time = 0;  ///< In s.
     std::string level, name, text;
   };
 
@@ -27,24 +27,24 @@ class RunLog {
       : recorder_(file, arm), watcher_(watcher) {}
 
   void event(double time, Recorder::Level level, const std::string& name, const std::string& text);
-  /// Of a task's work, for who watches, too.
+  /// Writes a task's message, also to the watcher.
   void tell(const LoggedMessage& message);
-  /// A camera's frame, with its logged_image.
+  /// Writes a camera's frame, with its logged_image.
   void image(const std::string& camera, const Frame& frame, std::string_view message);
-  /// A task that was done by the rig has ended.
+  /// Reports the end of a task of the rig.
   void task_ended();
 
-  /// For what only the log has.
+  /// For messages that only the log receives.
   [[nodiscard]] Recorder& recorder() { return recorder_; }
-  /// How many frames of each camera that gave any.
+  /// Returns the number of frames per camera, for cameras with frames.
   [[nodiscard]] const std::map<std::string, std::int64_t>& frames() const { return frames_; }
-  /// All that happened.
+  /// Returns all events.
   [[nodiscard]] const std::vector<Event>& events() const { return events_; }
 
  private:
   Recorder recorder_;
   RunWatcher* watcher_;
-  std::map<std::string, std::int64_t> frames_;  // by camera
+  std::map<std::string, std::int64_t> frames_;  // By camera.
   std::vector<Event> events_;
 };
 

@@ -15,7 +15,7 @@ namespace flexura {
 
 class LoggedMessage;
 
-/// How the arm of a run truly stands, which its ports do not say.
+/// True state of a run's arm, which its ports do not give.
 struct TrueArm {
   Backbone backbone;
   std::vector<double> pulled;      ///< How far its drives have each tendon pulled in, m; empty: not known.
@@ -25,13 +25,13 @@ struct TrueArm {
   std::vector<ContactMessage> contacts = {};  ///< Where it touches something.
 };
 
-/// Where a camera's head and stage say that they stand.
+/// Axis positions that a camera's head and stage report.
 struct CameraReading {
   HeadState head;
   StageState stage;
 };
 
-/// Sees a run as it plays, on the run's thread. What it does with that changes nothing of the run.
+/// Observes a run on the run's thread. Does not influence the run.
 class RunWatcher {
  public:
   virtual ~RunWatcher() = default;
@@ -39,19 +39,19 @@ class RunWatcher {
   RunWatcher(const RunWatcher&) = delete;
   RunWatcher& operator=(const RunWatcher&) = delete;
 
-  /// The arm's state at every step of the clock, s, and what is read from the cameras then, in their order:
-  /// of none where the run plays no rig, whose cameras stand still.
+  /// Receives the arm's state at every clock step, s, and the cameras' readings at that time, in their order.
+  /// The readings are empty if the run plays no rig; its cameras are then at rest.
   virtual void state(double time, const ArmState& state, std::span<const CameraReading> cameras) = 0;
-  /// Whether it wants to be told the truth at the next step: to find that out takes a while.
+  /// Returns true if the truth is needed at the next step: it takes time to compute.
   [[nodiscard]] virtual bool wants_truth() { return false; }
-  /// How the arm truly stands at a step of the clock, where that is known: after its state.
+  /// Receives the true arm at a clock step, if known, after its state.
   virtual void truth(double /*time*/, const TrueArm& /*arm*/) {}
-  /// An event of the log: at `time` s, "info", "warning" or "error", of whom, and what.
+  /// Receives an event of the log: `time` in s, level "info", "warning" or "error", source, text.
   virtual void happened(double /*time*/, const std::string& /*level*/, const std::string& /*name*/,
                         const std::string& /*text*/) {}
-  /// A message of a task, as the log has it: LoggedMessage::as says of which type.
+  /// Receives a task's message as logged; LoggedMessage::as gives its type.
   virtual void logged(const LoggedMessage& /*message*/) {}
-  /// A task that was done by the rig has ended.
+  /// A task of the rig has ended.
   virtual void task_ended() {}
 };
 

@@ -7,7 +7,8 @@
 #include "flexura/base/fields.h"
 #include "flexura/log/messages.h"
 
-// What stands there and where, for programs that draw logs: laid out as the foxglove.* schemas have it.
+// Objects of the scene and their poses, for programs that draw logs. They follow the layout of the foxglove.*
+// schemas.
 namespace flexura {
 
 /// foxglove.Duration.
@@ -23,21 +24,21 @@ struct ColorMessage {
 /// foxglove.CubePrimitive: centred in its pose.
 struct CubeMessage {
   PoseMessage pose;
-  VectorMessage size;  ///< m
+  VectorMessage size;  ///< In m.
   ColorMessage color;
 };
 
 /// foxglove.SpherePrimitive.
 struct SphereMessage {
   PoseMessage pose;
-  VectorMessage size;  ///< m: diameters.
+  VectorMessage size;  ///< Diameters, m.
   ColorMessage color;
 };
 
 /// foxglove.CylinderPrimitive: centred in its pose, along its z.
 struct CylinderMessage {
   PoseMessage pose;
-  VectorMessage size;  ///< m: two diameters and the length.
+  VectorMessage size;  ///< Two diameters and the length, m.
   double bottom_scale = 1, top_scale = 1;
   ColorMessage color;
 };
@@ -46,7 +47,7 @@ struct CylinderMessage {
 struct LineMessage {
   std::int64_t type = 0;  ///< 0: a strip.
   PoseMessage pose;
-  double thickness = 0;  ///< m
+  double thickness = 0;  ///< In m.
   bool scale_invariant = false;
   std::vector<VectorMessage> points;
   ColorMessage color;
@@ -54,7 +55,7 @@ struct LineMessage {
   std::vector<std::int64_t> indices;
 };
 
-/// foxglove.SceneEntity: replaces the one of the same `id`.
+/// foxglove.SceneEntity: replaces one with an equal `id`.
 struct EntityMessage {
   TimeMessage timestamp;
   std::string frame_id = "world";
@@ -77,7 +78,7 @@ struct FrameMessage {
   TimeMessage timestamp;
   std::string parent_frame_id = "world";
   std::string child_frame_id;
-  VectorMessage translation;  ///< m
+  VectorMessage translation;  ///< In m.
   QuaternionMessage rotation;
 };
 

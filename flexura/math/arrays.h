@@ -6,18 +6,18 @@
 
 namespace flexura {
 
-// Arrays of a file's numbers as what they stand for.
+// Conversions of arrays in a file to vectors and rotations.
 
-/// The same numbers in the same order.
+/// Return the numbers as a vector.
 [[nodiscard]] inline Eigen::Vector3d vector(const std::array<double, 3>& a) { return {a[0], a[1], a[2]}; }
 [[nodiscard]] inline Eigen::Vector4d vector(const std::array<double, 4>& a) {
   return {a[0], a[1], a[2], a[3]};
 }
 
-/// What keeps (w, x, y, z) from being a unit quaternion, as people write one, to 1e-3; "" when nothing does.
+/// Returns why (w, x, y, z) is not a unit quaternion within 1e-3, or "".
 [[nodiscard]] std::string quaternion_problem(const std::array<double, 4>& wxyz);
 
-/// The rotation of a quaternion (w, x, y, z) of any length above 0.
+/// Returns the rotation of a quaternion (w, x, y, z) of any length above 0.
 [[nodiscard]] Eigen::Matrix3d rotation_of(const std::array<double, 4>& wxyz);
 
 }  // namespace flexura

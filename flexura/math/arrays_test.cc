@@ -20,7 +20,7 @@ TEST(Quaternion, OfAFileHasALengthOfOneOrSo) {
 }
 
 TEST(Quaternion, TurnsAsItsAxisAndAngleSay) {
-  const double half = 0.25;  // a turn by 0.5 about y
+  const double half = 0.25;  // A rotation by 0.5 about y.
   const Eigen::Vector3d turned =
       rotation_of({2 * std::cos(half), 0, 2 * std::sin(half), 0}) * Eigen::Vector3d::UnitZ();
   EXPECT_LE((turned - Eigen::Vector3d(std::sin(0.5), 0, std::cos(0.5))).norm(), 1e-15);

@@ -3,49 +3,49 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
 
-// Decompositions of dense matrices of any size, compiled once: a source that names Eigen's own takes seconds
-// longer to compile (for systems of a few rows in inner loops: small_cholesky.h). They allocate, as those of
-// dynamic size do. Matrices are not empty; of what is not finite, or does not converge, all that is returned
-// is not a number, and the rank is 0.
+// Decompositions of dense matrices of any size, compiled once: a source that includes Eigen's takes seconds
+// longer to compile. For systems of a few rows in inner loops see small_cholesky.h. They allocate, like
+// Eigen's of dynamic size. Matrices must not be empty. If a matrix is not finite or the method does not
+// converge, results are not numbers, and the rank is 0.
 namespace flexura {
 
-/// Of a symmetric n x n matrix, of which the lower triangle counts.
+/// Eigendecomposition of a symmetric n x n matrix; uses the lower triangle.
 struct SymmetricEigen {
   Eigen::VectorXd values;   ///< n, ascending.
-  Eigen::MatrixXd vectors;  ///< n x n: orthonormal columns, in the values' order.
+  Eigen::MatrixXd vectors;  ///< n x n: orthonormal columns, in the order of the values.
 };
 [[nodiscard]] SymmetricEigen symmetric_eigen(const Eigen::MatrixXd& A);
 
-/// The least eigenvalue alone.
+/// Returns the least eigenvalue.
 [[nodiscard]] double least_eigenvalue(const Eigen::MatrixXd& symmetric);
 
-/// Of any real n x n matrix: pairs that are conjugate follow each other.
+/// Eigendecomposition of any real n x n matrix; conjugate pairs are consecutive.
 struct GeneralEigen {
-  Eigen::VectorXcd values;   ///< n
+  Eigen::VectorXcd values;   ///< n.
   Eigen::MatrixXcd vectors;  ///< n x n: columns of norm 1.
 };
 [[nodiscard]] GeneralEigen general_eigen(const Eigen::MatrixXd& A);
 
-/// A = L L^T of a symmetric n x n matrix, of which the lower triangle counts.
+/// A = L L^T for a symmetric n x n matrix; uses the lower triangle.
 class Cholesky {
  public:
   Cholesky() = default;
   explicit Cholesky(const Eigen::MatrixXd& A) { compute(A); }
-  /// Whether A is positive definite; if not, what is solved with it is not a number. Allocates where the size
-  /// is a new one.
+  /// Factors A. Returns false if A is not positive definite; solutions are then not numbers. Allocates only
+  /// for a new size.
   bool compute(const Eigen::MatrixXd& A);
   [[nodiscard]] bool is_definite() const { return is_definite_; }
-  /// 1 / (|A| |A^-1|) in 1-norms, estimated; 0 where A is not definite.
+  /// Returns an estimate of 1 / (|A| |A^-1|) in 1-norms; 0 if A is not definite.
   [[nodiscard]] double rcond() const;
-  /// log |A|
+  /// Returns log |A|.
   [[nodiscard]] double log_determinant() const;
-  /// A^-1 B, n x columns.
+  /// Returns A^-1 B, n x columns.
   [[nodiscard]] Eigen::MatrixXd solve(const Eigen::MatrixXd& B) const;
-  /// b becomes A^-1 b, without an allocation.
+  /// Replaces b by A^-1 b, without allocation.
   void solve_in_place(Eigen::VectorXd& b) const;
-  /// L^-1 B, n x columns.
+  /// Returns L^-1 B, n x columns.
   [[nodiscard]] Eigen::MatrixXd solve_lower(const Eigen::MatrixXd& B) const;
-  /// n x n
+  /// Returns A^-1, n x n.
   [[nodiscard]] Eigen::MatrixXd inverse() const;
 
  private:
@@ -53,23 +53,23 @@ class Cholesky {
   bool is_definite_ = false;
 };
 
-/// A = P^T L D L^T P of a symmetric n x n matrix that is semidefinite but for rounding, of which the lower
-/// triangle counts. Where a pivot is none, what is solved has zero for that unknown, as if it were known; of
-/// other matrices nothing is promised.
+/// A = P^T L D L^T P for a symmetric n x n matrix that is semidefinite up to rounding; uses the lower
+/// triangle. Unknowns with a zero pivot have the solution zero, as if they were known. For other matrices the
+/// result is undefined.
 class PivotedCholesky {
  public:
   PivotedCholesky() = default;
   explicit PivotedCholesky(const Eigen::MatrixXd& A) { compute(A); }
-  /// Allocates where the size is a new one.
+  /// Factors A. Allocates only for a new size.
   void compute(const Eigen::MatrixXd& A);
-  /// Whether A is positive definite, with all pivots above `rounding` of the greatest, and the reciprocal
-  /// condition that Cholesky::rcond() is.
+  /// Returns true if A is positive definite: all pivots are above `rounding` of the largest, and the
+  /// reciprocal condition (as in Cholesky::rcond()) is above `rounding`.
   [[nodiscard]] bool is_definite(double rounding) const;
-  /// A^-1 B, n x columns.
+  /// Returns A^-1 B, n x columns.
   [[nodiscard]] Eigen::MatrixXd solve(const Eigen::MatrixXd& B) const;
-  /// b becomes A^-1 b, without an allocation.
+  /// Replaces b by A^-1 b, without allocation.
   void solve_in_place(Eigen::VectorXd& b) const;
-  /// n x n
+  /// Returns A^-1, n x n.
   [[nodiscard]] Eigen::MatrixXd inverse() const;
 
  private:
@@ -77,24 +77,25 @@ class PivotedCholesky {
   bool is_finite_ = false;
 };
 
-/// Descending; as many as the smaller of rows and columns.
+/// Returns the singular values, descending; as many as the smaller of rows and columns.
 [[nodiscard]] Eigen::VectorXd singular_values(const Eigen::MatrixXd& A);
 
-/// Of the x that make |A x - b| least, the one of least norm.
+/// Returns the x of least norm among those with the least |A x - b|.
 [[nodiscard]] Eigen::VectorXd least_norm_solution(const Eigen::MatrixXd& A, const Eigen::VectorXd& b);
 
-/// Moore and Penrose's, columns x rows.
+/// Returns the Moore-Penrose inverse, columns x rows.
 [[nodiscard]] Eigen::MatrixXd pseudo_inverse(const Eigen::MatrixXd& A);
 
-/// By QR with column pivoting: pivots below `threshold` of the greatest count for nothing; 0: below rounding.
+/// Returns the rank by QR with column pivoting. Pivots below `threshold` of the largest count as zero; 0:
+/// below rounding.
 [[nodiscard]] Eigen::Index rank_of(const Eigen::MatrixXd& A, double threshold = 0);
 
-/// Orthonormal columns that are square to all columns of A, and together with them span everything: rows x
-/// (rows - rank), the rank as `rank_of` tells.
+/// Returns orthonormal columns perpendicular to all columns of A, which together with them span the space:
+/// rows x (rows - rank), with the rank by `rank_of`.
 [[nodiscard]] Eigen::MatrixXd orthogonal_complement(const Eigen::MatrixXd& A, double threshold = 0);
 
-/// The rotation R of least |R - A|, by the singular value decomposition; some rotation where it is not
-/// unique.
+/// Returns the rotation R of least |R - A|, by the singular value decomposition; any such rotation if it is
+/// not unique.
 [[nodiscard]] Eigen::Matrix3d nearest_rotation(const Eigen::Matrix3d& A);
 
 }  // namespace flexura

@@ -53,7 +53,7 @@ TEST(Dense, SolutionsOfSingularSystemsAreTheLeast) {
     const MatrixXd A = random_matrix(random, rows, rank) * random_matrix(random, rank, columns);
     EXPECT_EQ(rank_of(A, 1e-9), rank);
     const MatrixXd inverse = pseudo_inverse(A);
-    // The four conditions that it alone meets.
+    // The four conditions that define the Moore-Penrose inverse.
     EXPECT_LT((A * inverse * A - A).norm(), 1e-8);
     EXPECT_LT((inverse * A * inverse - inverse).norm(), 1e-8 * (1 + inverse.norm()));
     EXPECT_LT((A * inverse - (A * inverse).transpose()).norm(), 1e-8);
@@ -75,7 +75,7 @@ TEST(Dense, SolutionsOfSingularSystemsAreTheLeast) {
   });
 }
 
-// By default only what rounding leaves counts for nothing.
+// By default only rounding errors count as zero.
 TEST(Dense, RankByDefaultIsThatToRounding) {
   for_random_cases(100, [](TestRandom& random) {
     const Index n = random.integer(2, 8);
@@ -136,7 +136,7 @@ TEST(Dense, FactorsTellWhatIsNotDefinite) {
     EXPECT_FALSE(PivotedCholesky(indefinite).is_definite(0));
     EXPECT_FALSE(PivotedCholesky(singular).is_definite(1e-14));
   });
-  // Zero for what a pivot of none would have to tell.
+  // Zero for an unknown with a zero pivot.
   const MatrixXd first = Eigen::Vector2d(1, 0).asDiagonal();
   EXPECT_EQ(PivotedCholesky(first).solve(Eigen::Vector2d(3, 4)), VectorXd(Eigen::Vector2d(3, 0)));
 }
@@ -200,7 +200,7 @@ TEST(Dense, OfWhatIsNotFiniteNothingIsKnown) {
 TEST(Dense, NoRotationIsNearerThanTheNearest) {
   for_random_cases(100, [](TestRandom& random) {
     Eigen::Matrix3d A = random_matrix(random, 3, 3);
-    if (random.integer(0, 4) == 0) A.col(2) = A.col(1);  // Of rank 2: not unique, but some.
+    if (random.integer(0, 4) == 0) A.col(2) = A.col(1);  // Of rank 2: not unique, but any rotation.
     const Eigen::Matrix3d R = nearest_rotation(A);
     EXPECT_LT((R * R.transpose() - Eigen::Matrix3d::Identity()).norm(), 1e-12);
     EXPECT_NEAR(R.determinant(), 1, 1e-12);

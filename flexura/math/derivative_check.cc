@@ -18,11 +18,11 @@ Eigen::VectorXd central_difference(const VectorFunction& f, Eigen::VectorXd x, E
   const double upper = x[column];
   const Eigen::VectorXd ahead = f(x);
   x[column] = centre - step;
-  // The steps as rounded, not as asked for.
+  // Divides by the steps as rounded, not as requested.
   return (ahead - f(x)) / (upper - x[column]);
 }
 
-// Keeps, entry by entry, whichever estimate agrees best with the two it was made from.
+// Keeps, for each element, the estimate that agrees best with the two that it was computed from.
 void keep_best(const Eigen::VectorXd& value, const Eigen::VectorXd& error, Eigen::Index column,
                NumericalJacobian& best) {
   for (Eigen::Index row = 0; row < value.size(); ++row) {
@@ -34,8 +34,8 @@ void keep_best(const Eigen::VectorXd& value, const Eigen::VectorXd& error, Eigen
 
 void fill_column(const VectorFunction& f, const Eigen::VectorXd& x, Eigen::Index column, double step,
                  NumericalJacobian& best) {
-  std::array<Eigen::VectorXd, steps> previous;  // Neville's tableau: the row of the step before, ...
-  std::array<Eigen::VectorXd, steps> current;   // ... and of this one, by rising order.
+  std::array<Eigen::VectorXd, steps> previous;  // Row of the previous step in Neville's tableau.
+  std::array<Eigen::VectorXd, steps> current;   // Row of this step, by increasing order.
   for (std::size_t i = 0; i < steps; ++i, step /= shrink) {
     current[0] = central_difference(f, x, column, step);
     double factor = 1.0;

@@ -19,7 +19,7 @@ double elevation_of_planes(double alpha_1, double alpha_2) {
 }
 
 bool is_singular_for_planes(double azimuth) {
-  constexpr double least_cosine = 0.17364817766693033;  // Of 80 degrees.
+  constexpr double least_cosine = 0.17364817766693033;  // cos 80 degrees.
   return std::abs(std::cos(azimuth)) < least_cosine;
 }
 

@@ -21,7 +21,7 @@ TEST(Direction, AnglesAndVectorTellTheSame) {
   });
 }
 
-// As the paper has its axes: Y along the arm, X to the side, Z towards the first camera.
+// The paper's axes: Y along the arm, X to the side, Z towards the first camera.
 TEST(Direction, CountsFromY) {
   EXPECT_EQ(angles_of_direction({0, 1, 0}), Eigen::Vector2d(0, 0));
   EXPECT_NEAR((angles_of_direction({1, 0, 0}) - Eigen::Vector2d(std::numbers::pi / 2, 0)).norm(), 0, 1e-15);

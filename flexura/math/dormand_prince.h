@@ -9,18 +9,18 @@
 
 namespace flexura {
 
-/// How exactly an ordinary differential equation is followed.
+/// Tolerances for an ordinary differential equation.
 struct OdeTolerance {
-  double relative = 1e-9;    ///< Of each component, a step.
-  double absolute = 1e-12;   ///< The same in the units of y; the two add up.
-  double first_step = 1e-3;  ///< To try, in units of the time; > 0.
+  double relative = 1e-9;    ///< Of each component, per step.
+  double absolute = 1e-12;   ///< Of each component, per step, in the units of y; both add up.
+  double first_step = 1e-3;  ///< First step to try, in units of the time; > 0.
   double largest_step = std::numeric_limits<double>::infinity();  ///< In units of the time.
-  int most_steps = 1'000'000;  ///< Of one advance, those that are taken back too.
+  int most_steps = 1'000'000;                                     ///< Of one advance, with rejected steps.
 };
 
-/// dy/dt = f(t, y) by the explicit Runge-Kutta pair of order 5(4) with its own step size (J. R. Dormand, P.
-/// J. Prince, "A family of embedded Runge-Kutta formulae", 1980; the step's rule as in E. Hairer, S. P.
-/// Norsett, G. Wanner, "Solving Ordinary Differential Equations I", II.4). Nothing is allocated after the
+/// Solves dy/dt = f(t, y) by the explicit Runge-Kutta pair of order 5(4) with adaptive steps (J. R. Dormand,
+/// P. J. Prince, "A family of embedded Runge-Kutta formulae", 1980). The step size rule is from E. Hairer, S.
+/// P. Norsett, G. Wanner, "Solving Ordinary Differential Equations I", II.4. Allocates nothing after the
 /// constructor.
 class DormandPrince {
  public:
@@ -30,15 +30,16 @@ class DormandPrince {
     for (Eigen::VectorXd& slope : slopes_) slope.resize(size);
   }
 
-  /// How an advance ended.
+  /// Result of an advance.
   struct Progress {
-    /// False: out of steps, no step is small enough, or told to end; t and y are where it ended.
+    /// False if it ran out of steps, no step is small enough, or go_on() ended it; t and y are those of the
+    /// end.
     bool is_there = false;
-    int steps = 0, taken_back = 0;  ///< Accepted; refused for their error.
+    int steps = 0, taken_back = 0;  ///< Accepted; rejected for their error.
   };
 
-  /// From (t, y) on to the time `until` >= t exactly. f(t, y, slope) writes dy/dt into `slope`; go_on() is
-  /// asked before every step, and may end it.
+  /// Advances from (t, y) to exactly the time `until` >= t. f(t, y, slope) writes dy/dt into `slope`; go_on()
+  /// is called before every step and may end it.
   template <class Function, class GoOn = bool (*)()>
   Progress advance(Function&& f, double& t, Eigen::VectorXd& y, double until, GoOn go_on = always) {
     Progress progress;
@@ -70,7 +71,8 @@ class DormandPrince {
  private:
   static bool always() { return true; }
 
-  // trial_ = y after h, slopes_[6] the slope there. The error in units of the tolerance, root mean square.
+  // Computes trial_ = y after h, and slopes_[6], the slope there. Returns the error in units of the
+  // tolerance, root mean square.
   template <class Function>
   double attempt(Function& f, double t, const Eigen::VectorXd& y, double h) {
     auto& k = slopes_;

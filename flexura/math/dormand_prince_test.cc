@@ -9,7 +9,7 @@
 namespace flexura {
 namespace {
 
-// A pendulum swung far out: its energy is known, and the time of a quarter of its swing.
+// A pendulum with a large swing: its energy is known, and the time of a quarter of its period.
 void pendulum(double, const Eigen::VectorXd& y, Eigen::VectorXd& slope) {
   slope[0] = y[1];
   slope[1] = -std::sin(y[0]);
@@ -30,7 +30,7 @@ TEST(DormandPrince, SwingsAPendulumInTheTimeOfItsEllipticIntegral) {
 
 TEST(DormandPrince, IsOfFifthOrder) {
   const auto error = [](int steps) {
-    // The steps are as long as they may be: nothing is taken back.
+    // The steps have the largest allowed size: none is rejected.
     DormandPrince ode(2,
                       {.relative = 1, .absolute = 1, .first_step = 2.0 / steps, .largest_step = 2.0 / steps});
     double t = 0;
@@ -75,7 +75,7 @@ TEST(DormandPrince, EndsBetweenTwoStepsWhereItIsTold) {
   EXPECT_GT(t, 0);
   EXPECT_LE(t, 0.05 + 1e-12);
   EXPECT_NEAR(y[0], std::exp(-t), 1e-9);
-  EXPECT_TRUE(ode.advance(fall, t, y, 1.0).is_there);  // And goes on from there.
+  EXPECT_TRUE(ode.advance(fall, t, y, 1.0).is_there);  // It continues from there.
   EXPECT_NEAR(y[0], std::exp(-1), 1e-9);
 }
 

@@ -2,8 +2,8 @@
 
 namespace flexura {
 
-/// A number with a derivative: arithmetic on it differentiates what is computed, exactly (forward mode). T
-/// may be double, several doubles in an instruction (math/lanes.h), or itself a Dual, for second derivatives.
+/// A number with a derivative: arithmetic on it differentiates the computation exactly (forward mode). T may
+/// be double, several doubles in an instruction (math/lanes.h), or itself a Dual, for second derivatives.
 template <typename T>
 struct Dual {
   T value;

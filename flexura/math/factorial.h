@@ -4,7 +4,7 @@
 
 namespace flexura {
 
-/// n!, for the coefficients of power series.
+/// Returns n!, for the coefficients of power series.
 constexpr double factorial(std::size_t n) { return n < 2 ? 1.0 : static_cast<double>(n) * factorial(n - 1); }
 
 }  // namespace flexura

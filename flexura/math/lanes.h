@@ -11,13 +11,13 @@ namespace flexura {
 /// Two doubles in one instruction, on every processor of the architecture.
 using Lanes = double __attribute__((vector_size(16)));
 
-/// How many numbers one holds.
+/// Number of values in a T.
 template <typename T>
 inline constexpr std::size_t lanes_of = 1;
 template <>
 inline constexpr std::size_t lanes_of<Lanes> = 2;
 
-/// What works on several numbers of this kind at once, where there is such a thing.
+/// The type for several numbers of this kind at once, if any.
 template <typename T>
 struct Wide {
   using type = T;
@@ -27,7 +27,7 @@ struct Wide<double> {
   using type = Lanes;
 };
 
-/// From and to consecutive numbers in memory.
+/// Load and store consecutive numbers in memory.
 template <typename T>
 [[nodiscard]] inline T load_lanes(const T* from) {
   return *from;
@@ -42,7 +42,7 @@ inline void store_lanes(const Lanes& value, double* to) {
   to[1] = value[1];
 }
 
-/// The greatest of the values.
+/// Returns the greatest of the values.
 [[nodiscard]] inline double greatest(double value) { return value; }
 [[nodiscard]] inline double greatest(const Lanes& value) { return std::max(value[0], value[1]); }
 template <typename T>

@@ -2,39 +2,40 @@
 
 #include <limits>
 
-// The method of K. Levenberg (1944) and D. W. Marquardt (1963), once for all who make a cost small. What the
-// unknowns are, and how a damped step is solved for, is the problem's own.
+// The method of K. Levenberg (1944) and D. W. Marquardt (1963), shared by all minimisers here. The problem
+// defines the unknowns and the solution of a damped step.
 namespace flexura {
 
-/// What is known of a step before it is decided on.
+/// Results of a step before its acceptance.
 struct TriedStep {
-  double cost = std::numeric_limits<double>::infinity();  ///< Where it leads; infinite: nowhere.
-  /// How much lower the linear model has it.
+  double cost = std::numeric_limits<double>::infinity();  ///< Cost after the step; infinite if it is invalid.
+  /// Decrease predicted by the linear model.
   double promised = std::numeric_limits<double>::infinity();
 };
 
-/// How steps are damped.
+/// Damping of the steps.
 struct Damping {
   double start = 1e-4;
-  double most = 1e12;  ///< Beyond it no step is tried.
-  double rise = 10;    ///< The factor after a step that is left; each time in a row `growth` times as much.
+  double most = 1e12;  ///< Limit of the damping.
+  double rise = 10;    ///< Factor after a rejected step; multiplied by `growth` for each consecutive one.
   double growth = 1;
-  /// The damping after a step that is kept, from that before and the ratio of what was gained to what was
-  /// promised; of that -1 where nothing was.
+  /// Returns the damping after an accepted step, from the previous one and the ratio of actual to predicted
+  /// decrease (-1 without a predicted decrease).
   double (*eased)(double damping, double ratio) = nullptr;
 };
 
-/// Why a descent ended.
+/// Reason for the end of a descent.
 enum class DescentEnd {
-  done,       ///< The problem says so.
+  done,       ///< Ended by the problem.
   stuck,      ///< No step lowers the cost.
-  exhausted,  ///< As many steps are tried as may be.
+  exhausted,  ///< Step limit reached.
 };
 
-/// Tries steps from a place of that `cost` and keeps each that lowers it.
-/// try_step(damping): solves for a step, and says where it leads: a TriedStep.
-/// keep(step, cost): goes the step just tried, linearises there, and sets `cost` to what the next one has to
-/// lower; whether it was the last. leave(step, cost): whether smaller ones need not be tried either.
+/// Tries steps from a point with this `cost` and accepts each that lowers it.
+/// - try_step(damping) solves for a step and returns its result, a TriedStep.
+/// - keep(step, cost) takes the step just tried, linearises there, and sets `cost` to the value that the next
+/// one has to lower. Returns true if it was the last.
+/// - leave(step, cost) returns true if smaller steps need not be tried.
 template <class Try, class Keep, class Leave>
 DescentEnd levenberg_marquardt(double cost, const Damping& damping, int most_tries, const Try& try_step,
                                const Keep& keep, const Leave& leave) {

@@ -11,7 +11,7 @@ std::array<double, 3> magnus_points() {
 }
 
 // With C = [a1, a2]: U = 20 a1 + a3 + C and V = a2 + [a1, 2 a3 - C] / 60. (The reference has X' = A X, for
-// which brackets have the other sign.)
+// which brackets have the opposite sign.)
 MagnusStep::MagnusStep(const Moments& moments)
     : a_(moments),
       C_(bracket(a_[0], a_[1])),

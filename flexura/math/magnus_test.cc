@@ -11,7 +11,7 @@
 namespace flexura {
 namespace {
 
-// A strain that goes its own way.
+// A strain that varies along its interval.
 struct Way {
   Vector6d constant, linear, wave;
   [[nodiscard]] Vector6d at(double s) const { return constant + s * linear + std::sin(3 * s) * wave; }

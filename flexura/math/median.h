@@ -6,7 +6,7 @@
 
 namespace flexura {
 
-/// The middle one of some values by size, of an even number the upper middle one. Reorders them. Not empty.
+/// Returns the median of some values; of an even number the upper one. Reorders them. Must not be empty.
 template <typename Value>
 [[nodiscard]] Value median(std::span<Value> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);

@@ -9,8 +9,8 @@
 namespace flexura {
 namespace {
 
-// The slope at an end of the curve: that of the parabola through three points, limited so that the piece is
-// monotone. `near` and `far` are the widths and slopes of the first and second piece.
+// Returns the slope at an end of the curve: that of the parabola through three points, limited so that the
+// piece is monotone. `near` and `far` are the widths and slopes of the first and second piece.
 double end_slope(double near_width, double near_slope, double far_width, double far_slope) {
   const double slope =
       ((2 * near_width + far_width) * near_slope - near_width * far_slope) / (near_width + far_width);
@@ -19,14 +19,14 @@ double end_slope(double near_width, double near_slope, double far_width, double 
   return turns && std::abs(slope) > 3 * std::abs(near_slope) ? 3 * near_slope : slope;
 }
 
-// The slope at a point between two pieces: their harmonic mean, weighted by widths; 0 at a turn.
+// Returns the slope at a point between two pieces: their harmonic mean, weighted by widths; 0 at an extremum.
 double inner_slope(double width, double slope, double next_width, double next_slope) {
   if (slope == 0 || next_slope == 0 || (slope > 0) != (next_slope > 0)) return 0;
   const double weight = 2 * next_width + width, next_weight = next_width + 2 * width;
   return (weight + next_weight) / (weight / slope + next_weight / next_slope);
 }
 
-// How these slopes change with those of the two pieces.
+// Derivatives of these slopes by those of the two pieces.
 struct SlopeChange {
   double by_first = 0, by_second = 0;
 };
@@ -90,7 +90,7 @@ double MonotoneCubic::value(double x) const {
   if (x >= x_.back()) return y_.back();
   const Piece piece = piece_at(x);
   const double u = (x - piece.start) / piece.width, v = 1 - u;
-  // The Hermite cubic, written as the chord and what bends it.
+  // Hermite cubic as the chord plus a correction.
   return piece.y + u * u * (3 - 2 * u) * piece.rise +
          piece.width * u * v * (piece.slope * v - piece.end_slope * u);
 }
@@ -99,16 +99,16 @@ double MonotoneCubic::chord_slope(std::size_t piece) const {
   return (y_[piece + 1] - y_[piece]) / (x_[piece + 1] - x_[piece]);
 }
 
-// d slopes_[at] / d y_[i].
+// Returns d slopes_[at] / d y_[i].
 double MonotoneCubic::slope_by_point(std::size_t at, std::size_t i) const {
   const auto width = [this](std::size_t piece) { return x_[piece + 1] - x_[piece]; };
   const auto chord_by_point = [&](std::size_t piece) {
     if (i == piece) return -1 / width(piece);
     return i == piece + 1 ? 1 / width(piece) : 0.0;
   };
-  const std::size_t last = x_.size() - 2;  // piece
+  const std::size_t last = x_.size() - 2;  // Piece.
   if (last == 0) return chord_by_point(0);
-  std::size_t first = at, second = at;  // pieces
+  std::size_t first = at, second = at;  // Pieces.
   SlopeChange change;
   if (at == 0) {
     second = 1;

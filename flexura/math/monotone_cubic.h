@@ -5,26 +5,26 @@
 
 namespace flexura {
 
-/// A curve through points that never swings out between them: a cubic on each piece, with a continuous slope,
-/// rising only where the points rise and falling only where they fall (F. N. Fritsch and J. Butland, "A
-/// method for constructing local monotone piecewise cubic interpolants", 1984; slopes at the ends by three
-/// points, limited likewise). Through points of a straight line it is the line.
+/// A curve through points that does not overshoot between them. Each piece is a cubic, with a continuous
+/// slope; the curve rises only where the points rise, and falls only where they fall. From F. N. Fritsch and
+/// J. Butland, "A method for constructing local monotone piecewise cubic interpolants", 1984; slopes at the
+/// ends are from three points, with the same limit. Through points of a straight line it is the line.
 class MonotoneCubic {
  public:
-  /// Through (x[i], y[i]). std::invalid_argument: fewer than one point, unequal counts, numbers that are not
-  /// finite, x that does not rise. A single point makes a constant.
+  /// Through (x[i], y[i]). A single point gives a constant. Throws std::invalid_argument for fewer than one
+  /// point, unequal counts, numbers that are not finite, or x that does not increase.
   MonotoneCubic(std::vector<double> x, std::vector<double> y);
 
-  /// The first and the last x.
+  /// Return the first and the last x.
   [[nodiscard]] double front() const { return x_.front(); }
   [[nodiscard]] double back() const { return x_.back(); }
 
-  /// At x; outside [front(), back()] it goes on as at the nearest end.
+  /// Returns the value at x; outside [front(), back()] that of the nearest end.
   [[nodiscard]] double value(double x) const;
-  /// dy/dx; 0 outside.
+  /// Returns dy/dx; 0 outside.
   [[nodiscard]] double slope(double x) const;
-  /// d value(x) / d y[i]. Where a slope's rule has a corner (points that turn or are level), that slope is
-  /// taken to stay.
+  /// Returns d value(x) / d y[i]. Where a slope's rule is not smooth (points that turn or are level), that
+  /// slope counts as constant.
   [[nodiscard]] double by_point(double x, std::size_t i) const;
 
  private:

@@ -66,13 +66,13 @@ TEST(MonotoneCubic, ItsSlopeIsItsDerivativeAndContinuous) {
   });
 }
 
-// Away from corners of the slopes' rule, where they are taken to stay.
+// Away from points where the slopes' rule is not smooth.
 TEST(MonotoneCubic, FollowsEachOfItsPointsAsItSays) {
   for_random_cases(100, [](TestRandom& random) {
     std::vector<double> x = {random.uniform(-5, 5)}, y = {random.uniform(-3, 3)};
     for (int count = random.integer(1, 6); count > 0; --count) {
       x.push_back(x.back() + random.uniform(0.5, 1.5));
-      // Rising, falling, and turning; never nearly level, nor near to where an end's slope is cut.
+      // Rising, falling, and turning; never nearly level, nor near the limit of an end's slope.
       const double rise = random.uniform(0.7, 1) * (x.back() - x[x.size() - 2]);
       y.push_back(y.back() + (random.integer(0, 3) == 0 ? -rise : rise));
     }

@@ -3,7 +3,7 @@
 namespace flexura {
 namespace {
 
-// Whether the first component that is not zero is negative: of q and -q exactly one is.
+// Returns true if the first component that is not zero is negative: true for exactly one of q and -q.
 bool is_negative(const Eigen::Vector4d& q) {
   for (const double component : q) {
     if (component != 0.0) return component < 0.0;

@@ -10,20 +10,20 @@ struct Pose {
   Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();  ///< R_AB: columns are B's axes in A.
   Eigen::Vector3d position = Eigen::Vector3d::Zero();      ///< p_AB: B's origin in A, m.
 
-  /// X_AC = X_AB * X_BC.
+  /// Returns X_AC = X_AB * X_BC.
   [[nodiscard]] Pose operator*(const Pose& X_BC) const {
     return {rotation * X_BC.rotation, position + rotation * X_BC.position};
   }
-  /// p_AP = X_AB * p_BP.
+  /// Returns p_AP = X_AB * p_BP.
   [[nodiscard]] Eigen::Vector3d operator*(const Eigen::Vector3d& p_BP) const {
     return position + rotation * p_BP;
   }
-  /// X_BA.
+  /// Returns X_BA.
   [[nodiscard]] Pose inverse() const { return {rotation.transpose(), -(rotation.transpose() * position)}; }
 };
 
-/// The unit quaternion (w, x, y, z) of a rotation matrix: of q and -q, the one with w > 0 or, at a half turn,
-/// with its first component that is not zero positive. No component is a negative zero.
+/// Returns the unit quaternion (w, x, y, z) of a rotation matrix. Of q and -q, it is the one with w > 0 or,
+/// at a half turn, with a positive first component that is not zero. No component is a negative zero.
 [[nodiscard]] Eigen::Vector4d quaternion_wxyz(const Eigen::Matrix3d& rotation);
 
 }  // namespace flexura

@@ -14,7 +14,7 @@ struct LegendrePair {
   double before;
 };
 
-// By the three-term recurrence.
+// Computes them by the three-term recurrence.
 LegendrePair legendre_pair(int n, double x) {
   if (n == 0) return {1, 0};
   double before = 1.0;
@@ -27,7 +27,7 @@ LegendrePair legendre_pair(int n, double x) {
   return {value, before};
 }
 
-// P_n' at x in (-1, 1).
+// Returns P_n' at x in (-1, 1).
 double inner_slope(int n, double x) {
   const LegendrePair p = legendre_pair(n, x);
   return n * (p.before - x * p.value) / (1.0 - x * x);
@@ -41,7 +41,7 @@ Quadrature gauss_legendre(int points) {
   }
   Quadrature rule;
   for (int i = points; i >= 1; --i) {
-    // Tricomi's estimate of the root is good enough for Newton's method to settle in a few steps.
+    // From Tricomi's estimate of the root, Newton's method converges in a few steps.
     double x = std::cos(std::numbers::pi * (i - 0.25) / (points + 0.5));
     for (int step = 0; step < 6; ++step) {
       x -= legendre_pair(points, x).value / inner_slope(points, x);

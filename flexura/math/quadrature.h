@@ -7,25 +7,25 @@ namespace flexura {
 
 /// Nodes and weights of a rule on [-1, 1].
 struct Quadrature {
-  std::vector<double> nodes;    ///< Rising, within [-1, 1].
-  std::vector<double> weights;  ///< One a node; their sum is 2.
+  std::vector<double> nodes;    ///< Increasing, within [-1, 1].
+  std::vector<double> weights;  ///< One per node; their sum is 2.
 };
 
-/// The Gauss-Legendre rule of `points` >= 1 nodes, exact for polynomials of degree 2 points - 1;
-/// std::invalid_argument for fewer than one.
+/// Returns the Gauss-Legendre rule of `points` >= 1 nodes, exact for polynomials of degree 2 points - 1.
+/// Throws std::invalid_argument for fewer than one.
 [[nodiscard]] Quadrature gauss_legendre(int points);
 
-/// The Gauss-Lobatto rule of `points` >= 2 nodes, the ends among them, exact for polynomials of degree 2
-/// points - 3; std::invalid_argument for fewer than two.
+/// Returns the Gauss-Lobatto rule of `points` >= 2 nodes, including the ends, exact for polynomials of degree
+/// 2 points - 3. Throws std::invalid_argument for fewer than two.
 [[nodiscard]] Quadrature gauss_lobatto(int points);
 
-/// P_degree(x) of Legendre, for x in [-1, 1].
+/// Returns the Legendre polynomial P_degree(x), for x in [-1, 1].
 [[nodiscard]] double legendre(int degree, double x);
-/// Its derivative by x.
+/// Returns its derivative by x.
 [[nodiscard]] double legendre_slope(int degree, double x);
 
-/// The integral of f over [a, b], cut into `panels` >= 1 equal parts with `rule` in each. f takes a double
-/// and returns a double or an Eigen vector or matrix (by value, never an expression of temporaries).
+/// Returns the integral of f over [a, b], divided into `panels` >= 1 equal parts with `rule` in each. f takes
+/// a double and returns a double or an Eigen vector or matrix (by value, never an expression of temporaries).
 template <typename Function>
 [[nodiscard]] auto integrate(const Quadrature& rule, Function&& f, double a, double b, int panels = 1) {
   const double half = 0.5 * (b - a) / panels;

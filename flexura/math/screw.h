@@ -2,7 +2,7 @@
 
 namespace flexura {
 
-/// Three numbers of any kind: of double, of several doubles at once, of those with derivatives.
+/// Three numbers of any kind: double, several doubles at once, numbers with derivatives.
 template <typename T>
 struct Triple {
   T x, y, z;
@@ -46,12 +46,12 @@ struct Screw {
   }
 };
 
-/// [a, b] = ad(a) b.
+/// Returns [a, b] = ad(a) b.
 template <typename T>
 [[nodiscard]] Screw<T> bracket(const Screw<T>& a, const Screw<T>& b) {
   return {cross(a.angular, b.linear) + cross(a.linear, b.angular), cross(a.angular, b.angular)};
 }
-/// ad(a)^T W: what a wrench W does along [a, b] it does so along b.
+/// Returns ad(a)^T W: the power of a wrench W along [a, b] is that of the result along b.
 template <typename T>
 [[nodiscard]] Screw<T> transposed_bracket(const Screw<T>& a, const Screw<T>& W) {
   return {cross(W.linear, a.angular), cross(W.linear, a.linear) + cross(W.angular, a.angular)};
@@ -64,12 +64,12 @@ struct Placement {
 
   [[nodiscard]] Triple<T> turn(const Triple<T>& a) const { return {dot(x, a), dot(y, a), dot(z, a)}; }
   [[nodiscard]] Triple<T> turn_back(const Triple<T>& a) const { return a.x * x + a.y * y + a.z * z; }
-  /// To the frame in which it is given: V_A = adjoint(X_AB) V_B.
+  /// Converts a twist to the outer frame: V_A = adjoint(X_AB) V_B.
   [[nodiscard]] Screw<T> carry(const Screw<T>& V) const {
     const Triple<T> angular = turn(V.angular);
     return {turn(V.linear) + cross(position, angular), angular};
   }
-  /// A wrench of that frame in its own: adjoint(X_AB)^T W_A.
+  /// Converts a wrench from the outer frame to the own one: adjoint(X_AB)^T W_A.
   [[nodiscard]] Screw<T> fetch(const Screw<T>& W) const {
     return {turn_back(W.linear), turn_back(W.angular - cross(position, W.linear))};
   }

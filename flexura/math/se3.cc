@@ -10,15 +10,15 @@
 namespace flexura {
 namespace {
 
-// jacobian = I + the sum over n = 1..4 of c_n ad^n, where the c_n are functions of the angle t alone:
-// (4 - t sin t - 4 cos t) / 2 t^2, (4 t - 5 sin t + t cos t) / 2 t^3, (2 - t sin t - 2 cos t) / 2 t^4 and
-// (2 t - 3 sin t + t cos t) / 2 t^5.
+// jacobian = I + the sum over n = 1..4 of c_n ad^n. The c_n are functions of the angle t: (4 - t sin t - 4
+// cos t) / 2 t^2, (4 t - 5 sin t + t cos t) / 2 t^3, (2 - t sin t - 2 cos t) / 2 t^4 and (2 t - 3 sin t + t
+// cos t) / 2 t^5.
 struct JacobianCoefficients {
   std::array<double, 4> value;
-  std::array<double, 4> slope;  // dc_n/dt / t
+  std::array<double, 4> slope;  // dc_n/dt / t.
 };
 
-// Below this t^2 their power series serve, whose remainder is then under 1e-20.
+// Below this t^2, power series are used, with a remainder below 1e-20.
 constexpr double square_limit = 1;
 constexpr std::size_t jacobian_terms = 10;
 
@@ -117,7 +117,7 @@ Matrix6d TwistExponential::jacobian_form(const Vector6d& W) const {
   std::array<Vector6d, 5> u;
   u[0] = W;
   for (std::size_t p = 1; p < 5; ++p) u[p] = ad_.transpose() * u[p - 1];
-  // Of c_n: d(t)/da = w . a_w / t. Of ad^n: the sum over p of ad^p ad(a) ad^(n-1-p).
+  // For c_n: d(t)/da = w . a_w / t. For ad^n: the sum over p of ad^p ad(a) ad^(n-1-p).
   Vector6d by_angle = Vector6d::Zero();
   for (std::size_t n = 1; n < 5; ++n) by_angle += c.slope[n - 1] * u[n];
   Matrix6d form = Matrix6d::Zero();

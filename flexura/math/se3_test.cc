@@ -12,7 +12,7 @@
 namespace flexura {
 namespace {
 
-// Angles of all sizes, those around the change to series among them.
+// Angles of all sizes, including those around the change to series.
 Vector6d random_twist(TestRandom& random) {
   Vector6d twist = random.vector<6>(-1.0, 1.0);
   const double angle =

@@ -9,8 +9,8 @@
 namespace flexura {
 namespace {
 
-// Below this |t| the closed forms that cancel give way to their power series: there the closed forms still
-// hold to a few units in the last place, and terms terms leave a remainder under 1e-20.
+// Below this |t|, power series replace closed forms with cancellation. There the closed forms are still right
+// to a few units in the last place, and the remainder after `terms` terms is below 1e-20.
 constexpr double series_limit = 1.5;
 constexpr std::size_t terms = 13;
 using Coefficients = std::array<double, terms>;

@@ -10,8 +10,8 @@
 namespace flexura {
 namespace {
 
-// The power series in long double (64 bits), which up to |t| = 1 lose nothing; beyond, the closed forms in
-// long double, which there lose at most 3 of its 11 spare bits. No code in common with what is tested.
+// Power series in long double (64 bits), which up to |t| = 1 lose nothing. Beyond, closed forms in long
+// double, which there lose at most 3 of its 11 spare bits. No code in common with the tested functions.
 long double alternating_series(long double t, int first_factorial, bool with_factor) {
   long double factorial = 1.0L;
   for (int k = 2; k <= first_factorial; ++k) factorial *= k;
@@ -39,11 +39,11 @@ long double reference_sinc_slope(long double t) {
   return t < 1 ? -alternating_series(t, 3, true) : (t * std::cos(t) - std::sin(t)) / (t * t * t);
 }
 long double reference_cosc_slope(long double t) {
-  const long double h = t / 2;  // 4 sin h (h cos h - sin h) / t^4, free of the cancellation near 2 pi.
+  const long double h = t / 2;  // 4 sin h (h cos h - sin h) / t^4, free of cancellation near 2 pi.
   return 0.25L * (t < 1 ? alternating_series(h, 1, false) : std::sin(h) / h) * reference_sinc_slope(h);
 }
 
-// Log-spaced bends from 1e-12 to 4 pi, dense around the switch, 0 and the numbers below all these.
+// Log-spaced bends from 1e-12 to 4 pi, dense around the switch, plus 0 and numbers below all these.
 std::vector<double> bends() {
   std::vector<double> result = {0.0,  std::numeric_limits<double>::denorm_min(), 1e-310, 1e-200, 1e-100,
                                 1e-30};
@@ -69,7 +69,8 @@ TEST(Series, TheDeficitIsExactTo1em14RelativeForAllBends) {
   }
 }
 
-// A slope crosses zero (near 4.49 and 7.73; 2 pi, 8.99 and 12.57): relative to its envelope there.
+// A slope crosses zero (near 4.49 and 7.73; 2 pi, 8.99 and 12.57): there the error is relative to its
+// envelope.
 TEST(Series, TheSlopesAreExactTo1em14RelativeUpToTheirZeros) {
   for (const double t : bends()) {
     const auto s = static_cast<double>(reference_sinc_slope(t));

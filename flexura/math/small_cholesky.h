@@ -5,9 +5,10 @@
 
 namespace flexura {
 
-/// x of A x = b, with A symmetric and positive definite (the lower triangle counts), for inner loops: of few
-/// rows, known to the compiler, and without an allocation. Not finite where A is not definite (an infinite
-/// diagonal counts as one). (Eigen's LLT costs a source nearly two seconds to compile for each fixed size.)
+/// Returns x of A x = b, with A symmetric and positive definite (uses the lower triangle). For inner loops:
+/// few rows, of a fixed number, and without allocation. Not finite if A is not definite; an infinite diagonal
+/// element counts as definite. (Eigen's LLT costs a source nearly two seconds to compile for each fixed
+/// size.)
 template <int n>
 [[nodiscard]] Eigen::Vector<double, n> solve_definite(Eigen::Matrix<double, n, n> A,
                                                       Eigen::Vector<double, n> b) {

@@ -22,14 +22,14 @@ Eigen::Matrix3d so3_exp(const Eigen::Vector3d& w) {
 Eigen::Vector3d so3_log(const Eigen::Matrix3d& rotation) {
   const Eigen::Vector4d q = quaternion_wxyz(rotation);
   const Eigen::Vector3d axis = q.tail<3>();
-  const double sine = axis.stableNorm();  // Of half the angle; the plain norm underflows.
+  const double sine = axis.stableNorm();  // Sine of half the angle; the plain norm underflows.
   if (sine == 0.0) return Eigen::Vector3d::Zero();
   return axis * (2.0 * std::atan2(sine, q[0]) / sine);
 }
 
 Eigen::Matrix3d rotation_from_z(const Eigen::Vector3d& direction) {
   const Eigen::Vector3d d = direction.stableNormalized();
-  const Eigen::Vector3d axis(-d.y(), d.x(), 0.0);  // Z x d, as long as the angle's sine.
+  const Eigen::Vector3d axis(-d.y(), d.x(), 0.0);  // Z x d, with the length of the angle's sine.
   const double sine = axis.stableNorm();
   if (sine == 0.0)
     return Eigen::Vector3d(1.0, std::copysign(1.0, d.z()), std::copysign(1.0, d.z())).asDiagonal();

@@ -13,10 +13,10 @@
 namespace flexura {
 namespace {
 
-// From a shape to its command. Each gains a factor of about ten.
+// Most steps from a shape to its command. Each reduces the error by a factor of about ten.
 constexpr int max_steps = 20;
 
-// The section's profile, checked.
+// Returns the section's profile. Throws std::invalid_argument if it is invalid.
 std::vector<double> profile_of(const Section& section, std::size_t index) {
   std::vector<double> shares = section.bend_profile.value_or(std::vector<double>{1});
   double sum = 0;
@@ -31,12 +31,12 @@ std::vector<double> shares_of(const Section& section, std::size_t index) {
   std::vector<double> shares = profile_of(section, index);
   double sum = 0;
   for (const double part : shares) sum += part;
-  // One arc has all of the bend, to the last bit.
+  // A single arc has exactly all of the bend.
   for (double& part : shares) part = shares.size() == 1 ? 1 : part / sum;
   return shares;
 }
 
-// Arc `i` of the `count` that a section is cut into.
+// Returns arc `i` of the `count` arcs of a section.
 Section arc_of(const Section& section, std::size_t i, std::size_t count) {
   const auto [from, to] = section.radius;
   const auto radius = [from, to, count](std::size_t end) {
@@ -122,7 +122,7 @@ ArmState Actuation::command(const ArmState& shape) const {
   return best;
 }
 
-// By shares alone.
+// Uses only the shares.
 ArmState Actuation::linear_command(const ArmState& shape) const {
   ArmState command = ArmState::straight(sections_);
   std::vector<double> squares(sections_, 0), counts(sections_, 0);
@@ -167,7 +167,7 @@ void Actuation::by_command(const Eigen::MatrixXd& by_shape, const ArmState& comm
     by_command.noalias() = by_shape * slopes_here;
     return;
   }
-  // The same without a matrix that is mostly zeros.
+  // Multiplies without a matrix of mostly zeros.
   by_command.setZero(by_shape.rows(), 3 * static_cast<Eigen::Index>(sections_));
   for (std::size_t k = 0; k < arcs(); ++k) {
     const auto from = 3 * static_cast<Eigen::Index>(k), to = 3 * static_cast<Eigen::Index>(section_of_[k]);

@@ -14,7 +14,7 @@
 namespace flexura {
 namespace {
 
-// With sections of up to five arcs that share the bend anyhow.
+// Returns an arm with sections of up to five arcs that share the bend arbitrarily.
 Arm uneven_arm(TestRandom& random) {
   Arm arm = random_arm(random);
   for (Section& section : arm.sections) {
@@ -64,7 +64,7 @@ TEST(Actuation, FindsTheCommandOfAShape) {
   });
 }
 
-// No other command's shape is nearer to what no command makes.
+// If no command makes a shape, no other command's shape may be nearer to it.
 TEST(Actuation, FindsTheNearestCommand) {
   for_random_cases(200, [](TestRandom& random) {
     const Arm arm = uneven_arm(random);
@@ -95,7 +95,7 @@ TEST(Actuation, TakesDerivativesByShapesToThoseByCommands) {
       }
       return state;
     };
-    // Any function of the shape that is linear.
+    // Any linear function of the shape.
     const Eigen::MatrixXd by_shape =
         Eigen::MatrixXd::NullaryExpr(4, 3 * static_cast<Eigen::Index>(model.shaped().sections.size()),
                                      [&] { return random.uniform(-1, 1); });
@@ -127,7 +127,7 @@ TEST(Actuation, OfSingleArcsIsNoneAtAll) {
   });
 }
 
-// Arcs that bend alike are the arc that they are cut from.
+// Arcs with equal shares are the arc that they divide.
 TEST(Actuation, OfEvenProfilesMakesTheSameBackbone) {
   for_random_cases(50, [](TestRandom& random) {
     const Arm plain = random_arm(random);

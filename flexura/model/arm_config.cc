@@ -13,13 +13,13 @@
 namespace flexura {
 namespace {
 
-// More than any robot has; keeps a mistaken file from filling the memory.
+// More than any robot has; keeps an incorrect file from filling the memory.
 constexpr std::size_t max_sections = 1000;
-constexpr std::size_t max_arcs = 100;  // Of one section.
+constexpr std::size_t max_arcs = 100;  // Per section.
 constexpr std::size_t max_routes = 1000;
 constexpr std::size_t max_loads = 1000;
 
-// A micrometre: as far from the origin as coordinates go, doubles still tell such lengths apart.
+// A micrometre. Doubles still distinguish such lengths at the largest coordinates.
 constexpr NumberRange size_range = {.min = 1e-6, .max = 1e6};
 
 void check_count(std::size_t given, std::size_t sections, const std::string& path, Reader& reader) {

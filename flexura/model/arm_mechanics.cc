@@ -11,7 +11,7 @@
 namespace flexura {
 namespace {
 
-// So many places of each section are looked at, whether a tendon is in the tube.
+// Number of points per section at which a tendon is checked to be in the tube.
 constexpr int places_looked_at = 50;
 constexpr double rounding = 1e-9;
 constexpr std::size_t max_coefficients = 20;
@@ -66,7 +66,7 @@ void check_in_tube(const TendonRouteConfig& tendon, const ArmConfig& arm, const 
   }
 }
 
-// What moves has a mass; and what is known at rest alone.
+// Checks that moving rods have a mass, and that nothing is used that only statics supports.
 void check_motion(const ArmConfig& arm, Reader& reader) {
   for (std::size_t i = 0; i < arm.section.size(); ++i) {
     const MaterialConfig& material = *arm.section[i].material;

@@ -6,32 +6,31 @@
 
 namespace flexura {
 
-/// An arm as somebody describes it: what its drives bend, and the chain of arcs that this makes of it.
+/// Model of an arm: the sections that its drives bend, and the resulting chain of arcs.
 ///
-/// Commands are states of driven(), shapes are states of shaped(). Laws and estimates vary one or the other
-/// as they stand; actuation() says what one makes of the other. Where every section is one arc the two are
-/// the same arm.
+/// Commands are states of driven(), shapes are states of shaped(). Laws and estimates vary one of them;
+/// actuation() converts between them. If every section is one arc, both are the same arm.
 class ArmModel {
  public:
-  /// As Actuation says of `driven`, and its errors.
+  /// Uses the Actuation of `driven`. Throws its errors.
   explicit ArmModel(const Arm& driven)
       : driven_(driven), actuation_(driven), shaped_(shaped_arm(driven, actuation_)) {}
-  /// Of an arm whose arcs are known otherwise: one section of `shaped` an arc.
+  /// For an arm whose arcs are given: one section of `shaped` per arc.
   ArmModel(const Arm& driven, const Actuation& actuation, const Arm& shaped)
       : driven_(driven), actuation_(actuation), shaped_(shaped) {}
 
-  /// The arm as its drives see it: one bend a section.
+  /// Returns the arm as its drives see it: one bend per section.
   [[nodiscard]] const Arm& driven() const { return driven_; }
-  /// The same arm with one section an arc.
+  /// Returns the arm with one section per arc.
   [[nodiscard]] const Arm& shaped() const { return shaped_; }
   [[nodiscard]] const Actuation& actuation() const { return actuation_; }
 
-  /// The backbone that a command makes: its arcs say which of driven()'s sections they belong to.
-  /// std::invalid_argument: of another arm.
+  /// Returns the backbone for a command; its arcs have the numbers of driven()'s sections. Throws
+  /// std::invalid_argument for a command of another arm.
   [[nodiscard]] Backbone backbone(const ArmState& command) const {
     return backbone_of_shape(actuation_.shape(command));
   }
-  /// The same of a shape.
+  /// Returns the backbone of a shape. Throws std::invalid_argument for a shape of another arm.
   [[nodiscard]] Backbone backbone_of_shape(const ArmState& shape) const {
     return {shaped_, shape, actuation_.section_of()};
   }

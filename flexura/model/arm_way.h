@@ -8,13 +8,13 @@
 
 namespace flexura {
 
-/// The way from one state of an arm to another: by how much each section's bend (rad) and stretch change.
+/// Difference between two states of an arm: the change of each section's bend (rad) and stretch.
 struct ArmWay {
   std::vector<Eigen::Vector2d> bends;
   std::vector<double> stretches;
 };
 
-/// The way that leads to `to` from `from`; both of one arm.
+/// Returns the difference from `from` to `to`; both of one arm.
 [[nodiscard]] inline ArmWay minus(const ArmState& to, const ArmState& from) {
   ArmWay way{to.bends, to.stretches};
   for (std::size_t i = 0; i < way.bends.size(); ++i) {
@@ -24,7 +24,7 @@ struct ArmWay {
   return way;
 }
 
-/// `state` and a share of a way; both of one arm.
+/// Returns `state` plus a share of a difference; both of one arm.
 [[nodiscard]] inline ArmState plus(ArmState state, const ArmWay& way, double share = 1) {
   for (std::size_t i = 0; i < state.bends.size(); ++i) {
     state.bends[i] += share * way.bends[i];
@@ -33,9 +33,9 @@ struct ArmWay {
   return state;
 }
 
-/// The state `fraction` in [0, 1] of the way from one to another, bends and stretches changing linearly: the
-/// paper's "linear interpolation algorithm" (section 4). Not plus(from, minus(to, from), fraction) to the
-/// last bit, for it is exactly `from` at 0 and `to` at 1. Into `between`, which may be neither of the two.
+/// Computes the state at `fraction` in [0, 1] between two states, with bends and stretches linear: the
+/// paper's "linear interpolation algorithm" (section 4). It is exactly `from` at 0 and `to` at 1, unlike
+/// plus(from, minus(to, from), fraction). `between` must be a different object than both.
 inline void interpolate(const ArmState& from, const ArmState& to, double fraction, ArmState& between) {
   between = fraction >= 1 ? to : from;
   if (fraction <= 0 || fraction >= 1) return;

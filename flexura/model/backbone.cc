@@ -31,7 +31,7 @@ void require_usable(const BackboneSample& sample, std::size_t index) {
       fmt::format("sample {} of the backbone is not finite, or has a radius that is not positive", index));
 }
 
-// The arc from `X_WS` to `p_WP`, both on it.
+// Returns the arc from `X_WS` to `p_WP`, both on it.
 Arc arc_to(const Pose& X_WS, const Eigen::Vector3d& p_WP) {
   const Eigen::Vector3d p_SP = X_WS.inverse() * p_WP;
   const double across = p_SP.head<2>().norm();
@@ -43,14 +43,14 @@ Arc arc_to(const Pose& X_WS, const Eigen::Vector3d& p_WP) {
   return arc;
 }
 
-// How far `to` is turned about the tangent that it shares with `from`, rad.
+// Returns the rotation of `to` about the tangent that it shares with `from`, rad.
 double turn_about_tangent(const Eigen::Matrix3d& from, const Eigen::Matrix3d& to) {
   constexpr double rounding = 1e-12;
   const double turn = std::atan2(from.col(1).dot(to.col(0)), from.col(0).dot(to.col(0)));
   return std::abs(turn) < rounding ? 0 : turn;
 }
 
-// Both halves of the biarc between two samples: the two arcs have equal tangents to the point where they meet
+// Adds both halves of the biarc between two samples: the two arcs have equal tangent lengths to their joint
 // (K. M. Bolton, "Biarc curves", 1975).
 void join(const BackboneSample& from, const BackboneSample& to, std::size_t index, std::vector<Arc>& arcs) {
   const Eigen::Vector3d chord = to.X_WS.position - from.X_WS.position;

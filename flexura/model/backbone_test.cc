@@ -113,7 +113,7 @@ TEST(Backbone, ThroughSamplesOfAnArcIsTheArc) {
     Arm arm = random_arm(random);
     arm.sections.resize(1);
     ArmState state = random_state(random, arm);
-    state.bends[0] *= std::min(1.0, 3 / state.bends[0].norm());  // Two arcs turn back no more than that.
+    state.bends[0] *= std::min(1.0, 3 / state.bends[0].norm());  // Two arcs cannot turn back by more.
     const Backbone arc(arm, state);
     const auto sample = [&](double share) {
       const auto [from, to] = arm.sections[0].radius;
@@ -132,8 +132,8 @@ TEST(Backbone, ThroughSamplesOfAnArcIsTheArc) {
   });
 }
 
-// A helix about z of radius a that climbs by 2 pi b a turn; its frame has x towards the axis, and so turns
-// about the tangent.
+// A helix about z of radius a that climbs by 2 pi b per turn. The x axis of its frame points to the helix's
+// axis, so the frame rotates about the tangent.
 Pose helix(double a, double b, double angle) {
   const double c = std::cos(angle), s = std::sin(angle), l = std::hypot(a, b);
   const Eigen::Vector3d tangent(-a * s / l, a * c / l, b / l), x(-c, -s, 0);
@@ -144,7 +144,7 @@ Pose helix(double a, double b, double angle) {
 }
 
 TEST(Backbone, ThroughSamplesOfAHelixConvergesToItInPlaceAndTurn) {
-  constexpr double a = 0.3, b = 0.1, turns = 4;  // rad
+  constexpr double a = 0.3, b = 0.1, turns = 4;  // rad.
   double off_before = 0, turn_before = 0;
   for (const int count : {4, 8, 16, 32}) {
     std::vector<BackboneSample> samples;
@@ -157,7 +157,7 @@ TEST(Backbone, ThroughSamplesOfAHelixConvergesToItInPlaceAndTurn) {
       const Pose at = backbone.arcs()[2 * static_cast<std::size_t>(i)].X_WS;
       EXPECT_LE((at.position - samples[static_cast<std::size_t>(i)].X_WS.position).norm(), 1e-14);
       EXPECT_LE((at.rotation - samples[static_cast<std::size_t>(i)].X_WS.rotation).norm(), 1e-12);
-      // And near the curve between.
+      // Near the curve between the samples.
       const Pose middle = backbone.pose(backbone.s_at_rest(i + 0.5));
       const Pose shall = helix(a, b, turns * (i + 0.5) / count);
       off = std::max(off, (middle.position - shall.position).norm());

@@ -12,12 +12,12 @@
 namespace flexura {
 namespace {
 
-// Directions that differ by less than about this, rad, are one.
+// Directions that differ by less than about this, rad, count as one.
 constexpr double direction_tolerance = 1e-3;
 constexpr std::size_t max_tendons = 10000;
-// Doubles and the positions of a log count exactly up to here.
+// Doubles and the positions of a log represent all integers up to this value.
 constexpr double max_position = 9007199254740992.0;
-// What files may ask of a section: the ranges of ShapeConfig.
+// Limit for a section in a file: the range of ShapeConfig.
 constexpr double max_stretch = 100.0;
 
 const char* tendons_needed(bool planar, bool stretching) {
@@ -27,8 +27,8 @@ const char* tendons_needed(bool planar, bool stretching) {
   return "at least 2 in different directions";
 }
 
-// A tendon that ends at a section feels the sum of the bends up to there, so the tendons of each section
-// determine one sum: no section can be helped by another's.
+// A tendon that ends at a section depends on the sum of the bends up to there. So the tendons of each section
+// determine one sum, and cannot be replaced by another section's.
 void check_section(const Drive& drive, const ArmConfig& arm, std::size_t index, const std::string& path,
                    Reader& reader) {
   const bool planar = arm.kind == ArmKind::planar;
@@ -40,7 +40,7 @@ void check_section(const Drive& drive, const ArmConfig& arm, std::size_t index, 
     offsets.push_back(tendon.offset());
     largest = std::max(largest, tendon.radius);
   }
-  // Bend in one plane or two, and stretch; what the section cannot do counts as determined.
+  // Bend in one plane or two, and stretch; motions that the section cannot make count as determined.
   Eigen::Matrix3d gram = Eigen::Vector3d(0, planar ? 1 : 0, stretching ? 0 : 1).asDiagonal();
   gram *= largest * largest;
   for (const Eigen::Vector2d& offset : offsets) {

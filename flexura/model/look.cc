@@ -10,7 +10,7 @@
 namespace flexura {
 namespace {
 
-// As many as a picture is drawn with.
+// Largest number of markers in a picture.
 constexpr std::size_t max_marks = 4096;
 
 Spec color_of(const char* what) {

@@ -13,7 +13,7 @@ namespace {
 
 constexpr NumberRange stiffness_range = {.min = 0, .max = 1e15, .open_min = true};
 constexpr NumberRange mode_range = {.min = 0, .max = 20};
-constexpr std::size_t max_bodies = 1000;  // Of one section.
+constexpr std::size_t max_bodies = 1000;  // Per section.
 
 Spec stiffness(const char* meaning, bool both = false) {
   return {.meaning = meaning, .range = stiffness_range, .required = true, .one_for_all = both};

@@ -12,7 +12,7 @@
 namespace flexura {
 namespace {
 
-// Adds what every obstacle has.
+// Adds the fields that every obstacle has.
 template <class S>
 Table<S> obstacle_table(const char* kind, const char* meaning) {
   Table<S> table(kind, meaning);
@@ -150,7 +150,7 @@ std::vector<Obstacle> obstacles(const std::vector<ObstacleConfig>& configs) {
     std::visit(
         [&]<class One>(const One& one) {
           const std::string called = fmt::format("{} {}", Codec<One>::table().info().name, result.size() + 1);
-          // What may be touched is ignored along all of the arm.
+          // An obstacle that may be touched is ignored along the whole arm.
           constexpr double all = 1e9;
           result.push_back({one.name.empty() ? called : one.name, one.may_touch ? all : one.ignore_base,
                             distance_of(one), normal_of(one), sides_of(one)});

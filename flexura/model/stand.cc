@@ -127,8 +127,7 @@ const Table<StandConfig>& fields_of(const StandConfig*) {
 }
 
 std::vector<ScreenConfig> default_screens(double length, const std::array<double, 3>& base) {
-  // Just beyond the arm's reach, and wider than what a camera sees there that has all of the reach in its
-  // image.
+  // Just beyond the arm's reach. Wider than the view there of a camera that has the whole reach in its image.
   const double away = 1.2 * length, size = 5 * length;
   ScreenConfig behind_1, behind_2;
   behind_1.center = {base[0], base[1], base[2] - away};

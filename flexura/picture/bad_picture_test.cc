@@ -1,4 +1,4 @@
-// What is no picture, or a damaged one: one line each, nothing on stderr, and no memory for what is only
+// Invalid or damaged pictures: one line each, nothing on stderr, and no memory for sizes that are only
 // claimed.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -23,7 +23,7 @@ using testing::StartsWith;
 
 constexpr std::size_t most = 4096;
 
-// What is wrong with a file; nothing when it is read.
+// Returns the error message of a file; "" if it is read.
 std::string complaint(const std::string& file) {
   try {
     (void)read_picture(file_bytes(file), "file", most);
@@ -36,7 +36,7 @@ std::string complaint(const std::string& file) {
   return "";
 }
 
-// A file of each kind, and of each of the forms that take ways of their own.
+// One valid file of each kind, and of each form with separate code.
 std::vector<std::string> good_files() {
   TestRandom random(1);
   const auto gray = random_values<std::uint8_t>(random, 21, 13, 1, 255),
@@ -96,7 +96,7 @@ TEST(BadPicture, OfAKindThatIsNotReadIsNamed) {
     EXPECT_EQ(complaint(file), name + " files are not read: expected PNG, JPEG, TIFF or PNM");
 }
 
-// How much of a file shows its kind.
+// Number of bytes that identify a file's kind.
 std::size_t least_name(char first) { return first == 'P' ? 3 : 4; }
 
 TEST(BadPicture, CutShortIsCalledSo) {
@@ -104,7 +104,7 @@ TEST(BadPicture, CutShortIsCalledSo) {
     ASSERT_EQ(complaint(file), "");
     for (std::size_t size = 0; size < file.size(); size += one_case_of) {
       const std::string line = complaint(file.substr(0, size));
-      // A plain number may be cut within; a TIFF file may show it by another sign.
+      // A plain number may be cut; a TIFF file may be identified by another sign.
       const bool is_plain = file[0] == 'P' && file[1] <= '3', is_tiff = file[0] == 'I',
                  is_named = size >= least_name(file[0]);
       if (is_plain || is_tiff || !is_named) continue;

@@ -20,7 +20,7 @@
 namespace flexura {
 namespace {
 
-// What libpng reads from a file's bytes, in this machine's byte order.
+// Reads a file's bytes with libpng, in this machine's byte order.
 template <typename T>
 Image<T> read_png(const std::string& bytes) {
   png_structp reader = png_create_read_struct(PNG_LIBPNG_VER_STRING, nullptr, nullptr, nullptr);
@@ -88,7 +88,7 @@ TEST(ImageFile, RefusesADamagedPng) {
   EXPECT_THROW((void)flexura::read_png(png(Image<std::uint8_t>(9, 9)), 80), std::runtime_error);
 }
 
-// What libjpeg reads from a file's bytes.
+// Reads a file's bytes with libjpeg.
 Image<std::uint8_t> read_jpeg(const std::string& bytes) {
   jpeg_decompress_struct job{};
   jpeg_error_mgr errors{};
@@ -131,7 +131,7 @@ TEST(ImageFile, KeepsEveryValueOfATiff) {
   const auto file = folder.path() / "depth.tiff";
   Image<float> image(37, 21);
   for (std::size_t i = 0; i < image.values().size(); ++i)
-    image.values()[i] = 1.0F / static_cast<float>(i);  // the first is infinite
+    image.values()[i] = 1.0F / static_cast<float>(i);  // The first is infinite.
   std::ofstream(file, std::ios::binary) << tiff(image);
   EXPECT_EQ(tiff(image), tiff(image));
   TIFF* open = TIFFOpen(file.c_str(), "r");

@@ -15,9 +15,9 @@
 namespace flexura {
 namespace {
 
-// libjpeg hands its errors to a function that must not return.
+// libjpeg passes its errors to a function that must not return.
 struct Errors {
-  jpeg_error_mgr manager;  // first: libjpeg knows its address
+  jpeg_error_mgr manager;  // First: libjpeg has its address.
   std::jmp_buf back;
   char text[JMSG_LENGTH_MAX];
 };
@@ -31,11 +31,11 @@ void give_up(j_common_ptr job) {
 void say_nothing(j_common_ptr /*job*/) {}
 
 struct Output {
-  unsigned char* bytes = nullptr;  // made by libjpeg with malloc
+  unsigned char* bytes = nullptr;  // Allocated by libjpeg with malloc.
   unsigned long size = 0;
 };
 
-// False when libjpeg gave up. It does so by a jump that runs no destructors: nothing here has one.
+// Returns false on an error of libjpeg, which jumps without running destructors: nothing here has one.
 bool write(const Image<std::uint8_t>& image, int quality, jpeg_compress_struct* job, Errors* errors,
            Output* out) {
   if (setjmp(errors->back) != 0) return false;
@@ -49,7 +49,7 @@ bool write(const Image<std::uint8_t>& image, int quality, jpeg_compress_struct* 
   jpeg_set_quality(job, quality, TRUE);
   jpeg_start_compress(job, TRUE);
   while (job->next_scanline < job->image_height) {
-    // libjpeg takes rows it may change, and does not when it writes.
+    // libjpeg takes mutable rows but does not modify them when writing.
     auto* row = const_cast<JSAMPROW>(image.row(static_cast<int>(job->next_scanline)).data());
     jpeg_write_scanlines(job, &row, 1);
   }

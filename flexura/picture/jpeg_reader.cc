@@ -17,9 +17,9 @@
 namespace flexura {
 namespace {
 
-// libjpeg hands its errors to a function that must not return.
+// libjpeg passes its errors to a function that must not return.
 struct JpegInput {
-  jpeg_error_mgr manager;  // first: libjpeg knows its address
+  jpeg_error_mgr manager;  // First: libjpeg has its address.
   std::jmp_buf back;
   jpeg_progress_mgr progress;
   char text[JMSG_LENGTH_MAX];
@@ -31,7 +31,7 @@ void stop_reading(j_common_ptr job) {
   std::longjmp(input->back, 1);
 }
 
-// After these libjpeg would go on with gray, or with rubbish. Others tell of oddities.
+// After these warnings libjpeg would continue with gray or with garbage. Others are harmless.
 void weigh_warning(j_common_ptr job, int level) {
   if (level >= 0) return;
   switch (job->err->msg_code) {
@@ -49,7 +49,7 @@ void weigh_warning(j_common_ptr job, int level) {
 
 void write_nothing(j_common_ptr /*job*/) {}
 
-// A scan of ten bytes makes libjpeg go over the whole picture; honest files have some ten scans.
+// A scan of ten bytes makes libjpeg process the whole picture; ordinary files have about ten scans.
 void bound_scans(j_common_ptr job) {
   constexpr int most_scans = 500;
   if (reinterpret_cast<j_decompress_ptr>(job)->input_scan_number <= most_scans) return;
@@ -58,7 +58,7 @@ void bound_scans(j_common_ptr job) {
   std::longjmp(input->back, 1);
 }
 
-// These two are false when libjpeg gave up. It does so by a jump that runs no destructors: nothing here has
+// These two return false on an error of libjpeg, which jumps without running destructors: nothing here has
 // one.
 bool read_header(std::span<const std::uint8_t> file, jpeg_decompress_struct* job, JpegInput* input) {
   if (setjmp(input->back) != 0) return false;
@@ -69,8 +69,8 @@ bool read_header(std::span<const std::uint8_t> file, jpeg_decompress_struct* job
   return true;
 }
 
-// Red, green and blue of cyan, magenta, yellow and black. Files of inks have them inverted (255: no ink), as
-// Adobe began it; the rounding is OpenCV's.
+// Converts cyan, magenta, yellow and black to red, green and blue. Files store inks inverted (255: no ink),
+// as introduced by Adobe; the rounding is OpenCV's.
 void mix_inks(std::span<const std::uint8_t> inks, std::uint8_t* to) {
   constexpr std::size_t count = 4;
   for (; !inks.empty(); inks = inks.subspan(count)) {
@@ -80,7 +80,7 @@ void mix_inks(std::span<const std::uint8_t> inks, std::uint8_t* to) {
   }
 }
 
-// `inks` has room for a row of them; it is empty when the file has none.
+// `inks` has room for one row of them; it is empty if the file has none.
 bool read_rows(jpeg_decompress_struct* job, JpegInput* input, std::span<std::uint8_t> inks,
                Image<std::uint8_t>* image) {
   if (setjmp(input->back) != 0) return false;

@@ -1,5 +1,5 @@
-// What OpenCV reads from the same files. Its imgcodecs stays out of the program and of the quick tests:
-// Debian's build of it loads GDAL, and with it Poppler, which is under the GPL.
+// Compares with OpenCV's results for equal files. Its imgcodecs is linked neither to the program nor to the
+// quick tests. Debian's build of it loads GDAL, and with it Poppler, which is under the GPL.
 #include <gtest/gtest.h>
 
 #include <cstdint>
@@ -15,8 +15,8 @@
 namespace flexura {
 namespace {
 
-// OpenCV keeps colours as blue, green, red; and where a palette has grays alone, or gray has alpha, it gives
-// three channels.
+// OpenCV orders colours as blue, green, red. It returns three channels for a palette of grays, or gray with
+// alpha.
 template <typename T>
 void expect_same(const Image<T>& own, const cv::Mat& other) {
   ASSERT_EQ(other.depth(), sizeof(T) == 1 ? CV_8U : CV_16U);
@@ -85,7 +85,7 @@ TEST(OpenCv, ReadsTheSameTiff) {
         TiffForm form;
         form.compression = compression;
         form.photometric = channels == 1 ? PHOTOMETRIC_MINISBLACK : PHOTOMETRIC_RGB;
-        form.tile = random.integer(0, 1) * 32;  // Uncompressed tiles of 16 px OpenCV 4.6 does not read.
+        form.tile = random.integer(0, 1) * 32;  // OpenCV 4.6 does not read uncompressed tiles of 16 px.
         compare(
             tiff_file(random_values<std::uint8_t>(random, side(random), side(random), channels, 255), form));
         form.bits = 16;
@@ -121,7 +121,7 @@ TEST(OpenCv, ReadsTheSameTiffOfOtherColors) {
   });
 }
 
-// OpenCV puts the values into the upper bits of 16; ours stay as they are.
+// OpenCV shifts the values to the upper bits of 16; this library keeps them unchanged.
 TEST(OpenCv, ReadsTheSameTiffOfTenToFourteenBitsButShifted) {
   for_random_cases(40, [](TestRandom& random) {
     for (const int bits : {10, 12, 14}) {

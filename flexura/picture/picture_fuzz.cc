@@ -1,4 +1,5 @@
-// Any bytes as a picture file: a small picture, or one problem in one line of ASCII.
+// Interprets any bytes as a picture file: the result must be a small picture, or one error in one line of
+// ASCII.
 #include <algorithm>
 #include <cstdint>
 #include <cstdlib>

@@ -1,4 +1,4 @@
-// Every kind of file, made by its own library or by hand, gives the values that were put into it.
+// Files of every kind, made by their own libraries or by hand, give the values that were written.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -155,12 +155,12 @@ TEST(PictureReader, ReadsTheColorsThatLibtiffMixes) {
   const auto red = read_one({76, 85, 255}, PHOTOMETRIC_YCBCR);
   EXPECT_NEAR(red[0], 254, 2);
   EXPECT_NEAR(red[1], 0, 2);
-  // Without a profile CIELab's white is a screen's, not quite 255.
+  // Without a profile CIELab's white is that of a screen, not exactly 255.
   for (const int value : read_one({255, 0, 0}, PHOTOMETRIC_CIELAB)) EXPECT_GT(value, 200);
   for (const int value : read_one({0, 0, 0}, PHOTOMETRIC_CIELAB)) EXPECT_LT(value, 5);
 }
 
-// Inks stand inverted in files: 255 for none.
+// Files store inks inverted: 255 for no ink.
 TEST(PictureReader, ReadsTheInksOfAJpegNearly) {
   for (const bool is_luma : {false, true})
     for (const bool is_progressive : {false, true}) {

@@ -30,7 +30,7 @@ struct Header {
   int bits, color;
 };
 
-// False when libpng gave up. It does so by a jump that runs no destructors: nothing here has one.
+// Returns false on an error of libpng, which jumps without running destructors: nothing here has one.
 bool write(const Writer& writer, const Header& header, png_bytepp rows, int level, std::string* out) {
   if (setjmp(png_jmpbuf(writer.png)) != 0) return false;
   png_set_write_fn(writer.png, out, append, nothing_to_flush);
@@ -51,7 +51,7 @@ std::string png_of(const Image<T>& image, PngConfig config) {
   if (image.channels() != 1 && image.channels() != 3)
     throw std::invalid_argument("a PNG file is gray or RGB: not " + std::to_string(image.channels()) +
                                 " channels");
-  // libpng takes rows it may change, and does not when it writes.
+  // libpng takes mutable rows but does not modify them when writing.
   std::vector<png_bytep> rows;
   rows.reserve(static_cast<std::size_t>(image.height()));
   for (int v = 0; v < image.height(); ++v)

@@ -15,7 +15,8 @@
 namespace flexura {
 namespace {
 
-// What libpng's calls back share. It comes back by a jump that runs no destructors: nothing here has one.
+// Shared state of libpng's callbacks. libpng returns by a jump that runs no destructors: nothing here has
+// one.
 struct PngInput {
   std::string_view rest;
   bool is_cut_short = false;
@@ -32,7 +33,7 @@ void take(png_structp reader, png_bytep data, png_size_t size) {
   input->rest.remove_prefix(size);
 }
 
-// Nobody wants to read on stderr what libpng thinks of a file; errors are told by the exception.
+// Keeps libpng's warnings from stderr; errors are reported by the exception.
 void keep_quiet(png_structp /*reader*/, png_const_charp /*text*/) {}
 
 void give_up(png_structp reader, png_const_charp text) {
@@ -55,19 +56,19 @@ struct PngReader {
 struct ReadHeader {
   png_uint_32 width = 0, height = 0;
   int bits = 0, color = 0;
-  png_const_colorp colors = nullptr;  // libpng's; null without a palette
+  png_const_colorp colors = nullptr;  // Owned by libpng; null without a palette.
   int color_count = 0;
 };
 
-// These three are false when libpng gave up, with a jump: nothing in them has a destructor.
+// These three return false on an error of libpng, after a jump: nothing in them has a destructor.
 bool read_header(PngReader* reader, ReadHeader* header) {
   png_structp png = reader->png;
   if (setjmp(png_jmpbuf(png)) != 0) return false;
   png_set_read_fn(png, &reader->input, take);
-  // Its own limit is a million a side; ours is on the product.
+  // libpng's own limit is a million per side; the limit here is on the product.
   constexpr png_uint_32 any_side = std::numeric_limits<std::int32_t>::max();
   png_set_user_limits(png, any_side, any_side);
-  // Texts, times and profiles are passed over.
+  // Texts, times and profiles are ignored.
   png_set_keep_unknown_chunks(png, PNG_HANDLE_CHUNK_NEVER, nullptr, -1);
   png_read_info(png, reader->info);
   png_get_IHDR(png, reader->info, &header->width, &header->height, &header->bits, &header->color, nullptr,
@@ -75,7 +76,7 @@ bool read_header(PngReader* reader, ReadHeader* header) {
   return true;
 }
 
-// Afterwards a row has one value of 8 or 16 bits (of this machine's byte order) a channel.
+// Afterwards each channel has one value of 8 or 16 bits (in this machine's byte order).
 bool choose_form(const PngReader& reader, ReadHeader* header) {
   png_structp png = reader.png;
   if (setjmp(png_jmpbuf(png)) != 0) return false;
@@ -118,7 +119,8 @@ Image<T> image_of(const PngReader& reader, const ReadHeader& header) {
   return image;
 }
 
-// libpng refuses a size of 0 in words of its own; and what stands before IHDR passes it by.
+// Checks the claimed size: libpng has its own message for a size of 0. A file that does not begin with IHDR
+// is not checked here.
 void check_claim(std::string_view bytes, std::size_t most_pixels) {
   constexpr std::size_t name = 12, width = 16, height = 20, end = 24;
   if (bytes.size() < end || bytes.substr(name, 4) != "IHDR") return;

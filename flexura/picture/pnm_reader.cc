@@ -17,7 +17,7 @@ class PnmText {
  public:
   explicit PnmText(std::span<const std::uint8_t> file) : file_(file) {}
 
-  // After spaces and comments; large ones come as 2^31 or somewhat more.
+  // Skips spaces and comments; large numbers are returned as 2^31 or slightly more.
   std::int64_t number() {
     skip();
     std::int64_t value = 0;
@@ -25,12 +25,12 @@ class PnmText {
       value = std::min<std::int64_t>(value * 10 + (file_[at_] - '0'), std::int64_t{1} << 31U);
     return value;
   }
-  // Bits need nothing between them.
+  // Bits need no separators.
   std::int64_t bit() {
     skip();
     return file_[at_++] - '0';
   }
-  // What follows the header: one space parts them.
+  // The data after the header, separated by one space.
   std::span<const std::uint8_t> raster() {
     if (at_ >= file_.size()) throw cut_short("PNM");
     if (!is_space(file_[at_])) throw strange();
@@ -81,12 +81,12 @@ PnmHeader read_header(std::uint8_t kind, PnmText& text, std::size_t most_pixels)
   return header;
 }
 
-// A value of 0 to `most` as one of 0 to 255.
+// Converts a value from 0 to `most` to one from 0 to 255.
 std::uint8_t byte_of(std::int64_t value, std::int64_t most) {
   return static_cast<std::uint8_t>((value * 255 + most / 2) / most);
 }
 
-// `next` gives value after value.
+// `next` returns one value after another.
 template <typename Value, typename Next>
 Image<Value> image_of(const PnmHeader& header, Next&& next) {
   Image<Value> image(header.width, header.height, header.channels);
@@ -126,7 +126,7 @@ Picture read_pnm(std::span<const std::uint8_t> file, std::size_t most_pixels) {
   const auto width = static_cast<std::size_t>(header.width), height = static_cast<std::size_t>(header.height);
   const std::size_t values = width * height * static_cast<std::size_t>(header.channels);
   if (header.is_plain) {
-    if (text.left() < values) throw cut_short("PNM");  // Before room is made.
+    if (text.left() < values) throw cut_short("PNM");  // Before allocating.
     if (header.is_bits)
       return image_of<std::uint8_t>(header, [&] {
         const std::int64_t bit = text.bit();

@@ -11,7 +11,7 @@
 namespace flexura {
 namespace {
 
-// A file in memory, as libtiff asks for one.
+// A file in memory with the functions that libtiff needs.
 struct MemoryFile {
   std::string bytes;
   std::size_t at = 0;
@@ -71,7 +71,7 @@ std::string tiff(const Image<float>& image) {
     set(TIFFTAG_COMPRESSION, COMPRESSION_ADOBE_DEFLATE);
     set(TIFFTAG_ROWSPERSTRIP, TIFFDefaultStripSize(open.get(), 0));
     for (int v = 0; v < image.height(); ++v) {
-      // libtiff takes a row it may change, and does not when it writes.
+      // libtiff takes a mutable row but does not modify it when writing.
       void* row = const_cast<float*>(image.row(v).data());
       if (TIFFWriteScanline(open.get(), row, static_cast<std::uint32_t>(v)) != 1)
         throw std::runtime_error("libtiff did not take the image");

@@ -35,7 +35,7 @@ toff_t seek_input(thandle_t handle, toff_t offset, int from) {
 int close_input(thandle_t /*handle*/) { return 0; }
 toff_t input_size(thandle_t handle) { return static_cast<TiffInput*>(handle)->bytes.size(); }
 
-// The first error tells what is wrong; what is not 0 keeps libtiff's own handlers, which print, out of it.
+// Keeps the first error, the relevant one; a nonzero result suppresses libtiff's own handlers, which print.
 int note_error(TIFF* /*open*/, void* user, const char* /*where*/, const char* format, va_list values) {
   auto* input = static_cast<TiffInput*>(user);
   if (input->text[0] == '\0') std::vsnprintf(input->text, sizeof input->text, format, values);
@@ -60,7 +60,7 @@ OpenTiff open_tiff(TiffInput* input, std::size_t most_bytes) {
   TIFFOpenOptionsSetMaxSingleMemAlloc(options.get(), static_cast<tmsize_t>(most_bytes));
   TIFFOpenOptionsSetErrorHandlerExtR(options.get(), note_error, input);
   TIFFOpenOptionsSetWarningHandlerExtR(options.get(), pass_warning, input);
-  // m: not mapped, r: the reading functions alone.
+  // m: not memory-mapped, r: reading functions only.
   OpenTiff open(TIFFClientOpenExt("memory", "rm", input, read_input, write_nowhere, seek_input, close_input,
                                   input_size, nullptr, nullptr, options.get()));
   if (!open) throw input->problem();

@@ -12,14 +12,14 @@
 
 namespace flexura {
 
-/// A TIFF file in memory, as libtiff reads it, and what it found wrong with it.
+/// A TIFF file in memory for libtiff, and the first error.
 struct TiffInput {
   std::span<const std::uint8_t> bytes;
   std::uint64_t at = 0;
-  bool is_cut_short = false;  ///< More was asked for than there is.
+  bool is_cut_short = false;  ///< Whether a read went beyond the end.
   char text[200] = {};        ///< libtiff's first error.
 
-  /// What to throw when libtiff failed.
+  /// Returns the exception to throw when libtiff failed.
   [[nodiscard]] std::runtime_error problem() const;
 };
 
@@ -28,12 +28,12 @@ struct CloseTiff {
 };
 using OpenTiff = std::unique_ptr<TIFF, CloseTiff>;
 
-/// Opens the first picture of `input`, which has to outlive it. libtiff prints nothing, and allocates no more
-/// than `most_bytes` at once. std::runtime_error: no TIFF file.
+/// Opens the first picture of `input`, which must outlive it. libtiff prints nothing, and allocates at most
+/// `most_bytes` at once. Throws std::runtime_error if it is not a TIFF file.
 [[nodiscard]] OpenTiff open_tiff(TiffInput* input, std::size_t most_bytes);
 
-/// Red, green and blue as libtiff mixes them: for colours that a file has otherwise, in bytes. The sizes were
-/// judged. std::runtime_error: damaged, or of a form that libtiff does not mix.
+/// Reads red, green and blue as converted by libtiff, for files with other colours, in bytes. Sizes must have
+/// been checked. Throws std::runtime_error for a damaged file, or a form that libtiff does not convert.
 [[nodiscard]] Image<std::uint8_t> read_mixed_tiff(TIFF* open, const TiffInput& input);
 
 }  // namespace flexura

@@ -14,7 +14,7 @@
 namespace flexura {
 namespace {
 
-// A TIFF picture is cut into blocks, strips as wide as the picture or tiles, in one plane or in one for each
+// Layout of a TIFF picture: blocks (strips of the picture's width, or tiles), in one plane or in one per
 // channel.
 struct TiffLayout {
   std::uint32_t width = 0, height = 0, block_width = 0, block_height = 0;
@@ -23,7 +23,7 @@ struct TiffLayout {
   std::size_t row_size = 0, block_size = 0;  // Bytes.
 
   [[nodiscard]] std::size_t samples_in_block() const { return is_separate ? 1 : samples; }
-  // Colours that libtiff mixes.
+  // Whether libtiff converts the colours.
   [[nodiscard]] bool is_mixed() const {
     return bits == 8 && (photometric == PHOTOMETRIC_SEPARATED || photometric == PHOTOMETRIC_YCBCR ||
                          photometric == PHOTOMETRIC_CIELAB);
@@ -56,24 +56,24 @@ void read_values(TIFF* open, TiffLayout* layout) {
               "whole ones of 1, 2, 4, 8, 10, 12, 14 or 16 bits, without a sign");
 }
 
-// What the values are, and that they are what is read.
+// Reads the format of the values and checks that it is supported.
 void read_form(TIFF* open, TiffLayout* layout) {
   const auto compression = field<std::uint16_t>(open, TIFFTAG_COMPRESSION, COMPRESSION_NONE);
-  // libjbig ends the whole program where it gets no memory; the old JPEG is a guess at what was meant.
+  // libjbig ends the whole program if it gets no memory; the old JPEG is ambiguous.
   if (TIFFIsCODECConfigured(compression) == 0 || compression == COMPRESSION_JBIG ||
       compression == COMPRESSION_OJPEG)
     refuse_tiff(fmt::format("compression {}", compression), "a usual one");
   read_values(open, layout);
   layout->photometric = field<std::uint16_t>(open, TIFFTAG_PHOTOMETRIC,
                                              layout->samples < 3 ? PHOTOMETRIC_MINISBLACK : PHOTOMETRIC_RGB);
-  // JPEG's own colours: libtiff turns them into red, green and blue.
+  // JPEG's own colours: libtiff converts them to red, green and blue.
   if (layout->photometric == PHOTOMETRIC_YCBCR && compression == COMPRESSION_JPEG && !layout->is_separate &&
       TIFFSetField(open, TIFFTAG_JPEGCOLORMODE, JPEGCOLORMODE_RGB) == 1)
     layout->photometric = PHOTOMETRIC_RGB;
   if (layout->photometric > PHOTOMETRIC_PALETTE && !layout->is_mixed())
     refuse_tiff(fmt::format("colours of kind {}", layout->photometric),
                 "gray, RGB, a palette, or CMYK, YCbCr or CIELab of 8 bits");
-  constexpr int most_samples = 8;  // Red, green, blue, and what is passed over.
+  constexpr int most_samples = 8;  // Red, green, blue, and ignored channels.
   if (layout->samples < layout->channels() || layout->samples > most_samples ||
       (layout->bits < 8 && layout->samples > 1) ||
       (layout->bits > 8 && layout->photometric == PHOTOMETRIC_PALETTE))
@@ -95,14 +95,15 @@ void read_blocks(TIFF* open, TiffLayout* layout, std::size_t most_pixels) {
   if (size != layout->block_size) throw damaged("TIFF", "blocks of another size than their pixels");
 }
 
-// A value of 1 to 14 bits, the highest first, or of 16 in this machine's byte order, which libtiff has made.
+// Returns a value of 1 to 14 bits, the highest first, or of 16 in this machine's byte order, as set by
+// libtiff.
 template <typename Value>
 Value value_in(const std::uint8_t* row, std::size_t index, std::size_t bits) {
   Value value{};
   if (bits == 8 || bits == 16) {
     std::memcpy(&value, row + index * sizeof(Value), sizeof(Value));
   } else if (bits > 8) {
-    // All are even: a value stands in two bytes, or in three when it begins late in the first.
+    // All are even: a value occupies two bytes, or three if it begins late in the first.
     const std::size_t at = index * bits, end = at % 8 + bits;
     auto window = static_cast<std::uint32_t>(row[at / 8] << 16U | row[at / 8 + 1] << 8U);
     if (end > 16) window |= row[at / 8 + 2];
@@ -147,7 +148,7 @@ Image<Value> values_of(TIFF* open, const TiffLayout& layout, const TiffInput& in
   return image;
 }
 
-// Gray of 1 to 16 bits becomes bytes or words; 0 may be white.
+// Converts gray of 1 to 16 bits to bytes or words; 0 may be white.
 template <typename Value>
 void make_gray(Image<Value>* image, const TiffLayout& layout) {
   const int most = (1 << layout.bits) - 1, scale = sizeof(Value) == 1 ? 255 / most : 1;
@@ -168,7 +169,7 @@ Palette palette_of(TIFF* open, const TiffLayout& layout) {
 }  // namespace
 
 Picture read_tiff(std::span<const std::uint8_t> file, std::size_t most_pixels) {
-  // Tiles may reach beyond the picture; and libtiff keeps a block and its compressed bytes.
+  // Tiles may extend beyond the picture; and libtiff keeps a block and its compressed bytes.
   constexpr std::size_t usual_tile = std::size_t{1} << 20U, most_pixel_bytes = 16;
   const std::size_t most_block = std::max(most_pixels, usual_tile);
   TiffInput input{file};

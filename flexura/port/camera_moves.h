@@ -7,26 +7,29 @@
 #include "flexura/port/outcome.h"
 #include "flexura/port/rig_ports.h"
 
-// Commands and readings of cameras that may have no head or no stage: one that is missing stands where the
-// camera's configuration starts it, `optics` being the camera as it is believed to be.
+// Commands and readings of cameras that may lack a head or a stage. A camera without one stays at its initial
+// axis positions. `optics` is the model of the camera.
 namespace flexura {
 
-/// Sends the head. Of a camera without one: taken where it stands there anyway, else refused, by its name.
+/// Commands the head. Without a head, the camera's initial state is accepted, and any other is refused with
+/// the camera's name.
 [[nodiscard]] CommandOutcome command_head(const CameraPorts& ports, const Camera& optics,
                                           const HeadState& state);
-/// The same of its stage.
+/// Commands the stage. Without a stage, the camera's initial state is accepted, and any other is refused with
+/// the camera's name.
 [[nodiscard]] CommandOutcome command_stage(const CameraPorts& ports, const Camera& optics,
                                            const StageState& state);
-/// Stops both, as far as there are any; the first fault of the two.
+/// Stops head and stage, if present. Returns the first fault.
 [[nodiscard]] CommandOutcome halt_camera(const CameraPorts& ports);
-/// What head and stage say, and of what is missing where it stands; the first fault of the two. Not checked:
-/// read_camera() is (port/rig_readings.h).
+/// Returns the axis positions that head and stage report; missing ones are at their initial positions.
+/// Returns the first fault of the two. The positions are not checked, unlike those of read_camera()
+/// (port/rig_readings.h).
 [[nodiscard]] Outcome<CameraStance> said_stance(const CameraPorts& ports, const Camera& optics);
 
-/// Why a camera cannot be turned and zoomed, by its name; "": it has a head.
+/// Returns the reason why a camera cannot pan, tilt and zoom, with its name, or "" if it has a head.
 [[nodiscard]] std::string missing_head(const CameraPorts& ports);
-/// Why it cannot be slid as far as it is believed to be: it is believed to have a stage with travel, and has
-/// none; "" otherwise.
+/// Returns the reason why a camera cannot be translated as in the model, or "" if it can. That is the case if
+/// the model has a stage with travel and the camera has no stage.
 [[nodiscard]] std::string missing_stage(const CameraPorts& ports, const Camera& optics);
 
 }  // namespace flexura

@@ -11,14 +11,14 @@ namespace flexura {
 
 /// One image of a camera. Cheap to copy.
 struct Frame {
-  std::int64_t number = 0;  ///< Counts the camera's exposures from 0, those that are lost too.
-  double time = 0;          ///< Middle of the exposure (of the middle row, where rows follow each other), s.
-  double exposure = 0;      ///< s
-  double received = 0;      ///< When it could be had, s.
+  std::int64_t number = 0;  ///< Number of the exposure, from 0. Lost frames count.
+  double time = 0;          ///< Middle of the exposure (of the middle row with a rolling shutter), s.
+  double exposure = 0;      ///< Exposure time, s.
+  double received = 0;      ///< Time from which it was available, s.
   std::shared_ptr<const Picture> picture;  ///< Never null.
 };
 
-/// A camera that gives frames on its own.
+/// A camera that records frames by itself.
 class CameraPort {
  public:
   virtual ~CameraPort() = default;
@@ -26,10 +26,10 @@ class CameraPort {
   CameraPort(const CameraPort&) = delete;
   CameraPort& operator=(const CameraPort&) = delete;
 
-  /// The newest frame that can be had now, unless it was given before. Older ones are passed over.
+  /// Returns the newest frame available now, or std::nullopt if it was given before. Skips older frames.
   [[nodiscard]] virtual Outcome<std::optional<Frame>> newest() = 0;
-  /// The next one: waits for it until `timeout` s have passed; then none. Refused: a timeout that is not
-  /// finite.
+  /// Waits up to `timeout` s for the next frame. Returns std::nullopt after that. Refuses a timeout that is
+  /// not finite.
   [[nodiscard]] virtual Outcome<std::optional<Frame>> wait(double timeout) = 0;
 };
 

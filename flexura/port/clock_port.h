@@ -2,7 +2,7 @@
 
 namespace flexura {
 
-/// The rig's time: the only clock that algorithms see.
+/// Time of the rig: the only clock that algorithms use.
 class ClockPort {
  public:
   virtual ~ClockPort() = default;
@@ -10,9 +10,9 @@ class ClockPort {
   ClockPort(const ClockPort&) = delete;
   ClockPort& operator=(const ClockPort&) = delete;
 
-  /// s since the rig was started; never falls.
+  /// Returns the time since the start of the rig, s. Never decreases.
   [[nodiscard]] virtual double now() const = 0;
-  /// Returns at `time`, or at once when it has passed. std::invalid_argument for a time that is not finite.
+  /// Returns at `time`, or at once if it has passed. Throws std::invalid_argument if `time` is not finite.
   virtual void wait_until(double time) = 0;
 };
 

@@ -8,19 +8,20 @@
 #include "flexura/port/device_clock.h"
 #include "flexura/port/motion_ports.h"
 
-// Devices whose readings and frames have times of their own clock: put before such a port, these give them
-// the rig's. The clock is learned on the way, from every answer. Devices that go by one clock may share it,
-// as long as one thread asks them.
+// Adapters for devices whose readings and frames have the time of their own clock. In front of such a port,
+// they convert these times to the rig's. They learn the clock from every answer. Devices with one clock may
+// share a DeviceClock if one thread calls them.
 namespace flexura {
 
-/// Makes the rig's times of a device's. As more is learned they do not go back where the device's do not, but
-/// where the ones before turn out to be too late.
+/// Converts a device's times to the rig's. If the device's times do not decrease, the results do not either,
+/// except when the previous ones turn out to be too late.
 class MappedTime {
  public:
-  /// The clock outlives this.
+  /// `clock` must outlive this object.
   explicit MappedTime(DeviceClock& clock) : clock_(clock) {}
 
-  /// Of an answer, as DeviceClock::add has it; as the device says, where nothing can be learned of it.
+  /// Returns the rig's time of an answer, for the arguments of DeviceClock::add. Returns the device's time if
+  /// nothing can be learned from it.
   double of(double device, double earliest, double latest) {
     (void)clock_.add(device, earliest, latest);
     if (!clock_.is_known()) return device;
@@ -35,20 +36,20 @@ class MappedTime {
   double last_device_ = std::numeric_limits<double>::infinity(), last_rig_ = 0;
 };
 
-/// An arm, a head or a stage with a clock of its own.
+/// An arm, a head or a stage with its own clock.
 template <class Port, class State, class Reading, class... Way>
 class ClockedDevice : public Port {
  public:
-  /// A reading was true when it was asked for, or up to `age` s before: as long as the device lets it stand.
-  /// The others outlive this.
+  /// A reading was true when it was requested, or up to `age` s before, if the device answers from a cycle.
+  /// The other arguments must outlive this object.
   ClockedDevice(Port& port, const ClockPort& rig, DeviceClock& clock, double age = 0)
       : port_(port), rig_(rig), time_(clock), age_(age) {}
 
-  /// As the device's own.
+  /// Forwards the command to the device.
   CommandOutcome command(const State& state, Way... way) override { return port_.command(state, way...); }
-  /// Likewise.
+  /// Forwards the halt to the device.
   CommandOutcome halt() override { return port_.halt(); }
-  /// What the device says, at the rig's time.
+  /// Returns the device's reading with the rig's time.
   Outcome<Reading> read() override {
     const double asked = rig_.now();
     auto outcome = port_.read();
@@ -69,12 +70,12 @@ using ClockedArm = ClockedDevice<ArmPort, ArmState, ArmReading, double>;
 using ClockedHead = ClockedDevice<HeadPort, HeadState, HeadReading>;
 using ClockedStage = ClockedDevice<StagePort, StageState, StageReading>;
 
-/// A camera with a clock of its own: `time` of its frames is that clock's, `received` is the rig's, as
-/// whoever fetches them knows it.
+/// A camera with its own clock. The frames' `time` is of that clock; `received` is of the rig's clock, from
+/// the program that fetches the frames.
 class ClockedCamera : public CameraPort {
  public:
-  /// From the middle of its exposure on it takes a frame from `quickest` to `slowest` s to be received; how
-  /// long at most need not be known. The others outlive this.
+  /// A frame is received `quickest` to `slowest` s after the middle of its exposure. `slowest` may be
+  /// unknown. The other arguments must outlive this object.
   ClockedCamera(CameraPort& port, DeviceClock& clock, double quickest,
                 double slowest = std::numeric_limits<double>::infinity())
       : port_(port), time_(clock), quickest_(quickest), slowest_(slowest) {}

@@ -12,10 +12,10 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-// Where a concave function is greatest (by the golden section).
+// Returns the argument at which a concave function is greatest (golden section search).
 double greatest(double low, double high, const std::function<double(double)>& f) {
   constexpr double golden = 0.6180339887498949;
-  constexpr int steps = 40;  // to 1e-11 of a share
+  constexpr int steps = 40;  // To 1e-11 of the interval.
   double a = high - golden * (high - low), b = low + golden * (high - low), at_a = f(a), at_b = f(b);
   for (int i = 0; i < steps; ++i) {
     if (at_a < at_b) {
@@ -29,10 +29,11 @@ double greatest(double low, double high, const std::function<double(double)>& f)
   return at_a < at_b ? b : a;
 }
 
-// Between `inside`, where f >= 0, and `outside`: the farthest where it still is, f being concave.
+// Returns the point farthest from `inside`, towards `outside`, at which the concave f is still >= 0.
+// f(inside) >= 0.
 double last_inside(double inside, double outside, const std::function<double(double)>& f) {
   if (f(outside) >= 0) return outside;
-  constexpr int steps = 40;  // to 1e-11 of a share
+  constexpr int steps = 40;  // To 1e-11 of the interval.
   for (int i = 0; i < steps; ++i) {
     const double middle = 0.5 * (inside + outside);
     (f(middle) >= 0 ? inside : outside) = middle;
@@ -97,7 +98,7 @@ double DeviceClock::rig_time(double device) const {
   const double x = device - device_origin_;
   if (!has_lower()) {
     const double slope = quickest_slope();
-    // The bounds have room for the rounding of the device's times, to either side.
+    // The bounds allow for the rounding of the device's times on both sides.
     return rig_origin_ + x + (highest(slope) + slope * x - config_.resolution);
   }
   const auto [low, high] = range(x);
@@ -143,7 +144,7 @@ void DeviceClock::keep(double device, double earliest, double latest) {
     seconds_.pop_front();
 }
 
-// Where no bound is contradicted a time may be earlier than any answer can be.
+// Without lower bounds, no bound is contradicted if a time is earlier than any answer can be.
 bool DeviceClock::is_early(double device, double latest) const {
   return is_known() && !has_lower() && latest < rig_time(device) - config_.jump;
 }
@@ -161,7 +162,7 @@ bool DeviceClock::add(double device, double earliest, double latest) {
       seconds_ = before;
       return false;
     }
-    // What is left of before is what these times agree with.
+    // Only those earlier bounds remain that agree with these times.
     if (is_odd) {
       start(device, latest);
       keep(device, earliest, latest);

@@ -7,54 +7,56 @@
 
 namespace flexura {
 
-/// How the times of a device with a clock of its own are to be understood.
+/// Properties of a device's own clock.
 struct DeviceClockConfig {
-  double window = 60;        ///< What was learned longer ago is forgotten, s; > 0.
-  double drift = 5e-4;       ///< How much faster or slower the device's clock may go than the rig's, a share.
-  double resolution = 1e-6;  ///< To what the device's times are rounded, s; > 0.
-  /// Where nothing bounds how old answers are: by how much one may be quicker than all before, s. A time that
-  /// is earlier is odd.
+  double window = 60;        ///< Bounds older than this are dropped, s; > 0.
+  double drift = 5e-4;       ///< Largest relative rate error of the device's clock.
+  double resolution = 1e-6;  ///< Rounding step of the device's times, s; > 0.
+  /// Without bounds on the age of answers: by how much one may be quicker than all previous ones, s. An
+  /// earlier time is an outlier.
   double jump = 1;
 };
 
-/// The time of a device's clock as the rig's, learned from what the device says and when it says it.
+/// Conversion of a device's clock to the rig's, learned from the device's times and their times of arrival.
 ///
-/// An answer cannot come before it was asked for, nor after it came: that is all that is believed. Each
-/// answer bounds the line that makes the rig's times of the device's, offset and drift, to both sides; of
-/// each second the tightest bounds are kept. The time is the middle between the earliest and the latest that
-/// all lines within the bounds have (F. Cristian 1989 has the bounds, S. Moon, P. Skelly, D. Towsley 1999 the
-/// lines). So long delays, however many, do no harm, and few short ones suffice.
+/// The only assumption: an answer is true between its request and its arrival. Each answer bounds the line
+/// that converts the device's time to the rig's (offset and drift) from both sides. The tightest bounds of
+/// each second are kept. The result is the middle between the earliest and the latest time of all lines
+/// within the bounds. The bounds are from F. Cristian 1989, the lines from S. Moon, P. Skelly, D. Towsley
+/// 1999. So any number of long delays does no harm, and a few short ones suffice.
 ///
-/// Where nothing is known of how old an answer may be, as with pictures, there are no earliest times. Then
-/// the quickest answers over the window are believed to have taken as long as they must, and no more.
+/// If the age of answers is unknown, as for pictures, there are no lower bounds. Then the quickest answers
+/// over the window count as having taken the shortest possible time.
 class DeviceClock {
  public:
-  /// std::invalid_argument: a window, a resolution or a drift that is not finite and above 0.
+  /// Throws std::invalid_argument if window, resolution or drift is not finite and above 0.
   explicit DeviceClock(const DeviceClockConfig& config = {});
 
-  /// What the device calls `device` s was not before `earliest` s of the rig's time, minus infinity where
-  /// that is not known, and not after `latest` s. False, and nothing is learned, where that cannot be:
-  /// numbers that are none, or a time that contradicts what is known. From the third such in a row on the
-  /// clock is taken to have been set anew, and what contradicts them is forgotten.
+  /// Adds an answer: the device's time `device` is between `earliest` and `latest` s of the rig's time.
+  /// `earliest` is minus infinity if unknown. Returns false, and learns nothing, if a number is not finite or
+  /// the answer contradicts the known bounds. From the third contradiction in a row on, the device's clock
+  /// counts as reset, and contradicting bounds are dropped.
   bool add(double device, double earliest, double latest);
 
-  /// Whether anything is known.
+  /// Returns true if anything is known.
   [[nodiscard]] bool is_known() const { return !seconds_.empty(); }
-  /// The rig's time when the device's clock shows `device` s; std::logic_error: nothing is known.
+  /// Returns the rig's time, s, at the device's time `device`, s. Throws std::logic_error if nothing is
+  /// known.
   [[nodiscard]] double rig_time(double device) const;
-  /// By how much that may be wrong to either side, s. A bound, where it was learned how old answers may be;
-  /// else no more than how evenly the quickest answers come. std::logic_error likewise.
+  /// Returns the largest error of rig_time() to either side, s. With known ages of answers it is a strict
+  /// bound, otherwise only the spread of the quickest answers. Throws std::logic_error if nothing is known.
   [[nodiscard]] double uncertainty(double device) const;
-  /// By which share the rig's clock goes faster than the device's, as far as it is known. Likewise.
+  /// Returns the relative rate difference by which the rig's clock is faster than the device's, as far as it
+  /// is known. Throws std::logic_error if nothing is known.
   [[nodiscard]] double drift() const;
 
  private:
-  // x: the device's time since the first, y: how much more the rig's has passed since then, s.
+  // x: the device's time since its first answer, s; y: how much more time has passed on the rig's clock, s.
   struct Bound {
     double x = 0, y = 0;
   };
   struct Second {
-    std::int64_t number = 0;  // of the rig's
+    std::int64_t number = 0;  // Second of the rig's clock.
     std::optional<Bound> lower;
     Bound upper;
   };
@@ -63,15 +65,16 @@ class DeviceClock {
   void require_known() const;
   void start(double device, double latest);
   void keep(double device, double earliest, double latest);
-  // The slopes of the lines that all bounds leave, from the least to the greatest; none: they leave none.
+  // Returns the least and the greatest slope of the lines within all bounds; std::nullopt if there are no
+  // such lines.
   [[nodiscard]] std::optional<Slopes> possible_slopes() const;
-  // Of the lines of a slope, where the highest and the lowest cross x = 0.
+  // Return the highest and the lowest crossing of x = 0 of the lines with this slope.
   [[nodiscard]] double highest(double slope) const;
   [[nodiscard]] double lowest(double slope) const;
   [[nodiscard]] bool has_lower() const;
-  // The line of the quickest answers; its slope.
+  // Returns the slope of the line through the quickest answers.
   [[nodiscard]] double quickest_slope() const;
-  // The earliest and the latest y at x.
+  // Returns the earliest and the latest y at x.
   [[nodiscard]] std::array<double, 2> range(double x) const;
   [[nodiscard]] bool is_early(double device, double latest) const;
 
@@ -79,7 +82,7 @@ class DeviceClock {
   double device_origin_ = 0, rig_origin_ = 0;
   std::deque<Second> seconds_;
   Slopes slopes_ = {0, 0};
-  int odd_ = 0;  // in a row
+  int odd_ = 0;  // Outliers in a row.
 };
 
 }  // namespace flexura

@@ -17,7 +17,7 @@ namespace {
 constexpr double not_a_time = std::numeric_limits<double>::quiet_NaN();
 constexpr double ever = std::numeric_limits<double>::infinity();
 
-// A device's clock that began at another time and goes at another rate.
+// A device's clock with an offset and a different rate.
 struct OwnClock {
   double offset = 0, drift = 0;
   [[nodiscard]] double shows(double rig) const { return offset + (1 + drift) * rig; }
@@ -25,7 +25,7 @@ struct OwnClock {
 
 OwnClock random_clock(TestRandom& random) { return {random.uniform(-1e6, 1e6), random.uniform(-1e-4, 1e-4)}; }
 
-// Mostly short, and long now and then.
+// Mostly short, sometimes long delays, s.
 double random_delay(TestRandom& random) {
   return random.integer(0, 9) == 0 ? random.uniform(0, 0.2) : random.uniform(2e-4, 5e-3);
 }
@@ -53,7 +53,7 @@ TEST(DeviceClock, BoundsTheRigsTimeByWhenItAskedAndWhenItWasAnswered) {
   });
 }
 
-// As of pictures: when they come is known, and how long they must take at least.
+// As for pictures: the time of arrival and the least delay are known.
 TEST(DeviceClock, GoesByTheQuickestWhereNobodyKnowsHowOldAnAnswerIs) {
   for_random_cases(20, [](TestRandom& random) {
     const OwnClock own = random_clock(random);
@@ -91,7 +91,7 @@ TEST(DeviceClock, KnowsOfOneAnswerNoMoreThanItTells) {
   ASSERT_TRUE(clock.add(500, 10, 10.2));
   EXPECT_NEAR(clock.rig_time(500), 10.1, 1e-9);
   EXPECT_NEAR(clock.uncertainty(500), 0.1, 1e-5);
-  // Until it is asked again, the clock may have drifted.
+  // Until the next request, the clock may have drifted.
   EXPECT_NEAR(clock.uncertainty(600), 0.1 + 100 * 5e-4, 1e-5);
 }
 
@@ -117,7 +117,7 @@ TEST(DeviceClock, LearnsAgainWhenItIsSetAndPassesOverOneOddTime) {
   }
 }
 
-// A drift that changes, as with temperature: what is longer ago than the window counts no more.
+// The drift changes, as with temperature: bounds older than the window must not count.
 TEST(DeviceClock, ForgetsWhatIsLongAgo) {
   DeviceClock clock({.window = 20});
   double shows = 0;
@@ -141,7 +141,7 @@ TEST(DeviceClock, RefusesWhatIsNoTime) {
   EXPECT_THROW(DeviceClock({.drift = not_a_time}), std::invalid_argument);
 }
 
-// A clock that goes on with each look at it, as the time does that an answer takes.
+// A clock that advances with each call, like the time that an answer takes.
 class WaitedClock : public ClockPort {
  public:
   [[nodiscard]] double now() const override { return time; }
@@ -196,13 +196,13 @@ TEST(ClockedPorts, TimesDoNotGoBackWhereTheDevicesGoOn) {
   DeviceClock clock;
   MappedTime time(clock);
   EXPECT_NEAR(time.of(500, 10, 10.2), 10.1, 1e-9);
-  // By itself it would be 10.08 s.
+  // Without the earlier answer the result would be 10.08 s.
   EXPECT_NEAR(time.of(500.01, 10, 10.15), 10.1, 1e-9);
   EXPECT_NEAR(time.of(500.02, 10, 10.04), 10.03, 1e-4) << "it was too late before";
   EXPECT_LT(time.of(499, 9, 10.05), 9.1) << "an older one";
 }
 
-// Frames come late, each by its own delay; the device's clock says when they were taken.
+// Frames arrive late, each with its own delay; their times are of the device's clock.
 class ToldCamera : public CameraPort {
  public:
   std::optional<Frame> next;

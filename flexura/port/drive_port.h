@@ -8,26 +8,26 @@
 
 namespace flexura {
 
-/// What the numbers of a drive are, one an axis: those that it takes, and those that it says.
+/// Quantity of a drive's targets and readings, one number per axis.
 enum class DriveQuantity {
-  motor_positions,       ///< Of the motors, in microsteps and each in its own sense (kinematics/motors.h).
-  tendon_displacements,  ///< How far each tendon is pulled in, m (TendonDisplacements).
-  tendon_tensions,       ///< By which each tendon pulls, N.
+  motor_positions,  ///< Motor positions, microsteps, in each motor's own direction (kinematics/motors.h).
+  tendon_displacements,  ///< Length by which each tendon is pulled in, m (TendonDisplacements).
+  tendon_tensions,       ///< Tension of each tendon, N.
 };
 
-/// What a drive says of itself.
+/// Reading of a drive.
 struct DriveReading {
-  double time = 0;             ///< s, when it was true.
-  std::vector<double> values;  ///< Where each axis is, in the drive's quantity.
-  /// The same of what is behind the play of each axis, by a drive that follows its play (of motor positions
-  /// only); empty: the drive leaves that to others.
+  double time = 0;             ///< Time at which it was true, s.
+  std::vector<double> values;  ///< Position of each axis, in the drive's quantity.
+  /// Positions behind the backlash of each axis, in the drive's quantity. Only from a drive of motor
+  /// positions that follows its backlash; otherwise empty.
   std::vector<double> carried;
-  bool moving = false;  ///< A commanded motion is under way or still to come.
+  bool moving = false;  ///< A commanded motion is in progress or pending.
 };
 
-/// What a motion controller does: it takes a target for each axis, and knows nothing of arms. The axes are
-/// those of a Drive, in its order. Commands return at once, motion takes time; a command replaces the one
-/// before. Targets that an axis cannot take are drawn to the nearest that it can.
+/// A motion controller: takes a target for each axis and needs no model of the arm. The axes are those of a
+/// Drive, in its order. Commands return at once; the motion takes time. A command replaces the previous one.
+/// Targets out of an axis's range are clamped.
 class DrivePort {
  public:
   virtual ~DrivePort() = default;
@@ -35,16 +35,16 @@ class DrivePort {
   DrivePort(const DrivePort&) = delete;
   DrivePort& operator=(const DrivePort&) = delete;
 
-  /// What it takes and says. One and the same, always.
+  /// Returns the quantity of targets and readings. It never changes.
   [[nodiscard]] virtual DriveQuantity quantity() const = 0;
   [[nodiscard]] virtual std::size_t axes() const = 0;
-  /// Sends each axis to its target, to arrive together `duration` s from now, or each as soon after that as
-  /// it can; 0 is as soon as each can. Refused: another number of targets, a target that is not finite, a
-  /// duration that is negative or not finite.
+  /// Sends each axis to its target. All arrive together `duration` s from now, or each as soon after that as
+  /// possible; 0 means as soon as possible. Refused: a wrong number of targets, a target that is not finite,
+  /// or a duration that is negative or not finite.
   [[nodiscard]] virtual CommandOutcome command(std::span<const double> targets, double duration) = 0;
-  /// As fast as the axes can.
+  /// Stops as fast as the axes can.
   [[nodiscard]] virtual CommandOutcome halt() = 0;
-  /// Where the axes are now. Moves nothing.
+  /// Returns the axes' current positions. Moves nothing.
   [[nodiscard]] virtual Outcome<DriveReading> read() = 0;
 };
 

@@ -13,7 +13,7 @@
 namespace flexura {
 namespace {
 
-// Positive is pulling in; a reversed motor counts the other way.
+// Positive values pull in; a reversed motor counts the other way.
 double sense_of(const Axis& axis) { return axis.reversed ? -1 : 1; }
 
 bool is_shape_of(const Arm& arm, const ArmState& state) {
@@ -100,7 +100,7 @@ CommandOutcome DrivenArm::pull(const std::vector<double>& displacements, double 
   for (std::size_t i = 0; i < wanted.pulled.size(); ++i)
     if (!(std::abs(wanted.pulled[i]) * drive_.axes[i].microsteps_a_metre() < most_microsteps))
       return arm_refuses("a motor cannot count so far");
-  // What the controller does not take leaves the play on the side where it is.
+  // If the controller refuses the command, the backlash stays on its side.
   MotorCommander next = commander_;
   next.follow(wanted);
   const std::vector<double> targets(next.positions().begin(), next.positions().end());
@@ -114,7 +114,7 @@ std::string DrivenArm::problem_of(const DriveReading& reading) const {
       (!reading.carried.empty() && reading.carried.size() != drive_.axes.size()))
     return fmt::format("its drive tells of {} axes and {} behind their play, it has {}",
                        reading.values.size(), reading.carried.size(), drive_.axes.size());
-  // Beyond that no integer of 64 bits counts.
+  // Larger values do not fit into an integer of 64 bits.
   const auto is_counted = [](double value) { return std::abs(value) < 9e18; };
   if (!all_finite(reading.values) || !all_finite(reading.carried) ||
       !std::ranges::all_of(reading.values, is_counted))

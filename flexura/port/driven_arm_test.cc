@@ -22,7 +22,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-// A controller that is where it was sent, at once.
+// A controller that reaches its targets at once.
 class SentDrive : public DrivePort {
  public:
   DriveQuantity takes = DriveQuantity::motor_positions;
@@ -73,7 +73,7 @@ double off(DrivenArm& arm, const ArmState& wanted) {
   return (arm.read().value().state.bends[0] - wanted.bends[0]).norm();
 }
 
-// The bend of half a microstep of each tendon.
+// Bend that half a microstep of each tendon makes, rad.
 double half_step(const Drive& drive) {
   return 2 * 0.5 / (drive.axes[0].microsteps_a_metre() * drive.tendons[0].radius);
 }
@@ -88,7 +88,7 @@ TEST(DrivenArm, PullsEachTendonWhateverShapeThatMakes) {
   const Drive believed = three_tendons(play);
   for (std::size_t i = 0; i < 3; ++i) {
     const double sense = believed.axes[i].reversed ? -1 : 1;
-    // What lets out goes on by the play.
+    // A motor that pays out turns further by the backlash.
     const double motor =
         wanted[i] * believed.axes[i].microsteps_a_metre() - (i == 2 ? believed.axes[i].play() : 0);
     EXPECT_NEAR(sense * drive.at[i], motor, 1) << i;
@@ -121,7 +121,7 @@ TEST(DrivenArm, MakesMicrostepsOfShapesAndShapesOfMicrosteps) {
 }
 
 TEST(DrivenArm, SendsADriveOfDisplacementsWhatItsTendonsNeed) {
-  const Drive drive = three_tendons(0.1);  // play is the controller's own affair
+  const Drive drive = three_tendons(0.1);  // Here the controller compensates the backlash.
   SentDrive port;
   port.takes = DriveQuantity::tendon_displacements;
   DrivenArm arm(port, one_section(), drive, ArmState::straight(1));
@@ -150,7 +150,7 @@ TEST(DrivenArm, RefusesAControllerOfOtherAxes) {
   EXPECT_THROW(DrivenArm(port, one_section(), three_tendons(), ArmState::straight(1)), std::invalid_argument);
 }
 
-// The motors go on by the play where they turn, and what is read is where the tendons are.
+// The motors move through the backlash at reversals, and the readings give the tendons' positions.
 TEST(DrivenArm, TakesUpThePlayAndFollowsItInWhatIsRead) {
   const Drive drive = three_tendons(0.1);
   ASSERT_GT(drive.axes[0].play(), 40);
@@ -174,7 +174,7 @@ TEST(DrivenArm, BelievesADriveThatFollowsItsPlay) {
   EXPECT_EQ(arm.read().value().positions, std::vector<std::int64_t>(3, 0));
 }
 
-// What did not arrive has taken up no play: the same command, sent again, goes to the same positions.
+// A command that fails must not change the backlash state: repeated, it gives the same positions.
 TEST(DrivenArm, ACommandThatWasNotTakenLeavesNothingBehind) {
   const Drive drive = three_tendons(0.1);
   SentDrive port, other;

@@ -8,18 +8,18 @@
 #include "flexura/model/arm.h"
 #include "flexura/port/outcome.h"
 
-// What moves. Commands return at once, motion takes time; a command replaces the one before, whether its
-// motion is over or not. Positions that a device cannot take are drawn to the nearest one that it can; a
-// command with a number that is not finite is refused, and nothing moves.
+// Moving devices. Commands return at once; the motion takes time. A command replaces the previous one, even
+// during its motion. Positions out of a device's range are clamped. A command with a number that is not
+// finite is refused, and nothing moves.
 namespace flexura {
 
-/// What the drives of an arm say of themselves.
+/// Reading of an arm's drives.
 struct ArmReading {
-  double time = 0;  ///< s, when it was true.
-  /// The shape that the model makes of the drives' positions: what the arm is believed to be.
+  double time = 0;  ///< Time at which it was true, s.
+  /// Shape that the model computes from the drives' positions.
   ArmState state;
-  std::vector<std::int64_t> positions;  ///< Of the motors, microsteps; empty for an arm without drives.
-  bool moving = false;                  ///< A commanded motion is under way or still to come.
+  std::vector<std::int64_t> positions;  ///< Motor positions, microsteps; empty for an arm without drives.
+  bool moving = false;                  ///< A commanded motion is in progress or pending.
 };
 
 /// An arm and its drives, simulated or real.
@@ -30,21 +30,21 @@ class ArmPort {
   ArmPort(const ArmPort&) = delete;
   ArmPort& operator=(const ArmPort&) = delete;
 
-  /// Sends the drives to where the model has this shape, to arrive together `duration` s from now, or each as
-  /// soon after that as it can; 0 is as soon as each can. A motion is followed by commands that each last
-  /// until the next one. Refused besides: a duration that is negative or not finite.
+  /// Moves the drives to where the model has this shape. All arrive together `duration` s from now, or each
+  /// as soon after that as possible; 0 means as soon as possible. For continuous motion, send commands that
+  /// each last until the next one. Also refused: a duration that is negative or not finite.
   [[nodiscard]] virtual CommandOutcome command(const ArmState& state, double duration) = 0;
-  /// As fast as the drives can.
+  /// Stops as fast as the drives can.
   [[nodiscard]] virtual CommandOutcome halt() = 0;
-  /// What the drives say now. Moves nothing.
+  /// Returns the drives' current reading. Moves nothing.
   [[nodiscard]] virtual Outcome<ArmReading> read() = 0;
 };
 
-/// Where a head says that it stands: its motors, in steps of their resolution.
+/// Reading of a head: its motor positions, in steps of their resolution.
 struct HeadReading {
-  double time = 0;  ///< s, when it was true.
+  double time = 0;  ///< Time at which it was true, s.
   HeadState state;
-  bool moving = false;  ///< A commanded motion is under way or still to come.
+  bool moving = false;  ///< A commanded motion is in progress or pending.
 };
 
 /// A camera's pan/tilt head and its zoom.
@@ -55,22 +55,23 @@ class HeadPort {
   HeadPort(const HeadPort&) = delete;
   HeadPort& operator=(const HeadPort&) = delete;
 
-  /// Sends pan, tilt (rad) and zoom (a position of the lens's table), each for itself as fast as it can.
+  /// Commands pan and tilt (rad) and zoom (a position in the lens's table). Each axis moves by itself, as
+  /// fast as it can.
   [[nodiscard]] virtual CommandOutcome command(const HeadState& state) = 0;
-  /// As fast as the motors can.
+  /// Stops as fast as the motors can.
   [[nodiscard]] virtual CommandOutcome halt() = 0;
-  /// What the motors say now. Moves nothing.
+  /// Returns the motors' current reading. Moves nothing.
   [[nodiscard]] virtual Outcome<HeadReading> read() = 0;
 };
 
-/// Where a stage says that it stands.
+/// Reading of a stage.
 struct StageReading {
-  double time = 0;  ///< s, when it was true.
+  double time = 0;  ///< Time at which it was true, s.
   StageState state;
-  bool moving = false;  ///< A commanded motion is under way or still to come.
+  bool moving = false;  ///< A commanded motion is in progress or pending.
 };
 
-/// What a camera's head is moved along by.
+/// A stage that translates a camera's head.
 class StagePort {
  public:
   virtual ~StagePort() = default;
@@ -78,11 +79,11 @@ class StagePort {
   StagePort(const StagePort&) = delete;
   StagePort& operator=(const StagePort&) = delete;
 
-  /// Sends the mount's offset, m along its axes, each for itself as fast as it can.
+  /// Commands the mount's offset, m along its axes. Each axis moves by itself, as fast as it can.
   [[nodiscard]] virtual CommandOutcome command(const StageState& state) = 0;
-  /// As fast as the motors can.
+  /// Stops as fast as the motors can.
   [[nodiscard]] virtual CommandOutcome halt() = 0;
-  /// What the motors say now. Moves nothing.
+  /// Returns the motors' current reading. Moves nothing.
   [[nodiscard]] virtual Outcome<StageReading> read() = 0;
 };
 

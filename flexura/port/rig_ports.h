@@ -9,17 +9,16 @@
 
 namespace flexura {
 
-/// A camera of a rig with what moves it. What moves it may be missing: it then stands where its configuration
-/// starts it. port/camera_moves.h and port/rig_readings.h ask and tell all cameras alike.
+/// A camera of a rig with its moving devices. Without one, the camera stays at its initial axis positions.
+/// Use port/camera_moves.h and port/rig_readings.h for any camera.
 struct CameraPorts {
-  std::string name;              ///< CameraConfig::name
+  std::string name;              ///< CameraConfig::name.
   CameraPort* camera = nullptr;  ///< Never null.
-  HeadPort* head = nullptr;      ///< Null: the camera is neither turned nor zoomed.
-  StagePort* stage = nullptr;    ///< Null: it is not slid.
+  HeadPort* head = nullptr;      ///< Null if the camera has no pan, tilt and zoom.
+  StagePort* stage = nullptr;    ///< Null if the camera has no translation.
 };
 
-/// All that a task can do to a rig and see of it, whether it is simulated or real. Owned by the rig; clock
-/// and arm are never null.
+/// All ports of a rig, simulated or real. Owned by the rig; clock and arm are never null.
 struct RigPorts {
   ClockPort* clock = nullptr;
   ArmPort* arm = nullptr;

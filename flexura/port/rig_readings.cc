@@ -19,7 +19,7 @@ bool is_finite(const HeadReading& head) {
          std::isfinite(head.state.zoom);
 }
 
-// Of a camera without one: where it starts, since ever, as `now` says or the stage.
+// Returns the stage's reading; without a stage, the initial state at time `now`.
 Outcome<StageReading> stage_reading(const CameraPorts& ports, const Camera& optics, double now) {
   if (ports.stage != nullptr) return ports.stage->read();
   return StageReading{now, optics.initial_stage(), false};

@@ -10,21 +10,21 @@
 
 namespace flexura {
 
-/// Where a camera's head and stage say that it stands.
+/// Reading of a camera's axis positions.
 struct StanceReading {
-  double time = 0;  ///< s, of the head's; without one of the stage's, without either of the clock's.
+  double time = 0;  ///< Of the head, s; without a head of the stage, without both of the clock.
   RigStance stance;
-  bool moving = false;  ///< One of them.
+  bool moving = false;  ///< Head or stage is moving.
 };
 
-/// What the drives of an arm of so many sections say; or in words why that is no state of it: a fault, a
-/// number that is none, another number of sections.
+/// Returns the reading of an arm with this number of sections, or the reason why it is invalid: a fault, a
+/// number that is not finite, another number of sections.
 [[nodiscard]] std::variant<ArmReading, std::string> read_arm(ArmPort& arm, std::size_t sections);
 
-/// What the head and the stage of the rig's camera number `camera` say; or in words why that tells no view of
-/// it: a fault, a number that is none, a zoom beyond the ends of what is known of the lens. A zoom within a
-/// step of an end is that end. `optics` are of that camera as it is believed to be: where it starts, it
-/// stands without a head or a stage.
+/// Returns the reading of head and stage of the rig's camera `camera`, or the reason why it is invalid: a
+/// fault, a number that is not finite, a zoom outside the lens's table. A zoom within one step of an end of
+/// the table counts as that end. `optics` is the model of that camera, whose initial positions replace a
+/// missing head or stage.
 [[nodiscard]] std::variant<StanceReading, std::string> read_camera(const RigPorts& rig, std::size_t camera,
                                                                    const Camera& optics);
 

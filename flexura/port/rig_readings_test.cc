@@ -100,7 +100,7 @@ TEST(RigReadings, WithoutAHeadOrAStageACameraStandsWhereItStarts) {
   EXPECT_EQ(reading.stance.stance(), Camera(camera.config).initial_stance());
   EXPECT_EQ(reading.time, 3) << "the clock's";
   EXPECT_FALSE(reading.moving);
-  // Of what is there a fault counts as before.
+  // A fault of the stage that exists still counts.
   camera.has_stage = true;
   camera.stage.fault = PortFault{FaultKind::link_lost, "gone"};
   EXPECT_EQ(camera.trouble(), "the stage of camera side: link lost: gone");
@@ -121,7 +121,7 @@ TEST(RigReadings, ACameraThatTellsNoViewIsToldInWords) {
   EXPECT_EQ(camera.trouble(), "the head of camera side: link lost: gone");
 }
 
-// A head may stop a little beside the end of its zoom, and counts in steps.
+// A head may stop slightly beyond the end of its zoom range, and counts in steps.
 TEST(RigReadings, AZoomWithinAStepOfTheLensesEndIsThatEnd) {
   SaidCamera camera;
   for (const auto& [says, is] : {std::pair{0.995, 1.0}, {4.009, 4.0}, {3.9, 3.9}}) {

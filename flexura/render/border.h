@@ -8,21 +8,21 @@
 
 namespace flexura {
 
-/// Borders are told when they are as near as this, px.
+/// Borders up to this distance are reported, px.
 inline constexpr double border_reach = 3;
 
-/// A curve in the image near a point of it, as the straight line that it is close by.
+/// A curve in the image near a point, approximated by a straight line.
 struct Border {
-  double distance = std::numeric_limits<double>::infinity();  ///< From the point, px; >= 0.
+  double distance = std::numeric_limits<double>::infinity();  ///< Distance from the point, px; >= 0.
   Eigen::Vector2d towards = {1, 0};                           ///< Unit vector from the point to the line.
-  double depth = 0;                                           ///< Where in space it is drawn, m.
-  bool is_ring = false;                                       ///< The edge of a ring of colour on the arm.
+  double depth = 0;                                           ///< Depth of the curve in space, m.
+  bool is_ring = false;  ///< Whether it is the edge of a coloured ring on the arm.
 
   bool operator<(const Border& other) const { return distance < other.distance; }
 };
 
-/// The border where a function of the image is zero, from its `value` at the ray and its derivative by the
-/// ray's (a, b): exact to first order.
+/// Returns the border where a function of the image is zero, from its `value` at the ray and its derivative
+/// by the ray's (a, b). Exact to first order.
 [[nodiscard]] inline Border border_of(double value, const Eigen::Vector2d& by_direction, const Ray& ray,
                                       double depth) {
   const Eigen::Vector2d by_pixel = ray.by_pixel.transpose() * by_direction;

@@ -8,8 +8,7 @@
 namespace flexura {
 namespace {
 
-// Distances to borders are exact to first order only: nothing nearer than this many times the distance asked
-// for.
+// Safety factor for distances to borders, which are exact to first order only.
 constexpr double safety = 1.15;
 
 double farthest_corner(const SquarePart& part, const Eigen::Vector2d& from) {
@@ -18,8 +17,8 @@ double farthest_corner(const SquarePart& part, const Eigen::Vector2d& from) {
   return farthest;
 }
 
-// Where the trace's nearest border crosses the line through `point` along `normal`, in px from the point;
-// none when it is another one or runs elsewhere.
+// Returns the position where the trace's nearest border crosses the line through `point` along `normal`, in
+// px from the point. Empty if it is another border or has another direction.
 std::optional<double> crossing(const Trace& trace, const Eigen::Vector2d& normal, double most) {
   const double along = trace.nearest.towards.dot(normal);
   if (std::abs(along) < 0.9) return std::nullopt;
@@ -28,15 +27,14 @@ std::optional<double> crossing(const Trace& trace, const Eigen::Vector2d& normal
   return result;
 }
 
-// How far over its chord in the square the border lies on the mean, px along the normal, by Simpson's rule
-// from its two ends and its middle, each looked at from close by; none when it is no smooth and nearly
-// straight curve.
+// Mean height of the border over its chord in the square, px along the normal. By Simpson's rule from its two
+// ends and its middle, each measured from close by. Empty if it is not a smooth and nearly straight curve.
 std::optional<double> mean_height(const Tracer& tracer, const Ray& middle, double half,
                                   const Division& division, const SquarePart& far) {
   const Eigen::Vector2d& normal = division.normal;
   const Eigen::Vector2d center = 0.5 * (far.chord[0] + far.chord[1]);
   const double back = 0.1 * half;
-  constexpr double reach = 0.9;  // of the chord
+  constexpr double reach = 0.9;  // Share of the chord.
   std::array<double, 3> heights{};
   for (std::size_t i = 0; i < 3; ++i) {
     const double along = reach * (static_cast<double>(i) - 1);
@@ -89,7 +87,7 @@ std::optional<Stripes> stripes_of(const Tracer& tracer, const Ray& middle, doubl
   const Eigen::Vector2d slope((s[1] + s[3] - s[0] - s[2]) / (4 * half),
                               (s[2] + s[3] - s[0] - s[1]) / (4 * half));
   const double size = slope.norm();
-  // By how much s departs from what is linear.
+  // Deviation of s from a linear function.
   const double bulge = 0.25 * (s[0] + s[1] + s[2] + s[3]) - here.hit.s;
   const double twist = 0.25 * (s[0] + s[3] - s[1] - s[2]);
   if (!(std::abs(bulge) + std::abs(twist) < 0.1 * half * size)) return std::nullopt;

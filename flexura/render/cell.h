@@ -12,42 +12,42 @@
 
 namespace flexura {
 
-/// The ray of the pixel point that lies `offset` px from that of `ray`; the lens is taken for linear between.
+/// Returns the ray of the pixel point `offset` px from that of `ray`, with the lens linearised.
 [[nodiscard]] inline Ray moved(const Ray& ray, const Eigen::Vector2d& offset) {
   Ray result = ray;
   result.direction.head<2>() += ray.by_pixel * offset;
   return result;
 }
 
-/// What lies beyond a straight line in a square of side 2 half around the origin.
+/// The part of a square of side 2 half around the origin that lies beyond a straight line.
 struct SquarePart {
   std::array<Eigen::Vector2d, 6> corners;
   std::size_t count = 0;
   double area = 0;
   Eigen::Vector2d centroid = {0, 0};
-  std::array<Eigen::Vector2d, 2>
-      chord;  ///< Where the line enters and leaves the square, if the area is not 0.
+  /// Where the line enters and leaves the square, if the area is not 0.
+  std::array<Eigen::Vector2d, 2> chord;
 };
-/// The line is where x . normal = offset; `normal` is a unit vector and points beyond.
+/// The line is x . normal = offset; `normal` is a unit vector that points beyond it.
 [[nodiscard]] SquarePart part_beyond(double half, const Eigen::Vector2d& normal, double offset);
 
-/// A square of the image that one straight border divides, both sides uniform.
+/// A square of the image that one straight border divides into two uniform parts.
 struct Division {
-  Eigen::Vector2d normal;  ///< From the near to the far side.
-  double offset = 0;       ///< Of the border from the square's centre, px.
+  Eigen::Vector2d normal;  ///< Unit normal from the near to the far side.
+  double offset = 0;       ///< Distance of the border from the square's centre, px.
   Hit far;
   SquarePart far_part;
 };
 
-/// How arc length runs across a square of the arm's skin: (s - its value in the middle) / slope px along the
-/// normal.
+/// Linear model of the arc length across a square of the arm's skin: (s - value in the middle) / slope is the
+/// distance along the normal, px.
 struct Stripes {
   Eigen::Vector2d normal;
-  double slope = 0;  ///< m/px; > 0.
-  double s = 0;      ///< m; in the middle.
+  double slope = 0;  ///< Arc length per pixel, m/px; > 0.
+  double s = 0;      ///< Arc length in the middle, m.
 };
-/// If several edges of rings pass the square around `middle` and nothing else is seen to end there: they are
-/// parallel lines. None also where they bend too much for that.
+/// Returns the stripes if several ring edges cross the square around `middle` as parallel lines and no other
+/// surface ends there. Empty otherwise, also if the edges bend too much.
 [[nodiscard]] std::optional<Stripes> stripes_of(const Tracer& tracer, const Ray& middle, double half,
                                                 const Trace& here);
 
@@ -75,21 +75,21 @@ void cover_stripes(const Tracer& tracer, const Ray& middle, double half, const S
 
 enum class Verdict { uniform, divided, unclear };
 
-/// Judges the square of side 2 half around `center` (px from the pixel ray) from what is seen there, `here`,
-/// and, if need be, from a few rays more. `is_last`: unclear is no answer; the best guess is.
+/// Classifies the square of side 2 half around `center` (px from the pixel ray). Uses the trace `here` in its
+/// middle and, if needed, a few more rays. With `is_last` the best guess replaces `unclear`.
 [[nodiscard]] Verdict judge(const Tracer& tracer, const Ray& pixel, const Eigen::Vector2d& center,
                             double half, const Trace& here, bool is_last, Division& division);
 
-/// Squares are halved at most so many times.
+/// Maximum number of halvings of a square.
 inline constexpr int most_halvings = 4;
 
-/// Adds up what the square of side 2 half around `center` shows: calls sink(hit, ray, area) for parts of
-/// it, area in px^2, the ray within the part or next to it. The areas add up to the square's.
+/// Integrates the square of side 2 half around `center` by calling sink(hit, ray, area) for its parts. The
+/// area is in px^2, the ray is within the part or next to it. The areas add up to the square's.
 template <typename Sink>
 void cover(const Tracer& tracer, const Ray& pixel, const Eigen::Vector2d& center, double half, int halvings,
            const Trace& seen, Sink&& sink) {
   const double area = 4 * half * half;
-  // On a border there are two sides to stand on; one step back there is one.
+  // On a border either side may be hit; a small step back makes the side unique.
   constexpr double step = 1e-5;
   const bool is_on_border = seen.nearest.distance < 0.01 * step;
   const Trace here = is_on_border ? tracer.trace(moved(pixel, center - step * seen.nearest.towards)) : seen;
@@ -106,7 +106,7 @@ void cover(const Tracer& tracer, const Ray& pixel, const Eigen::Vector2d& center
     case Verdict::divided: {
       const double near_area = area - division.far_part.area;
       sink(division.far, moved(ray, division.far_part.centroid), division.far_part.area);
-      // The middle of what is seen on this side shows its mean light better than the square's.
+      // The centroid of the near part represents its mean light better than the square's centre.
       if (near_area > 0) {
         const Ray middle = moved(ray, division.far_part.centroid * (-division.far_part.area / near_area));
         const Hit near = tracer.hit(middle);

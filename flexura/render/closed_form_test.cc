@@ -31,9 +31,9 @@ TEST(LightImage, OfASphereHasTheAreaOfItsEllipse) {
     Scene scene = plain_scene();
     scene.obstacles.push_back(white(SphereConfig{.center = {off.x(), off.y(), depth}, .radius = radius}));
     const double found = sum_of(picture_of(scene, pinhole_view(Pose{}, 160, 120, focal_length)).light);
-    // The cone around the center c with half angle b, sin b = r/|c|, cut by z = 1: with the cosine e of the
-    // angle between c and the axis, the ellipse's half axes are sin b cos b/(e^2 - sin^2 b) and
-    // sin b/sqrt(e^2 - sin^2 b).
+    // The cone around the center c with half angle b, sin b = r/|c|, is cut by z = 1. With the cosine e of
+    // the angle between c and the axis, the half axes of the ellipse are sin b cos b/(e^2 - sin^2 b) and sin
+    // b/sqrt(e^2 - sin^2 b).
     const double square = off.squaredNorm() + depth * depth;
     const double sine = radius / std::sqrt(square), cosine = std::sqrt(1 - sine * sine);
     const double room = depth * depth / square - sine * sine;
@@ -43,9 +43,9 @@ TEST(LightImage, OfASphereHasTheAreaOfItsEllipse) {
 }
 
 TEST(LightImage, OfAStraightTubeHasTheAreaBetweenItsEdgesAndRims) {
-  // Seen square from the side at distance D, the edges are parallel at f r/sqrt(D^2 - r^2); the visible
-  // halves of the rims cut pieces of ellipses off and add them on: the rim's plane holds the camera in the
-  // middle, so with the tube running out of the image above and below only the edges count.
+  // Seen perpendicularly from the side at distance D, the edges are parallel at f r/sqrt(D^2 - r^2). The
+  // visible halves of the rims cut off or add pieces of ellipses. Here the tube leaves the image above and
+  // below, so only the edges count.
   const double radius = 0.03, distance = 1.7, focal_length = 300;
   Arm arm;
   arm.sections.push_back({.length = 10, .radius = {radius, radius}});
@@ -55,7 +55,7 @@ TEST(LightImage, OfAStraightTubeHasTheAreaBetweenItsEdgesAndRims) {
   for (const double turned : {0.0, 0.1, 0.5}) {
     const Eigen::Vector3d up(std::sin(turned), std::cos(turned), 0);
     const View view = pinhole_view(look_at({0.01, 5, distance}, {0.01, 5, 0}, up), 90, 60, focal_length);
-    // The tube's axis passes the camera at depth D and 0.01 m aside.
+    // The tube's axis passes the camera at depth D, 0.01 m to the side.
     const double square = distance * distance + 0.01 * 0.01;
     const double middle = std::atan2(0.01, distance), half = std::asin(radius / std::sqrt(square));
     const double width = focal_length * (std::tan(half + middle) + std::tan(half - middle));
@@ -80,7 +80,7 @@ TEST(LightImage, OfAScreenHasItsAreaAndItsBrightness) {
 TEST(LightImage, OfABoxHasTheAreaOfItsOutline) {
   Scene scene = plain_scene();
   scene.obstacles.push_back(white(BoxConfig{.center = {0, 0, 2}, .half_sizes = {0.2, 0.3, 0.4}}));
-  // Seen from the front: the front face alone, at depth 1.6.
+  // Seen from the front: only the front face, at depth 1.6.
   EXPECT_NEAR(sum_of(picture_of(scene, pinhole_view(Pose{}, 120, 120, 100)).light),
               0.4 * 0.6 * 100 * 100 / (1.6 * 1.6), 1e-3);
 }
@@ -121,8 +121,8 @@ TEST(LightImage, OfASymmetricSceneIsSymmetric) {
     return largest;
   };
   EXPECT_LT(asymmetry(true), 1e-4);
-  // The quick way judges rims, and rings' edges near contours, from 256 points that do not lie evenly to both
-  // sides: to a hundredth of a pixel.
+  // The fast path samples rims, and ring edges near contours, at 256 points that are not symmetric: accurate
+  // to a hundredth of a pixel.
   EXPECT_LT(asymmetry(false), 1e-2);
 }
 

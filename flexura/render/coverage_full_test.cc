@@ -1,5 +1,5 @@
-// Light of border pixels, by area: that of an arm against thousands of frustums, of guide disks, the etalon
-// and obstacles, cut by each other and by the arm, against bodies that are known as functions of space.
+// Area-weighted light of border pixels. Arms are compared with thousands of frustums. Guide disks, the etalon
+// and obstacles, cut by each other and by the arm, are compared with implicit bodies.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -23,7 +23,7 @@
 namespace flexura {
 namespace {
 
-// A scene twice: as it is drawn and as its bodies, which show their gray level from all sides.
+// A scene in two forms: as it is drawn, and as its bodies, each with its gray level on all sides.
 struct KnownScene {
   struct Body {
     ImplicitBody body;
@@ -35,7 +35,7 @@ struct KnownScene {
   std::function<double(double)> arm_gray = [](double /*s*/) { return 1.0; };
 
   void set_arm(const BentArm& bent, const Backbone& backbone) {
-    constexpr int frustums = 300;  // a section
+    constexpr int frustums = 300;  // Per section.
     arm.emplace(bent.arm, backbone, frustums);
     scene.arm.tube = tube_of(backbone);
     scene.arm.albedo = Color::Constant(arm_gray(-1));
@@ -45,7 +45,7 @@ struct KnownScene {
     scene.obstacles.push_back({obstacle, Color::Constant(gray)});
     for (const ImplicitBody& body : implicit_bodies(obstacle)) bodies.push_back({body, gray});
   }
-  // What is seen from `eye` in a direction, near which only these frustums of the arm are.
+  // Gray level seen from `eye` in a direction near which the arm has only these frustums.
   [[nodiscard]] double gray(const std::vector<FrustumTube::Frustum>& near, const Eigen::Vector3d& eye,
                             const Eigen::Vector3d& direction) const {
     double depth = ImplicitBody::nowhere, result = 0;
@@ -99,7 +99,7 @@ void compare_known(const KnownScene& known, const View& view, BothCoverageErrors
   }
 }
 
-// The arm in white alone.
+// The arm alone, in white.
 void compare_silhouettes(const BentArm& bent, const Backbone& backbone, const View& view,
                          BothCoverageErrors& errors) {
   KnownScene known;
@@ -112,7 +112,7 @@ void compare_silhouettes(TestRandom& random, double taper, BothCoverageErrors& e
   compare_silhouettes(bent, backbone, random_view_of(random, backbone), errors);
 }
 
-// Turned to a point of the backbone, and with another focal length.
+// Aimed at a point of the backbone, with another focal length.
 View aimed(const View& view, const Backbone& backbone, double s, double focal_length) {
   return pinhole_view(look_at(view.X_WC.position, backbone.pose(s).position), view.width, view.height,
                       focal_length);
@@ -149,10 +149,10 @@ TEST(Coverage, OfTubesWhoseRadiusStepsIsThatOfManySamples) {
   errors.expect_small();
 }
 
-// Arms with taper and without.
+// Half of the arms are tapered.
 double taper_or_none(TestRandom& random, double taper) { return random.integer(0, 1) == 0 ? taper : 0; }
 
-// The arm in black, with rings in white.
+// The arm in black with white rings.
 void compare_rings(const BentArm& bent, const Backbone& backbone, const View& view, double pitch,
                    BothCoverageErrors& errors) {
   KnownScene known;
@@ -201,17 +201,17 @@ TEST(Coverage, AtAnyZoomIsThatOfManySamples) {
     View view = aimed(random_view_of(random, backbone), backbone, random.uniform(0, backbone.length()),
                       200 * std::exp(random.uniform(-1, 2)));
     Intrinsics lens = view.lens.intrinsics();
-    // As much of it at the picture's edge whatever the focal length.
+    // Equal distortion at the picture's edge for every focal length.
     const double wide = std::pow(lens.fx / 200, 2);
     if (random.integer(0, 1) == 0) lens.distortion = {random.uniform(-0.3, 0.3) * wide, 0, 0.001, -0.001, 0};
     view.lens = Lens(lens);
     compare_silhouettes(bent, backbone, view, errors);
-    compare_rings(bent, backbone, view, 0.11, errors);  // None over a step.
+    compare_rings(bent, backbone, view, 0.11, errors);  // No ring over a step.
   });
   errors.expect_small();
 }
 
-// The mean of what samples x samples rays of a pixel show.
+// Mean of samples x samples rays of a pixel.
 double mean_of_rays(const Tracer& tracer, const Ray& pixel, int samples) {
   double sum = 0;
   for (int j = 0; j < samples; ++j) {
@@ -223,7 +223,7 @@ double mean_of_rays(const Tracer& tracer, const Ray& pixel, int samples) {
   return sum / (samples * samples);
 }
 
-// The errors of the exact picture against the same surfaces, sampled.
+// Errors of the reference path's picture against samples of the same surfaces.
 void compare_with_rays(const Scene& scene, const View& view, CoverageErrors& errors) {
   Renderer renderer;
   LightImage picture;
@@ -240,7 +240,7 @@ void compare_with_rays(const Scene& scene, const View& view, CoverageErrors& err
   }
 }
 
-// Where everything stands in the way of everything.
+// Bodies that hide each other everywhere.
 TEST(Coverage, OfCrowdedScenesIsThatOfTheirRays) {
   CoverageErrors errors;
   for_random_cases(3, [&](TestRandom& random) {
@@ -255,7 +255,7 @@ TEST(Coverage, OfCrowdedScenesIsThatOfTheirRays) {
   errors.expect_small("crowded");
 }
 
-// A camera that looks at the origin from 1 to 2 m, half of the time through a distorting lens.
+// A camera that looks at the origin from 1 to 2 m; half of the lenses have distortion.
 View view_of_origin(TestRandom& random) {
   const Eigen::Vector3d from = random.vector<3>(-1, 1).normalized() * random.uniform(1, 2);
   View view = pinhole_view(look_at(from, random.vector<3>(-0.1, 0.1), {0.1, 1, 0.05}), 96, 72,
@@ -309,7 +309,8 @@ TEST(BodyCoverage, OfTheEtalonAmongObstaclesIsThatOfManySamples) {
   errors.expect_small();
 }
 
-// With `wildness` 1 the arm keeps clear of its disks, but for the one at hand, with more it passes through.
+// With `wildness` 1 the arm passes clear of all disks except the one it carries; with more it passes through
+// them.
 void compare_known_disks(TestRandom& random, double wildness, BothCoverageErrors& errors) {
   BentArm bent = random_bent_arm(random, 0, 0.008);
   for (Eigen::Vector2d& bend : bent.state.bends) bend *= wildness;

@@ -1,4 +1,4 @@
-// Depths against thousands of cone frustums, and seams of the exact surface.
+// Compares depths with thousands of cone frustums; checks the exact surface for seams.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -36,7 +36,7 @@ TEST(Depth, IsThatOfFrustumsWhereRaysDoNotGraze) {
         const Hit hit = tracer.hit(ray);
         if (hit.label.kind != SurfaceKind::section) continue;
         if (std::abs(hit.normal.dot(ray.direction.normalized())) < 0.2) continue;
-        // Rays that pass a silhouette by less than the frustums are off are another matter.
+        // Skips rays that pass a silhouette by less than the error of the frustums.
         if (tracer.trace(ray).nearest.distance < 0.2) continue;
         const Eigen::Vector3d direction = view.X_WC.rotation * ray.direction;
         const auto near =
@@ -52,8 +52,7 @@ TEST(Depth, IsThatOfFrustumsWhereRaysDoNotGraze) {
   EXPECT_LT(largest, 1e-5);
 }
 
-// How much the depth and the normal jump on a line of pixels that crosses s, against how they change
-// elsewhere.
+// Compares the jumps of depth and normal along a line of pixels across s with their changes elsewhere.
 TEST(Depth, HasNoSeamWhereSectionsMeet) {
   for_random_cases(5, [](TestRandom& random) {
     const BentArm bent = random_bent_arm(random, 0);
@@ -82,7 +81,7 @@ TEST(Depth, HasNoSeamWhereSectionsMeet) {
 }
 
 TEST(Depth, IsContinuousWhereASectionStraightens) {
-  // Through bends of 1e-3 to 0, past where the series take over.
+  // Bends from 1e-3 to 0, past the threshold of the series.
   Arm arm;
   arm.kind = ArmKind::spatial;
   arm.sections.push_back({.length = 1, .radius = {0.03, 0.02}});
@@ -133,7 +132,7 @@ TEST(Coverage, OfAGeneralBackboneConvergesToTheArcs) {
   };
   const Image<float> exact = light_of(tube_of(backbone));
   double last = std::numeric_limits<double>::infinity();
-  // Samples that never fall on the sections' ends.
+  // Sample counts that never place a sample at a section end.
   for (const int count : {8, 32, 128}) {
     std::vector<BackboneSample> samples;
     for (int i = 0; i <= count; ++i) {

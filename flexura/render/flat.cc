@@ -11,7 +11,8 @@
 namespace flexura {
 namespace {
 
-// Where a ray meets a circle's plane, times a positive factor: x^2 + y^2 = (radius z)^2 on the circle.
+// Intersection of a ray with a circle's plane, times a positive factor: x^2 + y^2 = (radius z)^2 on the
+// circle.
 struct PlanePoint {
   double x, y, z;
 };
@@ -19,7 +20,7 @@ PlanePoint plane_point(const Circle& circle, const Eigen::Vector3d& direction) {
   return {circle.by_x.dot(direction), circle.by_y.dot(direction), circle.by_z.dot(direction)};
 }
 
-// The border where the circle's image crosses the line from the ray along `way`, `distance` px away.
+// Returns the border where the circle's image crosses the line from the ray along `way`, `distance` px away.
 Border rim_border(const Circle& circle, const Ray& ray, const Eigen::Vector2d& way, double distance) {
   Border border;
   Eigen::Vector3d direction = ray.direction;
@@ -38,8 +39,8 @@ Border rim_border(const Circle& circle, const Ray& ray, const Eigen::Vector2d& w
   return border;
 }
 
-// The borders where the circle's image crosses the line along `way`, the nearer one first; infinitely far
-// where it does not.
+// Returns the borders where the circle's image crosses the line along `way`, the nearer one first; infinitely
+// far if it does not.
 std::array<Border, 2> crossings(const Circle& circle, const Ray& ray, const Eigen::Vector2d& way) {
   std::array<Border, 2> borders;
   Eigen::Vector3d step(0, 0, 0);
@@ -58,7 +59,7 @@ std::array<Border, 2> crossings(const Circle& circle, const Ray& ray, const Eige
   return borders;
 }
 
-// The direction in (a, b) across which the circle's image is narrowest.
+// Returns the direction in (a, b) across which the circle's image is narrowest.
 Eigen::Vector2d narrow_way(const Circle& circle) {
   const Eigen::Vector2d x = circle.by_x.head<2>(), y = circle.by_y.head<2>(),
                         z = circle.radius * circle.by_z.head<2>();
@@ -77,7 +78,7 @@ Circle circle_at(const Eigen::Matrix3d& R_CS, const Eigen::Vector3d& p_CS, doubl
   circle.normal = (is_turned ? -1.0 : 1.0) * R_CS.col(2);
   circle.x = R_CS.col(0), circle.y = R_CS.col(1);
   circle.radius = radius;
-  const double height = circle.normal.dot(p_CS);  // of the plane over the camera
+  const double height = circle.normal.dot(p_CS);  // Height of the plane over the camera.
   const double side = height < 0 ? -1 : 1;
   circle.by_x = side * (circle.x * height - circle.normal * circle.x.dot(p_CS));
   circle.by_y = side * (circle.y * height - circle.normal * circle.y.dot(p_CS));
@@ -101,7 +102,7 @@ CircleView view_of(const Circle& circle, const Ray& ray) {
   const Eigen::Vector3d slope = (x * circle.by_x + y * circle.by_y) / length - circle.radius * circle.by_z;
   const Border steepest = border_of(view.value, slope.head<2>(), ray, 0);
   view.borders = crossings(circle, ray, steepest.towards);
-  // Along a flat image's middle the steepest way leads to its far tips.
+  // In the middle of a flat image, the steepest direction points to its far tips.
   if (narrow[0].distance < 0.8 * view.borders[0].distance) view.borders = narrow;
   if (view.borders[0].distance == infinity) {
     // Past the tip of a flat image.

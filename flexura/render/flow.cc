@@ -10,7 +10,7 @@
 namespace flexura {
 namespace {
 
-// Takes points of one scene to where they are in another.
+// Maps points of one scene to their positions in another.
 class Carrier {
  public:
   Carrier(const Scene& from, const Scene& to) : from_(from), to_(to) {
@@ -19,7 +19,7 @@ class Carrier {
       throw std::invalid_argument("the two scenes do not show the same things");
   }
 
-  // Where the point p of `hit`'s surface goes; W.
+  // Returns the new position in W of the point p of `hit`'s surface.
   [[nodiscard]] Eigen::Vector3d carry(const Stage& stage, const Hit& hit, const Eigen::Vector3d& p) const {
     switch (hit.label.kind) {
       case SurfaceKind::section:

@@ -22,11 +22,11 @@ struct Moment {
   Backbone backbone;
   Pose X_WScreen, X_WEtalon;
 
-  // Arc length from the base of the place at `share` of a section.
+  // Arc length from the base of the point at `share` of a section.
   [[nodiscard]] double s(std::size_t section, double share) const {
     return backbone.arcs()[section].s + share * backbone.arcs()[section].length;
   }
-  // The point of the cross-section there at (x, y).
+  // The point (x, y) of the cross-section there.
   [[nodiscard]] Eigen::Vector3d on_arm(std::size_t section, double share, double distance, double angle,
                                        double over = 0) const {
     const Arc& arc = backbone.arcs()[section];
@@ -61,7 +61,7 @@ struct MaterialPoint {
   Eigen::Vector3d before, after;
 };
 
-// Points anywhere on all surfaces, seen or not.
+// Random points on all surfaces, visible or hidden.
 std::vector<MaterialPoint> random_points(TestRandom& random, const Moment& before, const Moment& after) {
   std::vector<MaterialPoint> points;
   const auto add = [&](SurfaceKind kind, auto&& place) {
@@ -97,7 +97,8 @@ std::vector<MaterialPoint> random_points(TestRandom& random, const Moment& befor
   return points;
 }
 
-// The view shifted so that the point's image is the middle of pixel (1, 1) of an image of 3 x 3; none behind.
+// The view shifted so that the point's image is the middle of pixel (1, 1) of an image of 3 x 3; empty if the
+// point is behind the camera.
 std::optional<View> aimed(View view, const Eigen::Vector3d& p_WP) {
   const auto pixel = view.project(p_WP);
   if (!pixel) return std::nullopt;
@@ -108,7 +109,7 @@ std::optional<View> aimed(View view, const Eigen::Vector3d& p_WP) {
   return view;
 }
 
-// What moves, where it goes and who looks on: nothing of that is left as it was.
+// Objects, camera pose and zoom all change between the instants.
 TEST(Flow, IsWhereMaterialPointsGoBeforeACameraThatMovesAndZooms) {
   std::vector<int> checked(10);
   for_random_cases(12, [&](TestRandom& random) {
@@ -131,13 +132,13 @@ TEST(Flow, IsWhereMaterialPointsGoBeforeACameraThatMovesAndZooms) {
       renderer.prepare(scene, *from);
       truth_maps(renderer, maps);
       const double depth = (from->X_WC.inverse() * point.before).z();
-      if (!(std::abs(maps.depth.at(1, 1) - depth) < 1e-6 * depth)) continue;  // Something is before it.
+      if (!(std::abs(maps.depth.at(1, 1) - depth) < 1e-6 * depth)) continue;  // Something is in front of it.
       EXPECT_EQ(label_from_value(maps.label.at(1, 1)).kind, point.kind);
       const Image<float> flow = optical_flow(renderer, moved, view_after);
       const auto pixel = view_after.project(point.after);
       EXPECT_EQ(pixel.has_value(), !std::isnan(flow.at(1, 1, 0)));
       if (!pixel) continue;
-      const double tolerance = 1e-5 + 1e-7 * pixel->norm();  // What comes near the camera goes far.
+      const double tolerance = 1e-5 + 1e-7 * pixel->norm();  // Near points move far in the image.
       EXPECT_NEAR(flow.at(1, 1, 0), pixel->x() - 1, tolerance);
       EXPECT_NEAR(flow.at(1, 1, 1), pixel->y() - 1, tolerance);
       ++checked[static_cast<std::size_t>(point.kind)];

@@ -20,7 +20,7 @@ float threshold_of(double level, double gamma, double top) {
 
 }  // namespace
 
-// Pieces of 2^-8 (2^-12) of their octave hold a threshold or two (twenty) at the gammas of cameras.
+// With the gammas of cameras, pieces of 2^-8 (2^-12) of an octave hold one or two (twenty) thresholds.
 GammaTable::GammaTable(double gamma, int top) : shift_(top < 256 ? 15 : 11) {
   for (int level = 1; level <= top; ++level) thresholds_.push_back(threshold_of(level, gamma, top));
   thresholds_.push_back(std::numeric_limits<float>::infinity());

@@ -7,8 +7,8 @@
 
 namespace flexura {
 
-/// Levels of light after a gamma curve, looked up: floor(top x^(1/gamma) + 1/2) of a float x from 0 to 1,
-/// exactly as double precision gives it.
+/// Lookup table of gamma-corrected levels: floor(top x^(1/gamma) + 1/2) of a float x from 0 to 1, exactly as
+/// in double precision.
 class GammaTable {
  public:
   GammaTable() = default;
@@ -25,9 +25,9 @@ class GammaTable {
   }
 
  private:
-  int shift_ = 0;                      // Floats that agree down to this bit are a piece.
-  std::uint32_t first_piece_ = 0;      // The one of the first threshold.
-  std::vector<std::uint16_t> starts_;  // By piece: the level where it begins.
+  int shift_ = 0;                      // Floats that agree down to this bit form a piece.
+  std::uint32_t first_piece_ = 0;      // Piece of the first threshold.
+  std::vector<std::uint16_t> starts_;  // By piece: the level at its beginning.
   std::vector<float> thresholds_;      // By level: the smallest float beyond it.
 };
 

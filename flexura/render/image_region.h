@@ -15,7 +15,7 @@ namespace flexura {
 struct PixelRange {
   int begin = 0, end = 0;
 
-  /// All whose whole numbers are in [low, high], of `size`.
+  /// Returns those of `size` whose integers are in [low, high].
   static PixelRange around(double low, double high, int size) {
     const double limit = size;
     const int begin = static_cast<int>(std::clamp(std::ceil(low), 0.0, limit));
@@ -23,12 +23,12 @@ struct PixelRange {
   }
 };
 
-/// Where balls around the points of a segment are seen by a lens without distortion, and some pixels around:
-/// what is within a radius of the segment's image. Never too small.
+/// Image region of balls around the points of a segment, plus some pixels, for a lens without distortion:
+/// everything within a radius of the segment's image. Never too small.
 class ImageRegion {
  public:
-  /// From p to q, C, m; none when the camera is too near. What is farther than `beyond`, m, from the ends
-  /// along the segment is left away.
+  /// Returns the region from p to q, C, m; empty if the camera is too near. Parts farther than `beyond`, m,
+  /// from the ends along the segment are omitted.
   static std::optional<ImageRegion> of(const Intrinsics& lens, const Eigen::Vector3d& p,
                                        const Eigen::Vector3d& q, double radius,
                                        double beyond = std::numeric_limits<double>::infinity()) {
@@ -39,7 +39,7 @@ class ImageRegion {
     const Eigen::Vector2d a = p.head<2>() / p.z(), b = q.head<2>() / q.z();
     const Eigen::Vector2d from(lens.fx * a.x() + lens.cx, lens.fy * a.y() + lens.cy);
     const Eigen::Vector2d to(lens.fx * b.x() + lens.cx, lens.fy * b.y() + lens.cy);
-    // A ball at the angle t from the axis is seen longer by 1 / cos^2 t.
+    // At the angle t from the axis, a ball's image is longer by 1 / cos^2 t.
     const double off_axis = 1 + std::max(a.squaredNorm(), b.squaredNorm());
     const double scale = std::max(lens.fx, lens.fy) / (nearest - radius) * off_axis;
     const double aside = scale * radius + pixels_around;
@@ -53,7 +53,7 @@ class ImageRegion {
     return region;
   }
 
-  /// The least and the largest u and v.
+  /// Smallest and largest u and v.
   [[nodiscard]] const Eigen::Vector2d& low() const { return low_; }
   [[nodiscard]] const Eigen::Vector2d& high() const { return high_; }
 
@@ -66,7 +66,7 @@ class ImageRegion {
   }
 
  private:
-  // Between two parallel lines: in a row, between two columns that are linear in v.
+  // The band between two parallel lines: in a row, between two columns that are linear in v.
   struct Band {
     double low = -std::numeric_limits<double>::infinity(), high = -low, by_v = 0;
 

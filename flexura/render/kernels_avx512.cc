@@ -1,4 +1,4 @@
-// Compiled for AVX-512 where the compiler can (cmake/Simd.cmake); elsewhere it holds nothing.
+// Compiled for AVX-512 where the compiler can (cmake/Simd.cmake); empty otherwise.
 #ifdef __AVX512BW__
 #include "flexura/render/all_kernels.h"
 

@@ -24,7 +24,7 @@ void LensMap::set(const RayField& rays, const Intrinsics& intrinsics) {
   for (int v = 0; v < height_; ++v) fill_row(rays, v);
 }
 
-// Pixels that see nothing get no number, which no kernel draws.
+// Pixels without a ray become NaN, which no kernel draws.
 void LensMap::fill_row(const RayField& rays, int v) {
   constexpr float most = std::numeric_limits<float>::infinity();
   constexpr Box empty{most, most, -most, -most};

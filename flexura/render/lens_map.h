@@ -9,23 +9,23 @@
 
 namespace flexura {
 
-/// Where a lens without distortion would see the rays of all pixels. Without distortion nothing is kept; with
-/// it, all is worked out anew only when the lens or the size has changed.
+/// Positions of all pixels' rays in the image of the lens without distortion. Without distortion nothing is
+/// stored. With it, the map is recomputed only when the lens or the size has changed.
 class LensMap {
  public:
   void set(const RayField& rays, const Intrinsics& intrinsics);
 
-  /// Without `u` when the lens has no distortion.
+  /// `u` is null if the lens has no distortion.
   [[nodiscard]] LensRow row(int v) const;
-  /// Sets the place of a pixel.
+  /// Sets the undistorted position of a pixel.
   void place(int u, int v, std::size_t index, SpanPlaces& places) const;
 
-  /// The rows, and columns of a row, in which something of the region is seen. Never too few.
+  /// Return the rows, and the columns of a row, in which the region is visible. Never too few.
   [[nodiscard]] PixelRange rows(const ImageRegion& region) const;
   [[nodiscard]] PixelRange columns(const ImageRegion& region, int v) const;
 
  private:
-  // Of the places of some neighbouring pixels of a row.
+  // Bounds of the positions of some neighbouring pixels of a row.
   struct Box {
     float low_u, low_v, high_u, high_v;
     [[nodiscard]] bool touches(const ImageRegion& region) const;

@@ -4,11 +4,11 @@
 
 namespace flexura {
 
-/// What reaches the image plane of an ideal camera: each pixel's light is the mean over its square.
+/// Light on the image plane of an ideal camera: each pixel holds the mean over its square.
 struct LightImage {
   Image<float> light;  ///< One channel (gray) or three (red, green, blue); linear, in the scene's units.
-  Image<float>
-      depth;  ///< In the middle of each pixel, along the optical axis, m; infinity: nothing is there.
+  Image<float> depth;  ///< Depth in the middle of each pixel, along the optical axis, m; infinite where there
+                       ///< is no surface.
 };
 
 }  // namespace flexura

@@ -7,12 +7,12 @@
 
 namespace flexura {
 
-/// A scene as one view sees it, ready to be drawn or asked.
+/// A scene prepared for one view, ready for drawing and for queries of true values.
 struct PreparedScene {
   View view;
-  RayField rays;  ///< Of its pixels.
+  RayField rays;  ///< Rays of its pixels.
   Stage stage;    ///< The scene's bodies in the camera's frame.
-  Tiles tiles;    ///< Which of these may be seen where in the picture.
+  Tiles tiles;    ///< Bodies that may be visible, by image region.
 };
 
 }  // namespace flexura

@@ -1,4 +1,4 @@
-// An etalon that stands alone before a screen is drawn the quick way.
+// The fast path on an etalon that stands alone in front of a screen.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -37,7 +37,7 @@ View view_of(TestRandom& random, const Scene& scene, int width, int height) {
   return view;
 }
 
-// Beside the etalon, before it, behind it or through it.
+// Screens beside the etalon, in front of it, behind it or through it.
 void add_screens(TestRandom& random, Sight& sight) {
   const Eigen::Vector3d ahead = sight.view.X_WC.rotation.col(2);
   for (int i = random.integer(0, 2); i > 0; --i) {
@@ -49,7 +49,7 @@ void add_screens(TestRandom& random, Sight& sight) {
   }
 }
 
-// Across the axis, at any angle about it.
+// A random direction perpendicular to the axis.
 Eigen::Vector3d any_side(TestRandom& random, const Eigen::Vector3d& axis) {
   return so3_exp(random.uniform(0, 2 * std::numbers::pi) * axis) * axis.unitOrthogonal();
 }
@@ -64,8 +64,8 @@ TEST(QuickEtalon, AgreesWithTheExactWay) {
   EXPECT_EQ(all.bad_depths, 0);
 }
 
-// Bright ones, flat ones, some seen from so near, or by so long a lens, that they are hundreds of pixels
-// wide.
+// Includes bright and flat ones, and some seen from so near, or by so long a lens, that they are hundreds of
+// pixels wide.
 TEST(QuickEtalon, AgreesWithTheExactWayWhateverItsSize) {
   const auto draw = [](TestRandom& random) {
     Sight sight = etalon_sight(random);
@@ -81,7 +81,7 @@ TEST(QuickEtalon, AgreesWithTheExactWayWhateverItsSize) {
   compare_ways_of("etalons of all sizes", 150, 0.05, draw);
 }
 
-// The images of such ends are ellipses of 0.5 to 10 px by 10 to 100, of which a pixel may see both sides.
+// The images of such ends are ellipses of 0.5 to 10 px by 10 to 100 px; a pixel may see both sides.
 TEST(QuickEtalon, AgreesWithTheExactWayWhereAnEndIsSeenFromItsEdge) {
   constexpr int width = 96, height = 72;
   compare_ways_of("ends from the edge", 300, 0.04, [](TestRandom& random) {
@@ -101,8 +101,8 @@ TEST(QuickEtalon, AgreesWithTheExactWayWhereAnEndIsSeenFromItsEdge) {
   });
 }
 
-// Upright or lying, its lines towards the camera and its axis through the middles of pixels: distances do not
-// change in the image there.
+// Upright or lying, with its lines towards the camera and its axis through the middles of pixels: image
+// derivatives of distances vanish there.
 TEST(QuickEtalon, AgreesWithTheExactWayWhereTheCameraIsAlignedWithIt) {
   compare_ways_of("aligned etalons", 100, 0.05, [](TestRandom& random) {
     Sight sight = etalon_sight(random);
@@ -118,8 +118,8 @@ TEST(QuickEtalon, AgreesWithTheExactWayWhereTheCameraIsAlignedWithIt) {
   });
 }
 
-// Flat ones, so near that their skin is seen of less than half of the rim, in pictures of the place where
-// contour and rim meet.
+// Flat ones, so near that skin is visible along less than half of the rim. The pictures show where contour
+// and rim meet.
 TEST(QuickEtalon, AgreesWithTheExactWayWhereRimsAreNear) {
   compare_ways_of("rims that are near", 300, 0.04, [](TestRandom& random) {
     Sight sight = etalon_sight(random);
@@ -149,7 +149,7 @@ TEST(QuickEtalon, IsTheSameOnEveryPath) {
   });
 }
 
-// What a calibration looks at: upright, 1.5 m away, by 640 x 480 px, zoomed in.
+// As in a calibration: upright, 1.5 m away, 640 x 480 px, zoomed in.
 TEST(QuickEtalon, LeavesHardlyAnythingToTheExactWay) {
   constexpr double f = 2000, far = 1.53;  // px, m
   Scene scene = plain_scene();
@@ -159,7 +159,7 @@ TEST(QuickEtalon, LeavesHardlyAnythingToTheExactWay) {
   const auto alone = static_cast<double>(left_out_of(scene, view));
   std::printf("of an etalon of %.0f pixels %.0f are left out\n", area, alone);
   EXPECT_LT(alone, 0.01 * area);
-  // Beside something else it is left.
+  // Next to another body the fast path does not draw it.
   scene.obstacles.push_back({SphereConfig{.center = {2, 0, -1}, .radius = 0.05}, {0.4, 0.5, 0.4}});
   EXPECT_GT(static_cast<double>(left_out_of(scene, view)), 0.9 * area);
 }

@@ -16,7 +16,8 @@ void QuickPicture::leave(const ImageRegion& region) {
 bool QuickPicture::draw(const Stage& stage, const RayField& rays, const Intrinsics& intrinsics,
                         PixelKind pixels, LightImage& picture) {
   width_ = picture.depth.width(), height_ = picture.depth.height();
-  constexpr double most = 1e6;  // Of the principal point and of focal lengths, px: single precision.
+  // Limit of the principal point and of focal lengths, px, for single precision.
+  constexpr double most = 1e6;
   const bool is_lens_known = std::abs(intrinsics.cx) < most && std::abs(intrinsics.cy) < most &&
                              intrinsics.fx < most && intrinsics.fy < most;
   // Regions of the image are bounded across the images of axes: pixels have to be nearly square.
@@ -74,7 +75,7 @@ void QuickPicture::find_left_out() {
   }
 }
 
-// Boxes.
+// Faces of boxes.
 bool QuickPicture::leave_face(const FacePart& part) {
   if (part.screen >= 0 || !part.face.is_front) return true;
   const Eigen::Vector3d middle = 0.5 * (part.face.corners[0] + part.face.corners[2]);
@@ -83,7 +84,7 @@ bool QuickPicture::leave_face(const FacePart& part) {
   return region.has_value();
 }
 
-// Such as a floor: what lies below its horizon, and a little more. From behind it is not seen.
+// Leaves out a plane such as a floor: all below its horizon, with a margin. From behind it is invisible.
 void QuickPicture::leave_plane(const PlanePart& plane) {
   if (!(plane.normal.dot(plane.point) < 0)) return;
   constexpr double more = 3;  // px
@@ -96,7 +97,7 @@ void QuickPicture::leave_plane(const PlanePart& plane) {
   }
 }
 
-// Of the pixels from number `begin` on; where there are too few, the last one stands for the rest.
+// Sets the positions of the pixels from number `begin` on; missing ones repeat the last pixel.
 void QuickPicture::set_places(const std::vector<Pixel>& pixels, std::size_t begin, SpanPlaces& places) const {
   for (std::size_t i = 0; i < span_step; ++i) {
     const Pixel& pixel = pixels[std::min(begin + i, pixels.size() - 1)];
@@ -115,7 +116,7 @@ void QuickPicture::divide(const Skin& skin) {
   }
 }
 
-// Lays a contour over what is in the pixel.
+// Blends a contour over the content of the pixel.
 void QuickPicture::merge(const SpanPiece& piece, Pixel pixel, const SpanPlaces& places,
                          const BorderPixels& borders, std::size_t i) {
   std::uint8_t& here = state(pixel.u, pixel.v);

@@ -17,25 +17,26 @@
 
 namespace flexura {
 
-/// In single precision, as the quick way works.
+/// Converts to the single precision of the fast path.
 [[nodiscard]] inline float number(double x) { return static_cast<float>(x); }
 
-/// Draws what is plain to see: screens and their edges, the skin of the arm, its contours before one surface,
-/// the rims of its ends and the edges of its markers, and an etalon that stands alone, with its lines, many
-/// pixels at a time in single precision; and tells which pixels are not, for the exact way. What it draws
-/// agrees with the exact way to 1/500 of full scale, but where edges of markers or lines are seen: there a
-/// part of up to 0.05 of a pixel may show the other colour. Depths agree to 1e-5 of them, nearly all to 1e-6.
+/// The fast path of the renderer. It draws simple content many pixels at a time in single precision and lists
+/// the other pixels for the reference path. It draws screens and their edges, the arm's skin, its contours in
+/// front of one surface, the rims of its ends, and marker edges. It also draws an etalon that stands alone,
+/// with its lines. It agrees with the reference path to 1/500 of full scale, except at edges of markers or
+/// lines. There, up to 0.05 of a pixel may show the other colour. Depths agree to 1e-5 relative, nearly all
+/// to 1e-6.
 class QuickPicture {
  public:
   struct Pixel {
     int u, v;
   };
 
-  /// std::invalid_argument: the path is not available.
+  /// Throws std::invalid_argument if the path is not available.
   explicit QuickPicture(SimdPath path = best_simd_path());
 
-  /// Draws into `picture`, whose images have the right size. False, with nothing of use drawn, for what it
-  /// does not know: shadows, a camera close to something, pictures less than span_step wide.
+  /// Draws into `picture`, whose images have the right size. Returns false, with no usable result, for
+  /// unsupported cases: shadows, a camera close to a body, pictures less than span_step wide.
   bool draw(const Stage& stage, const RayField& rays, const Intrinsics& intrinsics, PixelKind pixels,
             LightImage& picture);
 
@@ -49,10 +50,10 @@ class QuickPicture {
     ImageRegion region;
     PixelRange rows;
     std::size_t first_edge = 0;
-    int index = 0;  // In the stage.
+    int index = 0;  // Index in the stage.
     std::vector<Pixel> contour;
   };
-  // A flat end of the arm, the skin that ends there, and the pixels where its rim may be.
+  // A flat end of the arm, the skin that ends there, and the pixels that may contain its rim.
   struct Rim {
     SpanRim rim{};
     ImageRegion region;
@@ -61,22 +62,22 @@ class QuickPicture {
     double depth = 0;
     std::vector<Pixel> pixels;
   };
-  // A screen; `edges` are those of the kernel, and `margin` by how much each has to be within.
+  // A screen; `edges` are those of the kernel, and `margin` is the required distance inside each.
   struct Panel {
     SpanScreen screen{};
     struct Edge {
       double value = 0, by_u = 0, by_v = 0, margin = 0;
     } edges[4];
-    // One over the depth of what is seen x and y px from (u0, v0). In double precision: where two screens
-    // cross at a small angle it is their difference that counts.
+    // Inverse depth at x and y px from (u0, v0). In double precision, because where two screens cross at a
+    // small angle their difference matters.
     struct Nearness {
       double value = 0, by_u = 0, by_v = 0;
       [[nodiscard]] double at(double x, double y) const { return value + by_u * x + by_v * y; }
     } nearness;
-    std::vector<float> light;  // A row of its light, if that is plain.
+    std::vector<float> light;  // A row of its light, if uniform.
   };
 
-  // Of a pixel: its share, and its centroid from the pixel's middle.
+  // Share of a pixel, and its centroid from the pixel's middle.
   struct PixelPart {
     double area = 0;
     Eigen::Vector2d centroid = {0, 0};
@@ -89,19 +90,19 @@ class QuickPicture {
   void start(const Stage& stage);
   void find_left_out();
 
-  // Whether a point of C is seen so near to the picture that pixels counted from there in single precision
-  // are exact to a thousandth of one.
+  // Returns whether the image of a point of C is near enough to the picture. Pixel distances from it in
+  // single precision must be exact to a thousandth.
   [[nodiscard]] bool is_near_picture(const Eigen::Vector3d& p) const {
     constexpr double most = 16384;
     return std::abs(intrinsics_.fx * p.x() / p.z() + intrinsics_.cx) < most &&
            std::abs(intrinsics_.fy * p.y() / p.z() + intrinsics_.cy) < most;
   }
-  // The pixel that shows a point of C, rounded.
+  // Returns the pixel that shows a point of C, rounded.
   [[nodiscard]] Eigen::Vector2d pixel_of(const Eigen::Vector3d& p) const {
     return {std::round(intrinsics_.fx * p.x() / p.z() + intrinsics_.cx),
             std::round(intrinsics_.fy * p.y() / p.z() + intrinsics_.cy)};
   }
-  // A function of rays: scale * by . direction, seen from `pixel`.
+  // A function of rays: scale * by . direction, relative to `pixel`.
   [[nodiscard]] Linear along_rays(const Eigen::Vector3d& by, const Eigen::Vector2d& pixel,
                                   double scale = 1) const {
     return {number(scale * by.dot(straight_ray(intrinsics_, pixel.x(), pixel.y()).direction)),
@@ -152,7 +153,7 @@ class QuickPicture {
     rows_[static_cast<std::size_t>(v)].has_exact = true;
   }
   void leave(const ImageRegion& region);
-  // Calls visit(u, v) for the pixels that may see something of the region.
+  // Calls visit(u, v) for the pixels that may show part of the region.
   template <typename Visit>
   void for_pixels(const ImageRegion& region, Visit&& visit) const {
     const PixelRange rows = map_.rows(region);
@@ -168,11 +169,11 @@ class QuickPicture {
   LensMap map_;
   int width_ = 0, height_ = 0;
   std::size_t channels_ = 1;
-  double pixel_ = 0;  // The size of the largest at depth 1.
+  double pixel_ = 0;  // Size of the largest pixel at depth 1.
   LightImage* picture_ = nullptr;
-  std::vector<std::uint8_t> states_;  // Of pixels.
+  std::vector<std::uint8_t> states_;  // By pixel.
   std::vector<SpanRow> rows_;
-  std::vector<float> background_;  // A row of it.
+  std::vector<float> background_;  // One row of it.
   std::vector<int> borders_;
   std::vector<Panel> panels_;
   std::size_t panel_count_ = 0;
@@ -181,7 +182,7 @@ class QuickPicture {
   std::vector<Rim> rims_;
   std::size_t rim_count_ = 0;
   std::vector<std::size_t> by_row_;  // Skins by their first row.
-  std::vector<std::uint8_t> meets_;  // Of the stage's pieces: whether another stretch of the arm cuts it.
+  std::vector<std::uint8_t> meets_;  // By piece of the stage: whether another part of the arm cuts it.
   std::vector<SpanEdge> edges_;
   std::vector<Pixel> left_out_;
 };

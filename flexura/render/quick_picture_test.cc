@@ -16,7 +16,8 @@
 namespace flexura {
 namespace {
 
-// An arm with rings before a screen or two, and now and then an obstacle, a round tip, disks or a taper.
+// An arm with rings in front of one or two screens, sometimes with an obstacle, a round tip, disks or a
+// taper.
 Scene busy_scene(TestRandom& random, const Backbone& backbone, const View& view) {
   Scene scene;
   scene.arm.tube = tube_of(backbone);
@@ -40,8 +41,7 @@ Scene busy_scene(TestRandom& random, const Backbone& backbone, const View& view)
     scene.obstacles.push_back(
         {SphereConfig{.center = {at.x(), at.y(), at.z()}, .radius = 0.05}, {0.4, 0.5, 0.4}});
   }
-  // A floor under the arm, which some of it passes, as the camera sees it: its horizon runs through the
-  // picture.
+  // A floor under the arm, partly crossed by it; its horizon runs through the picture.
   if (scene.screens.size() == 1) {
     const Eigen::Vector3d foot = backbone.pose(0.2 * backbone.length()).position;
     const Eigen::Vector3d up = -view.X_WC.rotation.col(1) - 0.1 * ahead + 0.1 * view.X_WC.rotation.col(0);
@@ -65,18 +65,17 @@ TEST(QuickPicture, AgreesWithTheExactWay) {
     const Scene scene = busy_scene(random, bent.backbone(), view);
     return Sight{scene, view, random.integer(0, 1) == 1 ? PixelKind::color : PixelKind::gray};
   });
-  // Of a sanitized build's few cases the mean says nothing.
+  // The few cases of a sanitized build do not determine the mean.
   if (one_case_of == 1) {
     EXPECT_LT(all.count, 1e-4 * all.many);
   }
   EXPECT_EQ(all.bad_depths, 0);
 }
 
-// Thick arms and thin ones, tapered or not, bent gently and sharply, of one section or four, near and seen
-// from afar through a long lens, with pixels that are no squares, with distortion, with bright rings on dark
-// skin.
+// Thick and thin arms, tapered or not, bent gently and sharply, of one section or four. Near, or far through
+// a long lens; with non-square pixels, with distortion, with bright rings on dark skin.
 TEST(QuickPicture, AgreesWithTheExactWayInAllKindsOfScenes) {
-  // Of light that differs by 0.8 from one side of an edge to the other.
+  // For light that differs by 0.8 between the sides of an edge.
   const Difference all = compare_ways_of("all kinds of scenes", 150, 0.04, [](TestRandom& random) {
     BentArm bent;
     bent.arm.kind = ArmKind::spatial;
@@ -119,13 +118,13 @@ TEST(QuickPicture, DrawsTaperedArmsToo) {
   scene.arm.markers = {{0.2, 0.25}, {0.7, 0.75}};
   // It covers some 700 pixels.
   EXPECT_LT(left_out_of(scene, view), 30);
-  // Cones are no arms.
+  // Cones are left to the reference path.
   arm.sections[0].radius = {0.09, 0.03};
   scene.arm.tube = tube_of(Backbone(arm, state));
   EXPECT_GT(left_out_of(scene, view), 300);
 }
 
-// A disk on the joint of two sections leaves these to the quick way.
+// The fast path still draws two sections with a disk at their joint.
 TEST(QuickPicture, DrawsSectionsBesideDisks) {
   Arm arm;
   arm.kind = ArmKind::spatial;
@@ -137,7 +136,7 @@ TEST(QuickPicture, DrawsSectionsBesideDisks) {
   const std::size_t without = left_out_of(scene, view);
   scene.arm.disks.push_back({.s = 0.5, .radius = 0.05, .thickness = 0.01});
   const std::size_t with = left_out_of(scene, view);
-  EXPECT_LT(with - without, 250);  // 6 px by 10 and around.
+  EXPECT_LT(with - without, 250);  // 6 px by 10, and the surroundings.
 }
 
 TEST(QuickPicture, IsTheSameOnEveryPath) {
@@ -178,7 +177,8 @@ TEST(QuickPicture, KnowsWhatItDoesNotKnow) {
   EXPECT_FALSE(is_drawn(shadowed, view));
 }
 
-// Upright before a floor: of an empty scene all below the horizon is left out, and three rows above.
+// Upright in front of a floor: of an empty scene everything below the horizon is left out, and three rows
+// above.
 TEST(QuickPicture, LeavesOutWhatLiesBelowAFloorsHorizon) {
   for (const double height : {1.0, -1.0}) {
     Scene scene;

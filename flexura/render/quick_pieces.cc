@@ -7,15 +7,15 @@
 namespace flexura {
 namespace {
 
-// A function of the image that takes (by_u, by_v) more from pixel to pixel, times `scale`.
+// A linear function of the image with this value and these changes per pixel, times `scale`.
 Linear linear(double value, double by_u, double by_v, double scale = 1) {
   return {number(scale * value), number(scale * by_u), number(scale * by_v)};
 }
 
-// How many of Newton's steps it takes, and how small the last one has to be, so that the parabolas of H stand
-// for it: to where H is least from `start` radii off, to a tenth of a pixel in the contour; and to the entry
-// from the parabola's. `bend`: curvature * radius; `pixels`: in the radius. The third derivative is what they
-// miss.
+// Sets the number of Newton steps, and the limit on the last one, for which the parabolas of H are accurate
+// enough. First to the minimum of H, from `start` radii away: a tenth of a pixel in the contour. Then to the
+// entry, from the parabola's. `bend`: curvature * radius; `pixels`: radius in pixels. The parabola's error is
+// the third derivative.
 void plan_steps(double bend, double start, double pixels, SpanPiece& span) {
   constexpr int most = 6;
   const double largest = std::cbrt(0.1 / (std::max(bend, 1e-6) * pixels));
@@ -30,7 +30,7 @@ void plan_steps(double bend, double start, double pixels, SpanPiece& span) {
   span.settled = number(settled * static_cast<double>(span.radius));
 }
 
-// The least distance between the segments from p to p + u and from q to q + v.
+// Returns the smallest distance between the segments from p to p + u and from q to q + v.
 double distance_between(const Eigen::Vector3d& p, const Eigen::Vector3d& u, const Eigen::Vector3d& q,
                         const Eigen::Vector3d& v) {
   const Eigen::Vector3d w = p - q;
@@ -54,31 +54,32 @@ bool do_meet(const TubePiece& one, const TubePiece& other) {
          reach + sagitta(one) + sagitta(other);
 }
 
-// Nothing but screens before, behind and beside it.
+// Returns whether the stage holds the etalon and otherwise only screens.
 bool is_etalon_alone(const Stage& stage) {
   return stage.pieces.size() == 1 && stage.planes.empty() &&
          std::ranges::all_of(stage.faces, [](const FacePart& face) { return face.screen >= 0; });
 }
 
-// Whether the quick way may take a piece so bent.
+// Returns whether the fast path supports the bend and taper of a piece.
 bool is_gentle(const TubePiece& piece) {
   return piece.curvature * piece.widest() < 0.5 && std::abs(piece.widening) < 0.1;
 }
 
-// How near along the axis to where another arc goes on contours are left to the exact way, m, `pixel` in
-// size: where it bends or tapers otherwise their contours part there. 0 where the same arc goes on, and at a
-// true end.
+// Returns the distance along the axis from a joint, m, within which contours are left to the reference path;
+// `pixel` is the pixel size. Where bend or taper change, the contours of the two arcs differ. 0 if the same
+// arc continues, and at a true end.
 double kink_of(const Stage& stage, const TubePiece& piece, int neighbour, double pixel) {
   if (neighbour < 0) return 0;
   const TubePiece& other = stage.pieces[static_cast<std::size_t>(neighbour)];
   if (other.tube_arc == piece.tube_arc) return 0;
-  // The skin's slope along the axis, and by how much it differs about the axis of an arc that bends.
+  // Range of the skin's slope along the axis, over the directions around the axis of a bent arc.
   const auto spread = [](const TubePiece& one) {
     const double bend = one.curvature * one.widest();
     return std::abs(one.widening) * bend / (1 - std::min(bend, 0.5));
   };
   const double change = std::abs(other.widening - piece.widening) + spread(piece) + spread(other);
-  // Seen at the angle a from the axis, two slopes part a contour by cot^2 a radii times their difference.
+  // Seen at the angle a from the axis, a difference of slopes shifts the contour by cot^2 a radii times that
+  // difference.
   const bool is_at_end = neighbour == piece.after;
   const Eigen::Vector3d p_PJ = is_at_end ? 2 * piece.bound_center : Eigen::Vector3d(0, 0, 0);
   const Eigen::Vector3d tangent = is_at_end ? piece.end_tangent : Eigen::Vector3d(0, 0, 1);
@@ -87,7 +88,7 @@ double kink_of(const Stage& stage, const TubePiece& piece, int neighbour, double
   return pixel + piece.widest() * change * std::max(2.0, square / (1 - square));
 }
 
-// Whether a screen comes into a ball.
+// Returns whether a screen reaches into a ball.
 bool meets_screen(const Stage& stage, const Eigen::Vector3d& center, double radius) {
   return std::ranges::any_of(stage.faces, [&](const FacePart& part) {
     if (part.screen < 0) return false;
@@ -106,7 +107,7 @@ bool QuickPicture::plan_pieces(const Stage& stage) {
   find_meetings(stage);
   if (!std::ranges::all_of(stage.pieces, [&](const TubePiece& piece) { return plan_piece(stage, piece); }))
     return false;
-  // Where neighbours overlap at the same depth the first one stays: from the top of the picture on.
+  // Where neighbours overlap at equal depth, the first one stays: the order is from the top of the picture.
   by_row_.clear();
   for (std::size_t i = 0; i < skin_count_; ++i) {
     skins_[i].piece.edges = edges_.data() + skins_[i].first_edge;
@@ -116,8 +117,8 @@ bool QuickPicture::plan_pieces(const Stage& stage) {
   return true;
 }
 
-// Pieces of the arm that meet without following each other: their skins then end in a line that no contour
-// tells of. Gentle arcs do not come back within 2.5 radii of arc.
+// Finds pieces of the arm that meet without following each other: their skins then end in a line that is no
+// contour. Gentle arcs do not come back within 2.5 radii of arc.
 void QuickPicture::find_meetings(const Stage& stage) {
   const auto& pieces = stage.pieces;
   meets_.assign(pieces.size(), 0);
@@ -149,8 +150,8 @@ bool QuickPicture::plan_piece(const Stage& stage, const TubePiece& piece) {
   const Eigen::Vector3d center = piece.p_CP + piece.R_CP * piece.bound_center;
   const Eigen::Vector3d chord = (end - piece.p_CP).normalized();
   const double slant = chord.dot(center.normalized());
-  // Around the middle between the chord and the arc. The skin goes on beyond the chord's ends as far as the
-  // planes there lean, and as far as a ray gets from the axis' side to the skin.
+  // Around the middle between chord and arc. The skin extends beyond the chord's ends for two reasons: the
+  // planes there are tilted, and a ray needs some way from the axis to the skin.
   const double turn = piece.curvature * piece.length, sagitta = piece.length * turn / 8;
   const Eigen::Vector3d chord_P = piece.bound_center.normalized();
   const Eigen::Vector3d aside = piece.R_CP * Eigen::Vector3d(-chord_P.z(), 0, chord_P.x()) * (0.5 * sagitta);
@@ -159,7 +160,8 @@ bool QuickPicture::plan_piece(const Stage& stage, const TubePiece& piece) {
   const auto region = ImageRegion::of(intrinsics_, piece.p_CP + aside, end + aside, widest + 0.5 * sagitta,
                                       piece.is_ball ? 2 * widest : widest * (lean + 0.1));
   if (!region) return false;
-  // An etalon's lines are wide: seen more from its end they are bent by more than its pixels' points tell.
+  // An etalon's lines are wide. Seen at a small angle to the axis they are bent more than the sample points
+  // of a pixel resolve.
   const bool is_etalon = stage.bodies[static_cast<std::size_t>(piece.body)].is_etalon;
   const double most_slant = is_etalon ? 0.5 : 0.9;  // Squares of cosines.
   bool is_quick = is_drawn_skin(stage, piece) && !piece.is_ball && slant * slant < most_slant &&
@@ -169,9 +171,8 @@ bool QuickPicture::plan_piece(const Stage& stage, const TubePiece& piece) {
     if (skin_count_ == skins_.size()) skins_.emplace_back();
     Skin& skin = skins_[skin_count_];
     fill_span_piece(stage, piece, skin);
-    // Two pixels across the radius, so that a pixel with one contour does not reach over the axis to the
-    // other.
-    // And not so many that single precision, and what is drawn beyond an end, are seen.
+    // At least two pixels across the radius, so that a pixel with one contour does not reach over the axis to
+    // the other. Also limited above, as single precision and the overlap beyond an end would become visible.
     constexpr float most_pixels = 700;
     is_quick = 2.1F * skin.piece.reach < number(piece.narrowest()) &&
                number(widest) < most_pixels * skin.piece.reach && add_edges(stage, piece, skin);
@@ -223,7 +224,7 @@ void QuickPicture::fill_span_piece(const Stage& stage, const TubePiece& piece, S
   span.reach = span.bent_reach = number(0.9 * size);
   span.kink_before = number(kink_of(stage, piece, piece.before, size));
   span.kink_after = number(kink_of(stage, piece, piece.after, size));
-  // The rays' rise over that plane changes across the image.
+  // The height of the rays over that plane changes across the image.
   const double bend = piece.curvature * piece.widest(), slant = std::abs(d.dot(chord)) / rise;
   const double width = piece.bound_radius * piece.bound_radius / center.z();
   const double start_error = half_sagitta + slant * slant * width;

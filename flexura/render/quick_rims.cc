@@ -7,9 +7,9 @@
 namespace flexura {
 namespace {
 
-// Of which piece of the stage a disc is a flat end, and which one.
+// The piece of which a disc is a flat end, and which end.
 struct EndOf {
-  int piece = -1;  // -1: none, or not the end of a whole tube.
+  int piece = -1;  // -1: not the end of a whole tube.
   bool is_base = false;
 };
 
@@ -26,8 +26,8 @@ EndOf end_of(const Stage& stage, const DiscPart& disc) {
 
 }  // namespace
 
-// Flat ends of the arm and of the etalon; where the skin at one is not drawn the quick way, and of all other
-// discs, the exact way draws all.
+// Plans the flat ends of the arm and of the etalon. The reference path draws all other discs, and ends whose
+// skin the fast path does not draw.
 bool QuickPicture::plan_rims(const Stage& stage) {
   rim_count_ = 0;
   for (const DiscPart& disc : stage.discs) {
@@ -44,7 +44,7 @@ bool QuickPicture::plan_rims(const Stage& stage) {
                                         std::min(narrow, circle.radius));
     if (!region) return false;
     const EndOf end = end_of(stage, disc);
-    // The image of one seen from its edge is too thin for single precision.
+    // Seen edge-on, its image is too thin for single precision.
     constexpr double thinnest = 1;  // px
     const double thickness = 2 * circle.radius * std::abs(circle.normal.dot(circle.center)) /
                              (circle.center.squaredNorm() * pixel_);
@@ -79,10 +79,10 @@ void QuickPicture::fill_rim(const Stage& stage, const DiscPart& disc, const Tube
   rim.z = along_rays(circle.by_z, pixel, scale * circle.radius);
   rim.nearness = along_rays(circle.normal, pixel, 1 / circle.normal.dot(circle.center));
   rim.is_front = circle.normal.dot(circle.center) < 0;
-  // The skin at the rim in direction (x, y) is seen where it faces the camera. A pixel of the other half has
-  // to be looked at where its half is near: beside the contour, and everywhere if the image is flat.
+  // The skin at the rim in direction (x, y) is visible where it faces the camera. Pixels of the other half
+  // must be checked near the visible one: beside the contour, and everywhere if the image is flat.
   rim.facing[0] = number(circle.x.dot(circle.center)), rim.facing[1] = number(circle.y.dot(circle.center));
-  // Where the tube tapers the skin's normals lean from those of the circle, along the tube.
+  // On a tapered tube, the skin's normals are tilted along the tube from those of the circle.
   const Eigen::Vector3d t = rim.state == state_base ? Eigen::Vector3d(0, 0, 1) : piece.end_tangent;
   const Eigen::Vector3d bend =
       piece.R_CP * Eigen::Vector3d(t.z(), 0, -t.x()) * (piece.curvature * circle.radius);
@@ -99,7 +99,7 @@ void QuickPicture::fill_rim(const Stage& stage, const DiscPart& disc, const Tube
   for (Eigen::Index c = 0; c < 3; ++c) rim.light[c] = number(channels_ == 1 ? gray_of(color) : color[c]);
 }
 
-// Takes the rim's pixels from those that are drawn as plain.
+// Excludes the rim's pixels from those drawn as skin.
 void QuickPicture::find_rim(Rim& rim) {
   rim.pixels.clear();
   for (int v = rim.rows.begin; v < rim.rows.end; ++v) {
@@ -123,8 +123,8 @@ void QuickPicture::draw(const Rim& rim) {
   }
 }
 
-// Whether the rim's pixel can be laid over what is there: false where that is nearer than the rim, and where
-// it is more than this way knows (one rim before the other, a contour before or behind it), which is left.
+// Returns whether the rim's pixel can be drawn over the present content. False if that is nearer than the
+// rim. Pixels with two rims, or with a contour in front of or behind the rim, are left to the reference path.
 bool QuickPicture::takes_rim(const Rim& rim, Pixel pixel) {
   const std::uint8_t here = state(pixel.u, pixel.v);
   if ((here & state_exact) != 0) return false;
@@ -157,7 +157,7 @@ void QuickPicture::divide_rim(Rim& rim) {
   }
 }
 
-// Lays the end over what is in the pixel.
+// Draws the end over the content of the pixel.
 void QuickPicture::lay_rim(Pixel pixel, const RimPixels& seen, std::size_t i) {
   float& depth = picture_->depth.at(pixel.u, pixel.v);
   depth = std::min(depth, seen.depth[i]);

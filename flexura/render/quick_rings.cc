@@ -8,8 +8,8 @@
 namespace flexura {
 namespace {
 
-// The edge of a ring whose axis is seen at an angle. Towards the contour it runs along that: d px within, it
-// is slope sqrt(2 r d) px along the tube from where it meets the contour (docs/renderer.md).
+// The edge of a ring whose axis is seen at an angle. Near the contour it runs along the contour. At d px
+// inside, it is slope sqrt(2 r d) px along the tube from their meeting point (docs/renderer.md).
 struct RingAspect {
   double sine = 0, slope = 0;
 
@@ -17,28 +17,28 @@ struct RingAspect {
     const double bounded = std::min(cosine, 0.95);
     sine = std::sqrt(1 - bounded * bounded), slope = bounded / sine;
   }
-  // How far from a pixel, m along the tube, an edge may be that divides it.
+  // Largest distance from a pixel, m along the tube, of an edge that divides it.
   [[nodiscard]] double reach(double radius, double pixel) const {
     return pixel * (1 / sine + slope * std::sqrt(2.8 * radius / pixel));
   }
-  // How far within the contour, m, a line through the pixel's middle does not stand for it: in the mean of
-  // the pixel it is off by 1/24 of the second derivative.
+  // Distance inside the contour, m, within which a straight line is too inaccurate: the error of the mean
+  // over a pixel is 1/24 of the second derivative.
   [[nodiscard]] double bent_reach(double radius, double pixel) const {
     constexpr double most = 0.004;  // px
-    // On thick arms these pixels are few, and points, which are off by a hundredth themselves, do no better.
+    // On thick arms these pixels are few, and sample points, with an error of a hundredth, are no better.
     if (slope * pixel <= 0.02 * radius) return 0;
     return std::min(radius, std::pow(slope * std::sqrt(2 * radius / pixel) / (96 * most), 2.0 / 3) * pixel);
   }
 };
 
-// Seen from around the middle of the piece, at the steepest.
+// As seen from around the middle of the piece, at the steepest.
 RingAspect steepest_aspect(const TubePiece& piece) {
   const Eigen::Vector3d center = piece.p_CP + piece.R_CP * piece.bound_center;
   const double along = std::abs((piece.R_CP * piece.bound_center).normalized().dot(center.normalized()));
   return RingAspect(along + 0.5 * piece.curvature * piece.length + 2 * piece.widest() / center.z());
 }
 
-// Whether the plane of an edge that does not lie on the piece leaves its ends on one side.
+// Returns whether the plane of an edge outside the piece leaves both its ends on one side.
 bool is_clear_of(const RingEdge& edge, const TubePiece& piece) {
   const double slack = 1e-6 * piece.widest();
   const bool is_before = edge.s<piece.s - slack, is_after = edge.s> piece.s + piece.length + slack;
@@ -60,8 +60,8 @@ Color albedo_at(const ArmLook& arm, double s) {
 
 }  // namespace
 
-// The planes of marker edges at the piece and what they do to its colour; false when one cuts it that belongs
-// to a ring beyond its ends, where the arm turns sharply, and when rings finer than pixels are seen aslant.
+// Adds the planes of marker edges at the piece and their colour changes. Returns false if an edge beyond its
+// ends cuts it, where the arm turns sharply. Also if rings finer than pixels are seen aslant.
 bool QuickPicture::add_edges(const Stage& stage, const TubePiece& piece, Skin& skin) {
   skin.first_edge = edges_.size();
   const Body& body = stage.bodies[static_cast<std::size_t>(piece.body)];
@@ -77,7 +77,7 @@ bool QuickPicture::add_edges(const Stage& stage, const TubePiece& piece, Skin& s
   bool is_fine = false;
   double s_before = -std::numeric_limits<double>::infinity();
   for (auto ring = begin; ring != end; ++ring) {
-    // Of several in one place the last; the faces of disks change no colour.
+    // Of several at one position the last counts; the faces of disks change no colour.
     if (ring->is_disk || std::any_of(ring + 1, end, [&](const RingEdge& other) {
           return !other.is_disk && other.s <= ring->s;
         }))
@@ -87,7 +87,7 @@ bool QuickPicture::add_edges(const Stage& stage, const TubePiece& piece, Skin& s
     const RingAspect aspect(std::abs(circle.normal.dot(circle.center.normalized())) +
                             2 * piece.widest() / circle.center.z());
     skin.piece.bent_reach = std::max(skin.piece.bent_reach, number(aspect.bent_reach(piece.widest(), pixel)));
-    // Points within a pixel do not tell rings finer than pixels apart.
+    // The sample points of a pixel do not resolve rings finer than a pixel.
     constexpr double finest = 1.5;  // px
     is_fine = is_fine || aspect.sine * (ring->s - s_before) < finest * pixel;
     if (is_fine && skin.piece.bent_reach > skin.piece.reach) return false;
@@ -106,8 +106,8 @@ bool QuickPicture::add_edges(const Stage& stage, const TubePiece& piece, Skin& s
   return true;
 }
 
-// The planes of the edges of the etalon's lines, and what they do to its colour: lines opposite each other
-// lie between the same two. False for lines that are too fine or too wide.
+// Adds the planes of the edges of the etalon's lines and their colour changes; opposite lines lie between the
+// same two. Returns false for lines that are too fine or too wide.
 bool QuickPicture::add_lines(const Stage& stage, const TubePiece& piece, Skin& skin) {
   const Etalon& etalon = *stage.scene->etalon;
   skin.piece.edge_count = 0;
@@ -115,10 +115,10 @@ bool QuickPicture::add_lines(const Stage& stage, const TubePiece& piece, Skin& s
   if (!(etalon.line_width > 0)) return true;
   const double pixel = static_cast<double>(skin.piece.reach) / 0.9;
   const double half_angle = 0.5 * etalon.line_width / etalon.radius;
-  // Points within a pixel do not tell lines finer than pixels apart; wide ones run into each other.
+  // The sample points of a pixel do not resolve lines finer than a pixel; wide lines merge.
   constexpr double finest = 1.5, widest = 0.7;  // px, rad
   if (etalon.line_width < finest * pixel || half_angle > widest) return false;
-  // d px within the contour an edge runs off by x^2 / (4 d) in x px.
+  // d px inside the contour, an edge deviates by x^2 / (4 d) within x px.
   constexpr double bent = 6;  // px
   skin.piece.bent_reach = std::max(skin.piece.reach, number(std::min(piece.widest(), bent * pixel)));
   for (const int axis : {0, 2}) {

@@ -26,8 +26,8 @@ void QuickPicture::plan_screens(const Stage& stage) {
     Panel& panel = panels_[panel_count_++];
     fill_panel(stage, part, panel);
     const Panel::Nearness& nearness = panel.nearness;
-    // Within a pixel of a line where two screens meet their nearness differs by less than both change. Depths
-    // are kept in single precision.
+    // Within a pixel of the line where two screens meet, their inverse depths differ by less than the change
+    // of both. Depths are stored in single precision.
     const double change =
         1.2 * pixel_ * std::max(intrinsics_.fx, intrinsics_.fy) * std::hypot(nearness.by_u, nearness.by_v);
     const double largest = std::abs(nearness.value) + std::abs(nearness.by_u) * width_ +
@@ -39,7 +39,7 @@ void QuickPicture::plan_screens(const Stage& stage) {
   }
 }
 
-// Places are counted from the image's middle.
+// Positions are relative to the image's middle.
 void QuickPicture::fill_panel(const Stage& stage, const FacePart& part, Panel& panel) const {
   const Screen& look = stage.scene->screens[static_cast<std::size_t>(part.screen)];
   const Face& face = part.face;
@@ -76,7 +76,7 @@ void QuickPicture::fill_panel(const Stage& stage, const FacePart& part, Panel& p
 }
 
 void QuickPicture::draw_screens(SpanRow& row) {
-  // Without distortion the first screen leaves to the background what it does not cover.
+  // Without distortion the first screen also sets the background that it does not cover.
   if (panel_count_ == 0 || row.lens.u != nullptr) clear(0, width_, row);
   for (std::size_t i = 0; i < panel_count_; ++i) draw_panel(i, row);
 }
@@ -87,8 +87,8 @@ void QuickPicture::clear(int begin, int end, SpanRow& row) const {
   std::copy_n(background_.data(), count * channels_, row.light + static_cast<std::size_t>(begin) * channels_);
 }
 
-// Row by row: the columns that are a pixel or more within all edges. Those closer to an edge are divided or
-// left.
+// Finds, row by row, the columns at least a pixel inside all edges. Pixels closer to an edge are divided or
+// left out.
 void QuickPicture::draw_panel(std::size_t index, SpanRow& row) {
   const Panel& panel = panels_[index];
   const bool is_first = index == 0;
@@ -115,7 +115,7 @@ void QuickPicture::draw_panel(std::size_t index, SpanRow& row) {
     clear(0, inner.begin, row);
     clear(inner.end, width_, row);
   }
-  // Edges of other screens before or behind this one.
+  // Edges of other screens in front of or behind this one.
   for (int u = outer.begin; u < outer.end && row.has_edge; ++u)
     if ((row.state[u] & state_edge) != 0) leave(u, row.v);
   for (int u = outer.begin; u < inner.begin; ++u) draw_edge(panel, u, row);
@@ -143,7 +143,7 @@ void QuickPicture::draw_panel(std::size_t index, SpanRow& row) {
     kernels_->screen(panel.screen, inner.begin, inner.end, is_first, row);
 }
 
-// The second panel. Where it meets the first one nearness is as large: a straight line.
+// Draws the second panel. It meets the first one where their inverse depths are equal: in a straight line.
 void QuickPicture::draw_around_crossing(const PixelRange& inner, SpanRow& row) {
   const Panel &panel = panels_[1], &other = panels_[0];
   const SpanScreen& screen = panel.screen;
@@ -153,7 +153,7 @@ void QuickPicture::draw_around_crossing(const PixelRange& inner, SpanRow& row) {
                by_v = panel.nearness.by_v - other.nearness.by_v;
   const auto margin = static_cast<double>(screen.least_distance);
   const double slope = std::hypot(by_u, by_v);
-  if (!std::isfinite(value + slope + margin)) {  // The other one is seen from its edge.
+  if (!std::isfinite(value + slope + margin)) {  // The other one is seen edge-on.
     for (int u = inner.begin; u < inner.end; ++u) leave(u, row.v);
     return;
   }
@@ -165,7 +165,7 @@ void QuickPicture::draw_around_crossing(const PixelRange& inner, SpanRow& row) {
   crossing.end = std::clamp(crossing.end, crossing.begin, inner.end);
   kernels_->screen(screen, inner.begin, crossing.begin, false, row);
   kernels_->screen(screen, crossing.end, inner.end, false, row);
-  // Screens that stand in one plane, but for rounding, meet everywhere.
+  // Coplanar screens, up to rounding, meet everywhere.
   constexpr double rounding = 1e-9;
   const bool is_one_plane = slope <= rounding * panel.nearness.at(0, y);
   for (int u = crossing.begin; u < crossing.end; ++u) {
@@ -188,13 +188,14 @@ void QuickPicture::draw_around_crossing(const PixelRange& inner, SpanRow& row) {
   }
 }
 
-// Where a linear function of the image, which is `value` in a pixel's middle, is above 0 in the pixel.
+// Returns the part of a pixel where a linear function, `value` in the pixel's middle, is positive.
 QuickPicture::PixelPart QuickPicture::part_above(const Eigen::Vector2d& slope, double value) {
   const SquarePart part = part_beyond(0.5, slope.normalized(), -value / slope.norm());
   return {part.area, part.centroid};
 }
 
-// Lays the panel's part of a pixel over what is there: one panel's light all over it, or nothing's.
+// Mixes the panel's part of a pixel with what is behind it: one panel's light in the whole pixel, or the
+// background.
 void QuickPicture::mix(const Panel& panel, int u, const PixelPart& part, const Panel* behind,
                        SpanRow& row) const {
   const double x = u - static_cast<double>(panel.screen.u0), y = row.v - static_cast<double>(panel.screen.v0);
@@ -208,7 +209,7 @@ void QuickPicture::mix(const Panel& panel, int u, const PixelPart& part, const P
     light[c] = left[c] + static_cast<float>(part.area) * (seen[c] - left[c]);
 }
 
-// The panel's light x and y px from its (u0, v0).
+// Computes the panel's light x and y px from its (u0, v0).
 void QuickPicture::light_of(const Panel& panel, double x, double y, float (&light)[3]) const {
   const SpanScreen& screen = panel.screen;
   const double depth = 1 / panel.nearness.at(x, y);
@@ -223,7 +224,7 @@ void QuickPicture::light_of(const Panel& panel, double x, double y, float (&ligh
   for (std::size_t c = 0; c < channels_; ++c) light[c] = screen.brightness[c] * static_cast<float>(factor);
 }
 
-// A pixel that one edge divides before nothing; any other in which it is seen is left.
+// Draws a pixel that one edge divides in front of the background; leaves out all other pixels with the edge.
 void QuickPicture::draw_edge(const Panel& panel, int u, SpanRow& row) {
   const Panel::Edge* here = nullptr;
   double value_here = 0;

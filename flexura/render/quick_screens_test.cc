@@ -10,8 +10,7 @@
 namespace flexura {
 namespace {
 
-// Two small screens before, behind and through a ringed arm, their edges in its skin, its contours and its
-// ends.
+// Two small screens in front of, behind and through a ringed arm, with edges in its skin, contours and ends.
 TEST(QuickScreens, AgreesWithTheExactWayWhereEdgesOfScreensAreSeen) {
   const Difference all = compare_ways_of("edges of screens", 150, 0.04, [](TestRandom& random) {
     const BentArm bent = random_bent_arm(random, 0);
@@ -37,7 +36,7 @@ TEST(QuickScreens, AgreesWithTheExactWayWhereEdgesOfScreensAreSeen) {
   EXPECT_EQ(all.bad_depths, 0);
 }
 
-// The two ways' pictures of screens alone; with their light, and that of edges, right to 1/500.
+// Compares the paths' pictures of screens alone; their light, also at edges, must agree to 1/500.
 template <typename Add>
 void expect_agreement_on(const char* name, int count, const View& view, Add&& add) {
   const auto draw = [&](TestRandom& random) {
@@ -57,7 +56,7 @@ Screen gray_screen(const Eigen::Vector3d& position, const std::array<double, 2>&
   return screen;
 }
 
-// Where the edge of one screen is before or behind another, or where two cross.
+// One screen's edge in front of or behind another, or two screens that cross.
 TEST(QuickScreens, DrawsScreensThatOverlap) {
   expect_agreement_on("overlapping screens", 20, front_view(160, 120, 200), [](auto& random, Sight& sight) {
     for (const double z : {0.0, -0.5}) {
@@ -74,8 +73,8 @@ TEST(QuickScreens, DrawsScreensThatOverlap) {
   });
 }
 
-// What a third screen's edge leaves of a pixel in which two cross is no one's mean. One of its edges is along
-// the crossing, or across.
+// If a third screen's edge cuts a pixel in which two others cross, the mean light of these two is not that of
+// their visible part. One of its edges is along or across the crossing.
 TEST(QuickScreens, DrawsAThirdScreenBeforeTwoThatCross) {
   expect_agreement_on("a third screen", 40, front_view(160, 120, 200), [](auto& random, Sight& sight) {
     sight.scene.screens = {gray_screen({0, 0, 0}, {0.8, 0.8}, 0), gray_screen({0, 0, 0}, {0.8, 0.8}, 1),
@@ -99,7 +98,7 @@ TEST(QuickScreens, DrawsScreensOfOnePlane) {
   }
 }
 
-// The line is where doubles have it.
+// The line is as accurate as double precision.
 TEST(QuickScreens, DrawsScreensThatCrossAtASmallAngle) {
   expect_agreement_on("small angles", 40, {}, [](auto& random, Sight& sight) {
     const Eigen::Vector3d from = Eigen::Vector3d(0, 0, 2) + random.template vector<3>(-0.3, 0.3);
@@ -110,7 +109,7 @@ TEST(QuickScreens, DrawsScreensThatCrossAtASmallAngle) {
   });
 }
 
-// Light that changes by a tenth of full scale from pixel to pixel is taken at each part's centroid.
+// Light that changes by a tenth of full scale per pixel is taken at each part's centroid.
 TEST(QuickScreens, TakesLightWhereThePartsOfAPixelAre) {
   expect_agreement_on("steep light", 40, front_view(80, 60, 50), [](auto& random, Sight& sight) {
     sight.scene.screens = {gray_screen({0, 0, -0.3}, {0.9, 0.9}, 0.5),
@@ -122,7 +121,7 @@ TEST(QuickScreens, TakesLightWhereThePartsOfAPixelAre) {
   });
 }
 
-// Whose plane the camera is in: it shows nothing of itself, and is compared with nothing.
+// The camera is in the plane of one screen, which is therefore invisible.
 TEST(QuickScreens, DrawsScreensBesideOneSeenFromItsEdge) {
   for (const std::size_t which : {0U, 1U})
     expect_agreement_on("from the edge", 1, front_view(80, 60, 100), [which](auto&, Sight& sight) {
@@ -133,7 +132,7 @@ TEST(QuickScreens, DrawsScreensBesideOneSeenFromItsEdge) {
     });
 }
 
-// A screen seen all but from its edge ends within a pixel of where its plane does.
+// A screen seen almost edge-on ends within a pixel of its plane's horizon.
 TEST(QuickScreens, AgreesWithTheExactWayOnScreensSeenAslantThroughWideLenses) {
   const auto draw = [](TestRandom& random) {
     Sight sight;

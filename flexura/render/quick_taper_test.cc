@@ -1,4 +1,4 @@
-// Arms with taper and without, at their joints and at their ends.
+// Arms with and without taper, at their joints and ends.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -13,7 +13,7 @@
 namespace flexura {
 namespace {
 
-// Sections one after the other, each with a taper of its own up to `steepest`, bent anyhow.
+// Successive sections with random bends, each with its own taper up to `steepest`.
 BentArm random_tapered_arm(TestRandom& random, double steepest) {
   BentArm bent;
   bent.arm.kind = ArmKind::spatial;
@@ -30,7 +30,7 @@ BentArm random_tapered_arm(TestRandom& random, double steepest) {
   return bent;
 }
 
-// From `distance` away, at `angle` from the z of a place on the arm.
+// From `distance` away, at `angle` from the z of a point of the arm.
 View view_of_place(TestRandom& random, const Pose& place, double distance, double angle,
                    double focal_length) {
   const double around = random.uniform(0, 2 * std::numbers::pi);
@@ -42,7 +42,7 @@ View view_of_place(TestRandom& random, const Pose& place, double distance, doubl
                       focal_length);
 }
 
-// Of light and dark, with rings.
+// With ambient and directional light, and rings.
 Sight sight_of(TestRandom& random, const BentArm& bent, const View& view) {
   Sight sight{plain_scene(), view};
   sight.scene.light.directional = 0.7;
@@ -55,8 +55,8 @@ Sight sight_of(TestRandom& random, const BentArm& bent, const View& view) {
   return sight;
 }
 
-// Pieces that lean far towards the camera are met some radii along the ray from where it is near their axis:
-// nothing behind them is seen through them. Where tapers change the contours of two pieces part.
+// A ray meets pieces that lean far towards the camera some radii from its point nearest to the axis: nothing
+// behind them may show through. Where tapers change, the contours of two pieces differ.
 TEST(QuickTaper, HasNoHolesAndAgreesWithTheExactWayWhereTapersChange) {
   compare_ways_of("arms of changing taper", 200, 0.04, [](TestRandom& random) {
     const BentArm bent = random_tapered_arm(random, random.integer(0, 1) == 0 ? 0 : 0.0999);
@@ -74,8 +74,8 @@ TEST(QuickTaper, HasNoHolesAndAgreesWithTheExactWayWhereTapersChange) {
   });
 }
 
-// They part by many radii where the joint is looked at from near its axis, as steeply as the quick way still
-// draws.
+// They differ by many radii where the joint is seen at a small angle to the axis, down to the limit of the
+// fast path.
 TEST(QuickTaper, AgreesWithTheExactWayWhereTapersChangeAndLean) {
   compare_ways_of("joints that lean", 80, 0.04, [](TestRandom& random) {
     BentArm bent;
@@ -95,7 +95,7 @@ TEST(QuickTaper, AgreesWithTheExactWayWhereTapersChangeAndLean) {
   });
 }
 
-// From any side on which an end's face is seen, near its axis too; at the ends nothing goes on.
+// From all sides that show an end's face, also near its axis; nothing continues at the ends.
 TEST(QuickTaper, AgreesWithTheExactWayAtTheEndsOfTheArm) {
   compare_ways_of("ends of tapered arms", 120, 0.04, [](TestRandom& random) {
     const BentArm bent = random_tapered_arm(random, random.integer(0, 1) == 0 ? 0.0999 : 0.02);

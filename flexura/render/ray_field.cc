@@ -52,7 +52,7 @@ void RayField::set(const Lens& lens, int width, int height) {
     for (int u = 0; u < width; ++u) {
       const auto ray = ray_at(lens, {u, v});
       rays_.push_back(ray.value_or(Ray{Eigen::Vector3d::Zero(), Eigen::Matrix2d::Zero()}));
-      // Where the lens folds the image over itself a pixel has no bounds.
+      // Where the lens folds the image over itself, the step has no bound.
       const double step = rays_.back().by_pixel.colwise().norm().maxCoeff();
       largest_step_ = std::max(largest_step_, std::min(step, 10 * largest_undistorted));
     }

@@ -1,7 +1,7 @@
-// Any bytes as a scene and a view: a picture whose every pixel is a number no brighter than anything in the
-// scene, the quick way and the exact one alike, and its truth, or an std::invalid_argument. How many of each
-// there were is printed at the end. What takes most of the time of the truth is asked of the first hundred
-// scenes and of every fourth.
+// Interprets any bytes as a scene and a view. The result must be an std::invalid_argument, or a picture and
+// its true values. All pixels must be finite, no brighter than anything in the scene, and equal for both
+// paths. The counts of these outcomes are printed at the end. The slow queries of true values run on the
+// first hundred scenes and on every fourth.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -21,7 +21,7 @@ namespace {
 
 using namespace flexura;
 
-// What became of the inputs.
+// Counts of the outcomes.
 struct Tally {
   std::uint64_t drawn = 0, with_arm = 0, with_stand = 0, refused = 0;
   ~Tally() {
@@ -32,13 +32,13 @@ struct Tally {
 };
 Tally tally;
 
-// Reads numbers off the input; zeros when it is used up.
+// Reads numbers from the input; zeros after its end.
 class Bytes {
  public:
   Bytes(const std::uint8_t* data, std::size_t size) : data_(data), size_(size) {}
 
   int choice(int count) { return next() % count; }
-  // Mostly ordinary; sometimes odd ones, or 8 bytes as they come.
+  // Mostly ordinary numbers; sometimes special ones, or 8 raw bytes.
   double number(double low, double high) {
     const int kind = next();
     if (kind == 255) return raw();
@@ -98,7 +98,7 @@ void add_screen(Bytes& bytes, Scene& scene) {
   screen.size = {bytes.number(0.1, 3), bytes.number(0.1, 3)};
 }
 
-// Before or behind others, across them, in their plane.
+// In front of or behind others, across them, in their plane.
 void add_more_screens(Bytes& bytes, Scene& scene) {
   for (int count = bytes.choice(8) - 4; count > 0; --count) {
     add_screen(bytes, scene);
@@ -141,7 +141,7 @@ void add_stand(Bytes& bytes, Scene& scene) {
   add_more_screens(bytes, scene);
 }
 
-// Somewhere on the arm, or in the middle of what else stands there.
+// A point on the arm, or in the middle of another body.
 Eigen::Vector3d place_in(Bytes& bytes, const Scene& scene) {
   if (!scene.arm.tube.empty()) {
     const Arc& arc =
@@ -163,20 +163,20 @@ View view_from(Bytes& bytes, const Scene& scene) {
     intrinsics.distortion = {bytes.number(-0.4, 0.4), bytes.number(-0.2, 0.2), 0.001, 0, 0};
   view.lens = Lens(intrinsics);
   view.X_WC = {so3_exp(bytes.vector(-3, 3)), bytes.vector(-1.5, 1.5)};
-  // Few cameras that look anywhere see anything.
+  // Cameras with random directions rarely see anything.
   if (bytes.choice(8) != 0) {
     const Eigen::Vector3d ahead = place_in(bytes, scene) - view.X_WC.position;
     if (ahead.allFinite() && ahead.norm() > 0)
       view.X_WC.rotation = rotation_from_z(ahead) * so3_exp({0, 0, bytes.number(-3, 3)});
   }
-  // Few pixels, for a million scenes under AddressSanitizer take hours as it is, but mostly as many in a row
-  // as the quick way needs.
+  // Few pixels, as a million scenes under AddressSanitizer already take hours; mostly as many in a row as the
+  // fast path needs.
   view.width = bytes.choice(4) == 0 ? bytes.choice(24) : 32 + bytes.choice(4);
   view.height = bytes.choice(16) == 0 ? bytes.choice(10) : 1 + bytes.choice(8) / 7;
   return view;
 }
 
-// No surface can be brighter than this.
+// Returns a bound on the brightness of all surfaces.
 double brightest(const Scene& scene) {
   double result = scene.background.maxCoeff();
   for (const Screen& screen : scene.screens) {
@@ -192,7 +192,7 @@ double brightest(const Scene& scene) {
   return std::max(result, albedo * (scene.light.ambient + scene.light.directional));
 }
 
-// Where three borders meet in a pixel even the exact way takes a sample.
+// Where three borders meet in a pixel, even the reference path samples.
 bool is_close(const LightImage& quick, const LightImage& exact) {
   for (std::size_t i = 0; i < exact.light.values().size(); ++i)
     if (std::abs(quick.light.values()[i] - exact.light.values()[i]) > 0.1F) return false;
@@ -216,8 +216,8 @@ void count(const TruthMaps& maps) {
   if (sees_more) ++tally.with_stand;
 }
 
-// Whether both ways draw the scene as it is: sections that have a length, and a lens that is all but linear
-// within a pixel.
+// Returns whether both paths can represent the scene: sections of nonzero length, and a lens that is almost
+// linear within a pixel.
 bool is_comparable(const Scene& scene, const View& view) {
   constexpr double shortest = 1e-6, widest = 1.0 / 16;  // m; of a pixel, rad
   const Intrinsics& lens = view.lens.intrinsics();
@@ -246,7 +246,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       for (const float value : one->light.values())
         if (!std::isfinite(value) || value < -1e-4F || value > limit) std::abort();
       for (const float value : one->depth.values())
-        if (!(value >= 0)) std::abort();  // A focal length of 1e-115 px sees depths that round to 0.
+        if (!(value >= 0)) std::abort();  // With a focal length of 1e-115 px, depths round to 0.
     }
     TruthMaps maps;
     truth_maps(renderer, maps);

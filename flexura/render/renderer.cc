@@ -23,7 +23,7 @@ void fit(int width, int height, int channels, Image<float>& image) {
   image = Image<float>(width, height, channels);
 }
 
-// The exact way.
+// Draws a pixel by the reference path.
 void render_pixel(const PreparedScene& prepared, int u, int v, PixelKind pixels, LightImage& picture) {
   const Stage& stage = prepared.stage;
   const auto parts = prepared.tiles.parts(u / Tiles::size, v / Tiles::size);

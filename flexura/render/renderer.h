@@ -12,32 +12,32 @@ namespace flexura {
 
 struct PreparedScene;
 
-/// Draws scenes from their exact description (docs/renderer.md). It keeps what can be used again from frame
-/// to frame, so that a second picture of the same size allocates nothing; one thread at a time uses it. The
-/// same scene and view give the same picture, whatever was drawn before.
+/// Draws scenes from their exact description (docs/renderer.md). Storage is reused from frame to frame, so
+/// that a second picture of the same size allocates nothing; use it from one thread at a time. The result
+/// depends on scene and view alone, not on earlier pictures.
 class Renderer {
  public:
-  /// `path`: the instruction set of what is drawn many pixels at a time; every one gives the same picture.
+  /// `path`: the instruction set of the fast path; all give the same picture.
   explicit Renderer(SimdPath path = best_simd_path());
   ~Renderer();
-  /// One that was moved from can be assigned to and destroyed, and nothing else.
+  /// After a move, the source supports only assignment and destruction.
   Renderer(Renderer&&) noexcept;
   Renderer& operator=(Renderer&&) noexcept;
 
-  /// Draws what `view` shows of `scene` into `picture`, which is made to fit; plain parts of it in a quick
-  /// way (quick_picture.h) unless `is_exact`. std::invalid_argument: a scene that check() refuses, a view
-  /// that is not finite, an image without pixels.
+  /// Draws `scene` as seen by `view` into `picture`, which is resized. Simple parts are drawn by the fast
+  /// path (quick_picture.h) unless `is_exact`. Throws std::invalid_argument for a scene that check() refuses,
+  /// a view that is not finite, or an image without pixels.
   void render(const Scene& scene, const View& view, PixelKind pixels, LightImage& picture,
               bool is_exact = false);
 
-  /// The first step of render(), for those who ask for truth: everything as `view` sees it. What is asked
-  /// then reads `scene`, which must stay as it is until the next call. The same errors.
+  /// Runs the first step of render() only, for queries of true values. These read `scene`, which must stay
+  /// unchanged until the next call. Throws as render() does.
   void prepare(const Scene& scene, const View& view);
-  /// What was prepared last, as truth.h asks for it; valid until the next call.
+  /// Returns what was prepared last, for truth.h; valid until the next call.
   [[nodiscard]] const PreparedScene& prepared() const;
 
  private:
-  struct Work;  // What it keeps from picture to picture, of types that nobody else needs to know.
+  struct Work;  // Storage kept from picture to picture, of internal types.
   std::unique_ptr<Work> work_;
 };
 

@@ -1,4 +1,4 @@
-// What the renderer takes from the heap, and what it shares. This replaces the test program's operator new.
+// Heap allocations of the renderer and its shared state. This replaces the test program's operator new.
 #include "flexura/render/renderer.h"
 
 #include <gtest/gtest.h>
@@ -19,7 +19,7 @@ std::atomic<int> allocations{0};
 
 }  // namespace
 
-// Not inlined: the compiler would see new and free at odds.
+// Not inlined: otherwise the compiler would report new and free as mismatched.
 // Sanitizers have their own.
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
 [[gnu::noinline]] void* operator new(std::size_t size) {
@@ -35,7 +35,7 @@ std::atomic<int> allocations{0};
 namespace flexura {
 namespace {
 
-// Everything at once but a floor, before which nothing would be drawn the quick way.
+// All kinds of bodies except a floor, above which the fast path would draw nothing.
 Scene some_scene(TestRandom& random, const BentArm& bent) {
   Scene scene = crowded_scene(random, bent.backbone());
   scene.obstacles.pop_back();
@@ -60,7 +60,7 @@ TEST(Renderer, AllocatesNothingForASecondPicture) {
   });
 }
 
-// Of an arm that moves on, once its pictures have been as full as they get.
+// For a moving arm, once its pictures have reached their largest content.
 TEST(Renderer, AllocatesHardlyAnythingForAnArmThatMoves) {
   if (one_case_of != 1) GTEST_SKIP() << "forty exact pictures take minutes in a sanitized build";
   TestRandom random(1);
@@ -82,7 +82,7 @@ TEST(Renderer, AllocatesHardlyAnythingForAnArmThatMoves) {
   EXPECT_LE(allocations - before, 4);
 }
 
-// What it keeps from one picture for the next is of the same lens and size.
+// The stored data must match the lens and size of the present picture.
 TEST(Renderer, DrawsTheSameWhateverWasDrawnBefore) {
   TestRandom random(3);
   const BentArm bent = random_bent_arm(random, 0.003, 0.003);

@@ -20,8 +20,8 @@ template <typename... Args>
   throw std::invalid_argument(fmt::format(message, std::forward<Args>(args)...));
 }
 
-// What a message is about: a part of the scene, by its number if there are several, and which value of it.
-// Only words that stand in the program: nothing is put together before there is something to refuse.
+// Subject of a message: a part of the scene, its number if there are several, and one of its values. Only
+// string constants: no text is composed before there is an error.
 struct Place {
   const char* part = "";
   const char* value = nullptr;
@@ -38,7 +38,7 @@ void require_positive(double value, const Place& place) {
   if (!(value > 0) || !std::isfinite(value)) refuse("{}: {} is not a positive number", place.text(), value);
 }
 
-// Files hold no more than 1e6 m. Far beyond, squares and their sums lose what they are about.
+// Values in files are at most 1e6 m. Far beyond, squares and sums lose precision.
 constexpr double largest = 1e9;  // m
 
 void require_size(double value, const Place& place) {
@@ -69,7 +69,7 @@ void require_pose(const Pose& pose, const Place& place) {
   require_near(pose.position, place);
 }
 
-// Names count up to what a label holds.
+// Limited by the index of a label.
 constexpr std::size_t most_parts = 4096;
 
 void require_few(std::size_t count, const char* what) {

@@ -11,19 +11,19 @@
 
 namespace flexura {
 
-/// What cameras see of an experiment: the part that stays while the arm moves, and the arm as it stands.
+/// Makes the scenes of an experiment from its fixed part and the arm's present shape.
 class SceneMaker {
  public:
-  /// An arm that is looked at with `look` before what stands there; the paper's screens where the stand names
-  /// none. Where `stand.arm` is false the scenes are without the arm.
+  /// Takes the arm with its `look`, and the fixed bodies. Uses the paper's screens if the stand has none. If
+  /// `stand.arm` is false the scenes are without the arm.
   SceneMaker(const Arm& arm, const LookConfig& look, const StandConfig& stand,
              const std::vector<ObstacleConfig>& obstacles);
 
-  /// The scene with the arm along `backbone`. Markers and disks move with the arm's material: where a section
-  /// is stretched, so are its bands.
+  /// Returns the scene with the arm along `backbone`. Markers and disks move with the arm's material: bands
+  /// on a stretched section are stretched.
   [[nodiscard]] Scene scene(const Backbone& backbone) const;
 
-  /// The same without the arm.
+  /// Returns the scene without the arm.
   [[nodiscard]] const Scene& stand() const { return still_; }
 
  private:

@@ -60,7 +60,7 @@ TEST(SceneMaker, StandsTheEtalonOnItsPositionAndCanTakeTheArmAway) {
   EXPECT_TRUE(scene.arm.tube.empty());
   EXPECT_TRUE(scene.screens.empty());
   ASSERT_TRUE(scene.etalon.has_value());
-  // A quarter turn about z lays its axis along -X.
+  // A quarter turn about z moves its axis to -X.
   EXPECT_TRUE(scene.etalon->X_WE.position.isApprox(Eigen::Vector3d(0.7, 2, 3)));
 }
 

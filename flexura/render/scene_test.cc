@@ -1,4 +1,4 @@
-// Scenes and cameras that cannot be drawn, refused by a line that names the part and the value.
+// Invalid scenes and cameras are refused by a message that names the part and the value.
 #include "flexura/render/scene.h"
 
 #include <gmock/gmock.h>
@@ -26,7 +26,7 @@ struct Sight {
   View view;
 };
 
-// What the renderer says of it; nothing if it draws it.
+// Returns the renderer's error message; "" if it draws the scene.
 std::string refusal_of(const Sight& sight) {
   Renderer renderer;
   LightImage picture;

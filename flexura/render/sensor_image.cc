@@ -30,7 +30,7 @@ SensorConfig checked(SensorConfig config) {
   return config;
 }
 
-// In levels, rounding included; before a gamma table in units of full scale.
+// In levels, rounding included; with a gamma table in units of full scale.
 SensorLevels levels_for(const SensorConfig& config) {
   const bool is_linear = config.gamma == 1;
   const double unit = is_linear ? config.white() : 1, gain = config.gain * unit;
@@ -49,7 +49,7 @@ NoiseRow noise_of(const NoiseStream& stream, int v) {
   return {static_cast<std::uint32_t>(key), static_cast<std::uint32_t>(key >> 32)};
 }
 
-// Fills `to` with one pixel over and over.
+// Fills `to` with one pixel repeatedly.
 void repeat(const float* pixel, std::size_t channels, std::vector<float>& to) {
   if (channels == 1) {
     std::ranges::fill(to, *pixel);
@@ -58,7 +58,7 @@ void repeat(const float* pixel, std::size_t channels, std::vector<float>& to) {
   for (std::size_t i = 0; i < to.size(); i += channels) std::copy_n(pixel, channels, to.data() + i);
 }
 
-// The square of the distance from the middle of n pixels.
+// Square of the distance from the middle of n pixels.
 double square_from_middle(int x, int n) {
   const double distance = x - 0.5 * (n - 1);
   return distance * distance;
@@ -87,7 +87,7 @@ Sensor::Sensor(const SensorConfig& config, SimdPath path)
   }
 }
 
-// The part of vignetting that a column of `width_` or a row of `height_` has.
+// The contribution of a column of `width_` or a row of `height_` to vignetting.
 float Sensor::lost(int x, int n) const {
   if (config_.vignetting == 0) return 0;
   const double corner = square_from_middle(0, width_) + square_from_middle(0, height_);
@@ -108,10 +108,10 @@ void Sensor::reserve(SensorRows& rows) const {
   rows.light.resize(padded), rows.levels.resize(padded), rows.bytes.resize(padded);
 }
 
-// Where row v is kept.
+// Storage slot of row v.
 std::size_t Sensor::slot(int v) const { return static_cast<std::size_t>(v) % (2 * weights_.size()); }
 
-// Conditions row v of the light, continued at its ends, and sees where it is as the row before.
+// Conditions row v of the light, continued at its ends, and finds where it equals the previous row.
 void Sensor::take(const Image<float>& light, int v, bool is_first, SensorRows& rows) const {
   const float* const from = light.row(v).data();
   const std::size_t whole = count_ / values_, rest = count_ % values_, padded = blocks_ * values_;
@@ -140,9 +140,8 @@ void Sensor::take(const Image<float>& light, int v, bool is_first, SensorRows& r
   if (is_first) std::ranges::fill(rows.age, std::uint8_t{0});
 }
 
-// What is to be done for row v. A block is plain when all rows that are blurred into it are equal; even when
-// it and the one on its left are plain and equal; known when all that is blurred into it along the row is
-// even.
+// Plans the work for row v. A block is plain if all rows blurred into it are equal. It is even if it and its
+// left neighbour are plain and equal. It is known if all blocks blurred into it along the row are even.
 void Sensor::plan(int v, SensorRows& rows) const {
   const std::uint8_t *const same = rows.same.data() + slot(v) * blocks_, *const age = rows.age.data();
   std::uint8_t *const is_plain = rows.is_plain.data(), *const is_even = rows.is_even.data();
@@ -166,7 +165,7 @@ void Sensor::plan(int v, SensorRows& rows) const {
   }
 }
 
-// Row v blurred down the columns, where it is needed.
+// Blurs row v down the columns, where needed.
 const float* Sensor::blur_down(int v, SensorRows& rows) const {
   const std::size_t padded = blocks_ * values_;
   if (radius_ == 0) {
@@ -185,7 +184,7 @@ const float* Sensor::blur_down(int v, SensorRows& rows) const {
   return rows.light.data();
 }
 
-// Whole blocks, of which the image takes what it has room for.
+// Delivers whole blocks; the image takes those within its width.
 template <typename Value>
 void Sensor::deliver(int v, const NoiseStream& stream, SensorRows& rows, Value* to) const {
   const float* const light = blur_down(v, rows) + margin_ * values_;
@@ -206,7 +205,7 @@ void Sensor::deliver(int v, const NoiseStream& stream, SensorRows& rows, Value* 
   }
 }
 
-// As the kernels see it.
+// Row description for the kernels.
 SensorRow Sensor::row(std::size_t blocks) const {
   return {blocks, weights_.data() + 1, static_cast<std::size_t>(radius_), channels_};
 }

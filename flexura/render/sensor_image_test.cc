@@ -26,7 +26,7 @@ Image<Value> read(const SensorConfig& config, const Image<float>& light, const N
   return image;
 }
 
-// Flat areas with a few steps, a ramp and single pixels in them: every way through the sensor.
+// Flat areas with a few steps, a ramp and single pixels: covers all branches of the sensor.
 Image<float> some_light(TestRandom& random, const SensorConfig& config) {
   const int width = static_cast<int>(config.width), height = static_cast<int>(config.height);
   Image<float> light(width, height, config.channels(), 0.75f);
@@ -59,7 +59,7 @@ SensorConfig some_sensor(TestRandom& random) {
   return config;
 }
 
-// The light after vignetting and PSF, by the definition and in double precision.
+// The light after vignetting and PSF, by the definition in double precision.
 std::vector<double> blurred_light(const SensorConfig& config, const Image<float>& light) {
   const int width = light.width(), height = light.height(), channels = light.channels();
   const std::vector<float> weights = psf_weights(config.psf);

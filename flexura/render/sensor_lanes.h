@@ -6,15 +6,14 @@
 #include "flexura/render/sensor_kernels.h"
 #include "flexura/render/vectors.h"
 
-// The sensor's arithmetic, for all_kernels.h alone.
+// Arithmetic of the sensor, for all_kernels.h alone.
 namespace flexura {
 namespace {
 
-// Beyond these numbers are cut off, so that nothing becomes infinite; the noise cannot bring such a level
-// back.
+// Limits that keep everything finite; noise cannot bring such a level back.
 constexpr float largest_light = 1048576, largest_level = 16777216, largest_deviation = 1048576;
 
-// Vectors in step: what is computed waits for what was computed just before; the others' work fills the time.
+// Vectors processed together: an operation waits for its predecessor, and the other vectors fill that time.
 constexpr std::size_t in_step = vector_bytes == 64 ? 2 : 4, step_values = in_step * lanes;
 static_assert(sensor_block % step_values == 0);
 
@@ -26,7 +25,7 @@ template <typename Body>
   for (std::size_t j = 0; j < in_step; ++j) body(j);
 }
 
-// The bits in which two vectors differ.
+// Bits in which two vectors differ.
 [[gnu::always_inline]] inline Words difference(const Floats& a, const Floats& b) {
   return reinterpret_cast<Words>(a) ^ reinterpret_cast<Words>(b);
 }
@@ -55,9 +54,8 @@ void condition(const SensorRow& row, const float* from, const float* across, flo
   }
 }
 
-// The middle value plus the weighted differences from it, which are exactly 0 where all values are
-// equal: flat blocks may as well be left alone. `before` and `after` give the places of the taps at a
-// distance.
+// The middle value plus the weighted differences from it. These are exactly 0 where all values are equal, so
+// that uniform blocks can be skipped. `before` and `after` return the positions of the taps at a distance.
 template <typename Before, typename After>
 [[gnu::always_inline]] inline Step blurred(const float* middle, const SensorRow& row, Before&& before,
                                            After&& after) {
@@ -91,7 +89,7 @@ void blur_down(const SensorRow& row, const float* const* rows, const BlockWork* 
   }
 }
 
-// Levels without noise, and the noise's standard deviations.
+// Levels without noise, and the standard deviations of the noise.
 struct Expectation {
   float means[3 * sensor_block] = {}, deviations[3 * sensor_block] = {};
 };
@@ -107,7 +105,7 @@ struct Expectation {
   });
 }
 
-// Of a block blurred along the row.
+// For a block blurred along the row.
 template <std::size_t channels>
 void expect_block(const SensorRow& row, const float* light, const SensorLevels& levels,
                   Expectation& expected) {
@@ -120,17 +118,17 @@ void expect_block(const SensorRow& row, const float* light, const SensorLevels& 
   }
 }
 
-// A standard normal deviate from the sum of a word's bytes, itself nearly normal: an odd polynomial that
-// takes the quantiles of the sum's distribution to those of the normal one, fitted up to 4.6 standard
-// deviations. With it the sum's exact distribution has variance 1, fourth moment 2.998, and probabilities
-// beyond 1, 2, 3 and 4 right to 0.4, 0.2, 0.8 and 7 %; it ends at 5.04. The bytes' nearly equal weights give
-// seven million sums instead of a thousand.
+// Constants of a standard normal deviate from the sum of a word's bytes, itself nearly normal. An odd
+// polynomial maps the quantiles of the sum's distribution to those of the normal one, fitted up to 4.6
+// standard deviations. The exact distribution then has variance 1 and fourth moment 2.998. Its probabilities
+// beyond 1, 2, 3 and 4 are correct to 0.4, 0.2, 0.8 and 7 %; it ends at 5.04. The nearly equal weights of the
+// bytes give seven million sums instead of a thousand.
 constexpr float sum_centre = 8 + 4096702.5f / 1048576;
 constexpr float normal_terms[4] = {0.841045443f, 0.0172821804f, -0.00237808649f, 0.000207595845f};
 
-// A hash of a value's place in its row: C. Wellons' lowbias32, whose first step does nothing to a number
-// below 2^16, keyed before and within. `places` are the values' places times its first factor,
-// plus a key.
+// Factors of the hash of a value's position in its row: C. Wellons' lowbias32, keyed before and within. Its
+// first step does not change numbers below 2^16 and is omitted. `places` are the positions times its first
+// factor, plus a key.
 constexpr std::uint32_t first_factor = 0x7feb352d, second_factor = 0x846ca68b;
 
 [[gnu::always_inline]] inline Step noise_of(const Words& places, std::uint32_t mix) {

@@ -14,7 +14,7 @@ void take_size(const SensorConfig& sensor, Image<float>& image) {
     image = Image<float>(width, height, sensor.channels());
 }
 
-// Rows that are exposed together.
+// Exposes rows with a common exposure time.
 void expose(const SensorConfig& sensor, double start, int instants, const DrawLight& draw, const Rows& rows,
             Image<float>& light, Image<float>& scratch) {
   if (instants == 1 || sensor.exposure == 0) {

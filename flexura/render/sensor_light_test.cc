@@ -7,7 +7,7 @@
 namespace flexura {
 namespace {
 
-// Light that is the time everywhere, and how many rows were drawn in how many goes.
+// Light equal to the time everywhere; counts the calls and the rows drawn.
 struct Clock {
   int goes = 0, rows_drawn = 0;
 

@@ -11,7 +11,7 @@
 namespace flexura {
 namespace {
 
-// Deviates of read noise of one standard deviation, to 1/3000, in a 16-bit image.
+// Deviates of read noise in standard deviations, to 1/3000, from a 16-bit image.
 constexpr int width = 500, height = 500;
 
 Image<double> deviates(const NoiseStream& stream, PixelKind pixels = PixelKind::gray) {
@@ -44,7 +44,7 @@ double mean_power(const std::vector<double>& values, int power) {
 
 double normal_below(double x) { return 0.5 * std::erfc(-x / std::numbers::sqrt2); }
 
-// Bounds are five standard deviations of what so many samples show, and what the docs own up to.
+// Bounds are five standard deviations of the sample values, plus the documented errors.
 TEST(SensorNoise, HasTheMomentsOfANormalDistribution) {
   const std::vector<double> all = many_deviates();
   const auto n = static_cast<double>(all.size());
@@ -72,7 +72,7 @@ TEST(SensorNoise, HasTheDistributionAndTailsOfANormalOne) {
   }
 }
 
-// Correlations of a with b, moved by (du, dv), and of their squares.
+// Correlations of a with b, shifted by (du, dv), and of their squares.
 void expect_independent(const Image<double>& a, const Image<double>& b, int du, int dv) {
   double product = 0, squares = 0, count = 0;
   for (int v = std::max(0, -dv); v < std::min(height, height - dv); ++v) {

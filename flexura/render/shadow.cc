@@ -9,15 +9,14 @@
 namespace flexura {
 namespace {
 
-// The share of a round light that is seen past a straight edge, `height` of the light's radii over its
-// middle.
+// Share of a round light that is visible past a straight edge, `height` light radii above its middle.
 double share_over_edge(double height) {
   if (height >= 1) return 0;
   if (height <= -1) return 1;
   return 0.5 - (height * std::sqrt(1 - height * height) + std::asin(height)) / std::numbers::pi;
 }
 
-// The share of the light past a ball around `center`; all of it at a point within.
+// Share of the light past a ball around `center`; 1 at points inside the ball.
 double share_past_ball(const Eigen::Vector3d& center, double radius, const Eigen::Vector3d& p_CQ,
                        const Eigen::Vector3d& light, double width) {
   const Eigen::Vector3d way = center - p_CQ;
@@ -26,8 +25,8 @@ double share_past_ball(const Eigen::Vector3d& center, double radius, const Eigen
   return 1 - share_over_edge(((way - along * light).norm() - radius) / (width * along));
 }
 
-// The share of the light past the disc that closes a flat end, for a point beyond the disc's plane; all of it
-// for others. The disc's edge is taken for straight.
+// Share of the light past the disc that closes a flat end, for a point beyond the disc's plane; 1 for other
+// points. The disc's edge is approximated by a straight line.
 double share_past_disc(const Eigen::Vector3d& center, const Eigen::Vector3d& outward, double radius,
                        const Eigen::Vector3d& p_CQ, const Eigen::Vector3d& light, double width) {
   const double height = (p_CQ - center).dot(outward), slope = -light.dot(outward);
@@ -37,8 +36,8 @@ double share_past_disc(const Eigen::Vector3d& center, const Eigen::Vector3d& out
   return 1 - share_over_edge(gap / (width * along));
 }
 
-// How much of the light reaches the point past the arm: where the way to the light's middle comes nearest to
-// the tube, the tube's edge is taken for straight. The shadow's ends are round.
+// Share of the light that reaches the point past the arm. Where the line to the light's middle is nearest to
+// the tube, the tube's edge is approximated by a straight line. The shadow's ends are round.
 double light_past_arm(const Stage& stage, const Eigen::Vector3d& p_CQ) {
   const double width = stage.scene->light.angular_radius;
   double share = 1;
@@ -68,7 +67,8 @@ double light_past_arm(const Stage& stage, const Eigen::Vector3d& p_CQ) {
   return share;
 }
 
-// Past a convex body: the farthest that the way to the light's middle passes any line along its outline.
+// Share of the light past a convex body, by the largest distance of the line to the light's middle from the
+// lines along the body's outline.
 double light_past(const Caster& caster, const Stage& stage, const Eigen::Vector3d& p_CQ) {
   const Eigen::Vector3d off = p_CQ - caster.center;
   const double along = -off.dot(stage.light);
@@ -81,7 +81,7 @@ double light_past(const Caster& caster, const Stage& stage, const Eigen::Vector3
   return 1 - share_over_edge(gap / (stage.scene->light.angular_radius * along));
 }
 
-// The line along the outline across `normal`; `reach_along`: how far the body reaches in a direction.
+// Adds the outline's line across `normal`; `reach_along` returns the extent of the body in a direction.
 template <typename Reach>
 void add_side(const Eigen::Vector3d& normal, Reach&& reach_along, Stage& stage) {
   stage.caster_sides.push_back({normal, reach_along(normal)});

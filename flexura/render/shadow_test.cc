@@ -16,10 +16,10 @@
 namespace flexura {
 namespace {
 
-/// Whether the way from a point in W in a direction is blocked.
+/// Returns whether the line from a point in W in a direction is blocked.
 using Blocker = std::function<bool(const Eigen::Vector3d& p_WQ, const Eigen::Vector3d& direction)>;
 
-// The share of the round light's directions that reach p_WQ.
+// Share of the round light's directions that reach p_WQ.
 double sampled_share(const Light& light, const Eigen::Vector3d& p_WQ, const Blocker& is_blocked,
                      int samples) {
   const Eigen::Vector3d z = light.direction.normalized(), x = z.unitOrthogonal(), y = z.cross(x);
@@ -35,7 +35,7 @@ double sampled_share(const Light& light, const Eigen::Vector3d& p_WQ, const Bloc
   return static_cast<double>(open) / all;
 }
 
-// Whether the way meets the cylinder around the z of X_WS from its origin on.
+// Whether the line meets the cylinder around the z of X_WS from its origin on.
 bool meets_cylinder(const Pose& X_WS, double length, double radius, const Eigen::Vector3d& p_WQ,
                     const Eigen::Vector3d& direction) {
   const Eigen::Vector3d p = X_WS.inverse() * p_WQ, d = X_WS.rotation.transpose() * direction;
@@ -48,7 +48,7 @@ bool meets_cylinder(const Pose& X_WS, double length, double radius, const Eigen:
   return from < to;
 }
 
-// Whether the way passes a convex body of which the distance is known.
+// Whether the line meets a convex body given by its distance function.
 bool meets_body(const Obstacle& body, const Eigen::Vector3d& p_WQ, const Eigen::Vector3d& direction) {
   double low = 0, high = 3;
   for (int step = 0; step < 40; ++step) {
@@ -59,8 +59,8 @@ bool meets_body(const Obstacle& body, const Eigen::Vector3d& p_WQ, const Eigen::
   return body.distance(p_WQ + low * direction) < 0;
 }
 
-// A screen that lies on y = 0, seen from below: all that stands on it is on its other side. Its light is
-// held against the light's directions that reach it.
+// Compares a screen's light with the share of the light's directions that reach it. The screen lies on y = 0
+// and is seen from below: all bodies on it are on its other side.
 void expect_shadow(Scene scene, const Blocker& is_blocked) {
   Screen& floor = scene.screens.emplace_back();
   floor.X_WS.rotation << 1, 0, 0, 0, 0, 1, 0, -1, 0;
@@ -83,7 +83,7 @@ void expect_shadow(Scene scene, const Blocker& is_blocked) {
   }
   EXPECT_GT(expected, 10);
   EXPECT_NEAR(found, expected, 0.03 * expected);
-  // At corners the light is not cut by one straight edge.
+  // Near corners the light is not cut by a single straight edge.
   EXPECT_LT(std::sqrt(squares / (view.width * view.height)), 0.03);
 }
 
@@ -152,7 +152,7 @@ TEST(Shadow, OfAnArmThatStandsJustOverTheFloor) {
   });
 }
 
-// An arm in an arch, under a light that its end keeps from its base.
+// An arched arm whose end shades its base.
 TEST(Shadow, OfTheArmFallsOnItself) {
   Arm arm;
   arm.kind = ArmKind::spatial;

@@ -13,14 +13,14 @@
 namespace flexura {
 namespace {
 
-// A cross-section of the tube in C, and the equation of the angles at which rays touch it:
-// across_x cos(angle) + across_y sin(angle) + radius - widening / shrink(angle) * along = 0.
+// A cross-section of the tube in C, and the equation of the angles at which rays are tangent: across_x
+// cos(angle) + across_y sin(angle) + radius - widening / shrink(angle) * along = 0.
 struct Section2d {
   Pose X_CS;
   double s = 0, radius = 0, widening = 0;
   Eigen::Vector2d curvature;  // Towards x and y, 1/m.
-  double across_x = 0, across_y = 0,
-         along = 0;  // Of the center, seen from the camera, in the section's frame.
+  // Of the center, from the camera, in the section's frame.
+  double across_x = 0, across_y = 0, along = 0;
 
   [[nodiscard]] Eigen::Vector3d point(double angle) const {
     return X_CS * Eigen::Vector3d(radius * std::cos(angle), radius * std::sin(angle), 0);
@@ -29,7 +29,7 @@ struct Section2d {
     const Eigen::Vector2d n(std::cos(angle), std::sin(angle));
     return across_x * n.x() + across_y * n.y() + radius - widening / (1 - radius * curvature.dot(n)) * along;
   }
-  // How far it is from having no such angle; negative there. With taper to first order.
+  // Positive if such angles exist, with the distance to having none; with taper to first order.
   [[nodiscard]] double openness() const {
     return std::hypot(across_x, across_y) - std::abs(radius - widening * along);
   }
@@ -47,8 +47,8 @@ Section2d section_at(const Arc& tube, double distance, const Pose& X_CW) {
   return section;
 }
 
-// The touching angle to one side (1, -1) of the direction away from the camera: closed where the radius is
-// constant, by Newton's method from there where it is not.
+// Returns the tangent angle to one side (1, -1) of the direction away from the camera. In closed form for
+// constant radius; otherwise by Newton's method from there.
 double touching_angle(const Section2d& section, double side) {
   const double reach = std::hypot(section.across_x, section.across_y);
   const double level = -(section.radius - section.widening * section.along);
@@ -77,7 +77,7 @@ class OutlineMaker {
   std::vector<Outline> make() {
     const ArmLook& arm = renderer_.prepared().stage.scene->arm;
     for (std::size_t i = 0; i < arm.tube.size(); ++i) {
-      // A step of the radius parts the contour.
+      // A step of the radius interrupts the contour.
       if (i > 0 && std::abs(arm.tube[i].radius[0] - arm.tube[i - 1].radius[1]) > 1e-12) close();
       add_arc(arm.tube[i]);
     }
@@ -116,14 +116,14 @@ class OutlineMaker {
       if (i > 0 && is_open != was_open_)
         add_turn(tube, is_open ? distance : before, is_open ? before : distance);
       if (!is_open) close();
-      // An arc's first point is the last of the one before.
+      // An arc's first point is the last of the previous one.
       if (is_open && (i > 0 || sides_[0].points.empty())) add_pair(section_at(tube, distance, X_CW_));
       was_open_ = is_open;
       before = distance;
     }
   }
 
-  // The point between an open and a closed section where both sides meet.
+  // Adds the point between an open and a closed section where both sides meet.
   void add_turn(const Arc& tube, double open, double closed) {
     const double began = open;
     for (int step = 0; step < 60; ++step) {
@@ -157,7 +157,8 @@ class OutlineMaker {
     result_.push_back(rim);
   }
 
-  // Where rays touch the half ball: the circle on which the way from its middle is perpendicular to the ray.
+  // Adds the contour of the half ball: the circle on which the line from its middle is perpendicular to the
+  // ray.
   void add_ball(const Section2d& tip) {
     const Eigen::Vector3d center = tip.X_CS.position;
     const double square = center.squaredNorm(), radius = tip.radius;
@@ -165,7 +166,7 @@ class OutlineMaker {
     const Eigen::Vector3d middle = center * (1 - radius * radius / square);
     const double circle_radius = radius * std::sqrt(1 - radius * radius / square);
     const Eigen::Vector3d x = center.unitOrthogonal(), y = center.normalized().cross(x);
-    // From the side of the tube on, so that what lies beyond is one piece.
+    // Starts at the side of the tube, so that the part beyond it is one piece.
     const Eigen::Vector3d axis = tip.X_CS.rotation.col(2);
     const double start = std::atan2(-axis.dot(y), -axis.dot(x));
     Outline contour;
@@ -185,14 +186,14 @@ class OutlineMaker {
                   section.radius);
   }
 
-  // With its pixel, and whether it is seen.
+  // Adds pixel and visibility.
   OutlinePoint judged(OutlinePoint point, double radius) const {
     point.pixel = renderer_.prepared().view.lens.project(point.p_CP);
     if (!point.pixel) return point;
     Ray ray;
     ray.direction = point.p_CP / point.p_CP.z();
     ray.by_pixel = Eigen::Matrix2d::Identity() * renderer_.prepared().rays.largest_step();
-    // A ray that touches may by rounding enter a little before.
+    // Through rounding, a tangent ray may enter slightly before.
     const double tolerance = 1e-3 * radius + 1e-6 * point.p_CP.z();
     point.is_visible = tracer_.hit(ray).depth > point.p_CP.z() - tolerance;
     return point;

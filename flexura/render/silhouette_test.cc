@@ -16,8 +16,8 @@
 namespace flexura {
 namespace {
 
-// Distance of a point in W to the backbone, by a dense search and a golden section: no equation of the
-// renderer's.
+// Distance of a point in W to the backbone, by a dense search and a golden section: independent of the
+// renderer's equations.
 double distance_to_backbone(const Backbone& backbone, const Eigen::Vector3d& p, double near_s) {
   const auto distance = [&](double s) {
     return (backbone.pose(std::clamp(s, 0.0, backbone.length())).position - p).norm();
@@ -47,12 +47,12 @@ TEST(Outlines, AreWhereRaysTouchTheTube) {
         const Eigen::Vector3d p = view.X_WC * point.p_CP;
         EXPECT_NEAR(distance_to_backbone(backbone, p, point.s), radius, 1e-9);
         if (outline.kind == OutlineKind::rim || point.s < 0.03 || point.s > 0.96) continue;
-        // A little before and behind along the ray the distance is the same to first order.
+        // Slightly before and behind along the ray the distance is equal to first order.
         const Eigen::Vector3d along = (p - view.X_WC.position).normalized();
         constexpr double step = 1e-4;
         const double before = distance_to_backbone(backbone, p - step * along, point.s);
         const double behind = distance_to_backbone(backbone, p + step * along, point.s);
-        // Where sections meet the curvature jumps.
+        // The curvature jumps where sections meet.
         EXPECT_NEAR(behind - before, 0, 2e-7);
       }
     }
@@ -87,13 +87,13 @@ TEST(Outlines, ThatAreSeenPartTheArmFromTheBackground) {
         const double left = depth_at(*here.pixel + 0.02 * normal),
                      right = depth_at(*here.pixel - 0.02 * normal);
         ++checked;
-        // On one side the arm, as near as the point; on the other something farther away.
+        // On one side is the arm, as near as the point; on the other something farther away.
         const double nearer = std::min(left, right), farther = std::max(left, right);
         if (std::abs(nearer - here.p_CP.z()) < 0.02 && farther > here.p_CP.z() + 1e-3) ++parting;
       }
     }
     EXPECT_GT(checked, 20);
-    // But for points at the cusps where a contour goes out of sight.
+    // Except at the cusps where a contour becomes hidden.
     EXPECT_GT(parting, 0.97 * checked) << parting << " of " << checked;
   });
 }

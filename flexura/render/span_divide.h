@@ -2,7 +2,7 @@
 
 #include "flexura/render/span_lanes.h"
 
-// Pixels that contours divide; for all_kernels.h alone.
+// Pixels divided by contours; for all_kernels.h alone.
 namespace flexura {
 namespace {
 
@@ -11,7 +11,7 @@ inline void store_flags(const WideMask& mask, std::uint8_t* to) {
   for (std::size_t i = 0; i < wide_lanes; ++i) to[i] = static_cast<std::uint8_t>(bits >> i & 1);
 }
 
-// The part of the pixel within the tube's contour, from where the ray comes nearest to the centreline.
+// Part of the pixel within the tube's contour, computed where the ray is nearest to the centerline.
 template <bool is_tapered>
 [[gnu::always_inline]] inline SquarePart part_within(const SpanPiece& piece, const RayLanes<is_tapered>& ray,
                                                      const Place& place, const Lowest& lowest) {
@@ -21,8 +21,8 @@ template <bool is_tapered>
     else
       return piece.radius;
   }();
-  // Of sqrt(h^2 + y^2), which is the radius on the contour. On the centreline, which is in here where the
-  // tube is a few pixels wide, there is no gradient; that is far within.
+  // Gradient of sqrt(h^2 + y^2), which equals the radius on the contour. On the centerline there is no
+  // gradient; where the tube is a few pixels wide that is far inside.
   const float least = 1e-6f * piece.radius * piece.radius;
   const Wide distance = square_root(at_least(least, lowest.value + radius * radius));
   const Wide gap = distance - radius;
@@ -43,7 +43,7 @@ template <bool is_tapered>
   };
   const auto [by_u, by_v] = by_pixel(place, slope(&Linear::by_u), slope(&Linear::by_v));
   const Wide steepness = 1 / square_root(at_least(1e-30f, by_u * by_u + by_v * by_v));
-  // The contour bends as the centreline does, seen on the skin's normal: a parabola's mean height in the
+  // The contour curves like the centerline, projected on the skin's normal: mean height of a parabola in the
   // pixel.
   const Wide bent = 1 + k * h,
              along_ray = (k * near.z * ray.direction.x + (1 - k * near.x) * ray.direction.z) / bent;
@@ -54,14 +54,14 @@ template <bool is_tapered>
                      gap * steepness - bending / (24 * larger_square(normal_u, normal_v)));
 }
 
-// The middle of a part of a pixel.
+// Returns the position in the middle of a part of a pixel.
 [[gnu::always_inline]] inline Place moved(Place place, const Wide& x, const Wide& y) {
   place.u += place.u_by_u * x + place.u_by_v * y;
   place.v += place.v_by_u * x + place.v_by_v * y;
   return place;
 }
 
-// Whether no edge of a ring divides what is there.
+// Whether no ring edge divides the pixel.
 [[gnu::always_inline]] inline WideMask is_far_from_edges(const SpanPiece& piece, const Vector& p) {
   WideMask is_far = mask_of(true);
   for (std::size_t j = 0; j < piece.edge_count; ++j)
@@ -76,7 +76,7 @@ void divide_pixels(const SpanPiece& piece, const SpanPlaces& places, BorderPixel
     const Sight<is_tapered> sight = see<is_tapered>(piece, place, piece.centering + 2);
     const Lowest& lowest = sight.lowest;
     const SquarePart within = part_within(piece, sight.ray, place, lowest);
-    // In the middle of what is within.
+    // At the centroid of the inner part.
     const WideMask is_some = within.area > 0, is_inside = lowest.value < 0;
     const Place inner_place =
         moved(place, choose(is_some, within.x, Wide(0)), choose(is_some, within.y, Wide(0)));
@@ -99,7 +99,7 @@ void divide(const SpanPiece& piece, const SpanPlaces& places, BorderPixels& bord
                       : divide_pixels<false>(piece, places, borders);
 }
 
-// Points evenly spread over the pixel, from its middle: a lattice of the golden ratio.
+// Points evenly spread over the pixel, relative to its middle: a lattice of the golden ratio.
 template <std::size_t n>
 struct Lattice {
   float x[n], y[n];
@@ -115,14 +115,14 @@ struct Lattice {
 constexpr Lattice<64> few_points;
 constexpr Lattice<256> many_points;
 
-// What rays see of something.
+// Results of a vector of rays.
 struct Seen {
   WideMask is_some, is_sure;
   Wide depth, light[3];
 };
 
-// What the points of a pixel see, all together, by see(place); whether all is right. The sums go by the
-// points' numbers modulo span_step, so that the width does not change their order.
+// Sums what see(place) returns at the points of a pixel; returns whether all results are reliable. Sums are
+// grouped by the points' numbers modulo span_step, so that their order does not depend on the vector width.
 template <std::size_t n, typename See>
 [[gnu::always_inline]] inline bool sample_points(const Lattice<n>& points, const Place& middle, See&& see,
                                                  float (&light)[3], float& count) {
@@ -169,7 +169,7 @@ bool sample_skin(const Lattice<n>& points, const SpanPiece& piece, const Place& 
 }
 
 bool sample(const SpanPiece& piece, const SpanPlaces& places, std::size_t index, float* light) {
-  // Colours that differ little need few points.
+  // Small differences of colour need few points.
   bool is_faint = true;
   for (std::size_t j = 0; j < piece.edge_count; ++j)
     for (const float change : piece.edges[j].change) is_faint &= change * change < 0.15f * 0.15f;

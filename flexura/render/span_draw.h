@@ -2,7 +2,7 @@
 
 #include "flexura/render/span_lanes.h"
 
-// Rows of pixels, as many at a time as a vector holds; for all_kernels.h alone.
+// Rows of pixels, one vector at a time; for all_kernels.h alone.
 namespace flexura {
 namespace {
 
@@ -20,8 +20,9 @@ namespace {
   }
 }
 
-// A row's pixels from `begin` to `end`, vector by vector: visit(u, is_asked) with the first one's column. The
-// last vector reaches over the end, or starts earlier rather than reach over the end of the picture's row.
+// Visits a row's pixels from `begin` to `end`, vector by vector: visit(u, is_asked) with the first column of
+// the vector. The last vector extends beyond the end, or starts earlier if it would extend beyond the
+// picture's row.
 template <typename Visit>
 [[gnu::always_inline]] inline void for_vectors(int begin, int end, int width, Visit&& visit) {
   constexpr auto step = static_cast<int>(wide_lanes);
@@ -37,8 +38,8 @@ template <typename Visit>
   row.has_exact = true;
 }
 
-// Pixels that the kernel cannot be sure of, where the piece may be: the ray's point is near the axis, and a
-// piece that leans towards the camera is met some radii along the ray from there.
+// Leaves unreliable pixels to the reference path if the piece may be there. The ray's point is near the axis;
+// the ray meets a piece that leans towards the camera some radii from there.
 template <bool is_tapered>
 [[gnu::always_inline]] inline void leave_lost(const SpanPiece& piece, const RayLanes<is_tapered>& ray,
                                               const WideMask& is_unsure, int u, SpanRow& row) {
@@ -50,12 +51,12 @@ template <bool is_tapered>
     row.borders[row.border_count++] = u + __builtin_ctz(bits);
 }
 
-// What is in a pixel with a screen's edge may lie before the screen or behind it.
+// Content of a pixel with a screen's edge may be in front of the screen or behind it.
 [[gnu::always_inline]] inline void leave_edges(const WideMask& is_there, int u, SpanRow& row) {
   if (row.has_edge) leave(is_there & wide_flag(row.state + u, state_edge), u, row);
 }
 
-// Whether the edge of a ring is so near to p that it may divide the pixel.
+// Whether a ring edge is near enough to p to divide the pixel.
 [[gnu::always_inline]] inline WideMask is_at_edge(const SpanPiece& piece, const Vector& p) {
   WideMask is_at{};
   for (std::size_t i = 0; i < piece.edge_count; ++i)
@@ -63,11 +64,11 @@ template <bool is_tapered>
   return is_at;
 }
 
-// `piece` is a copy, which no store can change: what is the same in all the row is worked out once.
+// `piece` is a copy that no store can change, so that constants of the row are computed once.
 template <bool is_tapered>
 void draw_skin(const SpanPiece piece, int begin, int end, SpanRow& row) {
   const float radius = piece.radius, reach = piece.reach;
-  // What H is at gaps of +reach, -reach and -bent_reach.
+  // H at gaps of +reach, -reach and -bent_reach.
   const auto near_of = [=](auto r) { return reach * (2 * r + reach); };
   const auto inside_of = [=](auto r) { return -reach * (2 * r - reach); };
   const auto deep_of = [&](auto r) { return -piece.bent_reach * (2 * r - piece.bent_reach); };
@@ -94,8 +95,9 @@ void draw_skin(const SpanPiece piece, int begin, int end, SpanRow& row) {
     if (any(is_unsure)) leave_lost(piece, ray, is_unsure & is_asked, u, row);
     const WideMask is_border = is_near & ~is_inside & lowest.is_sure;
     if (any(is_border)) {
-      // Two pieces may each see the ray pass beside the other: in that fifth of a pixel both take it, and
-      // what two have taken is left. The parabola's minimum is not so near where a piece leans: a step more.
+      // Near a joint, the ray may pass outside both pieces as each of them sees it. In that fifth of a pixel
+      // both take the pixel, and pixels taken twice are left to the reference path. On a leaning piece the
+      // parabola's minimum is less accurate: one more step.
       const float slack = overlap * radius + 0.2f * reach;
       const Height there = height(piece, ray, lowest.t);
       const Vector passing = along(ray.point, ray.direction, lowest.t - there.slope / there.curving);
@@ -142,8 +144,8 @@ void screen(const SpanScreen& of, int begin, int end, bool is_first, SpanRow& ro
     const Wide nearness = at(screen.nearness, place), depth = 1 / nearness, before = wide_load(row.depth + u);
     WideMask is_inside = (nearness > 0) & is_asked, is_edge{};
     if (!is_straight) {
-      // Also where the middle of the pixel looks past the screen's plane: a screen seen aslant ends near its
-      // horizon.
+      // Also where the pixel's middle is beyond the horizon of the screen's plane: a screen seen aslant ends
+      // near it.
       WideMask is_around = is_asked;
       for (const Linear& edge : screen.edges) {
         const Wide in = at(edge, place);
@@ -152,7 +154,7 @@ void screen(const SpanScreen& of, int begin, int end, bool is_first, SpanRow& ro
       }
       is_edge = is_around & ~is_inside;
     }
-    // Where it meets what is there.
+    // Where it intersects the content.
     if (!is_first) is_edge |= is_inside & (size_of(nearness - 1 / before) < screen.least_distance);
     leave(is_edge, u, row);
     const WideMask is_drawn = is_inside & ((depth < before) | mask_of(is_straight && is_first));

@@ -8,12 +8,12 @@
 
 // Rays against tubes, for all_kernels.h alone.
 //
-// With the centreline's circle through the origin, tangent to z, its centre at x = 1/curvature, a point p is
-// on the tube of radius r where
-//   H = h^2 + y^2 - r^2 = 0,  h = curvature (|p|^2 - r^2) / 2 - x:
-// on the tube h is the distance from the circle's cylinder, and along a ray H is a polynomial. A tapered
-// tube's r is that at the foot of p on the centreline; what is asked of constant r is done without, for
-// speed.
+// The centerline's circle passes through the origin, tangent to z, with its centre at x = 1/curvature.
+// A point p is on the tube of radius r where
+//   H = h^2 + y^2 - r^2 = 0,  h = curvature (|p|^2 - r^2) / 2 - x.
+// On the tube h is the distance from the circle's cylinder, and along a ray H is a polynomial. The r of a
+// tapered tube is that at the foot of p on the centerline. Constant r has separate code without these terms,
+// for speed.
 namespace flexura {
 namespace {
 
@@ -30,8 +30,7 @@ struct Vector {
   return {p.x + way * d.x, p.y + way * d.y, p.z + way * d.z};
 }
 
-// Pixels as a lens without distortion would show their rays, counted from a pixel of the caller's choice; and
-// how these places change with the pixel.
+// Undistorted positions of pixels relative to a reference pixel, and their derivatives by the pixel.
 struct Place {
   Wide u, v;
   Wide u_by_u, u_by_v, v_by_u, v_by_v;
@@ -39,7 +38,7 @@ struct Place {
 [[gnu::always_inline]] inline Wide at(const Linear& f, const Place& place) {
   return f.value + f.by_v * place.v + f.by_u * place.u;
 }
-// What changes by (by_u, by_v) with the place, by the pixel.
+// Derivatives by the pixel.
 struct Slope {
   Wide by_u, by_v;
 };
@@ -47,7 +46,7 @@ struct Slope {
   return {by_u * place.u_by_u + by_v * place.v_by_u, by_u * place.u_by_v + by_v * place.v_by_v};
 }
 
-// The places of the row's pixels from column u on, counted from (u0, v0).
+// Returns the positions of the row's pixels from column u on, relative to (u0, v0).
 [[gnu::always_inline]] inline Place place_of(const SpanRow& row, int u, float u0, float v0) {
   const LensRow& lens = row.lens;
   if (lens.u == nullptr)
@@ -65,7 +64,8 @@ struct Slope {
           wide_load(places.u_by_v + i), wide_load(places.v_by_u + i), wide_load(places.v_by_v + i)};
 }
 
-// A ray, and h along it from `point` on: h0 + h1 t + h2 t^2, of a tapered tube without its radius.
+// A ray, and h along it from `point` on: h0 + h1 t + h2 t^2; for a tapered tube without the term of the
+// radius.
 template <bool is_tapered>
 struct RayLanes {
   Vector point, direction;
@@ -73,7 +73,7 @@ struct RayLanes {
   Wide h0, h1, h2;
 };
 
-// From a point close to the piece's middle.
+// Starts from a point close to the piece's middle.
 template <bool is_tapered>
 [[gnu::always_inline]] inline RayLanes<is_tapered> ray_of(const SpanPiece& piece, const Place& place) {
   RayLanes<is_tapered> ray;
@@ -90,7 +90,7 @@ template <bool is_tapered>
   return ray;
 }
 
-// atan(x) / x of x^2 up to 1 (M. Abramowitz, I. Stegun, 4.4.49: to 2e-8); as of 1 beyond.
+// atan(x) / x of x^2 up to 1 (M. Abramowitz, I. Stegun, 4.4.49: to 2e-8); constant beyond.
 [[gnu::always_inline]] inline Wide arc_by_tangent(const Wide& x_square) {
   const Wide q = choose(x_square < 1, x_square, Wide(1));
   return 1 + q * (-0.3333314528f +
@@ -101,10 +101,10 @@ template <bool is_tapered>
                                       q * (0.0429096138f + q * (-0.0161657367f + q * 0.0028662257f)))))));
 }
 
-// The radius of the tube at the foot of p, and how it changes there by arc length over the length along p.
+// Radius of the tube at the foot of p.
 struct Girth {
   Wide radius;
-  Wide by_x, by_z;  // Its gradient.
+  Wide by_x, by_z;  // Its gradient by p.
 };
 [[gnu::always_inline]] inline Girth girth_at(const SpanPiece& piece, const Vector& p) {
   const Wide opposite = piece.curvature * p.z, adjacent = at_least(0.1f, 1 - piece.curvature * p.x),
@@ -126,7 +126,7 @@ struct Height {
   return {h * h + y * y - square, h * h_slope + y * ray.direction.y,
           h_slope * h_slope + 2 * h * ray.h2 + ray.direction.y * ray.direction.y, Wide(piece.radius)};
 }
-// Of the radius the first derivative: along a ray it hardly bends.
+// Uses the first derivative of the radius only: along a ray it is almost linear.
 [[gnu::always_inline]] inline Height height(const SpanPiece& piece, const RayLanes<true>& ray,
                                             const Wide& t) {
   const Vector& d = ray.direction;
@@ -140,7 +140,7 @@ struct Height {
           h_slope * h_slope + h * h_curving + d.y * d.y - r_slope * r_slope, r};
 }
 
-// Where H is least, what it is there, and the radius.
+// Minimum of H along the ray, and the radius there.
 struct Lowest {
   Wide t, value, half_chord, radius;
   WideMask is_sure;
@@ -156,7 +156,7 @@ template <bool is_tapered>
   }
   const Height here = height(piece, ray, t);
   if (steps <= 1) at_start = here.value;
-  // Where H is higher than where it was begun at, that is another one of its minima.
+  // If H is higher than at the start, this is another one of its minima.
   const float rounding = 0.01f * piece.radius * piece.radius;
   const Wide scale = 1 / here.curving, move = here.slope * scale, value = here.value - here.slope * move;
   Lowest lowest{t - move, value, square_root(at_least(0, -(value * scale))), here.radius,
@@ -165,8 +165,8 @@ template <bool is_tapered>
   return lowest;
 }
 
-// Where the ray enters, if it does; how far the last step went, m, or, where H does not fall, how far that is
-// from the surface.
+// Entry of the ray, if any. `move` is the last Newton step, m, or, where H does not fall, the distance from
+// the surface.
 struct Entry {
   Wide t, move;
 };
@@ -184,8 +184,8 @@ template <bool is_tapered>
   return {t, move};
 }
 
-// Whether p is no farther than so much before the plane across the piece's start and beyond that across its
-// end.
+// Whether p is at most `before` outside the plane at the piece's start and at most `after` outside that at
+// its end.
 [[gnu::always_inline]] inline WideMask is_within(const SpanPiece& piece, const Vector& p, float before,
                                                  float after) {
   const Wide beyond = piece.end_sine * p.x + piece.end_cosine * p.z - piece.end_offset;
@@ -194,10 +194,10 @@ template <bool is_tapered>
 [[gnu::always_inline]] inline WideMask is_within(const SpanPiece& piece, const Vector& p, float slack) {
   return is_within(piece, p, slack, slack);
 }
-// By which pieces overlap, of their radius.
+// Overlap of pieces, as a share of their radius.
 constexpr float overlap = 1e-3f;
 
-// The normal, times the radius at the piece's start, of the tube at p on it.
+// Normal of the tube at its point p, times the radius at the piece's start.
 [[gnu::always_inline]] inline Vector normal_of(const SpanPiece& piece, const RayLanes<false>& ray,
                                                const Vector& p, const Wide& t) {
   const Wide h = ray.h0 + t * (ray.h1 + t * ray.h2);
@@ -216,7 +216,7 @@ constexpr float overlap = 1e-3f;
   return {size * out.x, size * out.y, size * out.z};
 }
 
-// What a ray sees of a piece of which no end is in its way, with so many steps to where it is deepest.
+// View of a ray on a piece, ignoring its ends, with the given number of steps to the deepest point.
 template <bool is_tapered>
 struct Sight {
   RayLanes<is_tapered> ray;
@@ -238,20 +238,19 @@ template <bool is_tapered>
   return sight;
 }
 
-// The part of a pixel's square that lies beyond a line: where x . normal > offset, the normal of unit length
-// (or none at all).
+// Part of a pixel's square beyond a line: x . normal > offset, for a unit normal or a zero vector.
 struct SquarePart {
-  Wide area, x, y;  // And its centroid, where the area is not 0.
+  Wide area, x, y;  // Centroid, where the area is not 0.
 };
 [[gnu::always_inline]] inline SquarePart part_beyond(const Wide& normal_x, const Wide& normal_y,
                                                      const Wide& offset) {
   const Wide size_x = size_of(normal_x), size_y = size_of(normal_y);
   const WideMask is_steep = size_x < size_y;
-  // Where nothing changes in the image there is no normal: then all lies on one side.
+  // Where nothing changes in the image there is no normal: everything is on one side.
   constexpr float least = 1e-6f;
   const Wide a = at_least(least, choose(is_steep, size_y, size_x)),
              b = at_least(least, choose(is_steep, size_x, size_y));
-  // The triangle at the nearer corner; then the band, when the line crosses opposite sides.
+  // The triangle at the nearer corner; then the band if the line crosses opposite sides.
   const Wide far = size_of(offset);
   const Wide t = at_least(0, 0.5f * (a + b) - far);
   const Wide corner = t * t / (2 * a * b), corner_x = 0.5f - t / (3 * a), corner_y = 0.5f - t / (3 * b);
@@ -271,13 +270,13 @@ struct SquarePart {
   return part;
 }
 
-// How large the larger part of a unit normal is, squared; of none, as if it were one.
+// Square of the larger component of a unit normal; for a zero vector as if it were a unit one.
 [[gnu::always_inline]] inline Wide larger_square(const Wide& normal_x, const Wide& normal_y) {
   return at_least(0.5f,
                   choose(size_of(normal_x) > size_of(normal_y), normal_x * normal_x, normal_y * normal_y));
 }
 
-// The share of the pixel beyond the edge, from the distance in space and how it changes in the image.
+// Share of the pixel beyond the edge, from the distance in space and its image derivative.
 template <bool is_tapered>
 [[gnu::always_inline]] inline Wide share_beyond(const SpanPiece& piece, const SpanEdge& edge,
                                                 const RayLanes<is_tapered>& ray, const Place& place,
@@ -296,8 +295,8 @@ template <bool is_tapered>
   return part_beyond(by_u * scale, by_v * scale, -distance * scale).area;
 }
 
-// The light of the skin at p, channel by channel (all three, for they cost next to nothing); of its pixel, or
-// of the point alone.
+// Light of the skin at p, in all three channels, as these cost almost nothing: mean over its pixel, or at the
+// point alone.
 template <bool is_pixel, bool is_tapered>
 [[gnu::always_inline]] inline void skin_light(const SpanPiece& piece, const RayLanes<is_tapered>& ray,
                                               const Place& place, const Wide& depth, const Vector& p,
@@ -316,7 +315,7 @@ template <bool is_pixel, bool is_tapered>
   for (Wide& channel : light) channel *= factor;
 }
 
-// Of the point alone.
+// At the point alone.
 template <bool is_tapered>
 [[gnu::always_inline]] inline void skin_light(const SpanPiece& piece, const Place& place,
                                               const Sight<is_tapered>& sight, Wide (&light)[3]) {

@@ -6,7 +6,7 @@
 namespace flexura {
 namespace {
 
-// How far the rays pass the rim: x^2 + y^2 - z^2, in the plane of the end.
+// Where a ray meets the plane of the end; `value` is x^2 + y^2 - z^2, negative inside the rim.
 struct RimPoint {
   Wide x, y, z, value;
 };
@@ -15,10 +15,10 @@ struct RimPoint {
   return {x, y, z, x * x + y * y - z * z};
 }
 
-// How the rim's image, a conic, lies in a pixel: how far it is from the middle along the value's gradient,
-// positive where the middle is within; the gradient's direction; how it bends, 1/px; the value's second
-// derivatives along and across the gradient together, halved, by the pixel squared; and 1/px of about half
-// the way to its other side.
+// Local shape of the rim's image, a conic, in a pixel. `distance`: from the middle along the value's
+// gradient, positive if the middle is inside. `normal_u`, `normal_v`: direction of the gradient. `bending`:
+// curvature, 1/px. `curving`: half of the value's second derivatives along and across the gradient, summed,
+// 1/px^2. `flatness`: inverse of about half the distance to its other side, 1/px.
 struct RimLine {
   RimPoint at;
   Wide distance, normal_u, normal_v, bending, curving, flatness;
@@ -35,7 +35,7 @@ struct RimLine {
     const Wide by_u = place.u_by_u * u + place.u_by_v * v, by_v = place.v_by_u * u + place.v_by_v * v;
     return uu * by_u * by_u + 2 * uv * by_u * by_v + vv * by_v * by_v;
   };
-  // Half of the derivatives by the place, then by the pixel.
+  // Half of the derivatives by the position, then by the pixel.
   const auto slope = [&](float Linear::* by) {
     return at.x * (rim.x.*by) + at.y * (rim.y.*by) - at.z * (rim.z.*by);
   };
@@ -56,21 +56,20 @@ struct RimLine {
   return at.x * rim.facing[0] + at.y * rim.facing[1];
 }
 
-// Whether the skin of the tube faces the camera at the rim there: the camera is beyond the skin's plane.
+// Whether the tube's skin faces the camera at this point of the rim: the camera is beyond the skin's plane.
 [[gnu::always_inline]] inline WideMask is_skin_seen(const SpanRim& rim, const RimPoint& at) {
   const Wide length = square_root(at.x * at.x + at.y * at.y);
   const Wide shrunk = length - (at.x * rim.bend[0] + at.y * rim.bend[1]);
   return facing(rim, at) < -length * (rim.radius - rim.lean * (length / shrunk));
 }
 
-// Whether the rim may run through the pixel. Of an end that is seen from behind only the half is asked for at
-// which the skin is seen.
+// Whether the rim may cross the pixel. For an end seen from behind, only the half with visible skin counts.
 [[gnu::always_inline]] inline WideMask is_rim(const SpanRim& rim, const Place& place) {
   constexpr float reach = 0.8f;
   const RimLine line = rim_line(rim, place);
   const RimPoint& at = line.at;
   const WideMask is_seen = facing(rim, at) < rim.margin * square_root(at.x * at.x + at.y * at.y);
-  // Between two sides that are near, the gradient may point along them.
+  // Between two near sides the gradient may point along them.
   const WideMask is_between = size_of(at.value) < reach * reach * line.curving;
   return ((size_of(line.distance) < reach) | is_between) & (at.z > 0) & (is_seen | mask_of(rim.is_front));
 }

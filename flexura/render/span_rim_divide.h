@@ -3,7 +3,7 @@
 #include "flexura/render/span_divide.h"
 #include "flexura/render/span_rim.h"
 
-// Pixels that rims divide; for all_kernels.h alone.
+// Pixels divided by rims; for all_kernels.h alone.
 namespace flexura {
 namespace {
 
@@ -12,8 +12,8 @@ namespace {
   return place;
 }
 
-// Pixels that the rim alone divides: an end in front of its skin or of what is behind the arm, or skin that
-// ends there. The tube's contour is far from them.
+// Pixels that only the rim divides: an end in front of its skin or of the background of the arm, or skin that
+// ends there. The tube's contour is far away.
 template <bool is_tapered>
 void divide_plain(const SpanRim& rim, const SpanPiece& piece, const SpanPlaces& places, RimPixels& pixels) {
   constexpr float sharpest = 0.2f, flattest = 0.8f;  // 1/px
@@ -28,8 +28,8 @@ void divide_plain(const SpanRim& rim, const SpanPiece& piece, const SpanPlaces& 
     const WideMask is_skin_side = is_skin_seen(rim, line.at), is_in_disc = line.at.value < 0;
     const Sight<is_tapered> sight = see<is_tapered>(piece, place, piece.centering + 1);
     const Lowest& lowest = sight.lowest;
-    // The skin is beyond the rim of an end that is seen, and within that of one that is not. It is taken in
-    // the middle of its part of the pixel.
+    // The skin is outside the rim of a visible end, and inside that of a hidden one. Its light is taken at
+    // the centroid of its part of the pixel.
     const Wide outside = 1 - within.area, turn = -within.area / at_least(1e-6f, outside);
     const Wide factor = rim.is_front ? turn : Wide(1);
     const WideMask is_some = rim.is_front ? outside > 1e-6f : within.area > 0;
@@ -61,7 +61,7 @@ void divide_rim(const SpanRim& rim, const SpanPiece& piece, const SpanPlaces& pl
                       : divide_plain<false>(rim, piece, places, pixels);
 }
 
-// What of the end and of its tube the rays see.
+// Rays against the end and its tube.
 template <bool is_tapered>
 [[gnu::always_inline]] inline Seen see_end(const SpanRim& rim, const SpanPiece& piece, const Place& pixel) {
   const Place on_rim = counted_from(pixel, rim.u0, rim.v0), place = counted_from(pixel, piece.u0, piece.v0);

@@ -37,7 +37,7 @@ void add_ring_edge(std::span<const Arc> tube, double s, const Pose& X_CW, Stage&
   stage.ring_edges.push_back({s, circle_at(X_CS.rotation, X_CS.position, radius)});
 }
 
-// Which marker is seen where: of those that overlap the last.
+// Sets which marker is visible where: of overlapping ones the last.
 void add_rings(std::span<const MarkerRing> markers, Stage& stage) {
   for (std::size_t i = 0; i < markers.size(); ++i) {
     stage.rings.push_back({markers[i].s_from, static_cast<int>(i)});
@@ -59,8 +59,8 @@ void add_rings(std::span<const MarkerRing> markers, Stage& stage) {
   }
 }
 
-// The piece of the arm's side that comes out of a face at arc length s towards the tip (`side` > 0) or the
-// base, or the nearest to it.
+// Returns the arm piece whose side emerges from a face at arc length s, or the nearest one. It is towards the
+// tip if `side` > 0, otherwise towards the base.
 int arm_piece_at(const Stage& stage, double s, double side) {
   int result = stage.first_arm_piece;
   for (int i = stage.first_arm_piece; i <= stage.last_arm_piece; ++i) {
@@ -185,7 +185,7 @@ struct ObstacleAdder {
     Pose X_WS;
     X_WS.position = from;
     if (length > 0) X_WS.rotation = rotation_from_z(way);
-    // A sphere is a capsule of hardly any length.
+    // A sphere is a capsule of almost zero length.
     const Arc tube = straight_tube(X_WS, std::max(length, 1e-9 * radius), radius);
     add_tube({&tube, 1}, X_CW, body, body, {TubeEnd{TipKind::round, body}, TubeEnd{TipKind::round, body}},
              stage);

@@ -9,13 +9,13 @@ namespace flexura {
 namespace {
 
 constexpr double largest_turn = std::numbers::pi / 6;
-// What passes a piece as near as this in the image is told as a near miss, px.
+// Distance in the image below which a passing ray is reported as a near miss, px.
 constexpr double near_miss = 3;
 
-// By which a piece reaches into the next one, of its size.
+// Overlap of a piece with the next one, relative to its size.
 constexpr double overlap = 1e-10;
 
-// What follows from the rest.
+// Computes the derived members.
 void complete(TubePiece& piece, double pixel) {
   const double turn = piece.curvature * piece.length;
   piece.p_PC = -(piece.R_CP.transpose() * piece.p_CP);
@@ -24,21 +24,21 @@ void complete(TubePiece& piece, double pixel) {
     piece.end_tangent = {std::sin(turn), 0, std::cos(turn)};
     piece.end_offset = end.z();
   }
-  // An arc of less than half a turn lies in the ball that has its chord as a diameter.
+  // An arc of less than half a turn is inside the ball whose diameter is its chord.
   piece.bound_center = 0.5 * end;
   piece.bound_radius = 0.5 * end.norm() + piece.widest();
   const double farthest = (piece.bound_center - piece.p_PC).norm() + piece.bound_radius;
   piece.near_radius = piece.bound_radius + near_miss * pixel * farthest;
 }
 
-// Joins `piece` to the last one if it goes on there, and adds it.
+// Joins `piece` to the last one if it continues there, and adds it.
 void add_piece(TubePiece& piece, bool goes_on, Stage& stage) {
   const int here = static_cast<int>(stage.pieces.size());
   if (goes_on) {
     piece.before = here - 1;
     TubePiece& last = stage.pieces.back();
     last.after = here;
-    // Lest a ray slip through between the two by rounding.
+    // So that no ray slips between the two through rounding.
     last.end_offset += overlap * (last.length + last.radius);
   }
   complete(piece, stage.pixel);
@@ -112,7 +112,7 @@ void add_tube(std::span<const Arc> arcs, const Pose& X_CW, int body, int step_bo
       goes_on = std::abs(before - after) <= 1e-12 * before;
       if (!goes_on && before > after) add_disc(arcs[i - 1], i - 1, true, false, X_CW, step_body, stage);
       if (!goes_on && before < after) add_disc(arcs[i], i, false, true, X_CW, step_body, stage);
-      // The narrower side comes out of the disc.
+      // The narrower side emerges from the disc.
       const auto next = static_cast<int>(stage.pieces.size());
       if (!goes_on) stage.discs.back().arm_piece = before > after ? next : next - 1;
     }

@@ -4,7 +4,7 @@
 
 namespace flexura {
 
-/// What kind of surface a pixel shows.
+/// Kind of the surface that a pixel shows.
 enum class SurfaceKind : std::uint8_t {
   background,
   section,  ///< The arm's skin; the index is the section's.
@@ -17,7 +17,7 @@ enum class SurfaceKind : std::uint8_t {
   obstacle,
 };
 
-/// Which surface.
+/// Identity of a surface.
 struct SurfaceLabel {
   SurfaceKind kind = SurfaceKind::background;
   std::uint16_t index = 0;

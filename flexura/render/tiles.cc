@@ -13,7 +13,7 @@ struct Cone {
   double radius;
 };
 
-// A piece of the image, and all that passes as near to it as borders are told.
+// A part of the image, plus the reach of borders around it.
 Cone cone_of(const RayField& rays, int u0, int v0, int u1, int v1) {
   Cone cone{{0, 0, 1}, std::numeric_limits<double>::infinity()};
   const auto middle = rays.ray((u0 + u1) / 2, (v0 + v1) / 2);
@@ -31,7 +31,7 @@ Cone cone_of(const RayField& rays, int u0, int v0, int u1, int v1) {
   return cone;
 }
 
-// Whether something of the cone comes within `radius` of the segment from p to q, C. Never a false no.
+// Returns whether the cone may come within `radius` of the segment from p to q, C. Never a false negative.
 bool may_touch(const Cone& cone, const Eigen::Vector3d& p, const Eigen::Vector3d& q, double radius) {
   const double deepest = std::max(p.z(), q.z()) + radius;
   if (!(deepest > 0)) return false;
@@ -94,12 +94,12 @@ void add_all(Part::Kind kind, const List& list, std::vector<Part>& parts) {
 
 namespace {
 
-// Tiles of a block's side.
+// Tiles along a block's side.
 constexpr int block = 4;
 
 int blocks_of(int tiles) { return (tiles + block - 1) / block; }
 
-// Of a list in its row-wise table.
+// Index in a row-wise table of lists.
 std::size_t place(int column, int row, int columns) {
   return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns) + static_cast<std::size_t>(column);
 }

@@ -10,32 +10,32 @@
 
 namespace flexura {
 
-/// Which primitives may be seen, or have a border, in which part of the image: squares of 16 x 16 px, each
-/// looked into when it is first asked for.
+/// Lists the primitives that may be visible or have a border in each square of 16 x 16 px. A list is made
+/// when it is first needed.
 class Tiles {
  public:
   static constexpr int size = 16;
 
-  /// Forgets the frame before. Its vectors are used again from call to call; `stage` and `rays` must stay.
+  /// Starts a new frame. Storage is reused; `stage` and `rays` must outlive the queries.
   void build(const Stage& stage, const RayField& rays);
 
   [[nodiscard]] int columns() const { return columns_; }
   [[nodiscard]] int rows() const { return rows_; }
-  /// Those of tile (column, row), in the stage's order.
+  /// Returns those of tile (column, row), in the stage's order.
   [[nodiscard]] std::span<const Part> parts(int column, int row) const;
-  /// All primitives.
+  /// Returns all primitives.
   [[nodiscard]] std::span<const Part> all_parts() const { return all_; }
 
  private:
-  // The primitives near a square of so many tiles from (column, row) on.
+  // The primitives near a square of tiles that starts at (column, row).
   struct List {
     bool is_known = false;
     std::span<const Part> parts;
   };
-  // Room for lists, which stay where they are until it is cleared.
+  // Storage for lists, which do not move until it is cleared.
   class Room {
    public:
-    // Where to add up to so many parts.
+    // Returns a vector with capacity for this many more parts.
     std::vector<Part>& with(std::size_t parts);
     void clear();
 

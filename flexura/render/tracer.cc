@@ -16,11 +16,11 @@ const T& at(const std::vector<T>& list, std::uint32_t index) {
   return list[static_cast<std::size_t>(index)];
 }
 
-// Hits that are closer together in depth, by this share, are one.
+// Relative difference in depth below which two hits count as one.
 constexpr double same_hit = 1e-9;
 
-// The three nearest surfaces and all borders near a ray, as the parts tell them: where two bodies are all but
-// in one place and a third cuts through both, the third is what is seen next to the first.
+// The three nearest surfaces and all borders near a ray. Where two bodies almost coincide and a third cuts
+// both, the third is the surface visible next to the first.
 struct Sights {
   static constexpr std::size_t most = 12;
   std::array<Border, most> borders;
@@ -40,7 +40,7 @@ struct Sights {
     for (const Border& border : list) add(border);
   }
   void add_hit(double depth, Part part) {
-    // Where two pieces of a tube overlap by a hair both tell of it.
+    // Where two pieces of a tube overlap slightly, both report it.
     for (const Hit* hit : {&first, &second})
       if (std::abs(depth - hit->depth) <= same_hit * depth) return;
     if (!(depth < third.depth)) return;
@@ -51,7 +51,7 @@ struct Sights {
   }
 };
 
-// The piece that the ray enters where it leaves this one; -1: none.
+// Returns the piece that the ray enters where it leaves this one; -1: no piece.
 int piece_behind(const TubePiece& piece, const DepthRange& range) {
   if (range.leaves_after) return piece.after;
   return range.leaves_before ? piece.before : -1;
@@ -64,7 +64,7 @@ Border contour_at(const TubePiece& piece, const Ray& ray, double depth) {
   return border_of(point.gap, depth * slope.head<2>(), ray, depth);
 }
 
-// Where the radius grows at another rate from the next piece on, the ray may be nearest just there.
+// Where the taper changes at the next piece, the nearest point of the ray may be exactly there.
 void add_kink_miss(const Stage& stage, const TubePiece& piece, const Ray& ray, const LocalRay& local,
                    const DepthRange& range, NearMisses& misses) {
   const int next = piece_behind(piece, range);
@@ -139,7 +139,7 @@ void meet(const Stage& stage, Part part, const Ray& ray, Sights& sights) {
   }
 }
 
-// The contour of the tube that the ray has entered: where it leaves again when the pixel moves on.
+// Returns the contour of the tube that the ray has entered: where it leaves again when the pixel moves.
 Border own_contour(const Stage& stage, const Ray& ray, const Hit& hit) {
   auto index = static_cast<int>(hit.part.index);
   double depth = hit.depth;
@@ -154,8 +154,8 @@ Border own_contour(const Stage& stage, const Ray& ray, const Hit& hit) {
     depth = range.to;
     index = piece_behind(piece, range);
     if (index >= 0) continue;
-    // Out through the tube's end. Where the contour meets the end's rim near by, at an angle that no line
-    // tells, the ray would not have gone much deeper.
+    // Out through the tube's end. Where the contour meets the end's rim nearby, at an unknown angle, the ray
+    // would not have gone much deeper.
     const Inside at = inside_at(piece, local, depth);
     Border corner = contour_at(piece, ray, depth);
     corner.distance *= 0.7;
@@ -165,7 +165,8 @@ Border own_contour(const Stage& stage, const Ray& ray, const Hit& hit) {
   return {};
 }
 
-// Whether a tube's piece comes out of the flat surface hit there: holds the place well, or begins at it.
+// Whether a tube's piece emerges from the flat surface that was hit: it contains the point well inside, or
+// begins at it.
 bool comes_out_of(const Stage& stage, std::uint32_t index, const Hit& flat, const Eigen::Vector3d& p_CQ) {
   if (flat.part.kind == Part::Kind::disc &&
       at(stage.discs, flat.part.index).arm_piece == static_cast<int>(index))
@@ -198,7 +199,7 @@ SurfaceLabel skin_label(const Stage& stage, const TubePiece& piece, double s, co
   return body.label;
 }
 
-// Fills in the rest of a hit.
+// Completes a hit.
 void complete(const Stage& stage, const Ray& ray, Hit& hit) {
   if (hit.is_none()) return;
   int body = 0;
@@ -236,15 +237,15 @@ void complete(const Stage& stage, const Ray& ray, Hit& hit) {
   if (hit.label.kind == SurfaceKind::disk) hit.s = stage.scene->arm.disks[hit.label.index].s;
 }
 
-// How the depth of a hit changes in the image, by (a, b).
+// Derivative of a hit's depth by (a, b).
 Eigen::Vector2d depth_slope(const Hit& hit, const Ray& ray) {
   const double towards = hit.normal.dot(ray.direction);
   if (towards == 0) return {infinity, infinity};
   return hit.normal.head<2>() * (-hit.depth / towards);
 }
 
-// The edge of a ring near a hit, from how s changes on the surface; or, where that says the same, from the
-// circle's image, which is more exact.
+// Returns the edge of a ring near a hit, from the derivative of s on the surface. If the circle's image
+// agrees, it is used instead, as it is more exact.
 Border ring_border(const RingEdge& edge, double s, const Eigen::Vector2d& s_slope, double depth,
                    const Ray& ray) {
   Border straight = border_of(s - edge.s, s_slope, ray, depth);
@@ -258,12 +259,13 @@ Border ring_border(const RingEdge& edge, double s, const Eigen::Vector2d& s_slop
   return straight;
 }
 
-// How a point of the surface moves with (a, b), along `direction`.
+// Derivative by (a, b) of a surface point's coordinate along `direction`.
 Eigen::Vector2d surface_slope(const Hit& hit, const Ray& ray, const Eigen::Vector3d& direction) {
   return hit.depth * direction.head<2>() + direction.dot(ray.direction) * depth_slope(hit, ray);
 }
 
-// Where tubes come out of a flat surface that was hit; whether `other` is one of their pieces.
+// Adds the borders where tubes emerge from a flat surface that was hit; returns whether `other` is one of
+// their pieces.
 bool add_tube_borders(const Stage& stage, std::span<const Part> parts, const Ray& ray, const Hit& flat,
                       const Hit& other, Sights& sights) {
   const Eigen::Vector3d p = flat.depth * ray.direction;
@@ -277,7 +279,7 @@ bool add_tube_borders(const Stage& stage, std::span<const Part> parts, const Ray
   return is_among;
 }
 
-// Edges of colour on the tube near the hit.
+// Adds colour edges on the tube near the hit.
 void add_color_edges(const Stage& stage, const Ray& ray, Sights& sights) {
   const Hit& hit = sights.first;
   const TubePiece& piece = at(stage.pieces, hit.part.index);
@@ -312,7 +314,7 @@ void add_color_edges(const Stage& stage, const Ray& ray, Sights& sights) {
   }
 }
 
-// Keeps the two nearest of the borders that what is seen does not hide.
+// Keeps the two nearest borders that the visible surface does not hide.
 void choose(const Sights& sights, const Ray& ray, Trace& trace) {
   const double slope =
       trace.hit.is_none() ? 0 : (ray.by_pixel.transpose() * depth_slope(trace.hit, ray)).norm();
@@ -321,7 +323,7 @@ void choose(const Sights& sights, const Ray& ray, Trace& trace) {
   };
   for (std::size_t i = 0; i < sights.count; ++i) {
     const Border& border = sights.borders[i];
-    // What is seen recedes at another rate where the border is.
+    // The surface's depth changes differently at the border.
     const double margin = 1e-6 * trace.hit.depth + 4 * slope * (1 + border.distance);
     if (!(border.depth <= trace.hit.depth + margin)) continue;
     if (!border.is_ring) trace.clear = std::min(trace.clear, border.distance);
@@ -334,11 +336,11 @@ void choose(const Sights& sights, const Ray& ray, Trace& trace) {
   }
 }
 
-// Where the first surface meets another one behind it, if there is one, and tubes that come out of it.
+// Adds the border between the first surface and the one behind it, if any, and the tubes that emerge from it.
 void add_meeting(const Stage& stage, std::span<const Part> parts, const Ray& ray, const Hit& first,
                  const Hit& other, Sights& sights) {
-  // A tube and a flat surface meet where the tube's gap is zero on the flat one: that runs more evenly over
-  // the image than the difference of their depths.
+  // For a tube and a flat surface, uses the tube's gap on the flat surface: it is smoother over the image
+  // than the difference of depths.
   const auto is_piece = [](const Hit& hit) { return hit.part.kind == Part::Kind::piece; };
   const Hit& flat = is_piece(first) ? other : first;
   const bool is_known = !flat.is_none() && !is_piece(flat) &&
@@ -366,7 +368,7 @@ Trace Tracer::trace(const Ray& ray) const {
   if (!sights.third.is_none()) add_meeting(stage_, parts_, ray, first, sights.third, sights);
   if (!first.is_none() && first.part.kind == Part::Kind::piece) {
     Border contour = own_contour(stage_, ray, first);
-    contour.depth = 0;  // However far behind the surface it is found, the surface ends there.
+    contour.depth = 0;  // The surface ends at the contour, however far behind the surface that is found.
     sights.add(contour);
     add_color_edges(stage_, ray, sights);
   }

@@ -15,7 +15,7 @@ namespace {
 
 constexpr int values_per_kind = 4096;
 
-// Calls visit(u, v, tracer, ray) for all pixels that have a ray and may show something.
+// Calls visit(u, v, tracer, ray) for all pixels that have a ray and may show a surface.
 template <typename Visit>
 void for_all_pixels(const Renderer& renderer, Visit&& visit) {
   const RayField& rays = renderer.prepared().rays;

@@ -42,7 +42,7 @@ TEST(Truth, NamesWhatEachPixelShows) {
   TruthMaps maps;
   truth_maps(renderer, maps);
   for (int v = 40; v <= 120; ++v) {
-    // On the axis the surface is at the distance less the radius, the ray's height there is y.
+    // On the axis the surface is at the distance minus the radius; the ray's height there is y.
     const double depth = away - 0.05, y = 0.5 - (v - 80) / 140.0 * depth;
     if (y < 0 || y > 1 || v == 80) continue;  // At 80 the sections meet.
     EXPECT_NEAR(maps.depth.at(80, v), depth, 1e-6);
@@ -85,8 +85,8 @@ TEST(Truth, CoverageOfAllKindsAddsUpToOne) {
 }
 
 TEST(Truth, MarkerEdgesAreWhereTheirCirclesProject) {
-  // Seen square from the side, the edge at y is the half of the circle on the camera's side; on the axis at
-  // depth D - r.
+  // Seen perpendicularly from the side, the edge at y is the half of the circle on the camera's side; on the
+  // axis at depth D - r.
   const StraightArm straight;
   Renderer renderer;
   renderer.prepare(straight.scene, side_view());
@@ -95,7 +95,7 @@ TEST(Truth, MarkerEdgesAreWhereTheirCirclesProject) {
     double column = 0;
     for (int v = 0; v < 161; ++v) column += seen.at(80, v);
     const MarkerRing& marker = straight.scene.arm.markers[i];
-    // The mean over the pixel's width, half a pixel to either side.
+    // Mean over the pixel's width, half a pixel to either side.
     double expected = 0;
     for (int part = 0; part < 100; ++part) {
       const double a = (part - 49.5) / 100 / 140, square = 1 + a * a;
@@ -118,7 +118,7 @@ TEST(Truth, MarkerEdgesAreWhereTheirCirclesProject) {
 }
 
 TEST(Truth, TheEtalonsLinesAreAsWideAsTheyProject) {
-  // A line in front, turned by `turn`: its edges are lines on the cylinder, at the angles turn +- w/2r.
+  // A line in front, rotated by `turn`: its edges are lines on the cylinder, at the angles turn +- w/2r.
   for (const double turn : {0.0, 0.3, -0.7}) {
     Scene scene = plain_scene();
     Etalon etalon;
@@ -138,7 +138,7 @@ TEST(Truth, TheEtalonsLinesAreAsWideAsTheyProject) {
 }
 
 TEST(Truth, TheAxisIsHiddenWhereTheArmHidesItself) {
-  // A ring of a full turn in the XZ plane seen from the side: the far half lies behind the near half.
+  // A full ring in the XZ plane seen from the side: the far half lies behind the near half.
   Arm arm;
   arm.kind = ArmKind::spatial;
   arm.sections.push_back({.length = 2, .radius = {0.03, 0.03}});

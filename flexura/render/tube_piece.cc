@@ -9,7 +9,7 @@
 namespace flexura {
 namespace {
 
-// Arc length from the piece's start of the foot of (x, z), smooth through curvature 0.
+// Arc length from the piece's start to the foot of (x, z), smooth through curvature 0.
 double arc_length(double curvature, double x, double z) {
   const double opposite = curvature * z, adjacent = 1 - curvature * x;
   if (std::abs(opposite) > 1e-3 * adjacent) return std::atan2(opposite, adjacent) / curvature;
@@ -17,7 +17,7 @@ double arc_length(double curvature, double x, double z) {
   return z / adjacent * (1 - square * (1.0 / 3 - square * (1.0 / 5 - square / 7)));
 }
 
-// Narrows the range to where offset + slope * depth >= 0; whether its end then lies there.
+// Narrows the range to where offset + slope * depth >= 0; returns whether its end is then there.
 bool keep_positive(double offset, double slope, DepthRange& range) {
   if (slope == 0) {
     if (offset < 0) range.to = -infinity;
@@ -33,8 +33,8 @@ bool keep_positive(double offset, double slope, DepthRange& range) {
   return true;
 }
 
-// Where the squared distance to the centreline, seen along the ray, is a concave function of depth; empty
-// (1, 0) nearly everywhere. It is where m^3 < cross^2 / square, m^2 being quadratic in depth.
+// Range of depths in which the squared distance to the centerline is concave along the ray; empty (1, 0)
+// almost always. It is where m^3 < cross^2 / square; m^2 is quadratic in depth.
 struct Stretch {
   double from = 1, to = 0;
 };
@@ -144,13 +144,14 @@ TubePoint tube_point(const TubePiece& piece, const Eigen::Vector3d& p_CQ) {
 
 namespace {
 
-// Where the slope, negative at `low` and positive at `high`, is zero: Newton's steps kept between.
+// Returns the zero of the slope, which is negative at `low` and positive at `high`, by bracketed Newton
+// steps.
 double minimum_between(const TubePiece& piece, const LocalRay& ray, double low, double high) {
   double depth = 0.5 * (low + high);
   for (int step = 0; step < 60; ++step) {
     const Inside at = inside_at(piece, ray, depth);
     const double newton = at.curving > 0 ? -at.slope / at.curving : infinity;
-    // Where the slope is zero but for rounding the step may end upon the bracket: no reason to halve that.
+    // If the slope is zero up to rounding, the step may end on the bracket, which needs no halving.
     if (std::abs(newton) < 1e-10 * (1 + depth)) return std::clamp(depth + newton, low, high);
     (at.slope < 0 ? low : high) = depth;
     depth += newton;
@@ -160,7 +161,7 @@ double minimum_between(const TubePiece& piece, const LocalRay& ray, double low, 
   return depth;
 }
 
-// Where the value, positive at `low` and negative at `high`, is zero, starting at `depth`.
+// Returns the zero of the value, which is positive at `low` and negative at `high`, starting at `depth`.
 double root_between(const TubePiece& piece, const LocalRay& ray, double low, double high, double depth) {
   if (!(depth > low) || !(depth < high)) depth = 0.5 * (low + high);
   for (int step = 0; step < 80; ++step) {
@@ -175,8 +176,7 @@ double root_between(const TubePiece& piece, const LocalRay& ray, double low, dou
   return depth;
 }
 
-// The entry in a stretch where the value is a convex function of depth; adds its minimum if it is a near
-// miss.
+// Returns the entry in a range where the value is convex in depth; adds its minimum if it is a near miss.
 double entry_in_convex(const TubePiece& piece, const LocalRay& ray, double low, double high,
                        NearMisses& misses) {
   const Inside at_low = inside_at(piece, ray, low);
@@ -199,14 +199,14 @@ double entry_in_convex(const TubePiece& piece, const LocalRay& ray, double low, 
   return root_between(piece, ray, low, lowest, lowest - back);
 }
 
-// The minimum in such a stretch; infinity when the value still falls at its end.
+// Returns the minimum in such a range; infinity if the value still falls at its end.
 double minimum_in_convex(const TubePiece& piece, const LocalRay& ray, double low, double high) {
   if (inside_at(piece, ray, high).slope < 0) return infinity;
   if (inside_at(piece, ray, low).slope >= 0) return low;
   return minimum_between(piece, ray, low, high);
 }
 
-// The entry where it is a concave one: there if it ends inside and is outside where it is highest.
+// Returns the entry in a concave range: it exists if the range ends inside and the highest point is outside.
 double entry_in_concave(const TubePiece& piece, const LocalRay& ray, double low, double high) {
   const Inside at_low = inside_at(piece, ray, low), at_high = inside_at(piece, ray, high);
   if (at_high.value >= 0) return infinity;
@@ -223,7 +223,7 @@ double entry_in_concave(const TubePiece& piece, const LocalRay& ray, double low,
   return root_between(piece, ray, highest, high, 0.5 * (highest + high));
 }
 
-// Cuts the range where the curving changes its sign and calls visit(from, to, is_concave) on the parts in
+// Splits the range where the curvature changes its sign and calls visit(from, to, is_concave) on the parts in
 // order until it returns a finite depth.
 template <typename Visit>
 double over_parts(const TubePiece& piece, const LocalRay& ray, const DepthRange& range, Visit&& visit) {

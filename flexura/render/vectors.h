@@ -7,10 +7,10 @@
 #include <cstddef>
 #include <cstdint>
 
-// Vectors of single numbers by the compiler's own operators (GCC's vector extensions, which clang has too),
-// and what these lack. Each lane is worked on by itself and rounded once, so that the width changes no bit.
-// For all_kernels.h alone: in an unnamed namespace each source that is compiled for an instruction set has
-// its own copy.
+// Vectors of floats with the compiler's operators (vector extensions of GCC and clang), and the missing
+// functions. Each lane is computed by itself and rounded once, so that the width changes no bit. For
+// all_kernels.h alone: in an unnamed namespace each source that is compiled for an instruction set has its
+// own copy.
 namespace flexura {
 namespace {
 
@@ -34,7 +34,7 @@ FLEXURA_INLINE Floats load(const float* from) {
   return v;
 }
 FLEXURA_INLINE void store(float* to, const Floats& v) { __builtin_memcpy(to, &v, sizeof v); }
-// max(low, v), and low where v is not a number.
+// max(low, v), and low where v is NaN.
 FLEXURA_INLINE Floats at_least(float low, const Floats& v) {
 #if defined(__AVX512BW__)
   return _mm512_max_ps(v, all(low));
@@ -53,7 +53,7 @@ FLEXURA_INLINE Floats square_root(const Floats& v) {
   return root;
 }
 
-// One a lane, the first one lowest.
+// One bit per lane, the first one lowest.
 FLEXURA_INLINE std::uint32_t bits_of(const Mask& mask) {
 #if defined(__AVX512BW__)
   const auto m = reinterpret_cast<__m512i>(mask);
@@ -100,7 +100,7 @@ FLEXURA_INLINE Mask has_flag(const std::uint8_t* bytes, std::uint8_t flag) {
   return (words & flag) != 0;
 }
 
-// The sum of a word's four bytes, weighted with 64 * 128, 63 * 128, 64 * 125 and 63 * 125 from the lowest on.
+// Sum of a word's four bytes with the weights 64 * 128, 63 * 128, 64 * 125 and 63 * 125, lowest byte first.
 FLEXURA_INLINE Words weighted_bytes(const Words& x) {
 #if defined(__AVX512BW__)
   const auto pairs = _mm512_maddubs_epi16(reinterpret_cast<__m512i>(x), _mm512_set1_epi16(64 | 63 << 8));
@@ -109,7 +109,7 @@ FLEXURA_INLINE Words weighted_bytes(const Words& x) {
   const auto pairs = _mm256_maddubs_epi16(reinterpret_cast<__m256i>(x), _mm256_set1_epi16(64 | 63 << 8));
   return reinterpret_cast<Words>(_mm256_madd_epi16(pairs, _mm256_set1_epi32(128 | 125 << 16)));
 #else
-  // Two bytes' weighted sum stays below 2^16, so that both halves of a word hold one.
+  // The weighted sum of two bytes stays below 2^16, so that each half of a word holds one.
   const Words pairs = (x & 0x00ff00ffu) * 64 + ((x >> 8) & 0x00ff00ffu) * 63;
 #if defined(__SSE2__)
   return reinterpret_cast<Words>(
@@ -120,7 +120,7 @@ FLEXURA_INLINE Words weighted_bytes(const Words& x) {
 #endif
 }
 
-// Stores the numbers of `n` vectors, of a size below 2^31, cut to whole ones from 0 to 255.
+// Stores the numbers of `n` vectors, of magnitude below 2^31, truncated and clamped to 0 to 255.
 template <std::size_t n>
 FLEXURA_INLINE void store_bytes(const Floats (&v)[n], std::uint8_t* to) {
 #if defined(__AVX512BW__)
@@ -133,7 +133,7 @@ FLEXURA_INLINE void store_bytes(const Floats (&v)[n], std::uint8_t* to) {
   const auto pair = [&v](std::size_t j) {
     return _mm256_packs_epi32(_mm256_cvttps_epi32(v[j]), _mm256_cvttps_epi32(v[j + 1]));
   };
-  // Packing works within the halves of vectors; the last step puts the parts in order.
+  // Packing works within the halves of vectors; the last step restores the order.
   const __m256i bytes = _mm256_packus_epi16(pair(0), pair(2));
   const __m256i order = _mm256_setr_epi32(0, 4, 1, 5, 2, 6, 3, 7);
   _mm256_storeu_si256(reinterpret_cast<__m256i*>(to), _mm256_permutevar8x32_epi32(bytes, order));
@@ -152,8 +152,7 @@ FLEXURA_INLINE void store_bytes(const Floats (&v)[n], std::uint8_t* to) {
 #endif
 }
 
-// Two vectors as one: what is computed in one waits for what was computed just before, and the other fills
-// the time.
+// Two vectors as one: an operation waits for its predecessor, and the other vector fills that time.
 constexpr std::size_t wide_lanes = 2 * lanes;
 template <typename V, typename Number>
 struct Pair {

@@ -22,7 +22,7 @@ std::vector<Eigen::Vector2d> arc_points(const Arc& arc, PlotView view, const Plo
     const double part = static_cast<double>(i) / steps;
     const Pose X_WS = arc.pose(arc.length * part);
     const Eigen::Vector2d tangent = seen(view, X_WS.rotation.col(2));
-    // Seen end on, an arc has no side: the last one is kept.
+    // An arc seen end on has no side: the last one is kept.
     if (tangent.norm() > 1e-6) normal = Eigen::Vector2d(tangent.y(), tangent.x()).normalized();
     const double by = aside[0] + (aside[1] - aside[0]) * part;
     points.emplace_back(frame.page(seen(view, X_WS.position)) + by * normal);

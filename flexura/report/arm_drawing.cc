@@ -15,14 +15,14 @@ namespace flexura {
 namespace {
 
 constexpr double warning_border = 5.0;  // Around a tube, page units.
-constexpr double warning_gap = 1.8;     // Between the two, for tubes as red as the border.
-constexpr double thinnest_tube = 5.0;   // Of a tube, page units.
+constexpr double warning_gap = 1.8;     // Between tube and border, for tubes as red as the border.
+constexpr double thinnest_tube = 5.0;   // Least width of a tube, page units.
 
 std::string moment(const ReportMotion& motion, std::size_t i) {
   return "t = " + fixed(motion.times[i], 3) + " s";
 }
 
-// The arm's foot: a line across the tube with hatching on the side the arm does not grow to.
+// Draws the arm's base: a line across the tube, hatched on the side away from the arm.
 void draw_base(XmlWriter& svg, const PlotFrame& frame, PlotView view, const Arm& arm) {
   const Eigen::Vector2d at = frame.page(seen(view, arm.X_WB.position));
   const Eigen::Vector2d tangent = seen(view, arm.X_WB.rotation.col(2));
@@ -45,7 +45,7 @@ void draw_tube(XmlWriter& svg, const PlotScene& scene, std::size_t v, const Arc&
   draw(fmt::format("tube s{}", arc.section % 8), 0);
 }
 
-// The line of the chosen drawing curve; arcs are the tube itself.
+// Draws the chosen curve as a line; arcs are the tube itself.
 void draw_curve(XmlWriter& svg, const PlotScene& scene, std::size_t v, const ReportMotion& motion,
                 const Backbone& backbone) {
   std::string path;
@@ -60,13 +60,13 @@ void draw_curve(XmlWriter& svg, const PlotScene& scene, std::size_t v, const Rep
   if (!path.empty()) svg.leaf("path", {{"class", "spline"}, {"d", path}});
 }
 
-// How near the middle of an arc is to the view's camera.
+// Returns how near the middle of an arc is to the view's camera.
 double nearness(PlotView view, const Arc& arc) {
   const Eigen::Vector3d middle = arc.pose(arc.length / 2).position;
   return view == PlotView::xoy ? middle.z() : -middle.x();
 }
 
-// The backbone's arcs, the farthest first.
+// Returns the backbone's arcs, the farthest first.
 std::vector<std::size_t> back_to_front(PlotView view, const Backbone& backbone) {
   std::vector<std::size_t> order(backbone.arcs().size());
   std::iota(order.begin(), order.end(), std::size_t{0});
@@ -98,8 +98,8 @@ std::string backbone_path(const PlotScene& scene, std::size_t v, const Backbone&
   return path;
 }
 
-// Names for the start, the middle and the end of the tip's path; one name where they fall together on the
-// page.
+// Returns labels for the start, the middle and the end of the tip's path; one label for points that coincide
+// on the page.
 std::vector<std::pair<Eigen::Vector2d, std::string>> named_tips(const ReportMotion& motion,
                                                                 const PlotFrame& frame, PlotView view) {
   constexpr double together = 20.0;
@@ -124,7 +124,7 @@ bool is_inside(const PlotFrame& frame, const Eigen::Vector2d& page) {
   return in.minCoeff() >= 0 && in.x() <= frame.size.x() && in.y() <= frame.size.y();
 }
 
-// Where the way from a point in the plot to another leaves it, if it does.
+// Returns where the line from a point in the plot to another leaves the plot, if it does.
 Eigen::Vector2d cut_off(const PlotFrame& frame, const Eigen::Vector2d& from, const Eigen::Vector2d& to) {
   double part = 1.0;
   for (int axis = 0; axis < 2; ++axis) {
@@ -135,7 +135,7 @@ Eigen::Vector2d cut_off(const PlotFrame& frame, const Eigen::Vector2d& from, con
   return from + part * (to - from);
 }
 
-// A cross at a place that the tip misses; nothing where that is outside the plot.
+// Draws a cross at a position that the tip does not reach; nothing if it is outside the plot.
 void draw_target(XmlWriter& svg, const PlotFrame& frame, const Eigen::Vector2d& at) {
   if (!is_inside(frame, at)) return;
   svg.open("g", {{"class", "target"}, {"transform", fmt::format("translate({})", page_point(at))}});
@@ -144,7 +144,7 @@ void draw_target(XmlWriter& svg, const PlotFrame& frame, const Eigen::Vector2d& 
   svg.close();
 }
 
-// What the tip misses in this picture, and how far away that is.
+// Draws the targets that the tip does not reach in this picture, and their distances.
 void draw_missed_targets(XmlWriter& svg, const PlotScene& scene, std::size_t v, const ReportMotion& motion,
                          std::size_t i, const std::vector<std::size_t>& shown) {
   const PlotFrame& frame = scene.frames[v];
@@ -159,7 +159,8 @@ void draw_missed_targets(XmlWriter& svg, const PlotScene& scene, std::size_t v, 
   }
 }
 
-// The arm at state i, with a warning around the sections of these violations and those that are unsafe then.
+// Returns the arm in state i, with a warning around the sections of these violations and of those that are
+// unsafe at that time.
 Drawing picture_of_arm(const ReportMotion& motion, const PlotScene& scene, std::size_t i,
                        std::string_view when, const std::vector<std::size_t>& shown) {
   const auto is_shown = [&](std::size_t section) {

@@ -9,7 +9,7 @@
 namespace flexura {
 namespace {
 
-// Page units between ticks, at least, so that labels keep apart.
+// Least distance of ticks, page units, so that labels do not overlap.
 constexpr double tick_pitch_x = 56.0;
 constexpr double tick_pitch_y = 34.0;
 constexpr double tick_character_width = 7.2;
@@ -55,12 +55,12 @@ Ticks nice_ticks(Interval range, int most) {
   double step = 0.0;
   double first = 0.0;
   double last = 0.0;
-  // A power of ten too small to do, then upwards until few enough ticks are left.
+  // Starts with a power of ten that is too small, then increases until few enough ticks are left.
   const int power = static_cast<int>(std::floor(std::log10(range.extent() / most))) - 1;
   for (int i = 0;; ++i) {
     const double factors[] = {1.0, 2.0, 5.0};
     const int exponent = power + i / 3;
-    // Dividing keeps 0.1, 0.2, ... the nearest numbers to what their labels say.
+    // Division makes 0.1, 0.2, ... the numbers nearest to their labels.
     const double ten = std::pow(10.0, std::abs(exponent));
     step = exponent < 0 ? factors[i % 3] / ten : factors[i % 3] * ten;
     first = std::ceil(range.low / step - slack);
@@ -130,7 +130,7 @@ void open_inside(XmlWriter& svg, const PlotFrame& frame) {
 }
 
 std::string line_class(std::size_t index) {
-  // One solid line at the bottom, and gaps in all others: lines on top of each other show.
+  // At most one solid line, below the others: gaps in the others keep coincident lines visible.
   const std::size_t color = index % 8, dash = color == 0 ? 0 : 1 + (color - 1) % 3;
   return fmt::format("s{} dash{}", color, (dash + index / 8) % 4);
 }

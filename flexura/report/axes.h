@@ -10,7 +10,7 @@
 
 namespace flexura {
 
-/// An interval of data, low <= high.
+/// A data interval, low <= high.
 struct Interval {
   double low = 0.0;
   double high = 0.0;
@@ -22,25 +22,24 @@ struct Interval {
 inline constexpr double heading_space = 34.0;  ///< Above a plot, for its heading.
 inline constexpr double tallest_plot = 430.0;
 
-/// The range grown about its middle to an extent of at least `extent`.
+/// Returns the range grown about its middle to an extent of at least `extent`.
 [[nodiscard]] Interval grown_to(Interval range, double extent);
 
-/// The range grown about its middle to an extent of at least `least`, and then by `margin` of the extent at
-/// each end. An extent too small for its own numbers to tell apart counts as nothing, so the result has one
-/// that is > 0.
+/// Returns the range grown about its middle to an extent of at least `least`, and then by `margin` of the
+/// extent at each end. An extent below the resolution of its numbers counts as zero, so the result's extent
+/// is > 0.
 [[nodiscard]] Interval padded(Interval range, double least, double margin);
 
-/// Where an axis is marked.
+/// Ticks of an axis.
 struct Ticks {
-  std::vector<double> values;  ///< Ascending multiples of 1, 2 or 5 times a power of ten, inside the range.
-  std::vector<std::string> labels;  ///< One a value, all with the same number of decimals.
+  std::vector<double> values;  ///< Increasing multiples of 1, 2 or 5 times a power of ten, inside the range.
+  std::vector<std::string> labels;  ///< One per value, all with equal numbers of decimals.
 };
 
-/// At most `most` (>= 2) ticks for a range of positive extent, and as many as the steps allow.
+/// Returns at most `most` (>= 2) ticks for a range of positive extent, and as many as the steps allow.
 [[nodiscard]] Ticks nice_ticks(Interval range, int most);
 
-/// A plot's place on the page and what it shows. Data's y goes up unless y_down is set, the page's goes
-/// down.
+/// Position of a plot on the page and its range. Data's y goes up unless y_down is set; the page's goes down.
 struct PlotFrame {
   Interval x;
   Interval y;
@@ -49,35 +48,35 @@ struct PlotFrame {
   bool y_down = false;     ///< Data's y goes down.
 
   [[nodiscard]] Eigen::Vector2d scale() const { return {size.x() / x.extent(), size.y() / y.extent()}; }
-  /// The page point of a data point.
+  /// Returns the page point of a data point.
   [[nodiscard]] Eigen::Vector2d page(const Eigen::Vector2d& data) const;
   [[nodiscard]] double bottom() const { return corner.y() + size.y(); }
   [[nodiscard]] double right() const { return corner.x() + size.x(); }
 };
 
-/// How far the axes drawn by draw_axes reach below the plot, page units.
+/// Height below the plot of the axes from draw_axes, page units.
 inline constexpr double space_below_axes = 44.0;
 
-/// How far they reach to the left of a plot `height` page units high that shows `y`.
+/// Returns their width to the left of a plot with a height of `height` page units that shows `y`.
 [[nodiscard]] double left_of_axes(Interval y, double height);
 
 /// Draws the plot's border, grid, ticks and the names of its axes.
 void draw_axes(XmlWriter& svg, const PlotFrame& frame, std::string_view x_name, std::string_view y_name);
 
-/// Opens a picture within the picture that cuts off what leaves the plot; close() closes it.
+/// Opens a picture within the picture that clips at the plot's border; close() closes it.
 void open_inside(XmlWriter& svg, const PlotFrame& frame);
 
-/// The style classes of line `index`: its colour and its dash. No two of 32 lines are the same.
+/// Returns the style classes of line `index`: its colour and its dash. Of 32 lines, no two are equal.
 [[nodiscard]] std::string line_class(std::size_t index);
 
-/// One line's name, and the style classes of the line.
+/// A line's name and style classes.
 struct LegendEntry {
   std::string name;
   std::string css_class;
 };
 
-/// Draws a legend in rows from the page point `corner` (top left) on, no further right than `right`: a title
-/// that may be empty, then the entries. Returns its height, page units.
+/// Draws a legend in rows from the page point `corner` (top left), no further right than `right`: a title,
+/// possibly empty, then the items. Returns its height, page units.
 double draw_legend(XmlWriter& svg, const std::string& title, const std::vector<LegendEntry>& entries,
                    const Eigen::Vector2d& corner, double right);
 

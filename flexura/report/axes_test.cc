@@ -30,7 +30,7 @@ TEST(NiceTicks, AreEvenStepsOfOneTwoOrFiveInsideTheRange) {
     const Ticks ticks = nice_ticks({low, low + extent}, most);
     ASSERT_EQ(ticks.values.size(), ticks.labels.size());
     ASSERT_LE(ticks.values.size(), static_cast<std::size_t>(most));
-    // Two steps of the next finer size would not fit: at least two fifths of the ticks wanted are there.
+    // Two steps of the next finer size would not fit: at least two fifths of the requested ticks exist.
     ASSERT_GE(static_cast<double>(ticks.values.size()), std::floor(0.4 * most));
     EXPECT_GE(ticks.values.front(), low);
     EXPECT_LE(ticks.values.back(), low + extent);

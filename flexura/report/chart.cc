@@ -21,7 +21,7 @@ bool is_number(const std::vector<double>& values, std::size_t i) {
 void draw_series(XmlWriter& svg, const PlotFrame& frame, const std::vector<double>& x,
                  const ChartSeries& series, const std::string& css_class) {
   std::string path;
-  std::vector<Eigen::Vector2d> run;  // Of values that are numbers.
+  std::vector<Eigen::Vector2d> run;  // Consecutive finite values.
   for (std::size_t i = 0; i < x.size(); ++i) {
     const auto at = [&](const std::vector<double>& values) { return frame.page({x[i], values[i]}); };
     if (is_number(series.values, i)) run.push_back(at(series.values));
@@ -36,7 +36,7 @@ void draw_series(XmlWriter& svg, const PlotFrame& frame, const std::vector<doubl
   if (!path.empty()) svg.leaf("path", {{"class", "line " + css_class}, {"d", path}});
 }
 
-// What the values reach over; nothing at 0 where none is a number.
+// Returns the range of the values; 0 to 0 if none is finite.
 Interval range_of(const std::vector<ChartSeries>& series) {
   std::optional<Interval> range;
   for (const ChartSeries& one : series) {

@@ -17,7 +17,7 @@ class MotionCharts {
  public:
   explicit MotionCharts(const ReportMotion& motion) : motion_(motion) {}
 
-  // Adds a chart with a line for each section; `values` gives one number a section.
+  // Adds a chart with a line for each section; `values` returns one number per section.
   void add_sections(const std::string& name, const std::string& quantity, const std::string& label,
                     double least, const std::function<std::vector<double>(const ArmState&)>& values) {
     const std::size_t count = motion_.arm.sections.size();

@@ -7,11 +7,11 @@
 
 namespace flexura {
 
-/// More sections than these are thinned in a chart.
+/// Most sections in a chart; more are thinned out.
 inline constexpr std::size_t max_series = 32;
 
-/// What a report plots over time: bends, archings and cord angles (an arm in XOY), stretches (where they
-/// change) and the tip's coordinates, named so. Angles in degrees, lengths in m.
+/// Returns the charts of a report over time: bends, archings and cord angles (an arm in XOY), stretches (if
+/// they change) and the tip's coordinates, with these names. Angles in degrees, lengths in m.
 [[nodiscard]] std::vector<ReportFigure> charts_of(const ReportMotion& motion);
 
 }  // namespace flexura

@@ -33,7 +33,7 @@ ReportData run_of(ArmKind kind, const std::vector<Eigen::Vector2d>& bends) {
 }
 
 TEST(Charts, OfAPlanarArmAreInDegreesAndMetres) {
-  // Archings of 10 and -30 degrees of an arm that stands upright.
+  // Archings of 10 and -30 degrees of an upright arm.
   const auto charts = charts_of(motion_of(run_of(ArmKind::planar, {{-20 * degree, 0}, {60 * degree, 0}})));
   const std::vector<std::vector<double>> bends = {{0, -20}, {0, 60}}, archings = {{0, 10}, {0, -30}},
                                          cords = {{90, 100}, {90, 80}};

@@ -13,7 +13,7 @@ constexpr double picture_width = 520.0;
 constexpr double space_right_of_picture = 18.0;
 constexpr double flattest_picture = 0.4;  // Height over width.
 
-// What of the image the outlines take up along one axis; all of it where they are outside.
+// Returns the range of the outlines in the image along one axis; the whole image if they are outside.
 Interval shown_along(const ImagePlot& plot, int axis) {
   const Interval all = {-0.5, (axis == 0 ? plot.width : plot.height) - 0.5};
   if (!plot.background.empty()) return all;
@@ -40,7 +40,7 @@ PlotFrame frame_of(const ImagePlot& plot) {
   return {x, y, {left, heading_space}, {width, width * y.extent() / x.extent()}, true};
 }
 
-// The image itself, where it is there, and its border.
+// Draws the image itself, if given, and its border.
 void draw_image(XmlWriter& svg, const ImagePlot& plot, const PlotFrame& frame) {
   const Eigen::Vector2d corner = frame.page({-0.5, -0.5});
   const Eigen::Vector2d size = frame.scale().cwiseProduct(Eigen::Vector2d(plot.width, plot.height));

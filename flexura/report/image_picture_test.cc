@@ -28,7 +28,7 @@ TEST(ImagePicture, DrawsItsLinesWithRowsDownwards) {
   const Drawing drawing = image_picture(plot_with({{100, 100}, {300, 100}, {300, 200}, {100, 100}}));
   EXPECT_THAT(drawing.body, HasSubstr("20 deg"));
   EXPECT_THAT(drawing.body, HasSubstr("class=\"line s1 dash2\""));
-  // Columns 100 to 300, rows 100 to 200: an axis says so, the smaller rows first.
+  // Columns 100 to 300, rows 100 to 200: an axis must show them, the smaller rows first.
   EXPECT_THAT(drawing.body, HasSubstr(">300</text>"));
   const auto height_of = [&](const std::string& row) {
     const std::size_t text = drawing.body.find("class=\"tick end\">" + row + "</text>");

@@ -13,7 +13,7 @@
 namespace flexura {
 namespace {
 
-// More events than this would hide what the charts show.
+// More events would hide the charts.
 constexpr std::size_t max_event_times = 40;
 
 std::size_t nearest_index(const std::vector<double>& times, double time) {
@@ -30,7 +30,7 @@ void keep_each_once(std::vector<std::size_t>& indices) {
   indices.erase(repeated.begin(), repeated.end());
 }
 
-// `most` (>= 2) of the numbers 0 to count - 1, first and last among them, evenly spaced.
+// Returns `most` (>= 2) of the numbers 0 to count - 1, evenly spaced, with the first and the last.
 std::vector<std::size_t> evenly(std::size_t count, std::size_t most) {
   std::vector<std::size_t> indices;
   const std::size_t steps = std::min(count, most) - 1;
@@ -51,7 +51,7 @@ void require_usable(const ReportData& data) {
   }
 }
 
-// When violations are drawn in pictures of their own.
+// Returns the times of violations with separate pictures.
 std::vector<double> pictured_times(const ReportMotion& motion) {
   std::vector<double> times;
   for (const auto& violation : motion.violations) {
@@ -90,7 +90,7 @@ std::vector<UnsafeMoment> unsafe_moments(const ReportMotion& motion) {
 std::vector<std::size_t> kept_indices(const std::vector<double>& times, const std::vector<double>& wanted,
                                       std::size_t most) {
   if (times.size() <= most) return evenly(times.size(), times.size());
-  // The first and the last, and as many of those wanted as may fill half.
+  // Keeps the first and the last, and at most half of all for the requested times.
   const std::size_t marks = std::min(wanted.size(), most / 2 - 1);
   std::vector<std::size_t> kept = evenly(times.size(), most - marks);
   for (std::size_t i = 0; i < marks; ++i)

@@ -45,7 +45,7 @@ Eigen::AlignedBox3d box_around(const BoxConfig& box) {
 
 double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
 
-// The convex hull of points (Andrew's monotone chain).
+// Returns the convex hull of points (Andrew's monotone chain).
 std::vector<Eigen::Vector2d> hull(std::vector<Eigen::Vector2d> points) {
   std::ranges::sort(points, [](const auto& a, const auto& b) {
     return a.x() < b.x() || (a.x() == b.x() && a.y() < b.y());
@@ -65,7 +65,7 @@ std::vector<Eigen::Vector2d> hull(std::vector<Eigen::Vector2d> points) {
   return chain;
 }
 
-// One view of a scene: what an outline needs to know.
+// One view of a scene, with the data for outlines.
 struct Look {
   PlotView view;
   const PlotFrame& frame;
@@ -75,7 +75,7 @@ struct Look {
   [[nodiscard]] double length(double metres) const { return metres * frame.scale().x(); }
 };
 
-// Everything within a radius of a line on the page.
+// Returns the outline of everything within a radius of a line on the page.
 std::string rod(const Eigen::Vector2d& a, const Eigen::Vector2d& b, double radius) {
   Eigen::Vector2d along = b - a;
   along = along.norm() > 0 ? Eigen::Vector2d(along.normalized()) : Eigen::Vector2d(1, 0);
@@ -85,13 +85,13 @@ std::string rod(const Eigen::Vector2d& a, const Eigen::Vector2d& b, double radiu
                      r, r, page_point(b - side), page_point(a - side), r, r, page_point(a + side));
 }
 
-// The side of a plane where the arm must not be, as a rectangle that is larger than the plot.
+// Returns the side of a plane that the arm must not enter, as a rectangle larger than the plot.
 std::string outline(const PlaneConfig& plane, const Look& look) {
   constexpr double from_the_side = 0.999;
   const Eigen::Vector3d normal = vector(plane.normal).normalized();
   const Eigen::Vector2d n = seen(look.view, normal);
   if (n.norm() < (look.motion.in_plane ? 1e-6 : from_the_side)) return "";
-  // What the line n . p = offset is in the plane of the view through the arm's base.
+  // The line n . p = offset in the plane of the view through the arm's base.
   Eigen::Vector3d base = look.motion.arm.X_WB.position;
   base.y() = 0;
   (look.view == PlotView::xoy ? base.x() : base.z()) = 0;

@@ -11,7 +11,7 @@
 namespace flexura {
 namespace {
 
-// Nine digits: a micrometre in a kilometre, and half the size of all of them.
+// Nine digits: a micrometre in a kilometre, and half the size of all digits.
 std::string json_number(double value) { return fmt::format("{:.9g}", value + 0.0); }
 
 std::string json_array(const std::vector<double>& values) {
@@ -20,7 +20,7 @@ std::string json_array(const std::vector<double>& values) {
   return '[' + text + ']';
 }
 
-// A chart's values: six digits are more than a screen shows.
+// A chart's values: six digits exceed a screen's resolution.
 std::string json_values(const std::vector<double>& values) {
   std::string text;
   for (const double value : values) {

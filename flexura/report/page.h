@@ -8,19 +8,20 @@
 
 namespace flexura {
 
-/// `text` with each {{name}} replaced by values[name], as it is; what is put in is not looked at again.
-/// A name without a value is a std::out_of_range.
+/// Returns `text` with each {{name}} replaced by values[name], unescaped and not replaced again. Throws
+/// std::out_of_range for a name without a value.
 [[nodiscard]] std::string filled(std::string_view text,
                                  const std::map<std::string, std::string, std::less<>>& values);
 
-/// What a content security policy calls a text whose SHA-256 is `hex`: 'sha256-BASE64'.
+/// Returns the name in a content security policy of a text with the SHA-256 `hex`: 'sha256-BASE64'.
 [[nodiscard]] std::string csp_hash(std::string_view hex);
 
-/// A figure's element: a picture as it is; of a chart its heading and legend, and its numbers as JSON, of
-/// which the page's script makes a plot.
+/// Returns a figure's element. For a picture it is the picture; for a chart its heading, legend and numbers
+/// as JSON, which the page's script plots.
 [[nodiscard]] std::string figure_html(const ReportFigure& figure);
 
-/// The motion as JSON for the page's script: numbers only, so it can stand inside a script element.
+/// Returns the motion as JSON for the page's script: only numbers, so that it is valid inside a script
+/// element.
 [[nodiscard]] std::string motion_json(const ReportMotion& motion);
 
 }  // namespace flexura

@@ -15,7 +15,7 @@ TEST(Filled, PutsValuesInAndLooksAtThemOnlyOnce) {
 }
 
 TEST(CspHash, IsTheHashInBase64) {
-  // SHA-256 of nothing.
+  // SHA-256 of an empty text.
   EXPECT_EQ(csp_hash("e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855"),
             "'sha256-47DEQpj8HBSa+/TImW+5JCeuQeRkm5NMpJWZG3hSuFU='");
 }

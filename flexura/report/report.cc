@@ -97,7 +97,7 @@ std::string safety_html(const ReportData& data) {
   return html + "</section>\n";
 }
 
-// Violations at their worst moments, each with what is wrong and a button that takes the player there.
+// Returns violations at their worst moments, each with its text and a button that moves the player to it.
 std::string unsafe_html(const ReportMotion& motion, const PlotScene& scene) {
   if (motion.unsafe_moments.empty()) return "";
   std::string html = fmt::format(
@@ -191,8 +191,8 @@ std::vector<FigureFile> report_figures(const ReportData& data) {
 std::string report_html(const ReportData& data) {
   const ReportMotion motion = motion_of(data);
   const PlotScene scene = motion_scene(motion);
-  // An arm in XOY has three narrow pictures to a row, and its tip's path, as high as two charts, stands
-  // beside the last two. The wide pictures of a spatial arm come two to a row, and the path fills the fourth
+  // Layout. For an arm in XOY, three narrow pictures fill a row, and its tip's path, as high as two charts,
+  // is beside the last two. For a spatial arm, two wide pictures fill a row, and the path has the fourth
   // place.
   std::vector<ReportFigure> arms = arm_figures(motion, scene);
   std::vector<ReportFigure> charts = charts_of(motion);

@@ -1,5 +1,5 @@
 "use strict";
-// The report's player and its charts. The motion comes as bends and stretches; the arm is computed from them.
+// The report's player and its charts. Computes the arm from the motion's bends and stretches.
 (() => {
   const byId = (id) => document.getElementById(id);
   const run = JSON.parse(byId("run").textContent);
@@ -9,7 +9,7 @@
 
   // --- the arm at a time -------------------------------------------------------------------------------------------
 
-  /** Index of the last state at or before `time`, and how far (0 to 1) the time is on the way to the next one. */
+  /** Returns the index of the last state at or before `time`, and the fraction (0 to 1) towards the next one. */
   function place(time) {
     let low = 0;
     let high = run.times.length - 1;
@@ -22,7 +22,7 @@
     return { low, high, part: span > 0 ? Math.min(Math.max((time - run.times[low]) / span, 0), 1) : 0 };
   }
 
-  /** Each section's bend [x, y] in rad and its length, linear between states. */
+  /** Returns each section's bend [x, y] in rad and its length, linear between states. */
   function stateAt(time) {
     const { low, high, part } = place(time);
     const number = (k) => run.states[3 * sections * low + k] * (1 - part) + run.states[3 * sections * high + k] * part;
@@ -33,11 +33,11 @@
 
   const sinc = (t) => (Math.abs(t) < 1e-4 ? 1 - (t * t) / 6 : Math.sin(t) / t);
 
-  /** u X + v Y + w Z, the frame's own axes in the world. */
+  /** Returns u X + v Y + w Z, with the frame's axes in the world. */
   const along = (frame, u, v, w) =>
     [0, 1, 2].map((k) => frame.axes[k] * u + frame.axes[3 + k] * v + frame.axes[6 + k] * w);
 
-  /** The frame after `part` of an arc; (1 - cos t)/t^2 is written so that nothing cancels near t = 0. */
+  /** Returns the frame after `part` of an arc. (1 - cos t)/t^2 is written to avoid cancellation near t = 0. */
   function arcEnd(frame, q, part = 1) {
     const [x, y] = [part * q.x, part * q.y];
     const theta = Math.hypot(x, y);
@@ -66,8 +66,8 @@
   }
 
   const thinnest = 2.5; // Half of a tube's width, page units.
-  const border = 5; // Of a warning around a tube, page units.
-  const gap = 1.8; // Between the two, for tubes as red as the border.
+  const border = 5; // Width of a warning around a tube, page units.
+  const gap = 1.8; // Between tube and border, for tubes as red as the border.
   const path = (points) => `M${points.map(([x, y]) => `${x.toFixed(2)} ${y.toFixed(2)}`).join("L")}`;
 
   const views = [...document.querySelectorAll("#stage .view")].map((group) => {
@@ -93,7 +93,7 @@
     circle.setAttribute("cy", y.toFixed(2));
   };
 
-  /** The outline of section k's tube in a view, `more` page units wider than it is. */
+  /** Returns the outline of section k's tube in a view, `more` page units wider than the tube. */
   function outline(view, k, frame, q, more) {
     const steps = 16 * (Math.floor(Math.hypot(q.x, q.y) / (Math.PI / 4)) + 1);
     const radii = run.radii.slice(2 * k, 2 * k + 2).map((radius) => Math.max(radius * view.scale, thinnest) + more);
@@ -111,7 +111,7 @@
     return `${path([...sides[0], ...sides[1].reverse()])}Z`;
   }
 
-  /** Puts nearer tubes over farther ones: the XOY view looks along -Z, the ZOY view along +X. */
+  /** Draws nearer tubes over farther ones: the XOY view looks along -Z, the ZOY view along +X. */
   function stack(view, middles) {
     const nearness = (k) => (view.across === 0 ? middles[k][2] : -middles[k][0]);
     const order = view.tubes.map((_, k) => k).sort((a, b) => nearness(a) - nearness(b) || a - b);
@@ -150,7 +150,7 @@
   const color = (name) => () => getComputedStyle(document.body).getPropertyValue(name);
   let now = first;
 
-  /** The plot of a chart: its lines look as the names in its legend do. */
+  /** Returns the plot of a chart; its lines have the styles of the legend. */
   function plot(host) {
     const given = JSON.parse(host.querySelector("script").textContent);
     const data = [given.x ?? run.times];
@@ -198,7 +198,7 @@
     return { mark, y: host.dataset.y, isOfSections: host.dataset.legend === "section", series, data };
   }
 
-  /** The player's table of what the charts show of each section: a function that fills it in. */
+  /** Makes the player's table of the charts' values per section; returns a function that fills it in. */
   function table(charts) {
     const row = (parent, tag, texts) => {
       const cells = texts.map((text) => Object.assign(document.createElement(tag), { textContent: text }));
@@ -245,7 +245,7 @@
 
   function tick(time) {
     if (!playing) return;
-    // A page that was hidden goes on where it was.
+    // A page that was hidden continues at its previous time.
     const elapsed = frameTime === null ? 0 : Math.min((time - frameTime) / 1000, 0.2);
     frameTime = time;
     const next = now + elapsed * Number(speed.value);

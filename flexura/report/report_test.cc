@@ -11,7 +11,7 @@
 namespace flexura {
 namespace {
 
-// The paper's arm (section 3.2), straight and then bent linearly to its final archings within 5 s.
+// Returns the paper's arm (section 3.2), straight and then bent linearly to its final archings within 5 s.
 ReportData paper_run(std::size_t steps) {
   const double lengths[] = {2, 3, 1, 2, 4, 2, 1, 1};
   const double archings_pi[] = {0.05, 0.05, 0.1, 0.1, 0.05, -0.3, 0.2, -0.35};
@@ -61,8 +61,7 @@ const std::string& svg_of(const std::vector<FigureFile>& figures, const std::str
   throw std::out_of_range(name);
 }
 
-// What is wrong with the nesting, the attributes' quotes or the references of an XML text; empty when nothing
-// is.
+// Returns an error in the nesting, the attributes' quotes or the references of an XML text, or "".
 std::string xml_fault(std::string_view xml) {
   std::vector<std::string> open;
   while (!xml.empty()) {
@@ -111,7 +110,8 @@ TEST(Report, DrawsAWarningAroundWhatIsUnsafeWhileItIs) {
   EXPECT_EQ(warnings_in(svg_of(figures, "arm-start.svg")), 0U);
   const std::string& end = svg_of(figures, "arm-end.svg");
   EXPECT_EQ(warnings_in(end), 2U);
-  // Between the border and a tube as red as it lies a gap, drawn after the one and before the other.
+  // Between the border and a tube as red as the border there is a gap, drawn after the border and before the
+  // tube.
   const std::size_t border = end.find("class=\"warning\"");
   const std::size_t gap = end.find("class=\"gap\"", border);
   EXPECT_LT(gap, end.find("class=\"tube s1\"", border));
@@ -179,7 +179,7 @@ TEST(Report, DrawsTheTargetsThatTheTipMisses) {
   EXPECT_EQ(times_in(svg_of(figures, "arm-start.svg"), "class=\"target"), 0U) << "not its time";
   // Start, middle, end, worst and player: crosses in three of them.
   EXPECT_EQ(times_in(report_html(data), "class=\"target\""), 3U);
-  // What is far away does not make the arm small: the way to it ends at the border.
+  // A distant target must not make the arm small: the line to it ends at the border.
   data.safety->violations[0].target = Eigen::Vector3d(0, 1e5, 0);
   const std::string far = svg_of(report_figures(data), "arm-unsafe-1.svg");
   EXPECT_EQ(times_in(far, "class=\"target\""), 0U);
@@ -200,7 +200,7 @@ TEST(Report, HasAChapterForWhatWasMeasuredBesideTheMotion) {
 TEST(Report, DrawsObstaclesInEveryPictureOfTheArm) {
   ReportData data = spatial_run();
   data.obstacles = {PlaneConfig{.name = "ground <"},
-                    PlaneConfig{.name = "slope", .normal = {1, 1, 1}},  // not from the side in any view
+                    PlaneConfig{.name = "slope", .normal = {1, 1, 1}},  // Not edge-on in any view.
                     SphereConfig{.center = {0.1, 0, 0}, .radius = 0.1},
                     CapsuleConfig{.name = "rod", .from = {0, 0, 0}, .to = {0, 0.2, 0}, .radius = 0.05},
                     BoxConfig{.name = "desk", .center = {0, 0.1, 0}, .half_sizes = {0.1, 0.2, 0.3}}};
@@ -226,7 +226,7 @@ TEST(Report, DrawsTheChosenCurveAlongTheArm) {
     const std::size_t line = svg.find("class=\"spline\"");
     ASSERT_NE(line, std::string::npos);
     const std::string path = svg.substr(line, svg.find("/>", line) - line);
-    EXPECT_EQ(std::ranges::count(path, 'C'), 8) << path;  // One cubic a section.
+    EXPECT_EQ(std::ranges::count(path, 'C'), 8) << path;  // One cubic per section.
     EXPECT_EQ(xml_fault(svg), "");
     const std::string html = report_html(data);
     // The paper's spline through its arm's base points: docs/kinematic-model.md.
@@ -284,7 +284,7 @@ TEST(ReportFigures, OfASpatialArmShowBothViewsAndStretches) {
   }
 }
 
-// The numbers of every element with this attribute.
+// Returns the numbers of every element with this attribute.
 std::vector<double> numbers_of(const std::string& svg, const std::string& attribute) {
   std::vector<double> numbers;
   const std::string key = " " + attribute + "=\"";

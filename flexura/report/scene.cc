@@ -7,7 +7,7 @@
 namespace flexura {
 namespace {
 
-constexpr double space_for_label = 16.0;  // And right of a plot, for half a tick label.
+constexpr double space_for_label = 16.0;  // Also right of a plot, for half a tick label.
 constexpr double one_view_width = 440.0;  // Width of a picture.
 constexpr double two_views_width = 600.0;
 constexpr double flattest_plot = 0.6;  // Height over width of a plot.
@@ -30,8 +30,8 @@ PlotScene scene_of(const Eigen::AlignedBox3d& box, bool one_view, double least) 
     widest = std::max(widest, across.back().extent());
   }
   Interval up = padded(range_along(box, 1), least, margin_part);
-  // The room for tick labels depends on the plot's height and the height on that room; the tallest is a fair
-  // guess.
+  // The room for tick labels depends on the plot's height, and the height on that room; the largest height is
+  // a good approximation.
   const double left = left_of_axes(up, tallest_plot);
   const double plot_width = scene.width / plots - left - space_for_label;
   widest = std::max(widest, up.extent() * plot_width / tallest_plot);
@@ -46,7 +46,7 @@ PlotScene scene_of(const Eigen::AlignedBox3d& box, bool one_view, double least) 
 }
 
 void extend_by_tube(Eigen::AlignedBox3d& box, const Backbone& backbone) {
-  constexpr double step = 0.2;  // rad; an arc bulges at most step^2/8 of its radius between points.
+  constexpr double step = 0.2;  // In rad; an arc bulges at most step^2/8 of its radius between points.
   for (const Arc& arc : backbone.arcs()) {
     const Eigen::Vector3d around = Eigen::Vector3d::Constant(std::max(arc.radius[0], arc.radius[1]));
     const double steps = 1.0 + std::floor(arc.bend.norm() / step);

@@ -43,7 +43,7 @@ RecordedPorts::RecordedPorts(const RigPorts& ports, ArmState from, const RecordS
   ports_.clock = this;
 }
 
-// Time passes in a camera that is waited for as well, unseen by the clock.
+// Waiting for a camera takes time too, which the clock's waits do not include.
 double RecordedPorts::finish() {
   const double end = now();
   record_up_to(end);

@@ -10,32 +10,32 @@
 
 namespace flexura {
 
-/// The arm as a task commanded it since a time: from shape to shape in straight lines.
+/// Motion of the arm as commanded by a task since a time: linear from shape to shape.
 class CommandedMotion {
  public:
   CommandedMotion(double start, ArmState state);
 
-  /// To `state`, from wherever the commands before have brought it at `time` s, in `duration` s.
+  /// Adds a command to `state`, from where the previous commands lead at `time` s, in `duration` s.
   void send(double time, const ArmState& state, double duration);
   [[nodiscard]] ArmState at(double time) const;
-  /// All of it up to `time`.
+  /// Returns the motion up to `time`.
   [[nodiscard]] MotionPtr motion(double time) const;
 
  private:
   double start_;
-  std::vector<double> times_ = {0};  // since the start
+  std::vector<double> times_ = {0};  // Since the start.
   std::vector<ArmState> states_;
 };
 
-/// A rig's ports for a task that commands the arm: the run's steps are recorded as the clock's time passes.
+/// Ports of a rig for a task that commands the arm: records the run's steps as the clock advances.
 class RecordedPorts : private ClockPort {
  public:
-  /// `from`: where the arm was sent last. The devices and `record` outlive it.
+  /// `from`: last commanded state of the arm. The devices and `record` must outlive this object.
   RecordedPorts(const RigPorts& ports, ArmState from, const RecordSteps& record);
 
   [[nodiscard]] const RigPorts& ports() const { return ports_; }
   [[nodiscard]] CommandedMotion& motion() { return motion_; }
-  /// Records what is left up to now, the task's end, and returns when that is, s.
+  /// Records the remaining steps up to now, the task's end, and returns that time, s.
   [[nodiscard]] double finish();
 
  private:

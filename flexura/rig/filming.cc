@@ -20,7 +20,7 @@ std::vector<std::unique_ptr<Photographer>> photographers(const Setup& setup, std
   return all;
 }
 
-// No camera has more pictures than this at once in the memory, however long a step of the clock is.
+// Returns a time with few frames: limits the pictures of a camera in memory at once, for any clock step.
 double few_frames(const std::vector<CameraConfig>& cameras) {
   constexpr double few = 4;
   double fastest = 1;
@@ -28,9 +28,9 @@ double few_frames(const std::vector<CameraConfig>& cameras) {
   return few / fastest;
 }
 
-// Times are sums of durations: one that is due may have passed by a rounding.
+// Times are sums of durations, so one that is due may be slightly in the past by rounding.
 double left_until(double time, const ClockPort& clock) {
-  constexpr double rounding = 1e-9;  // s
+  constexpr double rounding = 1e-9;  // In s.
   const double left = time - clock.now();
   return left < 0 && left > -rounding ? 0 : left;
 }
@@ -49,7 +49,7 @@ Filming::Filming(const Setup& setup, std::size_t threads)
       stretch_(few_frames(cameras_)),
       crew_(threads) {}
 
-// Of all cameras, in the order of time and then of the cameras.
+// Returns the new frames of all cameras, in the order of time and then of the cameras.
 std::vector<FilmedFrame> Filming::new_frames() {
   std::vector<std::size_t> due;
   for (std::size_t i = 0; i < cameras_.size(); ++i)
@@ -69,7 +69,7 @@ std::vector<FilmedFrame> Filming::new_frames() {
 
 void Filming::play_to(double time, const ArmState& state, const TakeFrame& take) {
   const RigPorts ports = rig_.ports();
-  // The simulated rig has no links that are lost: a fault here is a fault of the program.
+  // The simulated rig has no lost links: a fault here is a program error.
   (void)ports.arm->command(state, left_until(time, *ports.clock)).value();
   do {
     ports.clock->wait_until(std::min(time, ports.clock->now() + stretch_));

@@ -14,11 +14,10 @@
 
 namespace flexura {
 
-/// The simulated rig of an experiment, whose cameras film it. The same frames, whatever number of threads
-/// draws them.
+/// Simulated rig of an experiment, filmed by its cameras. The frames do not depend on the number of threads.
 class Filming : public Rig, private RigTruth {
  public:
-  /// One thread a camera.
+  /// Uses one thread per camera.
   explicit Filming(const Setup& setup);
   Filming(const Setup& setup, std::size_t threads);
 
@@ -26,16 +25,16 @@ class Filming : public Rig, private RigTruth {
   [[nodiscard]] RigPorts ports() override { return rig_.ports(); }
   [[nodiscard]] RigTruth* truth() override { return this; }
   [[nodiscard]] bool is_simulated() const override { return true; }
-  /// Frames that cameras deliver during one call are drawn at the same time.
+  /// Renders the frames of one call in parallel.
   void play_to(double time, const ArmState& state, const TakeFrame& take) override;
   void pass_to(double time, const ArmState& state) override;
   void skip_to_now() override;
 
-  /// What the camera in this place would expose from `start` s on, up to which the motion must have been
-  /// played; at the start of a frame, that frame.
+  /// Returns the exposure of a camera from `start` s on, up to which the motion must have been played. At the
+  /// start of a frame it is that frame.
   [[nodiscard]] Shot shot(std::size_t camera, double start);
   [[nodiscard]] Picture take(const Shot& shot) { return photographers_[shot.camera]->take(shot); }
-  /// What stands before the camera of `shot` at a time since its start.
+  /// Returns the scene before the camera of `shot` at a time since its start.
   [[nodiscard]] ShownScene shown(const Shot& shot, double time) const {
     return {photographers_[shot.camera]->scene(shot.backbone(time)), shot.view(time)};
   }
@@ -60,10 +59,10 @@ class Filming : public Rig, private RigTruth {
   [[nodiscard]] std::vector<FilmedFrame> new_frames();
 
   std::vector<CameraConfig> cameras_;
-  std::vector<std::unique_ptr<Photographer>> photographers_;  // each camera's own: they draw at the same time
+  std::vector<std::unique_ptr<Photographer>> photographers_;  // One per camera, to render in parallel.
   SimulatedRig rig_;
   std::uint64_t seed_;
-  double stretch_;  // of time that is filmed at once, s: a few frames of the fastest camera
+  double stretch_;  // Time filmed at once, s: a few frames of the fastest camera.
   Crew crew_;
 };
 

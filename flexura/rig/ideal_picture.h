@@ -10,8 +10,8 @@
 
 namespace flexura {
 
-/// The simulator's pictures of the arm as the file believes it, gray and without noise: the paper's ideal
-/// images (section 2).
+/// Returns the simulator's pictures of the file's arm model, gray and without noise: the paper's ideal images
+/// (section 2).
 [[nodiscard]] std::function<Image<std::uint8_t>(const View&, const ArmState&)> ideal_pictures(
     const Setup& setup);
 

@@ -22,8 +22,8 @@ Eigen::Vector3d place(const SphereConfig& sphere) { return vector(sphere.center)
 Eigen::Vector3d place(const CapsuleConfig& capsule) { return vector(capsule.from); }
 Eigen::Vector3d place(const BoxConfig& box) { return vector(box.center); }
 
-// Points in the image's corners, on its edges and in its middle, as far off as what stands there nearest:
-// where a camera that moves sees the stand move.
+// Returns points in the image's corners, on its edges and in its middle, at the depth of the stand's nearest
+// point. They show the stand's motion in the image of a moving camera.
 std::vector<Eigen::Vector3d> stand_points(const Scene& stand, const View& view) {
   double depth = std::numeric_limits<double>::infinity();
   const auto consider = [&](const Eigen::Vector3d& p_W) {
@@ -64,7 +64,7 @@ double fastest_image_motion(const Shot& shot, const Scene& stand) {
   const double span = shot.sensor->exposure + last_row_delay(*shot.sensor);
   if (span <= 0) return 0;
   const std::vector<Eigen::Vector3d> points = stand_points(stand, shot.view(shot.start));
-  double farthest = 0;  // from one time to the next, px
+  double farthest = 0;  // From one time to the next, px.
   Pixels before = pixels_at(shot, points, shot.start);
   for (int part = 1; part <= parts; ++part) {
     Pixels now = pixels_at(shot, points, shot.start + span * part / parts);

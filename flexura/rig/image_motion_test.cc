@@ -13,7 +13,7 @@ namespace {
 
 using std::numbers::pi;
 
-// A camera 2 m before an arm, with 100 px a radian in the middle of its image.
+// A camera 2 m in front of an arm, with 100 px per radian in the middle of its image.
 class ImageMotion : public ::testing::Test {
  protected:
   ImageMotion() : camera_(config()) {
@@ -70,7 +70,7 @@ TEST_F(ImageMotion, SeesAMotionThereAndBack) {
 TEST_F(ImageMotion, SeesTheStandUnderACameraThatPans) {
   shot_.view = [this](double time) { return camera_.view({{.pan = 0.5 * (time - 3)}, {}}); };
   shot_.backbone = [this](double) { return Backbone(arm_, ArmState::straight(1)); };
-  arm_.X_WB.position = {0, 0, 5};  // behind the camera
+  arm_.X_WB.position = {0, 0, 5};  // Behind the camera.
   EXPECT_GE(fastest_image_motion(shot_, stand_), 50);
   EXPECT_EQ(fastest_image_motion(shot_, Scene{}), 0) << "nothing stands there";
 }

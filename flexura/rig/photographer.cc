@@ -11,17 +11,17 @@
 namespace flexura {
 namespace {
 
-// How many instants an exposure is made of: enough that between two of them nothing moves by more than half a
-// pixel, as far as that is no more than `most`.
+// Returns the number of instants in an exposure: enough that nothing moves by more than half a pixel between
+// two, up to `most`.
 int instants_of(double pixels) {
-  constexpr double largest_step = 0.5;  // px
+  constexpr double largest_step = 0.5;  // In px.
   constexpr int most = 64;
   constexpr double rounding = 1e-9;
   return static_cast<int>(
       std::clamp(std::ceil(pixels / largest_step - rounding), 1.0, static_cast<double>(most)));
 }
 
-// What row v alone of a view sees.
+// Returns the view of row v alone.
 View row_view(const View& view, int v) {
   Intrinsics lens = view.lens.intrinsics();
   lens.cy -= v;
@@ -47,10 +47,10 @@ void Photographer::draw(const Shot& shot, double time, const Rows& rows, Image<f
     std::ranges::copy(instant_.light.row(is_one_row ? 0 : v), light.row(v).begin());
 }
 
-// The light of a shot, in light_.
+// Collects the light of a shot in light_.
 void Photographer::gather(const Shot& shot) {
-  // Nobody sees so little, and all rows and instants have one picture.
-  constexpr double is_still = 1e-3;  // px
+  // Smaller motions are invisible, and all rows and instants have one picture.
+  constexpr double is_still = 1e-3;  // In px.
   SensorConfig sensor = *shot.sensor;
   if (shot.is_covered) {
     light_ = Image<float>(static_cast<int>(sensor.width), static_cast<int>(sensor.height), sensor.channels());

@@ -14,15 +14,15 @@
 
 namespace flexura {
 
-/// Makes the pictures that an experiment's cameras take: the scene as it truly stands, its light, the
-/// sensor's numbers. The same shot gives the same picture, whatever was taken before.
+/// Makes the pictures of an experiment's cameras: true scene, light, sensor. A picture depends only on its
+/// shot.
 class Photographer {
  public:
   explicit Photographer(const Setup& setup);
 
   [[nodiscard]] Picture take(const Shot& shot);
 
-  /// All that stands there with the arm along `backbone`.
+  /// Returns the true scene with the arm along `backbone`.
   [[nodiscard]] Scene scene(const Backbone& backbone) const { return maker_.scene(backbone); }
 
  private:
@@ -35,7 +35,7 @@ class Photographer {
   LightImage instant_;
   Image<float> light_, scratch_;
   SensorRows rows_;
-  std::map<std::size_t, Sensor> sensors_;  // by camera
+  std::map<std::size_t, Sensor> sensors_;  // By camera.
 };
 
 }  // namespace flexura

@@ -19,14 +19,14 @@
 
 namespace flexura {
 
-/// A frame that was filmed.
+/// A filmed frame.
 struct FilmedFrame {
   std::string camera;
   Frame frame;
-  std::string message = {};  ///< Its logged_image, where that was made on the way; "": the log makes it.
+  std::string message = {};  ///< Its logged_image if already made; otherwise "", and the log makes it.
 };
 
-/// The true state of a rig, which its ports do not give: not for algorithms.
+/// True state of a rig, which its ports do not give: not for algorithms.
 class RigTruth {
  public:
   virtual ~RigTruth() = default;
@@ -34,25 +34,27 @@ class RigTruth {
   RigTruth(const RigTruth&) = delete;
   RigTruth& operator=(const RigTruth&) = delete;
 
-  /// Where a camera truly stands now.
+  /// Returns the true axis positions of a camera now.
   [[nodiscard]] virtual RigStance stance(std::size_t camera) = 0;
-  /// How the arm truly lay at a time not long ago, s.
+  /// Returns the arm's true backbone at a recent time, s.
   [[nodiscard]] virtual Backbone backbone(double time) = 0;
-  /// By which each of its tendons pulled then, N; empty: of an arm without forces.
+  /// Returns the tension of each tendon at that time, N; empty for an arm without forces.
   [[nodiscard]] virtual std::vector<double> tensions(double /*time*/) { return {}; }
-  /// How far its drives had each tendon pulled in then, m; empty: not known.
+  /// Returns the true displacement of each tendon at that time, m; empty if unknown.
   [[nodiscard]] virtual std::vector<double> pulled(double /*time*/) { return {}; }
-  /// Of its motion, its strains and its weight then; none: it has no inertia, or nobody knows.
+  /// Returns the energies of its motion, strains and weight at that time; std::nullopt if it has no inertia,
+  /// or they are unknown.
   [[nodiscard]] virtual std::optional<RodEnergy> energy(double /*time*/) { return std::nullopt; }
-  /// Where it touched something then.
+  /// Returns its contacts at that time.
   [[nodiscard]] virtual std::vector<PlantContact> contacts(double /*time*/) { return {}; }
-  /// What was out of the ordinary in how it lay then, one line; "": nothing.
+  /// Returns a one-line warning about its state at that time, or "".
   [[nodiscard]] virtual std::string warning(double /*time*/) { return {}; }
-  /// How many microsteps each motor had lost by then, unknown to its controller; empty: none ever.
+  /// Returns the microsteps that each motor had lost by that time, unknown to its controller; empty if it
+  /// never loses any.
   [[nodiscard]] virtual std::vector<double> lost_steps(double /*time*/) { return {}; }
 };
 
-/// A rig on which an experiment is played, simulated or real: its ports, and how its time passes.
+/// A rig of an experiment, simulated or real: its ports, and its passage of time.
 class Rig {
  public:
   virtual ~Rig() = default;
@@ -60,31 +62,32 @@ class Rig {
   Rig(const Rig&) = delete;
   Rig& operator=(const Rig&) = delete;
 
-  /// Valid as long as the rig.
+  /// Returns the ports, valid as long as the rig.
   [[nodiscard]] virtual RigPorts ports() = 0;
-  /// Null where nobody knows it: of equipment.
+  /// Returns the true state; null for real equipment.
   [[nodiscard]] virtual RigTruth* truth() { return nullptr; }
-  /// Nothing comes to harm: then it is played through motions that are unsafe, too, to be looked at.
+  /// Returns true if nothing can be damaged: unsafe motions are then played too.
   [[nodiscard]] virtual bool is_simulated() const { return false; }
 
   using TakeFrame = std::function<void(const FilmedFrame&)>;
-  /// Commands the arm to be in `state` at `time` s, not before the call's before, waits until then, and gives
-  /// every frame received on the way, in the order of time and then of the cameras.
+  /// Commands the arm to be in `state` at `time` s, not before the previous call's, and waits until then.
+  /// Gives every frame received in between, in the order of time and then of the cameras.
   virtual void play_to(double time, const ArmState& state, const TakeFrame& take) = 0;
-  /// The same, and no frame is taken on the way.
+  /// Plays to `time` without giving frames.
   virtual void pass_to(double time, const ArmState& state) = 0;
-  /// Frames received up to now are not handed out any more.
+  /// Discards frames received up to now.
   virtual void skip_to_now() = 0;
 };
 
-/// Makes the rig of an experiment, which outlives it.
+/// Makes the rig of an experiment, which must outlive it.
 using RigFactory = std::function<std::unique_ptr<Rig>(const Setup&)>;
 
-/// The factory of simulated rigs (rig/filming.h).
+/// Returns a simulated rig (rig/filming.h).
 [[nodiscard]] std::unique_ptr<Rig> simulated_rig(const Setup& setup);
 
-/// Where the cameras of a rig say that they stand now, and where `optics`, these cameras as they are believed
-/// to be, start those without heads or stages. std::runtime_error with what is wrong where one does not say.
+/// Returns the axis positions that the cameras of a rig report now. `optics` are the models of these cameras,
+/// whose initial positions replace missing heads or stages. Throws std::runtime_error with the reason if one
+/// does not report.
 [[nodiscard]] std::vector<CameraReading> camera_readings(const RigPorts& ports,
                                                          const std::vector<Camera>& optics);
 

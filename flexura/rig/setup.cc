@@ -16,7 +16,8 @@
 namespace flexura {
 namespace {
 
-// The default cameras look at the arm's base; far from the origin a small distance from it is rounded away.
+// The default cameras look at the arm's base. Far from the origin, a small distance from it is lost in
+// rounding.
 void check_default_cameras(const Setup& setup, Reader& reader) {
   for (const CameraConfig& camera : setup.cameras()) {
     if (camera.mount.look_at != camera.mount.position) continue;
@@ -53,7 +54,7 @@ void check_setup(const Setup& setup, Reader& reader) {
     reader.problem_at("truth.stand.camera_distances",
                       "moves no camera: expected a mount.position in [[truth.camera]]");
   }
-  // Without a truth of its own the world is the model.
+  // Without [truth], the world is the model.
   const std::string problem = truth_problem(setup.model_rig(), setup.true_rig());
   if (!problem.empty()) reader.problem_at(setup.truth ? "truth" : "arm", problem);
 }

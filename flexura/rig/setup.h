@@ -17,23 +17,23 @@
 
 namespace flexura {
 
-/// The table [clock]: how time runs.
+/// The table [clock]: simulated time.
 struct ClockConfig {
-  double step = 0.02;  ///< s between two states of the experiment.
+  double step = 0.02;  ///< Time between two states of the experiment, s.
 };
 
-/// The table [record]: what is kept of a run.
+/// The table [record]: recorded data of a run.
 struct RecordConfig {
-  std::int64_t every = 1;  ///< Steps from one state in the log to the next; the last one is always kept.
-  bool report = true;      ///< Write report.html and figures/.
-  bool cameras = false;    ///< Keep the cameras' images in the log.
-  bool scene = true;       ///< Keep in the log what stands there, for programs that draw it.
+  std::int64_t every = 1;             ///< Steps between states in the log; the last one is always logged.
+  bool report = true;                 ///< Write report.html and figures/.
+  bool cameras = false;               ///< Log the cameras' images.
+  bool scene = true;                  ///< Log the scene, for programs that draw it.
   CurveKind curve = CurveKind::arcs;  ///< Drawn over the arm in the report.
   double tension = 0.5;               ///< Of the Catmull-Rom curve.
 };
 
-/// The table [truth]: where the simulated world differs from what the rest of the file believes. What it
-/// leaves out is as believed; a file may write parts of these tables, which the reader completes.
+/// The table [truth]: differences of the simulated world from the model in the rest of the file. Omitted
+/// values equal the model's; a file may write parts of these tables, which the reader completes.
 struct TruthConfig {
   std::optional<ArmConfig> arm;
   std::optional<DriveConfig> drive;
@@ -41,32 +41,32 @@ struct TruthConfig {
   std::optional<StandConfig> stand;
 };
 
-/// All of an experiment file but its tasks: the rig, how time runs, what is true and what is kept.
+/// An experiment file without its tasks: the rig, the clock, the true values and the recorded data.
 struct Setup {
   std::string flexura;               ///< Version that ran it; written into results.
   std::string title;                 ///< For the report.
-  std::int64_t seed = 1;             ///< Of every random number of the run; from 0 on.
-  std::vector<std::string> include;  ///< Resolved by the file reader; empty from then on.
+  std::int64_t seed = 1;             ///< Seed of every random number of the run; from 0 on.
+  std::vector<std::string> include;  ///< Resolved by the file reader; empty afterwards.
   ClockConfig clock;
   RecordConfig record;
-  ArmConfig arm;                     ///< As tasks believe it to be.
-  std::optional<DriveConfig> drive;  ///< None: bends follow commands as their own rates allow.
+  ArmConfig arm;                     ///< Model used by the tasks.
+  std::optional<DriveConfig> drive;  ///< Missing: bends follow commands at their own rates.
   std::vector<ObstacleConfig> obstacle;
   StandConfig stand;
-  std::vector<CameraConfig> camera;  ///< None: the paper's two (cameras()).
-  std::optional<TruthConfig> truth;  ///< None: the world is as it is believed to be.
-  std::filesystem::path folder;      ///< In which the file is; not a part of it.
+  std::vector<CameraConfig> camera;  ///< Empty: the paper's two (cameras()).
+  std::optional<TruthConfig> truth;  ///< Missing: the world equals the model.
+  std::filesystem::path folder;      ///< Folder of the file; not a part of it.
 
-  /// The arm as tasks believe it to be. InputError: an elastic arm that comes to no rest.
+  /// Returns the arm model. Throws InputError for an elastic arm without an equilibrium.
   [[nodiscard]] ArmModel arm_model() const;
-  /// The rig as tasks believe it to be, and as it is.
+  /// Return the model of the rig and the true rig.
   [[nodiscard]] RigConfig model_rig() const;
   [[nodiscard]] RigConfig true_rig() const;
-  /// What stands around it as it is; its screens are where the believed arm has them, if nothing else is
-  /// said.
+  /// Returns the true surroundings; by default its screens are where the arm model has them.
   [[nodiscard]] StandConfig true_stand() const;
 
-  /// The file's cameras, or the paper's two, at the stand's distances or with all of the arm's reach in view.
+  /// Returns the file's cameras, or the paper's two, at the stand's distances or with the arm's whole reach
+  /// in view.
   [[nodiscard]] std::vector<CameraConfig> cameras() const;
 };
 
@@ -75,7 +75,7 @@ const Table<ClockConfig>& fields_of(const ClockConfig*);
 const Table<RecordConfig>& fields_of(const RecordConfig*);
 const Table<TruthConfig>& fields_of(const TruthConfig*);
 
-/// Reports what of the setup does not fit together.
+/// Reports inconsistencies of the setup.
 void check_setup(const Setup& setup, Reader& reader);
 
 }  // namespace flexura

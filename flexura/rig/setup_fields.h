@@ -11,7 +11,7 @@ namespace flexura {
 inline constexpr std::size_t max_obstacles = 1000;
 inline constexpr std::size_t max_cameras = 100;
 
-/// The table of a struct that is a setup, and more, with the fields of a setup added.
+/// Adds the fields of a setup to the table of a struct derived from Setup.
 template <std::derived_from<Setup> S>
 [[nodiscard]] Table<S> with_setup_fields(Table<S> table) {
   return std::move(

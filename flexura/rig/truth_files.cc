@@ -29,7 +29,7 @@ Node numbers(std::initializer_list<double> values) {
   return {std::move(entries), {}};
 }
 
-// null where the lens does not show the point.
+// Null if the lens does not show the point.
 Node pixel_node(const std::optional<Eigen::Vector2d>& pixel) {
   return pixel ? numbers({pixel->x(), pixel->y()}) : Node{};
 }
@@ -140,7 +140,7 @@ std::vector<std::filesystem::path> write_truth(const ShownScene& shown, const st
   if (next) {
     write("_flow.tiff", tiff(optical_flow(renderer, next->scene, next->view)));
   } else {
-    // That of another instant would lie beside this one's files.
+    // Removes the flow of another instant, which would remain beside these files.
     std::filesystem::path file = image;
     std::filesystem::remove(file.replace_filename(image.stem().string() + "_flow.tiff"));
   }

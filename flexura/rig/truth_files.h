@@ -10,21 +10,21 @@
 
 namespace flexura {
 
-/// What a picture shows, at an instant.
+/// Content of a picture at an instant.
 struct ShownScene {
-  Scene scene;  ///< All that stands there then.
-  View view;    ///< The camera's.
+  Scene scene;  ///< Complete scene at that time.
+  View view;    ///< View of the camera.
 };
 
-/// Writes what is true of the picture of `shown` in the file `image`, from the geometry and free of sensor
-/// effects, beside it, NAME.png's files being
-///   NAME_depth.tiff   along the optical axis, m, infinite where nothing is
-///   NAME_s.tiff       arc length on the arm, m, no number elsewhere
-///   NAME_labels.png   what is seen, 16 bits
-///   NAME_flow.tiff    how far what is seen moves until `next`, px right and down; only when there is a next
+/// Writes the true values of the picture of `shown` in the file `image`, from the geometry and without sensor
+/// effects. The files beside NAME.png are
+///   NAME_depth.tiff   depth along the optical axis, m; infinite without an object
+///   NAME_s.tiff       arc length on the arm, m; not a number elsewhere
+///   NAME_labels.png   visible object, 16 bits
+///   NAME_flow.tiff    motion in the image until `next`, px right and down; only if there is a next
 ///   NAME_truth.json   the camera, the labels' meaning, the backbone, the outlines and the markers in the
-///   image
-/// Returns the files. std::runtime_error with the path when the system refuses.
+///                     image
+/// Returns the files. Throws std::runtime_error with the path on a system error.
 std::vector<std::filesystem::path> write_truth(const ShownScene& shown, const std::optional<ShownScene>& next,
                                                const std::filesystem::path& image);
 

@@ -12,27 +12,27 @@
 namespace flexura {
 namespace {
 
-constexpr double time_resolution = 1e-7;     // s, of limits
-constexpr double contact_resolution = 1e-4;  // s
-// How many intervals are looked into for one limit, and for one section or pair and what it may touch, which
-// takes longer; for every step of the clock; and for all that may touch, together.
+constexpr double time_resolution = 1e-7;     // Smallest interval for limits, s.
+constexpr double contact_resolution = 1e-4;  // Smallest interval for contacts, s.
+// Most intervals for one limit; for one section (or pair) and what it may touch, which takes longer. Also per
+// clock step, and for all contacts together.
 constexpr std::size_t limit_intervals = 200'000;
 constexpr std::size_t contact_intervals = 5'000;
 constexpr std::size_t intervals_of_step = 4;
 constexpr std::size_t all_contact_intervals = 20'000'000;
-// To which part of itself a worst value is found, and to how many metres a depth; and what else it may be
-// short of without a word, where there is too much to look into.
+// Relative precision of a worst value, and precision of a depth, m. The `doubtful` values are the largest
+// remaining errors, after too many intervals, that need no caveat.
 constexpr double worst_part = 1e-6;
 constexpr double doubtful_part = 1e-4;
 constexpr double worst_depth = 1e-5;
 constexpr double doubtful_depth = 1e-4;
-// Intervals for the worst values of one limit in all its spans, and for all worst depths; and at least in one
-// span.
+// Most intervals for the worst values of one limit in all its spans, and for all worst depths. The least
+// number is for one span.
 constexpr std::size_t worst_intervals = 200'000;
 constexpr std::size_t least_worst_intervals = 100;
 constexpr std::size_t worst_depth_intervals = 50'000;
 constexpr std::size_t least_worst_depth_intervals = 10;
-// Which share of a check its limits take, and what comes up to the contacts' worst values.
+// Shares of a check's progress: for the limits, and up to the contacts' worst values.
 constexpr double limits_share = 0.3;
 constexpr double contacts_share = 0.9;
 
@@ -97,7 +97,7 @@ class BoundedCheck {
     if (doubt > 0) say_doubtful(what, violation.hazard, doubt);
   }
 
-  // Where a law that knows its rates is faster than anything that moves: keyframes a moment apart.
+  // Finds where a law with known rates is faster than anything that moves: between keyframes a moment apart.
   void check_jumps(std::size_t section, bool is_of_stretch) {
     const auto rate = is_of_stretch ? stretch_rate(motion_, section) : bend_rate(motion_, section);
     const FoundSpans found =
@@ -139,7 +139,7 @@ class BoundedCheck {
     std::size_t all = 0;
     for (const FoundSpans& one : found) all += one.spans.size();
     const WorstSearch search = worst_depth_search(all);
-    std::vector<double> doubts(checked_.contacts.size());  // of each watch
+    std::vector<double> doubts(checked_.contacts.size());  // Per watch.
     double done = 0;
     for (std::size_t i = 0; i < found.size(); ++i) {
       const auto& [watch, first, last] = depths.part(i);
@@ -162,7 +162,7 @@ class BoundedCheck {
     return "contact with " + (contact.hazard() == Hazard::obstacle ? contact.obstacle_name() : "itself");
   }
 
-  // One line for everything of the arm that may touch the same thing.
+  // Adds one line for all contacts of the arm with the same object.
   void say_undecided_contacts(const ContactDepths& depths, const std::vector<FoundSpans>& found) {
     std::vector<FoundSpans> of_watch(checked_.contacts.size());
     for (std::size_t i = 0; i < found.size(); ++i) {

@@ -13,14 +13,14 @@
 
 namespace flexura {
 
-/// One motion under check, and where what is found goes. What it refers to must outlive it.
+/// A motion under check and the report for its findings. The referenced objects must outlive it.
 struct CheckedMotion {
   const Arm& arm;
   const std::vector<ContactWatch>& contacts;
   const TimedMotion& timed;
-  double step = 0;  ///< Of the clock, s.
+  double step = 0;  ///< Clock step, s.
   SafetyReport& report;
-  /// Told which share of this motion's check is done; false: the check is to end.
+  /// Receives the completed share of this motion's check; returns false to end the check.
   std::function<bool(double done)> go_on;
 
   [[nodiscard]] const Motion& motion() const { return *timed.motion; }
@@ -28,10 +28,10 @@ struct CheckedMotion {
   [[nodiscard]] std::size_t last_step() const {
     return static_cast<std::size_t>(std::ceil(motion().duration() / step));
   }
-  /// When the clock looks at the motion, in the motion's own time: its start, every step of the clock within
-  /// it, which need not be one after the start, and its end.
+  /// Returns the times of the clock at which the motion is sampled, in the motion's time: its start, all
+  /// clock steps within it, and its end. The first interval may be shorter than a step.
   [[nodiscard]] std::vector<double> clock_times() const {
-    constexpr double part = 1e-9;  // of a step: nearer times are one
+    constexpr double part = 1e-9;  // Share of a step: closer times count as one.
     const double duration = motion().duration();
     std::vector<double> times = {0};
     for (double k = std::floor(timed.start / step + part) + 1;; ++k) {
@@ -43,7 +43,7 @@ struct CheckedMotion {
     return times;
   }
 
-  /// Adds a violation that says what and where; its times are the motion's own.
+  /// Adds a violation. Its span and worst time are in the motion's time.
   void add(Violation violation, const Span& span, const WorstValue& worst, double sign = 1) const {
     violation.start = timed.start + span.start;
     violation.end = timed.start + span.end;
@@ -55,17 +55,17 @@ struct CheckedMotion {
     add({.hazard = Hazard::jump, .section = section, .name = timed.name, .is_of_stretch = is_of_stretch},
         span, size);
   }
-  /// The law has no value, or no length, at `time`.
+  /// Adds a violation: the law has no value, or no length, at `time`.
   void add_impossible(double time) const {
     add({.hazard = Hazard::not_finite, .section = impossible_section(motion().at(time)), .name = timed.name},
         {time, time}, {time, 0});
   }
 };
 
-/// A bend rate above this breaks its limit.
+/// Returns the threshold of a bend rate for this limit.
 [[nodiscard]] inline double threshold_of_rate(double limit) { return limit * (1 + limit_tolerance); }
 
-/// A contact's violation, but for its times and depth.
+/// Returns a contact's violation without times and depth.
 [[nodiscard]] inline Violation contact_violation(const ContactWatch& watch, const Contact& place) {
   return {.hazard = watch.hazard(),
           .section = place.section,
@@ -73,10 +73,10 @@ struct CheckedMotion {
           .name = watch.obstacle_name()};
 }
 
-/// Checks a law that knows its rates, in a state that is possible at its start (docs/safety.md).
+/// Checks a law with known rates, from a possible state at its start (docs/safety.md).
 void check_bounded(const CheckedMotion& checked);
 
-/// Checks any law at every step of the clock.
+/// Checks any law at every clock step.
 void check_sampled(const CheckedMotion& checked);
 
 }  // namespace flexura

@@ -1,4 +1,4 @@
-// A contact that takes long to check: half a minute under sanitizers.
+// A contact that takes long to check: half a minute with sanitizers.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -33,8 +33,9 @@ TEST(Contact, FindsThickSectionsThatMeetRoundAThinOneWithinHalfATurn) {
   EXPECT_EQ(contact.hazard, Hazard::self_contact);
   EXPECT_EQ(contact.section, 0U);
   EXPECT_EQ(contact.other_section, 2U);
-  // Neighbours are less than half a circle of 0.1 m apart along the arm: the first that are not are as far
-  // from the middle of the thin section on either side, at the ends of straight parts and half of the arc.
+  // Neighbours are less than half a circle of 0.1 m apart along the arm. The first pairs that are not
+  // neighbours are symmetric about the middle of the thin section. They are at the ends of straight parts and
+  // half of the arc.
   double touching = pi / 2;
   for (double low = 0.3 * pi, high = 0.9 * pi; high - low > 1e-12;) {
     touching = (low + high) / 2;

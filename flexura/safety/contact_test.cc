@@ -17,7 +17,7 @@ namespace {
 
 using std::numbers::pi;
 
-// A planar arm of equal sections of 1 m.
+// Returns a planar arm of equal sections of 1 m.
 Arm even_arm(std::size_t sections, double radius) {
   Arm arm;
   arm.sections.resize(sections);
@@ -32,13 +32,14 @@ ArmState bent(std::size_t sections, double bend) {
 }
 
 TEST(Contact, ATubeThatBendsAsSharplyAsItCanIsFreeUntilItMeetsItself) {
-  // Curvature times radius 0.999: the inner side almost folds, neighbours touch, and that is no contact.
+  // With curvature times radius 0.999 the inner side almost folds. Neighbours touch, which does not count as
+  // a contact.
   const Arm arm = even_arm(4, 0.999);
   const ContactWatch watch(arm);
   const Contact half_circle = watch.contact(bent(4, 0.999 * pi / 4));
   EXPECT_EQ(half_circle.clearance, no_distance);
   for (const double bend : {0.8, 0.9, 1.0}) {
-    // Ends 4 bend apart on a circle of radius 1 / bend.
+    // Ends are 4 bend apart on a circle of radius 1 / bend.
     const double expected = 2 * std::sin(2 * bend) / bend - 2 * 0.999;
     EXPECT_NEAR(watch.contact(bent(4, bend)).clearance, std::min(expected, 2 / bend - 2 * 0.999), 1e-6)
         << bend;
@@ -58,7 +59,7 @@ TEST(Contact, FindsWhenAnArmCurlsIntoItself) {
   EXPECT_EQ(contact.other_section, 3u);
   EXPECT_EQ(contact.end, 10);
   EXPECT_NEAR(contact.value, 0.1, 1e-6);
-  double touching = pi / 2;  // 2 sin(2 bend) / bend = 0.1 by bisection
+  double touching = pi / 2;  // 2 sin(2 bend) / bend = 0.1 by bisection.
   for (double low = 1.2, high = pi / 2; high - low > 1e-14;) {
     touching = (low + high) / 2;
     (2 * std::sin(2 * touching) / touching > 0.1 ? low : high) = touching;
@@ -70,7 +71,7 @@ TEST(Contact, FindsWhenAnArmCurlsIntoItself) {
 
 TEST(Contact, NamesEverySectionThatTouchesWhileItDoes) {
   const Arm arm = even_arm(3, 0.05);
-  // A wall along the arm, which the last section leaves at once, and the others, as they stand on it, never.
+  // A wall along the arm. The last section leaves it at once; the other sections stay.
   const auto wall = obstacles({PlaneConfig{.name = "wall", .point = {0.049, 0, 0}, .normal = {-1, 0, 0}}});
   ArmState leaning = bent(3, 0);
   leaning.bends[1].x() = -0.1;
@@ -88,7 +89,7 @@ TEST(Contact, NamesEverySectionThatTouchesWhileItDoes) {
   EXPECT_NEAR(report.violations[2].start, 1 - 2e-3 / 0.1, 2e-4);
 }
 
-// Stands on the ground for five minutes and bows down to it for a moment.
+// An arm that stands on the ground for five minutes and bends down to it for a moment.
 class LongTask : public ::testing::Test {
  protected:
   static constexpr double peak = 101.5;
@@ -99,7 +100,7 @@ class LongTask : public ::testing::Test {
     state.bends[1].x() = share * 60 * degree;
     return state;
   }
-  // Whether a section touches the ground.
+  // Returns true if a section touches the ground.
   [[nodiscard]] bool touches(std::size_t section, double time) const {
     return std::ranges::any_of(ContactWatch(arm_, ground_[0]).contacts(law_->at(time)),
                                [&](const Contact& contact) { return contact.section == section; });
@@ -177,7 +178,8 @@ TEST(Contact, OfThickAndThinSectionsIsThatOfSamples) {
       arm.sections[i].length = is_thick ? random.uniform(0.2, 1) : random.uniform(0.05, 0.3);
       const double radius = is_thick ? random.uniform(0.05, 0.15) : 0.01;
       arm.sections[i].radius = {radius, radius * random.uniform(0.8, 1)};
-      // Thin sections bend by less than half a turn, so that only the way along the arm tells neighbours.
+      // Thin sections bend by less than half a turn, so that only the length along the arm defines
+      // neighbours.
       const double way = random.uniform(-pi, pi);
       const double bend = is_thick ? random.uniform(0, 0.05) : random.uniform(1.5, 3);
       state.bends[i] = {bend * std::cos(way), bend * std::sin(way)};
@@ -185,7 +187,7 @@ TEST(Contact, OfThickAndThinSectionsIsThatOfSamples) {
     const double found = ContactWatch(arm).contact(state).clearance;
     const double sampled = SampledArm(arm, state).clearance(1);
     if (found < -1e-6) {
-      EXPECT_LT(sampled, found + 1e-2);  // the samples are coarse where neighbours begin
+      EXPECT_LT(sampled, found + 1e-2);  // The samples are coarse where neighbours begin.
     }
     if (sampled >= -2e-6) return;
     ++contacts;
@@ -220,7 +222,7 @@ TEST(Contact, FindsATouchBetweenTwoSamplesOfTheClock) {
 }
 
 TEST(Contact, OfAnArmThatHardlyMovesIsDecidedSoon) {
-  // 1e-9 rad in a day, so near to a ball that no step of time is short enough to tell.
+  // 1e-9 rad in a day, so near to a ball that no time step is short enough to decide.
   const Arm arm = even_arm(1, 0.02);
   const MotionPtr creep = point_to_point_motion(bent(1, 0), bent(1, 1e-9), {Profile::linear(1e5)});
   for (const double gap : {1e-10, -1e-10, -3e-6}) {
@@ -237,7 +239,7 @@ TEST(Contact, TheBaseMayStandOnTheGround) {
     return ContactWatch(arm, obstacles({plane}).front()).contact(ArmState::straight(2)).clearance;
   };
   EXPECT_NEAR(clearance(), -0.05, 1e-6);
-  plane.ignore_base = 0.05;  // touches, and may
+  plane.ignore_base = 0.05;  // Touches, which is allowed.
   EXPECT_NEAR(clearance(), 0, 1e-6);
   plane.ignore_base = 1.5;
   EXPECT_NEAR(clearance(), 1.45, 1e-6);

@@ -7,18 +7,18 @@
 namespace flexura {
 namespace {
 
-constexpr double deepest = -contact_tolerance;  // clearance that is none yet
+constexpr double deepest = -contact_tolerance;  // Least clearance that is not a contact, m.
 constexpr QuantityBounds free_of_contact{-no_distance, -no_distance};
 constexpr QuantityBounds in_contact{no_distance, no_distance};
 
 QuantityBounds undecided(double moved) { return {-no_distance, contact_tolerance + moved}; }
 
-// No pair is deeper than two points in one place.
+// Returns the distance of a pair of points at the same place. No pair is deeper.
 double deepest_pair(const SectionTube& a, const SectionTube& b) {
   return -std::max(a.radius[0], a.radius[1]) - std::max(b.radius[0], b.radius[1]);
 }
 
-// The fraction of each section that is not counted, when so much of the arm is not.
+// Returns the fraction of each section that is ignored, if `ignore_base` m of the arm are.
 std::vector<double> ignored_fractions(const Arm& arm, double ignore_base) {
   std::vector<double> fractions;
   for (const Section& section : arm.sections) {
@@ -28,8 +28,8 @@ std::vector<double> ignored_fractions(const Arm& arm, double ignore_base) {
   return fractions;
 }
 
-// How much of the arm's motion changes its distance to an obstacle: all of it; but where a planar arm stands
-// before a plane, only as much as its own plane is tilted to that.
+// Returns the share of the arm's motion that changes its distance to an obstacle. It is 1, except for a
+// planar arm and a plane: there it is the sine of the angle between both planes.
 double share_of_motion(const Arm& arm, const Obstacle& obstacle) {
   if (arm.kind != ArmKind::planar || !obstacle.normal) return 1;
   const Eigen::Vector3d own = arm.X_WB.rotation.col(1);
@@ -109,7 +109,7 @@ QuantityBounds ContactWatch::self_bounds(const Chain& chain) {
   const SectionTube& first = chain.first_tube();
   if (stay_apart(first, chain.grown(1), possible, deepest)) return free_of_contact;
   const SectionTube thin = chain.grown(-1);
-  const bool may_meet = deepest_pair(first, thin) < deepest;  // nothing is left of what moves far
+  const bool may_meet = deepest_pair(first, thin) < deepest;  // A tube made thinner may vanish.
   if (may_meet && come_within(first, thin, chain.rule(1), deepest)) return in_contact;
   return undecided(chain.moved());
 }
@@ -144,7 +144,7 @@ void ContactDepths::find_values(double time, std::span<const std::size_t> which,
 
 void ContactDepths::find_bounds(const Span& span, std::span<const std::size_t> which,
                                 std::span<QuantityBounds> bounds) const {
-  std::ranges::fill(bounds, undecided(contact_motion));  // an arm that is not possible: by its samples
+  std::ranges::fill(bounds, undecided(contact_motion));  // An impossible arm is decided by samples.
   const Swing swing(arm_, motion_, span);
   if (!swing.is_possible()) return;
   Chain chain(swing, 0);

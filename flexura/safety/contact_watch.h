@@ -15,25 +15,25 @@
 
 namespace flexura {
 
-/// Contact shallower than this is none: the arm may touch. (Distances are right to half of it.)
-inline constexpr double contact_tolerance = 1e-6;  // m
+/// Depth up to which the arm may touch something without a contact. Distances are right to half of it.
+inline constexpr double contact_tolerance = 1e-6;  // m.
 
-/// Where it is undecided whether there is a contact, the arm moves at most this far between two looks.
-inline constexpr double contact_motion = 1e-4;  // m
+/// Largest motion of the arm between two samples where a contact is undecided.
+inline constexpr double contact_motion = 1e-4;  // m.
 
-/// Where something is nearest.
+/// Point of least clearance.
 struct Contact {
-  double clearance = no_distance;              ///< m; negative: how deep.
+  double clearance = no_distance;              ///< In m; negative: depth.
   std::size_t section = 0;                     ///< From 0.
-  std::optional<std::size_t> other_section{};  ///< Of the arm itself; may be the same section.
+  std::optional<std::size_t> other_section{};  ///< Other section of a self-contact, possibly the same one.
 };
 
-/// Watches one thing the arm may touch: itself or an obstacle.
+/// Watches one object that the arm may touch: itself or an obstacle.
 ///
-/// Of itself, all pairs of backbone points count between which the backbone turns by half a turn (pi) or
-/// more; and, where some section of theirs or between them is thinner than the two on average, those between
-/// which it is longer than half a circle of their mean radius. Others cannot meet, or are neighbours
-/// (docs/safety.md).
+/// For self-contact, all pairs of backbone points count between which the backbone turns by half a turn (pi)
+/// or more. If a section of the pair or between them is thinner than the two on average, other pairs count:
+/// those with more than half a circle of their mean radius between them. All other pairs cannot meet, or are
+/// neighbours (docs/safety.md).
 class ContactWatch {
  public:
   explicit ContactWatch(Arm arm);
@@ -41,22 +41,23 @@ class ContactWatch {
 
   [[nodiscard]] Hazard hazard() const { return obstacle_ ? Hazard::obstacle : Hazard::self_contact; }
   [[nodiscard]] std::string obstacle_name() const { return obstacle_ ? obstacle_->name : ""; }
-  /// The least clearance in a state that is possible, where it is below `cap`; otherwise `cap` stands for it.
+  /// Returns the least clearance in a possible state, or `cap` if it is not below that.
   [[nodiscard]] Contact contact(const ArmState& state, double cap = no_distance) const;
-  /// Every section, or pair of them, that is in contact in a state: deeper than `contact_tolerance`.
+  /// Returns all sections, or pairs of sections, in contact in a state: deeper than `contact_tolerance`.
   [[nodiscard]] std::vector<Contact> contacts(const ArmState& state) const;
 
-  /// For every section that may touch the obstacle, or every pair of sections that may touch each other, in
-  /// the order of chains: from the base to the section, or from the pair's first section to its other.
+  /// Visits every section that may touch the obstacle, or every pair of sections that may touch each other,
+  /// in the order of chains. A chain is from the base to the section, or from the pair's first section to the
+  /// other.
   void for_each_chain(const std::function<void(std::size_t first, std::size_t last)>& visit) const;
-  /// Whose contact the last section of a chain is.
+  /// Returns the contact of a chain's last section, without clearance.
   [[nodiscard]] Contact place_of(std::size_t first, std::size_t last) const;
-  /// The least clearance that the last section may have anywhere in the chain's swing, m, as it is wished
-  /// for. Of an arm at rest: the one that it has.
+  /// Returns the least possible clearance of the last section in the chain's swing, m, as precisely as `wish`
+  /// requires. For an arm at rest it is the clearance.
   [[nodiscard]] double clearance(const Chain& chain, const DistanceWish& wish) const;
-  /// Bounds on how deep the contact is in the chain's swing, m (`contact_tolerance` where there is none
-  /// deeper). They say no more than whether it is surely free of contact or surely in contact; elsewhere the
-  /// upper one is above `contact_tolerance` by what the section may move.
+  /// Returns bounds on the depth of the contact in the chain's swing, m (`contact_tolerance` without a deeper
+  /// one). They only distinguish surely free, surely in contact and undecided. If undecided, the upper bound
+  /// exceeds `contact_tolerance` by the section's possible motion.
   [[nodiscard]] QuantityBounds bounds(const Chain& chain) const;
 
  private:
@@ -67,14 +68,14 @@ class ContactWatch {
 
   Arm arm_;
   std::optional<Obstacle> obstacle_;
-  std::vector<double> ignored_;  // the fraction of each section that the obstacle does not count
-  double share_ = 1;             // of the arm's motion that changes its distance to the obstacle
+  std::vector<double> ignored_;  // Fraction of each section that is ignored for the obstacle.
+  double share_ = 1;             // Share of the arm's motion that changes its distance to the obstacle.
 };
 
-/// How deep every section, or pair of sections, is in contact with each of the things watched, m
-/// (`contact_tolerance` where there is no contact deeper), in a motion that knows its rates. Of many together
-/// only whether they are in contact counts: `find_values` gives any depth that occurs above the tolerance,
-/// which takes far less than to find the largest one.
+/// Depths of the contacts of every section, or pair of sections, with each watched object, m
+/// (`contact_tolerance` without a deeper contact). For motions with known rates. For many quantities together
+/// only contact or no contact matters. So `find_values` returns any depth that occurs above the tolerance,
+/// which is much faster than finding the largest one.
 class ContactDepths : public WatchedQuantities {
  public:
   /// Watch number `watch`, and the chain from section `first` to `last`.
@@ -84,7 +85,7 @@ class ContactDepths : public WatchedQuantities {
     std::size_t last = 0;
   };
 
-  /// All of these must outlive it.
+  /// The arguments must outlive this object.
   ContactDepths(const Arm& arm, const std::vector<ContactWatch>& watches, const Motion& motion);
 
   [[nodiscard]] std::size_t count() const override { return parts_.size(); }
@@ -92,7 +93,7 @@ class ContactDepths : public WatchedQuantities {
   void find_values(double time, std::span<const std::size_t> which, std::span<double> values) const override;
   void find_bounds(const Span& span, std::span<const std::size_t> which,
                    std::span<QuantityBounds> bounds) const override;
-  /// One of them by itself, with bounds that say how deep it may be.
+  /// Returns one of the quantities, with bounds on its depth.
   [[nodiscard]] WatchedQuantity depth(std::size_t i) const;
 
  private:

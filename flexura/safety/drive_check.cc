@@ -21,10 +21,10 @@
 namespace flexura {
 namespace {
 
-// Doubles count exactly up to here; no motor goes farther.
+// Doubles represent all integers up to this value; motor positions must not exceed it.
 constexpr double max_countable = 9007199254740992.0;
 
-// One limit of one axis; joins what is too much in rows that follow each other.
+// One limit of one axis. Joins violations in consecutive rows.
 class AxisLimit {
  public:
   AxisLimit(Hazard hazard, const Drive& drive, std::size_t axis, double limit)
@@ -34,7 +34,7 @@ class AxisLimit {
                .limit = limit} {}
 
   [[nodiscard]] bool is_beyond(double value) const { return value > found_.limit * (1 + limit_tolerance); }
-  // Whether it is broken.
+  // Returns true if the limit is broken.
   bool add(Span span, double value, SafetyReport& report) {
     if (!is_beyond(value)) {
       close(report);
@@ -54,23 +54,22 @@ class AxisLimit {
   bool is_open_ = false;
 };
 
-// Where a motor is in a row, microsteps: what is commanded, and what that is rounded from, once with the play
-// and once without.
+// A motor's position in a row, microsteps: commanded, and before rounding with and without backlash.
 struct MotorPlace {
   double position = 0;
   double target = 0;
   double without_play = 0;
 };
 
-// What a caveat tells of an axis beside its violations.
+// Facts for the caveats of an axis, in addition to its violations.
 struct AxisNotes {
-  bool has_single_steps = false;       // Rows of one microstep were let pass.
-  bool is_rounded_over = false;        // Nothing but the rounding breaks a limit.
-  bool takes_up_play = false;          // Where it is too fast or too sudden.
-  bool is_over_while_steered = false;  // By play or rounding alone.
+  bool has_single_steps = false;       // Rows of one microstep were accepted.
+  bool is_rounded_over = false;        // Only the rounding breaks a limit.
+  bool takes_up_play = false;          // The backlash compensation is too fast or too sudden.
+  bool is_over_while_steered = false;  // By backlash or rounding alone.
 };
 
-// Follows one axis from row to row.
+// Checks one axis from row to row.
 class AxisCheck {
  public:
   AxisCheck(const Drive& drive, std::size_t axis)
@@ -89,7 +88,7 @@ class AxisCheck {
     last_ = place;
     position_.add({time, time}, std::abs(place.position), report);
   }
-  // `last` and `now` are the steps before and up to this row; the first step comes after one of standing.
+  // `last` and `now` are the steps before and up to this row; before the first step the motor rests.
   void row(Span last, Span now, const MotorPlace& place, const SteeredSpan* steered, SafetyReport& report) {
     if (steered != nullptr) {
       steered_row(last, now, place, steered->is_foreseen, report);
@@ -98,7 +97,7 @@ class AxisCheck {
     const double time = now.end - now.start;
     const double wanted = (place.target - last_.target) / time;
     const double taken_up = (place.target - place.without_play) - (last_.target - last_.without_play);
-    const bool took_up = std::abs(taken_up) > std::max(play_ / 2, 1e-3);  // else it is rounding
+    const bool took_up = std::abs(taken_up) > std::max(play_ / 2, 1e-3);  // Smaller changes are rounding.
     const double rate = judged_rate(place.position - last_.position, wanted, time);
     const bool is_frequent = step_rate_.add(now, std::abs(rate), report);
     const bool is_fast = speed_.add(now, std::abs(rate) * to_radians_, report) || is_frequent;
@@ -110,8 +109,8 @@ class AxisCheck {
     last_ = place;
     took_up_ = took_up;
   }
-  // The motor stands after the last step, which a run that is no multiple of `step` makes shorter: it has at
-  // least a whole one to stop in.
+  // The motor rests after the last step, which is shorter if the run is no multiple of `step`. It has at
+  // least a whole step to stop.
   void stop(Span last, double step, SafetyReport& report) {
     const bool is_sudden = change_rate(last.end, std::max(last.end - last.start, step), 0, report);
     if (is_sudden && took_up_) notes_.takes_up_play = true;
@@ -133,7 +132,7 @@ class AxisCheck {
       if ((is_list_fast && !is_fast) || (is_list_sudden && !is_sudden)) notes_.is_over_while_steered = true;
       last_wanted_ = wanted;
     } else {
-      // Nobody knows how fast it goes, but that it begins and ends at rest.
+      // The rate is unknown, but the motion starts and ends at rest.
       last_rate_ = last_wanted_ = 0;
       for (AxisLimit* limit : {&speed_, &step_rate_, &acceleration_}) limit->close(report);
     }
@@ -141,8 +140,8 @@ class AxisCheck {
     last_ = place;
     took_up_ = false;
   }
-  // The rate of a row, microsteps/s. A single microstep is the least that a motor can do: where the row is so
-  // short that already this is too fast, what counts is how fast the motion is that was rounded.
+  // Returns the rate of a row, microsteps/s. A motor cannot move by less than one microstep. If that is too
+  // fast in a short row, the rate before rounding counts.
   double judged_rate(double moved, double wanted, double time) {
     if (std::abs(moved) > 1 || 1 / time <= most_) return moved / time;
     if (moved != 0) notes_.has_single_steps = true;
@@ -154,17 +153,17 @@ class AxisCheck {
     return acceleration_.add({start, start}, acceleration, report);
   }
 
-  double to_radians_;  // a microstep of the motor
-  double most_;        // microsteps/s, by either limit
-  double play_;        // microsteps
+  double to_radians_;  // Radians per microstep of the motor.
+  double most_;        // Lower of both limits, microsteps/s.
+  double play_;        // Backlash, microsteps.
   AxisLimit speed_, step_rate_, acceleration_, position_;
   MotorPlace last_;
-  double last_rate_ = 0, last_wanted_ = 0;  // microsteps/s, before rounding; with play
-  bool took_up_ = false;                    // the play, in the last row
+  double last_rate_ = 0, last_wanted_ = 0;  // microsteps/s, before rounding; `last_wanted_` with backlash.
+  bool took_up_ = false;                    // The motor moved through the backlash in the last row.
   AxisNotes notes_;
 };
 
-// The displacements in a state, if motors can be sent there.
+// Returns the displacements in a state if the motors can reach them.
 std::optional<TendonDisplacements> displacements_in(const Arm& arm, const Drive& drive,
                                                     const ArmState& state) {
   if (!is_possible(state)) return std::nullopt;
@@ -190,7 +189,7 @@ bool is_acceleration(const Violation& violation) { return violation.hazard == Ha
 
 bool has_speed_limit(const Axis& axis) { return std::isfinite(axis.max_cable_speed()); }
 
-// Halves an interval until the rates in it prove that no tendon is too fast for its axis, or it is short.
+// Halves an interval until the rates in it prove that no tendon is too fast for its axis, or it is too short.
 void prove(const Arm& arm, const Drive& drive, Span span, double shortest, const RateBounds& rates,
            std::vector<char>& is_unproven) {
   const auto known = rates(span.start, span.end);
@@ -214,7 +213,7 @@ void prove(const Arm& arm, const Drive& drive, Span span, double shortest, const
   prove(arm, drive, {middle, span.end}, shortest, rates, is_unproven);
 }
 
-// The axes with a limit on speed that the law may break somewhere, as far as its rates tell.
+// Returns the axes with a speed limit that the law may exceed between rows, by its rates.
 std::vector<char> unproven_axes(const Arm& arm, const Drive& drive, const Span& span,
                                 const RateBounds& rates) {
   constexpr double shortest_part = 1.0 / 16384;
@@ -232,7 +231,7 @@ std::string names_of(const std::vector<char>& is_meant, const Drive& drive) {
   return names;
 }
 
-// What the rows break is told already.
+// Omits axes for which the rows have violations.
 void say_sampled(std::vector<char> is_unproven, const Drive& drive, std::size_t found_before, double step,
                  SafetyReport& report) {
   for (std::size_t k = found_before; k < report.violations.size(); ++k) {

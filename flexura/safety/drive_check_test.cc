@@ -15,13 +15,13 @@
 namespace flexura {
 namespace {
 
-constexpr double step = 0.01;  // s
+constexpr double step = 0.01;  // Step of the command list, s.
 constexpr std::int64_t fine_steps = 100'000'000;
 constexpr std::int64_t fine_microsteps = 1000;
 
-// One planar section of 0.5 m; a tendon on either side, 20 mm from the backbone, on spools of 10 mm behind
-// gears of 5 to 1. A bend of 1 rad takes 20 mm of cable, 2 rad of the spool and 10 of the motor, in
-// microsteps so small that rounding to them is seen in no value, if a test does not make them larger.
+// One planar section of 0.5 m with a tendon on either side, 20 mm from the backbone. Spools of 10 mm are
+// behind gears of 5 to 1. A bend of 1 rad takes 20 mm of cable, 2 rad of the spool and 10 rad of the motor.
+// The microsteps are so small that rounding is negligible, unless a test makes them larger.
 class DriveCheck : public ::testing::Test {
  protected:
   DriveCheck() {
@@ -51,12 +51,12 @@ class DriveCheck : public ::testing::Test {
     report.sort();
     return report;
   }
-  // From straight to a bend within 1 s at an even rate.
+  // Checks a linear motion from straight to a bend within 1 s.
   SafetyReport check_bend(double bend) const {
     return check(point_to_point_motion(state(0), state(bend), {Profile::linear(1)}));
   }
   static ArmState state(double bend) { return {{{bend, 0}}, {1}}; }
-  // Sets a limit of the first motor to a value and expects a bend of 1 rad to break it just beyond that.
+  // Sets a limit of the first motor and expects that a bend breaks it just above 1 rad.
   void expect_limit(double StepperMotor::* limit, double value, Hazard hazard) {
     drive_.axes[0].motor.*limit = value;
     EXPECT_TRUE(check_bend(1 - 1e-6).is_safe());
@@ -80,7 +80,7 @@ TEST_F(DriveCheck, FindsEveryLimitJustBeyondItAndNotJustWithin) {
   expect_limit(&StepperMotor::max_speed, 10, Hazard::motor_speed);
   expect_limit(&StepperMotor::max_step_rate, microsteps, Hazard::step_rate);
   expect_limit(&StepperMotor::max_position, microsteps, Hazard::motor_position);
-  // From standing to 10 rad/s within a step.
+  // From rest to 10 rad/s within a step.
   expect_limit(&StepperMotor::max_acceleration, 10 / step, Hazard::motor_acceleration);
 }
 
@@ -96,7 +96,7 @@ TEST_F(DriveCheck, TellsWhenAndHowMuch) {
 }
 
 TEST_F(DriveCheck, SaysWhereALawMayBeTooFastBetweenTwoStepsAndOnlyThere) {
-  // The bend swings by 0.1 rad with the period of the step: every row sees the same state.
+  // The bend swings by 0.1 rad with the period of the step: every row has the same state.
   const auto slips = sine_motion(state(0), {{0.1, 0}}, {0}, step, 1);
   drive_.axes[0].motor.max_speed = 10;
   const SafetyReport slipped = check(slips);
@@ -105,18 +105,19 @@ TEST_F(DriveCheck, SaysWhereALawMayBeTooFastBetweenTwoStepsAndOnlyThere) {
   EXPECT_EQ(
       slipped.caveats[0],
       "motor speed and step rate of 1.1: sampled every 0.01 s; the law may be faster between two steps");
-  // The motor turns by 10 rad for 1 rad of the bend, at most at 1.875 rad/s with the least jerk within 1 s.
+  // For a bend of 1 rad the motor turns by 10 rad. A minimum-jerk motion of 1 s has at most 1.875 rad/s of
+  // bend.
   const auto smooth = point_to_point_motion(state(0), state(1), {Profile::minimum_jerk(1)});
   drive_.axes[0].motor.max_speed = 18.75 * (1 + 1e-6);
   EXPECT_TRUE(check(smooth).caveats.empty()) << "proven by the law's own rates";
   drive_.axes[0].motor.max_speed = 18.75 * (1 - 1e-6);
-  const SafetyReport peak = check(smooth);  // which no row sees: the mean from row to row is less
+  const SafetyReport peak = check(smooth);  // No row detects the peak: the mean from row to row is less.
   EXPECT_TRUE(peak.is_safe());
   EXPECT_EQ(peak.caveats.size(), 1U);
   drive_.axes[0].motor.max_speed = 15;
   EXPECT_FALSE(check(smooth).is_safe());
   EXPECT_TRUE(check(smooth).caveats.empty()) << "told as a violation";
-  // A formula knows no rates.
+  // A formula has no known rates.
   drive_.axes[0].motor.max_speed = 1e3;
   const SafetyReport formula = check(function_motion(1, [](double t) { return state(0.1 * t); }));
   EXPECT_TRUE(formula.is_safe());
@@ -133,7 +134,7 @@ TEST_F(DriveCheck, AnEvenMoveIsTooSuddenWhereItStartsAndEnds) {
   EXPECT_NE(report.caveats[0].find("the next, 0.01 s; "), std::string::npos) << report.caveats[0];
   EXPECT_EQ(report.violations[0].start, 0);
   EXPECT_EQ(report.violations[1].start, 1);
-  // The least jerk takes 10/sqrt(3) of the way a second squared.
+  // The minimum-jerk motion has an acceleration of up to 10/sqrt(3) of the way per second squared.
   const auto smooth = point_to_point_motion(state(0), state(1), {Profile::minimum_jerk(1)});
   drive_.axes[0].motor.max_acceleration = 10 * 10 / std::numbers::sqrt3;
   EXPECT_TRUE(check(smooth).is_safe());
@@ -142,10 +143,10 @@ TEST_F(DriveCheck, AnEvenMoveIsTooSuddenWhereItStartsAndEnds) {
 }
 
 TEST_F(DriveCheck, PlayIsTakenUpAtOnceAndCounts) {
-  drive_.axes[0].spool.backlash = 0.02;  // 0.1 rad of the motor: 10 rad/s within a step
+  drive_.axes[0].spool.backlash = 0.02;  // 0.1 rad of the motor: 10 rad/s within a step.
   drive_.axes[0].motor.max_speed = 12;
   const auto there_and_back = keyframe_motion({0, 1, 2}, {state(0), state(0.3), state(0)},
-                                              Interpolation::linear);  // 3 rad/s of the motor
+                                              Interpolation::linear);  // 3 rad/s of the motor.
   const SafetyReport report = check(there_and_back);
   ASSERT_EQ(report.violations.size(), 1U);
   EXPECT_NEAR(report.violations[0].start, 1, 1e-12);
@@ -156,7 +157,7 @@ TEST_F(DriveCheck, PlayIsTakenUpAtOnceAndCounts) {
       report.caveats[0],
       "motors of 1.1: where a tendon reverses its play is taken up within one step of the clock, 0.01 s; "
       "the shorter that is, the more it asks");
-  // A motion that is too fast all the way, play or not, is another matter.
+  // A motion that is too fast throughout, with or without backlash, needs no caveat.
   drive_.axes[0].motor.max_speed = 2;
   drive_.axes[0].spool.backlash = 0;
   EXPECT_TRUE(check(there_and_back).caveats.empty());
@@ -166,7 +167,7 @@ TEST_F(DriveCheck, PlayIsTakenUpAtOnceAndCounts) {
 
 TEST_F(DriveCheck, JudgesTheListAsItIsRounded) {
   drive_.axes[0].motor.steps = 100;
-  drive_.axes[0].motor.microsteps = 1;  // 1.5915 a row, which are 1 and 2.
+  drive_.axes[0].motor.microsteps = 1;  // 1.5915 per row, rounded to 1 and 2.
   drive_.axes[0].motor.max_step_rate = 2 / step;
   EXPECT_TRUE(check_bend(1).is_safe());
   EXPECT_TRUE(check_bend(1).caveats.empty());
@@ -193,8 +194,8 @@ TEST_F(DriveCheck, JudgesTheListAsItIsRounded) {
 
 TEST_F(DriveCheck, LetsSingleMicrostepsPassWhereARowIsTooShortForOne) {
   drive_.axes[0].motor.steps = 30;
-  drive_.axes[0].motor.microsteps = 1;              // 0.477 a row: none, or one
-  drive_.axes[0].motor.max_step_rate = 0.6 / step;  // less than one a row
+  drive_.axes[0].motor.microsteps = 1;              // 0.477 per row: rounded to 0 or 1.
+  drive_.axes[0].motor.max_step_rate = 0.6 / step;  // Less than one per row.
   const SafetyReport slow = check_bend(1);
   EXPECT_TRUE(slow.is_safe());
   ASSERT_EQ(slow.caveats.size(), 1U);
@@ -208,7 +209,7 @@ TEST_F(DriveCheck, LetsSingleMicrostepsPassWhereARowIsTooShortForOne) {
 
 TEST_F(DriveCheck, TheLastStepOfARunMayBeShort) {
   drive_.axes[0].motor.max_acceleration = 10 / step * (1 + 1e-6);
-  const double end = 1 + step / 100;  // no whole number of steps
+  const double end = 1 + step / 100;  // Not a whole number of steps.
   const auto even = point_to_point_motion(state(0), state(end), {Profile::linear(end)});
   std::vector<double> times;
   for (int k = 0; k <= 100; ++k) times.push_back(k * step);
@@ -220,7 +221,7 @@ TEST_F(DriveCheck, TheLastStepOfARunMayBeShort) {
 
 TEST_F(DriveCheck, RoundingToMicrostepsIsNoAcceleration) {
   drive_.axes[0].motor.steps = 3;
-  drive_.axes[0].motor.microsteps = 1;  // 2 rad each
+  drive_.axes[0].motor.microsteps = 1;  // 2 rad each.
   drive_.axes[0].motor.max_acceleration = 10 * 10 / std::numbers::sqrt3;
   EXPECT_TRUE(check(point_to_point_motion(state(0), state(1), {Profile::minimum_jerk(1)})).is_safe());
 }

@@ -1,4 +1,4 @@
-// Arms that only just clear something, and laws that are faster than the finest look at them.
+// Arms that just miss something, and laws faster than the finest interval.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -53,7 +53,7 @@ TEST(Grazing, AnArmThatLiesOnATableStaysOnItAndNothingIsLeftUndecided) {
     EXPECT_TRUE(report.is_safe());
     EXPECT_THAT(report.caveats, IsEmpty());
     const SafetyReport deeper = check(arm, move, {table_at(-0.02 + 2e-6)});
-    ASSERT_EQ(deeper.violations.size(), 2u);  // of both sections
+    ASSERT_EQ(deeper.violations.size(), 2u);  // Of both sections.
     for (const Violation& violation : deeper.violations) {
       EXPECT_EQ(violation.start, 0);
       EXPECT_EQ(violation.end, 1);
@@ -103,7 +103,7 @@ TEST(Grazing, KeyframesAMomentApartJump) {
   ASSERT_EQ(report.violations.size(), 2u);
   EXPECT_EQ(report.violations[0].hazard, Hazard::bend_rate);
   EXPECT_EQ(report.violations[1].hazard, Hazard::jump);
-  EXPECT_NEAR(report.violations[1].start, 1, 1e-7);  // to what spans of limits are found
+  EXPECT_NEAR(report.violations[1].start, 1, 1e-7);  // To the precision of spans of limits.
   EXPECT_NEAR(report.violations[1].value, 0.4, 1e-6);
 }
 

@@ -1,4 +1,4 @@
-// Every hazard is found just beyond its limit, and not just within it.
+// Every hazard must be found just beyond its limit, and not just within it.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -27,7 +27,7 @@ SafetyReport check_among(const Arm& arm, const MotionPtr& motion,
   return check_motions(arm, obstacles(around), motion->at(0), {{motion, 0}}, 0.02);
 }
 
-// Asks for the report where something is at `part` of its limit.
+// Requests reports with a value at `part` of its limit.
 void expect_just(Hazard hazard, const std::function<SafetyReport(double part)>& report_at) {
   const SafetyReport within = report_at(1 - 1e-5);
   EXPECT_TRUE(within.is_safe()) << within.violations.front().text();
@@ -42,7 +42,7 @@ TEST(Hazard, Bend) {
   expect_just(Hazard::bend, [&](double part) {
     return check_among(arm, point_to_point_motion(state(0), state(part), {Profile::minimum_jerk(3)}));
   });
-  // A peak far shorter than a step of the clock.
+  // A peak far shorter than a clock step.
   expect_just(Hazard::bend, [&](double part) {
     return check_among(arm, sine_motion(state(0), {{part, 0}}, {0}, 0.011, 0.005));
   });
@@ -135,7 +135,7 @@ TEST(Hazard, Obstacles) {
     return check_among(
         arm, stand, {CapsuleConfig{.from = {-1, 0.4, 0.3}, .to = {1, 0.4, 0.3}, .radius = part * 0.3 - r}});
   });
-  // Turned by 45 degrees about Z, its edge points at the arm.
+  // Turned by 45 degrees about Z, so that its edge points at the arm.
   expect_just(Hazard::obstacle, [&](double part) {
     return check_among(arm, stand,
                        {BoxConfig{.center = {0.5, 0.5, 0},
@@ -145,7 +145,7 @@ TEST(Hazard, Obstacles) {
   });
 }
 
-// The tip swings out 1 - cos 1 m and back between two steps of the clock.
+// The tip swings out by 1 - cos 1 m and back between two clock steps.
 TEST(Hazard, ObstacleTouchedBetweenTwoSteps) {
   const MotionPtr swing = sine_motion(state(0), {{1, 0}}, {0}, 0.036, 0.018);
   const double farthest = 1 - std::cos(1.0) + 0.02;

@@ -11,21 +11,21 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 
 double largest_radius(const Section& section) { return std::max(section.radius[0], section.radius[1]); }
 
-// The tube's radius over the section's length; finite however short the section, so that bounds on what it
-// scales are too.
+// Returns the tube's radius over the section's length. It is finite for any length, so that bounds on
+// products with it are finite too.
 double slenderness(const Section& section) {
   return std::min(largest_radius(section) / section.length, 1e200);
 }
 
-// |d/dt (bend r / (length stretch))| where the bend stays below and the stretch above what they are in the
-// middle and the rates allow.
+// Returns a bound on |d/dt (bend r / (length stretch))|. Its bend is at most, and its stretch at least, what
+// the middle and the rates allow.
 double folding_rate(const Section& section, const Motion& motion, std::size_t i, double start, double end) {
   const SectionRates rates = rates_of(motion, i, start, end);
   const ArmState middle = motion.at((start + end) / 2);
   const double half = (end - start) / 2;
   const double bend = middle.bends[i].norm() + rates.bend * half;
   const double stretch = middle.stretches[i] - rates.stretch * half;
-  if (middle.stretches[i] + rates.stretch * half <= 0) return 0;  // no length anywhere: infinite all along
+  if (middle.stretches[i] + rates.stretch * half <= 0) return 0;  // No length anywhere: always infinite.
   if (stretch <= 0) return infinity;
   return slenderness(section) * (rates.bend / stretch + bend * rates.stretch / (stretch * stretch));
 }
@@ -54,8 +54,8 @@ void add_watches(const Section& section, std::size_t i, std::vector<LimitWatch>&
 
 WatchedQuantity watched_rate(const Motion& motion, std::size_t section, double SectionRates::* which) {
   const auto value = [&motion, section, which](double t) { return rates_of(motion, section, t, t).*which; };
-  // A rate has no rate bound of its own. It has a highest value; where an interval is short and too fast at
-  // its ends and middle, it is taken for too fast all along.
+  // A rate has no known bound on its rate of change, only a largest value. A short interval counts as too
+  // fast throughout if its ends and middle are too fast.
   const double short_interval = motion.duration() * 1e-4;
   return {value, [&motion, section, which, value, short_interval](double start, double end) {
             const double high = rates_of(motion, section, start, end).*which;

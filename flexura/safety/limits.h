@@ -10,33 +10,34 @@
 
 namespace flexura {
 
-/// What is above its limit by no more than this part of it is on it: limits are typed in degrees, and values
-/// computed in radians.
+/// Share of a limit by which a value may exceed it: limits are given in degrees, and values computed in
+/// radians.
 inline constexpr double limit_tolerance = 1e-9;
 
-/// A quantity of one section that has a limit.
+/// A limited quantity of one section.
 struct LimitWatch {
   Hazard hazard = Hazard::bend;
   std::size_t section = 0;                             ///< From 0.
   double limit = 0;                                    ///< As reported.
   double sign = 1;                                     ///< -1: the value must not fall below the limit.
-  std::function<double(const ArmState& state)> value;  ///< Of the section in a state, in the hazard's unit.
-  /// A bound on |d value/dt| anywhere in [start, end] of a motion that knows its rates.
+  std::function<double(const ArmState& state)> value;  ///< Returns the value in the hazard's unit.
+  /// Returns a bound on |d value/dt| in [start, end] of a motion with known rates.
   std::function<double(const Motion& motion, double start, double end)> rate;
 
-  /// sign * value above this breaks the limit. A tube folds where it reaches its limit, all others may.
+  /// Returns the threshold: the limit is broken if sign * value exceeds it. A tube folds at its limit; all
+  /// other values may reach theirs.
   [[nodiscard]] double threshold() const;
 };
 
-/// Every limit on the states of the arm: bends, stretches, folding (curvature times radius below 1).
+/// Returns all limits on the states of the arm: bends, stretches, folding (curvature times radius below 1).
 [[nodiscard]] std::vector<LimitWatch> limit_watches(const Arm& arm);
 
-/// The bounds that `motion` knows in [start, end] s of its own time; those of one that knows none are 0.
+/// Returns the bounds of `motion` in [start, end] s of its time, or 0 if it has none.
 [[nodiscard]] SectionRates rates_of(const Motion& motion, std::size_t section, double start, double end);
 
-/// A section's bend rate in a motion that knows its rates, rad/s.
+/// Returns a section's bend rate in a motion with known rates, rad/s.
 [[nodiscard]] WatchedQuantity bend_rate(const Motion& motion, std::size_t section);
-/// Its stretch rate, 1/s.
+/// Returns a section's stretch rate in a motion with known rates, 1/s.
 [[nodiscard]] WatchedQuantity stretch_rate(const Motion& motion, std::size_t section);
 
 }  // namespace flexura

@@ -18,10 +18,10 @@
 namespace flexura {
 namespace {
 
-// Where the tip's position can set out in fewer dimensions than in almost every other state of the arm.
+// Adds a note if the tip's Jacobian has a lower rank than in almost every other state of the arm.
 void note_singular(const Arm& arm, const ArmState& state, double time, SafetyReport& report) {
   if (!is_possible(state)) return;
-  std::vector<Eigen::Index> free;  // columns of the Jacobian
+  std::vector<Eigen::Index> free;  // Columns of the Jacobian.
   for (std::size_t i = 0; i < arm.sections.size(); ++i) {
     const auto first = static_cast<Eigen::Index>(3 * i);
     free.push_back(first);
@@ -31,14 +31,14 @@ void note_singular(const Arm& arm, const ArmState& state, double time, SafetyRep
   const Eigen::MatrixXd velocities = tip_jacobian(arm, state).topRows<3>()(Eigen::all, free);
   const Eigen::VectorXd speeds = singular_values(velocities);
   const auto now = static_cast<std::size_t>((speeds.array() > 1e-9 * speeds.maxCoeff()).count());
-  // One spatial section without stretch reaches a surface only.
+  // One spatial section without stretch reaches only a surface.
   const std::size_t usual = std::min<std::size_t>(arm.kind == ArmKind::planar ? 2 : 3, free.size());
   if (now == usual) return;
   report.notes.push_back(
       fmt::format("{:.6g} s: singular pose: the tip can set out in {} of {} dimensions", time, now, usual));
 }
 
-// `before` is the state in which the motion finds the arm.
+// `before` is the state of the arm before the motion.
 void check_one(const CheckedMotion& checked, const ArmState& before) {
   const Motion& motion = checked.motion();
   const ArmState first = motion.at(0);
@@ -58,7 +58,7 @@ void check_one(const CheckedMotion& checked, const ArmState& before) {
   }
 }
 
-// Whether it is the shape of an arm that has a hazard, whatever it was commanded to.
+// Returns true for hazards of the arm's shape, as opposed to those of the command.
 bool is_of_shape(Hazard hazard) {
   return hazard == Hazard::folding || hazard == Hazard::self_contact || hazard == Hazard::obstacle ||
          hazard == Hazard::not_finite;
@@ -98,7 +98,7 @@ bool is_possible(const ArmState& state) { return !impossible_section(state); }
 std::optional<std::size_t> impossible_section(const ArmState& state) {
   for (std::size_t i = 0; i < state.bends.size(); ++i) {
     const double stretch = state.stretches[i];
-    const bool is_bent = state.bends[i].norm() <= largest_bend;  // Not where it is no number.
+    const bool is_bent = state.bends[i].norm() <= largest_bend;  // False if it is not a number.
     if (!is_bent || !std::isfinite(stretch) || stretch <= 0) return i;
   }
   return std::nullopt;
@@ -130,7 +130,7 @@ SafetyReport check_motions(const ArmModel& model, const std::vector<Obstacle>& o
       check_motions(model.shaped(), obstacles, actuation.shape(initial), shaped, step, progress);
   for (Violation violation : of_shape.violations) {
     if (!is_of_shape(violation.hazard)) continue;
-    // Where the command is nowhere the shape is nowhere, too.
+    // If the command has no value, the shape has none either.
     if (violation.hazard == Hazard::not_finite && std::ranges::any_of(report.violations, is_nowhere))
       continue;
     if (violation.section) violation.section = actuation.section_of()[*violation.section];
@@ -139,7 +139,7 @@ SafetyReport check_motions(const ArmModel& model, const std::vector<Obstacle>& o
   }
   report.is_complete = of_shape.is_complete;
   if (!report.is_complete) report.caveats = of_shape.caveats;
-  // Of a rod no rates are known: its shape is looked at from time to time.
+  // A rod has no known rates: its shape is sampled.
   if (report.is_complete && !actuation.is_linear())
     report.caveats.insert(report.caveats.end(), of_shape.caveats.begin(), of_shape.caveats.end());
   report.sort();

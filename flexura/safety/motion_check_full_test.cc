@@ -18,8 +18,8 @@ TEST(MotionCheckFull, MissesNothingThatDenseSamplingFinds) {
   EXPECT_GE(result.motions, 18U);  // Planar arms have some more.
 }
 
-// Coils of which each touches many others all the time: whether they do is asked often, how deep seldom.
-// Where that goes wrong it takes minutes, more than a test may.
+// Coils that each touch many others all the time: contact is checked often, depth rarely. A regression takes
+// minutes, longer than a test may run.
 TEST(MotionCheckFull, OfALongArmThatIsCoiledUpTakesNoMinutes) {
   Arm arm;
   arm.sections.assign(8, {.length = 0.1, .radius = {0.01, 0.01}});

@@ -79,7 +79,7 @@ TEST(MotionCheck, AMeanRateIsThatOfTheWholeStep) {
   EXPECT_NEAR(rate->end, 1.2, 1e-9);
 }
 
-// Counts what it is told; wants to end when it has been asked so often.
+// Counts its calls and ends the check after this number.
 class Impatient : public Progress {
  public:
   explicit Impatient(int patience) : patience_(patience) {}
@@ -146,7 +146,7 @@ TEST(MotionCheck, LimitsThatAreJustTouchedAreKept) {
   EXPECT_TRUE(check(arm, point_to_point_motion(bent(1), bent(2), {Profile::minimum_jerk(1)})).is_safe());
   arm.sections[0].max_bend_rate = 2 * std::numbers::pi;
   EXPECT_TRUE(check(arm, sine_motion(bent(1), {{1, 0}}, {0}, 1, 3)).is_safe());
-  arm.sections[0].max_bend_rate = 1.5;  // of a cubic from rest to rest
+  arm.sections[0].max_bend_rate = 1.5;  // Largest rate of a cubic from rest to rest.
   EXPECT_TRUE(check(arm, keyframe_motion({0, 1}, {bent(0), bent(1)}, Interpolation::smooth)).is_safe());
 }
 
@@ -217,7 +217,7 @@ TEST(MotionCheck, SaysWhatItOnlySampled) {
 TEST(MotionCheck, SamplesAFormulaWhenTheClockWillHoweverItsTaskBegins) {
   Arm arm = short_section();
   arm.sections[0].max_bend = 0.5;
-  // Narrower than a step, about 0.7 s of the clock.
+  // Narrower than a clock step, at about 0.7 s.
   const auto peak =
       function_motion(0.6, [](double t) { return bent(std::exp(-std::pow((t - 0.15) / 0.015, 2))); });
   const ArmState start = bent(0);
@@ -227,7 +227,7 @@ TEST(MotionCheck, SamplesAFormulaWhenTheClockWillHoweverItsTaskBegins) {
   EXPECT_EQ(found.violations.front().hazard, Hazard::bend);
   EXPECT_NEAR(found.violations.front().worst_time, 0.7, 1e-12);
   EXPECT_NEAR(found.violations.front().value, 1, 1e-12);
-  // Nobody asks for the peak where no step of the clock falls upon it.
+  // No clock step is at the peak.
   EXPECT_TRUE(check_motions(arm, {}, start, {{hold_motion(start, 0.5), 0}, {peak, 0.5}}, 0.1).is_safe());
 }
 
@@ -262,7 +262,7 @@ TEST(MotionCheck, ChecksAFormulaUpToWhereItHasNoValueAndNamesTaskAndSection) {
 }
 
 TEST(MotionCheck, EndsSoonWhereKeyframesLeaveNoLength) {
-  // Smooth keyframes overshoot: the stretch goes below 0 for a while.
+  // Smooth keyframes overshoot: the stretch falls below 0 for a while.
   const auto state = [](double stretch) -> ArmState { return {{{0.5, 0}}, {stretch}}; };
   const auto law = keyframe_motion(
       {0, 1, 2, 3, 4}, {state(1), state(0.05), state(0.01), state(0.05), state(1)}, Interpolation::smooth);
@@ -296,7 +296,7 @@ TEST(MotionCheck, TellsTheTimesOfAShortSpanApart) {
 TEST(MotionCheck, FindsAPeakBetweenTwoSamplesOfTheClock) {
   Arm arm = short_section();
   arm.sections[0].max_bend = 0.999;
-  const MotionPtr swing = sine_motion(bent(0), {{1, 0}}, {0}, 4, 2);  // above the limit for 57 ms
+  const MotionPtr swing = sine_motion(bent(0), {{1, 0}}, {0}, 4, 2);  // Above the limit for 57 ms.
   const SafetyReport report = check(arm, swing, 0.7);
   ASSERT_EQ(report.violations.size(), 1u);
   EXPECT_NEAR(report.violations[0].start, std::asin(0.999) * 2 / std::numbers::pi, 1e-6);

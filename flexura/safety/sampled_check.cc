@@ -12,10 +12,10 @@
 namespace flexura {
 namespace {
 
-// Which share of a check the search for jumps leaves to the samples.
+// Share of a check's progress up to the end of the samples; the search for jumps has the rest.
 constexpr double samples_share = 0.9;
 
-// Spans that grow with samples: those of steps that follow each other are one.
+// Spans that grow with samples: consecutive steps form one span.
 class SampledSpans {
  public:
   struct Found {
@@ -23,7 +23,8 @@ class SampledSpans {
     WorstValue worst;
   };
 
-  // Takes what is too much at a step, after all earlier steps: the value for the time `span`, as of its end.
+  // Adds a value above its limit at a step later than all previous ones: the value for the time `span`, as of
+  // its end.
   void add(std::size_t step, const Span& span, double value) {
     if (spans_.empty() || last_step_ + 1 < step) spans_.push_back({span, {span.end, value}});
     last_step_ = step;
@@ -89,7 +90,7 @@ class SampledCheck {
     }
   }
 
-  // The mean rate since the step before.
+  // Checks the mean rates since the previous step.
   void look_at_rates(std::size_t k, const ArmState& before, const ArmState& state) {
     const Span span{times_[k - 1], times_[k]};
     const double time = span.end - span.start;
@@ -129,7 +130,7 @@ class SampledCheck {
   using Place = std::pair<std::size_t, std::optional<std::size_t>>;
 
   const CheckedMotion& checked_;
-  std::vector<double> times_;  // of the steps, in the motion's own time
+  std::vector<double> times_;  // Times of the steps, in the motion's time.
   std::vector<LimitWatch> watches_;
   std::vector<SampledSpans> limits_;
   std::vector<SampledSpans> bend_rates_, stretch_rates_;

@@ -40,7 +40,7 @@ class OneQuantity : public WatchedQuantities {
   const WatchedQuantity& quantity_;
 };
 
-// Halves intervals, each with the quantities that are open in it, from the longest on.
+// Halves intervals, each with the quantities that are undecided in it, starting from the longest.
 class Halving {
  public:
   Halving(double limit, const WatchedQuantities& quantities, const SpanSearch& search)
@@ -74,19 +74,21 @@ class Halving {
   }
 
  private:
-  // What is open in an interval stands at its place in the level's list; two halves share theirs.
+  // The quantities that are undecided in an interval are a range of the level's list, from `first`. Two
+  // halves share theirs.
   struct Interval {
     Span span;
     std::size_t first = 0;
     std::size_t count = 0;
   };
   struct Level {
-    std::vector<Interval> intervals;  // in the order of time
+    std::vector<Interval> intervals;  // In the order of time.
     std::vector<std::size_t> which;
-    std::size_t open = 0;  // quantities in intervals
+    std::size_t open = 0;  // Total of undecided quantities over the intervals.
   };
 
-  // Every quantity has its own number of looks, and an even share of those that are left for all.
+  // Leaves quantities with too many undecided intervals to samples. Each quantity has its own limit, and an
+  // equal share of the common limit's rest.
   void leave_what_is_too_much() {
     const auto open = static_cast<std::size_t>(std::ranges::count_if(open_in_, [](auto n) { return n > 0; }));
     const std::size_t share = open == 0 ? 0 : (search_.most_together - looked_together_) / open;
@@ -112,7 +114,7 @@ class Halving {
     if (!looked_at_.empty()) judge(span, halves);
   }
 
-  // To samples, which decide.
+  // Leaves an interval to samples, which decide.
   void leave(const Span& span) {
     sample(span, sampled_);
     for (std::size_t k = 0; k < sampled_.size(); ++k) {
@@ -150,7 +152,7 @@ class Halving {
     halves.open += 2 * count;
   }
 
-  // The largest of their values at the ends and in the middle.
+  // Computes the largest of their values at the ends and in the middle.
   void sample(const Span& span, std::span<const std::size_t> which) {
     values_.resize(which.size());
     worst_.assign(which.size(), -std::numeric_limits<double>::infinity());
@@ -169,12 +171,12 @@ class Halving {
   const WatchedQuantities& quantities_;
   const SpanSearch& search_;
   std::vector<FoundSpans> found_;
-  std::vector<std::size_t> looked_;   // intervals, of each quantity
-  std::vector<std::size_t> open_in_;  // intervals of this length, each quantity
-  std::vector<bool> left_;            // to samples
+  std::vector<std::size_t> looked_;   // Intervals evaluated per quantity.
+  std::vector<std::size_t> open_in_;  // Undecided intervals of this length per quantity.
+  std::vector<bool> left_;            // Left to samples.
   std::size_t looked_together_ = 0;
   std::size_t looks_since_ = 0;
-  std::vector<std::size_t> looked_at_, sampled_;  // in the present interval
+  std::vector<std::size_t> looked_at_, sampled_;  // In the current interval.
   std::vector<QuantityBounds> bounds_;
   std::vector<double> values_, worst_;
 };
@@ -185,7 +187,7 @@ std::string span_text(const Span& span, double shift) {
   const double start = shift + span.start;
   const double end = shift + span.end;
   if (start == end) return fmt::format("at {:.6g} s", start);
-  // 17 digits tell any two doubles apart.
+  // 17 digits distinguish any two doubles.
   for (int digits = 6;; ++digits) {
     const std::string from = fmt::format("{:.{}g}", start, digits);
     const std::string to = fmt::format("{:.{}g}", end, digits);

@@ -10,35 +10,34 @@
 
 namespace flexura {
 
-/// From when to when, s.
+/// A time interval, s.
 struct Span {
   double start = 0;
   double end = 0;
 };
 
-/// "0.5 s to 2 s" of a span moved by `shift` s, in six digits or as many as tell its ends apart; "at 2 s" of
-/// one time.
+/// Returns "0.5 s to 2 s" for a span moved by `shift` s, with six digits or as many as distinguish its ends.
+/// Returns "at 2 s" for a single time.
 [[nodiscard]] std::string span_text(const Span& span, double shift = 0);
 
-/// Between what a quantity stays.
+/// Bounds of a quantity.
 struct QuantityBounds {
   double low = 0;
   double high = 0;
 };
 
-/// A quantity that changes with time, for questions that must not miss what happens between two samples.
+/// A quantity that changes with time, for searches that must not miss anything between two samples.
 struct WatchedQuantity {
   std::function<double(double time)> value;
-  /// Bounds on the value that hold everywhere in [start, end], and come down to it as the two come together.
+  /// Returns bounds on the value in all of [start, end]. They converge to the value as the interval shrinks.
   std::function<QuantityBounds(double start, double end)> bounds;
 };
 
-/// The quantity `value` whose |d value/dt| is nowhere in [start, end] above rate(start, end).
+/// Returns the quantity `value`, with |d value/dt| at most rate(start, end) in all of [start, end].
 [[nodiscard]] WatchedQuantity with_rate(std::function<double(double time)> value,
                                         std::function<double(double start, double end)> rate);
 
-/// Quantities, numbered from 0, that are looked at together because what they need to know of a time is the
-/// same.
+/// Quantities, numbered from 0, that are evaluated together because they need the same data at a time.
 class WatchedQuantities {
  public:
   virtual ~WatchedQuantities() = default;
@@ -47,54 +46,54 @@ class WatchedQuantities {
   WatchedQuantities& operator=(const WatchedQuantities&) = delete;
 
   [[nodiscard]] virtual std::size_t count() const = 0;
-  /// The values at `time` of those in `which` (ascending), one each.
+  /// Computes the values at `time` of those in `which` (ascending), one each.
   virtual void find_values(double time, std::span<const std::size_t> which,
                            std::span<double> values) const = 0;
-  /// Bounds as those of WatchedQuantity.
+  /// Computes bounds like those of WatchedQuantity.
   virtual void find_bounds(const Span& span, std::span<const std::size_t> which,
                            std::span<QuantityBounds> bounds) const = 0;
 };
 
-/// When an interval is looked into no further.
+/// Limits of a search.
 struct SpanSearch {
-  double time = 0;                       ///< s: intervals that are undecided and longer are halved,
-  double value = 0;                      ///< and so are those whose upper bound is above the limit by more.
-  std::size_t most_intervals = 200'000;  ///< Of one quantity: after so many, samples decide what is open.
+  double time = 0;   ///< Undecided intervals longer than this are halved, s.
+  double value = 0;  ///< Intervals with an upper bound that exceeds the limit by more are halved too.
+  std::size_t most_intervals = 200'000;  ///< Per quantity; after that, samples decide the rest.
   std::size_t most_together = std::numeric_limits<std::size_t>::max();  ///< Of all, shared evenly.
-  /// Told which share of the time is decided, now and then; false ends the search, with what it has found.
+  /// Receives the share of the time that is decided, now and then; false ends the search with the results so
+  /// far.
   std::function<bool(double decided)> go_on = {};
 };
 
-/// What a search found.
+/// Result of a search.
 struct FoundSpans {
-  std::vector<Span> spans;  ///< Where the quantity is above its limit, joined where they touch, in order.
-  /// From the first to the last time that only samples decided, because there was too much to look into.
+  std::vector<Span> spans;  ///< Spans with the quantity above its limit, joined if they touch, in order.
+  /// From the first to the last time that only samples decided, because there were too many intervals.
   std::optional<Span> undecided{};
-  double sampled_every = 0;  ///< s, in there at most.
+  double sampled_every = 0;  ///< Largest time between samples in `undecided`, s.
 };
 
-/// The spans of `whole` in which each of the quantities is above `limit`.
+/// Returns the spans of `whole` in which each of the quantities is above `limit`.
 ///
-/// Nothing slips through: an interval is let go only when its bounds prove it safe, is taken whole when they
-/// prove it unsafe, and is halved otherwise. One as short as `search` says is unsafe when its ends or middle
-/// are, and safe when they are not and its upper bound is as near to the limit. So what is missed, if
-/// anything, is shorter than half of that time, and above the limit by no more than that value; and the ends
-/// of spans are right to that time. What time cannot resolve (`shortest_interval`) is unsafe unless proved
-/// safe.
+/// Misses nothing: an interval is dropped only if its bounds prove it safe, is unsafe if they prove that, and
+/// is halved otherwise. One as short as `search` specifies is unsafe if its ends or middle are. It is safe if
+/// they are not and its upper bound is that near to the limit. So anything missed is shorter than half of
+/// that time, and exceeds the limit by at most that value. The ends of spans are right to that time. An
+/// interval too short for doubles (`shortest_interval`) is unsafe unless proved safe.
 ///
-/// All intervals of one length come before shorter ones, and all of one length are looked into or none: what
-/// is open when there are too many is looked into evenly.
+/// All intervals of one length come before shorter ones, and all of one length are evaluated or none. So if
+/// there are too many, undecided times are evaluated evenly.
 [[nodiscard]] std::vector<FoundSpans> spans_above(double limit, const WatchedQuantities& quantities,
                                                   Span whole, const SpanSearch& search);
 
-/// Those of one quantity.
+/// Returns the spans of one quantity.
 [[nodiscard]] FoundSpans spans_above(double limit, const WatchedQuantity& quantity, Span whole,
                                      const SpanSearch& search);
 
-/// No interval is halved below this, s.
+/// Length below which no interval is halved, s.
 inline constexpr double shortest_interval = 1e-12;
 
-/// Whether the span is as short as time can be told apart: late times are less fine than the shortest
+/// Returns true if the span is too short to halve: at late times, doubles are coarser than the shortest
 /// interval.
 [[nodiscard]] bool is_shortest(const Span& span);
 

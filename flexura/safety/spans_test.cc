@@ -89,7 +89,7 @@ TEST(Spans, AreSampledEvenlyWhereThereAreTooManyToLookInto) {
   EXPECT_NEAR(found.spans[0].end, 5.1, 0.02);
 }
 
-// Quantities that are above 0 for a moment around their number; the last one never lets itself be decided.
+// Quantities that are above 0 for a moment around their number; the last one is never decided.
 class Moments : public WatchedQuantities {
  public:
   [[nodiscard]] std::size_t count() const override { return 4; }
@@ -125,7 +125,7 @@ TEST(Spans, AreFoundForEachOfSeveralQuantities) {
   EXPECT_TRUE(found[3].spans.empty());
   ASSERT_TRUE(found[3].undecided);
   EXPECT_EQ(found[3].undecided->end, 5);
-  // What one of them takes is not taken from the others.
+  // One quantity's intervals must not reduce those of the others.
   search.most_together = 1000;
   const std::vector<FoundSpans> shared = spans_above(0, Moments{}, {0, 5}, search);
   for (std::size_t i = 0; i < 3; ++i) EXPECT_FALSE(shared[i].undecided);

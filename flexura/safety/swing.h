@@ -10,51 +10,53 @@
 
 namespace flexura {
 
-/// The arm in the middle of an interval of time, and how far it may come from there (docs/safety.md).
+/// The arm in the middle of a time interval, and its largest possible motion from there (docs/safety.md).
 class Swing {
  public:
   /// An arm at rest.
   Swing(const Arm& arm, const ArmState& state);
-  /// Of a motion that knows its rates.
+  /// A motion with known rates.
   Swing(const Arm& arm, const Motion& motion, const Span& span);
 
-  /// Whether the state in the middle is possible; without, there are no tubes.
+  /// Returns true if the state in the middle is possible; otherwise there are no tubes.
   [[nodiscard]] bool is_possible() const { return !tubes_.empty(); }
   [[nodiscard]] const std::vector<SectionTube>& tubes() const { return tubes_; }
 
  private:
   friend class Chain;
 
-  std::vector<SectionTube> tubes_;  // in the middle
-  std::vector<double> turn_;        // of each section: change of its bend, rad
-  std::vector<double> length_;      // the longest it gets, m
-  std::vector<double> stretch_;     // change of its length, m
+  std::vector<SectionTube> tubes_;  // In the middle.
+  std::vector<double> turn_;        // Change of each section's bend, rad.
+  std::vector<double> length_;      // Largest length of each section, m.
+  std::vector<double> stretch_;     // Change of each section's length, m.
 };
 
-/// Sections that follow each other, from `first` to `last`: how far the last one may move in the frame of any
-/// point of the first one, and which pairs of points of the two are no neighbours.
+/// Consecutive sections from `first` to `last`. Computes the possible motion of the last one in the frame of
+/// any point of the first one, and the pairs of their points that are not neighbours.
 class Chain {
  public:
-  /// The swing must outlive it.
+  /// The swing must outlive this object.
   Chain(const Swing& swing, std::size_t first);
 
-  /// Goes on to section `last`, which is not before the present one, or starts anew at `first` to do so.
+  /// Extends the chain to section `last`. Restarts at `first` if that is another section or `last` is before
+  /// the current one.
   void go_to(std::size_t first, std::size_t last);
 
   [[nodiscard]] std::size_t first() const { return first_; }
   [[nodiscard]] std::size_t last() const { return last_; }
   [[nodiscard]] const SectionTube& first_tube() const { return swing_->tubes_[first_]; }
   [[nodiscard]] const SectionTube& last_tube() const { return swing_->tubes_[last_]; }
-  /// How far the last section's end may move, m.
+  /// Returns the largest possible motion of the last section's end, m.
   [[nodiscard]] double moved() const { return moved_; }
-  /// The last section's tube made thicker (sign 1) or thinner (-1) by a `share` of what it may move.
+  /// Returns the last section's tube, made thicker (sign 1) or thinner (-1) by a `share` of its possible
+  /// motion.
   [[nodiscard]] SectionTube grown(double sign, double share = 1) const;
-  /// Which pairs of points to ask of, given what may change: all that may count (sign -1), or those that
-  /// surely do (1).
+  /// Returns the rule for pairs of points under the possible changes: all that may count (sign -1), or those
+  /// that surely do (1).
   [[nodiscard]] PairRule rule(double sign) const;
-  /// Whether any do.
+  /// Returns true if any pair counts.
   [[nodiscard]] bool has_pairs(const PairRule& rule) const;
-  /// A distance between the two sections' tubes that is surely there, in the middle.
+  /// Returns a lower bound on the distance between the two sections' tubes in the middle, m.
   [[nodiscard]] double apart() const;
 
  private:
@@ -64,13 +66,13 @@ class Chain {
   const Swing* swing_;
   std::size_t first_ = 0;
   std::size_t last_ = 0;
-  double moved_before_ = 0;  // the end before the last section, m
+  double moved_before_ = 0;  // Motion of the end before the last section, m.
   double moved_ = 0;
-  double turned_ = 0;                                 // how much the turn up to there may change, rad
-  double sharpest_ = 0;                               // least radius of curvature, m
-  double thinnest_ = 0;                               // of the radii, m
-  double stretched_ = 0;                              // how much the length may change, m
-  Eigen::Vector3d middle_ = Eigen::Vector3d::Zero();  // of the first section
+  double turned_ = 0;                                 // Change of the turn up to there, rad.
+  double sharpest_ = 0;                               // Least radius of curvature, m.
+  double thinnest_ = 0;                               // Least tube radius, m.
+  double stretched_ = 0;                              // Change of the length, m.
+  Eigen::Vector3d middle_ = Eigen::Vector3d::Zero();  // Middle of the first section.
 };
 
 }  // namespace flexura

@@ -8,16 +8,16 @@
 namespace flexura {
 namespace {
 
-constexpr int few_cuts = 60;  // of an arc before an obstacle, each of which takes longer than one of a pair
+constexpr int few_cuts = 60;  // Cuts of an arc near an obstacle; each takes longer than one of a pair.
 
 struct Least {
-  double value = 0;  // below the least by no more than a part of the tolerance
-  double at = 0;     // fraction of the chord
+  double value = 0;  // Below the least by at most a part of the tolerance.
+  double at = 0;     // Fraction of the chord.
 };
 
-// The least distance from a piece's chord, less the tube's radius, to an obstacle: golden section search,
-// which finds the minimum of a convex function. The value changes no faster than place and radius, so what is
-// left of the interval says how wrong it may be.
+// Returns the least distance from a piece's chord, minus the tube's radius, to an obstacle. Golden section
+// search finds the minimum of a convex function. The value changes no faster than position and radius, so the
+// rest of the interval bounds the error.
 Least least(const SectionTube& tube, const Piece& piece, const Obstacle& obstacle) {
   constexpr double golden = 0.6180339887498949;
   const double radius = tube.radius_at(piece.from);
@@ -46,10 +46,11 @@ Least least(const SectionTube& tube, const Piece& piece, const Obstacle& obstacl
   return {std::min(at_x, at_y) - (high - low) * rate, (low + high) / 2};
 }
 
-// Where the part of a tube between two fractions may be lowest along a normal: its ends, or between them.
-// Along an arc that has turned by t so far the height changes by (length / turn) size sin(t + phase) per rad,
-// the radius by grow / turn: the difference is least at an end, or where both are the same. From one such
-// place to the next, 2 pi further on, it changes by the same amount, so that the first and the last will do.
+// Returns where the part of a tube between two fractions may be lowest along a normal: its ends, or points
+// between. Consider an arc that has turned by t. Its height changes by (length / turn) size sin(t + phase)
+// per rad, the radius by grow / turn. The difference is least at an end, or where both rates are equal. From
+// one such point to the next, 2 pi further on, it changes by the same amount, so the first and the last
+// suffice.
 std::array<double, 4> lowest_places(const SectionTube& tube, const Eigen::Vector3d& normal_W, double from,
                                     double to) {
   const double turn = tube.bend.norm();
@@ -59,7 +60,7 @@ std::array<double, 4> lowest_places(const SectionTube& tube, const Eigen::Vector
   const double size = tube.length * std::hypot(inward, normal.z());
   const double grow = tube.radius[1] - tube.radius[0];
   if (!(size > std::abs(grow))) return {from, to, from, to};
-  // Where the slope goes up through `grow`: on the rising half of the sine.
+  // The slope increases through `grow`: on the rising half of the sine.
   const double place = std::asin(grow / size) - std::atan2(normal.z(), inward);
   constexpr double round = 2 * std::numbers::pi;
   const double first = place + round * std::ceil((from * turn - place) / round);
@@ -77,7 +78,7 @@ class ObstacleSearch {
   ObstacleSearch(const SectionTube& tube, const Obstacle& obstacle, const DistanceWish& wish)
       : tube_(tube), obstacle_(obstacle), enough_(wish.enough), best_(wish.cap) {}
 
-  // As PairSearch::find.
+  // Like PairSearch::find.
   bool find(double from, int steps) {
     if (from > 1) return true;
     if (obstacle_.normal) {
@@ -105,7 +106,8 @@ class ObstacleSearch {
     const double radius = std::max(tube_.radius_at(piece.from), tube_.radius_at(piece.to));
     const double rough = obstacle_.distance((piece.start + piece.end) / 2) - reach - radius - slack;
     if (rough >= best_ - distance_tolerance) return;
-    // What lies flat on a side is as far from it all along: no chord need be told from its arc.
+    // A piece flat on a side has the same distance throughout: its chord need not be distinguished from its
+    // arc.
     double low = -no_distance;
     for (const Obstacle::Side& side : obstacle_.sides) low = std::max(low, above_side(piece, side));
     if (low >= best_ - distance_tolerance) return;
@@ -115,7 +117,7 @@ class ObstacleSearch {
     if (low < best_ - distance_tolerance) open_.push({piece, low});
   }
 
-  // How high the piece stays above all of a side, at least.
+  // Returns the least height of the piece above the plane of a side.
   [[nodiscard]] double above_side(const Piece& piece, const Obstacle::Side& side) const {
     double least = no_distance;
     for (const double u : lowest_places(tube_, side.normal, piece.from, piece.to))

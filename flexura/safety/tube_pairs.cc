@@ -11,19 +11,19 @@ constexpr int few_steps = 200;
 
 double clamped(double x) { return std::clamp(x, 0.0, 1.0); }
 
-// Two chords as cones: points of either, radii linear between their ends. Their distance less the radii is
+// Two chords as cones: points on both, radii linear between their ends. Their distance minus the radii is
 // convex in the fractions (x, y).
 struct Chords {
-  Eigen::Vector3d between;  // from the start of b to that of a
+  Eigen::Vector3d between;  // From the start of b to that of a.
   Eigen::Vector3d along_a;
   Eigen::Vector3d along_b;
-  double radius = 0;  // of both at their starts
-  double grow_a = 0;  // of the radius from start to end
+  double radius = 0;  // Sum of both at their starts.
+  double grow_a = 0;  // Change of the radius from start to end.
   double grow_b = 0;
   double x = 0;
   double y = 0;
 
-  // The x in [0, 1] where |p + x along| - grow x is least.
+  // Returns the x in [0, 1] where |p + x along| - grow x is least.
   static double least(const Eigen::Vector3d& p, const Eigen::Vector3d& along, double grow) {
     const double squared = along.squaredNorm();
     if (!(squared > grow * grow)) return grow > 0 ? 1 : 0;
@@ -31,7 +31,7 @@ struct Chords {
     const double away = (p + foot * along).norm();
     return clamped(foot + away * grow / std::sqrt(squared * (squared - grow * grow)));
   }
-  // Goes towards the least: the nearest points of the axes (Ericson, Real-Time Collision Detection, 5.1.9),
+  // Approaches the minimum: the nearest points of the axes (Ericson, Real-Time Collision Detection, 5.1.9),
   // then along each in turn.
   void approach() {
     const double aa = along_a.squaredNorm();
@@ -45,7 +45,8 @@ struct Chords {
       x = least(between - y * along_b, along_a, grow_a);
     }
   }
-  // A convex function is nowhere below its tangent plane: a bound wherever (x, y) is, and close at the least.
+  // Returns a lower bound: a convex function is never below its tangent plane. Valid for any (x, y), and
+  // tight at the minimum.
   [[nodiscard]] double bound() const {
     const Eigen::Vector3d apart = between + x * along_a - y * along_b;
     const double distance = apart.norm();
@@ -57,7 +58,7 @@ struct Chords {
   }
 };
 
-// Two pieces, and what they cannot come nearer than.
+// Two pieces, and a lower bound on their distance.
 struct PairNode {
   Piece a;
   Piece b;
@@ -69,7 +70,7 @@ class PairSearch {
   PairSearch(const SectionTube& a, const SectionTube& b, const PairRule& rule, const DistanceWish& wish)
       : a_(a), b_(b), rule_(rule), enough_(wish.enough), best_(wish.cap) {}
 
-  // Whether the least distance was found, or one below what is enough, within so many steps.
+  // Returns true if the least distance, or one below `enough`, was found within this number of steps.
   bool find(int steps) {
     add(piece_of(a_, 0, 1), piece_of(b_, 0, 1));
     for (int step = 0; !open_.empty() && best_ >= enough_; ++step) {
@@ -97,7 +98,7 @@ class PairSearch {
     return {{piece.from, middle, piece.start, at}, {middle, piece.to, at, piece.end}};
   }
 
-  // Whether some pair of points of the pieces may count.
+  // Returns true if some pair of points of the pieces may count.
   [[nodiscard]] bool may_count(const Piece& a, const Piece& b) const {
     if (b_.turn_at(b.to) - a_.turn_at(a.from) >= rule_.turn) return true;
     // The gap is linear in either fraction.
@@ -106,20 +107,20 @@ class PairSearch {
   [[nodiscard]] bool counts(double u, double v) const {
     return b_.turn_at(v) - a_.turn_at(u) >= rule_.turn || beyond(v) - reach(u) >= rule_.gap;
   }
-  // Whether all pairs count by their gap, or by their turn.
+  // Returns true if all pairs count by their gap, or all by their turn.
   [[nodiscard]] bool all_count(const PairNode& node) const {
     return b_.turn_at(node.b.from) - a_.turn_at(node.a.to) >= rule_.turn ||
            std::min(beyond(node.b.from), beyond(node.b.to)) -
                    std::max(reach(node.a.from), reach(node.a.to)) >=
                rule_.gap;
   }
-  // How far along the arm the neighbours of a point of `a` are, as far as this depends on it, and from where
-  // on those of a point of `b`.
+  // reach() returns how far along the arm the neighbours of a point of `a` extend, as far as this depends on
+  // the point. beyond() returns where those of a point of `b` begin.
   [[nodiscard]] double reach(double u) const { return a_.arc_at(u) + a_.girth_at(u); }
   [[nodiscard]] double beyond(double v) const { return b_.arc_at(v) - b_.girth_at(v); }
 
-  // Whether to halve `a`: what is farther from its chord; where straight pieces must be told from their
-  // neighbours, what is longer.
+  // Returns true if `a` is to be halved: the piece with the larger distance from its chord, or the longer one
+  // while pairs still have to be separated from neighbours.
   [[nodiscard]] bool halves_first(const PairNode& node) const {
     if (rule_.gap < no_distance && !all_count(node))
       return a_.length * (node.a.to - node.a.from) >= b_.length * (node.b.to - node.b.from);
@@ -133,14 +134,14 @@ class PairSearch {
     chords.grow_a = a_.radius_at(a.to) - a_.radius_at(a.from);
     chords.grow_b = b_.radius_at(b.to) - b_.radius_at(b.from);
     chords.approach();
-    // Nothing is deeper than two points in one place, which a tube that crosses itself soon finds.
+    // No pair is deeper than two points at one place, which is soon found for a tube that crosses itself.
     const double deepest = -std::max(a_.radius_at(a.from), a_.radius_at(a.to)) -
                            std::max(b_.radius_at(b.from), b_.radius_at(b.to));
     const double low = std::max(chords.bound() - slack_of(a_, a) - slack_of(b_, b), deepest);
     if (low >= best_ - distance_tolerance) return;
     const double u = a.at(chords.x);
     const double v = b.at(chords.y);
-    // The nearest points of the chords show where to look; the outer ends are farthest along the arm.
+    // Starts at the nearest points of the chords; the outer ends are farthest along the arm.
     try_pair(u, v);
     try_pair(a.from, v);
     try_pair(u, b.to);

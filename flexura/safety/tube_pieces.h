@@ -7,10 +7,10 @@
 
 #include "flexura/safety/tube.h"
 
-// What the searches for least distances (tube_pairs.cc, tube_obstacles.cc) share.
+// Shared by the searches for least distances (tube_pairs.cc, tube_obstacles.cc).
 namespace flexura {
 
-// Thousands are rare; this keeps a case that nobody thought of from filling the memory.
+// Thousands are rare; this keeps an unexpected case from filling the memory.
 inline constexpr int most_steps = 200'000;
 
 // A piece of a tube between two fractions.
@@ -28,13 +28,13 @@ inline Piece piece_of(const SectionTube& tube, double from, double to) {
   return {from, to, tube.point(from), tube.point(to)};
 }
 
-// How far the backbone may be from the chord.
+// Returns a bound on the distance of the backbone from the chord.
 inline double slack_of(const SectionTube& tube, const Piece& piece) {
   const double part = piece.to - piece.from;
   return tube.length * part * std::min(tube.bend.norm() * part / 8, 0.5);
 }
 
-// The node of least bound first.
+// Queue of nodes, the one with the least bound first.
 template <class Node>
 class Queue {
  public:

@@ -21,8 +21,8 @@ SectionTube tube_at(const Eigen::Vector3d& position, const Eigen::Vector2d& bend
   return {{Eigen::Matrix3d::Identity(), position}, bend, length, {radius, radius}, 0};
 }
 
-// The distance between the tubes at u and v. Where the pair must turn by more between them, v is drawn to
-// where it just does.
+// Returns the distance between the tubes at u and v. If the turn between them is too small, v moves to where
+// it just suffices.
 double distance_at(const SectionTube& a, const SectionTube& b, double least_turn, double u, double v) {
   const double missing = a.turn_at(u) + least_turn - b.turn_at(v);
   if (missing > 0) v += b.bend.norm() > 0 ? missing / b.bend.norm() : 2;
@@ -30,7 +30,7 @@ double distance_at(const SectionTube& a, const SectionTube& b, double least_turn
   return (a.point(u) - b.point(v)).norm() - a.radius_at(u) - b.radius_at(v);
 }
 
-// Goes down from (u, v) by ever smaller steps.
+// Descends from (u, v) with decreasing steps.
 double descended(const SectionTube& a, const SectionTube& b, double least_turn, double u, double v,
                  double step) {
   constexpr int ways = 16;
@@ -48,7 +48,7 @@ double descended(const SectionTube& a, const SectionTube& b, double least_turn, 
   return best;
 }
 
-// Brute force: a grid, and a descent from every point of it that is no farther than its neighbours.
+// Brute force: a grid, and a descent from every local minimum of it.
 double brute_force(const SectionTube& a, const SectionTube& b, double least_turn) {
   constexpr int n = 60;
   std::vector<double> grid;
@@ -75,9 +75,9 @@ double brute_force(const SectionTube& a, const SectionTube& b, double least_turn
 void expect_as_brute_force(const SectionTube& a, const SectionTube& b, double least_turn) {
   const double expected = brute_force(a, b, least_turn);
   const double found = tube_distance(a, b, {least_turn});
-  if (expected == no_distance) return;  // the grid may miss a sliver of pairs
+  if (expected == no_distance) return;  // The grid may miss a sliver of pairs.
   EXPECT_LE(found, expected + 1e-6);
-  EXPECT_GE(found, expected - 1e-6);  // brute force may stay above the least
+  EXPECT_GE(found, expected - 1e-6);  // Brute force may stay above the least.
 }
 
 TEST(TubeDistance, IsThatOfBruteForce) {
@@ -94,7 +94,7 @@ TEST(TubeDistance, IsThatOfBruteForce) {
   });
 }
 
-// Of a grid of pairs that the rule counts.
+// Returns the least distance over a grid of pairs that count by the rule.
 double least_of_grid(const SectionTube& a, const SectionTube& b, const PairRule& rule, int n) {
   double least = no_distance;
   for (int i = 0; i <= n; ++i) {
@@ -139,7 +139,7 @@ TEST(TubeDistance, OfParallelAndCrossingStraightTubesIsExact) {
 }
 
 TEST(TubeDistance, OfAHalfTurnIsTheDiameter) {
-  const SectionTube half = tube_at({0, 0, 0}, {pi, 0}, pi, 0.25);  // radius of curvature 1
+  const SectionTube half = tube_at({0, 0, 0}, {pi, 0}, pi, 0.25);  // Radius of curvature 1.
   EXPECT_NEAR(tube_distance(half, half, {pi - 1e-9}), 1.5, 1e-6);
   EXPECT_EQ(tube_distance(half, half, {pi + 1e-9}), no_distance);
 }
@@ -204,7 +204,7 @@ TEST(ObstacleDistance, IsThatOfBruteForce) {
 }
 
 TEST(ObstacleDistance, OfWhatLiesFlatOnABoxIsSoonProved) {
-  // Its chords would have to be told from its arcs to a part of a micrometre.
+  // Without the bound by sides, chords and arcs would have to agree to a part of a micrometre.
   const Obstacle table = obstacles({BoxConfig{.center = {0, 0, -0.05}, .half_sizes = {2, 2, 0.05}}}).front();
   const Eigen::Matrix3d along = so3_exp({0, pi / 2, 0});
   for (const double gap : {0.0, 1e-7, -1e-5, -0.01}) {

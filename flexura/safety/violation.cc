@@ -20,8 +20,8 @@ namespace {
 
 struct HazardText {
   const char* name;
-  double factor;     // from base units to those shown
-  const char* unit;  // with a space before
+  double factor;     // From base units to the units of texts.
+  const char* unit;  // With a leading space.
 };
 
 const HazardText& text_of(Hazard hazard) {
@@ -104,7 +104,7 @@ std::vector<std::size_t> most_telling(const SafetyReport& report, std::size_t mo
   std::vector<std::size_t> order(all.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::ranges::stable_sort(order, std::greater{}, excess);
-  std::vector<int> rank(all.size());  // 0: the worst of its hazard; 1: the worst of another obstacle
+  std::vector<int> rank(all.size());  // 0: worst of its hazard; 1: worst of another obstacle.
   std::set<Hazard> hazards;
   std::set<std::string> obstacles;
   for (const std::size_t i : order) {

@@ -19,7 +19,7 @@ namespace {
 
 double excess(const Violation& violation) { return std::abs(violation.value - violation.limit); }
 
-// "3, 5 to 8" of section numbers from 0.
+// Returns "3, 5 to 8" for section numbers from 0.
 std::string ranges_text(const std::set<std::size_t>& sections) {
   std::string text;
   for (auto first = sections.begin(); first != sections.end();) {
@@ -33,7 +33,7 @@ std::string ranges_text(const std::set<std::size_t>& sections) {
   return text;
 }
 
-// The sections that the group's one touches, where they are several.
+// Returns the sections that the group's section touches, if there are several.
 std::string others_text(const SafetyReport& report, const ViolationGroup& group) {
   std::set<std::size_t> others;
   for (const std::size_t i : group.members) {
@@ -71,7 +71,7 @@ std::vector<ViolationGroup> most_telling(const SafetyReport& report, std::vector
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::ranges::stable_sort(order, std::greater{}, [&](std::size_t g) { return excess(worst(g)); });
   std::map<std::pair<Hazard, std::string>, std::size_t> ranked;
-  std::vector<std::size_t> rank(groups.size());  // among those of its hazard and obstacle
+  std::vector<std::size_t> rank(groups.size());  // Rank among those of its hazard and obstacle.
   for (const std::size_t g : order)
     rank[g] = ranked[{worst(g).hazard, worst(g).hazard == Hazard::obstacle ? worst(g).name : ""}]++;
   std::ranges::stable_sort(order, {}, [&](std::size_t g) { return rank[g]; });

@@ -10,7 +10,7 @@ namespace {
 
 using testing::ElementsAre;
 
-// One bend a second, the seventh the largest, and a contact.
+// One bend per second, the seventh the largest, and a contact.
 SafetyReport swinging(std::size_t swings) {
   SafetyReport report;
   for (std::size_t k = 0; k < swings; ++k) {

@@ -6,24 +6,24 @@
 
 namespace flexura {
 
-/// What a quantity is at its largest, and when.
+/// Largest value of a quantity and its time.
 struct WorstValue {
-  double time = 0;  ///< s
+  double time = 0;  ///< In s.
   double value = 0;
-  /// By how much it may be larger elsewhere, where there was too much to look into; 0: as near as was asked.
+  /// By how much it may be larger elsewhere, if there were too many intervals; 0: as precise as required.
   double doubt = 0;
 };
 
-/// How near a worst value is to be found.
+/// Required precision of a worst value.
 struct WorstSearch {
-  double tolerance = 0;               ///< What the quantity may be above it somewhere,
-  double part = 0;                    ///< or this part of the value, what is more.
-  std::size_t most_intervals = 2000;  ///< After so many it stands as it is.
+  double tolerance = 0;  ///< By how much the quantity may exceed it somewhere.
+  double part = 0;       ///< Share of the value that it may exceed it by; the larger of both counts.
+  std::size_t most_intervals = 2000;  ///< Most intervals of a search.
 };
 
-/// Where a quantity is largest in a span: a value that occurs. Branch and bound: the interval whose upper
-/// bound is highest is halved, until no bound is above the largest value in the middles and ends by more than
-/// the tolerance.
+/// Returns the largest value of a quantity in a span, which occurs. Branch and bound: halves the interval
+/// with the highest upper bound. Ends when no bound exceeds the largest value of the middles and ends by more
+/// than the tolerance.
 [[nodiscard]] WorstValue worst_in(const WatchedQuantity& quantity, const Span& span,
                                   const WorstSearch& search);
 

@@ -11,7 +11,8 @@ namespace flexura {
 
 namespace {
 
-// The page loads its own parts and speaks with its own server; pictures also from what it has received.
+// The page loads only its own parts and connects only to its own server; pictures also come from received
+// data.
 constexpr std::string_view page_policy =
     "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' blob: data:; connect-src "
     "'self'; font-src 'self'; worker-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'";

@@ -17,7 +17,7 @@ namespace flexura {
 
 namespace {
 
-/// "name:port" in lower case, with `port` where the text has none.
+/// Returns "name:port" in lower case, with `port` if the text has none.
 std::string with_port(std::string_view host, std::uint16_t port) {
   const std::size_t colon = host.rfind(':');
   const std::size_t bracket = host.rfind(']');
@@ -30,7 +30,7 @@ std::string with_port(std::string_view host, std::uint16_t port) {
 
 constexpr std::uint16_t http_port = 80;
 
-// Of the port, without its colon.
+// The port without its colon.
 bool is_port(std::string_view text) {
   constexpr std::size_t longest = 5;
   constexpr int most = 65535;
@@ -40,7 +40,7 @@ bool is_port(std::string_view text) {
   return port > 0 && port <= most;
 }
 
-// RFC 1123, 2.1, and the underscores that there are all the same.
+// RFC 1123, 2.1, plus underscores, which occur in practice.
 bool is_label(std::string_view text) {
   constexpr std::size_t longest = 63;
   const auto is_sign = [](char c) {

@@ -9,27 +9,27 @@
 
 namespace flexura {
 
-/// Who may come in: by which names the server is called, from which pages, and with which token.
+/// Access control of the server: its host names, allowed pages and the token.
 class Gate {
  public:
-  /// `names`: further hosts, each with this port where it has none of its own ("name", "name:port").
+  /// `names`: further hosts, each with this port unless it has its own ("name", "name:port").
   Gate(std::uint16_t port, const std::vector<std::string>& names, std::string token);
 
-  /// Whether a Host header names this server; `local` is the address at which the connection came in, without
-  /// port, for which "localhost" is a name where it is loopback. Browsers that were lured here by a name of
-  /// someone else's (DNS rebinding) say that name.
+  /// Returns true if a Host header names this server. `local` is the local address of the connection, without
+  /// port; "localhost" is one of its names if it is loopback. A browser attacked by DNS rebinding sends the
+  /// attacker's name.
   [[nodiscard]] bool knows_host(std::string_view host, std::string_view local) const;
-  /// Whether an Origin header is a page of this server. It is held against the list and not against Host: the
-  /// port counts, for cookies are shared between ports.
+  /// Returns true if an Origin header is a page of this server. It is compared with the list and not with
+  /// Host. The port counts, because cookies are shared between ports.
   [[nodiscard]] bool knows_origin(std::string_view origin, std::string_view local) const;
-  /// Whether the request shows the token: "Bearer TOKEN" in its Authorization header, or a cookie of any
-  /// name whose value it is.
+  /// Returns true if the request has the token: "Bearer TOKEN" in its Authorization header, or a cookie of
+  /// any name with it as value.
   [[nodiscard]] bool has_token(const RequestHead& head) const;
-  /// Whether its Authorization header does.
+  /// Returns true if its Authorization header has the token.
   [[nodiscard]] bool has_bearer(const RequestHead& head) const;
-  /// The cookie with the token for a page that calls this server by `host`. No script reads it, and no page
-  /// of another host has it sent. Cookies know no ports: its name has that of `host`, so that each of two
-  /// programs on a host has its own.
+  /// Returns the cookie with the token for a page that uses `host` for this server. Scripts cannot read it,
+  /// and pages of other hosts do not send it. Cookies ignore ports: its name includes the port of `host`, so
+  /// that two programs on a host have different cookies.
   [[nodiscard]] std::string cookie(std::string_view host) const;
   [[nodiscard]] const std::string& token() const { return token_; }
 
@@ -39,11 +39,12 @@ class Gate {
   std::string token_;
 };
 
-/// Whether a browser can call a server so: a name of letters, digits, - and _ between single dots, or an IP
-/// address (of version 6 in brackets), with or without ":port". What else stands in an address does not.
+/// Returns true if a browser can use this name for a server. It is a name of letters, digits, - and _ between
+/// single dots, or an IP address (version 6 in brackets), with or without ":port". Everything else in an
+/// address is refused.
 [[nodiscard]] bool is_host(std::string_view text);
 
-/// "127.0.0.1" and "[::1]" as they stand in a URL.
+/// Returns the address as in a URL: "127.0.0.1" or "[::1]".
 std::string url_host(std::string_view address);
 
 }  // namespace flexura

@@ -15,8 +15,7 @@ bool is_clean(std::string_view text) {
   return std::ranges::all_of(text, [](char c) { return c >= ' ' && c != '\x7f'; });
 }
 
-/// Whether a browser says that another page's than this server's makes the request. Older browsers say
-/// nothing.
+/// Returns true if the browser reports a request from another server's page. Older browsers report nothing.
 bool is_foreign(const RequestHead& head) {
   const std::string* site = head.find("sec-fetch-site");
   return site != nullptr && *site != "same-origin" && *site != "none";
@@ -71,7 +70,7 @@ Step HttpSession::decide(const RequestHead& head) const {
   if (origin != nullptr && !site_->gate.knows_origin(*origin, local_)) return refusal(403, {}, last_);
   const auto target = parse_request_target(head.target);
   if (!target) return refusal(400, {}, last_);
-  // Assets are found by the path as it came: there is one way to spell it.
+  // Assets are found by the path as received: there is one spelling.
   const std::string_view path = std::string_view(head.target).substr(0, head.target.find('?'));
   if (head.method != "GET") return refusal(405, "Allow: GET\r\n", last_);
   const auto asset = std::ranges::find(site_->assets, path == "/" ? "/index.html" : path, &Asset::path);
@@ -81,7 +80,7 @@ Step HttpSession::decide(const RequestHead& head) const {
 }
 
 Step HttpSession::secret(const RequestHead& head, std::string_view path) const {
-  // Cookies are sent to this server from pages of other ports too.
+  // Browsers send cookies to this server from pages of other ports too.
   if (is_foreign(head)) return refusal(403, {}, last_);
   if (!site_->gate.has_token(head)) return refusal(401, "WWW-Authenticate: Bearer\r\n", last_);
   if (path == "/socket") return upgrade(head);
@@ -101,7 +100,7 @@ Step HttpSession::upgrade(const RequestHead& head) const {
 }
 
 Answer HttpSession::page(const Asset& asset) const {
-  // Names under /assets/ hold a hash of what is in them.
+  // Names under /assets/ contain a hash of their content.
   const bool hashed = asset.path.starts_with("/assets/");
   Answer answer;
   answer.fixed = asset.gzip;

@@ -14,48 +14,48 @@
 
 namespace flexura {
 
-/// What all connections of a server share.
+/// Shared data of a server's connections.
 struct Site {
   Gate gate;
   std::span<const Asset> assets;
   std::size_t longest_header = std::size_t{16} * 1024;
 };
 
-/// What a connection is to do next.
+/// Next action of a connection.
 struct ReadMore {};
-/// Ask the host, then give its answer to HttpSession::format.
+/// Ask the host, then pass its answer to HttpSession::format.
 struct Question {
   std::string target;
 };
-/// Go on as a WebSocket; HttpSession::refuse when it cannot be.
+/// Continue as a WebSocket; HttpSession::refuse if that is impossible.
 struct Upgrade {
-  std::string key;  ///< The client's Sec-WebSocket-Key.
+  std::string key;  ///< Client's Sec-WebSocket-Key.
 };
 using Step = std::variant<ReadMore, Answer, Question, Upgrade>;
 
-/// One HTTP connection without its socket: bytes go in, what to do next comes out. Requests that came
+/// One HTTP connection without its socket: bytes are the input, actions the output. Requests that arrive
 /// together are answered one after the other.
 class HttpSession {
  public:
-  /// `local`: the address at which the connection came in, without its port.
+  /// `local`: the local address of the connection, without its port.
   HttpSession(const Site& site, std::string local);
 
-  /// Takes what the client sent; at most a header's length more before next() asks for it.
+  /// Adds bytes from the client; at most the length of a header more before next() requests them.
   void feed(std::string_view bytes);
-  /// ReadMore until a request is there. After a Question or an Upgrade comes format or refuse; after an
-  /// Answer that is the last, nothing.
+  /// Returns ReadMore until a request is complete. After a Question or an Upgrade, call format or refuse;
+  /// after an Answer that is the last, nothing.
   Step next();
-  /// The host's answer to the last Question.
+  /// Returns the HTTP answer for the host's answer to the last Question.
   [[nodiscard]] Answer format(HttpAnswer host) const;
-  /// To an Upgrade that cannot be.
+  /// Returns the answer to an impossible Upgrade.
   [[nodiscard]] Answer refuse(int status) const;
-  /// Whether a request has begun to come.
+  /// Returns true if a request has begun to arrive.
   [[nodiscard]] bool begun() const { return !buffer_.empty(); }
-  /// The bytes it holds.
+  /// Returns the number of bytes in the buffer.
   [[nodiscard]] std::size_t held() const { return buffer_.size(); }
 
  private:
-  /// 0 or the status of a refusal; without a `head` then, more is to be read.
+  /// Returns 0 or the status of a refusal; 0 without a `head` means that more bytes are needed.
   int read_head(std::optional<RequestHead>* head);
   [[nodiscard]] Step decide(const RequestHead& head) const;
   [[nodiscard]] Step secret(const RequestHead& head, std::string_view path) const;
@@ -65,9 +65,9 @@ class HttpSession {
   const Site* site_;
   std::string local_;
   std::string buffer_;
-  std::size_t looked_ = 0;  // So far into buffer_ there is no end of a head.
-  bool last_ = false;       // The request being answered is the last.
-  std::string cookie_;      // A line for the head of its answer: it showed the token in its header.
+  std::size_t looked_ = 0;  // Position in buffer_ up to which there is no end of a head.
+  bool last_ = false;       // The current request is the last.
+  std::string cookie_;      // Header line for its answer, if the request had the token in its header.
 };
 
 }  // namespace flexura

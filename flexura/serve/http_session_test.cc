@@ -39,7 +39,7 @@ std::string socket_request(const std::string& more) {
 const std::string version = "Sec-WebSocket-Version: 13\r\n";
 const std::string key = "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n";
 
-/// One step after these bytes: a status, or "more", "ask TARGET", "upgrade".
+/// Returns the step after these bytes: a status, or "more", "ask TARGET", "upgrade".
 std::string step_of(HttpSession& session) {
   const Step step = session.next();
   if (const auto* answer = std::get_if<Answer>(&step))
@@ -83,7 +83,7 @@ TEST(HttpSession, GivesTheCookieToWhoShowsTheTokenInTheHeader) {
   const std::string wrong = line("Authorization", "Bearer f" + token.substr(1));
   EXPECT_EQ(head_of(cookie).find("Set-Cookie"), std::string::npos);
   EXPECT_EQ(head_of(cookie + wrong).find("Set-Cookie"), std::string::npos);
-  // Of one answer alone, and never of a refusal.
+  // Only in one answer, and never in a refusal.
   HttpSession session(site(), "127.0.0.1");
   session.feed(get("/series", bearer) + get("/series", cookie) + request("POST", "/series", bearer));
   (void)session.next(), (void)session.next();
@@ -117,7 +117,7 @@ TEST(HttpSession, AnswersOnlyToItsName) {
 
 TEST(HttpSession, TakesNothingFromForeignPages) {
   const std::string foreign = "Origin: http://evil.example\r\n";
-  // Host is what the page's script cannot choose, but a name of the attacker's own can point here.
+  // The page's script cannot choose Host, but an attacker's name can resolve to this machine.
   EXPECT_EQ(
       step_after("GET / HTTP/1.1\r\nHost: evil.example:8421\r\nOrigin: http://evil.example:8421\r\n\r\n"),
       "421");
@@ -206,7 +206,7 @@ TEST(HttpSession, BecomesAWebSocketOnlyAsItShould) {
   EXPECT_EQ(step_after(get("/socket", bearer + version + key + "Upgrade: websocket\r\n")), "426");
   EXPECT_EQ(step_after(get("/socket", bearer + version + key + "Connection: upgrade\r\nUpgrade: h2c\r\n")),
             "426");
-  // HTTP/1.0 knows no upgrade (RFC 9110, 7.8).
+  // HTTP/1.0 has no upgrade (RFC 9110, 7.8).
   std::string old = socket_request(version + key);
   old.replace(old.find("HTTP/1.1"), 8, "HTTP/1.0");
   EXPECT_EQ(step_after(old), "426 last");

@@ -10,8 +10,7 @@
 
 namespace flexura {
 
-/// What waits to be sent to one client: texts in their order, all of them, and of each stream the newest
-/// message.
+/// Messages that wait for one client: all texts in their order, and the newest message of each stream.
 class Outbox {
  public:
   struct Message {
@@ -19,25 +18,25 @@ class Outbox {
     bool text = false;
   };
 
-  /// How much text may wait.
+  /// Limits of the waiting texts.
   Outbox(std::size_t texts, std::size_t bytes) : texts_limit_(texts), bytes_limit_(bytes) {}
 
-  /// Whether so little text waits that the client may ask for more: a quarter of what may.
+  /// Returns true if the client may request more: less than a quarter of the limits waits.
   [[nodiscard]] bool has_room() const {
     return texts_.size() < texts_limit_ / 4 && text_bytes_ < bytes_limit_ / 4;
   }
-  /// False when too much would wait: the client does not read.
+  /// Returns false if too much would wait: the client does not read.
   [[nodiscard]] bool push(std::string text);
-  /// In place of an older message of the stream, which was not sent then.
+  /// Replaces an unsent older message of the stream.
   void post(std::uint32_t stream, std::shared_ptr<const std::string> message);
-  /// The next message to send, until done(). A text after a message of a stream and the other way round,
-  /// while there are both; streams take turns.
+  /// Returns the next message to send, until done(). Texts and messages of streams alternate while there are
+  /// both; streams take turns.
   std::optional<Message> next();
-  /// What next() gave has been sent.
+  /// The message from next() has been sent.
   void done();
-  /// Of all messages, the one being sent among them.
+  /// Returns the bytes of all messages, with the one being sent.
   [[nodiscard]] std::size_t bytes() const { return text_bytes_ + stream_bytes_ + sending_bytes_; }
-  /// Whether a message is being sent.
+  /// Returns true if a message is being sent.
   [[nodiscard]] bool is_sending() const { return sending_bytes_ > 0; }
 
  private:

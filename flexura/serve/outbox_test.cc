@@ -12,7 +12,7 @@ std::shared_ptr<const std::string> bytes(const std::string& text) {
   return std::make_shared<const std::string>(text);
 }
 
-/// All messages, texts in quotes.
+/// Returns all messages, with texts in quotes.
 std::string drained(Outbox& outbox) {
   std::string all;
   while (const auto message = outbox.next()) {

@@ -13,7 +13,7 @@
 namespace flexura {
 namespace {
 
-// The address of an interface; "" where it has none of the internet's.
+// Returns the address of an interface, or "" if it has no Internet address.
 std::string text_of(const sockaddr* address) {
   std::array<char, INET6_ADDRSTRLEN> text{};
   const void* bytes = nullptr;
@@ -25,7 +25,7 @@ std::string text_of(const sockaddr* address) {
 }
 
 bool leads_out(const std::string& address) {
-  // Of a link alone (fe80::/10, 169.254/16) is what nobody gave the machine.
+  // Link-local addresses (fe80::/10, 169.254/16) were not assigned to the machine.
   constexpr std::array inner = {"127.", "::1", "fe8", "fe9", "fea", "feb", "169.254."};
   return std::ranges::none_of(inner, [&](const char* start) { return address.starts_with(start); });
 }

@@ -1,4 +1,4 @@
-// A page as cmake/Page.cmake embeds it.
+// Unpacks a page as embedded by cmake/Page.cmake.
 #include "embedded/page.h"
 
 #include <gtest/gtest.h>
@@ -48,7 +48,7 @@ TEST(Page, HoldsEachFileUnderItsPath) {
     EXPECT_EQ(page[i].content_type, expected[i].second);
     std::ifstream file(checkout_file("tests/page" + std::string(page[i].path)), std::ios::binary);
     EXPECT_EQ(unpacked(page[i].gzip), std::string(std::istreambuf_iterator<char>(file), {}));
-    // No name and no time of the file: the same bytes whenever it is built.
+    // No name and no time of the file: equal bytes in every build.
     EXPECT_TRUE(std::ranges::all_of(page[i].gzip.subspan(3, 5), [](std::uint8_t byte) { return byte == 0; }));
   }
 }

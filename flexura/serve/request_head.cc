@@ -8,7 +8,7 @@ namespace flexura {
 
 namespace {
 
-// A second one of these could be read by another than the first.
+// Of two such fields, another program might use the other one.
 constexpr std::array<std::string_view, 8> single_fields = {
     "host",           "origin",         "authorization",     "cookie",
     "content-length", "sec-fetch-site", "sec-websocket-key", "sec-websocket-version"};
@@ -29,7 +29,7 @@ bool is_visible(std::string_view text) {
   return !text.empty() && std::ranges::all_of(text, [](char c) { return c > ' ' && c < '\x7f'; });
 }
 
-/// What may stand in a value: no control characters but the tab.
+/// Returns true if a value has no control characters except the tab.
 bool is_value(std::string_view text) {
   return std::ranges::all_of(text, [](char c) {
     const auto byte = static_cast<unsigned char>(c);
@@ -37,7 +37,7 @@ bool is_value(std::string_view text) {
   });
 }
 
-/// Takes the text up to `end` off the front; all of it where there is no `end`.
+/// Removes and returns the text up to `end`; all of it if there is no `end`.
 std::string_view take(std::string_view& text, std::string_view end) {
   const std::size_t at = text.find(end);
   const std::string_view piece = text.substr(0, at);

@@ -17,32 +17,32 @@ struct RequestHead {
   };
 
   std::string method;
-  std::string target;  ///< As it came.
+  std::string target;  ///< As received.
   int minor = 1;       ///< Of HTTP/1.minor.
   std::vector<Field> fields;
-  bool keep_alive = false;  ///< Whether the client wants the connection to go on.
+  bool keep_alive = false;  ///< The client wants to keep the connection.
 
-  /// The value of a field, by its name in lower case; null without. Of the fields that decide something there
-  /// is one at most.
+  /// Returns the value of a field, by its name in lower case; null if missing. Fields that affect decisions
+  /// occur at most once.
   [[nodiscard]] const std::string* find(std::string_view name) const;
-  /// Whether a field that lists tokens has this one; both in lower case.
+  /// Returns true if a field with a list of tokens contains this one; both in lower case.
   [[nodiscard]] bool lists(std::string_view name, std::string_view token) const;
 };
 
-/// The HTTP status that says why there is no head.
+/// HTTP status for an invalid head.
 struct Refusal {
   int status = 400;
 };
 
-/// Reads a head, from its first line to its last CRLF, without the empty line. What two readers could
-/// understand differently is refused, where RFC 9112 lets a reader choose: bare line feeds, folded lines,
-/// blanks around a name, a length said twice, two Hosts. No request here has a body: one of any length or
-/// encoding gets 413.
+/// Parses a head, from its first line to its last CRLF, without the empty line. Refuses everything that two
+/// programs could interpret differently, where RFC 9112 permits this. These are bare line feeds, folded
+/// lines, blanks around a name, a repeated length, two Hosts. No request here has a body: one of any length
+/// or encoding gets 413.
 std::variant<RequestHead, Refusal> parse_request_head(std::string_view text);
 
-/// ASCII letters in lower case, whatever the locale.
+/// Returns the text with ASCII letters in lower case, independent of the locale.
 std::string in_lower_case(std::string_view text);
-/// Without blanks and tabs at its ends.
+/// Returns the text without blanks and tabs at its ends.
 std::string_view trimmed(std::string_view text);
 
 }  // namespace flexura

@@ -12,7 +12,7 @@ namespace {
 
 using Texts = std::vector<std::string>;
 
-/// The status that refuses a request of this host with these lines; 0 when it is taken.
+/// Returns the status that refuses a request of this host with these lines; 0 if it is accepted.
 int refusal_of(const std::string& lines, const std::string& first = "GET / HTTP/1.1") {
   const auto parsed = parse_request_head(first + "\r\nHost: a\r\n" + lines);
   const auto* refused = std::get_if<Refusal>(&parsed);

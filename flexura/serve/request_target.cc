@@ -29,7 +29,7 @@ std::optional<std::string> decoded(std::string_view text) {
 
 bool is_control(char c) { return static_cast<unsigned char>(c) < ' ' || c == '\x7f'; }
 
-/// Whether a path stays where it starts.
+/// Returns true if a path has no "." and "..", backslashes or control characters.
 bool is_plain(std::string_view path) {
   if (path.find('\\') != std::string_view::npos || std::ranges::any_of(path, is_control)) return false;
   while (!path.empty()) {

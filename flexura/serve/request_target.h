@@ -8,19 +8,19 @@
 
 namespace flexura {
 
-/// What a request asks for, decoded.
+/// Decoded target of a request.
 struct RequestTarget {
-  std::string path;  ///< From its first "/"; no "." and ".." among its parts, no control characters.
+  std::string path;  ///< From its first "/"; without "." and ".." as parts, without control characters.
   std::vector<std::pair<std::string, std::string>>
       query;  ///< In its order; a key without "=" has an empty value.
 
-  /// The value of a key's first mention; null without.
+  /// Returns the value of a key's first occurrence; null if missing.
   [[nodiscard]] const std::string* find(std::string_view key) const;
 };
 
-/// "/image/front.png?time=1.5" in its parts; nothing when it does not begin with "/", a "%" is not followed
-/// by two hexadecimal digits, or the path holds "." or ".." (in any spelling), a backslash or a control
-/// character.
+/// Splits "/image/front.png?time=1.5" into its parts. Returns std::nullopt if it does not begin with "/" or a
+/// "%" is not followed by two hexadecimal digits. Also if the path contains "." or ".." (in any spelling), a
+/// backslash or a control character.
 std::optional<RequestTarget> parse_request_target(std::string_view text);
 
 }  // namespace flexura

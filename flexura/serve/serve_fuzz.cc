@@ -1,9 +1,9 @@
-// Any bytes from a client, in pieces of any size: the connection answers each request once, holds a bounded
-// number of bytes, gives nothing secret to one without the token, and says the same however the bytes were
-// cut.
+// Any bytes from a client, in pieces of any size. The connection must answer each request once, store a
+// limited number of bytes, and give nothing secret to a client without the token. Its answers must not depend
+// on the division of the bytes.
 //
-// The first byte says how long the pieces are. "%T" stands for the token, so that mutations keep what knows
-// it apart from what does not.
+// The first byte gives the length of the pieces. "%T" stands for the token, so that mutations preserve the
+// difference between inputs with and without it.
 #include <algorithm>
 #include <array>
 #include <cstdint>
@@ -42,7 +42,7 @@ bool ends_connection(const Answer& answer) {
   return answer.last;
 }
 
-/// All steps of a connection that gets these bytes in pieces; `authorised` becomes whether one needed the
+/// Returns all steps of a connection that gets these bytes in pieces; sets `authorised` if one needed the
 /// token.
 std::string conversation(std::string_view text, std::size_t piece, bool& authorised) {
   HttpSession session(site(), "127.0.0.1");
@@ -92,7 +92,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   bool authorised = false;
   const std::string told = conversation(whole, std::size_t{data[0]} + 1, authorised);
   const std::string slowly = conversation(whole, 1, authorised);
-  // A WebSocket is refused for bytes that came along with its request.
+  // A WebSocket is refused if other bytes arrive with its request.
   const bool socket = told.ends_with("upgrade") || slowly.ends_with("upgrade");
   require(socket || told == slowly);
   require(!authorised || whole.find(token) != std::string::npos);

@@ -17,9 +17,9 @@ namespace flexura {
 
 namespace {
 
-// Connections that are no clients (yet): a browser has six; the others wait in the system's queue.
+// Most connections that are not (yet) clients: a browser has six; others wait in the system's queue.
 constexpr std::size_t most_visits = 64;
-// What the system may hold for a client that does not read: little, so that what it reads is not old.
+// Size of the system's send buffer per client: small, so that slow clients do not receive old data.
 constexpr int send_buffer_bytes = 128 * 1024;
 constexpr std::chrono::milliseconds accept_again{100};
 
@@ -39,7 +39,7 @@ Server::Loop::Loop(ServerConfig config, std::span<const Asset> assets, Host& hos
 Server::Loop::~Loop() {
   context_->stop();
   thread_.join();
-  // A host that still owes an answer keeps the context, and with it what waits there.
+  // A host with an open answer keeps the context and the handlers that wait in it.
   for (const auto& visit : visits_) visit->close();
   for (const auto& [id, client] : clients_) client->cut_off();
 }
@@ -60,7 +60,7 @@ Site Server::Loop::make_site(std::span<const Asset> assets) const {
 
 std::string Server::Loop::make_url() const {
   const auto address = acceptor_.local_endpoint().address();
-  // Who listens everywhere wants to be called from elsewhere.
+  // For a server on all addresses, shows one that others can use.
   const std::string shown =
       address.is_unspecified() ? outward_address(own_addresses(), address.is_v6()) : address.to_string();
   return "http://" + url_host(shown) + ':' + std::to_string(port_) + "/#token=" + gate().token();
@@ -68,7 +68,7 @@ std::string Server::Loop::make_url() const {
 
 void Server::Loop::accept() {
   acceptor_.async_accept([this](ErrorCode error, tcp::socket socket) {
-    if (error) {  // Too many open files, most likely.
+    if (error) {  // Most likely too many open files.
       accept_timer_.expires_after(accept_again);
       accept_timer_.async_wait([this](ErrorCode) { accept(); });
     } else {
@@ -123,8 +123,7 @@ std::size_t Server::Loop::busy_clients() {
       std::ranges::count_if(clients_, [](const auto& entry) { return entry.second->outbox.is_sending(); }));
 }
 
-/// Called with the mutex held. However often it is called, one flush() waits: the loop's own queue is
-/// short.
+/// Requires the mutex. Posts at most one flush() at a time, so the loop's queue stays short.
 void Server::Loop::wake() {
   if (std::exchange(woken_, true)) return;
   net::post(*context_, [this] { flush(); });

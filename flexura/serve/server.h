@@ -12,25 +12,25 @@
 
 namespace flexura {
 
-/// Where a server listens and what it bears.
+/// Address and limits of a server.
 struct ServerConfig {
-  std::string address = "127.0.0.1";  ///< Of the interface; another than loopback only when someone asks.
-  std::uint16_t port = 0;             ///< 0: any that is free.
-  std::vector<std::string> names;     ///< Further hosts by which it may be called, beside its own addresses.
+  std::string address = "127.0.0.1";  ///< Address of the interface; other than loopback only by request.
+  std::uint16_t port = 0;             ///< 0: any free port.
+  std::vector<std::string> names;     ///< Further host names, in addition to its addresses.
   std::size_t longest_header = std::size_t{16} * 1024;
   std::size_t longest_message = std::size_t{64} * 1024;
   std::size_t clients = 8;
-  /// Of a client that does not read; one more and it is cut off. From a quarter of them on nothing is read
-  /// from it.
+  /// Limit of unread texts per client; one more closes the connection. From a quarter of it on, nothing is
+  /// read from the client.
   std::size_t waiting_texts = 1024;
-  std::size_t waiting_bytes = std::size_t{4} * 1024 * 1024;  ///< Of those texts; as above.
+  std::size_t waiting_bytes = std::size_t{4} * 1024 * 1024;  ///< Limit of their bytes, with equal effects.
   std::chrono::milliseconds handshake{5000};
   std::chrono::milliseconds idle{20000};
 };
 
-/// A part of the page, compressed with gzip; lives as long as the program.
+/// A part of the page, compressed with gzip; valid as long as the program.
 struct Asset {
-  std::string_view path;  ///< "/index.html"
+  std::string_view path;  ///< "/index.html".
   std::string_view content_type;
   std::span<const std::uint8_t> gzip;
 };
@@ -41,10 +41,10 @@ struct HttpAnswer {
   int status = 200;
   std::string content_type = "application/json";
   std::string body;
-  std::string policy;  ///< Content-Security-Policy; the server's strict one when empty.
+  std::string policy;  ///< Content-Security-Policy; if empty, the server's strict one.
 };
 
-/// What stands behind a server. All calls come on the server's one thread and return at once.
+/// The program behind a server. All calls are from the server's thread and must return at once.
 class Host {
  public:
   virtual ~Host() = default;
@@ -54,40 +54,40 @@ class Host {
 
   virtual void opened(ClientId client) = 0;
   virtual void closed(ClientId client) = 0;
-  /// A text message of a client, at most `longest_message` bytes of UTF-8.
+  /// Receives a text message of a client, at most `longest_message` bytes of UTF-8.
   virtual void said(ClientId client, std::string text) = 0;
-  /// An authorised GET of something that is no asset: path and query as they came, checked for nothing.
+  /// Receives an authorised GET of something that is not an asset: path and query as received, unchecked.
   /// `answer` may be called once, later, from any thread.
   virtual void asked(std::string target, std::function<void(HttpAnswer)> answer) = 0;
 };
 
-/// An HTTP and WebSocket server on a thread of its own (docs/viewer-protocol.md: who may come in, and what is
-/// refused how). Its methods can be called from any thread.
+/// An HTTP and WebSocket server with its own thread (docs/viewer-protocol.md: access control and refusals).
+/// Thread-safe.
 class Server {
  public:
-  /// std::system_error when it cannot listen there.
+  /// Throws std::system_error if it cannot listen at the address.
   Server(ServerConfig config, std::span<const Asset> assets, Host& host);
-  /// Closes all connections and ends its thread: nothing is called back from then on.
+  /// Closes all connections and ends its thread; the host is not called afterwards.
   ~Server();
   Server(const Server&) = delete;
   Server& operator=(const Server&) = delete;
 
   [[nodiscard]] std::uint16_t port() const;
   [[nodiscard]] const std::string& token() const;
-  /// "http://127.0.0.1:8421/#token=..."; where it listens on all addresses with one that others can call, if
-  /// there is any.
+  /// Returns "http://127.0.0.1:8421/#token=...". If it listens on all addresses, the URL has one that others
+  /// can use, if any.
   [[nodiscard]] std::string url() const;
 
-  /// Every text reaches the client, in order; one that does not read is cut off.
+  /// Sends a text. Every text reaches the client, in order; a client that does not read is disconnected.
   void send(ClientId client, std::string text);
-  /// Whether a client reads what it is sent, so that a Host may answer more of what it said. Of one that does
-  /// not nothing more is read, and it is closed when that goes on for `idle`.
+  /// Returns true if a client reads its messages, so that a Host may answer more requests. From a client that
+  /// does not, nothing more is read, and it is disconnected after `idle`.
   [[nodiscard]] bool has_room(ClientId client) const;
-  /// The newest message of a stream (a small number) reaches it; older ones that were not sent are dropped.
+  /// Sends the newest message of a stream (a small number); unsent older ones are dropped.
   void post(ClientId client, std::uint32_t stream, std::shared_ptr<const std::string> message);
-  /// Of all messages that wait for a client or are being sent to one.
+  /// Returns the bytes of all messages that wait for a client or are being sent.
   [[nodiscard]] std::size_t waiting_bytes() const;
-  /// Clients to whom a message is being sent: one that does not read stays among them.
+  /// Returns the number of clients to which a message is being sent; includes clients that do not read.
   [[nodiscard]] std::size_t busy_clients() const;
 
  private:

@@ -1,6 +1,6 @@
-// The only source that sees Boost.Beast, and of it only the WebSocket, without permessage-deflate. Beast's
-// HTTP parser is not used: its iequals (1.74) reads a byte past its end. The request of the handshake is made
-// here of fixed texts, which iequals compares without that byte.
+// The only source that includes Boost.Beast, and only its WebSocket, without permessage-deflate. Beast's HTTP
+// parser is not used: its iequals (1.74) reads a byte past its end. The request of the handshake consists of
+// fixed texts here, which iequals compares without that byte.
 #include "flexura/serve/server_client.h"
 
 #include <boost/asio/buffer.hpp>
@@ -73,7 +73,7 @@ void Server::Loop::Client::read() {
   if (reading_ || closing_ || !open_) return;
   {
     const std::lock_guard lock(loop_->mutex_);
-    if (!outbox.has_room()) return;  // What waits is being written: wrote() comes here again.
+    if (!outbox.has_room()) return;  // Data is being written: wrote() calls this again.
   }
   reading_ = true;
   stream_->socket.async_read(
@@ -89,7 +89,7 @@ void Server::Loop::Client::heard(const ErrorCode& error) {
   } else if (!stream_->socket.got_text()) {
     close(websocket::close_code::unknown_data);
   } else if (!is_utf8(message)) {
-    // Beast 1.74 looks at texts too, but takes half a character where an empty frame ends the message.
+    // Beast 1.74 checks texts too, but accepts half a character if an empty frame ends the message.
     close(websocket::close_code::bad_payload);
   } else {
     loop_->host_->said(id_, std::string(message));

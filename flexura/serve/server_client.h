@@ -7,7 +7,7 @@
 
 namespace flexura {
 
-/// A connection that speaks WebSocket.
+/// A WebSocket connection.
 class Server::Loop::Client : public std::enable_shared_from_this<Client> {
  public:
   Client(Loop& loop, ClientId id, tcp::socket socket);
@@ -16,23 +16,23 @@ class Server::Loop::Client : public std::enable_shared_from_this<Client> {
   Client& operator=(const Client&) = delete;
 
   void accept(const Upgrade& how);
-  /// Sends what waits, unless something is being sent.
+  /// Sends waiting messages, unless one is being sent.
   void write();
-  /// Ends it without a word; what is going on then fails.
+  /// Closes the connection immediately; pending operations then fail.
   void cut_off();
 
-  Outbox outbox;  // Guarded by the loop's mutex, as is the next.
+  Outbox outbox;  // Guarded by the loop's mutex, like the next member.
   bool overflowed = false;
 
  private:
-  struct Stream;  // Beast's.
+  struct Stream;  // Beast's stream.
 
   void begin();
-  /// Hears the next message, as soon as the client has read enough of what it was sent.
+  /// Reads the next message when the client has read enough of its messages.
   void read();
   void heard(const ErrorCode& error);
   void wrote(const ErrorCode& error);
-  /// With one of WebSocket's codes.
+  /// Closes with one of WebSocket's codes.
   void close(int code);
   void end();
 

@@ -1,4 +1,4 @@
-// What one client does or leaves undone is nothing to the others, nor to whoever sends; many threads at once.
+// A client's behaviour must not affect other clients or senders; many threads at once.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -36,7 +36,7 @@ RawClient connected(const Server& server, int receive_buffer = 0) {
   return client;
 }
 
-/// "number filling" of so many bytes.
+/// Returns "number filling" with this number of bytes.
 std::shared_ptr<const std::string> numbered(int number, std::size_t size) {
   std::string text = std::to_string(number) + ' ';
   text.resize(size, '.');
@@ -57,8 +57,8 @@ TEST(ServerLoad, FourClientsThatNeverReadChangeNothingForAGoodOne) {
   RawClient good = connected(server);
   ASSERT_TRUE(host.wait_for("opened 5"));
   std::size_t most = 0;
-  // Each round ends when the good client has both messages: it misses none, and whoever sends never waits for
-  // another.
+  // Each round ends when the good client has both messages: it misses none, and the sender never waits for
+  // another client.
   for (int round = 0; round < 1000; ++round) {
     const auto state = numbered(round, state_size);
     const auto image = numbered(round, image_size);
@@ -70,7 +70,7 @@ TEST(ServerLoad, FourClientsThatNeverReadChangeNothingForAGoodOne) {
     ASSERT_EQ(good.read_frame().payload, *state);
     ASSERT_EQ(good.read_frame().payload, *image);
   }
-  // Of each stream one message waits and one is being sent, at most.
+  // Of each stream, at most one message waits and one is being sent.
   EXPECT_LE(most, std::size_t{5} * 2 * (state_size + image_size));
 }
 
@@ -92,7 +92,7 @@ TEST(ServerLoad, ASlowClientLosesOldMessagesNeverTheNewest) {
   EXPECT_LT(received, last / 2);
 }
 
-/// A host that keeps the ways to answer.
+/// A host that keeps the answer functions.
 class SlowHost : public TestHost {
  public:
   void asked(std::string target, std::function<void(HttpAnswer)> answer) override {
@@ -147,7 +147,7 @@ TEST(ServerLoad, EndsWithClientsInItAndCallsNothingAfterwards) {
   EXPECT_EQ(host.lines(), lines);
 }
 
-// Says twice what it is told: more than it hears.
+// Repeats each received text twice: sends more than it receives.
 class EchoingHost : public TestHost {
  public:
   void said(ClientId client, std::string text) override {
@@ -164,7 +164,7 @@ TEST(ServerLoad, CutsNobodyOffWhoReads) {
   Server server({}, {}, host);
   host.server = &server;
   RawClient client = connected(server);
-  constexpr int count = 20000;  // more than all buffers hold
+  constexpr int count = 20000;  // More than all buffers hold.
   std::thread asking([&] {
     for (int i = 0; i < count; ++i) client.say(std::to_string(i));
   });
@@ -185,7 +185,7 @@ TEST(ServerLoad, ListensToNobodyWhoDoesNotReadAndThenEndsIt) {
   while (deaf.say(text)) {
   }
   EXPECT_TRUE(host.wait_for("closed 1"));
-  // A quarter of what may wait, and what the system takes.
+  // A quarter of the limit, plus the system's buffers.
   EXPECT_LE(2 * text.size() * static_cast<std::size_t>(host.heard),
             ServerConfig{}.waiting_bytes / 4 + (std::size_t{1} << 20));
   EXPECT_EQ(server.waiting_bytes(), 0U);

@@ -16,17 +16,17 @@
 #include "flexura/serve/http_session.h"
 #include "flexura/serve/server.h"
 
-// For the sources of the server alone: it shows Boost.Asio.
+// Only for the server's sources: includes Boost.Asio.
 namespace flexura {
 
 namespace net = boost::asio;
 using net::ip::tcp;
 using ErrorCode = boost::system::error_code;
 
-/// For what may fail and does not matter then, such as ending what has ended.
+/// Ignores an error of an operation that may fail, such as closing a closed socket.
 inline void disregard(const ErrorCode&) {}
 
-/// The server's thread and all that is touched by it only, but for what `mutex_` guards.
+/// The server's thread and its data; data used by other threads are guarded by `mutex_`.
 class Server::Loop {
  public:
   Loop(ServerConfig config, std::span<const Asset> assets, Host& host);
@@ -68,7 +68,7 @@ class Server::Loop {
   std::set<std::shared_ptr<Visit>> visits_;
 
   std::mutex mutex_;
-  std::map<ClientId, std::shared_ptr<Client>> clients_;  // Their outboxes too are guarded by mutex_.
+  std::map<ClientId, std::shared_ptr<Client>> clients_;  // Their outboxes are also guarded by mutex_.
   bool woken_ = false;                                   // flush() has been posted.
   std::thread thread_;
 };

@@ -55,7 +55,7 @@ class ServerTest : public testing::Test {
     client.send(request);
     return client.read_answer();
   }
-  /// A client that has come in.
+  /// Returns a client with access.
   [[nodiscard]] RawClient connected(int receive_buffer = 0) const {
     RawClient client(server_->port(), receive_buffer);
     client.send(upgrade(bearer()));
@@ -105,7 +105,7 @@ TEST_F(ServerTest, ListensWhereItSaysAndNowhereElse) {
   Server& server = start();
   EXPECT_GT(server.port(), 0);
   EXPECT_EQ(server.url(), "http://127.0.0.1:" + std::to_string(server.port()) + "/#token=" + server.token());
-  // Of all of 127.0.0.0/8, which is this machine's own, the one address alone.
+  // Of all addresses of this machine in 127.0.0.0/8, only this one.
   EXPECT_NO_THROW(RawClient(server.port()));
   EXPECT_THROW(RawClient(server.port(), 0, "127.0.0.2"), std::runtime_error);
   ServerConfig anywhere;
@@ -118,7 +118,7 @@ TEST_F(ServerTest, ListensWhereItSaysAndNowhereElse) {
   ServerConfig nonsense;
   nonsense.address = "nowhere";
   EXPECT_THROW(Server(nonsense, page_assets, host_), std::system_error);
-  // 192.0.2.1 is nobody's (RFC 5737).
+  // 192.0.2.1 is reserved (RFC 5737).
   ServerConfig foreign;
   foreign.address = "192.0.2.1";
   EXPECT_THROW(Server(foreign, page_assets, host_), std::system_error);
@@ -146,7 +146,7 @@ TEST_F(ServerTest, IsCalledLocalhostWhereItListensOnAllInterfaces) {
   EXPECT_EQ(status("evil.example"), 421);
   const std::string outward = outward_address(own_addresses(), false);
   EXPECT_TRUE(server_->url().starts_with("http://" + outward + ":" + port)) << server_->url();
-  // By which it also knows itself when called there.
+  // The server must accept this address as its name.
   RawClient there(server_->port(), 0, outward.c_str());
   there.send("GET / HTTP/1.1\r\nHost: " + outward + ":" + port + "\r\n\r\n");
   EXPECT_EQ(there.read_answer().status, 200);
@@ -170,7 +170,7 @@ TEST_F(ServerTest, RefusesThoseWhoDoNotBelongHere) {
 
 TEST_F(ServerTest, TakesWhatIsJustWithinItsLimits) {
   start();
-  constexpr std::size_t header = 16384;  // as docs/viewer-protocol.md has them
+  constexpr std::size_t header = 16384;  // From docs/viewer-protocol.md.
   const std::size_t rest = get("/", "X: \r\n").size();
   EXPECT_EQ(ask(get("/", "X: " + std::string(header - rest, 'x') + "\r\n")).status, 200);
   EXPECT_EQ(ask(get("/", "X: " + std::string(header - rest + 1, 'x') + "\r\n")).status, 431);
@@ -179,7 +179,7 @@ TEST_F(ServerTest, TakesWhatIsJustWithinItsLimits) {
 TEST_F(ServerTest, LetsARefusedClientReadWhy) {
   start();
   RawClient client(server_->port());
-  // The refusal comes while the client is still sending: it must not be lost.
+  // The refusal is sent while the client is still sending: it must not be lost.
   client.send("POST /series HTTP/1.1\r\n" + host_line() + "Content-Length: 1000000\r\n\r\n");
   client.send(std::string(1000000, 'b'));
   EXPECT_EQ(client.read_answer().status, 413);
@@ -224,7 +224,7 @@ TEST_F(ServerTest, EndsClientsThatBreakTheRulesWithTheReason) {
   bare.send("\x81\x02hi");  // Not masked.
   EXPECT_EQ(bare.read_frame().close_code(), 1002);
   RawClient compressed = connected();
-  compressed.send_frame(0xC1, "x");  // Says permessage-deflate, which was not agreed on.
+  compressed.send_frame(0xC1, "x");  // Claims permessage-deflate, which was not negotiated.
   EXPECT_EQ(compressed.read_frame().close_code(), 1002);
   const auto lines = host_.lines();
   EXPECT_EQ(std::ranges::count_if(lines, [](const auto& line) { return line.find(" said ") != line.npos; }),
@@ -251,7 +251,7 @@ TEST_F(ServerTest, HasRoomForSoManyWhoSayNothingYet) {
   std::list<RawClient> visitors;
   for (int i = 0; i < most_visits; ++i) visitors.emplace_back(server.port());
   EXPECT_EQ(RawClient(server.port()).read_to_end(), "");
-  // That was at once: the others' time is not over yet. Who is in loses nothing.
+  // That was immediate: the others' time has not expired. Connected clients are unaffected.
   visitors.front().send(get("/"));
   EXPECT_EQ(visitors.front().read_answer().status, 200);
   server.send(1, "good day");
@@ -274,7 +274,7 @@ TEST_F(ServerTest, DoesNotWaitForHandshakes) {
   half.send("GET / HTTP/1.1\r\nHost");
   RawClient dripping(server_->port());
   bool taken = true;
-  for (int i = 0; i < 2000 && taken; ++i) {  // Each byte comes in time, the whole does not.
+  for (int i = 0; i < 2000 && taken; ++i) {  // Each byte arrives in time, the whole request does not.
     taken = dripping.send("x");
     std::this_thread::sleep_for(milliseconds(10));
   }

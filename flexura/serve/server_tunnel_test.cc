@@ -1,5 +1,5 @@
-// A browser at the other end of a tunnel (`ssh -L 9000:127.0.0.1:8421`): the connection comes from this
-// machine, and Host and Origin name the tunnel's end, with its port.
+// A browser at the other end of a tunnel (`ssh -L 9000:127.0.0.1:8421`). The connection is from this machine,
+// and Host and Origin have the tunnel's end with its port.
 #include <gtest/gtest.h>
 
 #include <memory>
@@ -20,10 +20,10 @@ class TunnelTest : public testing::Test {
     ServerConfig config;
     config.names = std::move(names);
     server_ = std::make_unique<Server>(std::move(config), std::span<const Asset>{}, host_);
-    // Another one than the server's.
+    // Different from the server's.
     far_end_ = "localhost:" + std::to_string(server_->port() == 9000 ? 9001 : 9000);
   }
-  // As the page asks that came from `host`.
+  // Sends a request like a page from `host`.
   [[nodiscard]] RawAnswer ask(const std::string& line, const std::string& host,
                               const std::string& more) const {
     RawClient client(server_->port());
@@ -34,7 +34,7 @@ class TunnelTest : public testing::Test {
   [[nodiscard]] int come_in(const std::string& host) const {
     return ask("GET /series", host, "Authorization: Bearer " + server_->token() + "\r\n").status;
   }
-  // With the cookie that the page there was given, which is called by the port that the page knows.
+  // Uses the cookie of the page at that host, named by the port that the page uses.
   [[nodiscard]] int connect(const std::string& host) const {
     return ask("GET /socket", host,
                "Connection: Upgrade\r\nUpgrade: websocket\r\nSec-WebSocket-Version: 13\r\n"

@@ -16,7 +16,7 @@ namespace flexura {
 
 namespace {
 
-/// An address without what only IPv6 adds to one of IPv4.
+/// Returns the local address, with an IPv4-mapped IPv6 address as IPv4.
 std::string local_address(const tcp::socket& socket) {
   ErrorCode error;
   const auto address = socket.local_endpoint(error).address();
@@ -26,8 +26,8 @@ std::string local_address(const tcp::socket& socket) {
 
 }  // namespace
 
-/// The way back of a host's answer, from any thread, even when the server is gone. Without an answer it is a
-/// 500.
+/// Returns a host's answer to its connection, from any thread, even after the end of the server. Without an
+/// answer it is a 500.
 class Server::Loop::Reply {
  public:
   Reply(std::shared_ptr<net::io_context> context, std::weak_ptr<Visit> visit)
@@ -112,7 +112,7 @@ void Server::Loop::Visit::rest() {
   advance();
 }
 
-/// Reads over what still comes: a socket closed upon unread bytes may take the answer away from the client.
+/// Reads and discards remaining bytes: closing a socket with unread bytes may lose the answer.
 void Server::Loop::Visit::linger() {
   ErrorCode error;
   disregard(socket_.shutdown(tcp::socket::shutdown_send, error));
@@ -158,7 +158,7 @@ void Server::Loop::Visit::upgrade(const Upgrade& how) {
 void Server::Loop::Visit::deadline(std::chrono::milliseconds limit) {
   timer_.expires_after(limit);
   timer_.async_wait([self = shared_from_this()](ErrorCode error) {
-    // A wait that was over before it was put off comes here all the same.
+    // A timer that expired before it was extended also arrives here.
     if (!error && self->timer_.expiry() <= net::steady_timer::clock_type::now()) self->end();
   });
 }

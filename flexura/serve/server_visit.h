@@ -11,7 +11,7 @@
 
 namespace flexura {
 
-/// A connection that speaks HTTP: HttpSession says what, this does it, within the time there is.
+/// An HTTP connection: executes the steps of HttpSession within the time limits.
 class Server::Loop::Visit : public std::enable_shared_from_this<Visit> {
  public:
   Visit(Loop& loop, tcp::socket socket);
@@ -22,7 +22,7 @@ class Server::Loop::Visit : public std::enable_shared_from_this<Visit> {
   }
   void close();
   void answer(Answer answer);
-  /// The host's, to what it was asked.
+  /// Sends the host's answer to the last question.
   void answer(HttpAnswer host) { answer(session_.format(std::move(host))); }
 
  private:
@@ -43,7 +43,7 @@ class Server::Loop::Visit : public std::enable_shared_from_this<Visit> {
   net::steady_timer timer_;
   std::array<char, 16384> bytes_{};
   Answer answer_;
-  bool begun_ = true;  // The deadline is that of a request; else that of a pause.
+  bool begun_ = true;  // The deadline is that of a request; otherwise that of a pause.
 };
 
 }  // namespace flexura

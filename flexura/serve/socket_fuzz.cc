@@ -1,6 +1,6 @@
-// Any bytes from a client that has come in: a real server behind a real socket says each whole text to its
-// host, in UTF-8 and no longer than the limit, answers in whole frames, and lets the client go when it has
-// gone.
+// Any bytes from a client with access, through a real server and socket. The server must pass each whole text
+// to its host, in UTF-8 and within the limit. It must answer in whole frames, and release the client after it
+// has disconnected.
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
@@ -24,7 +24,7 @@ void require(bool holds) {
 
 constexpr std::size_t longest = 1000;
 
-/// Says back what it is told.
+/// Returns received texts.
 class Echo : public flexura::Host {
  public:
   void opened(ClientId client) override {
@@ -48,7 +48,7 @@ class Echo : public flexura::Host {
   ClientId inside_ = 0;  // One client at a time.
 };
 
-/// A server for all inputs: one for each would measure how fast threads start.
+/// One server for all inputs: one per input would measure the start of threads.
 struct Running {
   Running() {
     flexura::ServerConfig config;

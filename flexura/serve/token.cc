@@ -12,7 +12,7 @@ namespace flexura {
 
 std::string new_token() {
   std::array<std::uint8_t, 16> bytes{};
-  // Up to 256 bytes come whole once the source is seeded; before, a signal may come between.
+  // Up to 256 bytes are read completely once the source is seeded; before that, a signal may interrupt.
   ssize_t count = -1;
   do {
     count = ::getrandom(bytes.data(), bytes.size(), 0);

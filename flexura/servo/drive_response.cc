@@ -7,11 +7,11 @@
 namespace flexura {
 namespace {
 
-// The dead zone, rad: what is seen of smaller motions is as much noise as motion, so they are waited for
-// until they add up.
+// Dead zone, rad. Observations of smaller motions are as much noise as motion, so motions add up until they
+// exceed it.
 constexpr double least = 0.03;
 constexpr double share = 0.5, forgetting = 0.97, doubt = 300;
-// However wrongly an arm is seen once, it teaches no more than that of a motion.
+// Largest residual learned per rad of motion, rad. It limits the effect of an outlier.
 constexpr double most_missed = 1;
 
 }  // namespace

@@ -9,23 +9,22 @@
 
 namespace flexura {
 
-/// How the shape that is seen follows what the drives say, learned on the way: the matrix of that, one where
-/// the arm does what its model says (docs/control.md, eq. 21a). What the pictures show of a shape is geometry
-/// and changes from shape to shape; the drives' part does so much less, and each motion teaches it for all of
-/// them. So the derivatives of anything seen by the drives are its derivatives by the shape times this
-/// matrix.
+/// Learned matrix that maps motions of the drives to motions of the observed shape (docs/control.md, eq.
+/// 21a). It is the identity if the arm follows its model. The image of a shape is geometry and changes from
+/// shape to shape; this matrix changes much less, so each motion teaches it for all shapes. Derivatives of
+/// features by the drives are their derivatives by the shape times this matrix.
 class DriveResponse {
  public:
-  /// Of so many of the arm's variables. ServoJacobian::model learns nothing.
+  /// For this number of the arm's variables. ServoJacobian::model learns nothing.
   DriveResponse(ServoJacobian how, Eigen::Index variables);
 
-  /// The drives said x when the arm was seen in the shape y (rad; stretches). What is no number is passed
-  /// over.
+  /// Learns from the drives' reading x and the shape y observed at that time (rad; stretches). Skips values
+  /// that are not finite.
   void learn(const Eigen::VectorXd& x, const Eigen::VectorXd& y);
   [[nodiscard]] bool is_learned() const { return !std::holds_alternative<std::monostate>(estimate_); }
-  /// dy/dx
+  /// Returns dy/dx.
   [[nodiscard]] const Eigen::MatrixXd& matrix() const;
-  /// The drives' part of a motion of the shape; as far as the matrix is regular.
+  /// Returns the motion of the drives for a motion of the shape, as far as the matrix is regular.
   [[nodiscard]] Eigen::VectorXd drives_for(const Eigen::VectorXd& dy) const;
 
  private:

@@ -13,7 +13,8 @@
 namespace flexura {
 namespace {
 
-// The points whose distances from the middle along every direction have the moments' standard deviation.
+// Returns points of the ellipse with these moments: in every direction, its distance from the middle is the
+// standard deviation.
 std::vector<Eigen::Vector2d> ellipse_of(const Eigen::Ref<const Eigen::VectorXd>& moments) {
   constexpr int corners = 32;
   const double weight = FeatureSet::of_moments().moment_weight;
@@ -30,8 +31,8 @@ std::vector<Eigen::Vector2d> ellipse_of(const Eigen::Ref<const Eigen::VectorXd>&
   return points;
 }
 
-// The way in a picture that the law `potential` reads as the angle `alpha` in its plane: XOY of the first
-// camera, ZOY of the second.
+// Returns the direction in a picture that the law `potential` reads as the angle `alpha` in its plane: XOY
+// for the first camera, ZOY for the second.
 Eigen::Vector2d way_in_plane(const View& view, std::size_t camera, double alpha) {
   const Eigen::Vector3d way = camera == 0 ? Eigen::Vector3d(std::sin(alpha), std::cos(alpha), 0)
                                           : Eigen::Vector3d(0, std::cos(alpha), std::sin(alpha));
@@ -87,7 +88,7 @@ std::vector<FeatureMark> FeatureMarker::points_in(std::size_t camera) const {
   return marks;
 }
 
-// Of each camera the pixels right and left of each place, then as many normals.
+// Per camera: the pixels right and left of each place, then as many normals.
 std::vector<FeatureMark> FeatureMarker::edges_in(std::size_t camera) const {
   std::vector<FeatureMark> marks;
   const Eigen::Index count = 2 * points_, first = 4 * count * static_cast<Eigen::Index>(camera);

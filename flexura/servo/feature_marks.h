@@ -13,21 +13,23 @@
 
 namespace flexura {
 
-/// One thing that a law compares in a picture: a pixel, or a line of some, as measured and as wanted, px.
+/// A pixel or polyline that a law compares in a picture: measured (`seen`) and target (`wanted`), px.
 struct FeatureMark {
   std::vector<Eigen::Vector2d> seen, wanted;
 };
 
-/// What a law compares, to be drawn upon the pictures: pixels of `points` and of the edges of `silhouettes`;
-/// chords (`chords`, `potential`), the wanted one of each turned about the middle of the measured one, for
-/// the law compares their directions alone; of `moments` the middle and the ellipse that has the second
-/// moments; of `shape`, which compares no images, nothing.
+/// Draws what a law compares into the pictures:
+/// - pixels of `points`, and of the edges of `silhouettes`,
+/// - chords of `chords` and `potential`; each target chord is rotated about the middle of the measured one,
+/// because the law compares only directions,
+/// - of `moments` the centroid and the ellipse with the second moments,
+/// - nothing for `shape`, which compares no images.
 class FeatureMarker {
  public:
   FeatureMarker(ServoLawKind law, Arm arm, std::int64_t points);
 
-  /// In both pictures of a sight, at its time; none where it tells no shape. Chords are as measured in these
-  /// pictures, also where the law has their angles from the flow.
+  /// Returns the marks in both pictures of an observation, at its time; empty if it gives no shape. Chords
+  /// are as measured in these pictures, even if the law carries their angles by optical flow.
   [[nodiscard]] std::array<std::vector<FeatureMark>, 2> of(const ServoSight& sight);
 
  private:
@@ -41,7 +43,7 @@ class FeatureMarker {
   Eigen::Index points_;
   std::vector<double> corners_;  // Shares of the arm where chords meet.
   std::unique_ptr<ServoFeatures> features_;
-  Eigen::VectorXd seen_, wanted_;  // The features of both pictures.
+  Eigen::VectorXd seen_, wanted_;  // Features of both pictures.
 };
 
 }  // namespace flexura

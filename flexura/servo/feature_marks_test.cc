@@ -17,7 +17,7 @@ namespace {
 
 constexpr int marked_points = 7;
 
-// A sight without errors, in which the measured shape is all that is measured.
+// Returns an error-free observation in which only the shape was measured.
 ServoSight sight_of(const ArmState& seen, const ArmState& desired) {
   ServoSight sight;
   sight.desired = desired;
@@ -31,7 +31,7 @@ Eigen::Vector2d place_in(const View& view, const ArmState& state, double share) 
   return view.project(backbone.pose(share * backbone.length()).position).value();
 }
 
-// For random pairs of shapes, and the marks of one picture.
+// Checks the marks of one picture for random pairs of shapes.
 template <class Check>
 void for_marks(ServoLawKind law, const Check& check) {
   for_random_cases(20, [&](TestRandom& random) {
@@ -86,7 +86,7 @@ TEST(FeatureMarks, OfSilhouettesAreOnBothEdges) {
                   is = std::min(is, (mark.seen.at(0) - place_in(view, seen, share_of(k))).norm());
                   shall = std::min(shall, (mark.wanted.at(0) - place_in(view, wanted, share_of(k))).norm());
                 }
-                // An arm of 2 cm before cameras of f = 900 px, 2 m away: half its width.
+                // Half the image width of an arm of 2 cm, 2 m from cameras with f = 900 px.
                 const double half = servo_arm().sections[0].radius.at(0) * 900 / 2;
                 EXPECT_LT(is, 3 * half);
                 EXPECT_LT(shall, 3 * half);

@@ -30,7 +30,7 @@ std::vector<double> angles_of(const Eigen::Matrix2Xd& places) {
   return angles;
 }
 
-// The way of the curve at one of its places, a unit vector; zero where it has none.
+// Returns the unit tangent of the curve at one of its points, or zero if it is undefined.
 Eigen::Vector2d heading_at(const Eigen::Matrix2Xd& places, Eigen::Index k) {
   const Eigen::Index last = places.cols() - 1;
   return (places.col(std::min(k + 1, last)) - places.col(std::max<Eigen::Index>(k - 1, 0))).normalized();
@@ -47,8 +47,8 @@ void FlowFeatures::begin_anew() {
   for (Seen& seen : seen_) seen.integrator.reset();
 }
 
-// Of the flow the part across the curve counts: along it an arm without texture shows nothing, and there the
-// places went as the shapes' images did.
+// Uses only the flow across the curve. Along it, an arm without texture shows no motion; there the points
+// move like the images of the estimated shapes.
 std::vector<double> FlowFeatures::turns(const Seen& before, const Image<std::uint8_t>& gray,
                                         const Eigen::Matrix2Xd& places) {
   std::vector<Eigen::Vector2d> from;

@@ -14,15 +14,18 @@
 
 namespace flexura {
 
-/// Features of chords whose angles are carried from picture to picture by the optical flow at their ends, and
-/// drawn back to the angles of each picture (docs/servo.md, eq. 25): the paper's continuous measure.
+/// Features of chords whose angles are carried from picture to picture by the optical flow at their ends.
+/// They are pulled towards the angles measured in each picture (docs/servo.md, eq. 25): the paper's
+/// continuous measure.
 class FlowFeatures : public ServoFeatures {
  public:
-  /// What is drawn back is left as exp(-t/anchor), s. `whites`: the largest values of the cameras' pictures.
+  /// The difference from the measured angle decays as exp(-t/anchor), s. `whites`: the largest pixel values
+  /// of the cameras' pictures.
   FlowFeatures(Arm arm, std::unique_ptr<ChordFeatures> chords, double anchor, std::array<int, 2> whites);
 
   void look(const ServoSight& sight) override;
-  /// Of the sight that was looked at last, by the carried angles; of others as the chords measure them.
+  /// Uses the carried angles for the observation of the last look(), otherwise the angles that the chords
+  /// measure.
   [[nodiscard]] bool measured(const ArmState& estimate, const std::array<Sighting, 2>& seen,
                               Eigen::VectorXd& values) override;
   [[nodiscard]] bool foreseen(const ArmState& state, const std::array<View, 2>& views,
@@ -39,16 +42,16 @@ class FlowFeatures : public ServoFeatures {
     return chords_->secant(seen, desired, way, views, result);
   }
 
-  /// Of the last sight, camera by camera: the angles of the chords' images as carried and drawn back, as
-  /// measured in the picture, and by how much they turned since the sight before as the flow has it (not
-  /// numbers where it has none, and at the first), rad, from u towards v.
+  /// Angles of the last observation, per camera, rad, from u towards v. `carried` and `measured` are angles
+  /// of the chords' images. `turns` are the changes since the previous observation by the flow; not numbers
+  /// where the flow is missing and at the first observation.
   struct Angles {
     std::vector<double> carried, measured, turns;
   };
   [[nodiscard]] const std::array<Angles, 2>& angles() const { return angles_; }
 
  private:
-  // What is kept of one camera.
+  // Data kept per camera.
   struct Seen {
     Image<std::uint8_t> gray;
     Eigen::Matrix2Xd places;
@@ -62,10 +65,10 @@ class FlowFeatures : public ServoFeatures {
   std::unique_ptr<ChordFeatures> chords_;
   double anchor_;
   std::array<int, 2> whites_;
-  std::optional<double> time_;  // Of the last sight, s.
+  std::optional<double> time_;  // Time of the last observation, s.
   std::array<Seen, 2> seen_;
   std::array<Angles, 2> angles_;
-  std::array<Eigen::Matrix2Xd, 2> pixels_;  // The chords' ends, chords at their carried angles.
+  std::array<Eigen::Matrix2Xd, 2> pixels_;  // Ends of chords with their carried angles.
 };
 
 }  // namespace flexura

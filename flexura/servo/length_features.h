@@ -7,12 +7,12 @@
 
 namespace flexura {
 
-/// What a stretch of 1 counts as among features in px (about what a section's end moves by then), and in rad.
+/// Weight of a stretch of 1 among features in px (about the motion of a section's end) and in rad.
 inline constexpr double stretch_px = 100, stretch_rad = 1;
 
-/// The same features, and beside them each section's stretch as the pictures tell it, a stretch of 1 as
-/// `weight` in the features' unit: for those that say little of lengths (angles nothing at all) where the arm
-/// can change its own. Those of an arm that cannot are given back as they are.
+/// Returns features that extend `features` by each section's stretch as estimated from the pictures. A
+/// stretch of 1 counts as `weight` in the features' unit. Use it for features with little information on
+/// lengths; angles contain no such information. If the arm cannot stretch, returns `features` unchanged.
 [[nodiscard]] std::unique_ptr<ServoFeatures> with_lengths(std::unique_ptr<ServoFeatures> features,
                                                           const Arm& arm, double weight);
 

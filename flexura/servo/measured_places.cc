@@ -12,8 +12,8 @@
 namespace flexura {
 namespace {
 
-// Of the way from `a` to `b`, the share where it meets the line through `at` across `heading`; none beside
-// it.
+// Returns the fraction of the segment from `a` to `b` at which it crosses the line through `at` across
+// `heading`; std::nullopt if it does not.
 std::optional<double> meeting(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::Vector2d& at,
                               const Eigen::Vector2d& heading) {
   const double from = heading.dot(a - at), to = heading.dot(b - at);
@@ -21,21 +21,21 @@ std::optional<double> meeting(const Eigen::Vector2d& a, const Eigen::Vector2d& b
   return from / (from - to);
 }
 
-// Where a place of the shape is seen, and how far across the curve the measured one lies there.
+// Image of a point of the shape, and the offset of the measured curve across it.
 struct Place {
   Eigen::Vector2d pixel = {0, 0}, across = {0, 0};
-  std::optional<double> offset;  // px; none where no curve was measured.
+  std::optional<double> offset;  // In px; empty where no curve was measured.
 };
 
-// Of what is farther from the shape's image than that, px, nothing is the arm there: where a view is without
-// its errors that is less.
+// Returns the largest distance from the shape's image, px, at which a measurement counts as the arm. It is
+// smaller if view errors are estimated.
 double farthest_in(const Sighting& seen) { return seen.doubt.is_any() ? 3 : 20; }
 
-// A measured curve in short stretches, so that a place looks at those near it only.
+// A measured curve in short pieces, so that a point searches only the pieces near it.
 class CurveStretches {
  public:
-  // `right`: of an edge, 1 where the arm is left of the curve's way as the picture shows it, -1 where it is
-  // right of it; 0: an axis, which has no sides.
+  // `right`: for an edge, 1 if the arm is left of the curve's direction in the picture, -1 if right of it. 0
+  // for a centerline, which has no sides.
   CurveStretches(const std::vector<CurvePoint>& points, double farthest, double right)
       : points_(points), farthest_(farthest), right_(right) {
     for (std::size_t first = 0; first + 1 < points.size(); first += length) {
@@ -45,7 +45,7 @@ class CurveStretches {
     }
   }
 
-  // How far across the place the curve passes it; none where it does not.
+  // Returns the offset of the curve across the point; std::nullopt if the curve does not pass there.
   [[nodiscard]] std::optional<double> offset(const Place& place) const {
     const Eigen::Vector2d heading(place.across.y(), -place.across.x());
     std::optional<double> nearest;
@@ -63,7 +63,7 @@ class CurveStretches {
   }
 
  private:
-  // Whether an edge that goes on so has the arm on the side on which the place has it.
+  // Returns true if an edge in this direction has the arm on the same side as the point has.
   [[nodiscard]] bool faces(const Eigen::Vector2d& way, const Eigen::Vector2d& across) const {
     constexpr double roughly = 0.5;
     const Eigen::Vector2d out = right_ * Eigen::Vector2d(-way.y(), way.x());
@@ -71,14 +71,14 @@ class CurveStretches {
   }
 
   static constexpr std::size_t length = 16;
-  static constexpr double longest = 20;  // px; what is farther apart is no piece of a curve.
+  static constexpr double longest = 20;  // Points farther apart, px, do not form a piece of a curve.
   const std::vector<CurvePoint>& points_;
   double farthest_, right_;
-  std::vector<Eigen::AlignedBox2d> boxes_;  // Of each stretch's points and the next one's first.
+  std::vector<Eigen::AlignedBox2d> boxes_;  // Bounding box of each piece's points and the next piece's first.
 };
 
-// What is not measured, at the ends and behind something, is off by as much as the nearest that is, if
-// cameras are wrong.
+// Returns the offset of the nearest measured point. Used for unmeasured points, at the ends and behind
+// occluders, if cameras are wrong.
 double offset_near(const std::vector<Place>& places, const std::vector<double>& shares, std::size_t k) {
   double offset = 0, nearest = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < places.size(); ++i) {
@@ -88,7 +88,8 @@ double offset_near(const std::vector<Place>& places, const std::vector<double>& 
   return offset;
 }
 
-// The same of an edge's place, by what was measured on its own side: every other one.
+// Returns the offset of the nearest measured point on the same edge. Points of one edge have every other
+// index.
 double offset_beside(const std::vector<std::optional<double>>& offsets, std::size_t i) {
   for (std::size_t apart = 2; apart < offsets.size(); apart += 2) {
     if (apart <= i && offsets[i - apart]) return *offsets[i - apart];
@@ -134,7 +135,7 @@ void measured_edges(const ContourImage& contour, const Sighting& seen, Eigen::Re
   const auto offset_at = [&](Eigen::Index i) {
     std::optional<double> nearest;
     if (!contour.has(i)) return nearest;
-    // Both are looked at: a picture alone may take the tip for the base, and right for left.
+    // Checks both edges: in one picture, tip and base may be swapped, and right and left.
     for (const CurveStretches& edge : edges) {
       const auto offset = edge.offset({contour.pixels.col(i), contour.normals.col(i), {}});
       if (offset && std::abs(*offset) < std::abs(nearest.value_or(farthest))) nearest = offset;

@@ -10,14 +10,14 @@
 
 namespace flexura {
 
-/// Where the points of an arm in these shares of its length are seen: on the image of the estimated shape,
-/// moved across it onto the median axis as it was measured there.
+/// Returns the pixels of the arm's points at these shares of its length. They are on the image of the
+/// estimated shape, moved across it onto the measured centerline.
 [[nodiscard]] std::optional<Eigen::Matrix2Xd> measured_pixels(const Arm& arm, const ArmState& estimate,
                                                               const Sighting& seen,
                                                               const std::vector<double>& shares);
 
-/// Likewise the points of the estimated shape's contours, moved along their normals onto the edges as they
-/// were measured there: 2 columns a cross-section, as in contour.pixels, not numbers where that has none.
+/// Computes the points of the estimated shape's contours, moved along their normals onto the measured edges.
+/// 2 columns per cross-section, as in contour.pixels; not numbers where that has none.
 // NOLINTNEXTLINE(performance-unnecessary-value-param): an Eigen::Ref is written through.
 void measured_edges(const ContourImage& contour, const Sighting& seen, Eigen::Ref<Eigen::Matrix2Xd> pixels);
 

@@ -7,28 +7,28 @@
 
 namespace flexura {
 
-/// What a device said of itself over the last while, to be asked what was true when a picture was taken.
-/// `blend(a, b, share)` is the value that share of the way from a to b.
+/// Recent readings of a device, to interpolate its value at the time of a picture. `blend(a, b, share)`
+/// returns the value at that fraction of the way from a to b.
 template <class Value, class Blend>
 class MotionHistory {
  public:
-  /// Readings older than `span` s before the newest are forgotten, but for one.
+  /// Drops readings older than `span` s before the newest, except one.
   MotionHistory(double span, Blend blend) : span_(span), blend_(std::move(blend)) {}
 
-  /// A reading that is not newer than the one before is passed over.
+  /// Skips a reading that is not newer than the last one.
   void add(double time, Value value) {
     if (!readings_.empty() && !(time > readings_.back().first)) return;
     readings_.emplace_back(time, std::move(value));
     while (readings_.size() > 2 && readings_[1].first < time - span_) readings_.pop_front();
   }
 
-  /// Since when there are readings, s; there is one.
+  /// Returns the time of the first reading, s. Requires a reading.
   [[nodiscard]] double since() const { return readings_.front().first; }
 
   [[nodiscard]] bool is_empty() const { return readings_.empty(); }
 
-  /// In straight lines between two readings; the first one before all of them, the last one after. None where
-  /// there is no reading.
+  /// Returns the linear interpolation between two readings; the first reading before all of them, the last
+  /// one after. Returns std::nullopt if there is no reading.
   [[nodiscard]] std::optional<Value> at(double time) const {
     if (readings_.empty()) return std::nullopt;
     const auto after = std::ranges::upper_bound(readings_, time, {}, &std::pair<double, Value>::first);

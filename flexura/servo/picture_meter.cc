@@ -12,7 +12,7 @@ PictureMeter::PictureMeter(const RigModel& believed, const ServoConfig& config)
 
 Sighting PictureMeter::sighting(std::size_t i, const Picture& picture, const View& view,
                                 std::string& reason) {
-  constexpr double moved = 2;  // px; then the finder is told anew where the base is.
+  constexpr double moved = 2;  // Distance of the base in px beyond which the finder is created again.
   const Eigen::Vector2d base = view.project(base_).value_or(Eigen::Vector2d(0.5 * view.width, view.height));
   if (!finders_[i] || (finders_[i]->base - base).norm() > moved) {
     ArmFinderConfig config;

@@ -15,12 +15,13 @@
 
 namespace flexura {
 
-/// Measures the pictures of two cameras: where each shows the arm.
+/// Measures the arm in the pictures of two cameras.
 class PictureMeter {
  public:
   PictureMeter(const RigModel& believed, const ServoConfig& config);
 
-  /// A sight without a shape: what each picture shows of the arm, or the reason why it shows none.
+  /// Returns an observation without a shape: what each picture shows of the arm, or the reason why it shows
+  /// no arm.
   [[nodiscard]] ServoSight measure(const PicturePair& pair);
 
  private:
@@ -28,7 +29,7 @@ class PictureMeter {
                                   std::string& reason);
 
   Eigen::Vector3d base_;            // p_WB
-  std::array<int, 2> whites_ = {};  // The largest value of each camera's pictures.
+  std::array<int, 2> whites_ = {};  // Largest pixel value of each camera's pictures.
   bool has_markers_;
   ViewDoubt doubt_;
   struct Finder {

@@ -14,7 +14,7 @@
 namespace flexura {
 namespace {
 
-// alpha_1 of every chord in the front view, then alpha_2 of every one in the side view.
+// Returns alpha_1 of every chord in the front view, then alpha_2 of every chord in the side view.
 Eigen::VectorXd plane_angles_of(const std::array<View, 2>& views,
                                 const std::array<Eigen::Matrix2Xd, 2>& pixels) {
   const Eigen::Index chords = pixels[0].cols() - 1;
@@ -28,7 +28,7 @@ Eigen::VectorXd plane_angles_of(const std::array<View, 2>& views,
   return angles;
 }
 
-// alpha_1 and alpha_2 of each chord as both planes show it, then theta and q as the shape has them.
+// alpha_1 and alpha_2 of each chord as observed in both planes, then theta and q of the estimated shape.
 class PlaneFeatures : public ChordFeatures {
  public:
   PlaneFeatures(Arm arm, int points) : arm_(std::move(arm)), shares_(equal_shares(points)) {}
@@ -89,8 +89,8 @@ class PlaneFeatures : public ChordFeatures {
     return values;
   }
 
-  // As the planes tell it; as the shape does where they hardly can, or not by a derivative: at a quarter turn
-  // of theta or of q, and on the way across one.
+  // Returns the error observed in the planes, or that of the shape where the planes give little information
+  // or no derivative. That is near a quarter turn of theta or of q, and on the way across one.
   [[nodiscard]] static PlaneError chord_error(const Eigen::VectorXd& seen, const Eigen::VectorXd& desired,
                                               Eigen::Index k) {
     const Eigen::Index chords = seen.size() / 4;
@@ -106,7 +106,7 @@ class PlaneFeatures : public ChordFeatures {
     return error;
   }
 
-  // Of theta and q of each chord, by the state; rad.
+  // Returns the derivatives of theta and q of each chord by the state; rad.
   [[nodiscard]] Eigen::MatrixXd chord_derivatives(const ArmState& state) const {
     const BackboneJacobian backbone(arm_, state);
     const auto columns = 3 * static_cast<Eigen::Index>(arm_.sections.size());
@@ -120,7 +120,7 @@ class PlaneFeatures : public ChordFeatures {
       const Eigen::Vector3d p = backbone.pose(point).position, c = p - p_before;
       if (k > 0) {
         const Eigen::MatrixXd dc = here.topRows<3>() - before.topRows<3>();
-        // Upright chords have no azimuth: their q alone counts, and of theta nothing is asked.
+        // A vertical chord has no azimuth: only its q counts, and the theta derivative is zero.
         constexpr double least = 1e-9;
         const double h = std::max(c.head<2>().norm(), least);
         const Eigen::RowVectorXd dh = (c.x() * dc.row(0) + c.y() * dc.row(1)) / h;

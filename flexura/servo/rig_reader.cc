@@ -13,7 +13,7 @@
 namespace flexura {
 namespace {
 
-// By how much a device's clock may be ahead of the rig's, s.
+// Largest lead of a device's clock over the rig's, s.
 constexpr double ahead = 0.1;
 
 }  // namespace
@@ -63,7 +63,7 @@ std::string RigReader::odd_time(const Frame& frame, const std::deque<Frame>& bef
 }
 
 void RigReader::take_newest() {
-  constexpr std::size_t kept = 64;  // Of each camera: one may be seconds later than the other.
+  constexpr std::size_t kept = 64;  // Frames kept per camera: one may be seconds later than the other.
   for (std::size_t i = 0; i < 2; ++i) {
     const auto frame = camera(i).camera->newest();
     silence_[i] = frame.fault() ? text(*frame.fault()) : "";
@@ -77,7 +77,8 @@ void RigReader::take_newest() {
 
 std::optional<PicturePair> RigReader::newest_pair() {
   take_newest();
-  // The newest of the second camera for which the first one has one of its own, the nearest in time.
+  // Takes the newest frame of the second camera that has a partner of the first camera, and the partner
+  // nearest in time.
   for (auto second = recent_[1].rbegin(); second != recent_[1].rend(); ++second) {
     if (!(second->time > paired_at_[1])) break;
     const Frame* nearest = nullptr;

@@ -6,7 +6,7 @@
 #include "flexura/servo/servo_law.h"
 #include "tests/support/servo_views.h"
 
-// Sanitizers have an allocator of their own.
+// Sanitizers have their own allocator.
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
 
 #include "tests/support/malloc_count.h"
@@ -14,7 +14,7 @@
 namespace flexura {
 namespace {
 
-// The law's matrices are its own: a step that goes by the shape allocates but the state that it asks for.
+// The law keeps its matrices: a step with the law `shape` allocates only the returned state.
 TEST(ServoLaw, AllocatesNothingButItsAnswer) {
   for (const ServoJacobian jacobian : {ServoJacobian::model, ServoJacobian::recursive}) {
     const Arm arm = servo_arm();
@@ -37,12 +37,12 @@ TEST(ServoLaw, AllocatesNothingButItsAnswer) {
     for (int i = 0; i < 2; ++i) EXPECT_FALSE(law.step(input).is_singular);
     const long before = mallocs;
     for (int i = 0; i < 10; ++i) (void)law.step(input);
-    constexpr long of_a_state = 2;  // Bends and stretches.
+    constexpr long of_a_state = 2;  // Allocations of a state: bends and stretches.
     EXPECT_LE(mallocs - before, 10 * of_a_state);
   }
 }
 
-// What both images should show, and its derivatives.
+// Target features of both images, and their derivatives.
 TEST(ServoFeatures, AllocateNothingOnceTheyHaveServed) {
   const Arm arm = servo_arm();
   const std::array<View, 2> views = servo_views();

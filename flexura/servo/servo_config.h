@@ -20,42 +20,42 @@
 
 namespace flexura {
 
-/// What drives the arm to the wanted shape (docs/servo.md).
+/// Control law of a servo (docs/servo.md).
 enum class ServoLawKind : std::uint8_t {
-  shape,        ///< The shape that both images tell, less the wanted one.
+  shape,        ///< Shape estimated from both images, minus the target shape.
   points,       ///< Pixels of points along the arm.
   chords,       ///< Angles of the images of its chords.
-  moments,      ///< Length, middle and second moments of its images.
-  potential,    ///< The paper's: the errors in two image planes, an artificial potential in two angles.
-  silhouettes,  ///< Where the two edges of its images lie across themselves.
+  moments,      ///< Length, centroid and second moments of its images.
+  potential,    ///< The paper's law: errors in two image planes, an artificial potential of two angles.
+  silhouettes,  ///< Positions of the two edges of its images, across the edges.
 };
 
-/// Whether a law looks at chords' angles, which flow may carry.
+/// Returns true if a law compares chord angles, which optical flow may carry.
 [[nodiscard]] constexpr bool has_chords(ServoLawKind law) {
   return law == ServoLawKind::chords || law == ServoLawKind::potential;
 }
 
-/// Where the angles of chords come from.
+/// Source of the chord angles.
 enum class ServoMeasure : std::uint8_t {
-  picture,  ///< Each picture by itself.
-  flow,     ///< The picture before and the optical flow since, drawn back to each picture.
+  picture,  ///< Each picture alone.
+  flow,     ///< Previous picture plus optical flow, pulled towards each picture.
 };
 
-/// How the arm follows its drives; what its shape shows is known from the cameras.
+/// Model of how the arm follows its drives. The cameras give the features' derivatives by the shape.
 enum class ServoJacobian : std::uint8_t {
-  model,      ///< As they are believed to be.
-  broyden,    ///< Learned on the way (servo/drive_response.h), beginning with the model's.
-  recursive,  ///< Likewise, by recursive least squares.
+  model,      ///< Nominal.
+  broyden,    ///< Learned online (servo/drive_response.h), starting from the model.
+  recursive,  ///< Learned online by recursive least squares, starting from the model.
 };
 
-/// Two pictures of the arm in the wanted shape, by the two cameras as they stand.
+/// Two pictures of the arm in the target shape, from the two cameras at their current axis positions.
 using RecordedViews = std::array<Picture, 2>;
 
-/// What is wanted from a time on.
+/// A target at a time.
 struct ServoGoal {
   double time = 0;                              ///< s from the start of the servo.
-  std::variant<ArmState, RecordedViews> shape;  ///< A state of the arm, or what the cameras see of it then.
-  /// How far the nearest shape of this arm is from what was asked for, share of its length.
+  std::variant<ArmState, RecordedViews> shape;  ///< A state of the arm, or what the cameras observe of it.
+  /// Distance of the nearest shape of this arm from the requested target, share of its length.
   double missed = 0;
 };
 
@@ -66,11 +66,11 @@ struct ServoDoubt : ViewDoubt {
   ServoDoubt() : ViewDoubt{.rotation_std = 0.02, .focal_std = 0.02} {}
 };
 
-/// What whoever wants a servo settles of it, in a file or in code.
+/// Settings of a servo that a user chooses, in a file or in code.
 struct ServoSettings {
   ServoLawKind law = ServoLawKind::shape;
-  ServoMeasure measure = ServoMeasure::picture;  ///< For the laws that look at chords' angles.
-  double anchor = 0.1;  ///< Angles that flow carries are drawn back as exp(-t/anchor), s.
+  ServoMeasure measure = ServoMeasure::picture;  ///< For the laws that compare chord angles.
+  double anchor = 0.1;  ///< Angles carried by flow approach the measured ones as exp(-t/anchor), s.
   ServoJacobian jacobian = ServoJacobian::model;
   std::int64_t points = 12;  ///< Of the laws points, chords, potential and silhouettes: places along the arm.
   double rate = 4;           ///< Errors fall as exp(-rate t), 1/s.
@@ -85,18 +85,17 @@ struct ServoSettings {
   ServoDoubt camera_prior;   ///< Of each camera model.
 };
 
-/// What a servo does: its settings, and what the rig and the arm make of the rest.
+/// Configuration of a servo: its settings, and data of the rig and the arm.
 struct ServoConfig : ServoSettings {
-  std::array<std::size_t, 2> cameras = {0, 1};  ///< Places among the rig's; the law `potential` takes the
-                                                ///< first for the front (XOY) and the second for the side.
-  std::vector<ServoGoal>
-      goals;  ///< At least one, times rising from 0; in straight lines from one to the next.
-  std::vector<double> markers = {};  ///< Middles of the arm's bands, m along the unstretched arm, rising.
-  double step = 1.0 / 30;            ///< From one command to the next, s.
-  bool keeps_steps = true;  ///< ServoResult::steps; of a servo that goes on for days they grow for as long.
-  std::optional<Drive> drive = {};  ///< For the limiter (LimiterConfig),
-  double list_step = 0;             ///< and its command list's step, s.
-  /// Where the arm was sent before, if that is known: drives say that to their own steps alone.
+  std::array<std::size_t, 2> cameras = {0, 1};  ///< Indices in the rig. The law `potential` uses the first as
+                                                ///< front (XOY) and the second as side view.
+  std::vector<ServoGoal> goals;      ///< At least one, with increasing times from 0; interpolated linearly.
+  std::vector<double> markers = {};  ///< Middles of the arm's bands, m along the unstretched arm, increasing.
+  double step = 1.0 / 30;            ///< Time between commands, s.
+  bool keeps_steps = true;           ///< Keep ServoResult::steps, which grow with the duration.
+  std::optional<Drive> drive = {};   ///< Drive for the limiter (LimiterConfig).
+  double list_step = 0;              ///< Step of the limiter's command list, s.
+  /// Last commanded state, if known. Drives report it only in their steps.
   std::optional<ArmState> sent = {};
   std::vector<Obstacle> obstacles = {};
 };
@@ -107,14 +106,15 @@ const std::vector<std::string>& names_of(const ServoLawKind*);
 const std::vector<std::string>& names_of(const ServoMeasure*);
 const std::vector<std::string>& names_of(const ServoJacobian*);
 
-/// std::invalid_argument, with what is wrong, of a task that no servo can do whatever the rig.
+/// Throws std::invalid_argument, with the reason, if no servo can do this task with any rig.
 void check_servo(const ServoConfig& config);
 
-/// Of the slower one of these two cameras, Hz: within a frame of it each takes a picture.
+/// Returns the frame rate of the slower of these two cameras, Hz: within its frame time each camera takes a
+/// picture.
 [[nodiscard]] double slower_frame_rate(const std::vector<CameraConfig>& cameras,
                                        const std::array<std::size_t, 2>& two);
 
-/// Of the limiter behind its law.
+/// Returns the configuration of the limiter behind the law.
 [[nodiscard]] LimiterConfig limiter_config(const ServoConfig& config);
 
 }  // namespace flexura

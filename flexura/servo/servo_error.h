@@ -9,26 +9,27 @@
 
 namespace flexura {
 
-/// Distances between the points of two shapes at equal shares of their lengths, evenly from base to tip, m.
+/// Returns the distances between corresponding points of two shapes, at equal shares of their lengths from
+/// base to tip, m.
 [[nodiscard]] std::array<double, 51> shape_distances(const Backbone& shape, const Backbone& desired);
 
-/// How far a shape is from another one: shape_distances(), as shares of the arm's length.
+/// Distance of a shape from another: shape_distances(), as shares of the arm's length.
 struct ServoError {
-  double rms = 0, most = 0, tip = 0;  ///< Root mean square; the largest; at the tip.
+  double rms = 0, most = 0, tip = 0;  ///< Root mean square; maximum; at the tip.
 };
-/// `length`: the arm's, m.
+/// Returns the distance of `shape` from `desired`. `length`: of the arm, m.
 [[nodiscard]] ServoError servo_error(const Backbone& shape, const Backbone& desired, double length);
 [[nodiscard]] ServoError servo_error(const Arm& arm, const ArmState& shape, const ArmState& desired);
 
-/// The errors of the last while.
+/// Errors of the recent past.
 class LateErrors {
  public:
-  /// `span`: those that are older than the newest one by more than that are forgotten, s.
+  /// Drops errors that are older than the newest one by more than `span`, s.
   explicit LateErrors(double span) : span_(span) {}
 
-  /// `time`: no earlier than of the one before, s.
+  /// Adds an error. `time`: at least that of the previous one, s.
   void add(double time, const ServoError& error);
-  /// None before the first one.
+  /// Returns the mean error, or std::nullopt before the first one.
   [[nodiscard]] std::optional<ServoError> mean() const;
 
  private:

@@ -18,7 +18,7 @@
 namespace flexura {
 namespace {
 
-// Every section's bend_x, bend_y and stretch.
+// Collects bend_x, bend_y and stretch of every section.
 void all_of(const ArmState& state, Eigen::VectorXd& values) {
   values.resize(3 * static_cast<Eigen::Index>(state.bends.size()));
   for (std::size_t i = 0; i < state.bends.size(); ++i) {
@@ -75,7 +75,7 @@ class ImageFeatures : public ServoFeatures {
     feature_error(set_, seen, desired, result.error);
     return images_.derive(estimate, views, values_, result.by_state);
   }
-  // Where the lens does not show the arm half-way, the derivatives where it stands are all that is known.
+  // If the arm half-way is outside the lens's view, uses the derivatives at the current shape.
   [[nodiscard]] bool secant(const Eigen::VectorXd& seen, const Eigen::VectorXd& desired, const ShapeWay& way,
                             const std::array<View, 2>& views, FeatureError& result) override {
     return error(seen, desired, way.halfway, views, result) || error(seen, desired, way.seen, views, result);
@@ -89,7 +89,7 @@ class ImageFeatures : public ServoFeatures {
   Eigen::VectorXd values_;
 };
 
-// The chords of both images, each between two places in a row.
+// Chords of both images, between consecutive places.
 class ChordAngles : public ChordFeatures {
  public:
   ChordAngles(const Arm& arm, int points)
@@ -142,17 +142,17 @@ class ChordAngles : public ChordFeatures {
     ends_.set(state);
     return ends_.see(view, pixels);
   }
-  // Chord k's image turns from d, where it is wanted, to c by a, and |c| |d| sin a = (c + d)/2 x (c - d), of
-  // which c - d is by_ times the way. How well its angle is measured goes with its length in the picture, so
-  // it counts by the shorter of both: by how many px its end is to turn.
+  // Derivative of a chord's image angle. The image of chord k turns by a, from its target direction d to c,
+  // with |c| |d| sin a = (c + d)/2 x (c - d). c - d is by_ times the way. The precision of the angle grows
+  // with the chord's length in the picture. So it is weighted by the shorter of both images: the error is in
+  // px at the chord's end.
   void turn(std::size_t camera, Eigen::Index k, Eigen::Index row, FeatureError& result) const {
     const Eigen::MatrixXd& by = by_[camera];
     const Eigen::Vector2d c = here_[camera].col(k + 1) - here_[camera].col(k),
                           d = there_[camera].col(k + 1) - there_[camera].col(k), mean = 0.5 * (c + d);
     const double lengths = c.norm() * d.norm(), shorter = std::min(c.norm(), d.norm());
     const double sine = d.x() * c.y() - d.y() * c.x(), angle = std::atan2(sine, c.dot(d));
-    // Of chords that are each other's opposite the middle is any: from 150 degrees on they count less and
-    // less.
+    // The middle of opposite chords is undefined: from 150 degrees on, their weight decreases.
     constexpr double most = 5.3;
     const double ratio = sine == 0 && c.dot(d) > 0 ? 1 : angle * lengths / sine;
     const double share = shorter * std::min(most, ratio) / lengths, trust = std::min(1.0, most / ratio);
@@ -167,7 +167,7 @@ class ChordAngles : public ChordFeatures {
   PointImages ends_;
   std::array<Eigen::Matrix2Xd, 2> here_, there_;  // Pixels of the chords' ends in each camera.
   Eigen::Matrix2Xd halfway_;
-  std::array<Eigen::MatrixXd, 2> by_;  // By the state half-way.
+  std::array<Eigen::MatrixXd, 2> by_;  // Derivatives by the state half-way.
 };
 
 }  // namespace

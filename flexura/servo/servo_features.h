@@ -16,21 +16,21 @@ namespace flexura {
 
 struct ServoSight;
 
-/// How far what is seen is from what is wanted, and how that changes with the arm.
+/// Feature error (measured minus target) and its derivatives by the arm's state.
 struct FeatureError {
-  Eigen::VectorXd error;  ///< Seen less desired.
+  Eigen::VectorXd error;  ///< Measured minus target.
   /// Columns: each section's bend_x, bend_y (rad), stretch.
   Eigen::MatrixXd by_state;
 };
 
-/// The way that a law is to close: from the shape that is seen to the wanted one. These outlive it.
+/// Way that a law has to close, from the observed shape to the target shape. Both must outlive it.
 struct ShapeWay {
   const ArmState &seen, &wanted;
   const ArmState& halfway;  ///< interpolate(seen, wanted, 0.5)
 };
 
-/// What a law looks at. Each is a vector of the same size for every sight, written into what is made to fit.
-/// One thread at a time uses it.
+/// Features that a law compares. Each call writes a vector of the same size and resizes the output if needed.
+/// Not thread-safe.
 class ServoFeatures {
  public:
   virtual ~ServoFeatures() = default;
@@ -38,21 +38,22 @@ class ServoFeatures {
   ServoFeatures(const ServoFeatures&) = delete;
   ServoFeatures& operator=(const ServoFeatures&) = delete;
 
-  /// New pictures, before they are measured: for what goes by those before them as well.
+  /// Receives new pictures before they are measured, for features that also use earlier pictures.
   virtual void look(const ServoSight& /*sight*/) {}
-  /// As measured in two sightings, of which `estimate` is the shape. False where it cannot be.
+  /// Computes the features measured in two observations, with the estimated shape `estimate`. Returns false
+  /// if that is impossible.
   [[nodiscard]] virtual bool measured(const ArmState& estimate, const std::array<Sighting, 2>& seen,
                                       Eigen::VectorXd& values) = 0;
-  /// As an arm in this state would show them to cameras that are as believed.
+  /// Computes the features that nominal cameras observe of an arm in this state.
   [[nodiscard]] virtual bool foreseen(const ArmState& state, const std::array<View, 2>& views,
                                       Eigen::VectorXd& values) = 0;
-  /// The error of these, for an arm in the state `estimate`.
+  /// Computes the error between these features, for an arm in the state `estimate`.
   [[nodiscard]] virtual bool error(const Eigen::VectorXd& seen, const Eigen::VectorXd& desired,
                                    const ArmState& estimate, const std::array<View, 2>& views,
                                    FeatureError& result) = 0;
-  /// The same error, of an arm in the state way.seen, with the derivatives of the whole way instead: it is
-  /// by_state times what the arm's state is off the wanted one, from which `desired` is, as nearly as the
-  /// arm half-way tells (docs/control.md, eq. 20a). Features that know no better have those of error().
+  /// Computes the same error as error(), for an arm in the state way.seen, with derivatives of the whole way.
+  /// The error is then by_state times the difference between the arm's state and the target state, to the
+  /// precision of the arm half-way (docs/control.md, eq. 20a). By default uses the derivatives of error().
   [[nodiscard]] virtual bool secant(const Eigen::VectorXd& seen, const Eigen::VectorXd& desired,
                                     const ShapeWay& way, const std::array<View, 2>& views,
                                     FeatureError& result) {
@@ -60,40 +61,40 @@ class ServoFeatures {
   }
 };
 
-/// Features that are made of the chords between places in a row along the arm.
+/// Features computed from the chords between consecutive places along the arm.
 class ChordFeatures : public ServoFeatures {
  public:
-  /// The places: shares of the unstretched arm's length from 0 to 1.
+  /// Returns the places: shares of the unstretched arm's length from 0 to 1.
   [[nodiscard]] virtual const std::vector<double>& shares() const = 0;
-  /// As measured of an estimated shape whose places are seen at these pixels.
+  /// Computes the features of an estimated shape with its places at these pixels.
   [[nodiscard]] virtual bool of_pixels(const std::array<Eigen::Matrix2Xd, 2>& pixels,
                                        const ArmState& estimate, const std::array<View, 2>& views,
                                        Eigen::VectorXd& values) = 0;
 };
 
-/// From 0 to 1: `count` + 1 of them.
+/// Returns `count` + 1 equally spaced values from 0 to 1.
 [[nodiscard]] std::vector<double> equal_shares(int count);
 
-/// What a servo looks at. `believed` may go afterwards.
+/// Returns the features of a servo. Keeps no reference to `believed`.
 [[nodiscard]] std::unique_ptr<ServoFeatures> servo_features(const ServoConfig& config,
                                                             const RigModel& believed);
 
-/// Those of a law, along an arm that is believed to be `arm`, at `places` places.
+/// Returns the features of a law at `places` places along the arm model `arm`.
 [[nodiscard]] std::unique_ptr<ServoFeatures> servo_features(ServoLawKind law, const Arm& arm,
                                                             std::int64_t places);
 
-/// Those of the law `potential`: angles of chords in two image planes, read as parallel projections (the
-/// paper's section 2; docs/control.md, eq. 14). The error is the spatial one's parts: cos q e_theta and e_q
-/// of each chord, over the root of their number. Chords that the reading says little of, near a quarter turn
-/// of theta or q or on the way across one, are read from the shape.
+/// Returns the features of the law `potential`: angles of chords in two image planes, read as parallel
+/// projections (the paper's section 2; docs/control.md, eq. 14). The error has the spatial one's components,
+/// cos q e_theta and e_q of each chord, over the root of their number. Near a quarter turn of theta or q, or
+/// on the way across one, the reading gives little information. Such chords are read from the shape.
 [[nodiscard]] std::unique_ptr<ChordFeatures> plane_features(const Arm& arm, int points);
 
-/// The angles of the images of chords in a row.
+/// Returns features of the image angles of consecutive chords.
 [[nodiscard]] std::unique_ptr<ChordFeatures> chord_features(const Arm& arm, int points);
 
-/// Those of the law `silhouettes`: the edges of both images, by their displacement across themselves, px. The
-/// values are edges' pixels and the normals of the shape's contours there, not numbers where the arm has
-/// none; the error is contour_error().
+/// Returns the features of the law `silhouettes`: displacements of both images' edges across themselves, px.
+/// The values are pixels of the edges and normals of the shape's contours there, not numbers where the arm
+/// has none. The error is contour_error().
 [[nodiscard]] std::unique_ptr<ServoFeatures> silhouette_features(const Arm& arm, int points);
 
 }  // namespace flexura

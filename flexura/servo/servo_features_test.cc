@@ -1,4 +1,4 @@
-// Features by the derivatives of the whole way, from what is seen to what is wanted.
+// Tests features with the derivatives of the whole way, from the observed shape to the target.
 #include "flexura/servo/servo_features.h"
 
 #include <gtest/gtest.h>
@@ -20,7 +20,7 @@
 namespace flexura {
 namespace {
 
-// A way of an arm, as long as `size` in each bend, and what a law makes of it.
+// A way of an arm, `size` long in each bend, and its features for a law.
 struct ShownWay {
   ArmState seen, wanted, halfway;
   Eigen::VectorXd way, seen_values, wanted_values;
@@ -46,14 +46,14 @@ struct ShownWay {
     EXPECT_TRUE(features.error(seen_values, wanted_values, seen, views, result));
     return result;
   }
-  // What derivatives leave unexplained of the error.
+  // Returns the norm of the error that the derivatives do not explain.
   [[nodiscard]] double rest(const FeatureError& error) const {
     return (error.error - error.by_state * way).norm();
   }
 };
 
-// The rest of the derivatives half-way is of third order in the way's length, that of those where the arm
-// stands of second; and on no way they are the same.
+// Derivatives half-way leave a residual of third order in the way's length, those at the current shape one of
+// second order. On a zero way both are equal.
 TEST(ServoFeatures, TellTheWholeWayByTheArmHalfWay) {
   for (const ServoLawKind law : {ServoLawKind::points, ServoLawKind::chords, ServoLawKind::moments}) {
     double worst_order = 1e9, rests = 0, tangents = 0;
@@ -68,7 +68,7 @@ TEST(ServoFeatures, TellTheWholeWayByTheArmHalfWay) {
       const double rest = there.rest(there.secant(*features, views));
       rests += rest, tangents += there.rest(there.tangent(*features, views));
       worst_order = std::min(worst_order, rest / nearer.rest(nearer.secant(*features, views)));
-      // Chords count by their images' lengths besides.
+      // Chords are also weighted by the length of their images.
       const Eigen::MatrixXd at_rest = none.secant(*features, views).by_state,
                             slopes = none.tangent(*features, views).by_state;
       EXPECT_EQ(none.secant(*features, views).error.norm(), 0);
@@ -85,8 +85,8 @@ TEST(ServoFeatures, TellTheWholeWayByTheArmHalfWay) {
   }
 }
 
-// Of edges a slip along themselves is left, which no derivative knows: a tenth of what the derivatives where
-// the arm stands leave of a way of half a rad a bend.
+// Slip of edges along themselves remains, which no derivative covers. Half-way derivatives must leave a tenth
+// of what those at the current shape leave, on a way of half a rad per bend.
 TEST(ServoFeatures, OfSilhouettesTellTheWholeWayButForSlips) {
   double rests = 0, tangents = 0;
   for_random_cases(20, [&](TestRandom& random) {
@@ -105,7 +105,7 @@ TEST(ServoFeatures, OfSilhouettesTellTheWholeWayButForSlips) {
   EXPECT_LT(rests, 0.3 * tangents);
 }
 
-// The whole arm turned over: what comes out are numbers, and none that are out of all proportion.
+// The whole arm turned over: results must be finite and not excessively large.
 TEST(ServoFeatures, OfWaysThatHaveNoMiddleAreNumbersAllTheSame) {
   const Arm arm = servo_arm();
   const std::array<View, 2> views = servo_views();
@@ -122,12 +122,12 @@ TEST(ServoFeatures, OfWaysThatHaveNoMiddleAreNumbersAllTheSame) {
   }
 }
 
-// An azimuth of 170 degrees is 20 from one of -170: the planes tell that way as any other.
+// An azimuth of 170 degrees is 20 degrees from one of -170: the planes must handle this way like any other.
 TEST(ServoFeatures, OfPlanesTellAcrossHalfATurn) {
   const Arm arm = servo_arm();
   const ArmState state = ArmState::straight(arm.sections.size());
   const auto features = plane_features(arm, 1);
-  // Of one chord: what the planes show, which is `off` beside what the shape has.
+  // For one chord: values from the planes, which are `off` different from those of the shape.
   const auto values = [](double theta, double q, double off) {
     const PlaneView view = plane_view(theta + off, q);
     return Eigen::Vector4d(std::remainder(view.alpha_1, 2 * std::numbers::pi), view.alpha_2, theta, q);
@@ -142,7 +142,7 @@ TEST(ServoFeatures, OfPlanesTellAcrossHalfATurn) {
   }
 }
 
-// What was measured as no number stays none, for the limiter to stop at; an edge that was not is passed over.
+// A measurement that is not a number must stay so, for the limiter to stop. Missing edges must be ignored.
 TEST(ServoFeatures, OfWhatIsNoNumberTellNone) {
   const Arm arm = servo_arm();
   const std::array<View, 2> views = servo_views();

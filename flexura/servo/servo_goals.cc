@@ -50,11 +50,11 @@ void ServoGoals::measure(const PicturePair& recorded, const Arm& arm, PictureMet
     wanted.offset = seen - foreseen;
 }
 
-// Two mirror images of a shape are told apart by perspective alone: cameras as believed fit one of them but
-// for the pictures' noise. Where they fit neither, cameras are wrong, and nothing is said of the order.
+// Only perspective distinguishes the two mirror images of a shape: nominal cameras fit one of them up to the
+// pictures' noise. If they fit neither, the cameras are wrong and the order is not judged.
 std::string ServoGoals::wrong_order(const ServoSight& sight, const PicturePair& recorded, PictureMeter& meter,
                                     const ShapeObserver& observer) const {
-  constexpr double noise = 1.5, far_worse = 2;  // In units of what the noise explains; times the other.
+  constexpr double noise = 1.5, far_worse = 2;  // In noise units; ratio of both fits.
   const auto& [frames, views] = recorded;
   const auto is_taken_by = [&](std::size_t i, std::size_t camera) {
     return std::visit(

@@ -15,30 +15,32 @@
 
 namespace flexura {
 
-/// What is wanted at one time.
+/// The target at one time.
 struct WantedShape {
   ArmState state;
-  /// How far recorded pictures are from what cameras as believed would have seen of `state`; empty: nothing.
+  /// Difference between the recorded pictures' features and those of `state` for nominal cameras; empty:
+  /// zero.
   Eigen::VectorXd offset;
 };
 
-/// A servo's goals as shapes: recorded pictures are measured once, with the cameras as they stand.
+/// Targets of a servo as shapes. Recorded pictures are measured once, with the cameras at their current axis
+/// positions.
 class ServoGoals {
  public:
-  /// `problem` says why not, "" if nothing is wrong.
+  /// problem() returns the reason why the targets are unusable, or "".
   ServoGoals(const std::vector<ServoGoal>& goals, const Arm& arm, PictureMeter& meter,
              ShapeObserver& observer, ServoFeatures& features, const std::array<View, 2>& views);
 
   [[nodiscard]] const std::string& problem() const { return problem_; }
-  /// s from the servo's start, when the last goal is reached by what is wanted.
+  /// Returns the time of the last target, s from the servo's start.
   [[nodiscard]] double last() const { return times_.back(); }
-  /// In straight lines between two goals; the first before all of them.
+  /// Returns the target, linearly interpolated between two given ones; the first one before all of them.
   [[nodiscard]] WantedShape at(double time) const;
 
  private:
   void measure(const PicturePair& recorded, const Arm& arm, PictureMeter& meter, ShapeObserver& observer,
                ServoFeatures& features);
-  // Why pictures that were seen so are to be given in the other order; "" where they are not.
+  // Returns the reason why pictures with these views have to be given in the other order, or "".
   [[nodiscard]] std::string wrong_order(const ServoSight& sight, const PicturePair& recorded,
                                         PictureMeter& meter, const ShapeObserver& observer) const;
 

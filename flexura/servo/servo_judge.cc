@@ -11,7 +11,7 @@
 namespace flexura {
 
 void ServoJudge::add(const ServoStep& step) {
-  // How long it was held back, lately: what is let go is forgotten as fast.
+  // Recent time for which the limiter held the law back. It decreases as fast while the limiter does not.
   limited_for_ = std::clamp(limited_for_ + (step.limited.empty() ? -1 : 1) * config_.step, 0.0, 1.0);
   if (!step.limited.empty()) limited_by_ = step.limited;
   if (step.is_fresh) is_singular_ = step.is_singular;
@@ -27,7 +27,7 @@ void ServoJudge::add(const ServoStep& step) {
 void ServoJudge::add_error(const ServoStep& step) {
   latest_ = step.error->rms;
   const double time = *step.seen_at;
-  // What is seen badly is not yet there, and neither is what is still on its way elsewhere.
+  // A low-confidence observation does not count as arrival. Pending commands to another shape do not either.
   const double doubtful = 2 * config_.tolerance;
   const bool stays = step.sigma <= doubtful && (!step.ahead || step.ahead->rms <= doubtful);
   if (time < goal_time_ || !(latest_ <= config_.tolerance) || !stays) {
@@ -36,12 +36,12 @@ void ServoJudge::add_error(const ServoStep& step) {
     below_since_ = time;
   }
   is_done_ = below_since_ && time - *below_since_ >= config_.settle;
-  // What is wanted may go on faster than the arm may.
+  // The target may move faster than the arm is allowed to.
   const bool is_left_behind = !step.limited.empty() && step.desired != desired_;
   desired_ = step.desired;
   if (is_left_behind) best_ = latest_, worse_since_.reset();
   best_ = std::min(best_, latest_);
-  constexpr double much = 3, far = 0.05, patience = 1;  // Times the best, share of the length, s.
+  constexpr double much = 3, far = 0.05, patience = 1;  // Factor on the best error; share of the length; s.
   if (!(latest_ > std::max(much * best_, best_ + far))) {
     worse_since_.reset();
   } else if (!worse_since_) {
@@ -49,7 +49,7 @@ void ServoJudge::add_error(const ServoStep& step) {
   } else if (time - *worse_since_ > patience) {
     hopeless_ =
         fmt::format("diverging: {:.2g} % of the length off, after {:.2g} %", 100 * latest_, 100 * best_);
-    // What may not turn as fast as a law asks for goes past where it is wanted, again and again.
+    // If the arm may not turn as fast as the law requests, it passes the target again and again.
     if (limited_for_ > 0) *hopeless_ += fmt::format("; held back by {}", limited_by_);
   }
 }
@@ -63,14 +63,14 @@ std::string ServoJudge::why_not() const {
   return "not settled: " + off;
 }
 
-// By how much the tip went beyond its goal, seen from where it was, share of that way.
+// Updates by how much the tip went past its target, as a share of its way there.
 void ServoTally::add_overshoot(const ServoStep& step) {
   const Eigen::Vector3d tip = Backbone(arm_, *step.seen).tip().position;
   if (!tip_) {
     tip_ = tip, way_ = Backbone(arm_, step.desired).tip().position - tip;
     return;
   }
-  constexpr double little = 0.01;  // Of the arm's length: ways that noise would blow up.
+  constexpr double little = 0.01;  // Share of the arm's length: shorter ways would amplify noise.
   if (way_.norm() > little * arm_.length())
     overshoot_ = std::max(overshoot_, way_.dot(tip - *tip_) / way_.squaredNorm() - 1);
 }

@@ -11,18 +11,18 @@
 
 namespace flexura {
 
-/// Says when a servo is at its goal, and when it will not come there.
+/// Decides when a servo has reached its target, and when it cannot.
 class ServoJudge {
  public:
-  /// `begun`: the session's start; `last_goal`: when the last goal is wanted, s from there.
+  /// `begun`: start of the session; `last_goal`: time of the last target, s from there.
   ServoJudge(const ServoConfig& config, double begun, double last_goal)
       : config_(config), goal_time_(begun + last_goal) {}
 
-  /// A step that was made.
+  /// Adds a completed step.
   void add(const ServoStep& step);
 
   [[nodiscard]] bool is_done() const { return is_done_; }
-  /// Why the servo is to be given up; none while there is hope.
+  /// Returns the reason to end the servo; std::nullopt while it can still succeed.
   [[nodiscard]] const std::optional<std::string>& hopeless() const { return hopeless_; }
 
  private:
@@ -34,26 +34,26 @@ class ServoJudge {
   bool is_done_ = false;
   std::optional<std::string> hopeless_;
   std::optional<double> below_since_, worse_since_;
-  double seen_at_ = -1e300;           // When a new sight was last gone by, s.
+  double seen_at_ = -1e300;           // Time of the last new observation used, s.
   double best_ = 1e300, latest_ = 0;  // Shares of the length.
-  ArmState desired_;                  // Of the sight before.
-  double limited_for_ = 0;            // s, of late
+  ArmState desired_;                  // Target at the previous observation.
+  double limited_for_ = 0;            // Recent, s.
   std::string limited_by_;
   bool is_singular_ = false;
 };
 
-/// How fast and how well steps come to their goal, counted as they are made: it keeps the last `settle` s of
-/// errors, however long the servo goes on.
+/// Statistics of a servo's steps, updated with each step. Keeps the last `settle` s of errors, however long
+/// the servo runs.
 class ServoTally {
  public:
-  /// `begun`: the session's start; `last_goal`: when the last goal is wanted, s from there. `arm` outlives
-  /// it.
+  /// `begun`: start of the session; `last_goal`: time of the last target, s from there. `arm` must outlive
+  /// this object.
   ServoTally(const Arm& arm, const ServoConfig& config, double begun, double last_goal)
       : arm_(arm), begun_(begun), last_goal_(last_goal), late_(config.settle) {}
 
-  /// A step that was made.
+  /// Adds a completed step.
   void add(const ServoStep& step);
-  /// Fills in what a result says of them.
+  /// Fills in these statistics in a result.
   void finish(ServoResult& result) const;
 
  private:
@@ -63,7 +63,7 @@ class ServoTally {
   double begun_, last_goal_;
   std::optional<double> settled_;
   LateErrors late_;
-  // From where the tip started, once the last goal was wanted, and its way to there.
+  // Position of the tip at the time of the last target, and its way to the target.
   std::optional<Eigen::Vector3d> tip_;
   Eigen::Vector3d way_ = Eigen::Vector3d::Zero();
   double overshoot_ = 0;

@@ -89,7 +89,7 @@ ServoLaw::Wish ServoLaw::step(const Input& input) {
   } else {
     by_variables(is_.by_state, input.sent, J_);
   }
-  // What was sent since the pictures were taken is on its way.
+  // Commands since the exposure are still being carried out.
   if (config_.predict) {
     law_.variables().pack(input.sent, x_), law_.variables().pack(input.said, y_);
     x_ -= y_;

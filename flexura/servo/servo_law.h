@@ -14,39 +14,39 @@
 
 namespace flexura {
 
-/// Where to send the arm, by what was seen of it: damped least squares on the features of a law
+/// Computes the arm's next command from observations: damped least squares on the features of a law
 /// (docs/servo.md).
 class ServoLaw {
  public:
-  /// `features` and `config` outlive it.
+  /// `features` and `config` must outlive this object.
   ServoLaw(const ArmModel& believed, const ServoConfig& config, ServoFeatures& features);
 
-  /// What it goes by.
+  /// Input of a step.
   struct Input {
-    const ServoSight& sight;    ///< The last one in which the arm was seen.
-    bool is_fresh = false;      ///< It was not there at the last step.
-    const ArmState& said;       ///< What the drives said at its time.
+    const ServoSight& sight;    ///< Last observation of the arm.
+    bool is_fresh = false;      ///< The observation is new since the last step.
+    const ArmState& said;       ///< Drives' reading at its time.
     const ArmState& sent;       ///< The last command.
-    const WantedShape& then;    ///< What was wanted at the sight's time,
-    const WantedShape& wanted;  ///< is wanted now,
-    const ArmState& next;       ///< and one step from now.
+    const WantedShape& then;    ///< Target at the time of the observation.
+    const WantedShape& wanted;  ///< Current target.
+    const ArmState& next;       ///< Target one step from now.
   };
   struct Wish {
     ArmState asked;
-    double potential = 0;  ///< Half the error's square at the sight's time.
+    double potential = 0;  ///< Half the squared error at the time of the observation.
     bool is_singular = false;
   };
-  /// Asks to stay where nothing can be told from the sight.
+  /// Returns the command. Keeps the current one if the observation gives no error.
   [[nodiscard]] Wish step(const Input& input);
 
  private:
-  // The derivatives by what the law varies, at a command, from those by the shape.
+  // Converts derivatives by the shape to derivatives by the law's variables at a command.
   void by_variables(const Eigen::MatrixXd& by_shape, const ArmState& command, Eigen::MatrixXd& J);
-  // The variables of a command, within the limits or not.
+  // Packs the variables of a command, within the limits or not.
   void pack(const ArmState& state, Eigen::VectorXd& x) const;
-  // Of what is seen, in seen_.
+  // Computes the error of the measured features, which it writes to seen_.
   [[nodiscard]] bool find_error(const Input& input, const WantedShape& wanted, FeatureError& result);
-  // What the drives do while what is wanted goes on.
+  // Adds the motion of the drives that follows the target's motion.
   void go_along(const ArmState& wanted, const ArmState& next, ArmState& asked);
 
   const ServoConfig& config_;
@@ -54,7 +54,7 @@ class ServoLaw {
   Actuation actuation_;
   ImageLaw law_;
   DriveResponse response_;
-  // What a step works on, kept so that none allocates it anew.
+  // Buffers of a step, kept to avoid allocations.
   Eigen::VectorXd seen_, desired_, x_, y_;
   ArmState halfway_;
   FeatureError is_, was_;

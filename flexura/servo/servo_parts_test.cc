@@ -30,15 +30,15 @@ TEST(MotionHistory, IsStraightBetweenReadings) {
   EXPECT_EQ(history.at(-5), 1);
   EXPECT_EQ(history.at(5), 1);
   history.add(0.5, 2);
-  history.add(0.5, 100);  // Not newer: passed over.
+  history.add(0.5, 100);  // Not newer: skipped.
   EXPECT_DOUBLE_EQ(*history.at(0.25), 1.5);
   EXPECT_EQ(history.at(7), 2);
   for (int i = 1; i <= 100; ++i) history.add(0.5 + i, 2 + i);
   EXPECT_DOUBLE_EQ(*history.at(100), 101.5);
-  EXPECT_GE(*history.at(0), 99);  // Forgotten, but for one.
+  EXPECT_GE(*history.at(0), 99);  // Dropped, except one.
 }
 
-// What the law takes for derivatives are those of what it measures, near a target.
+// Near a target, the law's derivatives must equal those of the measured features.
 TEST(ServoFeatures, AreWhatTheirDerivativesSay) {
   for (const ServoLawKind law : {ServoLawKind::shape, ServoLawKind::points, ServoLawKind::chords,
                                  ServoLawKind::moments, ServoLawKind::potential, ServoLawKind::silhouettes}) {
@@ -61,7 +61,7 @@ TEST(ServoFeatures, AreWhatTheirDerivativesSay) {
           ASSERT_TRUE(features->error(seen, desired, state, views, off));
           const Eigen::VectorXd by = off.error / step;
           const Eigen::VectorXd column = at.by_state.col(3 * static_cast<Eigen::Index>(i) + axis);
-          // The plane angles are read as if from afar: near, and never the other way.
+          // The plane angles are a parallel reading: derivatives are close, and never of the opposite sign.
           const bool is_parallel = law == ServoLawKind::potential;
           EXPECT_LT((by - column).norm(), (is_parallel ? 0.35 : 2e-3) * column.norm() + 1e-6);
           EXPECT_GT(by.dot(column), 0.8 * by.norm() * column.norm());
@@ -71,7 +71,7 @@ TEST(ServoFeatures, AreWhatTheirDerivativesSay) {
   }
 }
 
-// Every place lies where the line across the arm meets the axis nearest to it, of all its pieces.
+// Every point must be where the line across the arm meets the nearest of all pieces of the centerline.
 TEST(MeasuredPixels, MissNoPieceOfTheAxis) {
   int met = 0;
   for_random_cases(100, [&](TestRandom& random) {
@@ -91,7 +91,7 @@ TEST(MeasuredPixels, MissNoPieceOfTheAxis) {
     for (Eigen::Index i = 0; i < moved.cols(); ++i) {
       const double s = shares[static_cast<std::size_t>(i)] * backbone.length();
       const Pose X_WS = backbone.pose(s);
-      // And on the shape's own image where no axis is seen.
+      // Without a measured centerline, points must be on the shape's own image.
       EXPECT_LT((own.col(i) - *view.project(X_WS.position)).norm(), 1e-9);
       const Eigen::Vector2d ahead =
           *view.project(X_WS.position + 1e-4 * backbone.length() * X_WS.rotation.col(2)) - own.col(i);
@@ -113,8 +113,8 @@ TEST(MeasuredPixels, MissNoPieceOfTheAxis) {
   EXPECT_GT(met, 100 / one_case_of);
 }
 
-// Errors of angles that are carried by rates and drawn back to measured ones have the variance of (25): where
-// rates are much better known than angles the carried ones are better than measured, and worse otherwise.
+// Errors of angles that are carried by rates and pulled towards measured ones must have the variance of (25).
+// If rates are much more precise than angles, carried angles are better than measured ones, otherwise worse.
 TEST(CarriedAngles, HaveTheErrorsOfTheirRatesAndOfTheirAnchor) {
   for (const double rate_sigma : {1e-4, 3e-3}) {
     constexpr double angle_sigma = 1e-3, left = 0.8;
@@ -144,7 +144,7 @@ TEST(CarriedAngles, HaveTheErrorsOfTheirRatesAndOfTheirAnchor) {
   }
 }
 
-// Random ways of an arm that does not do what its model says, seen with a picture's noise.
+// Random ways of an arm that does not follow its model, observed with a picture's noise.
 TEST(DriveResponse, LearnsWhatTheArmMakesOfItsDrives) {
   for (const ServoJacobian how : {ServoJacobian::broyden, ServoJacobian::recursive}) {
     for_random_cases(20, [&](TestRandom& random) {
@@ -164,19 +164,19 @@ TEST(DriveResponse, LearnsWhatTheArmMakesOfItsDrives) {
         response.learn(x, seen());
       }
       EXPECT_LT((response.matrix() - truth).norm(), 0.1 * truth.norm());
-      // What rests, and what is no number, teaches nothing.
+      // An arm at rest and values that are not finite teach nothing.
       const Eigen::MatrixXd before = response.matrix();
       for (int k = 0; k < 200; ++k) response.learn(x, seen());
       response.learn(Eigen::VectorXd::Constant(n, std::nan("")), x);
       EXPECT_EQ(response.matrix(), before);
-      // A shape that was never there costs little: no more than one rad a rad of the way.
+      // A false shape must change little: no more than one rad per rad of the way.
       response.learn(x + Eigen::VectorXd::Constant(n, 0.02), x + Eigen::VectorXd::Constant(n, 3));
       EXPECT_LE((response.matrix() - before).norm(), 1.0);
     });
   }
 }
 
-// What moves as wanted is sent the drives' way, whatever they make of it.
+// A motion that follows the target is commanded to the drives by the inverse of their response.
 TEST(DriveResponse, TellsTheDrivesPartOfAWay) {
   DriveResponse response(ServoJacobian::recursive, 2), model(ServoJacobian::model, 2);
   Eigen::Matrix2d truth;
@@ -203,7 +203,7 @@ TEST(ServoJudge, KnowsTheEnd) {
   ServoConfig config;
   config.tolerance = 0.01, config.settle = 0.5, config.timeout = 3;
   {
-    // What is seen so badly, or is on its way elsewhere, is not there.
+    // An imprecise observation, or one with commands pending to another shape, does not count as arrival.
     ServoJudge doubtful(config, 0, 0), leaving(config, 0, 0);
     for (int k = 0; k < 60; ++k) {
       ServoStep step = step_at(k / 30.0, 0.001);
@@ -219,7 +219,7 @@ TEST(ServoJudge, KnowsTheEnd) {
     ServoJudge judge(config, 10, 1);
     int k = 0;
     for (; k < 90 && !judge.is_done(); ++k) judge.add(step_at(10 + k / 30.0, 0.001));
-    // Before the goal's time nothing counts.
+    // Errors before the target's time do not count.
     EXPECT_NEAR(k / 30.0, 1.5, 0.07);
   }
   {

@@ -60,14 +60,14 @@ class Session {
       while (!is_over()) step();
     } catch (const std::exception& error) {
       first = std::current_exception();
-      limiter_->fault(error.what());  // Whatever it is, the arm shall not go on.
+      limiter_->fault(error.what());  // After any error, the arm must stop.
       keep(error.what());
     }
     try {
       if (first) watcher_.told(rig_.now(), limiter_->fault()->reason);
       come_to_rest();
     } catch (...) {
-      // Who watches cannot: a log that is full. What came first is the reason.
+      // The watcher fails, for example with a full log. The first error is the reason.
       (void)rig_.ports().arm->halt();
       if (first) std::rethrow_exception(first);
       throw;
@@ -84,9 +84,9 @@ class Session {
   }
 
  private:
-  // But for what drives round and play hides.
+  // Equal within quantisation and backlash of the drives.
   static bool is_near(const ArmState& a, const ArmState& b) {
-    constexpr double near = 0.02;  // rad; of stretch
+    constexpr double near = 0.02;  // In rad; also for the stretch.
     if (a.bends.size() != b.bends.size()) return false;
     for (std::size_t i = 0; i < a.bends.size(); ++i)
       if (!((a.bends[i] - b.bends[i]).norm() < near) || !(std::abs(a.stretches[i] - b.stretches[i]) < near))
@@ -110,7 +110,7 @@ class Session {
           100 * result_.missed, farthest + 1);
     goals_.emplace(config_.goals, model_.arm, meter_, observer_, *features_, rig_.views(result_.start));
     if (!goals_->problem().empty()) return goals_->problem();
-    // Pictures as goals take a while to be measured, which is not the loop's.
+    // The time to measure pictures of targets does not count as the loop's.
     if (rig_.now() > result_.start) {
       result_.start = rig_.now();
       if (auto trouble = rig_.read()) return trouble;
@@ -139,15 +139,15 @@ class Session {
     return !result_.reason.empty();
   }
 
-  // The last observations and commands. Of several reasons the first one's, at its time.
+  // Keeps the last observations and commands. The first of several reasons counts, with its time.
   void keep(const std::string& reason) {
     if (kept_) return;
     kept_ = limiter_->fault() ? *limiter_->fault() : limiter_->record(reason);
     kept_->time = rig_.now() - result_.start;
   }
 
-  // Waits for the next command's time; reads everything. Times that have passed are left out: commands follow
-  // each other in whole steps, for it is that fast that the limiter lets the arm go.
+  // Waits until the time of the next command, then reads all devices. Skips times that have passed. Commands
+  // follow each other in whole steps, because the limiter moves the arm at this rate.
   void wake() {
     constexpr double rounding = 1e-6;
     double passed = std::ceil((rig_.now() - result_.start) / config_.step - rounding);
@@ -170,7 +170,7 @@ class Session {
     keep(what);
   }
 
-  // The newest pictures to a shape; whether there are any that tell one.
+  // Estimates a shape from the newest pictures. Returns true if they give one.
   bool look(double now) {
     const std::optional<PicturePair> pair = rig_.newest_pair();
     if (!pair) {
@@ -196,7 +196,7 @@ class Session {
 
   [[nodiscard]] bool is_blind(double now) const { return observer_.blind_for(now) > config_.hold_after; }
 
-  // Why pictures tell none.
+  // Returns the reason why the pictures give no shape.
   [[nodiscard]] std::string no_shape(const ServoSight& sight) const {
     for (std::size_t i = 0; i < 2; ++i)
       if (!sight.reasons[i].empty())
@@ -235,7 +235,7 @@ class Session {
     send(now, std::move(command.state), std::move(step));
   }
 
-  // What the law asks for, by the last sight.
+  // Returns the law's command for the last observation.
   [[nodiscard]] ArmState asked(double now, ServoStep& step) {
     const ServoSight& sight = *observer_.last();
     const ArmState& seen = sight.estimate.shape.state;
@@ -257,7 +257,7 @@ class Session {
     return wish.asked;
   }
 
-  // Which section a state bends or stretches as far as it goes, in words.
+  // Returns a text that names the section at its limit of bend or stretch.
   [[nodiscard]] std::string at_its_limit(const ArmState& state) const {
     constexpr double nearly = 1 - 1e-6;
     for (std::size_t i = 0; i < state.bends.size(); ++i) {
@@ -289,8 +289,7 @@ class Session {
   void tell_arm(double now, const ArmState& state) {
     const auto taken = rig_.ports().arm->command(state, config_.step);
     if (const auto refused = taken.fault()) {
-      // What does not take commands may still stop; from then on it is somewhere else than the limiter has
-      // it.
+      // A device that refuses commands may still stop. From then on it is not where the limiter assumes.
       is_deaf_ = true;
       (void)rig_.ports().arm->halt();
       fault("the arm: " + text(*refused));
@@ -311,7 +310,7 @@ class Session {
     if (config_.keeps_steps) result_.steps.push_back(std::move(step));
   }
 
-  // Down the limiter's way to rest.
+  // Follows the limiter's path to rest.
   void come_to_rest() {
     while (!limiter_->is_at_rest()) {
       wake();
@@ -323,7 +322,7 @@ class Session {
       send(now, std::move(command.state), std::move(step));
     }
     for (std::size_t i = 0; config_.follow && i < 2; ++i) (void)rig_.camera(i).head->halt();
-    // The last command lasts until the next one's time.
+    // The last command lasts until the time of the next one.
     rig_.ports().clock->wait_until(result_.start + config_.step * static_cast<double>(++ticks_));
   }
 
@@ -343,7 +342,7 @@ class Session {
   std::optional<ServoTally> tally_;
   long ticks_ = 0;
   bool is_deaf_ = false;        // The arm has refused a command.
-  std::string unseen_because_;  // "": the newest pictures told a shape.
+  std::string unseen_because_;  // "" if the newest pictures gave a shape.
   std::optional<LimiterFault> kept_;
   ArmState sent_;
   ServoResult result_;

@@ -15,28 +15,29 @@
 
 namespace flexura {
 
-/// Pictures that come later than that are not gone by, s.
+/// Largest delay of a picture that is used, s.
 inline constexpr double longest_delay = 60;
 
-/// How a servo went.
+/// Result of a servo.
 struct ServoResult {
-  bool is_done = false;          ///< The last shape was reached, and held for `settle` s.
-  std::string reason;            ///< Why it is not; the arm rests.
-  std::vector<ServoStep> steps;  ///< None of a servo that keeps none.
-  /// Steps whose time had passed before the one before them was done: nothing was sent at these.
+  bool is_done = false;          ///< The last target was reached and held for `settle` s.
+  std::string reason;            ///< Reason why not; the arm is at rest.
+  std::vector<ServoStep> steps;  ///< Empty if the servo keeps no steps.
+  /// Number of steps without a command, because their time had passed before the previous step was done.
   long missed_steps = 0;
   double start = 0;                     ///< s
-  double missed = 0;                    ///< The most that a goal's own `missed` is.
-  std::optional<double> settled;        ///< Time from the start to 2 % for good, s.
-  double overshoot = 0;                 ///< By how much the tip went past its goal, share of its way.
+  double missed = 0;                    ///< Largest `missed` of the targets.
+  std::optional<double> settled;        ///< Time from the start until the error stays below 2 %, s.
+  double overshoot = 0;                 ///< How far the tip went past its target, share of its way.
   std::optional<ServoError> remaining;  ///< Mean over the last `settle` s.
-  /// What was seen, sent and asked for last before it was given up, for whatever reason; `time` since start.
+  /// Last observation, command and request before the servo ended early, for any reason; `time` since the
+  /// start.
   std::optional<LimiterFault> fault;
-  /// The first of all, and the newest that told a shape; null: there was none.
+  /// First observation, and newest one with a shape; null if missing.
   std::shared_ptr<const ServoSight> first, last;
 };
 
-/// Is told of a session as it goes. What it does with that changes nothing of it.
+/// Receives the events of a session. Does not influence it.
 class ServoSessionWatcher {
  public:
   virtual ~ServoSessionWatcher() = default;
@@ -44,25 +45,25 @@ class ServoSessionWatcher {
   ServoSessionWatcher(const ServoSessionWatcher&) = delete;
   ServoSessionWatcher& operator=(const ServoSessionWatcher&) = delete;
 
-  /// The arm was sent to `state`, to arrive `duration` s later; at `time`, s of the rig's clock. What was
-  /// refused is not told.
+  /// The arm was commanded to `state`, to arrive `duration` s later; `time` in s of the rig's clock. Not
+  /// called for refused commands.
   virtual void arm_sent(double time, const ArmState& state, double duration) = 0;
-  /// Two pictures of one instant were measured.
+  /// Two simultaneous pictures were measured.
   virtual void seen(const ServoSight& /*sight*/) {}
   /// A step was done.
   virtual void stepped(const ServoStep& /*step*/) {}
-  /// Something happened that is worth a line: "camera side does not see the arm: ...".
+  /// An event for the log: "camera side does not see the arm: ...".
   virtual void told(double /*time*/, const std::string& /*what*/) {}
-  /// Whether the servo shall end early.
+  /// Returns true if the servo has to end early.
   virtual bool is_cancelled() { return false; }
 };
 
-/// Steers the shape of a rig's arm by two cameras until it is the wanted one (docs/servo.md): the newest
-/// pictures are measured, the shape of the arm at their time is estimated, the law says where to send it, a
-/// limiter stands between. Everything goes through the ports; what goes wrong ends with the arm at rest and
-/// says why. Steps whose time has passed are left out: the next one is at the next whole step. The same rig,
-/// readings and pictures give the same result. std::invalid_argument: no goals, goals whose times do not rise
-/// from 0, numbers out of range, ports for other cameras than the model's.
+/// Controls the shape of a rig's arm with two cameras until it reaches the target (docs/servo.md). Each step
+/// measures the newest pictures, estimates the arm's shape at their time and computes a command, which the
+/// limiter checks. Uses only the ports. After an error, the arm is at rest and the result has the reason.
+/// Skips steps whose time has passed, to the next whole step. Equal rigs, readings and pictures give equal
+/// results. Throws std::invalid_argument if there are no targets, their times do not increase from 0, or a
+/// number is out of range. Also throws it if the ports and the model have different cameras.
 [[nodiscard]] ServoResult servo_in_session(const RigPorts& ports, const RigModel& believed,
                                            const ServoConfig& config, ServoSessionWatcher& watcher);
 

@@ -11,17 +11,17 @@
 
 namespace flexura {
 
-/// What two pictures of one instant told.
+/// Observation from two simultaneous pictures.
 struct ServoSight {
   double time = 0;   ///< Middle of the exposures, s.
-  ArmState desired;  ///< Then.
-  /// How far goals that are recorded pictures lie from what the cameras, as they are believed to be, would
-  /// see of that, in the law's own features; empty: nothing.
+  ArmState desired;  ///< Target at that time.
+  /// For targets from recorded pictures: their offset from what nominal cameras would observe, in the law's
+  /// features; empty: zero.
   Eigen::VectorXd desired_offset;
-  std::array<Frame, 2> frames;   ///< Of both cameras.
-  std::array<Sighting, 2> seen;  ///< Axes, bands and borders, in the views as believed, less their errors.
-  ShapeEstimate estimate;        ///< Of the arm's shape at that time.
-  std::array<std::string, 2> reasons;  ///< Why a picture shows no arm; "" when it does.
+  std::array<Frame, 2> frames;         ///< Of both cameras.
+  std::array<Sighting, 2> seen;        ///< Centerlines, bands, borders; views corrected by their errors.
+  ShapeEstimate estimate;              ///< Shape of the arm at that time.
+  std::array<std::string, 2> reasons;  ///< Reason why a picture shows no arm, or "".
 };
 
 }  // namespace flexura

@@ -10,8 +10,8 @@
 namespace flexura {
 namespace {
 
-// A table whose fields may be parts of members: `Part` has functions `get`, the value of a step, and `set`,
-// which puts a value into one.
+// A table whose fields may be parts of members. `Part` has functions `get`, which returns the value from a
+// step, and `set`, which stores a value in one.
 class StepTable : public Table<ServoStep> {
  public:
   using Table::Table;
@@ -57,7 +57,7 @@ std::vector<Eigen::Vector2d> bends_from_log(const Bends& list) {
   return bends;
 }
 
-// What a member that may be none has there, made where it is none.
+// Returns the value of an optional member, which it creates if missing.
 template <class Value>
 Value& made(std::optional<Value>& member) {
   return member ? *member : member.emplace();
@@ -122,7 +122,7 @@ struct TrueError {
   static void set(ServoStep& step, std::optional<double> value) { made(step.truth).error.*number = *value; }
 };
 
-// Left out where there is nothing.
+// Omitted if empty.
 struct Heads {
   static std::optional<std::vector<HeadCommand>> get(const ServoStep& step) {
     return step.heads.empty() ? std::nullopt : std::optional(step.heads);

@@ -11,43 +11,43 @@
 
 namespace flexura {
 
-/// Where a camera's head was sent to.
+/// Command of a camera's head.
 struct HeadCommand {
-  std::string camera;        ///< Its name.
+  std::string camera;        ///< Name of the camera.
   double pan = 0, tilt = 0;  ///< rad
-  double zoom = 0;           ///< A position of the lens's table.
+  double zoom = 0;           ///< Position in the lens's table.
 };
 
-/// The arm as it truly was, where somebody knows that.
+/// True shape of the arm, where known.
 struct TrueShape {
   std::vector<Eigen::Vector2d> bends;  ///< Of each arc, rad.
-  std::vector<double> lengths;         ///< Likewise, with its stretch, m.
-  ServoError error;                    ///< From what was desired.
+  std::vector<double> lengths;         ///< Stretched length of each arc, m.
+  ServoError error;                    ///< Error relative to the target.
 };
 
-/// One command of a servo, and what it was made of: for the loop, for the log (flexura.ServoStep, on
-/// /servo/steps), and for all that read either.
+/// One command of a servo and its inputs: for the loop, for the log (flexura.ServoStep, on /servo/steps), and
+/// for readers of either.
 struct ServoStep {
-  double time = 0;                  ///< When it was sent, s.
-  std::optional<double> seen_at;    ///< Of the sight that it goes by, s; none before the first.
-  ArmState desired;                 ///< At the time of that sight.
-  std::optional<ArmState> seen;     ///< By that sight.
-  ArmState sent;                    ///< To the drives, by the limiter.
-  std::vector<HeadCommand> heads;   ///< That were sent on with this command.
-  std::vector<double> lengths;      ///< Of the unstretched sections, as they are believed to be, m.
-  std::optional<ServoError> error;  ///< Of what is seen, from desired.
-  /// At the time of that sight. The servo does not know it: who simulates the rig adds it.
+  double time = 0;                  ///< Time of the command, s.
+  std::optional<double> seen_at;    ///< Time of the observation used, s; empty before the first.
+  ArmState desired;                 ///< Target at the time of the observation.
+  std::optional<ArmState> seen;     ///< Shape of the observation.
+  ArmState sent;                    ///< Command of the limiter to the drives.
+  std::vector<HeadCommand> heads;   ///< Commands of the heads in this step.
+  std::vector<double> lengths;      ///< Nominal lengths of the unstretched sections, m.
+  std::optional<ServoError> error;  ///< Error of the observed shape relative to the target.
+  /// True shape at the time of the observation. Unknown to the servo; the simulator of the rig adds it.
   std::optional<TrueShape> truth;
-  /// Half the square of the law's error: Lyapunov's function of an arm that does what it is sent. In the
-  /// law's own units: rad^2 of `shape` and `potential`, px^2 otherwise (docs/servo.md).
+  /// Half the squared error of the law: a Lyapunov function if the arm follows its commands. In the law's
+  /// units: rad^2 for `shape` and `potential`, otherwise px^2 (docs/servo.md).
   double potential = 0;
-  bool is_fresh = false;     ///< The sight is new.
-  bool is_singular = false;  ///< Of the law: some motion shows in nothing that is seen.
-  std::string limited;       ///< What held the law back; "": nothing.
+  bool is_fresh = false;     ///< The observation is new.
+  bool is_singular = false;  ///< The law is singular: some motion does not change any feature.
+  std::string limited;       ///< Reason why the law was held back, or "".
 
-  // What a log does not have.
-  double sigma = 0;  ///< Of what is seen, standard deviation along the arm, share of its length.
-  /// Of the shape that is expected after all that was sent, from what is desired when it is sent.
+  // Not in logs.
+  double sigma = 0;  ///< Standard deviation of the observed shape along the arm, share of its length.
+  /// Error of the shape expected after all commands, relative to the target at the time of the command.
   std::optional<ServoError> ahead;
 };
 

@@ -28,7 +28,7 @@ ServoStep whole_step() {
   return step;
 }
 
-// The log's keys, flat and in their order, whatever the struct's members are.
+// The log's keys are flat and in their order, independent of the struct's members.
 TEST(ServoStep, IsWrittenUnderTheLogsKeys) {
   EXPECT_EQ(keys_of(written(whole_step())),
             "time seen_at desired desired_stretches seen seen_stretches sent sent_stretches heads lengths "

@@ -17,15 +17,15 @@ ShapePrior prior_of(const Arm& arm, const std::vector<double>& markers) {
   return prior;
 }
 
-// Cameras that are a degree wrong show the arm by many pixels elsewhere than it would be seen: where nothing
-// of it is put down to them the nearest shape is still the one to go by.
+// A camera that is wrong by one degree shifts the arm's image by many pixels. If view errors are not
+// estimated, the nearest shape is still the best one to use.
 EstimatorConfig patient_estimator(const ViewDoubt& doubt) {
   EstimatorConfig config;
   config.most_rms = doubt.is_any() ? 5 : 20;
   return config;
 }
 
-// Nothing of it is taken for something else's where it is so far off.
+// With such offsets no measurement is rejected as another object's.
 constexpr double believed_off = 2;  // px
 
 void believe(Sighting& seen) {
@@ -35,7 +35,7 @@ void believe(Sighting& seen) {
     if (end) end->sigma = std::max(end->sigma, believed_off);
 }
 
-// What the pictures' noise is, px.
+// Returns the mean noise of the pictures, px.
 double noise_of(const std::array<Sighting, 2>& seen) {
   double sum = 0, count = 0;
   for (const Sighting& one : seen)
@@ -78,8 +78,8 @@ void ShapeObserver::estimate(ServoSight& sight, const std::optional<ArmState>& e
     sight.seen[i].view = corrected(sight.seen[i].view, errors[i]);
 }
 
-// Of cameras that nobody doubts and that fit no shape by far more than the pictures' noise, the shape that is
-// nearest: from then on, until told to forget.
+// Fallback for cameras without a prior that fit no shape within the pictures' noise: estimates the nearest
+// shape. Stays in this mode until forget().
 ShapeEstimate ShapeObserver::shape_of(const ServoSight& sight, const std::optional<ArmState>& expected) {
   ShapeEstimate found;
   if (!is_believing_) found = tracker_.look(sight.seen, sight.time, expected);

@@ -14,36 +14,37 @@
 
 namespace flexura {
 
-/// What is believed of the arm: in which shape it is, by what was measured of it and by what its drives did
-/// since (a state observer), and since when that is not known.
+/// State observer of the arm: estimates its shape from measurements and the drives' motion since, and counts
+/// the time without observations.
 class ShapeObserver {
  public:
-  /// `rig`, which says what the drives did, outlives this.
+  /// `rig`, which gives the drives' motion, must outlive this object.
   ShapeObserver(const RigReader& rig, const RigModel& believed, const ServoConfig& config);
 
-  /// Until then, s of the rig's clock, nobody was blind.
+  /// The time without observations counts from `time`, s of the rig's clock.
   void begin(double time) { seen_since_ = time; }
-  /// Fills in the shape in which the arm was at the sight's time, at `now`, s of the rig's clock. Whether it
-  /// is found: `last` is this sight then. Where a picture shows no arm it is not. Where it is, the sightings'
-  /// views are without the errors that were found with it.
+  /// Estimates the arm's shape at the observation's time, at `now`, s of the rig's clock. Returns true and
+  /// sets `last` to this observation if the shape is found. Returns false if a picture shows no arm. The
+  /// views of a found observation are corrected by the errors estimated with it.
   bool observe(const std::shared_ptr<ServoSight>& sight, double now);
-  /// The same of pictures by themselves, of an arm that may have stood anyhow; nothing of it is kept.
+  /// Estimates the shape from these pictures alone, of an arm in any shape. Keeps nothing of it.
   void estimate_alone(ServoSight& sight);
-  /// The shape of what was measured, if nothing were wrong with these views.
+  /// Returns the shape estimated from the measurements with these views taken as exact.
   [[nodiscard]] ShapeEstimate as_believed(const ServoSight& sight, const std::array<View, 2>& views) const;
 
-  /// The first of all, and the newest that told a shape; null before.
+  /// First observation, and newest one with a shape; null before.
   [[nodiscard]] const std::shared_ptr<const ServoSight>& first() const { return first_; }
   [[nodiscard]] const std::shared_ptr<const ServoSight>& last() const { return last_; }
-  /// For how long no picture has told a shape, s.
+  /// Returns the time since an observation last gave a shape, s.
   [[nodiscard]] double blind_for(double now) const { return now - seen_since_; }
   [[nodiscard]] double seen_since() const { return seen_since_; }
 
-  /// The shape in which the arm is expected where the model makes `driven` of its drives: as it was seen
-  /// last, moved by what they did since.
+  /// Returns the expected shape if the model gives `driven` for the drives: the last estimate plus the
+  /// drives' motion since.
   [[nodiscard]] ArmState expected(ArmState driven) const;
-  /// How well the pictures' noise lets the last shape be known, root mean square along the arm, share of its
-  /// length. What cameras that are wrong and not doubted add to it is there in every picture alike.
+  /// Returns the standard deviation of the last shape from the pictures' noise, root mean square along the
+  /// arm, share of its length. Errors of cameras without a prior are equal in every picture and are not
+  /// included.
   [[nodiscard]] double sigma() const;
 
  private:

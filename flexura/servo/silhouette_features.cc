@@ -12,8 +12,7 @@
 namespace flexura {
 namespace {
 
-// Two numbers a pixel, right and left of each place, and then a normal, in the first camera, then in the
-// second.
+// Values per camera: two pixels, right and left of each place, then a normal each.
 class SilhouetteFeatures : public ServoFeatures {
  public:
   SilhouetteFeatures(const Arm& arm, int points) : contours_(arm, FeatureSet::of_points(points).points) {}
@@ -40,13 +39,13 @@ class SilhouetteFeatures : public ServoFeatures {
       contour_error(images_[i], edges_in(seen, i), edges_in(desired, i), normals_in(desired, i),
                     result.error.segment(first, rows));
       contours_.derive(views[i], images_[i], result.by_state.middleRows(first, rows));
-      // What the wanted shape shows nowhere says nothing of how to come there.
+      // Edges without an image of the target shape give no direction.
       for (Eigen::Index k = 0; k < rows; ++k)
         if (!edges_in(desired, i).col(k).allFinite()) result.by_state.row(first + k).setZero();
     }
     return true;
   }
-  // Where the lens does not show the arm half-way, the derivatives where it stands are left.
+  // If the arm half-way is outside the lens's view, the derivatives at the current shape remain.
   [[nodiscard]] bool secant(const Eigen::VectorXd& seen, const Eigen::VectorXd& desired, const ShapeWay& way,
                             const std::array<View, 2>& views, FeatureError& result) override {
     if (!error(seen, desired, way.seen, views, result)) return false;
@@ -79,7 +78,7 @@ class SilhouetteFeatures : public ServoFeatures {
     return {values.data() + place_of(camera) + 2 * contours_.count(), 2, contours_.count()};
   }
 
-  // The contours of a state, in images_ and as values.
+  // Computes the contours of a state, in images_ and as values.
   [[nodiscard]] bool see(const ArmState& state, const std::array<View, 2>& views, Eigen::VectorXd& values) {
     contours_.set(state);
     values.resize(8 * contours_.count());
@@ -94,7 +93,7 @@ class SilhouetteFeatures : public ServoFeatures {
 
   ContourImages contours_;
   std::array<ContourImage, 2> images_, halfway_;
-  std::array<Eigen::Matrix2Xd, 2> directions_;  // Of the errors.
+  std::array<Eigen::Matrix2Xd, 2> directions_;  // Directions of the errors.
   Eigen::VectorXd own_;
 };
 

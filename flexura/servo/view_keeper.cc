@@ -14,7 +14,7 @@ double within(double value, const std::array<double, 2>& limits) {
   return std::clamp(value, limits[0], limits[1]);
 }
 
-// What the picture shows of the arm: none where part of it is behind the camera.
+// Returns the bounding box of the arm's image; std::nullopt if part of the arm is behind the camera.
 std::optional<Eigen::AlignedBox2d> seen_box(const Arm& arm, const ArmState& state, const View& view) {
   constexpr int points = 20;
   const std::vector<Eigen::Vector2d> pixels = backbone_pixels(arm, state, view, points);
@@ -33,7 +33,7 @@ ViewKeeper::ViewKeeper(const RigModel& believed, const std::array<std::size_t, 2
 
 std::optional<HeadState> ViewKeeper::turned(std::size_t i, const ArmState& state, const HeadState& stands,
                                             const View& view) const {
-  // Shares of the picture: beyond the first of them the head turns, beyond the second it zooms out.
+  // Shares of the picture: beyond the first the head turns, beyond the second it zooms out.
   constexpr double quiet = 0.15, full = 0.9;
   const auto box = seen_box(arm_, state, view);
   if (!box) return std::nullopt;
@@ -50,7 +50,7 @@ std::optional<HeadState> ViewKeeper::turned(std::size_t i, const ArmState& state
     head.tilt = within(head.tilt - std::atan(off.y() / lens.fy), axes[1].limits);
   }
   if (filled > full) {
-    // The nearest zoom with a focal length so much shorter, among a hundred.
+    // Of a hundred zooms, takes the one nearest to the required focal length.
     constexpr int tries = 100;
     const double wanted = lens.fx * full / filled;
     double best = std::abs(cameras_[i].lens().at(head.zoom).fx - wanted);

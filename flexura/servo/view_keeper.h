@@ -11,14 +11,14 @@
 
 namespace flexura {
 
-/// Keeps an arm in two cameras' pictures: where their heads are to turn.
+/// Keeps an arm in two cameras' pictures by turning their heads.
 class ViewKeeper {
  public:
   ViewKeeper(const RigModel& believed, const std::array<std::size_t, 2>& cameras);
 
-  /// Where to send the head of the first or second camera, which stands so and sees the arm in `state` by
-  /// `view`: so that the middle of what is seen of the arm is the picture's middle, and at a zoom with which
-  /// the arm fits into it. None while the arm is well inside. Within the head's limits.
+  /// Returns the command for the head of the first or second camera, which is at `stands` and observes the
+  /// arm in `state` by `view`. It brings the middle of the arm's image to the picture's middle, with a zoom
+  /// that shows all of it. Returns std::nullopt while the arm is well inside. Respects the head's limits.
   [[nodiscard]] std::optional<HeadState> turned(std::size_t i, const ArmState& state, const HeadState& stands,
                                                 const View& view) const;
 

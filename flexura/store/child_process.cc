@@ -17,7 +17,7 @@
 namespace flexura {
 
 ChildProcess::ChildProcess(const std::vector<std::string>& arguments) : name_(arguments.at(0)) {
-  // A socket, for a pipe whose reader has died would kill this process.
+  // A socket, because writing to a pipe without a reader would kill this process.
   int ends[2];
   if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0)
     throw std::system_error(errno, std::generic_category(), "socketpair");

@@ -6,21 +6,21 @@
 
 namespace flexura {
 
-/// A program at work that reads what it is given on its standard input. It gets this process's standard
-/// error, and its standard output is thrown away.
+/// A running program that reads its standard input from this process. It shares this process's standard
+/// error; its standard output is discarded.
 class ChildProcess {
  public:
-  /// Starts `arguments[0]`, looked for on the PATH. std::runtime_error when there is no such program.
+  /// Starts `arguments[0]` from the PATH. Throws std::runtime_error if there is no such program.
   explicit ChildProcess(const std::vector<std::string>& arguments);
-  /// Ends its input and waits for it.
+  /// Closes its input and waits for it.
   ~ChildProcess();
   ChildProcess(const ChildProcess&) = delete;
   ChildProcess& operator=(const ChildProcess&) = delete;
 
-  /// False when it no longer reads.
+  /// Returns false if it no longer reads.
   [[nodiscard]] bool write(std::string_view bytes);
-  /// Ends its input, waits for it, and returns its exit status; 128 and the signal's number when one killed
-  /// it.
+  /// Closes its input, waits for it, and returns its exit status; 128 plus the signal's number if a signal
+  /// killed it.
   int finish();
 
  private:
@@ -29,7 +29,7 @@ class ChildProcess {
   int process_ = -1;
 };
 
-/// Whether the PATH has this program.
+/// Returns true if this program is on the PATH.
 [[nodiscard]] bool has_program(const std::string& name);
 
 }  // namespace flexura

@@ -6,20 +6,20 @@
 
 namespace flexura {
 
-/// A table as CSV (RFC 4180 with "\n" line ends): texts are quoted where they must be, numbers read back
-/// exactly.
+/// A table as CSV (RFC 4180 with "
+/// " line ends): texts are quoted if needed, numbers read back exactly.
 class CsvText {
  public:
-  /// Adds a cell to the row that is being written. Quoted where it holds a comma, a quote or a line's end.
+  /// Adds a cell to the current row. Quoted if it contains a comma, a quote or a line end.
   void cell(std::string_view text);
-  /// As few digits as read back exactly; a number that is not finite is "nan", "inf" or "-inf".
+  /// Uses as few digits as read back exactly; a number that is not finite is "nan", "inf" or "-inf".
   void cell(double value);
-  /// A cell for each value.
+  /// Adds a cell for each value.
   void cells(std::span<const double> values);
-  /// The next cell begins a new row. A table is to end with it.
+  /// Ends the row; the next cell begins a new one. Every table must end with it.
   void end_row();
 
-  /// All rows so far. The text stays the table's own.
+  /// Returns all rows so far, as a reference into this object.
   [[nodiscard]] const std::string& text() const { return text_; }
 
  private:

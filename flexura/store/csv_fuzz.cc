@@ -1,4 +1,4 @@
-// Any bytes as a CSV file: a table of finite numbers with a value a column, or an InputError.
+// Any bytes as a CSV file must give a table of finite numbers with one value per column, or an InputError.
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>

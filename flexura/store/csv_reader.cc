@@ -21,7 +21,7 @@ constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
 
 struct Cell {
   std::string text;
-  int column = 1;  // of the source, from 1
+  int column = 1;  // Column of the source, from 1.
 };
 
 std::string_view trimmed(std::string_view text) {
@@ -31,8 +31,8 @@ std::string_view trimmed(std::string_view text) {
   return text.substr(first, text.find_last_not_of(blanks) - first + 1);
 }
 
-// The cells of one line; empty when a quote is not closed or text follows a closed one. A quoted name may
-// hold commas, not line ends: no column of numbers needs them.
+// Returns the cells of one line; std::nullopt if a quote is not closed or text follows a closed one. A quoted
+// name may contain commas, but no line ends: column names do not need them.
 std::optional<std::vector<Cell>> split(std::string_view line) {
   std::vector<Cell> cells;
   for (std::size_t at = 0;;) {
@@ -91,7 +91,8 @@ class CsvParser {
 
   void header(const std::vector<Cell>& cells, int number) {
     table_.header_line = number;
-    // As spreadsheets write it in half of the world: one line says more than an error for each row.
+    // Semicolons are common in spreadsheets of many countries: one message is better than an error for each
+    // row.
     const std::size_t other = cells.size() == 1 ? cells[0].text.find_first_of(";\t") : std::string::npos;
     if (other != std::string::npos) {
       const char* name = cells[0].text[other] == ';' ? "';'" : "tabs";
@@ -138,7 +139,7 @@ class CsvParser {
   std::shared_ptr<const std::string> source_;
   NumberTable table_;
   std::vector<Problem> problems_;
-  bool is_lost_ = false;  // Nothing more is worth saying.
+  bool is_lost_ = false;  // Further messages would be useless.
 };
 
 }  // namespace

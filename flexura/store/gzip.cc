@@ -12,7 +12,7 @@ std::vector<std::uint8_t> gzip(std::string_view bytes) {
   if (deflateInit2(&stream, Z_BEST_COMPRESSION, Z_DEFLATED, gzip_window, memory, Z_DEFAULT_STRATEGY) != Z_OK)
     throw std::runtime_error("zlib did not start");
   std::vector<std::uint8_t> file(deflateBound(&stream, bytes.size()));
-  // zlib takes bytes it may change, and does not when it compresses.
+  // zlib's interface takes non-const bytes, but compression does not change them.
   stream.next_in = const_cast<Bytef*>(reinterpret_cast<const Bytef*>(bytes.data()));
   stream.avail_in = static_cast<uInt>(bytes.size());
   stream.next_out = file.data();

@@ -6,8 +6,8 @@
 
 namespace flexura {
 
-/// The bytes as a gzip file (RFC 1952), without a name or a date: the same bytes give the same file.
-/// std::runtime_error when there is no memory for it.
+/// Returns the bytes as a gzip file (RFC 1952), without a name or a date: equal bytes give equal files.
+/// Throws std::runtime_error if there is not enough memory.
 [[nodiscard]] std::vector<std::uint8_t> gzip(std::string_view bytes);
 
 }  // namespace flexura

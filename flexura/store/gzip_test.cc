@@ -8,7 +8,7 @@
 namespace flexura {
 namespace {
 
-// What zlib makes of a gzip file.
+// Returns the content of a gzip file by zlib.
 std::string unpacked(std::vector<std::uint8_t> file) {
   std::string text(100'000, '\0');
   z_stream stream{};

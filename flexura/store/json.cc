@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-// Only this file sees nlohmann/json (docs/architecture.md, "Heavy headers").
+// Only this file includes nlohmann/json (docs/architecture.md, "Heavy headers").
 #include <algorithm>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -21,12 +21,12 @@ SourcePosition position_of(std::string_view text, std::size_t byte,
                            const std::shared_ptr<const std::string>& source) {
   const std::size_t at = std::min(byte, text.size());
   const std::string_view before = text.substr(0, at);
-  const std::size_t line_start = before.rfind('\n') + 1;  // npos + 1 is 0
+  const std::size_t line_start = before.rfind('\n') + 1;  // npos + 1 is 0.
   return {source, static_cast<int>(std::ranges::count(before, '\n')) + 1,
           static_cast<int>(at - line_start) + 1};
 }
 
-// The middle of a long number or text that is wrong tells nobody anything.
+// Shortens a long number or text: its middle does not help in an error message.
 std::string shortened(std::string_view what) {
   constexpr std::size_t begin = 100, end = 60;
   if (what.size() <= begin + end) return std::string(what);
@@ -37,8 +37,8 @@ std::string shortened(std::string_view what) {
   return fmt::format("{}...{}", what.substr(0, utf8_length(what.substr(0, begin))), tail);
 }
 
-// Builds nodes from nlohmann's events, which, unlike its documents, show a key given twice. The events carry
-// no positions, so what is wrong later is named by its path; the document's own position is its start.
+// Builds nodes from nlohmann's events, which show repeated keys, unlike its documents. The events have no
+// positions, so later errors are named by their path; the document's own position is its start.
 class NodeBuilder : public nlohmann::json_sax<nlohmann::json> {
  public:
   NodeBuilder(std::string_view text, const std::string& source)
@@ -95,11 +95,11 @@ class NodeBuilder : public nlohmann::json_sax<nlohmann::json> {
     if (open_.size() == max_depth) {
       throw InputError({{start(), fmt::format("nested more than {} deep", max_depth)}});
     }
-    // Pointers to the open nodes stay valid: a container grows only while its last entry is complete.
+    // Pointers to the open nodes stay valid: a container grows only while its last element is complete.
     open_.push_back(place({std::move(value), start()}));
     return true;
   }
-  // Sorted: each with all before it would take hours for a line that is all keys.
+  // Sorts the keys: comparing each with all others would take hours for a document of keys.
   void check_keys(const Node::Table& members) const {
     std::vector<const std::string*> names;
     names.reserve(members.size());
@@ -151,7 +151,7 @@ bool holds_containers(const Node& node) {
   return false;
 }
 
-// Indented as a person would: what holds only plain values stays on its line.
+// Indents for readability: containers with only plain values stay on one line.
 void lay_out(const Node& node, int indent, int level, std::string& out) {
   const auto* entries = node.as<Node::Array>();
   const auto* members = node.as<Node::Table>();
@@ -189,7 +189,7 @@ std::string write_json(const Node& node, int indent) {
     lay_out(node, indent, 0, out);
     return out;
   }
-  // Bytes that are not UTF-8 (a file name, say) are shown as U+FFFD rather than lost as an exception.
+  // Bytes that are not UTF-8 (in a file name, for example) become U+FFFD instead of an exception.
   return to_json(node).dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 

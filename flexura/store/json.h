@@ -7,13 +7,14 @@
 
 namespace flexura {
 
-/// Parses one JSON document into nodes. Throws InputError (source:line:column) on what is not JSON, on a key
-/// given twice, and on nesting deeper than 64. Numbers beyond a double are errors; whole numbers stay whole.
+/// Parses one JSON document into nodes. Throws InputError (source:line:column) on invalid JSON, on a repeated
+/// key, and on nesting deeper than 64. Numbers beyond the range of a double are errors; integers stay
+/// integers.
 [[nodiscard]] Node parse_json(std::string_view text, const std::string& source);
 
-/// The node as JSON: keys in their order, doubles so that they read back exactly, `null` for what JSON lacks.
-/// `indent` < 0 gives one line, otherwise that many spaces a level, with what holds only plain values on one
-/// line.
+/// Returns the node as JSON: keys in their order, doubles that read back exactly, `null` for values that JSON
+/// lacks. `indent` < 0 gives one line, otherwise that many spaces per level, with containers of only plain
+/// values on one line.
 [[nodiscard]] std::string write_json(const Node& node, int indent = -1);
 
 }  // namespace flexura

@@ -44,7 +44,7 @@ TEST(ParseJson, RefusesAKeyGivenTwice) {
   EXPECT_LT(json_error_of(fmt::format(R"({{"{}":1,"{}":2}})", long_key, long_key)).size(), 100U);
 }
 
-// Comparing each with all before it is slower than all the other tests together.
+// Comparing each key with all others would be slower than all other tests together.
 TEST(ParseJson, TakesATextThatIsAllKeys) {
   std::string text = "{";
   for (int i = 0; i < 100000; ++i) text += fmt::format("\"{}\":0,", i);

@@ -10,20 +10,20 @@
 
 namespace flexura {
 
-/// A stretch of a log that is read from its start. Every step is checked against the stretch's end, and
-/// throws std::runtime_error with the log's name and the byte in the log when it does not fit.
+/// A part of a log, read from its start. Every step is checked against the part's end. Throws
+/// std::runtime_error with the log's name and the byte in the log if it does not fit.
 class McapCursor {
  public:
   McapCursor(std::span<const std::byte> log, const std::string& name)
       : log_(log), name_(&name), end_(log.size()) {}
 
-  /// From the log's start, in bytes.
+  /// Returns the position from the log's start, in bytes.
   [[nodiscard]] std::size_t position() const { return position_; }
   [[nodiscard]] std::size_t remaining() const { return end_ - position_; }
   [[nodiscard]] bool done() const { return remaining() == 0; }
-  /// What is left, unread.
+  /// Returns the unread bytes.
   [[nodiscard]] std::span<const std::byte> rest() const { return log_.subspan(position_, remaining()); }
-  /// The whole log from byte `from` up to here.
+  /// Returns the log from byte `from` up to here.
   [[nodiscard]] std::span<const std::byte> since(std::size_t from) const {
     return log_.subspan(from, position_ - from);
   }
@@ -36,12 +36,12 @@ class McapCursor {
     return static_cast<T>(value);
   }
   std::span<const std::byte> take_bytes(std::uint64_t count) { return take_part(count).rest(); }
-  /// The next `count` bytes, as a stretch of their own.
+  /// Takes the next `count` bytes as a separate part.
   McapCursor take_part(std::uint64_t count);
-  /// A text after its length.
+  /// Takes a text preceded by its length.
   std::string take_text();
 
-  /// Throws the error `what` at the current position, or at another.
+  /// Throws the error `what` at the current position, or at another one.
   [[noreturn]] void fail(const std::string& what) const { fail(what, position_); }
   [[noreturn]] void fail(const std::string& what, std::size_t at) const;
 

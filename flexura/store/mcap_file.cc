@@ -17,7 +17,7 @@ namespace {
   throw std::system_error(error, std::generic_category(), what + " " + path.string());
 }
 
-/// Closes a descriptor when it goes out of sight.
+/// Closes a descriptor at the end of its scope.
 struct Descriptor {
   int value;
   explicit Descriptor(int descriptor) : value(descriptor) {}
@@ -48,7 +48,7 @@ void AppendFile::append(std::span<const std::byte> bytes) {
     if (count < 0 && errno == EINTR) continue;
     if (count <= 0) {
       const int error = count < 0 ? errno : ENOSPC;
-      // A reader could live with the torn end (it looks like a killed writer's); without it the file is
+      // A reader could handle the incomplete end (as after a killed writer), but without it the file is
       // cleaner.
       [[maybe_unused]] const int tried = ::ftruncate(descriptor_, static_cast<off_t>(size_));
       ::close(std::exchange(descriptor_, -1));
@@ -64,7 +64,7 @@ void AppendFile::close() {
 }
 
 MappedFile::MappedFile(const std::filesystem::path& path) {
-  // A pipe without a writer would keep a blocking open waiting for ever.
+  // Opening a pipe without a writer would block forever.
   const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
   if (file.value < 0) fail(errno, "cannot read", path);
   struct stat status{};

@@ -1,4 +1,4 @@
-// Logs read by @mcap/core, a program of others (tests/node).
+// Logs read by @mcap/core, an independent program (tests/node).
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -17,7 +17,7 @@ using nlohmann::json;
 
 const std::filesystem::path node_folder = checkout_file("tests/node");
 
-/// What a command prints, or an empty text and a failed test when it fails.
+/// Returns the output of a command; if it fails, an empty text and a test failure.
 std::string output_of(const std::string& command) {
   FILE* const pipe = ::popen(command.c_str(), "r");
   std::string output;
@@ -26,7 +26,7 @@ std::string output_of(const std::string& command) {
   return output;
 }
 
-/// Skipped where the readers are not installed (npm ci in tests/node), unless they are asked for.
+/// Skipped if the readers are not installed (npm ci in tests/node), unless they are required.
 class McapCore : public testing::Test {
  protected:
   void SetUp() override {

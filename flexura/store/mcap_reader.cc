@@ -8,11 +8,11 @@
 namespace flexura {
 namespace {
 
-/// Each channel holds a copy of its schema. A small log with a big schema and many channels on it, which
-/// nobody writes in earnest, must not take all the memory there is.
+/// Each channel has a copy of its schema. Limits the memory for a small log with a large schema and many
+/// channels, which no real writer produces.
 constexpr std::size_t max_copied_schemas = std::size_t{64} << 20;
 
-/// A record's kind, where it starts and its content.
+/// Kind of a record, its start and its content.
 struct Record {
   McapOp op;
   std::size_t start;
@@ -24,7 +24,7 @@ bool starts_with(std::span<const std::byte> bytes, std::string_view text) {
   return bytes.size() >= text.size() && std::ranges::equal(bytes.first(text.size()), expected);
 }
 
-/// Foreign text for an error message: short, and harmless on a terminal.
+/// Returns text from a file for an error message: short, and harmless on a terminal.
 std::string shown(std::string text) {
   constexpr std::size_t enough = 32;
   if (text.size() > enough) text = text.substr(0, enough) + "...";
@@ -33,29 +33,29 @@ std::string shown(std::string text) {
   return '"' + text + '"';
 }
 
-/// Kinds that have no place after the data section.
+/// Returns true for kinds that are not allowed after the data section.
 bool is_data(McapOp op) {
   static constexpr auto kinds = {McapOp::message,    McapOp::chunk,    McapOp::message_index,
                                  McapOp::attachment, McapOp::metadata, McapOp::data_end};
   return std::ranges::find(kinds, op) != kinds.end();
 }
 
-/// Whether the log was closed properly. Then a record that does not fit is damage, and not where a writer
-/// stopped.
+/// Returns true if the log was closed properly. Then a record that does not fit is damage, not the point
+/// where a writer stopped.
 bool has_end(std::span<const std::byte> log) {
   return log.size() >= 2 * mcap_magic.size() && starts_with(log.last(mcap_magic.size()), mcap_magic);
 }
 
 }  // namespace
 
-/// One pass over a log, filling a reader.
+/// One pass over a log, which fills a reader.
 class McapScan {
  public:
   McapScan(std::span<const std::byte> log, const std::string& name, McapCheck check, McapReader& to)
       : cursor_(log, name), check_(check), has_end_(has_end(log)), to_(to) {}
 
   void run() {
-    to_.truncated_ = true;  // Until the end is seen.
+    to_.truncated_ = true;  // Until the end is found.
     if (!take_magic("not an MCAP log")) return;
     for (bool first = true; auto record = next(cursor_); first = false) {
       if (first != (record->op == McapOp::header)) {
@@ -70,7 +70,7 @@ class McapScan {
   }
 
  private:
-  /// False when the log breaks off inside the magic bytes.
+  /// Returns false if the log ends inside the magic bytes.
   bool take_magic(const char* otherwise) {
     const std::size_t length = std::min(cursor_.remaining(), mcap_magic.size());
     if (!starts_with(cursor_.rest(), mcap_magic.substr(0, length))) cursor_.fail(otherwise);
@@ -78,7 +78,7 @@ class McapScan {
     return length == mcap_magic.size();
   }
 
-  /// The next record; nothing where the log breaks off.
+  /// Returns the next record; std::nullopt where the log ends.
   std::optional<Record> next(McapCursor& in) const {
     const std::size_t start = in.position();
     McapCursor ahead = in;
@@ -110,11 +110,11 @@ class McapScan {
         take_data_end(record);
         break;
       default:
-        take_inner(record);  // Indexes and statistics are not needed; unknown kinds belong to others.
+        take_inner(record);  // Indexes and statistics are not needed; unknown kinds are ignored.
     }
   }
 
-  /// Whether the record is of a kind that chunks hold as well; then it is taken.
+  /// Takes records of the kinds that chunks also contain. Returns true for those.
   bool take_inner(Record& record) {
     switch (record.op) {
       case McapOp::schema:
@@ -132,7 +132,7 @@ class McapScan {
   }
 
   void take_chunk(McapCursor& in) {
-    in.take_bytes(2 * sizeof(std::uint64_t));  // The times of the first and the last message.
+    in.take_bytes(2 * sizeof(std::uint64_t));  // Times of the first and the last message.
     const auto size = in.take<std::uint64_t>();
     const auto crc = in.take<std::uint32_t>();
     const std::size_t compression_at = in.position();
@@ -193,7 +193,7 @@ class McapScan {
     const auto id = in.take<std::uint16_t>();
     const auto sequence = in.take<std::uint32_t>();
     const auto log_time = in.take<std::uint64_t>();
-    in.take_bytes(sizeof(std::uint64_t));  // When it was published.
+    in.take_bytes(sizeof(std::uint64_t));  // Publication time.
     const auto channel = to_.channels_.find(id);
     if (channel == to_.channels_.end()) {
       in.fail("a message is on an unknown channel, " + std::to_string(id), record.start);
@@ -216,7 +216,7 @@ class McapScan {
     if (summary_start != 0 && summary_start != *data_end_) {
       in.fail("the footer does not know where the summary starts", record.start);
     }
-    in.take_bytes(sizeof(std::uint64_t));  // Where the summary's offsets start.
+    in.take_bytes(sizeof(std::uint64_t));  // Start of the summary's offsets.
     const auto summary = in.since(*data_end_);
     check_crc(in.take<std::uint32_t>(), summary, in, "the summary's");
     if (!take_magic("the log's last bytes are wrong")) return;
@@ -234,7 +234,7 @@ class McapScan {
   McapCursor cursor_;
   McapCheck check_;
   bool has_end_;
-  std::optional<std::size_t> data_end_;  ///< Where the data section's last record ends.
+  std::optional<std::size_t> data_end_;  ///< End of the data section's last record.
   std::map<std::uint16_t, McapSchema> schemas_;
   std::size_t copied_schemas_ = 0;  ///< Bytes.
   McapReader& to_;

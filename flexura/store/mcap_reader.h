@@ -15,39 +15,39 @@
 
 namespace flexura {
 
-/// One message of a log; lives as long as its McapReader.
+/// One message of a log; valid as long as its McapReader.
 struct McapMessage {
   const McapChannel* channel;
   std::uint64_t log_time;           ///< Simulated time, ns.
-  std::uint32_t sequence;           ///< As the writer counted it; it may wrap.
+  std::uint32_t sequence;           ///< As counted by the writer; it may wrap.
   std::span<const std::byte> data;  ///< As written: JSON in the logs of runs.
 
-  /// The data as they stand, read as text.
+  /// Returns the data as text.
   [[nodiscard]] std::string_view text() const {
     return {reinterpret_cast<const char*>(data.data()), data.size()};
   }
 };
 
-/// Whether checksums are looked at. A damaged log read without them gives what its structure still holds.
+/// Whether to verify checksums. Without them, a damaged log gives what its structure still contains.
 enum class McapCheck : std::uint8_t { crc, structure };
 
-/// Reads a whole log, ours or another program's, by its data section from start to end. Memory grows with the
-/// number of messages only; their data stay in the file's pages.
-/// A log whose writer was killed has no end: it is read up to its last complete chunk, and `truncated` says
-/// so. Constructors throw std::runtime_error with the log's name and the byte where something is wrong: no
-/// log at all, a record that does not fit, a wrong CRC, a message without channel, a compressed chunk.
+/// Reads a whole log, from this or another program, by its data section from start to end. Memory grows only
+/// with the number of messages; their data stay in the file's pages. A log whose writer was killed has no
+/// end: it is read up to its last complete chunk, and `truncated` is set. Constructors throw
+/// std::runtime_error with the log's name and the byte of the error. Errors are no log at all, a record that
+/// does not fit, a wrong CRC, a message without channel, a compressed chunk.
 class McapReader {
  public:
-  /// Throws std::system_error, too, when the file cannot be read.
+  /// Also throws std::system_error if the file cannot be read.
   explicit McapReader(const std::filesystem::path& path, McapCheck check = McapCheck::crc);
-  /// `bytes` outlive the reader; `name` stands for them in errors.
+  /// `bytes` must outlive the reader; `name` identifies them in errors.
   McapReader(std::span<const std::byte> bytes, const std::string& name, McapCheck check = McapCheck::crc);
 
   /// By identifier.
   [[nodiscard]] const std::map<std::uint16_t, McapChannel>& channels() const { return channels_; }
-  /// In the file's order, which need not be that of time.
+  /// Returns the messages in the file's order, which may differ from the order of time.
   [[nodiscard]] const std::vector<McapMessage>& messages() const { return messages_; }
-  /// The program that wrote the log, by its own account.
+  /// Returns the name of the program that wrote the log, from its header.
   [[nodiscard]] const std::string& library() const { return library_; }
   [[nodiscard]] bool truncated() const { return truncated_; }
 
@@ -55,7 +55,7 @@ class McapReader {
   friend class McapScan;
 
   std::unique_ptr<const MappedFile> file_;
-  std::map<std::uint16_t, McapChannel> channels_;  // A map, since messages point into it.
+  std::map<std::uint16_t, McapChannel> channels_;  // A map, because messages point into it.
   std::vector<McapMessage> messages_;
   std::string library_;
   bool truncated_ = false;

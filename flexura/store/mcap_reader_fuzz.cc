@@ -7,7 +7,8 @@
 
 namespace {
 
-/// Reads bytes as a log and looks at everything it gave. CRCs keep most mutations out, hence both ways.
+/// Reads bytes as a log and accesses all results. Most mutations have wrong CRCs, hence with and without
+/// them.
 void read(std::span<const std::byte> bytes, flexura::McapCheck check) {
   try {
     const flexura::McapReader log(bytes, "input", check);

@@ -22,7 +22,7 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::SizeIs;
 
-/// What the reader says about bytes it must refuse.
+/// Returns the reader's error for invalid bytes.
 std::string refusal(const std::string& bytes) {
   try {
     const McapReader log(as_log(bytes), "a.mcap");
@@ -32,7 +32,7 @@ std::string refusal(const std::string& bytes) {
   return "no refusal";
 }
 
-/// A log made by hand: header, then what `write` puts, without an end.
+/// Returns a log with a header and the output of `write`, without an end.
 std::string by_hand(const std::function<void(McapBytes&)>& write) {
   McapBytes out;
   out.put(std::as_bytes(std::span(mcap_magic)));
@@ -66,7 +66,7 @@ void put_chunk(McapBytes& out, std::string_view compression, const McapBytes& re
   });
 }
 
-/// Where the log's chunks end: the only bytes at which truncation gives one message more.
+/// Returns the ends of the log's chunks: the only bytes at which truncation gives one message more.
 std::vector<std::size_t> chunk_ends(const std::string& log) {
   std::vector<std::size_t> ends;
   std::size_t at = mcap_magic.size();

@@ -13,11 +13,11 @@
 
 namespace flexura {
 
-/// The first and the last eight bytes of a log.
-/// Source of everything in this file: MCAP specification, major version 0 (https://mcap.dev/spec).
+/// The first and the last eight bytes of a log. Source of everything in this file: MCAP specification, major
+/// version 0 (https://mcap.dev/spec).
 inline constexpr std::string_view mcap_magic{"\x89MCAP0\r\n", 8};
 
-/// What a record is; its first byte.
+/// Kind of a record; its first byte.
 enum class McapOp : std::uint8_t {
   header = 0x01,
   footer = 0x02,
@@ -36,15 +36,15 @@ enum class McapOp : std::uint8_t {
   data_end = 0x0F,
 };
 
-/// Bytes before a record's content: what it is (1) and the content's length (8).
+/// Bytes before a record's content: its kind (1) and the content's length (8).
 inline constexpr std::size_t mcap_record_header = 9;
-/// The footer's content: where the summary and its offsets start (8 + 8), and the summary's CRC (4).
+/// Length of the footer's content: starts of the summary and its offsets (8 + 8), and the summary's CRC (4).
 inline constexpr std::size_t mcap_footer_length = 20;
 
-/// What a channel's messages look like.
+/// Format of a channel's messages.
 struct McapSchema {
   std::string name;
-  std::string encoding;  ///< "jsonschema", ...; empty: there is no schema.
+  std::string encoding;  ///< "jsonschema", ...; empty without a schema.
   std::string data;
 
   bool operator==(const McapSchema&) const = default;
@@ -55,16 +55,16 @@ struct McapChannel {
   std::string topic;
   std::string encoding = "json";
   McapSchema schema{};
-  // The braces spare those who leave it out GCC's -Wmissing-field-initializers.
+  // The braces avoid GCC's -Wmissing-field-initializers for those who omit it.
   std::map<std::string, std::string> metadata{};  // NOLINT(readability-redundant-member-init)
 
   bool operator==(const McapChannel&) const = default;
 };
 
-/// The CRC-32 of bytes whose predecessors' CRC is `crc` (0: there are none).
+/// Returns the CRC-32 of bytes after others with the CRC `crc` (0: without others).
 [[nodiscard]] std::uint32_t mcap_crc(std::uint32_t crc, std::span<const std::byte> bytes);
 
-/// Bytes in the order MCAP keeps them, little end first, in a buffer that grows.
+/// Bytes in MCAP's order, little-endian, in a growing buffer.
 class McapBytes {
  public:
   [[nodiscard]] const std::vector<std::byte>& bytes() const { return bytes_; }
@@ -76,17 +76,17 @@ class McapBytes {
     put_at(grow(sizeof value), value);
   }
   void put(std::span<const std::byte> data);
-  /// Length in four bytes, then the text. Throws std::length_error when it has 2^32 bytes or more.
+  /// Puts the length in four bytes, then the text. Throws std::length_error if it has 2^32 bytes or more.
   void put(std::string_view text);
   void put(const std::string& text) { put(std::string_view(text)); }
 
-  /// A record whose content `write` puts.
+  /// Puts a record with the output of `write` as content.
   template <typename Write>
   void record(McapOp op, Write write) {
     put(static_cast<std::uint8_t>(op));
     measured<std::uint64_t>(write);
   }
-  /// What `write` puts, preceded by its length in bytes as a Length.
+  /// Puts the output of `write`, preceded by its length in bytes as a Length.
   template <std::unsigned_integral Length, typename Write>
   void measured(Write write) {
     const std::size_t at = grow(sizeof(Length));
@@ -97,7 +97,7 @@ class McapBytes {
   }
 
  private:
-  /// Makes room at the end; returns where it starts.
+  /// Adds space at the end; returns its start.
   std::size_t grow(std::size_t count);
   template <std::unsigned_integral T>
   void put_at(std::size_t at, T value) {

@@ -5,7 +5,7 @@
 namespace flexura {
 namespace {
 
-/// Some records of one kind, one after another in the summary.
+/// Consecutive records of one kind in the summary.
 struct Group {
   McapOp op;
   std::uint64_t start, length;
@@ -29,8 +29,8 @@ void put_chunk_index(McapBytes& out, const McapChunkIndex& chunk) {
     put_map(out, chunk.message_index_offsets);
     out.put(chunk.message_index_length);
     out.put(mcap_compression);
-    out.put(chunk.records_size);  // Compressed and
-    out.put(chunk.records_size);  // uncompressed.
+    out.put(chunk.records_size);  // Compressed.
+    out.put(chunk.records_size);  // Uncompressed.
   });
 }
 
@@ -48,8 +48,8 @@ void put_statistics(McapBytes& out, const McapSummary& summary) {
     out.put(messages);
     out.put(static_cast<std::uint16_t>(summary.schemas.size()));
     out.put(static_cast<std::uint32_t>(summary.channels.size()));
-    out.put(std::uint32_t{0});  // Attachments and
-    out.put(std::uint32_t{0});  // metadata: none.
+    out.put(std::uint32_t{0});  // Number of attachments.
+    out.put(std::uint32_t{0});  // Number of metadata.
     out.put(static_cast<std::uint32_t>(summary.chunks.size()));
     out.put(time.start);
     out.put(time.end);
@@ -112,7 +112,7 @@ void put_summary(McapBytes& out, std::uint64_t at, const McapSummary& summary) {
       out.put(group.length);
     });
   }
-  // The footer's CRC covers its own first fields, so it cannot go through record().
+  // The footer's CRC covers its own first fields, so it cannot use record().
   out.put(static_cast<std::uint8_t>(McapOp::footer));
   out.put(std::uint64_t{mcap_footer_length});
   out.put(at);

@@ -18,7 +18,7 @@ McapWriter::Config checked(McapWriter::Config config) {
   return config;
 }
 
-/// Identifiers count from 1: the number of the element after the last.
+/// Returns the next identifier; they count from 1.
 template <typename T>
 std::uint16_t next_id(const std::vector<T>& list) {
   if (list.size() >= std::numeric_limits<std::uint16_t>::max()) {
@@ -34,7 +34,7 @@ McapWriter::McapWriter(const std::filesystem::path& path, Config config)
   McapBytes out;
   out.put(std::as_bytes(std::span(mcap_magic)));
   out.record(McapOp::header, [&] {
-    out.put(std::string_view());  // No profile: nothing is promised beyond MCAP itself.
+    out.put(std::string_view());  // No profile: no conventions beyond MCAP itself.
     out.put(std::string_view("flexura " FLEXURA_VERSION));
   });
   append(out);
@@ -90,7 +90,7 @@ void McapWriter::write(std::uint16_t channel, std::uint64_t log_time, std::span<
   chunk_time_.add(log_time);
   records_.record(McapOp::message, [&] {
     records_.put(channel);
-    records_.put(static_cast<std::uint32_t>(count));  // The sequence number; MCAP lets it wrap.
+    records_.put(static_cast<std::uint32_t>(count));  // Sequence number; MCAP allows it to wrap.
     records_.put(log_time);
     records_.put(log_time);  // Published when logged: there is one clock.
     records_.put(data);

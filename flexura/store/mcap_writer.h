@@ -13,49 +13,49 @@
 
 namespace flexura {
 
-/// Writes a new log (docs/log-format.md): messages on channels, gathered into chunks. A chunk goes to the
-/// operating system in one write when it is full, so a process killed at any moment leaves a log that reads
-/// up to its last complete chunk. The same calls give the same bytes. Every call that writes throws
-/// std::system_error with the path when the system refuses (disk full, ...); what the file holds by then
-/// stays readable, and the writer takes nothing more.
+/// Writes a new log (docs/log-format.md): messages on channels, collected into chunks. A full chunk is passed
+/// to the operating system in one write. So a process killed at any moment leaves a log that is readable up
+/// to its last complete chunk. Equal calls give equal bytes. Every call that writes throws std::system_error
+/// with the path on a system error, such as a full disk. The content written by then stays readable, and the
+/// writer accepts nothing more.
 class McapWriter {
  public:
-  /// How the file is cut.
+  /// Layout of the file.
   struct Config {
-    /// A chunk is closed once its messages take this many bytes (1 to 2^30); a bigger message is a chunk of
-    /// its own.
+    /// A chunk is closed when its messages reach this number of bytes (1 to 2^30); a larger message is a
+    /// separate chunk.
     std::size_t chunk_size = std::size_t{256} * 1024;
   };
 
-  /// Creates the file; never overwrites one. Throws std::system_error with the path when it
-  /// exists already or cannot be created, std::invalid_argument for a chunk size out of range.
+  /// Creates the file; never overwrites one. Throws std::system_error with the path if it already exists or
+  /// cannot be created, std::invalid_argument for a chunk size out of range.
   explicit McapWriter(const std::filesystem::path& path) : McapWriter(path, Config{}) {}
   McapWriter(const std::filesystem::path& path, Config config);
-  /// Closes the log as well as it can, without a word; call close() to hear of failures.
+  /// Closes the log and ignores failures; call close() to detect them.
   ~McapWriter();
   McapWriter(const McapWriter&) = delete;
   McapWriter& operator=(const McapWriter&) = delete;
 
-  /// The new channel's number, counted from 1. Channels with the same schema share one record of it.
-  /// Throws std::invalid_argument when the topic is empty or taken, std::length_error past 65535 channels.
+  /// Returns the new channel's number, counted from 1. Channels with equal schemas share one record of it.
+  /// Throws std::invalid_argument if the topic is empty or exists, std::length_error beyond 65535 channels.
   std::uint16_t add_channel(McapChannel channel);
 
-  /// Adds a message. `log_time` is simulated time in ns and need not grow. Throws std::out_of_range for a
+  /// Adds a message. `log_time` is simulated time in ns and need not increase. Throws std::out_of_range for a
   /// channel that add_channel did not return.
   void write(std::uint16_t channel, std::uint64_t log_time, std::span<const std::byte> data);
-  /// The same of text.
+  /// Adds a message from text.
   void write(std::uint16_t channel, std::uint64_t log_time, std::string_view text) {
     write(channel, log_time, std::as_bytes(std::span(text)));
   }
 
-  /// Closes the current chunk, if it holds a message.
+  /// Closes the current chunk if it has a message.
   void flush();
-  /// Ends the log with its summary. Later calls, but for close(), throw std::logic_error.
+  /// Ends the log with its summary. Later calls, except close(), throw std::logic_error.
   void close();
 
  private:
   struct IndexEntry {
-    std::uint64_t time, offset;  ///< Offset from the start of the chunk's records.
+    std::uint64_t time, offset;  ///< From the start of the chunk's records.
   };
 
   void append(const McapBytes& out);
@@ -67,9 +67,9 @@ class McapWriter {
   AppendFile file_;
   std::uint32_t crc_ = 0;  ///< Of every byte appended so far.
   McapSummary summary_;
-  McapBytes records_;  ///< The current chunk's messages,
+  McapBytes records_;  ///< Messages of the current chunk.
   McapTimeRange chunk_time_;
-  std::vector<std::vector<IndexEntry>> chunk_index_;  ///< and where they are, by channel.
+  std::vector<std::vector<IndexEntry>> chunk_index_;  ///< Their positions, by channel.
 };
 
 }  // namespace flexura

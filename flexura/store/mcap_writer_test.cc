@@ -44,7 +44,7 @@ TEST(McapWriter, GivesTheSameBytesTwice) {
 
 using TwoTimes = std::pair<std::uint64_t, std::uint64_t>;
 
-// The first two numbers of each record of this kind.
+// Returns the first two numbers of each record of this kind.
 std::vector<TwoTimes> times_in(McapOp kind, const std::string& log) {
   const auto number = [&](std::size_t at) {
     std::uint64_t value = 0;
@@ -60,7 +60,7 @@ std::vector<TwoTimes> times_in(McapOp kind, const std::string& log) {
   return times;
 }
 
-// By them a reader finds a time without reading all chunks.
+// With these times a reader finds a time without reading all chunks.
 TEST(McapWriter, SaysOfEachChunkFromWhenToWhenItsMessagesAre) {
   for (const McapOp kind : {McapOp::chunk, McapOp::chunk_index})
     EXPECT_THAT(times_in(kind, small_log()), ElementsAre(TwoTimes(0, 1000), TwoTimes(2000, 3000),
@@ -211,7 +211,7 @@ TEST(McapWriter, LeavesCompleteChunksWhenTheDiskIsFull) {
   }
   const McapReader log(path);
   EXPECT_TRUE(log.truncated());
-  // Two messages a chunk; the last chunk did not fit.
+  // Two messages per chunk; the last chunk did not fit.
   EXPECT_EQ(log.messages().size(), accepted - 2);
   EXPECT_GT(accepted, 10U);
 }

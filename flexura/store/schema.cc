@@ -25,7 +25,7 @@ Node object() { return {Node::Table{}, {}}; }
 // `partial`: nothing is required, here and below.
 Node table_schema(const TableInfo& info, bool tagged, bool partial);
 
-// A bound in the unit of a spelling, without the digits that the conversion's rounding makes.
+// Returns a bound in the unit of a spelling, without digits from rounding in the conversion.
 Node bound(double value, double factor) {
   const double shown = std::stod(fmt::format("{:.12g}", value / factor));
   constexpr double largest_whole = 9007199254740992.0;
@@ -52,7 +52,7 @@ Node any_of(Node::Array choices) {
   return schema;
 }
 
-// `count` is the outermost array's, from the field.
+// `count` is that of the outermost array, from the field.
 Node value_schema(const Type& type, const Spec& spec, const Count& count, double factor) {
   Node schema = object();
   switch (type.kind) {
@@ -346,7 +346,7 @@ Node json_schema(const TableInfo& info) {
   const bool may_include = info.find("include") != nullptr;
   for (Node::Member& member : *body.as<Node::Table>()) {
     if (may_include && member.key == "required") {
-      // The files that it includes may have what is required: an editor sees one file.
+      // Included files may have the required keys, but an editor sees only one file.
       Node as_it_stands = object(), with_others = object();
       add(as_it_stands, "required", std::move(member.node));
       add(with_others, "required", {Node::Array{text("include")}, {}});

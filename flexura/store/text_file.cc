@@ -23,7 +23,7 @@ bool is_missing(const std::filesystem::path& path) {
 
 namespace {
 
-// What somebody types ends; what another device gives (/dev/zero) need not.
+// Returns true for devices without an end, such as /dev/zero. Input from a terminal ends.
 bool is_endless(const std::filesystem::path& file, const std::filesystem::file_status& status) {
   if (!std::filesystem::is_character_file(status) && !std::filesystem::is_block_file(status)) return false;
   const int descriptor = ::open(file.c_str(), O_RDONLY | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
@@ -53,7 +53,7 @@ std::string read_text_file(const std::filesystem::path& file, std::size_t max_by
     if (!error && size > max_bytes) throw too_large();
     if (!error) text.reserve(size);
   }
-  // Read in pieces up to the bound: what is no regular file (a pipe) does not tell its size.
+  // Reads in pieces up to the limit, because a pipe has no known size.
   std::string piece(std::size_t{64} << 10, '\0');
   while (stream && text.size() <= max_bytes) {
     stream.read(piece.data(), static_cast<std::streamsize>(piece.size()));
@@ -80,7 +80,8 @@ std::filesystem::path file_inside(const std::filesystem::path& folder, const std
   if (from_root.empty() || *from_root.begin() == "..") {
     fail(fmt::format("\"{}\" lies outside the experiment's folder: expected a file in it or below", name));
   }
-  // By the way that is written: one by a missing folder and back leads nowhere, though its end is there.
+  // Checks the path as written: a path through a missing folder and back is invalid, even if its target
+  // exists.
   if (!std::filesystem::exists(root / name, error)) fail(fmt::format("no file \"{}\"", name));
   if (!std::filesystem::is_regular_file(target, error)) fail(fmt::format("\"{}\" is no regular file", name));
   return folder / name;
@@ -88,12 +89,12 @@ std::filesystem::path file_inside(const std::filesystem::path& folder, const std
 
 namespace {
 
-// At a place of its own; `name` is what it is called in words.
+// Writes a file at `place`; `name` is its name in messages.
 void write_fresh_file(const std::filesystem::path& place, std::string_view text,
                       const std::filesystem::path& name) {
   const auto fail = [&](bool is_begun) {
     const int reason = errno;
-    if (is_begun) ::unlink(place.c_str());  // A piece of a file is none.
+    if (is_begun) ::unlink(place.c_str());  // Removes an incomplete file.
     throw std::runtime_error(fmt::format("cannot write {}: {}", name.string(), std::strerror(reason)));
   };
   const int descriptor = ::open(place.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0644);
@@ -110,7 +111,8 @@ void write_fresh_file(const std::filesystem::path& place, std::string_view text,
   if (::close(descriptor) != 0) fail(true);
 }
 
-// A name in that folder that nothing bears; short, for the file's own may be as long as names can be.
+// Returns an unused name in that folder. It is short, because the file's own name may have the maximal
+// length.
 std::filesystem::path unused_name(const std::filesystem::path& folder) {
   std::error_code error;
   for (int number = 0;; ++number) {

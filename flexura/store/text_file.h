@@ -7,23 +7,24 @@
 
 namespace flexura {
 
-/// Whether nothing is at a path. What cannot be looked at (a link to itself) is there: whoever opens it
-/// learns why not.
+/// Returns true if nothing exists at a path. A path that cannot be checked (a link to itself) counts as
+/// existing: opening it gives the reason.
 [[nodiscard]] bool is_missing(const std::filesystem::path& path);
 
-/// The bytes of a file. Throws InputError when it cannot be read, is no regular file or holds more than
-/// `max_bytes`.
+/// Returns the bytes of a file. Throws InputError if it cannot be read, is not a regular file or has more
+/// than `max_bytes`.
 [[nodiscard]] std::string read_text_file(const std::filesystem::path& file, std::size_t max_bytes);
 
-/// The file `name` in `folder` or below it, once links are resolved. Throws InputError, without a place, when
-/// it lies outside or is no file.
+/// Returns the file `name` in `folder` or below it, after resolving links. Throws InputError, without a
+/// position, if it is outside or not a file.
 [[nodiscard]] std::filesystem::path file_inside(const std::filesystem::path& folder, const std::string& name);
 
-/// Writes a new file, whole or none; std::runtime_error with the path when it exists or cannot be written.
+/// Writes a new file completely or not at all. Throws std::runtime_error with the path if it exists or cannot
+/// be written.
 void write_new_file(const std::filesystem::path& file, std::string_view text);
 
-/// Writes a file that may be there already: it keeps its old content until all of the new is written.
-/// std::runtime_error with the path when the system refuses.
+/// Writes a file that may exist: it keeps its old content until the new one is complete. Throws
+/// std::runtime_error with the path on a system error.
 void replace_file(const std::filesystem::path& file, std::string_view text);
 
 }  // namespace flexura

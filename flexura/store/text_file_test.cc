@@ -21,7 +21,7 @@ using ::testing::HasSubstr;
 
 class TextFileTest : public ::testing::Test {
  protected:
-  // What keeps a file from being read.
+  // Returns the reason why a file cannot be read.
   static std::string refusal(const std::filesystem::path& file) {
     try {
       (void)read_text_file(file, 100);
@@ -86,7 +86,7 @@ TEST_F(TextFileTest, LeavesNoPieceOfAFileWhenTheDiskIsFull) {
   EXPECT_TRUE(is_missing(file));
   EXPECT_EQ(std::ranges::distance(std::filesystem::directory_iterator(folder_.path())), 1);
   EXPECT_EQ(read_text_file(folder_.path() / "kept", 100), "old");
-  // What was there before is nobody's piece.
+  // A previous file is not an incomplete one.
   EXPECT_THROW(write_new_file(folder_.path() / "kept", "new"), std::runtime_error);
   EXPECT_EQ(read_text_file(folder_.path() / "kept", 100), "old");
 }
@@ -97,7 +97,7 @@ TEST_F(TextFileTest, AFileThatCannotBeReplacedLeavesNothingBesideIt) {
   EXPECT_EQ(std::ranges::distance(std::filesystem::directory_iterator(folder_.path())), 1);
 }
 
-// Nothing that is not the program's own is taken away, whatever it is called.
+// Only the program's own temporary files may be removed, whatever the others' names are.
 TEST_F(TextFileTest, ReplacingLeavesAllOtherFilesAsTheyAre) {
   write_new_file(folder_.path() / "a.png.new", "precious");
   write_new_file(folder_.path() / fmt::format(".flexura-{}-0", ::getpid()), "precious too");

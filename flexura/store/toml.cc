@@ -2,13 +2,13 @@
 
 #include <fmt/format.h>
 
-// Only this file sees toml++ (docs/architecture.md, "Heavy headers").
+// Only this file includes toml++ (docs/architecture.md, "Heavy headers").
 #define TOML_ENABLE_FORMATTERS 0
-// toml++ 3.3 asserts, and with NDEBUG lets the compiler assume, that "[" is followed by the start of a key;
-// where it is not, the code after that says so in good order.
+// toml++ 3.3 asserts, and with NDEBUG lets the compiler assume, that "[" is followed by the start of a key.
+// Otherwise the code after that reports the error properly.
 #undef NDEBUG
 #define TOML_ASSERT(expr) static_assert(true)
-// And its test for white space lets the compiler assume that no letter between U+00A0 and U+0499 comes.
+// Its test for white space lets the compiler assume that letters between U+00A0 and U+0499 never occur.
 #include <toml++/impl/preprocessor.h>
 #undef TOML_UNREACHABLE
 #define TOML_UNREACHABLE return false
@@ -38,7 +38,8 @@ SourcePosition position(const Source& source, const toml::source_position& at) {
   return {source, static_cast<int>(at.line), static_cast<int>(at.column)};
 }
 
-// Where a text's characters begin, if they stand there as they are: after one quote or three.
+// Returns the column of a text's first character, after one quote or three, if it is written without escapes;
+// otherwise 0.
 int text_column(const toml::value<std::string>& text) {
   const auto& [begin, end, path] = text.source();
   if (begin.line != end.line) return 0;
@@ -65,7 +66,7 @@ Node convert(const toml::node& node, const Source& source) {
       members.push_back(
           {std::string(key.str()), position(source, key.source().begin), convert(value, source)});
     }
-    // toml++ keeps keys in alphabetical order; a person reads errors in the order of the file.
+    // toml++ has keys in alphabetical order; errors are reported in the order of the file.
     std::ranges::sort(members, [](const Node::Member& a, const Node::Member& b) {
       return std::pair(a.where.line, a.where.column) < std::pair(b.where.line, b.where.column);
     });
@@ -97,14 +98,15 @@ Node convert(const toml::node& node, const Source& source) {
 constexpr std::size_t max_include_depth = 8;
 constexpr int max_included_files = 100;
 
-// Where a reading has come to: files include files, a few of which could name each other without end.
+// State of a reading: included files could include each other without end.
 struct Including {
-  std::vector<std::filesystem::path> open = {};  // From the first file to the one that is being read.
+  std::vector<std::filesystem::path> open = {};  // From the first file to the current one.
   int files = 0;
   std::vector<Problem>* repeated = nullptr;  // As for parse_toml.
 };
 
-// The same for every way to a file. A pipe (/dev/stdin) leads to no place in the file system: it is itself.
+// Returns the canonical path, equal for every path to a file. A pipe (/dev/stdin) has no place in the file
+// system and is returned unchanged.
 std::filesystem::path place_of(const std::filesystem::path& file) {
   std::error_code error;
   auto place = std::filesystem::weakly_canonical(file, error);
@@ -136,7 +138,7 @@ std::filesystem::path included_file(const Node& entry, const std::filesystem::pa
   }
 }
 
-// A file that is being read already would be read without end.
+// Reports an include of a file that is already open, which would never end.
 void check_is_new(const std::filesystem::path& file, const Node& entry, const Including& including) {
   const auto& open = including.open;
   const auto found = std::ranges::find(open, place_of(file));
@@ -167,7 +169,7 @@ void lay_upon_includes(Node& document, const std::filesystem::path& file, Includ
       check_is_new(included, name, including);
       merge(below, read_with_includes(included, including));
     } catch (const InputError& error) {
-      // Two ways to one file have the same wrong with it.
+      // Two paths to one file give equal errors.
       for (const Problem& problem : error.problems())
         if (std::ranges::find(problems, problem.text(), &Problem::text) == problems.end())
           problems.push_back(problem);
@@ -180,7 +182,7 @@ void lay_upon_includes(Node& document, const std::filesystem::path& file, Includ
   document = std::move(below);
 }
 
-// Moves everything on the first line by so many columns.
+// Moves all positions on the first line by this number of columns.
 void shift(Node& node, int columns) {
   if (node.where.line == 1) {
     node.where.column += columns;
@@ -197,15 +199,16 @@ void shift(Node& node, int columns) {
   }
 }
 
-// Only these are left out and read on: without a line that opens a table, what follows would belong
-// elsewhere.
+// Only these errors are skipped and the reading continues. Without a line that opens a table, the following
+// lines would belong to another table.
 bool is_repeated_key(std::string_view description) {
   return description.find("key-value pair") != std::string_view::npos &&
          description.find("cannot redefine existing") != std::string_view::npos;
 }
 
-// What is meant by a text without its closing quote, which toml++ tells as a line end that must not be in it,
-// by the second of two keys, by what ends too early, and by a word where a value is expected.
+// Returns a clear message in place of toml++'s for common errors. These are a text without closing quote
+// (reported as an invalid line end), a repeated key and an incomplete value. A word in place of a value is
+// another one.
 std::string plain_words(std::string_view description) {
   if (description.find("control characters other than TAB") != std::string_view::npos)
     return "the text does not end on its line: expected a closing quote, and no control characters before it";
@@ -222,13 +225,13 @@ std::string plain_words(std::string_view description) {
   return std::string(description);
 }
 
-// What toml++ would call a nesting too deep or a sequence of bytes.
+// Reports bytes that are not text, for which toml++ reports nesting or a byte sequence.
 void check_is_text(std::string_view text, const std::string& source) {
   const std::size_t at = std::min(text.find('\0'), utf8_length(text));
   if (at >= text.size()) return;
   const std::string_view before = text.substr(0, at);
   const auto line = 1 + std::ranges::count(before, '\n');
-  const std::size_t column = at - (before.rfind('\n') + 1) + 1;  // npos + 1 is 0
+  const std::size_t column = at - (before.rfind('\n') + 1) + 1;  // npos + 1 is 0.
   throw input_error(
       source,
       fmt::format("not a text: byte 0x{:02X}: expected TOML in UTF-8", static_cast<unsigned char>(text[at])),
@@ -237,8 +240,8 @@ void check_is_text(std::string_view text, const std::string& source) {
 
 constexpr std::size_t most_repetitions = 20;
 
-// Makes white space of the line on which a key was found to be there already, so that all others stay where
-// they are. Not where it stands in a table of one line, with others that belong to the document.
+// Replaces the line with a repeated key by white space, so that all positions stay. Returns false if it is in
+// a table on one line, together with other keys.
 bool leave_out(std::string& text, const toml::source_position& at) {
   std::size_t begin = 0;
   for (std::size_t line = 1; line < at.line; ++line) begin = text.find('\n', begin) + 1;
@@ -263,7 +266,8 @@ Node parse_toml(std::string_view text, const std::string& source, std::vector<Pr
     try {
       table = toml::parse(std::string_view(without_repetitions), source);
     } catch (const toml::parse_error& error) {
-      // What comes after a line that was left out may be wrong for that alone: a value of several lines.
+      // After a removed line, later errors may be due to the removal, for example of a value on several
+      // lines.
       const bool is_repetition = is_repeated_key(error.description());
       if (is_repetition || found.empty())
         found.push_back({position(name, error.source().begin), plain_words(error.description())});

@@ -12,8 +12,8 @@ namespace {
 
 constexpr int max_toml_depth = 32;
 
-// The end of the quoted text that starts at `start` (the index past its closing quotes). An unclosed one ends
-// with its line, or with the document when it is a multi-line one; the parser reports it.
+// Returns the end of the quoted text that starts at `start` (the index past its closing quotes). An unclosed
+// one ends with its line, or with the document if it is multi-line; the parser reports it.
 std::size_t end_of_quoted(std::string_view text, std::size_t start) {
   const char quote = text[start];
   const bool multi_line = text.substr(start, 3) == std::string(3, quote);
@@ -24,7 +24,7 @@ std::size_t end_of_quoted(std::string_view text, std::size_t start) {
     } else if (text[i] == '\n' && !multi_line) {
       return i;
     } else if (text[i] == quote && (!multi_line || text.substr(i, 3) == std::string(3, quote))) {
-      // A multi-line text may end in up to two quotes of its own before the closing three.
+      // A multi-line text may end in up to two quotes before the closing three.
       std::size_t end = i + width;
       while (multi_line && end < std::min(i + width + 2, text.size()) && text[end] == quote) ++end;
       return end;
@@ -35,7 +35,7 @@ std::size_t end_of_quoted(std::string_view text, std::size_t start) {
 
 [[noreturn]] void too_deep(std::string_view text, const std::string& source, std::size_t at,
                            const char* what) {
-  const std::size_t line_start = at == 0 ? 0 : text.rfind('\n', at - 1) + 1;  // npos + 1 is 0
+  const std::size_t line_start = at == 0 ? 0 : text.rfind('\n', at - 1) + 1;  // npos + 1 is 0.
   throw input_error(source, fmt::format("{} nested more than {} deep", what, max_toml_depth),
                     static_cast<int>(std::ranges::count(text.substr(0, at), '\n')) + 1,
                     static_cast<int>(at - line_start) + 1);
@@ -45,7 +45,7 @@ std::size_t end_of_quoted(std::string_view text, std::size_t start) {
 
 void check_toml_depth(std::string_view text, const std::string& source) {
   int brackets = 0;
-  int dots = 0;  // in the run of dotted parts that is being read
+  int dots = 0;  // Dots in the current dotted key.
   for (std::size_t i = 0; i < text.size();) {
     const char c = text[i];
     if (c == '"' || c == '\'') {

@@ -60,7 +60,7 @@ TEST(ParseToml, CanReadOnWhereAKeyIsWrittenTwice) {
   EXPECT_EQ(node.find("a")->brief(), "1");
   EXPECT_EQ(node.find("b")->where.text(), "x.toml:3:5");
   EXPECT_EQ(node.find("t")->find("d")->where.text(), "x.toml:7:5");
-  // A table opened twice, or anything else that is no TOML, ends the reading; both are told.
+  // A repeated table header, or other invalid TOML, ends the reading; both errors must be reported.
   EXPECT_THAT(toml_error_of("a = 1\na = 2\n[t]\n[t]\nb = 1\nb = 2\n"), HasSubstr("x.toml:2:"));
   EXPECT_THAT(toml_error_of("[t]\n[t]\n"), HasSubstr("x.toml:2:"));
 }
@@ -165,7 +165,7 @@ TEST_F(TomlFile, RefusesBadIncludesWithALine) {
   write("leaf.toml", "x = 1");
   write("crowd.toml", "include = [" + crowd + "]");
   EXPECT_THAT(error("crowd.toml"), HasSubstr("include: more than 100 files in all"));
-  // Fifteen a file, eight deep: without a bound on all of them a reading would take years.
+  // Fifteen includes per file, eight levels: without a total limit, reading would take years.
   for (int i = 0; i < 8; ++i) {
     std::string next;
     for (int k = 0; k < 15; ++k) next += "'fan" + std::to_string(i + 1) + ".toml', ";
@@ -179,8 +179,8 @@ TEST_F(TomlFile, RefusesBadIncludesWithALine) {
   write("folder.toml", "include = ['.']");
   EXPECT_THAT(error("circle.toml"), HasSubstr("circle.toml:1:12: include: circle.toml includes itself"));
   EXPECT_EQ(error("circle.toml").find("by way of"), std::string::npos);
-  // A file that is wrong is not being read any more: the next one to include it does not close a circle, and
-  // what is wrong with it is said once.
+  // An invalid file is no longer open: another file that includes it forms no circle, and its errors are
+  // reported once.
   write("broken.toml", "x = 1\ny = ");
   write("again.toml", "include = ['broken.toml', 'broken.toml']");
   EXPECT_EQ(error("again.toml").find("includes itself"), std::string::npos) << error("again.toml");

@@ -38,7 +38,7 @@ std::string key_text(std::string_view key) { return is_bare_key(key) ? std::stri
 
 std::string real_text(double value) {
   std::string text = fmt::format("{}", value);
-  // 2.0 must not come back as the whole number 2.
+  // 2.0 must not read back as the integer 2.
   if (text.find_first_of(".eni") == std::string::npos) text += ".0";
   return text;
 }
@@ -71,8 +71,7 @@ std::string value_text(const Node& node) {
   return "\"\"";
 }
 
-// The description of the table under a field, where there is one: for one_of, the alternative `node` says it
-// is.
+// Returns the description of the table under a field, if any; for one_of, that of the alternative of `node`.
 const TableInfo* table_of(const FieldInfo* field, const Node& node) {
   if (field == nullptr) return nullptr;
   const Type* type = &field->type;

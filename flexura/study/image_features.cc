@@ -21,7 +21,7 @@ Point middle(const Point& a, const Point& b) {
   return 0.5 * (*a + *b);
 }
 
-// The points about their middle along the axes of their spread, and what they spread there (root mean
+// The points relative to their centroid along their principal axes, and their spread there (root mean
 // square).
 struct Spread {
   std::vector<Eigen::Vector2d> points;
@@ -41,7 +41,7 @@ Spread spread_of(std::span<const Eigen::Vector2d> points) {
     spread.points.emplace_back(axes.transpose() * (p - mean));
     spread.size += spread.points.back().cwiseAbs2() / count;
   }
-  // Not the roots of the eigenvalues: of a thin ellipse's smaller one rounding would leave nothing.
+  // Not the roots of the eigenvalues: for a thin ellipse, rounding would remove the smaller one.
   spread.size = spread.size.cwiseSqrt();
   return spread;
 }
@@ -51,7 +51,7 @@ Spread spread_of(std::span<const Eigen::Vector2d> points) {
 std::optional<double> axes_ratio(std::span<const Eigen::Vector2d> points) {
   if (points.size() < 5) return std::nullopt;
   const Spread spread = spread_of(points);
-  // All in one place, but for rounding.
+  // All at one place up to rounding.
   if (!(spread.size.y() > 1e-14 * spread.mean.norm())) return std::nullopt;
   if (spread.size.x() <= 1e-12 * spread.size.y()) return 0.0;
   Eigen::Matrix<double, 6, 6> normal = Eigen::Matrix<double, 6, 6>::Zero();
@@ -61,7 +61,7 @@ std::optional<double> axes_ratio(std::span<const Eigen::Vector2d> points) {
     normal += terms * terms.transpose();
   }
   const Eigen::Vector<double, 6> conic = symmetric_eigen(normal).vectors.col(0);
-  // The quadratic part a x^2 + b xy + c y^2, back in px.
+  // The quadratic part a x^2 + b xy + c y^2, in px again.
   const double a = conic[0] / (spread.size.x() * spread.size.x());
   const double b = conic[1] / (spread.size.x() * spread.size.y());
   const double c = conic[2] / (spread.size.y() * spread.size.y());

@@ -15,7 +15,7 @@
 namespace flexura {
 namespace {
 
-// Places of the columns.
+// Indices of the columns.
 constexpr std::size_t formula = 0, rendered = 1, measured = 2;
 
 double difference(const std::optional<double>& a, const std::optional<double>& b) {
@@ -83,7 +83,7 @@ ImageStudy study_images(const StudyTask& task, const std::vector<CameraConfig>& 
   const auto& [first, last] = study.variation.values;
   for (std::int64_t i = 0; i < task.points; ++i) {
     const double share = static_cast<double>(i) / static_cast<double>(task.points - 1);
-    // Exact at both ends, which may be an axis's limits.
+    // Exact at both ends, which may be limits of an axis.
     study.values.push_back((1 - share) * first + share * last);
     const View view = view_with(camera, study.variation.parameter, study.values.back(), target);
     study.images.push_back(target.projected(view));

@@ -15,32 +15,31 @@
 
 namespace flexura {
 
-/// Features as one source has them, one entry a value of the parameter.
+/// Features from one source, one item per value of the parameter.
 struct StudyColumn {
   std::string_view source;  ///< "formula", "rendered", "measured"; its features are "top_formula", ...
   std::vector<ImageFeatures> features;
 };
 
-/// What a study found.
+/// Result of a study.
 struct ImageStudy {
   std::string name;
   std::string camera;
   Variation variation;
-  int width = 0, height = 0;        ///< Of the camera's image, px.
-  std::vector<double> values;       ///< Of the parameter, in base units.
-  std::vector<TargetImage> images;  ///< By the formulas, one a value.
-  std::vector<StudyColumn>
-      columns;  ///< By the formulas, the renderer's truth, and, if asked for, in pictures.
+  int width = 0, height = 0;         ///< Size of the camera's image, px.
+  std::vector<double> values;        ///< Values of the parameter, in base units.
+  std::vector<TargetImage> images;   ///< By the formulas, one per value.
+  std::vector<StudyColumn> columns;  ///< By the formulas, the renderer's truth, and optionally in pictures.
 
-  /// Whether the whole target is inside the image at value i.
+  /// Returns true if the whole target is inside the image at value i.
   [[nodiscard]] bool in_image(std::size_t i) const;
-  /// Whether every feature could be measured there, by the formulas.
+  /// Returns true if every feature has a value there, by the formulas.
   [[nodiscard]] bool is_seen(std::size_t i) const;
-  /// The largest difference between formulas and renderer where both have a value: of the lengths, px, and of
-  /// the ratio of axes. Infinite where one has a value that the other lacks.
+  /// Returns the largest differences between formulas and renderer: of the lengths, px, and of the ratio of
+  /// axes. Infinite if only one of them has a value.
   [[nodiscard]] std::array<double, 2> largest_difference() const;
-  /// How many lengths were measured in pictures, and the root mean square of their differences from the
-  /// formulas', px; zeros when none was.
+  /// Number of lengths measured in pictures, and the root mean square of their differences from the
+  /// formulas', px; zeros without measurements.
   struct Measured {
     std::size_t count = 0;
     double rms = 0;
@@ -48,8 +47,8 @@ struct ImageStudy {
   [[nodiscard]] Measured measured_difference() const;
 };
 
-/// Makes a study that check_study has passed, through the camera of that name among `cameras`, from where it
-/// stands at the start. The noise of its pictures is that of `seed`, the camera's place and the value's.
+/// Makes a study that check_study has accepted, with the camera of that name among `cameras` at its initial
+/// axis positions. The noise of its pictures depends on `seed`, the camera's index and the value's.
 [[nodiscard]] ImageStudy study_images(const StudyTask& task, const std::vector<CameraConfig>& cameras,
                                       std::uint64_t seed);
 

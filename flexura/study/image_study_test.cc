@@ -26,7 +26,7 @@ using std::numbers::pi;
 constexpr double focal_length = 800, circle_radius = 0.5, distance = 2.5;
 constexpr double half_side = circle_radius / std::numbers::sqrt2;
 
-// The camera before the circle of the paper's Figs. 10 to 13.
+// Returns the camera in front of the circle of the paper's Figs. 10 to 13.
 CameraConfig front_camera() {
   CameraConfig camera = cameras_at({distance, distance}).front();
   camera.lens.fx = focal_length;
@@ -44,7 +44,7 @@ ImageStudy study(VaryConfig::Values VaryConfig::* parameter, double first, doubl
   return study_images(task, {camera}, 1);
 }
 
-// The features at the last value of a study, by the formulas.
+// Returns the features at the last value of a study, by the formulas.
 std::array<double, feature_names.size()> last_of(const ImageStudy& study) {
   std::array<double, feature_names.size()> values{};
   for (std::size_t k = 0; k < values.size(); ++k)
@@ -171,7 +171,7 @@ TEST(ImageStudy, ItsTwoColumnsAgreeForEveryParameterOfACameraInGeneralPosition) 
     double from = 0.3, to = 0.5;
     if (field.name == "distance" || field.name == "mount_z") from = 2, to = 2.4;
     if (field.name == "zoom") from = 1, to = 1.2;
-    if (field.name[0] == 'c' || field.name[0] == 'f') from = 400, to = 500;  // px
+    if (field.name[0] == 'c' || field.name[0] == 'f') from = 400, to = 500;  // In px.
     Node written{Node::Table{}, {}};
     ASSERT_EQ(set_at_path(written, fmt::format("vary.{}", field.name),
                           {Node::Array{number_node(from), number_node(to)}, {}}),
@@ -249,7 +249,7 @@ TEST(ImageStudy, MeasuresTargetsSmallerThanAPixel) {
   StudyTask task;
   task.vary.orbit = {{-0.5, 0.5}};
   task.points = 3;
-  task.target.radius = 1e-4;  // 0.03 px
+  task.target.radius = 1e-4;  // 0.03 px.
   const ImageStudy tiny = study_images(task, {front_camera()}, 1);
   EXPECT_NEAR(*tiny.columns[1].features[1][0], focal_length * std::numbers::sqrt2 * 1e-4 / distance, 1e-9);
   EXPECT_LE(tiny.largest_difference()[0], 1e-9);
@@ -266,7 +266,7 @@ TEST(ImageStudy, StandsOffFromTheTarget) {
 TEST(ImageStudy, LeavesEmptyWhatTheLensDoesNotShow) {
   CameraConfig camera = front_camera();
   camera.mount.stage.z.limits = {0, 4};
-  const ImageStudy ahead = study(&VaryConfig::stage_z, 0, 4, 9, camera);  // through the plane at 2.5 m
+  const ImageStudy ahead = study(&VaryConfig::stage_z, 0, 4, 9, camera);  // Through the plane at 2.5 m.
   for (std::size_t i = 0; i < ahead.values.size(); ++i) {
     EXPECT_EQ(ahead.is_seen(i), ahead.values[i] < distance) << ahead.values[i];
     if (ahead.values[i] < distance) continue;
@@ -277,7 +277,7 @@ TEST(ImageStudy, LeavesEmptyWhatTheLensDoesNotShow) {
 
 TEST(ImageStudy, MeasuresTheSquareWhileThePlaneCutsTheCircle) {
   CameraConfig camera = front_camera();
-  camera.mount.position = {0, 0, 0.45};  // nearer than the radius: in orbit some of the circle gets behind
+  camera.mount.position = {0, 0, 0.45};  // Nearer than the radius: in orbit, parts get behind it.
   const ImageStudy orbit = study(&VaryConfig::orbit, 0, 85 * degree, 18, camera);
   EXPECT_TRUE(orbit.is_seen(0));
   EXPECT_FALSE(orbit.is_seen(17));

@@ -20,19 +20,19 @@ using Eigen::Vector2d, Eigen::Vector3d;
 
 constexpr double dark = 0.1, bright = 0.85;
 
-// The square's corners, in order around it.
+// Corners of the square, in order around it.
 constexpr std::array<std::size_t, 4> corners = {bottom_right, top_right, top_left, bottom_left};
 
 SensorConfig gray_sensor(SensorConfig sensor) {
   sensor.pixels = PixelKind::gray, sensor.bits = 8;
-  // No lens is sharper than its pixels: borders of an image that is have no place within a pixel.
+  // No lens is sharper than its pixels: the borders of a sharper image have no position within a pixel.
   constexpr double sharpest = 0.6;
   sensor.psf = std::max(sensor.psf, sharpest);
   return sensor;
 }
 
-// The line with n . x = 1 at least squares of the distances; twice without what lies far beside it. Points
-// are directions (a, b, 1) of an ideal lens. None for fewer than 8.
+// Returns the line n . x = 1 with the least squares of the distances, fitted again twice without outliers.
+// Points are directions (a, b, 1) of an ideal lens. Returns std::nullopt for fewer than 8 points.
 std::optional<Vector3d> line_through(std::vector<Vector2d> points) {
   constexpr std::size_t fewest = 8;
   Vector3d line;
@@ -52,9 +52,10 @@ std::optional<Vector3d> line_through(std::vector<Vector2d> points) {
   return line;
 }
 
-// Which edge a point lies near, from the corner of that number on, away from its ends; none near a corner.
+// Returns the edge near a point, counted by its first corner, if the point is away from its ends;
+// std::nullopt near a corner.
 std::optional<std::size_t> edge_of(const std::array<Vector2d, 4>& expected, const Vector2d& point) {
-  constexpr double end = 0.1, near = 0.1;  // Of the edge's length.
+  constexpr double end = 0.1, near = 0.1;  // Shares of the edge's length.
   std::optional<std::size_t> best;
   double least = near;
   for (std::size_t i = 0; i < 4; ++i) {
@@ -68,7 +69,8 @@ std::optional<std::size_t> edge_of(const std::array<Vector2d, 4>& expected, cons
   return best;
 }
 
-// The map of the plane (x, y, 1) that takes four points to four others (R. Hartley, A. Zisserman, 2004).
+// Returns the homography of the plane (x, y, 1) that maps four points to four others (R. Hartley, A.
+// Zisserman, 2004).
 std::optional<Eigen::Matrix3d> homography(const std::array<Vector2d, 4>& from,
                                           const std::array<Vector2d, 4>& to) {
   Eigen::Matrix<double, 8, 8> left;

@@ -10,16 +10,17 @@
 
 namespace flexura {
 
-/// Measures a study's target in pictures: its square, dark before a bright ground, is drawn, read out by the
-/// camera's sensor (gray, 8 bits), found by its border, and its four edges are fitted with lines, the lens's
-/// distortion undone. What the corners tell of the plane places the centre and the circle in the image.
+/// Measures a study's target in pictures. Its square, dark on a bright background, is rendered, read out by
+/// the camera's sensor (gray, 8 bits) and found by its border. Its four edges are fitted with lines, with the
+/// lens's distortion removed. The corners define the plane, which gives the centre and the circle in the
+/// image.
 class MeasuredTarget {
  public:
   /// `stream` has the seed and the camera of the pictures' noise.
   MeasuredTarget(const StudyTarget& target, const SensorConfig& sensor, const NoiseStream& stream);
 
-  /// In picture number `frame`, whose noise is its own. Nothing where the square is not wholly in the image,
-  /// or is seen from its edge. Which edge is which is told by where the formulas have them.
+  /// Returns the target in picture number `frame`, with independent noise. Empty if the square is not
+  /// entirely in the image, or is seen edge-on. The positions by the formulas identify the edges.
   [[nodiscard]] TargetImage image(const View& view, std::uint64_t frame);
 
  private:

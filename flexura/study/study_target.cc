@@ -27,9 +27,9 @@ Pose pose_of(const StudyTargetConfig& config) {
   return X_WF;
 }
 
-// A screen in the target's plane, which has all of the circle well inside, and the pixels around it.
+// Returns a screen in the target's plane, large enough for the circle and the pixels around it.
 Scene scene_of(const Pose& X_WF, double radius, const Eigen::Vector3d& eye) {
-  constexpr double pixels = 0.1;  // of the distance: even with a lens of 10 px
+  constexpr double pixels = 0.1;  // Share of the distance: sufficient even for a lens of 10 px.
   const double side = 4 * radius + pixels * (eye - X_WF.position).norm();
   Scene scene;
   Screen& screen = scene.screens.emplace_back();
@@ -38,14 +38,14 @@ Scene scene_of(const Pose& X_WF, double radius, const Eigen::Vector3d& eye) {
   return scene;
 }
 
-// Where rays of the prepared renderer's view meet its scene.
+// Intersections of rays of the prepared renderer's view with its scene.
 class RayMeeting {
  public:
   explicit RayMeeting(const Renderer& renderer)
       : view_(renderer.prepared().view),
         tracer_(renderer.prepared().stage, renderer.prepared().tiles.all_parts()) {}
 
-  // In W; none where the pixel has no ray, or its ray meets nothing.
+  // Returns the point in W; std::nullopt if the pixel has no ray, or its ray meets nothing.
   [[nodiscard]] std::optional<Eigen::Vector3d> at(const Eigen::Vector2d& pixel) const {
     const auto ray = ray_at(view_.lens, pixel);
     if (!ray) return std::nullopt;
@@ -54,11 +54,11 @@ class RayMeeting {
     return view_.X_WC * Eigen::Vector3d(hit.depth * ray->direction);
   }
 
-  // The pixel whose ray meets the point p_WP, looked for from another one.
+  // Returns the pixel whose ray meets the point p_WP; the search starts from another pixel.
   [[nodiscard]] std::optional<Eigen::Vector2d> pixel_of(const Eigen::Vector3d& p_WP,
                                                         Eigen::Vector2d pixel) const {
     constexpr int most_steps = 30;
-    constexpr double difference = 1e-3, small = 1e-9;  // px
+    constexpr double difference = 1e-3, small = 1e-9;  // In px.
     for (int i = 0; i < most_steps; ++i) {
       const auto here = at(pixel), right = at(pixel + Eigen::Vector2d(difference, 0)),
                  below = at(pixel + Eigen::Vector2d(0, difference));
@@ -100,7 +100,7 @@ TargetImage StudyTarget::projected(const View& view) const {
 }
 
 TargetImage StudyTarget::rendered(const View& view, Renderer& renderer) const {
-  // Where a pixel's ray leads does not depend on the image's size, but the time to prepare does.
+  // The ray of a pixel does not depend on the image's size, but the time to prepare does.
   View small = view;
   small.width = small.height = 2;
   const Scene scene = scene_of(X_WF_, radius_, view.X_WC.position);

@@ -12,40 +12,40 @@
 
 namespace flexura {
 
-/// Points on a study's circle: every 5 degrees, counter-clockwise from its lowest one.
+/// Number of points on a study's circle: every 5 degrees, counter-clockwise from its lowest one.
 inline constexpr std::size_t circle_points = 72;
 
-/// The places of the square's corners and of the circle's top among them.
+/// Indices of the square's corners and of the circle's top among them.
 inline constexpr std::size_t bottom_right = 9, top_right = 27, circle_top = 36, top_left = 45,
                              bottom_left = 63;
 
-/// Where the target's points are in an image, px; none where the lens shows them nowhere.
+/// Positions of the target's points in an image, px; std::nullopt for points that the lens does not show.
 struct TargetImage {
   std::optional<Eigen::Vector2d> center;
   std::array<std::optional<Eigen::Vector2d>, circle_points> circle;
 };
 
-/// A study's circle and square in the world. The target's frame F has its x level, its y as upright as the
-/// plane allows, and its z along the normal; a level plane takes W's X for x.
+/// A study's circle and square in the world. The target's frame F has a level x axis, y as upright as the
+/// plane allows, and z along the normal. For a level plane, x is W's X.
 class StudyTarget {
  public:
   explicit StudyTarget(const StudyTargetConfig& config);
 
   [[nodiscard]] const Eigen::Vector3d& center() const { return X_WF_.position; }
-  /// The level axis in the plane, unit, W.
+  /// Returns the level axis in the plane, unit, W.
   [[nodiscard]] Eigen::Vector3d level_axis() const { return X_WF_.rotation.col(0); }
   [[nodiscard]] const Pose& frame() const { return X_WF_; }
   [[nodiscard]] double radius() const { return radius_; }
-  /// The circle's point number i, in W, and along the target's x and y, m.
+  /// Return the circle's point number i, in W, and along the target's x and y, m.
   [[nodiscard]] Eigen::Vector3d point(std::size_t i) const;
   [[nodiscard]] Eigen::Vector2d plane_point(std::size_t i) const;
 
-  /// By the projection formulas.
+  /// Returns the image by the projection formulas.
   [[nodiscard]] TargetImage projected(const View& view) const;
 
-  /// By the renderer: the places in the image whose rays, traced to a screen in the target's plane, meet it
-  /// in the target's points, looked for from the nearest pixel's middle. None where the rays pass along the
-  /// screen. `renderer` may be used again, when it is prepared anew.
+  /// Returns the image by the renderer: the image points whose rays, traced to a screen in the target's
+  /// plane, meet the target's points. The search starts at the middle of the nearest pixel. Points are
+  /// std::nullopt if the rays pass along the screen. `renderer` must be prepared again before other uses.
   [[nodiscard]] TargetImage rendered(const View& view, Renderer& renderer) const;
 
  private:

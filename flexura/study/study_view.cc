@@ -20,7 +20,7 @@ constexpr std::array<VariedList, 3> tilt_axis_parameters{&V::tilt_axis_x, &V::ti
 constexpr std::array<VariedList, 3> pupil_parameters{&V::pupil_x, &V::pupil_y, &V::pupil_z};
 constexpr std::array<VariedList, 5> distortion_parameters{&V::k1, &V::k2, &V::p1, &V::p2, &V::k3};
 
-// The place of a parameter in a list; its size when it is not there.
+// Returns the index of a parameter in a list; the list's size if it is missing.
 template <std::size_t n>
 std::size_t place_in(const std::array<VariedList, n>& list, VariedList parameter) {
   std::size_t i = 0;
@@ -39,7 +39,7 @@ Intrinsics with(Intrinsics lens, VariedList parameter, double value) {
   return lens;
 }
 
-// The camera with one of its fixed offsets changed; its orientation stays.
+// Returns the camera with one of its fixed offsets changed and its orientation kept.
 CameraConfig with_offset(CameraConfig config, VariedList parameter, double value) {
   if (const std::size_t i = place_in(tilt_axis_parameters, parameter); i < 3)
     config.head.tilt_axis[i] = value;
@@ -48,7 +48,7 @@ CameraConfig with_offset(CameraConfig config, VariedList parameter, double value
   return config;
 }
 
-// The camera as far from the target's centre, on the line on which it stands.
+// Returns the camera at this distance from the target's centre, on its line through it.
 Pose at_distance(Pose X_WC, const StudyTarget& target, double distance) {
   const Eigen::Vector3d way = X_WC.position - target.center();
   if (!(way.norm() > 0)) throw std::invalid_argument("a camera cannot move away from its own place");
@@ -56,7 +56,8 @@ Pose at_distance(Pose X_WC, const StudyTarget& target, double distance) {
   return X_WC;
 }
 
-// The camera turned by the shortest way to look at the target's centre, and both turned about its level axis.
+// Returns the camera turned by the shortest rotation to look at the target's centre, and then rotated about
+// its level axis.
 Pose orbited(const Pose& X_WC, const StudyTarget& target, double angle) {
   const Eigen::Vector3d way = target.center() - X_WC.position;
   if (!(way.norm() > 0)) throw std::invalid_argument("a camera cannot orbit its own place");

@@ -7,13 +7,13 @@
 
 namespace flexura {
 
-/// What the camera sees from where it stands at the start, with one parameter (a member of VaryConfig) at
-/// `value`. std::out_of_range: a zoom outside the lens's table; std::invalid_argument: a focal length that is
-/// not positive, a camera in the target's centre that is to orbit it or to stand off from it.
+/// Returns the camera's view at its initial axis positions, with one parameter (a member of VaryConfig) at
+/// `value`. Throws std::out_of_range for a zoom outside the lens's table. Throws std::invalid_argument for a
+/// focal length that is not positive, or an orbit or a distance of a camera in the target's centre.
 [[nodiscard]] View view_with(const Camera& camera, VaryConfig::Values VaryConfig::* parameter, double value,
                              const StudyTarget& target);
 
-/// The motor-driven axis that a parameter belongs to; null for the others.
+/// Returns the motor axis of a parameter; null for parameters without one.
 [[nodiscard]] const AxisConfig* moved_axis(const Camera& camera, VaryConfig::Values VaryConfig::* parameter);
 
 }  // namespace flexura

@@ -10,11 +10,12 @@
 
 namespace flexura {
 
-/// Places among `cameras` of two that a task names, or of the first two where it names none; checked before.
+/// Returns the indices among `cameras` of the two that a task names, or of the first two if it names none.
+/// Requires checked names.
 [[nodiscard]] std::array<std::size_t, 2> two_cameras(const std::vector<std::string>& names,
                                                      const std::vector<CameraConfig>& cameras);
 
-/// Reports what keeps the task at `path` from having two cameras.
+/// Reports why the task at `path` does not have two cameras.
 void check_two_cameras(const std::vector<std::string>& names, const std::vector<CameraConfig>& cameras,
                        const std::string& path, Reader& reader);
 

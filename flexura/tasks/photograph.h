@@ -8,10 +8,10 @@
 
 namespace flexura {
 
-/// A picture that a camera took, for reports: outlines are drawn over it.
+/// Returns a camera's picture for reports: outlines are drawn over it.
 [[nodiscard]] ImagePlot photograph(const Picture& picture, const SensorConfig& sensor, std::string heading);
 
-/// A cross at a place of the picture, px, whose arms are `size` px long: for its outlines.
+/// Returns a cross at a point of the picture, px, with arms of `size` px: for its outlines.
 [[nodiscard]] ImageOutline::Line cross(const Eigen::Vector2d& at, double size);
 
 }  // namespace flexura

@@ -7,7 +7,7 @@
 
 namespace flexura {
 
-/// The table of a struct that is a shape, and may be more, with the fields of a shape added.
+/// Adds the fields of a shape to the table of a struct derived from ShapeConfig.
 template <std::derived_from<ShapeConfig> S>
 [[nodiscard]] Table<S> with_shape_fields(Table<S> table) {
   const TableInfo& shape = fields_of(static_cast<const ShapeConfig*>(nullptr)).info();

@@ -19,35 +19,34 @@
 
 namespace flexura {
 
-/// One `[[task]]` of a file: the list of all kinds. Of each, its header of keys declares, beside its table of
-/// fields,
+/// One `[[task]]` of a file, with all kinds. For each kind, its header of keys declares its table of fields
+/// and
 ///   void check_keys(const KIND&, const Setup&, const std::string& path, Reader&)
 ///   std::unique_ptr<TaskRunner> runner_of(const KIND&, const Setup&, TaskLabel)
-/// and, where it has some,
+/// and optionally
 ///   void read_files(KIND&, const Setup&, const Node& written, const std::string& path,
 ///                   std::vector<Problem>&)
 ///   LogTables log_tables(const KIND*)
-/// which are what the functions below ask for.
-/// Summaries have the kinds in this order.
+/// for the functions below. Summaries list the kinds in this order.
 using TaskConfig = std::variant<MoveTask, HoldTask, SineTask, KeyframesTask, ExpressionTask, StudyTask,
                                 CalibrateTask, ServoTask, DynamicsTask>;
 
-[[nodiscard]] std::string task_name(const TaskConfig& task);       ///< Its name, else its kind.
-[[nodiscard]] std::string_view task_kind(const TaskConfig& task);  ///< "move", "servo", ...
+[[nodiscard]] std::string task_name(const TaskConfig& task);       ///< Returns its name, otherwise its kind.
+[[nodiscard]] std::string_view task_kind(const TaskConfig& task);  ///< Returns "move", "servo", ...
 
-/// Reports what keeps the task at `path` ("task[2]") from fitting the setup.
+/// Reports why the task at `path` ("task[2]") does not fit the setup.
 void check_task(const TaskConfig& task, const Setup& setup, const std::string& path, Reader& reader);
 
-/// Reads the files that the task at `path`, `written` so, names, from the setup's folder or below; what is
-/// wrong with them is added to the problems.
+/// Reads the files that the task at `path`, written as `written`, names, from the setup's folder or below.
+/// Adds their errors to the problems.
 void read_task_files(TaskConfig& task, const Setup& setup, const Node& written, const std::string& path,
                      std::vector<Problem>& problems);
 
-/// What does a task that was checked. Both outlive it.
+/// Returns the runner of a checked task. Task and setup must outlive it.
 [[nodiscard]] std::unique_ptr<TaskRunner> task_runner(const TaskConfig& task, const Setup& setup,
                                                       std::size_t number);
 
-/// The tables that exports make of what tasks tell.
+/// Returns the tables that exports make from the tasks' messages.
 [[nodiscard]] LogTables task_tables();
 
 }  // namespace flexura

@@ -8,9 +8,9 @@ namespace flexura {
 struct Setup;
 class TaskRunner;
 
-/// What a task of a file is called, and where it stands.
+/// Name and position of a task in a file.
 struct TaskLabel {
-  std::string name;        ///< Its own, or its kind.
+  std::string name;        ///< Its name, or its kind.
   std::size_t number = 0;  ///< From 0.
 };
 

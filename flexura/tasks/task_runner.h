@@ -28,57 +28,58 @@
 
 namespace flexura {
 
-/// A target of a task that the arm does not come to.
+/// A target of a task that the arm does not reach.
 struct MissedTarget {
-  std::string place;    ///< Where the task says it: "target[1]"; "" where it has one only.
-  double distance = 0;  ///< m, to where the arm comes.
-  double limit = 0;     ///< m, that it may be.
-  std::optional<Eigen::Vector3d> position = {};  ///< World, m; of a place for the tip.
+  std::string place;    ///< Place of the target in the task: "target[1]"; "" if there is only one.
+  double distance = 0;  ///< Remaining distance, m.
+  double limit = 0;     ///< Largest accepted distance, m.
+  std::optional<Eigen::Vector3d> position = {};  ///< World, m; for a position of the tip.
 };
 
-/// What a task is going to do.
+/// Planned motion of a task.
 struct TaskPlan {
   MotionPtr motion;         ///< Never null; its times count from the task's start.
-  bool is_steered = false;  ///< By sight: a limiter decides on the way what is sent.
-  bool is_foreseen = true;  ///< What it does is known; a servo's way is only once it has been done.
+  bool is_steered = false;  ///< By cameras: a limiter decides the commands during the run.
+  bool is_foreseen = true;  ///< The motion is known before the run; a servo's only afterwards.
   std::vector<MissedTarget> missed = {};
 };
 
-/// A rig as it is believed to be in the course of a run.
+/// Model of a rig in the course of a run.
 struct BelievedRig {
-  RigModel model;         ///< By the file, or by calibrations.
-  bool is_found = false;  ///< By one of the default method, with mounts and lenses.
+  RigModel model;         ///< From the file, or from calibrations.
+  bool is_found = false;  ///< Calibrated by the default method, with mounts and lenses.
 };
 
-/// What a task has to work with while the rig does it.
+/// Resources of a task that the rig performs.
 struct TaskStage {
   Rig& rig;
   BelievedRig& believed;
   RunLog& log;
   Progress& progress;
   const RecordSteps& record_steps;
-  /// Where the motors come to be sent as the arm goes through these states; none without a command list.
+  /// Returns the motor positions after the arm's motion through these states; std::nullopt without a command
+  /// list.
   std::function<std::optional<std::vector<std::int64_t>>(std::span<const ArmState> way)> motors_after;
 };
 
-/// How a task ended.
+/// Result of a task.
 struct TaskEnd {
-  MotionPtr motion;                    ///< What the arm did, as commanded, from the task's start. Never null.
-  std::optional<std::string> failure;  ///< Why the run ends with it; none: it goes on.
+  MotionPtr motion;                    ///< Commanded motion of the arm, from the task's start. Never null.
+  std::optional<std::string> failure;  ///< Why the run ends with this task; std::nullopt: it continues.
 };
 
-/// When a task's motion is known.
+/// Time at which a task's motion is known.
 enum class TaskWay : std::uint8_t {
-  known,      ///< From the state in which it starts.
-  simulated,  ///< Once it has been simulated, from the state in which it starts (TaskRunner::simulate).
-  by_rig,     ///< Once the rig has done it (TaskRunner::perform).
+  known,      ///< From the state at its start.
+  simulated,  ///< After its simulation from the state at its start (TaskRunner::simulate).
+  by_rig,     ///< After the rig has performed it (TaskRunner::perform).
 };
 
-/// One task of an experiment, from its plan to what a run says of it. A kind of task is a folder of tasks/
-/// with one of these; tasks/task_kinds.h lists them.
+/// One task of an experiment, from its plan to its results. A kind of task is a folder of tasks/ with one of
+/// these; tasks/task_kinds.h lists them.
 class TaskRunner {
  public:
-  /// The setup outlives it.
+  /// The setup must outlive this object.
   TaskRunner(const Setup& setup, TaskLabel label) : setup_(setup), label_(std::move(label)) {}
   virtual ~TaskRunner() = default;
   TaskRunner(const TaskRunner&) = delete;
@@ -87,37 +88,37 @@ class TaskRunner {
   [[nodiscard]] const std::string& name() const { return label_.name; }
   [[nodiscard]] virtual TaskWay way() const { return TaskWay::known; }
 
-  /// For an arm that stands in `from`. `done`: what the task did, where that is known; else null, and the
-  /// plan is what it may do at most.
+  /// Returns the plan for an arm in the state `from`. `done`: the performed motion if known, otherwise null;
+  /// the plan then has the largest possible motion.
   [[nodiscard]] virtual TaskPlan plan(const ArmState& from, const MotionPtr& done) const = 0;
 
-  /// Of tasks that are simulated: from `start` s on.
+  /// For simulated tasks: simulates it from `start` s on.
   [[nodiscard]] virtual TaskEnd simulate(const ArmState& /*from*/, double /*start*/, Progress& /*progress*/) {
     throw std::logic_error("this task is not simulated");
   }
-  /// Of tasks that are done by the rig, now. `from`: where the arm was sent last.
+  /// For tasks of the rig: performs it now. `from`: last commanded state of the arm.
   [[nodiscard]] virtual TaskEnd perform(const ArmState& /*from*/, TaskStage& /*stage*/) {
     throw std::logic_error("this task is not done by the rig");
   }
 
-  /// Adds to the check of its motion what that does not tell. `ended_by`: the task with which the run ends
-  /// before this one is simulated; "": none does.
+  /// Adds caveats and notes to the check of its motion. `ended_by`: the task that ends the run before this
+  /// one is simulated, or "".
   virtual void add_caveats(const ArmState& /*from*/, const std::string& /*ended_by*/,
                            SafetyReport& /*report*/) const {}
 
-  /// Of tasks that are simulated: tells the log what came of it up to `time` s, when the run has played up to
-  /// there.
+  /// For simulated tasks: logs its results up to `time` s, when the run has played up to there.
   virtual void tell_up_to(double /*time*/, RunLog& /*log*/) {}
 
-  /// Writes its files into the results. `is_cancelled`: the run was, and has no time for what is yet to be
-  /// worked out.
+  /// Writes its files into the results. `is_cancelled`: the run was cancelled, and computations still open
+  /// are skipped.
   virtual void finish(const std::filesystem::path& /*results*/, bool /*is_cancelled*/) {}
 
-  /// The summary's list in which its kind stands: "servos"; "": none.
+  /// Returns the summary's list of its kind: "servos"; "" if there is no list.
   [[nodiscard]] virtual std::string_view summary_list() const { return ""; }
-  /// Its entry there; none where nothing came of it.
+  /// Returns its item in the list; std::nullopt without a result.
   [[nodiscard]] virtual std::optional<Node> summary() const { return std::nullopt; }
-  /// Its chapter of the report, likewise. `number` counts those of its kind, from 0, for names of figures.
+  /// Returns its chapter of the report; std::nullopt without a result. `number` counts tasks of its kind,
+  /// from 0, for names of figures.
   [[nodiscard]] virtual std::optional<Chapter> chapter(std::size_t /*number*/) const { return std::nullopt; }
 
  protected:

@@ -27,30 +27,30 @@
 namespace flexura {
 namespace {
 
-// Borders that are blurred by more, px and as a share of the figure's width, are modelled no more; figures of
-// less contrast are easily lost in noise.
+// Limits of the border model. Borders with more blur (px, or as a share of the arm's width) are not modelled.
+// Arms of less contrast may be lost in noise.
 constexpr double least_blurred = 2, blurred_share = 0.12, faint = 30;
 
-// As many pixels tell a histogram's two classes apart well enough: the borders are measured on their own.
+// This many pixels separate a histogram's two classes well enough: the borders are measured separately.
 constexpr std::size_t histogram_samples = 12288;
 
-// Figures smaller than this are dust.
+// Smaller figures are dust.
 constexpr std::int64_t least_area = 24;
 
-// A tube is at least this many times as long as wide.
+// Smallest ratio of length to width of a tube.
 constexpr double least_slenderness = 2.5;
 
-// What explains less of its figure is some edge of it, no arm.
+// An axis that covers less of its figure is some edge of it, not an arm.
 constexpr double least_covered = 0.3;
 
 constexpr std::size_t most_tries = 4, most_seeds = 4;
 
-// Where the axis explains more the rest is its ends and noise.
+// If the axis covers more, the rest is its ends and noise.
 constexpr double all_but_ends = 0.95;
 
-// Whether a point of the border lies beside the axis, where that has it.
+// Returns whether a point of the border lies beside the axis, at the distance of the axis's width.
 bool is_explained(const BorderPoint& point, const std::vector<AxisSample>& axis) {
-  constexpr double close = 1.5;  // px, across the axis and along it
+  constexpr double close = 1.5;  // px, across and along the axis.
   return std::ranges::any_of(axis, [&](const AxisSample& sample) {
     const Eigen::Vector2d off = point.pixel - sample.pixel;
     const double across = std::abs(off.dot(sample.normal));
@@ -59,13 +59,13 @@ bool is_explained(const BorderPoint& point, const std::vector<AxisSample>& axis)
   });
 }
 
-// How much of the figure an axis explains, and how many of its ends it knows.
+// Score of an axis: the covered share of the figure and the number of known ends.
 double merit(const ArmSighting& seen) {
   const auto is_known = [](const AxisEnd& end) { return end.kind != AxisEndKind::lost; };
   return std::min(seen.covered, 1.0) + 0.2 * static_cast<double>(std::ranges::count_if(seen.ends, is_known));
 }
 
-// No other seed would show more.
+// Returns whether no other seed would show more.
 bool shows_all(const ArmSighting& seen) {
   constexpr double whole = 0.85;
   const auto is_lost = [](const AxisEnd& end) { return end.kind == AxisEndKind::lost; };
@@ -165,8 +165,8 @@ void ArmFinder::Work::find_axis(const Image<Value>& picture, double scale) {
   seen.reason = first_reason;
 }
 
-// The tube of a component, from the first seed that leads to both its ends, or else the one that leads
-// farthest.
+// Follows the tube of a component from the first seed that leads to both its ends, or else from the one that
+// leads farthest.
 template <typename Value>
 bool ArmFinder::Work::follow(const Image<Value>& picture, double scale, const Component& component) {
   tube_seeds(components, component, seeds);
@@ -187,7 +187,7 @@ bool ArmFinder::Work::follow(const Image<Value>& picture, double scale, const Co
   least_blur = std::numeric_limits<double>::infinity();
   try_seeds(picture, scale, component);
   if (best.axis.empty()) {
-    // Where hairs make more of the figure than the arm does, it is the thickest.
+    // Where hairs form more of the figure than the arm does, the arm is the thickest.
     std::ranges::stable_sort(seeds, std::ranges::greater{}, &TubeSeed::width);
     try_seeds(picture, scale, component);
   }
@@ -214,7 +214,7 @@ std::string ArmFinder::Work::reason_against_following(double width) const {
   return "it is no tube, or points at the camera";
 }
 
-// The first few: `best` is what the best of them leads to.
+// Tries the first few seeds; the result of the best one is in `best`.
 template <typename Value>
 void ArmFinder::Work::try_seeds(const Image<Value>& picture, double scale, const Component& component) {
   for (std::size_t i = 0; i < std::min(seeds.size(), most_seeds); ++i) {
@@ -224,7 +224,7 @@ void ArmFinder::Work::try_seeds(const Image<Value>& picture, double scale, const
   }
 }
 
-// The tube near a seed, both ways.
+// Follows the tube from a seed in both directions.
 template <typename Value>
 bool ArmFinder::Work::follow_from(const Image<Value>& picture, double scale, const Component& component,
                                   const TubeSeed& rough) {
@@ -312,8 +312,8 @@ void ArmFinder::Work::note_others() {
                     100 * seen.covered));
 }
 
-// Enough of them to tell whether a shape covers the figure. Of parts that are thinner than a third of the
-// arm some may have none.
+// Adds enough places to test whether a shape covers the figure. Parts thinner than a third of the arm may
+// have none.
 void ArmFinder::Work::add_places() {
   constexpr double about = 120;
   double width = 0;
@@ -323,7 +323,7 @@ void ArmFinder::Work::add_places() {
   strew(components, followed, spacing, seen.places);
 }
 
-// Of the figure that was followed, or of the largest.
+// For the figure that was followed, or the largest.
 void ArmFinder::Work::add_unexplained(const Image<std::uint8_t>& gray) {
   if (order.empty() || (seen.is_found() && seen.covered >= all_but_ends)) return;
   const std::uint32_t component = seen.is_found() ? followed : order.front();

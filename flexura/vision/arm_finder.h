@@ -17,85 +17,89 @@ namespace flexura {
 
 struct Photograph;
 
-/// What is known of the picture beforehand, and how it is told what is arm.
+/// Prior knowledge of the pictures, and the segmentation of the arm.
 struct ArmFinderConfig {
-  ThresholdConfig threshold;  ///< How arm and ground are told apart.
-  /// A place near the arm's base, px. Left out: the end that the picture's border cuts, if one is, else the
+  ThresholdConfig threshold;  ///< Separation of foreground and background.
+  /// A point near the arm's base, px. Default: the end cut by the picture's border, if one is, otherwise the
   /// lower one in the picture.
   std::optional<Eigen::Vector2d> base;
-  /// No sample's standard deviation is taken to be less, px.
+  /// Lower bound on the samples' standard deviations, px.
   double least_sigma = 0;
 };
 
-/// A point of a median axis.
+/// A point of a centerline.
 struct AxisSample {
-  Eigen::Vector2d pixel = {0, 0};   ///< On the middle line, px; (0, 0) is the middle of the top-left pixel.
+  /// Point of the centerline, px; (0, 0) is the middle of the top-left pixel.
+  Eigen::Vector2d pixel = {0, 0};
   Eigen::Vector2d normal = {0, 1};  ///< A unit vector: the direction from base to tip, turned from u to v.
-  double width = 0;                 ///< Between the borders along the normal, px.
+  double width = 0;                 ///< Distance of the borders along the normal, px.
   double sigma = 0;                 ///< Standard deviation of `pixel` along the normal, px.
-  bool is_seen = false;             ///< Both borders are; otherwise what is near carries over.
+  bool is_seen = false;  ///< Whether both borders are visible; otherwise the sample continues its neighbours.
 };
 
-/// Why an axis ends where it does.
+/// Reason why an axis ends.
 enum class AxisEndKind {
   free,    ///< The arm ends: `pixel` is where its sides do.
   border,  ///< Cut by the picture's border.
-  lost,    ///< Its borders are seen no more.
+  lost,    ///< Its borders are no longer visible.
 };
 const std::vector<std::string>& names_of(const AxisEndKind*);
 
-/// Where the median axis ends, and why there.
+/// An end of a centerline and its reason.
 struct AxisEnd {
   AxisEndKind kind = AxisEndKind::lost;
-  Eigen::Vector2d pixel = {0, 0};  ///< Where the axis ends, px.
-  /// How far the silhouette reaches beyond `pixel`, px: an end seen at an angle, or a round one.
+  Eigen::Vector2d pixel = {0, 0};  ///< Position of the axis's end, px.
+  /// How far the silhouette extends beyond `pixel`, px: an end seen at an angle, or a round one.
   double bulge = 0;
-  double sigma = 0;  ///< Of a free end: standard deviation of `pixel` along the axis, px.
+  double sigma = 0;  ///< Standard deviation of `pixel` along the axis at a free end, px.
 };
 
-/// What is seen of an arm in one picture.
+/// Observation of an arm in one picture.
 struct ArmSighting {
   Threshold threshold;
-  std::string reason;              ///< Why there is no axis; "" when there is one.
-  std::vector<std::string> notes;  ///< What else there is to know of the picture.
-  std::vector<AxisSample> axis;    ///< From the base on, one or two pixels apart.
+  std::string reason;              ///< Why there is no axis; "" if there is one.
+  std::vector<std::string> notes;  ///< Further messages about the picture.
+  std::vector<AxisSample> axis;    ///< Samples from the base on, one or two pixels apart.
   std::array<AxisEnd, 2> ends;     ///< Base and tip.
-  double blur = 0;                 ///< Of its borders as they are sampled, a standard deviation, px.
-  double noise = 0;                ///< Of the picture, a standard deviation, of 0 to 255.
-  double contrast = 0;             ///< Across its borders, of 0 to 255.
-  bool is_closed = false;          ///< The axis comes back to where it starts: it has no ends.
-  double covered = 0;              ///< The share of the silhouette that the axis and its widths explain.
-  /// Where that is little: the points of the figure's outer border that they do not explain; all of them
-  /// where there is no axis.
+  double blur = 0;                 ///< Blur of its borders as sampled, a standard deviation, px.
+  double noise = 0;                ///< Noise of the picture, a standard deviation, of 0 to 255.
+  double contrast = 0;             ///< Contrast across its borders, of 0 to 255.
+  bool is_closed = false;          ///< Whether the axis is a closed curve without ends.
+  double covered = 0;              ///< Share of the silhouette covered by the axis and its widths.
+  /// If that is small: the points of the outer border that the axis does not explain; all of them if there is
+  /// no axis.
   std::vector<BorderPoint> unexplained;
-  /// Places strewn over the silhouette, px (runs.h, strew); none where there is no axis.
+  /// Sample points over the silhouette, px (runs.h, strew); empty if there is no axis.
   std::vector<Eigen::Vector2d> places;
 
   [[nodiscard]] bool is_found() const { return !axis.empty(); }
-  /// The axis explains nearly all of the silhouette. Otherwise its ends may be a fold's, not the arm's.
+  /// Returns whether the axis covers nearly all of the silhouette. Otherwise its ends may be those of a fold,
+  /// not of the arm.
   [[nodiscard]] bool is_whole() const { return covered >= 0.95; }
 };
 
 /// Finds the arm in pictures: threshold, runs, components, then the tube's two borders, cross-section by
-/// cross-section, each to a small part of a pixel (docs/vision.md). Reused, it allocates no more. The same
-/// picture gives the same answer, whatever was seen before.
+/// cross-section, with subpixel accuracy (docs/vision.md). After the first pictures it allocates no more. The
+/// result depends on the picture alone, not on earlier ones.
 class ArmFinder {
  public:
   /// `config` holds for every picture.
   explicit ArmFinder(ArmFinderConfig config = {});
   ~ArmFinder();
-  /// One that was moved from can be assigned to and destroyed, and nothing else.
+  /// After a move, the source supports only assignment and destruction.
   ArmFinder(ArmFinder&&) noexcept;
   ArmFinder& operator=(ArmFinder&&) noexcept;
 
-  /// Of a gray picture; valid until the next call. std::invalid_argument: more than one channel.
+  /// Finds the arm in a gray picture; the result is valid until the next call. Throws std::invalid_argument
+  /// for more than one channel.
   const ArmSighting& find(const Image<std::uint8_t>& gray);
-  /// Of one with more than 8 bits; brightness counts from 0 to `white`.
+  /// Finds the arm in a picture with more than 8 bits; brightness counts from 0 to `white`.
   const ArmSighting& find(const Image<std::uint16_t>& gray, int white = 65535);
-  /// Of any, gray or in colour, whose largest value is `white`. std::invalid_argument: that is below 1.
+  /// Finds the arm in any picture, gray or in colour, with the largest value `white`. Throws
+  /// std::invalid_argument if `white` is below 1.
   const ArmSighting& find(const Picture& picture, int white);
-  /// Of a picture from a file, with all the bits that it has; nothing in a mask is known better than
-  /// `mask_sigma`.
+  /// Finds the arm in a picture from a file, with all its bits. In a mask, `mask_sigma` is a lower bound on
+  /// standard deviations.
   const ArmSighting& find(const Photograph& photograph);
 
  private:

@@ -19,7 +19,7 @@ namespace {
 
 using testing::HasSubstr;
 
-// Every fifth picture is taken through a lens that distorts as many do, and more.
+// Every fifth picture is taken through a lens with at least usual distortion.
 TEST(ArmFinder, FindsTheBackboneToAFiftiethOfAPixelInNoise) {
   ArmFinder finder;
   std::vector<double> errors;
@@ -44,7 +44,7 @@ TEST(ArmFinder, FindsTheBackboneToAFiftiethOfAPixelInNoise) {
     const auto of_one = static_cast<double>(std::ranges::count_if(axis, &AxisSample::is_seen));
     squares += of_one * errors.back() * errors.back(), samples += of_one;
   });
-  // Of all samples together, the worst ones too.
+  // Over all samples, including the worst ones.
   EXPECT_LT(std::sqrt(squares / samples), 0.02);
   std::ranges::sort(errors);
   EXPECT_LT(errors[errors.size() / 2], 0.015);
@@ -79,7 +79,7 @@ TEST(ArmFinder, SeesABrightArmBeforeADarkScreenAsWell) {
 
 TEST(ArmFinder, SaysThatTheBorderCutsTheArm) {
   const SeenArm seen = plain_arm(0.3);
-  // The lowest 100 rows fall away, and the base with them.
+  // The lowest 100 rows are removed, and the base with them.
   Image<std::uint8_t> cut(seen.picture.width(), seen.picture.height() - 100);
   std::ranges::copy(seen.picture.values().first(cut.values().size()), cut.values().begin());
   ArmFinder finder;
@@ -126,7 +126,7 @@ TEST(BackboneImage, IsNotTheMiddleOfAThickArmThatIsNear) {
   EXPECT_LT(rms_error(seen, axis), 0.25 * middle);
 }
 
-// As a file holds it.
+// In file format.
 std::string pgm(const Image<std::uint8_t>& picture) {
   std::string file =
       "P5\n" + std::to_string(picture.width()) + " " + std::to_string(picture.height()) + "\n255\n";
@@ -165,7 +165,7 @@ TEST(ArmFinder, TakesAMaskInColourForOneAndKnowsItNoBetter) {
   EXPECT_LT(rms_error(seen, found.axis), 0.125);
   const auto is_of_mask = [](const AxisSample& sample) { return sample.sigma >= mask_sigma; };
   EXPECT_TRUE(std::ranges::all_of(found.axis, is_of_mask));
-  // What is seen next need not be one.
+  // The next picture need not be a mask.
   EXPECT_FALSE(std::ranges::all_of(finder.find(mask.bytes).axis, is_of_mask));
 }
 
@@ -211,7 +211,7 @@ TEST(BackboneImage, DepthsAreThoseOfTheBackbone) {
   });
 }
 
-// A bent tube, 12 px wide, before a lens whose picture ends at some 90 px from the middle.
+// A bent tube, 12 px wide, with a lens whose image ends some 90 px from the middle.
 TEST(BackboneImage, IsNotToldNextToWhereTheLensHasNoRays) {
   std::vector<AxisSample> axis(80);
   for (std::size_t i = 0; i < axis.size(); ++i) {
@@ -249,7 +249,7 @@ TEST(BackboneImage, IsNotToldNextToWhereTheLensHasNoRays) {
   EXPECT_EQ(none.samples[40].pixel, axis[40].pixel);
 }
 
-// A sample beside one without a ray is half-way between its own borders' directions.
+// The direction of a sample beside one without a ray is half-way between those of its own borders.
 TEST(BackboneImage, ComesUpToWhereTheRaysEnd) {
   const Lens lens({.fx = 400, .fy = 400, .cx = 199.5, .cy = 200, .distortion = {-5, 0, 0, 0, 0}});
   std::vector<AxisSample> axis(100);

@@ -18,7 +18,7 @@ namespace {
 
 using Eigen::Vector2d;
 
-// Of smoothing: the distance over which, px, at first, where the noise allows, and where the curve is swift.
+// Smoothing distances, px: initial, where the noise allows, and where the curve bends fast.
 constexpr double first_reach = 1.8, wide_reach = 3.2, narrow_reach = 1.2;
 
 double strength_of(double reach, double step) {
@@ -26,14 +26,14 @@ double strength_of(double reach, double step) {
   return squared * squared * squared;
 }
 
-// Of the half width: over the radius of the bend, and along the axis. (A tube a twentieth as wide as it is
-// far widens by 0.06 when it points to within 25 degrees of the camera.)
+// Limits on the half width: relative to the bend's radius, and its change along the axis. (A tube at a
+// distance of 20 widths widens by 0.06 if it points to within 25 degrees of the camera.)
 constexpr double most_bend = 0.7, most_widening = 0.06;
 
-// Samples so near to one that is not seen are not either: smoothing spreads what was wrong there.
+// Samples this near to an invisible one count as invisible: smoothing spreads its error.
 constexpr std::size_t spread = 2;
 
-// Sections over which what smoothing leaves must average out.
+// Number of sections over which the residuals of smoothing must average out.
 constexpr std::size_t stretch = 8;
 
 double weight_of(const CrossSection& section) {
@@ -55,8 +55,8 @@ void AxisCurve::smooth_by_noise(std::span<const CrossSection> sections, double s
   load(sections);
   std::ranges::fill(strengths_, strength_of(wide_reach, step));
   smoother_.smooth(smooth_, weights_, strengths_);
-  // Where a stretch's mean misses the measurements by more than the noise explains, the curve bends faster
-  // than so much smoothing can follow.
+  // If a stretch's mean residual is larger than the noise explains, the curve bends faster than this
+  // smoothing can follow.
   const double bound = 3.5 * sigma / std::sqrt(static_cast<double>(stretch));
   bool is_followed = true;
   for (std::size_t i = 0; i + stretch <= sections.size(); i += stretch / 2) {
@@ -77,8 +77,8 @@ void AxisCurve::smooth_by_noise(std::span<const CrossSection> sections, double s
   smoother_.smooth(smooth_, weights_, strengths_);
 }
 
-// A blurred border lies nearer to its centre of curvature by half the blur squared times the curvature; both
-// borders of a bend do, and so does what is between them.
+// Blur shifts a curved border towards its centre of curvature by half the squared blur times the curvature.
+// This holds for both borders of a bend, and hence for the axis.
 void AxisCurve::take(std::span<const CrossSection> sections, double step, double blur, double sigma,
                      std::vector<AxisSample>& axis) {
   const std::size_t n = sections.size();
@@ -95,8 +95,8 @@ void AxisCurve::take(std::span<const CrossSection> sections, double step, double
       toward = (front - 2 * here + back) / (0.25 * (front - back).squaredNorm());
     const double squared = std::min(blur * blur, 1.0);
     const double share = std::pow(strengths_[i], 1.0 / 6.0);
-    // A tube that bends so tightly for its width, or widens so fast, comes towards the camera: its borders
-    // belong to other places than this.
+    // A tube that bends so tightly for its width, or widens so fast, points towards the camera: its borders
+    // belong to other positions than this.
     const std::size_t span = std::max<std::size_t>(1, after - before);
     const double widening = (smooth_[after] - smooth_[before])[2] / (static_cast<double>(span) * step);
     const bool is_plain = toward.norm() * smooth_[i][2] < most_bend && std::abs(widening) < most_widening;
@@ -133,7 +133,7 @@ bool AxisCurve::fit(TubeTracker<Value>& tracker, const std::array<TrackEnd, 2>& 
                    (smooth_[after] - smooth_[before])[2] /
                        (tracker.step() * static_cast<double>(std::max<std::size_t>(1, after - before))));
   }
-  // Sections at the ends that show less than both borders lie beyond them.
+  // Sections at the ends without both borders lie beyond the arm's ends.
   std::size_t first = 0, last = sections.size();
   while (first < last && !sections[first].is_whole()) ++first;
   while (last > first && !sections[last - 1].is_whole()) --last;

@@ -13,12 +13,13 @@
 
 namespace flexura {
 
-/// Makes a smooth median axis of the cross-sections of a tube: normals from the curve itself, measured again
-/// along them, and smoothed as far as the noise allows. Reused, it allocates no more.
+/// Makes a smooth centerline from the cross-sections of a tube. The normals are those of the curve; the
+/// sections are measured again along them and smoothed as far as the noise allows. After the first pictures
+/// it allocates no more.
 class AxisCurve {
  public:
-  /// Fills axis and ends of `seen`, in the order of the sections; false when no axis is left. `stops`: why
-  /// the sections end, at the first and the last one.
+  /// Fills axis and ends of `seen`, in the order of the sections; returns false if no axis is left. `stops`:
+  /// why the sections end, at the first and the last one.
   template <typename Value>
   bool fit(TubeTracker<Value>& tracker, const std::array<TrackEnd, 2>& stops,
            std::vector<CrossSection>& sections, ArmSighting& seen);

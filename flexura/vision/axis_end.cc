@@ -16,16 +16,16 @@ namespace {
 
 using Eigen::Vector2d;
 
-// Lines beside the axis along which an end is looked for, in half widths.
+// Lines beside the axis along which an end is searched, in half widths.
 constexpr std::array<double, 9> end_lines = {-0.8, -0.6, -0.4, -0.2, 0, 0.2, 0.4, 0.6, 0.8};
 
-// Of the half width: ends that bulge more are round, or seen from before or behind.
+// In half widths: ends that bulge more are round, or seen from the front or from behind.
 constexpr double bulging = 0.6;
 
-// Of the half width, and px: a silhouette whose end differs more from that of a tube is none.
+// Relative to the half width, and px: a silhouette that deviates more from the end of a tube is rejected.
 constexpr double rough_share = 0.06, rough = 0.25;
 
-// The axis near an end: a place before it, the way out of the arm from there, and how it turns.
+// The axis near an end: a point before it, the outward direction there, and its curvature.
 struct Way {
   Vector2d from, tangent, normal;
   double curvature = 0, half_width = 0, widening = 0;
@@ -36,7 +36,7 @@ struct Way {
   [[nodiscard]] Vector2d tangent_at(double x) const {
     return std::cos(curvature * x) * tangent + std::sin(curvature * x) * normal;
   }
-  // There, and y px beside it.
+  // The point after x px along the arc and y px to the side.
   [[nodiscard]] Vector2d at(double x, double y) const {
     const double half = 0.5 * curvature * x, chord = std::abs(half) < 1e-8 ? x : x * std::sin(half) / half;
     const Vector2d turned = tangent_at(x);
@@ -44,8 +44,8 @@ struct Way {
   }
 };
 
-// From so far back that the end does not touch the borders there; a parabola through the axis behind.
-// Of at least 8 samples.
+// Starts far enough back that the end does not affect the borders there; fits a parabola to the axis behind.
+// Needs at least 8 samples.
 Way way_out(const std::vector<AxisSample>& axis, bool is_last) {
   const auto at = [&](std::size_t i) -> const AxisSample& { return axis[is_last ? axis.size() - 1 - i : i]; };
   const double spacing = (at(axis.size() / 2).pixel - at(axis.size() / 2 - 1).pixel).norm();
@@ -68,11 +68,11 @@ Way way_out(const std::vector<AxisSample>& axis, bool is_last) {
   return way;
 }
 
-// The end of a silhouette, along a way. (`slant`: what the way's direction is off.)
+// The end of a silhouette along a way. `slant`: correction of the way's direction.
 struct Shape {
   double x = 0, slant = 0, bulge = 0;
 
-  // How far it reaches along the line y half widths beside the way, and its outward normal there.
+  // Extent along the line y half widths beside the way, and the outward normal there.
   [[nodiscard]] double reach(double y) const { return x + slant * y + bulge * std::sqrt(1 - y * y); }
   [[nodiscard]] Vector2d normal(const Way& way, double y) const {
     const double slope = (bulge * y / std::sqrt(1 - y * y) - slant) / way.half_width_at(x);
@@ -81,7 +81,7 @@ struct Shape {
   }
 };
 
-// The first place along a line of the way where the figure ends, to a pixel.
+// Returns the first background position along a line of the way, to a pixel.
 template <typename Value>
 std::optional<double> first_ground(const TubeTracker<Value>& tracker, const Way& way, double y) {
   const EdgeFinder<Value>& picture = tracker.edges();
@@ -93,7 +93,7 @@ std::optional<double> first_ground(const TubeTracker<Value>& tracker, const Way&
   return std::nullopt;
 }
 
-// The same to a small part of a pixel.
+// Returns the end of the foreground along a line of the way with subpixel accuracy.
 template <typename Value>
 std::optional<double> reach_of(const TubeTracker<Value>& tracker, const Way& way, double y, double x,
                                const Vector2d& normal) {
@@ -109,7 +109,7 @@ std::optional<double> reach_of(const TubeTracker<Value>& tracker, const Way& way
 
 using Reaches = std::array<std::optional<double>, end_lines.size()>;
 
-// Least squares over the lines found, of which some have to be on either side. A bulge is from 0 (a flat end
+// Least-squares fit over the lines found, some of which must be on either side. A bulge is from 0 (a flat end
 // seen from the side) to the half width (a round one, or a disc that faces the camera).
 bool fit_shape(const Reaches& reaches, double half_width, Shape& shape) {
   Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
@@ -130,7 +130,7 @@ bool fit_shape(const Reaches& reaches, double half_width, Shape& shape) {
   return free.allFinite() && rest.allFinite();
 }
 
-// Root mean square of what the shape leaves of the reaches, px.
+// Root mean square of the residuals, px.
 double roughness(const Reaches& reaches, const Shape& shape) {
   double squares = 0;
   int count = 0;
@@ -142,8 +142,8 @@ double roughness(const Reaches& reaches, const Shape& shape) {
   return std::sqrt(squares / std::max(count, 1));
 }
 
-// Whether nothing of the figure lies around the front of an end, just outside of it. A tube that turns
-// sharply, or meets another one, looks like an end along the way, but goes on beside it.
+// Returns whether there is no foreground just outside the front of an end. A tube that turns sharply, or
+// meets another one, looks like an end along the way but continues beside it.
 template <typename Value>
 bool is_clear_ahead(const TubeTracker<Value>& tracker, const Way& way, const Shape& shape) {
   constexpr int directions = 9;
@@ -177,8 +177,8 @@ std::optional<Shape> shape_of_end(const TubeTracker<Value>& tracker, const Way& 
   return shape;
 }
 
-// Takes from the axis what lies beyond its end or so near that the blur of the end reaches the borders, and
-// carries it on to its end.
+// Removes from the axis what lies beyond its end, or so near that the blur of the end reaches the borders.
+// Then extends the axis to its end.
 void end_axis_at(const Way& way, const Shape& shape, double margin, bool is_last,
                  std::vector<AxisSample>& axis) {
   const double x = shape.x;
@@ -189,7 +189,7 @@ void end_axis_at(const Way& way, const Shape& shape, double margin, bool is_last
   };
   if (!is_last) std::ranges::reverse(axis);
   while (axis.size() > 3 && is_beyond(axis.back())) axis.pop_back();
-  // An end that bulges may belong to an arm that turns to the camera there: its borders, so near the end, are
+  // An end that bulges may belong to an arm that turns towards the camera there: its borders near the end are
   // not where its sides are.
   for (std::size_t i = axis.size(); shape.bulge > bulging * way.half_width && i-- > 0;) {
     if ((axis[i].pixel - end).norm() > way.half_width) break;
@@ -206,15 +206,15 @@ void end_axis_at(const Way& way, const Shape& shape, double margin, bool is_last
   if (!is_last) std::ranges::reverse(axis);
 }
 
-// Of the end's place along the axis, px, as random arms show it (docs/studies/seeing.md): the more an end
-// turns to the camera, the less of it is an ellipse.
+// Standard deviation of the end's position along the axis, px, measured on random arms
+// (docs/studies/seeing.md). The more an end turns towards the camera, the less it resembles an ellipse.
 double end_sigma(const Shape& shape, double half_width, double blur) {
   constexpr double from_the_side = 0.12, from_before = 0.25, usual_blur = 0.8;
   const double turned = shape.bulge / half_width;
   return (from_the_side + from_before * turned * turned) * std::max(1.0, blur / usual_blur);
 }
 
-// What is followed to where it is lost may be another border already.
+// The last samples before a lost end may already belong to another border.
 void doubt_end(bool is_last, std::vector<AxisSample>& axis) {
   const auto at = [&](std::size_t i) -> AxisSample& { return axis[is_last ? axis.size() - 1 - i : i]; };
   const Vector2d end = at(0).pixel;
@@ -234,7 +234,7 @@ void find_ends(const TubeTracker<Value>& tracker, const std::array<TrackEnd, 2>&
     end.kind = stops[i] == TrackEnd::border ? AxisEndKind::border : AxisEndKind::lost;
     if (stops[i] == TrackEnd::closed) continue;
     const Way way = way_out(seen.axis, is_last);
-    // Near the picture's border the sides are seen no more where the end may still be.
+    // Near the picture's border the sides may become invisible before the end does.
     std::optional<Shape> shape;
     if (stops[i] != TrackEnd::lost) shape = shape_of_end(tracker, way);
     if (!shape) {

@@ -8,11 +8,10 @@
 
 namespace flexura {
 
-/// Finds where the axis of `seen` ends and fills its ends. At a free end the silhouette is looked at along
-/// lines beside the axis: over the tube's width h the image of a flat end is half an ellipse,
-///   reach(y) = x + bulge sqrt(1 - (y/h)^2),
-/// and so is that of a round one; x is where the sides end, which is where the backbone does. The axis is
-/// carried on along its arc to there.
+/// Finds the ends of the axis of `seen` and fills them in. At a free end the silhouette is measured along
+/// lines beside the axis. Over the tube's half width h, the image of a flat or round end is half an ellipse,
+///   reach(y) = x + bulge sqrt(1 - (y/h)^2).
+/// The sides, and hence the backbone, end at x. The axis is extended along its arc to there.
 template <typename Value>
 void find_ends(const TubeTracker<Value>& tracker, const std::array<TrackEnd, 2>& stops, ArmSighting& seen);
 

@@ -8,7 +8,7 @@ namespace flexura {
 
 AxisPoints independent_points(std::span<const AxisSample> axis) {
   constexpr std::size_t apart = 4;
-  // What smoothing and the model of the borders leave where there is no noise (docs/studies/seeing.md), px.
+  // Remaining error of smoothing and border model without noise (docs/studies/seeing.md), px.
   constexpr double least_sigma = 0.02;
   AxisPoints points;
   double squares = 0;

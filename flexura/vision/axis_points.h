@@ -8,10 +8,10 @@
 
 namespace flexura {
 
-/// Points of a median axis that are seen, so far apart that their errors have little in common.
+/// Visible points of a centerline, so far apart that their errors are nearly independent.
 struct AxisPoints {
   std::vector<Eigen::Vector2d> pixels;
-  double sigma = 0;  ///< What they are known to across the axis, root mean square, px.
+  double sigma = 0;  ///< Their standard deviation across the axis, root mean square, px.
 };
 [[nodiscard]] AxisPoints independent_points(std::span<const AxisSample> axis);
 

@@ -18,7 +18,7 @@ namespace {
 
 using Eigen::Vector2d, Eigen::Vector3d;
 
-// The directions to the two borders of a sample; not finite where there are none.
+// Returns the directions to the two borders of a sample; not finite if the lens has no ray.
 std::array<Vector3d, 2> directions(const Lens& lens, const AxisSample& sample) {
   std::array<Vector3d, 2> result;
   for (std::size_t side = 0; side < 2; ++side) {
@@ -45,11 +45,11 @@ bool to_backbone_image(const Lens& lens, std::vector<AxisSample>& axis) {
     const auto &here = borders[i], &before = borders[last], &after = borders[next];
     const Vector3d first = after[0] - before[0], second = after[1] - before[1], tangent = first + second;
     const Vector3d chord = here[0] - here[1];
-    // Both borders are seen under the same angle from the tangent's direction where they belong to one arc
-    // length: slide along them until the chord is square to the axis.
+    // Where both borders belong to one arc length, their angles from the tangent's direction are equal. So
+    // slide along them until the chord is perpendicular to the axis.
     const double wanted = chord.dot(tangent) / tangent.squaredNorm();
     const double most = 0.2 * chord.norm() / std::max(first.norm(), second.norm());
-    // Where the width is not measured, nothing can be said of it.
+    // Without a measured width this is unknown.
     const bool is_measured =
         std::isfinite(wanted) && axis[last].is_seen && axis[i].is_seen && axis[next].is_seen;
     Vector3d middle = here[0] + here[1];
@@ -100,7 +100,7 @@ std::vector<double> backbone_depths(const Lens& lens, const std::vector<AxisSamp
   depths.reserve(axis.size());
   for (const AxisSample& sample : axis) {
     const auto [first, second] = directions(lens, sample);
-    // Chord of the directions = 2 r sqrt(1 - (r/D)^2) / distance of the touching points.
+    // Chord of the directions = 2 r sqrt(1 - (r/D)^2) / distance of the tangent points.
     const double near = 2 * radius / (first - second).norm(), share = radius / near;
     const double touching = near * std::sqrt(std::max(0.0, 1 - share * share));
     const double distance = std::hypot(touching, radius);

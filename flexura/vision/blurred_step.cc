@@ -20,14 +20,14 @@ double dot(const Exact& a, const Exact& b) {
   return sum;
 }
 
-// Takes from a column what it has of a unit column; returns how much.
+// Removes from a column its component along a unit column; returns that component.
 double take_out(Exact& column, const Exact& unit) {
   const double share = dot(column, unit);
   for (std::size_t i = 0; i < column.size(); ++i) column[i] -= share * unit[i];
   return share;
 }
 
-// Makes a column a unit one; returns its length.
+// Normalises a column; returns its length.
 double normalize(Exact& column) {
   const double length = std::sqrt(dot(column, column));
   for (double& value : column) value /= length;
@@ -40,7 +40,7 @@ std::array<float, BlurredStep::taps> narrow(const Exact& column) {
   return result;
 }
 
-// Four sums side by side, so that the compiler may keep them in one register.
+// Four partial sums, so that the compiler can keep them in one register.
 float dot(const std::array<float, BlurredStep::taps>& a, const std::array<float, BlurredStep::taps>& b) {
   static_assert(BlurredStep::taps % 4 == 0);
   std::array<float, 4> sums{};
@@ -79,7 +79,7 @@ BlurredStep::BlurredStep(double blur, double phase, int first) {
 }
 
 StepFit BlurredStep::fit(const std::array<float, taps>& values) const {
-  // Taken from their mean, so that single precision suffices for what is left of their squares.
+  // The mean is subtracted so that single precision suffices for the remaining squares.
   Column v{};
   const float mean = dot(values, used_) / used_count_;
   for (std::size_t i = 0; i < taps; ++i) v[i] = used_[i] * (values[i] - mean);

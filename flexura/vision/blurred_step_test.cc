@@ -47,7 +47,7 @@ TEST(BlurredStep, SigmaIsTheScatterThatNoiseCauses) {
   for (int i = 0; i < count; ++i) {
     auto values = samples(0.2, 0.76, 20, 0.5, 100);
     for (float& value : values)
-      for (int k = 0; k < 12; ++k) value += static_cast<float>(random.uniform(-1, 1));  // of variance 4
+      for (int k = 0; k < 12; ++k) value += static_cast<float>(random.uniform(-1, 1));  // Of variance 4.
     const double offset = step.fit(values).offset;
     squares += offset * offset;
   }

@@ -18,7 +18,7 @@ namespace {
 
 using Eigen::Vector2d;
 
-// The picture's gradient at a pixel, over 5 x 5 pixels.
+// Gradient of the picture at a pixel, over 5 x 5 pixels.
 Vector2d gradient(const Image<std::uint8_t>& gray, int u, int v) {
   Vector2d sum = Vector2d::Zero();
   for (int j = -2; j <= 2; ++j) {
@@ -31,7 +31,7 @@ Vector2d gradient(const Image<std::uint8_t>& gray, int u, int v) {
   return sum;
 }
 
-// Follows the outer border of a component once around (M. J. Moore's neighbours, with J. Jacob's stop).
+// Traces the outer border of a component once (Moore's neighbour tracing, with Jacob's stopping criterion).
 std::vector<std::pair<int, int>> trace(const Components& components, std::uint32_t component) {
   constexpr std::array<std::pair<int, int>, 8> ring = {
       {{1, 0}, {1, 1}, {0, 1}, {-1, 1}, {-1, 0}, {-1, -1}, {0, -1}, {1, -1}}};
@@ -41,7 +41,7 @@ std::vector<std::pair<int, int>> trace(const Components& components, std::uint32
   };
   const Run& first = components.runs[components.list[component].first_run];
   std::vector<std::pair<int, int>> pixels;
-  int u = first.first, v = first.v, from = 4;  // Came from the left, where the ground is.
+  int u = first.first, v = first.v, from = 4;  // Arrived from the left, where the background is.
   const std::size_t most = 8 * static_cast<std::size_t>(components.list[component].area) + 8;
   int first_way = -1;
   while (pixels.size() < most) {
@@ -66,8 +66,8 @@ std::vector<std::pair<int, int>> trace(const Components& components, std::uint32
   return pixels;
 }
 
-// Of a series of blurs the one that explains a border's points best, of those that find nine tenths of the
-// most.
+// Returns the blur of a series that explains a border's points best, among those that find nine tenths of the
+// maximum number.
 template <typename FindBorder>
 double best_blur(const BlurSeries& series, std::size_t count, const FindBorder& border_with,
                  const std::vector<BorderPoint>& points) {
@@ -95,7 +95,7 @@ void find_border(const Image<std::uint8_t>& gray, const Threshold& threshold, co
   const int sign = threshold.figure == Figure::dark ? 1 : -1;
   const EdgeFinder<std::uint8_t> edges(gray, sign, steps, lone_border_blur);
   const double contrast = threshold.bright - threshold.dark;
-  // A pixel is passed twice where the figure is a pixel wide.
+  // A pixel is passed twice where the component is a pixel wide.
   std::set<std::pair<int, int>> passed;
   for (const auto& [u, v] : trace(components, component)) {
     if (!passed.emplace(u, v).second) continue;
@@ -122,7 +122,7 @@ FigureBorder largest_figure(const Image<std::uint8_t>& gray, const ThresholdConf
   result.threshold = segment(gray, config, components, blocks);
   result.reason = result.threshold.reason;
   if (!result.reason.empty()) return result;
-  // The largest that does not touch the picture's border; if all do, the largest.
+  // The largest one that does not touch the picture's border; if all do, the largest.
   std::size_t best = components.list.size();
   const auto key = [&](std::size_t i) {
     return std::pair(components.list[i].on_border == 0, components.list[i].area);

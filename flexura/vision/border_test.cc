@@ -15,7 +15,7 @@
 namespace flexura {
 namespace {
 
-// A figure whose signed distance (positive outside) is `distance`, blurred, with noise of one level.
+// A blurred figure given by its signed distance (positive outside), with noise of one level.
 template <typename Distance>
 Image<std::uint8_t> blurred_figure(double blur, double figure, double ground, unsigned seed,
                                    const Distance& distance) {
@@ -50,7 +50,7 @@ TEST(LargestFigure, HasItsBorderWhereItIsInOrderHoweverBlurred) {
       EXPECT_LT(circle->rms, 0.025 + 0.02 * blur) << blur;
       EXPECT_NEAR(found.blur, blur, 0.03 * blur) << is_dark;
       EXPECT_GT(points.size(), 300U) << blur;
-      // In order: neighbours are next to each other, farther where the blur leaves some of them out.
+      // In order: successive points are neighbours, or farther apart where the blur removes some.
       const double nearby = blur < 1 ? 2.5 : 4;
       for (std::size_t i = 1; i < points.size(); ++i)
         EXPECT_LT((points[i] - points[i - 1]).norm(), nearby) << i << ", blur " << blur;

@@ -18,11 +18,11 @@ namespace {
 using Eigen::Matrix3d, Eigen::Vector2d, Eigen::Vector3d;
 using std::numbers::pi;
 
-// Of chi-square with two degrees of freedom: exceeded in 1 of 100 cases; and how far off its centre it has to
-// be to be exceeded in 9 of 10.
+// Chi-square with two degrees of freedom: the bound exceeded in 1 of 100 cases, and the noncentrality for
+// which it is exceeded in 9 of 10.
 constexpr double chi_square_bound = 9.21, noncentrality = 17.43;
 
-// Points are taken relative to their mean and of size 1.
+// Points relative to their mean, scaled to size 1.
 struct Normalized {
   Vector2d mean = Vector2d::Zero();
   double size = 0;
@@ -35,8 +35,8 @@ Normalized normalized(std::span<const Vector2d> points) {
   return result;
 }
 
-// A z + B x + C y + D = 0 with z = x^2 + y^2 that minimizes its square sum under B^2 + C^2 - 4 A D = 1: the
-// generalized eigenvector of the smallest eigenvalue that is not negative.
+// Fits A z + B x + C y + D = 0 with z = x^2 + y^2: minimises the square sum under B^2 + C^2 - 4 A D = 1. This
+// is the generalised eigenvector of the smallest nonnegative eigenvalue.
 std::optional<Vector3d> pratt(std::span<const Vector2d> points, const Normalized& unit) {
   Eigen::Matrix4d moments = Eigen::Matrix4d::Zero();
   for (const Vector2d& point : points) {
@@ -62,8 +62,8 @@ std::optional<Vector3d> pratt(std::span<const Vector2d> points, const Normalized
   return Vector3d(center.x(), center.y(), std::sqrt(squared));
 }
 
-// What the points tell in the order of their directions from the centre: the largest gap is what they leave
-// of the circle; and how alike neighbours' misfits are, but for those across the first and last one's gap.
+// Evaluates the points in the order of their directions from the centre. The largest gap is the part of the
+// circle without points. Also computes the correlation of neighbours' residuals, except across the gap.
 void go_around(std::span<const Vector2d> points, CircleFit& fit) {
   std::vector<std::pair<double, double>> misfits;  // By angle.
   misfits.reserve(points.size());
@@ -79,13 +79,13 @@ void go_around(std::span<const Vector2d> points, CircleFit& fit) {
     gap = std::max(gap, misfits[i].first - misfits[i - 1].first);
     products += misfits[i - 1].second * misfits[i].second;
   }
-  // A gap no wider than the points are apart is none.
+  // A gap of the order of the points' spacing does not count.
   fit.arc = gap < 3 * 2 * pi / static_cast<double>(misfits.size()) ? 2 * pi : 2 * pi - gap;
   fit.misfit_correlation = squares > 0 ? products / squares : 0;
 }
 
-// A circle tilted by tau shows as radius (1 - tau^2/4 + tau^2/4 cos 2 (phi - phi0)): what the circle's own
-// unknowns leave of the second harmonic carries the test.
+// A circle tilted by tau appears as radius (1 - tau^2/4 + tau^2/4 cos 2 (phi - phi0)). The test uses the part
+// of the second harmonic that is orthogonal to the circle's own unknowns.
 void test_circle(std::span<const Vector2d> points, double sigma, CircleFit& fit) {
   Matrix3d own = Matrix3d::Zero();
   Eigen::Matrix<double, 3, 2> mixed = Eigen::Matrix<double, 3, 2>::Zero();
@@ -117,14 +117,15 @@ void test_circle(std::span<const Vector2d> points, double sigma, CircleFit& fit)
   fit.detectable_tilt = tilt < 0.5 * pi ? tilt : 0.5 * pi;
 }
 
-// What the points tell of a circle's center and radius, to first order: of both by their directions from the
-// center. Of a flat arc these are nearly one, so they are taken from their mean, which leaves the center
-// (`spread`, `gradient`) and the radius at that mean (`miss`) independent of each other.
+// Information of the points on a circle's center and radius, to first order. It depends on their directions
+// from the center. On a flat arc these are almost equal, so they are taken relative to their mean. This makes
+// the center (`spread`, `gradient`) and the radius at that mean (`miss`) independent.
 struct Facing {
-  Vector2d mean = Vector2d::Zero();                  // Of the directions.
-  Eigen::Matrix2d spread = Eigen::Matrix2d::Zero();  // Sum of their squares from the mean.
-  Vector2d gradient = Vector2d::Zero();              // Of how far the points are outside, the same way.
-  double miss = 0, squares = 0;                      // Sum of that, px, and of its squares.
+  Vector2d mean = Vector2d::Zero();                  // Mean direction.
+  Eigen::Matrix2d spread = Eigen::Matrix2d::Zero();  // Sum of their squares about the mean.
+  // Gradient of the points' distances from the circle, relative to the mean direction.
+  Vector2d gradient = Vector2d::Zero();
+  double miss = 0, squares = 0;  // Sum of the distances from the circle, px, and of their squares.
 };
 
 Facing facing_of(std::span<const Vector2d> points, const CircleFit& circle) {
@@ -146,7 +147,7 @@ Facing facing_of(std::span<const Vector2d> points, const CircleFit& circle) {
   return facing;
 }
 
-// Of center and radius, for points that are off by 1 px each.
+// Covariance of center and radius for points with a standard deviation of 1 px.
 Matrix3d covariance_of(const Facing& facing, double count) {
   Matrix3d apart = Matrix3d::Zero(), to_radius = Matrix3d::Identity();
   apart.col(0).head<2>() = solve_definite<2>(facing.spread, Vector2d::UnitX());
@@ -183,7 +184,7 @@ std::optional<CircleFit> fit_circle(std::span<const Vector2d> points, std::optio
   fit.sigma = sigma.value_or(0);
   fit.covariance = spread * spread * covariance_of(facing, count);
   go_around(points, fit);
-  // Five points or fewer lie on an ellipse whatever they are.
+  // Five points or fewer always lie on an ellipse.
   constexpr std::size_t decided = 6;
   fit.detectable_tilt = 0.5 * pi;
   if (points.size() >= decided) test_circle(points, std::max(spread, 1e-9 * fit.radius), fit);

@@ -21,8 +21,8 @@ double normal_noise(TestRandom& random) {
   return sum;
 }
 
-/// The image of a circle of radius 1 from 5 away at focal length 1000, the camera having gone around it by
-/// `tilt`.
+/// The image of a circle of radius 1 from a distance of 5 at focal length 1000, with the camera rotated
+/// around it by `tilt`.
 std::vector<Vector2d> orbit_picture(double tilt, double from, double to, int count) {
   std::vector<Vector2d> points;
   for (int i = 0; i < count; ++i) {
@@ -59,7 +59,8 @@ TEST(Circle, IsFoundWithItsCovariance) {
   });
 }
 
-// An arm that hangs straight is an arc of a circle of any size (to 1e4 of its own, which is a line).
+// An arm that hangs straight is an arc of a very large circle; beyond 1e4 times its own size it counts as a
+// line.
 TEST(Circle, OfAFlatArcHasItsCurvatureAndHowSure) {
   for (const double ratio : {100.0, 1000.0, 3000.0, 4000.0}) {
     int found = 0, cases = 0, within = 0;
@@ -75,7 +76,7 @@ TEST(Circle, OfAFlatArcHasItsCurvatureAndHowSure) {
       if (!fit) return;
       ++found;
       for (int i = 0; i < 3; ++i) EXPECT_GT(fit->covariance(i, i), 0) << ratio;
-      // The curvature's errors are normal, the radius's are not.
+      // The errors of the curvature are normal, those of the radius are not.
       const double sigma = std::sqrt(fit->covariance(2, 2)) / (fit->radius * fit->radius);
       if (std::abs(1 / fit->radius - 1 / radius) < 2 * sigma) ++within;
     });
@@ -100,7 +101,7 @@ TEST(Circle, OfAnOrbitingCameraIsOffByWhatGeometrySays) {
   double largest = 0;
   for (const Vector2d& point : arc)
     largest = std::max(largest, std::abs((point - fit->center).norm() - fit->radius));
-  EXPECT_LT(largest, 0.02);  // of 10 degrees of tilt nothing is left
+  EXPECT_LT(largest, 0.02);  // Nothing is left of 10 degrees of tilt.
 }
 
 TEST(Circle, TestSeesTheTiltThatItSaysItSeesAndLittleLess) {
@@ -123,8 +124,9 @@ TEST(Circle, TestSeesTheTiltThatItSaysItSeesAndLittleLess) {
   EXPECT_GT(fit_circle(orbit_picture(0, 0, pi / 6, 200), 0.1)->detectable_tilt, 0.3);
 }
 
-// By their own misfits (docs/calibration-paper.md, "When a loop ends"): a second harmonic of rms h among
-// others of rms m is none up to h^2 = 9.21/(n - 12.21) m^2, and 12 points or fewer verify anything.
+// The test with the points' own residuals (docs/calibration-paper.md, "When a loop ends"), for a second
+// harmonic of rms h among others of rms m. It accepts up to h^2 = 9.21/(n - 12.21) m^2. With 12 points or
+// fewer everything is accepted.
 TEST(Circle, IsVerifiedUpToTheShareOfASecondHarmonic) {
   const auto is_verified = [](int count, double phase, double second, double fourth) {
     std::vector<Vector2d> points;

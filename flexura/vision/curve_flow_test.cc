@@ -14,11 +14,11 @@
 namespace flexura {
 namespace {
 
-// Two instants of an arm with bands: before, and bent a little more.
+// An arm with bands at two instants: before, and bent a little more.
 struct SeenArms {
   SeenArm before, after;
-  std::vector<Eigen::Vector2d> bands;  // Where their middles are seen before ...
-  std::vector<Eigen::Vector2d> moved;  // ... and by how much they move.
+  std::vector<Eigen::Vector2d> bands;  // Positions of their middles before.
+  std::vector<Eigen::Vector2d> moved;  // Motions of these positions.
 };
 SeenArms bent_on() {
   const auto seen_at = [](double bend) {

@@ -18,7 +18,7 @@ void CurveSmoother::smooth(std::span<Values> values, std::span<const double> wei
   if (n < 4) return;
   factor_.assign(n, {0, 0, 0, 0});
   for (std::size_t i = 0; i < n; ++i) {
-    // The least weight keeps the equations solvable where a long stretch is bridged.
+    // A minimum weight keeps the equations solvable where a long stretch is bridged.
     const double weight = std::max(weights[i], 1e-9);
     factor_[i][0] = weight;
     values[i] *= weight;

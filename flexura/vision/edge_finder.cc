@@ -33,7 +33,7 @@ double EdgeFinder<Value>::at(const Eigen::Vector2d& pixel) const {
 template <typename Value>
 std::optional<EdgeFit> EdgeFinder<Value>::look(const Eigen::Vector2d& from, const Eigen::Vector2d& normal,
                                                double blur, double room) const {
-  // x: along the row or column; y: across. The border is taken to be straight between `from` and the row.
+  // x: along the row or column; y: across. The border is assumed to be straight between `from` and the row.
   const bool by_row = std::abs(normal.x()) >= std::abs(normal.y());
   const double nx = by_row ? normal.x() : normal.y(), ny = by_row ? normal.y() : normal.x();
   const double x = by_row ? from.x() : from.y(), y = by_row ? from.y() : from.x();

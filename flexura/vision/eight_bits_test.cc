@@ -50,7 +50,7 @@ TEST(EightBits, RefuseAWhiteThatIsNone) {
   }
 }
 
-// Whatever the picture's depth and channels, the arm is where the 8 bits of gray show it.
+// For any depth and channels, the arm is where the 8 bits of gray show it.
 TEST(EightBits, ArmsAreSeenAtTheSamePlaceInPicturesOfAnyDepth) {
   for_random_cases(5, [](TestRandom& random) {
     const Image<std::uint8_t> gray = random_seen_arm(random, {}).picture;

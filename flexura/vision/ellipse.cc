@@ -27,8 +27,8 @@ using Matrix5 = Eigen::Matrix<double, 5, 5>;
 
 Eigen::Matrix2d turn(double angle) { return Eigen::Rotation2Dd(angle).toRotationMatrix(); }
 
-// The eccentric anomaly of the point of an ellipse nearest to (x, y), in its own axes: Newton's method on the
-// angle between the normal and the way, kept to the point's quadrant.
+// Returns the eccentric anomaly of the ellipse's point nearest to (x, y), in its own axes. Newton's method on
+// the angle between the normal and the connecting line, restricted to the point's quadrant.
 double nearest(const Vector2d& axes, const Vector2d& point) {
   const double x = std::abs(point.x()), y = std::abs(point.y());
   const double squared = axes.x() * axes.x() - axes.y() * axes.y();
@@ -48,7 +48,7 @@ double nearest(const Vector2d& axes, const Vector2d& point) {
   return point.x() < 0 ? std::numbers::pi - upper : upper;
 }
 
-// The signed distance of a point, and its derivative along centre, semi-axes and angle.
+// Signed distance of a point, and its derivative by centre, semi-axes and angle.
 double distance_row(const EllipseFit& ellipse, const Vector2d& point, Vector5* row) {
   const Eigen::Matrix2d R = turn(ellipse.angle);
   const Vector2d local = R.transpose() * (point - ellipse.center);
@@ -63,7 +63,7 @@ double distance_row(const EllipseFit& ellipse, const Vector2d& point, Vector5* r
   return (local - foot).dot(normal);
 }
 
-// a x^2 + b xy + c y^2 + d x + e y + f = 0 with 4 a c - b^2 = 1, of points about the origin and of size 1.
+// Fits a x^2 + b xy + c y^2 + d x + e y + f = 0 with 4 a c - b^2 = 1 to points about the origin, of size 1.
 std::optional<Eigen::Matrix<double, 6, 1>> algebraic(std::span<const Vector2d> points, const Vector2d& mean,
                                                      double size) {
   Matrix3d quadratic = Matrix3d::Zero(), mixed = Matrix3d::Zero(), linear = Matrix3d::Zero();
@@ -128,7 +128,7 @@ struct Linearized {
   double squares = 0;
 };
 
-// The least sum of squares near an ellipse through points of that size.
+// Least-squares ellipse near a start, through points of that size.
 EllipseFit nearest_to(std::span<const Vector2d> points, double size, const EllipseFit& start) {
   Linearized here(start, points), there = here;
   const auto try_step = [&](double damping) -> TriedStep {
@@ -178,7 +178,7 @@ std::optional<EllipseFit> fit_ellipse(std::span<const Vector2d> points) {
   Linearized last(*fit, points);
   const auto count = static_cast<double>(points.size());
   fit->rms = std::sqrt(last.squares / count);
-  // The angle of a circle is not known: so little as rounding keeps the inverse finite.
+  // The angle of a circle is undetermined: a term of the size of rounding keeps the inverse finite.
   last.normal.diagonal().array() += 1e-12 * last.normal.trace();
   fit->covariance = last.squares / std::max(1.0, count - 5) * last.normal.inverse();
   return fit;
@@ -214,7 +214,7 @@ std::optional<EllipseFit> fit_ellipse_to_most(std::vector<Vector2d>& points, dou
 }
 
 double share_around(const EllipseFit& ellipse, std::span<const Vector2d> points) {
-  // Two points each where all of it is seen.
+  // On average two points in each part where all of it is visible.
   const std::size_t parts = std::clamp<std::size_t>(points.size() / 2, 6, 72);
   std::vector<bool> is_seen(parts, false);
   const Eigen::Rotation2Dd back(-ellipse.angle);

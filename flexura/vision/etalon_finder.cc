@@ -22,7 +22,7 @@ namespace {
 
 using Eigen::Vector2d;
 
-// A least-squares line, twice without what lies more than three times the rest's rms beside it.
+// A least-squares line, refitted twice without points more than three times the rms away.
 std::optional<UprightLine> line_through(std::vector<Vector2d> points, double middle_row) {
   UprightLine line;
   for (int round = 0; round < 3; ++round) {
@@ -47,13 +47,13 @@ std::optional<UprightLine> line_through(std::vector<Vector2d> points, double mid
   return line;
 }
 
-// How red a pixel is; of a gray picture, its brightness.
+// Redness of a pixel; in a gray picture its brightness.
 double redness(const Image<std::uint8_t>& picture, int u, int v) {
   if (picture.channels() != 3) return picture.at(u, v);
   return picture.at(u, v, 0) - 0.5 * (picture.at(u, v, 1) + picture.at(u, v, 2));
 }
 
-// Middles of what stands out of a row between two columns.
+// Adds the middles of peaks in a row between two columns.
 void add_peaks(const Image<std::uint8_t>& picture, int v, int first, int last, double bound,
                std::vector<Vector2d>& peaks) {
   std::vector<double> values;
@@ -75,7 +75,7 @@ void add_peaks(const Image<std::uint8_t>& picture, int v, int first, int last, d
   }
 }
 
-// The lines that peaks of many rows lie on: from row to row the nearest, if near.
+// Joins the peaks of many rows to lines: from row to row the nearest, if near enough.
 std::vector<UprightLine> lines_through(const std::vector<Vector2d>& peaks, double middle_row, int rows) {
   std::vector<std::vector<Vector2d>> chains;
   for (const Vector2d& peak : peaks) {
@@ -99,7 +99,7 @@ std::vector<UprightLine> lines_through(const std::vector<Vector2d>& peaks, doubl
   return lines;
 }
 
-// Of each row of a component's box: its first column, and the one after its last.
+// For each row of a component's box: its first column, and the one after its last.
 std::vector<std::array<int, 2>> spans_of(const Components& components, const Component& component) {
   std::vector<std::array<int, 2>> spans(static_cast<std::size_t>(component.bottom - component.top + 1),
                                         {component.right + 1, component.left});
@@ -112,8 +112,8 @@ std::vector<std::array<int, 2>> spans_of(const Components& components, const Com
   return spans;
 }
 
-// Where row v crosses the border near column u; `way`: outward, 1 or -1. What the border's model leaves of
-// the picture there goes to `left`.
+// Finds where row v crosses the border near column u; `way`: outward, 1 or -1. The residual of the border
+// model goes to `left`.
 std::optional<Vector2d> side_of(const EdgeFinder<std::uint8_t>& edges, double u, int v, double way,
                                 double room, double blur, double least_contrast, double* left = nullptr) {
   for (int i = 0; i < 4; ++i) {
@@ -126,8 +126,8 @@ std::optional<Vector2d> side_of(const EdgeFinder<std::uint8_t>& edges, double u,
   return Vector2d(u, v);
 }
 
-// The border of an upright figure's end, `way` 1 for the lower one: the mean of the columns a quarter of its
-// width beside its middle, where no line is if one is in the middle.
+// Finds the border of an upright figure's end, `way` 1 for the lower one. It is the mean of the columns a
+// quarter of the width beside the middle, where there is no line if one is in the middle.
 std::optional<double> end_edge(const EdgeFinder<std::uint8_t>& edges, const Image<std::uint8_t>& gray,
                                const EtalonSighting& seen, int way) {
   const double end = way > 0 ? seen.bottom : seen.top, room = 0.25 * (seen.bottom - seen.top);
@@ -153,14 +153,14 @@ std::optional<double> end_edge(const EdgeFinder<std::uint8_t>& edges, const Imag
   return sum;
 }
 
-// Where the rows between the ends' ellipses cross both sides, and what stands out between these.
+// Where the rows between the ends' ellipses cross both sides, and the peaks between these.
 struct Crossings {
   std::array<std::vector<Vector2d>, 2> sides;
   std::vector<Vector2d> peaks;
 };
 
-// Of a series of blurs that of the sides, px, by what the border's model leaves of some rows; none where no
-// side is found.
+// Returns the blur of the sides, px, from a series, by the residuals of the border model in some rows. Empty
+// if no side is found.
 std::optional<double> side_blur(const BlurSeries& series, std::size_t count,
                                 const EdgeFinder<std::uint8_t>& edges,
                                 const std::vector<std::array<int, 2>>& spans, int top, int inset,
@@ -237,7 +237,7 @@ EtalonSighting find_etalon(const Image<std::uint8_t>& picture, const Image<std::
   seen.top = largest->top, seen.bottom = largest->bottom;
   seen.middle_row = 0.5 * (seen.top + seen.bottom);
   const int height = seen.bottom - seen.top + 1;
-  // The ends' ellipses are left out.
+  // Skips the ends' ellipses.
   const int inset = std::max(2, height / 10);
   const Crossings found =
       crossings_of(picture, gray, seen.threshold, spans_of(components, *largest), seen.top, inset);

@@ -57,7 +57,7 @@ TEST(FindEtalon, HasSidesAndLinesWhereTheRendererDrawsThem) {
     EXPECT_NEAR(found.right.at, right, 0.06);
     EXPECT_NEAR(found.left.slope, 0, 1e-3);
     EXPECT_FALSE(found.touches_border);
-    // The line that looks at the camera most; its neighbours may hide.
+    // The line that faces the camera most; its neighbours may be hidden.
     std::vector<double> lines;
     for (int i = 0; i < 4; ++i) {
       const double angle = turned + i * std::numbers::pi / 2;

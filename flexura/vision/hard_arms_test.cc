@@ -1,5 +1,5 @@
-// Arms that are hard to see: under hairs, upside down, before uneven screens, beside others, across
-// themselves, turned to the camera, through lenses that distort.
+// Difficult arms: under hairs, upside down, in front of uneven screens, beside others, crossing themselves,
+// turned towards the camera, through lenses with distortion.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -18,8 +18,8 @@ namespace {
 
 using testing::HasSubstr;
 
-// Of two pixels, from one column to another. Where one goes from border to border its runs are short and
-// many: most of the figure's rows show it.
+// Two pixels wide, from one column to another. A hair from border to border consists of many short runs, in
+// most of the figure's rows.
 struct Hair {
   int from, to;
   double v, slope;
@@ -45,7 +45,7 @@ TEST(HardArms, GoesOnUnderHairs) {
   }
 }
 
-// Whichever way up: the same axis, turned.
+// The axis of the rotated picture is the rotated axis.
 TEST(HardArms, SeesAnArmUpsideDown) {
   const SeenArm seen = plain_arm(0.6);
   Image<std::uint8_t> turned = seen.picture;
@@ -54,7 +54,7 @@ TEST(HardArms, SeesAnArmUpsideDown) {
   const auto upright = finder.find(seen.picture).axis;
   const ArmSighting& found = finder.find(turned);
   ASSERT_TRUE(found.is_found()) << found.reason;
-  // The base is the lower end of a picture.
+  // The base is the lower end in a picture.
   const Eigen::Vector2d corner(seen.picture.width() - 1, seen.picture.height() - 1);
   EXPECT_LT((corner - found.axis.front().pixel - upright.back().pixel).norm(), 0.3);
   EXPECT_LT((corner - found.axis.back().pixel - upright.front().pixel).norm(), 0.3);
@@ -83,7 +83,7 @@ TEST(HardArms, ByBlockSeesAnArmBeforeAnUnevenScreen) {
     SeenArm seen = plain;
     for (int v = 0; v < seen.view.height; ++v)
       for (int u = 0; u < seen.view.width; ++u)
-        // What is darkest, 30 of 255, is a third of the screen there.
+        // The darkest part, 30 of 255, has a third of the local screen brightness.
         seen.picture.at(u, v) =
             static_cast<std::uint8_t>(std::lround((60 + 0.65 * seen.picture.at(u, v)) * light(u, v)));
     const ArmSighting& found = by_block.find(seen.picture);
@@ -96,7 +96,7 @@ TEST(HardArms, ByBlockSeesAnArmBeforeAnUnevenScreen) {
   expect_found(side);
   expect_found(above);
   expect_found(corners);
-  // A shaded screen alone shows nothing.
+  // A shaded screen alone shows no arm.
   Image<std::uint8_t> empty(640, 480);
   for (int v = 0; v < 480; ++v)
     for (int u = 0; u < 640; ++u) empty.at(u, v) = static_cast<std::uint8_t>(std::lround(200 * side(u, v)));
@@ -106,7 +106,7 @@ TEST(HardArms, ByBlockSeesAnArmBeforeAnUnevenScreen) {
 TEST(HardArms, MeasuresTheLargerOfTwoArmsAndSaysSo) {
   const SeenArm one = plain_arm(0.3);
   Image<std::uint8_t> both = one.picture;
-  // The arm again, half as long, 150 px beside it.
+  // A second arm, half as long, 150 px beside it.
   for (int v = 0; v < both.height() / 2; ++v)
     for (int u = 0; u + 150 < both.width(); ++u)
       both.at(u + 150, v) = std::min(both.at(u + 150, v), one.picture.at(u, v));
@@ -118,7 +118,7 @@ TEST(HardArms, MeasuresTheLargerOfTwoArmsAndSaysSo) {
 }
 
 TEST(HardArms, FollowsAnArmAcrossItself) {
-  // A loop in the plane of the picture, the later part of it before the earlier.
+  // A loop in the plane of the picture, the later part of it in front of the earlier.
   const SeenArm seen =
       bent_arm_in_view({{0.4, 0}, {4.6, 0.5}, {0.4, 0}}, 0.008, {-0.03, 0.35, 1.6}, {-0.03, 0.35, 0}, 800);
   ArmFinder finder;
@@ -135,7 +135,7 @@ TEST(HardArms, SaysWhereAnArmPointsAtTheCamera) {
   ArmFinder finder;
   const ArmSighting& found = finder.find(seen.picture);
   ASSERT_TRUE(found.is_found()) << found.reason;
-  // What is told of the axis is right, and it goes on to where the arm turns.
+  // The reported axis is correct and extends to where the arm turns.
   EXPECT_LT(rms_error(seen, found.axis), 1);
   EXPECT_LT((found.axis.front().pixel - *seen.truth.front().pixel).norm(), 1);
   const auto turns = seen.truth.begin() + static_cast<std::ptrdiff_t>(2 * seen.truth.size() / 3);
@@ -154,7 +154,7 @@ TEST(HardArms, SaysWhereAnArmPointsAtTheCamera) {
   }
 }
 
-// Bent so much that many a tip hides behind the arm, or turns sharply in the picture.
+// Bent so much that many tips hide behind the arm or turn sharply in the picture.
 TEST(HardArms, HaveNoFreeEndsWhereTheyGoOn) {
   ArmFinder finder;
   int count = 0, near = 0, far = 0, whole = 0, whole_near = 0;
@@ -176,8 +176,7 @@ TEST(HardArms, HaveNoFreeEndsWhereTheyGoOn) {
   std::printf("free ends: %d, within 1 px %d, more than 4 px off %d; of whole arms %d, %d\n", count, near,
               far, whole, whole_near);
   EXPECT_GT(count, 70 / one_case_of);
-  // Ends that turn to the camera look rounder than they are; a tip that hides behind the arm itself is not
-  // seen.
+  // Ends that turn towards the camera look rounder than they are; a tip hidden behind the arm is invisible.
   EXPECT_LE(count - near, 1 + 0.15 * count);
   EXPECT_LE(whole - whole_near, 1 + 0.03 * whole);
   EXPECT_LE(far, 2 + 0.01 * count);

@@ -18,7 +18,7 @@
 namespace flexura {
 namespace {
 
-// The same picture as a camera with a gamma delivers it, of full scale `white`.
+// The picture as encoded by a camera with a gamma, of full scale `white`.
 template <typename Value>
 Image<Value> encoded(const Image<std::uint8_t>& light, double gamma, int white) {
   Image<Value> picture(light.width(), light.height(), light.channels());
@@ -38,7 +38,7 @@ TEST(LinearLight, IsWhatTheGammaWasMadeOf) {
     twelve.white = 4095;
     eight = linear_light(eight, gamma), twelve = linear_light(twelve, gamma);
     EXPECT_EQ(eight.white, 65535);
-    // Values of the file are whole: the light is somewhere in what one of them stands for.
+    // Values in the file are rounded: the light is somewhere in the range of one value.
     const auto expect_light = [&](int shown, int value, int white, int undone) {
       const auto at = [&](double v) { return 65535 * std::pow(std::clamp(v / white, 0.0, 1.0), gamma); };
       for (const double one : {257.0 * shown, 1.0 * undone}) {
@@ -71,8 +71,8 @@ TEST(LinearLight, LeavesMasksAndLinearPicturesAndHotPixelsAsTheyAre) {
     EXPECT_THROW((void)linear_light(picture, none), std::invalid_argument);
 }
 
-// A camera's gamma draws the borders of a dark arm aside, and the axis with them where it is seen from aside;
-// undone it is where it was.
+// A camera's gamma shifts the borders of a dark arm, and the axis too if it is off the middle; linearising
+// restores it.
 TEST(LinearLight, ShowsTheAxisWhereItIs) {
   double of_light = 0, of_values = 0;
   int count = 0;

@@ -25,18 +25,18 @@ using Eigen::Vector2d, Eigen::Vector3d;
 
 constexpr std::size_t middle_line = ArmSkin::middle_line, lines = ArmSkin::lines.size();
 
-// Markers are at least so much brighter or of another colour than the arm, of 255.
+// Smallest difference of brightness or colour between markers and arm, of 255.
 constexpr double least_difference = 14;
 
-// At an end of the arm the ground is in the last pixels, by the picture's blur.
+// Returns whether a stretch is background: at an end of the arm, the blur mixes it into the last pixels.
 bool is_ground(const Stretch& stretch, std::size_t size) {
   constexpr std::size_t most = 3;
   return (stretch.first == 0 && stretch.last <= most) ||
          (stretch.last == size && stretch.first + most >= size);
 }
 
-// A line's part of a marker: its middle and length by the moments of how much it differs from the skin around
-// it.
+// The part of a marker on one line: its middle and length from the moments of its difference from the
+// surrounding skin.
 struct Part {
   double middle = 0, length = 0, height = 0, sigma = 0;
 };
@@ -54,7 +54,7 @@ class BandFinder {
   }
   [[nodiscard]] const Vector3d& own() const { return own_[middle_line]; }
 
-  // From the middle line outwards: neighbours of a band's parts are its next parts.
+  // From the middle line outwards: the next parts are those adjacent to a band's parts.
   [[nodiscard]] Parts parts_of(const Stretch& stretch, const Vector3d& direction) const {
     Parts parts;
     parts[middle_line] = part_of(middle_line, stretch, direction);
@@ -111,8 +111,8 @@ class BandFinder {
   std::array<std::vector<Stretch>, lines> stretches_;
 };
 
-// Leaves out parts that are much longer, shorter or fainter than those around the middle: of two markers, or
-// beside a round one. Whether the rest is a band's.
+// Removes parts much longer, shorter or fainter than those around the middle: they belong to another marker,
+// or lie beside a round one. Returns whether the rest is a band.
 bool keep_alike(Parts& parts) {
   std::array<double, 3> lengths{}, heights{};
   std::size_t count = 0;
@@ -128,20 +128,20 @@ bool keep_alike(Parts& parts) {
   const auto is_alike = [&](const auto& part) {
     return !part || (part->length > 0.8 * length && part->length < 1.25 * length);
   };
-  // A round one is shorter to its sides.
+  // A round one is shorter towards its sides.
   return (parts.front() && parts.back()) ||
          ((parts.front() || parts.back()) && parts[1] && parts[lines - 2]) ||
          std::ranges::all_of(parts, is_alike);
 }
 
-// middle(y) = x + bulge h sqrt(1 - y^2) + tilt y, least squares over the parts that there are. A tilt is
-// none of a straight arm's, and shifts x only where the parts are uneven.
+// Least-squares fit middle(y) = x + bulge h sqrt(1 - y^2) + tilt y over the available parts. A straight arm
+// has no tilt; it shifts x only if the parts are asymmetric.
 struct BandFit {
   double along = 0, bulge = 0, tilt = 0;
-  double misfit = 0;      // Of the parts' middles, a standard deviation, px.
-  double part_sigma = 0;  // What it should be, px.
-  double gain = 0;        // Of x's standard deviation over a part's.
-  double mean_front = 0;  // Of h sqrt(1 - y^2), px.
+  double misfit = 0;      // Standard deviation of the parts' middles from the fit, px.
+  double part_sigma = 0;  // Expected value of `misfit`, px.
+  double gain = 0;        // Standard deviation of x relative to that of a part.
+  double mean_front = 0;  // Mean of h sqrt(1 - y^2), px.
 };
 BandFit fitted(const Parts& parts, double half_width) {
   const auto row_of = [&](std::size_t line) {
@@ -171,8 +171,7 @@ BandFit fitted(const Parts& parts, double half_width) {
   return fit;
 }
 
-// The parts of a band, which see it together; without the outermost of one side where that is of something
-// else.
+// Combines the parts of a band. Omits the outermost part of one side if that belongs to something else.
 MarkerSighting band_of(Parts parts, double half_width) {
   BandFit fit = fitted(parts, half_width);
   if (fit.misfit > 2 * fit.part_sigma &&
@@ -195,16 +194,16 @@ MarkerSighting band_of(Parts parts, double half_width) {
   band.bulge = std::clamp(fit.bulge, -1.0, 1.0);
   const double beyond = (fit.bulge - band.bulge) * fit.mean_front;
   band.along = fit.along + beyond;
-  // A misfit counts where it is more than chance.
+  // A misfit counts if it is larger than chance explains.
   const double part_sigma = fit.misfit > 1.2 * fit.part_sigma ? fit.misfit : fit.part_sigma;
-  // Where the arm bends within its width the parts tilt by a pixel and more, and x is off by half of that (as
-  // drawn random arms are).
+  // Where the arm bends within its width, the parts tilt by a pixel or more. Half of that is the error of x,
+  // as measured on random arms.
   const double bent = 0.5 * fit.tilt * std::min(std::abs(fit.tilt), 1.0);
   band.sigma = std::sqrt(std::pow(fit.gain * part_sigma, 2) + beyond * beyond + bent * bent);
   return band;
 }
 
-// Whether a stretch of the middle line goes down in between: two markers whose blur runs together.
+// Returns whether the signal drops inside a stretch of the middle line: two markers merged by blur.
 bool has_dip(const std::vector<Vector3d>& colors, const Stretch& stretch, const Vector3d& own, double noise) {
   const auto size = [&](std::size_t i) { return (colors[i] - own).norm(); };
   double most = 0, before = 0, after = 0, deepest = 0;
@@ -227,7 +226,7 @@ void look_for_merged(std::vector<MarkerSighting>& markers) {
       if (marker.is_band == are_bands) lengths.push_back(marker.length);
     if (lengths.size() < 2) continue;
     std::ranges::sort(lengths);
-    // Of two the shorter one is taken for one.
+    // Of two, the shorter one counts as single.
     const double usual = lengths[lengths.size() < 4 ? (lengths.size() - 1) / 2 : lengths.size() / 2];
     for (MarkerSighting& marker : markers)
       if (marker.is_band == are_bands && marker.length > 1.8 * usual) marker.may_be_merged = true;
@@ -236,7 +235,8 @@ void look_for_merged(std::vector<MarkerSighting>& markers) {
 
 void look_for_gaps(MarkerSightings& found) {
   const std::vector<MarkerSighting>& markers = found.markers;
-  std::vector<std::size_t> ends;  // The markers behind the gaps; those side by side have none between them.
+  // The markers behind the gaps; markers side by side have no gap between them.
+  std::vector<std::size_t> ends;
   std::vector<double> gaps;
   ends.reserve(markers.size()), gaps.reserve(markers.size());
   for (std::size_t i = 1; i < markers.size(); ++i) {
@@ -246,7 +246,7 @@ void look_for_gaps(MarkerSightings& found) {
   }
   if (gaps.size() < 3) return;
   for (std::size_t i = 0; i < gaps.size(); ++i) {
-    // Spacing changes slowly where the arm turns away: compare with the gaps beside.
+    // The spacing changes slowly where the arm turns away: compare with the neighbouring gaps.
     const double before = i > 0 ? gaps[i - 1] : gaps[i + 1],
                  after = i + 1 < gaps.size() ? gaps[i + 1] : gaps[i - 1];
     if (gaps[i] > 1.7 * std::max(before, after))
@@ -255,7 +255,7 @@ void look_for_gaps(MarkerSightings& found) {
   }
 }
 
-// Stretches of another colour that are neither bands nor among the spots.
+// Adds notes on stretches of another colour that are neither bands nor among the spots.
 void note_left_out(const std::vector<Stretch>& others, const std::vector<MarkerSighting>& spots,
                    std::vector<std::string>& notes) {
   const auto is_spot = [&](const Stretch& stretch) {
@@ -279,7 +279,7 @@ MarkerSightings find_markers(const Image<std::uint8_t>& picture, const ArmSighti
   if (arm.axis.size() < 8) return found;
   const ArmSkin skin(picture, arm);
   if (skin.size() < 12) return found;
-  // The ground is in every pixel of a thinner arm.
+  // On a thinner arm the background affects every pixel.
   constexpr double thinnest = 4;  // px
   std::vector<double> half_widths = skin.half_widths;
   const double thickness = 2 * median(std::span(half_widths));
@@ -301,7 +301,7 @@ MarkerSightings find_markers(const Image<std::uint8_t>& picture, const ArmSighti
       continue;
     }
     MarkerSighting band = band_of(parts, skin.half_widths[middle]);
-    if (!std::isfinite(band.sigma)) continue;  // Of an arm that is no wider than a line there.
+    if (!std::isfinite(band.sigma)) continue;  // On an arm that is no wider than a line there.
     band.pixel = skin.at(band.along);
     band.color = color;
     band.may_be_merged = has_dip(skin.colors[middle_line], stretch, finder.own(), arm.noise);

@@ -12,38 +12,37 @@ namespace flexura {
 
 /// A coloured band around the arm, or a spot on it.
 struct MarkerSighting {
-  /// A band: where the backbone is seen in its middle. A spot: the centre of what is seen of it, wherever on
-  /// the skin that is; nothing is known of the backbone there.
+  /// Band: image of the backbone in its middle. Spot: centre of its visible part, anywhere on the skin; it
+  /// gives no backbone position.
   Eigen::Vector2d pixel = {0, 0};
-  double along = 0;   ///< Way along the axis from its first sample to the foot of `pixel`, px.
-  double aside = 0;   ///< From there to `pixel` along the axis's normal, px; 0 for bands.
-  double length = 0;  ///< Along the axis, px.
+  double along = 0;   ///< Distance along the axis from its first sample to the foot of `pixel`, px.
+  double aside = 0;   ///< Distance from there to `pixel` along the axis's normal, px; 0 for bands.
+  double length = 0;  ///< Length along the axis, px.
   double sigma = 0;   ///< Standard deviation of `along`, px.
-  /// How far the band's front bulges along the axis, in half widths of the arm: the sine of the angle by
-  /// which the arm is turned out of the picture's plane, positive where it comes towards the camera from base
-  /// to tip.
+  /// Bulge of the band's front along the axis, in half widths of the arm. It is the sine of the angle between
+  /// the arm and the picture's plane, positive if the arm approaches the camera from base to tip.
   double bulge = 0;
-  Eigen::Vector3d color = {
-      0, 0, 0};         ///< Red, green, blue of its middle, of 0 to 255; a gray picture's three times.
-  bool is_band = true;  ///< Seen across the arm; otherwise a spot.
+  /// Red, green, blue of its middle, of 0 to 255; in a gray picture its value three times.
+  Eigen::Vector3d color = {0, 0, 0};
+  bool is_band = true;  ///< Whether it is visible across the arm; otherwise a spot.
   /// Much longer than others, or of two parts: probably two in one.
   bool may_be_merged = false;
 
-  /// It tells of a place on the backbone: a spot has no known one, and what may be two is neither.
+  /// Returns whether it gives a position on the backbone: spots do not, nor do possibly merged markers.
   [[nodiscard]] bool tells_place() const { return is_band && !may_be_merged; }
 };
 
-/// All that was seen of an arm's markers.
+/// All observed markers of an arm.
 struct MarkerSightings {
-  std::vector<MarkerSighting> markers;  ///< From the base on.
-  std::vector<std::string> notes;       ///< Of gaps where one may be missing, and what was left out.
+  std::vector<MarkerSighting> markers;  ///< Markers from the base on.
+  std::vector<std::string> notes;  ///< About gaps where one may be missing, and about omitted candidates.
 };
 
-/// The markers along an arm that was found in `picture` (gray, or red, green, blue): what differs from the
-/// arm's own colour. In a gray picture bands show by their brightness. Spots are looked for all over the
-/// skin, which takes several times as long as bands alone; what may have been one is left out of the notes
-/// without. `arm` was found in this very picture. None of an axis of fewer than 8 samples, nor (with a note)
-/// of an arm thinner than 4 px.
+/// Finds the markers along an arm in `picture` (gray, or red, green, blue) by their difference from the arm's
+/// own colour. In a gray picture bands are found by their brightness. The search for spots covers the whole
+/// skin and takes several times as long as bands alone. Without it, possible spots are not in the notes.
+/// `arm` must be from this very picture. Empty for an axis of fewer than 8 samples, and (with a note) for an
+/// arm thinner than 4 px.
 [[nodiscard]] MarkerSightings find_markers(const Image<std::uint8_t>& picture, const ArmSighting& arm,
                                            bool with_spots = true);
 

@@ -30,7 +30,7 @@ std::vector<MarkerRing> even_bands(double step) {
   return bands;
 }
 
-// An arm of 0.8 m, slightly bent, all in view, with these bands.
+// A slightly bent arm of 0.8 m, fully in view, with these bands.
 class BandedPicture {
  public:
   explicit BandedPicture(const std::vector<MarkerRing>& bands) {
@@ -55,7 +55,7 @@ class BandedPicture {
     to_backbone_image(view.lens, arm.axis);
     return find_markers(picture, arm);
   }
-  // Where the middle of band i is seen.
+  // True image position of the middle of band i.
   [[nodiscard]] Eigen::Vector2d middle(std::size_t i) const {
     Renderer renderer;
     renderer.prepare(scene, view);
@@ -125,7 +125,7 @@ TEST(Markers, TwoOfOtherColoursThatTouchAreNotMixed) {
   }
 }
 
-// Paints a disc of `radius` px around a place of the picture.
+// Paints a disc of `radius` px around a point of the picture.
 void paint(Image<std::uint8_t>& picture, const Eigen::Vector2d& at, double radius) {
   for (int v = 0; v < picture.height(); ++v)
     for (int u = 0; u < picture.width(); ++u)
@@ -134,7 +134,7 @@ void paint(Image<std::uint8_t>& picture, const Eigen::Vector2d& at, double radiu
 
 TEST(Markers, SpeckOnTheArmIsNoBand) {
   BandedPicture seen(even_bands(0.18));
-  // Between the second and the third band; half as wide as the arm is across.
+  // Between the second and the third band; half as wide as the arm.
   paint(seen.picture, 0.5 * (seen.middle(1) + seen.middle(2)), 4);
   const MarkerSightings found = seen.found();
   std::size_t bands = 0;
@@ -222,7 +222,7 @@ TEST(Markers, TwoSpotsSideBySideAreTwo) {
   });
 }
 
-// Arms bent anyhow: turned to the camera, crossing themselves, with bands that are partly hidden.
+// Arms with random bends: turned towards the camera, crossing themselves, with bands that are partly hidden.
 TEST(Markers, BandsAreAsFarOffAsTheirSigmaSays) {
   std::size_t count = 0, beyond = 0, far_off = 0, spots = 0;
   for_random_cases(20, [&](TestRandom& random) {
@@ -263,7 +263,7 @@ TEST(Markers, WhatIsBesideTheArmIsNone) {
 
 TEST(Markers, APlainArmHasNone) { EXPECT_TRUE(BandedPicture({}).found().markers.empty()); }
 
-// The axis ends on the silhouette's border, half-way between arm and ground.
+// The axis ends on the silhouette's border, half-way between arm and background.
 TEST(Markers, TheGroundBehindAnEndIsNoSpotOfAnotherColour) {
   Image<std::uint8_t> picture(320, 240, 1, 220);
   for (int v = 40; v < 200; ++v)
@@ -272,7 +272,7 @@ TEST(Markers, TheGroundBehindAnEndIsNoSpotOfAnotherColour) {
   const ArmSighting& arm = finder.find(picture);
   ASSERT_TRUE(arm.is_found()) << arm.reason;
   EXPECT_THAT(find_markers(picture, arm).notes, testing::IsEmpty());
-  // One that lies on the arm is.
+  // A spot on the arm is reported.
   for (int v = 100; v < 103; ++v)
     for (int u = 157; u < 159; ++u) picture.at(u, v) = 120;
   EXPECT_THAT(find_markers(picture, finder.find(picture)).notes,

@@ -1,4 +1,4 @@
-// The silhouette's border, with OpenCV's contours for a second opinion.
+// Compares the silhouette's border with OpenCV's contours.
 #include <gtest/gtest.h>
 
 #include <Eigen/Core>
@@ -18,7 +18,7 @@ namespace {
 
 using Contour = std::vector<cv::Point>;
 
-// The longest contour of what is darker than `level`.
+// The longest contour of the pixels darker than `level`.
 Contour opencv_contour(const Image<std::uint8_t>& picture, double level) {
   const cv::Mat gray(picture.height(), picture.width(), CV_8U,
                      const_cast<std::uint8_t*>(picture.values().data()));
@@ -34,8 +34,8 @@ double distance_to(const Contour& contour, const Eigen::Vector2d& pixel) {
       cv::pointPolygonTest(contour, {static_cast<float>(pixel.x()), static_cast<float>(pixel.y())}, true));
 }
 
-// The contour runs through the middles of the figure's outermost pixels: half a pixel, and the stair of a
-// border that runs askew, away from where the border is.
+// The contour runs through the middles of the outermost pixels: half a pixel from the border, plus the stair
+// of a slanting border.
 constexpr double stair = 1.3;
 
 TEST(Outline, IsOpenCVsContourToAPixel) {
@@ -53,7 +53,7 @@ TEST(Outline, IsOpenCVsContourToAPixel) {
       sum += distance;
     }
     EXPECT_NEAR(sum / static_cast<double>(figure.points.size()), 0.45, 0.2);
-    // None of its parts is left out: each of the contour's pixels has a point of the border near it.
+    // No part is missing: each of the contour's pixels has a border point near it.
     std::size_t alone = 0;
     for (const cv::Point& at : contour) {
       const bool is_near = std::ranges::any_of(figure.points, [&](const BorderPoint& point) {
@@ -62,7 +62,7 @@ TEST(Outline, IsOpenCVsContourToAPixel) {
       alone += is_near ? 0 : 1;
     }
     EXPECT_LT(static_cast<double>(alone), 0.05 * static_cast<double>(contour.size()));
-    // So are the arm's sides, where both are seen.
+    // The same holds for the arm's sides where both are visible.
     ArmFinder finder;
     const ArmSighting& arm = finder.find(seen.picture);
     ASSERT_TRUE(arm.is_found()) << arm.reason;
@@ -74,7 +74,7 @@ TEST(Outline, IsOpenCVsContourToAPixel) {
         near += distance_to(contour, border) < stair ? 1 : 0, ++count;
       }
     }
-    // The rest borders on the arm itself, where it lies before another part of it.
+    // The rest borders on the arm itself, where it lies in front of another part of it.
     EXPECT_GT(static_cast<double>(near), 0.97 * static_cast<double>(count));
   });
 }

@@ -32,7 +32,7 @@ Image<Value> gray_of_colors(const Image<Value>& picture) {
   return gray;
 }
 
-// A picture in shades of gray that is written in colour, as one channel; otherwise as it is.
+// Returns a gray picture stored in colour as one channel; other pictures unchanged.
 Image<std::uint8_t> without_colors(Image<std::uint8_t> picture) {
   if (picture.channels() != 3) return picture;
   const auto values = picture.values();
@@ -50,8 +50,8 @@ bool has_two_values(const Image<Value>& picture) {
   return least < most && std::ranges::all_of(picture.values(), is_either);
 }
 
-// Stretched to 0 and 255, and blurred by a pixel: a staircase has no place to a part of a pixel, but its mean
-// over some steps has.
+// Stretches a mask to 0 and 255 and blurs it by a pixel: a staircase has no subpixel position, but its mean
+// over several steps has.
 Image<std::uint8_t> softened_mask(const Image<std::uint8_t>& mask) {
   constexpr std::array<int, 5> kernel = {1, 4, 6, 4, 1};
   const std::uint8_t most = std::ranges::max(mask.values());
@@ -77,9 +77,9 @@ Image<std::uint8_t> softened_mask(const Image<std::uint8_t>& mask) {
   return soft;
 }
 
-// Sensors of 10 or 12 bits write their values as they are; a few hot pixels do not tell of how many.
+// Finds the white level: sensors of 10 or 12 bits write unscaled values, and a few hot pixels do not count.
 int white_found_in(const Image<std::uint16_t>& words) {
-  constexpr std::size_t hot = 10000;  // One of so many may be.
+  constexpr std::size_t hot = 10000;  // One in this many may be hot.
   std::vector<std::uint16_t> values(words.values().begin(), words.values().end());
   const auto place = values.end() - 1 - static_cast<std::ptrdiff_t>(values.size() / hot);
   std::ranges::nth_element(values, place);
@@ -99,7 +99,7 @@ Photograph decode_picture(std::span<const std::uint8_t> file, const std::string&
     photograph.bytes = eight_bits(photograph.words, photograph.white);
   }
   const Image<std::uint8_t> gray = without_colors(photograph.bytes);
-  // Little contrast in 16 bits may leave two values of 8.
+  // Little contrast in 16 bits may leave two values in 8.
   photograph.is_mask = gray.channels() == 1 && has_two_values(gray) &&
                        (photograph.words.values().empty() || has_two_values(photograph.words));
   if (photograph.is_mask) photograph.bytes = softened_mask(gray), photograph.words = {};

@@ -11,7 +11,7 @@ std::optional<std::string> hint_of_size(const Lens& lens, int width, int height)
   const Intrinsics& described = lens.intrinsics();
   const auto is_aside = [](double at, int size) { return at < 0.3 * size || at > 0.7 * size; };
   if (!is_aside(described.cx, width) && !is_aside(described.cy, height)) return std::nullopt;
-  // In whose middle the principal point would be, if that is a picture of the same shape.
+  // Picture size whose middle is the principal point, if it has the same aspect ratio.
   const double wide = 2 * described.cx + 1, high = 2 * described.cy + 1, factor = wide / width;
   constexpr double alike = 0.2;
   const bool is_scaled = factor > 0 && std::abs(high / (factor * height) - 1) < alike;

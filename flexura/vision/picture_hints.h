@@ -9,12 +9,12 @@
 
 namespace flexura {
 
-/// Whether a lens is described for pictures of another size than these, px; for which, as far as its
-/// principal point tells.
+/// Returns a hint if a lens seems to be described for pictures of another size than these, px. The hint names
+/// that size as far as the principal point indicates it.
 [[nodiscard]] std::optional<std::string> hint_of_size(const Lens& lens, int width, int height);
 
-/// Whether much of a picture is as bright as it can tell: a border beside what is cut off at white is seen
-/// aside. For pictures, not for masks.
+/// Returns a hint if much of a picture is saturated: clipping at white shifts borders. For pictures, not for
+/// masks.
 [[nodiscard]] std::optional<std::string> hint_of_exposure(const Image<std::uint8_t>& gray);
 
 }  // namespace flexura

@@ -14,7 +14,7 @@ TEST(PictureHints, TellForWhichSizeOfPicturesALensIsDescribed) {
   const Lens lens(Intrinsics{.fx = 800, .fy = 800, .cx = 319.5, .cy = 239.5});
   EXPECT_EQ(hint_of_size(lens, 640, 480), std::nullopt);
   EXPECT_THAT(hint_of_size(lens, 320, 240).value_or(""), HasSubstr("of another size, 2 times as large?"));
-  // A part of a picture is no picture of another size.
+  // A crop of a picture is not a picture of another size.
   EXPECT_THAT(hint_of_size(lens, 400, 480).value_or(""), HasSubstr("of another size?"));
 }
 

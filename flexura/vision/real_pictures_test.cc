@@ -1,4 +1,4 @@
-// Pictures that nobody here made: of the Debian packages opencv-doc and visp-images-data.
+// Real pictures from the Debian packages opencv-doc and visp-images-data.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -64,7 +64,7 @@ TEST(RealPictures, TheEllipseIsThereToATenthOfAPixel) {
     const auto fit = fit_ellipse_to_most(points);
     ASSERT_TRUE(fit) << file;
     EXPECT_GT(points.size(), 350U) << file;
-    // Where half of it is hidden, the rest is no ellipse to 0.2 px (docs/vision.md).
+    // If half of it is hidden, the rest deviates from an ellipse by 0.2 px (docs/vision.md).
     EXPECT_LT(fit->rms, 0.25) << file;
     if (fit->rms >= 0.09 && !half_hidden.contains(i)) over += fmt::format(" {}: {:.3f}", i, fit->rms);
   }
@@ -74,14 +74,14 @@ TEST(RealPictures, TheEllipseIsThereToATenthOfAPixel) {
 
 TEST(RealPictures, AWhiteEllipseInAFrameIsTheFigure) {
   SKIP_WITHOUT(visp);
-  // A line of a pixel's width runs along the picture's top and right.
+  // A line one pixel wide runs along the picture's top and right.
   auto points = border_of(gray_file(visp / "ellipse" / "ellipse.pgm"));
   const auto fit = fit_ellipse_to_most(points);
   ASSERT_TRUE(fit);
   EXPECT_LT(fit->rms, 0.3);
 }
 
-// A straight thing from border to border.
+// A straight object from border to border.
 TEST(RealPictures, AStripInAPhotographHasAStraightAxis) {
   SKIP_WITHOUT(visp);
   ArmFinder finder;
@@ -131,7 +131,7 @@ TEST(RealPictures, ThresholdComponentsAndEllipsesAreOpenCVs) {
     cv::Mat mask, labels;
     const double level = cv::threshold(mat_of(gray), mask, 0, 255, cv::THRESH_BINARY | cv::THRESH_OTSU);
     const Threshold own = threshold_of(histogram_of(gray));
-    // Where several levels are as good, OpenCV takes the first.
+    // Where several levels are equally good, OpenCV takes the first.
     std::size_t between = 0;
     const auto low = static_cast<int>(std::min(level, own.level)),
                high = static_cast<int>(std::max(level, own.level));

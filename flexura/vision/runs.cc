@@ -15,7 +15,7 @@ namespace {
 
 constexpr int word_pixels = 64;
 
-// Bit i of the word: pixel i is at or above the level, `levels` being one for all or one a pixel.
+// Bit i of the word: whether pixel i is at or above the level; `levels` holds one for all or one per pixel.
 struct BrightBits {
   std::uint8_t level = 0;
   const std::uint8_t* levels = nullptr;
@@ -42,7 +42,7 @@ struct BrightBits {
   }
 };
 
-// The runs of a row, from its bits.
+// Adds the runs of a row, from its bits.
 void add_runs(const std::uint8_t* pixels, int width, int v, const BrightBits& bright, bool is_dark_wanted,
               std::vector<Run>& runs) {
   bool is_inside = false;
@@ -72,7 +72,7 @@ void Components::find(const Image<std::uint8_t>& gray, const Threshold& threshol
   runs.clear();
   row_start_.clear();
   const double least = std::clamp(std::ceil(threshold.level), 0.0, 256.0);
-  // At 256 nothing is bright, which no byte says: the level is then one that no run depends on.
+  // At 256 nothing is bright, which a byte cannot represent: the level is then one that no run depends on.
   const bool nothing_bright = least > 255;
   BrightBits bright{static_cast<std::uint8_t>(std::min(least, 255.0)), nullptr};
   for (int v = 0; v < gray.height(); ++v) {
@@ -117,7 +117,7 @@ void Components::join(int height) {
       }
     }
   }
-  // Roots come before all that hangs on them, so components are numbered by their first run.
+  // Roots precede their members, so components are numbered by their first run.
   list.clear();
   for (std::uint32_t i = 0; i < runs.size(); ++i) {
     Run& run = runs[i];
@@ -165,7 +165,7 @@ Threshold segment(const Image<std::uint8_t>& gray, const ThresholdConfig& config
   Threshold threshold = threshold_of(gray, config, samples);
   // A thin arm may fall between the samples.
   if (!threshold.reason.empty() && samples < gray.values().size()) threshold = threshold_of(gray, config);
-  // Before an uneven screen the brightnesses of the whole stand nowhere apart, and those of its blocks do.
+  // In front of an uneven screen, the two classes may separate in blocks but not in the whole picture.
   const bool by_block = config.method == ThresholdMethod::by_block && blocks.make(gray, config);
   if (by_block) threshold = blocks.mean(gray);
   if (threshold.reason.empty()) components.find(gray, threshold, by_block ? &blocks : nullptr);

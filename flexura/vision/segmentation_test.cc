@@ -121,7 +121,7 @@ TEST(Components, AreThoseOfAFloodFill) {
   });
 }
 
-// Of figures that are as wide as they lie apart: on each, and near each of its pixels.
+// For figures as wide as their distances: points on each, and near each of its pixels.
 TEST(Components, HavePlacesStrewnEvenlyOverThem) {
   for_random_cases(20, [](TestRandom& random) {
     Image<std::uint8_t> gray(120, 90, 1, 200);

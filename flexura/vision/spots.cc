@@ -22,13 +22,13 @@ constexpr double least_sigma = 0.03;   // The samples are a pixel apart, px.
 
 double cross(const Vector2d& a, const Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
 
-// A standard deviation from moments.
+// Standard deviation from moments.
 double spread_of(double sum, double first, double second) {
   const double mean = first / sum;
   return std::sqrt(std::max(second / sum - mean * mean, 0.0));
 }
 
-// The skin laid out flat, about a pixel apart across the arm, too: sample i * lines_ + line.
+// The unrolled skin, about a pixel apart also across the arm: sample i * lines_ + line.
 class SpotFinder {
  public:
   SpotFinder(const Image<std::uint8_t>& picture, const ArmSighting& arm, const ArmSkin& skin)
@@ -37,7 +37,7 @@ class SpotFinder {
     lines_ = 2 * to_side_ + 1;
     differences_.resize(skin.size() * lines_);
     states_.resize(differences_.size(), State::outside);
-    // The ground shows through the picture's blur at the borders.
+    // At the borders the background shows through the picture's blur.
     const double depth = std::max(0.8, arm.blur);
     std::vector<Vector3d> colors(skin.size());
     for (std::size_t line = 0; line < lines_; ++line) {
@@ -66,7 +66,7 @@ class SpotFinder {
       whole = region_;
       double most = 0;
       for (const std::size_t sample : whole) most = std::max(most, differences_[sample]);
-      // What stands apart at half of the height is a spot of its own.
+      // Parts separated at half of the height are separate spots.
       const double half = std::max(0.5 * most, bound);
       for (const std::size_t sample : whole) {
         if (states_[sample] != State::near || differences_[sample] <= half) continue;
@@ -87,7 +87,7 @@ class SpotFinder {
     return skin_.axis[i] + share(line) * skin_.half_widths[i] * skin_.normals[i];
   }
 
-  // Collects in region_ what is above `bound` and hangs together with a sample, and gives it another state.
+  // Collects in region_ the samples above `bound` connected to a start sample and sets their state.
   void fill(std::size_t start, double bound, State state) {
     const State from = states_[start];
     region_.assign(1, start);
@@ -107,15 +107,15 @@ class SpotFinder {
     }
   }
 
-  // Of region_: the centre, by how much each sample is above `bound` and by its area in the picture.
+  // Makes a spot of region_: its centre is weighted by the height above `bound` and the area in the picture.
   [[nodiscard]] std::optional<MarkerSighting> spot_of(double bound) const {
     double sum = 0, area = 0, first = 0, second = 0, across = 0, across_second = 0;
     Vector2d center = Vector2d::Zero();
-    std::array<double, 2> edges = {0, 0};  // How much of its outline is that of the visible skin, px.
+    std::array<double, 2> edges = {0, 0};  // Length of its outline on the border of the visible skin, px.
     bool is_hidden = false;
     for (const std::size_t sample : region_) {
       const std::size_t i = sample / lines_, line = sample % lines_;
-      if (i < 2 || i + 2 >= skin_.size()) return std::nullopt;  // The ground behind an end.
+      if (i < 2 || i + 2 >= skin_.size()) return std::nullopt;  // The background behind an end.
       const double cell =
           std::abs(cross(0.5 * (place(i + 1, line) - place(i - 1, line)),
                          skin_.half_widths[i] / static_cast<double>(to_side_) * skin_.normals[i]));
@@ -132,8 +132,8 @@ class SpotFinder {
     const double ratio = spread_of(sum, across, across_second) / spread;
     const bool is_compact = ratio > 1 / longest && ratio < longest;
     if (area < least_spot_area || !is_compact) return std::nullopt;
-    // What is seen of a band that is partly hidden is longer across the arm than along it; what is seen of
-    // the ground along a border is the opposite.
+    // The visible part of a partly hidden band is longer across the arm than along it; visible background
+    // along a border is the opposite.
     const bool touches = edges[0] > 0 || edges[1] > 0, is_cut = std::max(edges[0], edges[1]) > 2 * spread;
     if (edges[0] > 0 && edges[1] > 0) return std::nullopt;
     if (((touches || is_hidden) && ratio > 1.2) || (is_cut && ratio < 0.4)) return std::nullopt;
@@ -147,7 +147,7 @@ class SpotFinder {
     spot.along = mean + (spot.pixel - skin_.at(mean)).dot(tangent);
     spot.aside = (spot.pixel - skin_.at(spot.along)).dot(skin_.normals[near]);
     spot.sigma = std::hypot(noise_ * std::sqrt(area) * spread / sum, least_sigma);
-    // How much of it is hidden nobody knows.
+    // The size of the hidden part is unknown.
     if (is_cut || is_hidden) spot.sigma = std::max(spot.sigma, spread);
     return spot;
   }

@@ -13,9 +13,8 @@
 
 namespace flexura {
 
-/// Spots on the visible skin, anywhere across it, but not those that reach one of the `bands` (stretches of
-/// the middle line) or from one side of the arm to the other. What is nearer than `bound` to the colour of
-/// the skin beside is none.
+/// Finds spots anywhere on the visible skin. Excludes those that reach one of the `bands` (stretches of the
+/// middle line) or both sides of the arm. Also excludes colours within `bound` of the adjacent skin.
 [[nodiscard]] std::vector<MarkerSighting> find_spots(const Image<std::uint8_t>& picture,
                                                      const ArmSighting& arm, const ArmSkin& skin,
                                                      std::span<const Stretch> bands, double bound);

@@ -14,17 +14,16 @@
 namespace flexura {
 namespace {
 
-// Two classes nearer than this are none: noise, or a shaded screen.
+// Classes nearer than this do not count as two: noise, or a shaded screen.
 constexpr double least_contrast = 10;
 
-// Of a picture that is darker than this all over, or brighter than the same below white, exposure is to be
-// spoken of.
+// Margin for messages about exposure: a picture darker than this everywhere, or nearer than this to white.
 constexpr double dimmest = 32;
 
-// Pixels counted side by side in one place. (Longer stretches cost less, but fewer of them miss thin arms.)
+// Number of adjacent pixels counted together. Longer runs cost less but are more likely to miss thin arms.
 constexpr std::size_t run_length = 16;
 
-// Sums over a histogram up to and with each brightness.
+// Sums over a histogram up to and including each brightness.
 struct Moments {
   double count = 0, sum = 0, squares = 0;
 
@@ -43,8 +42,8 @@ Moments moments(const Histogram& histogram, std::size_t first, std::size_t last)
   return result;
 }
 
-// The last brightness of the dark class. Where several are as good, the middle of them: a threshold between
-// two far modes then stands half-way.
+// Returns the last brightness of the dark class. Among several equally good ones the middle: a threshold
+// between two distant modes is then half-way.
 double otsu_split(const Histogram& histogram) {
   const Moments all = moments(histogram, 0, 256);
   Moments dark;
@@ -60,8 +59,8 @@ double otsu_split(const Histogram& histogram) {
   return best < 0 ? 127 : std::floor(0.5 * (first + last));
 }
 
-// Smoothed until two peaks are left (J. M. S. Prewitt, M. L. Mendelsohn, 1966); the lowest place between
-// them.
+// Smooths until two peaks are left (J. M. S. Prewitt, M. L. Mendelsohn, 1966) and returns the lowest place
+// between them.
 double valley_split(const Histogram& histogram) {
   std::array<double, 256> smooth{}, next{};
   std::ranges::copy(histogram, smooth.begin());
@@ -106,7 +105,7 @@ std::string reason_against(const Histogram& histogram, const Threshold& found, d
   return fmt::format("the picture is {}: no two brightnesses stand apart {}", exposure, means);
 }
 
-// Where a fixed level parts nothing, but another would: what the picture has instead.
+// Returns the reason why a fixed level separates nothing although another would.
 std::string reason_against_level(double level, const Threshold& otsu) {
   const char* where = "parts the picture at the wrong place";
   if (level < otsu.dark) where = "is darker than nearly all of the picture";
@@ -115,7 +114,7 @@ std::string reason_against_level(double level, const Threshold& otsu) {
                      level, where, otsu.dark, otsu.bright, otsu.level);
 }
 
-// The share of bright pixels in the ring that many pixels within the picture's border. `level`: at (u, v).
+// Returns the share of bright pixels in the ring `ring` px inside the picture's border. `level`: at (u, v).
 template <typename Level>
 double bright_share(const Image<std::uint8_t>& gray, int ring, const Level& level) {
   const int right = gray.width() - 1 - ring, bottom = gray.height() - 1 - ring;
@@ -128,8 +127,8 @@ double bright_share(const Image<std::uint8_t>& gray, int ring, const Level& leve
   return static_cast<double>(bright) / static_cast<double>(count);
 }
 
-// What is mostly there at the picture's border is ground; in three rings, as the outermost pixels may be a
-// frame.
+// The class that is more frequent at the picture's border is background; three rings are used, as the
+// outermost pixels may be a frame.
 template <typename Level>
 Figure figure_of(const Image<std::uint8_t>& gray, const Level& level) {
   const double share =
@@ -137,8 +136,8 @@ Figure figure_of(const Image<std::uint8_t>& gray, const Level& level) {
   return share >= 0.5 ? Figure::dark : Figure::bright;
 }
 
-// Two classes of a block: much farther apart than a shaded screen splits into (3.5 times its own spread), and
-// by a share of its brightness.
+// Returns whether two classes of a block are far apart, by a share of the brightness. They must be much
+// farther apart than the halves of a shaded screen (3.5 times its own spread).
 bool stand_apart(const Threshold& found) {
   constexpr double spreads = 5, share = 0.2;
   const double contrast = found.bright - found.dark;
@@ -158,14 +157,15 @@ const std::vector<std::string>& names_of(const Figure*) {
 }
 
 Histogram histogram_of(const Image<std::uint8_t>& gray, std::size_t samples) {
-  // Four counters a brightness: neighbours are alike, and one counter would have to wait for itself.
+  // Four counters per brightness: neighbouring pixels are often equal, and a single counter would have to
+  // wait for itself.
   std::array<Histogram, 4> counts{};
   const auto values = gray.values();
   const std::size_t step =
       run_length * std::max<std::size_t>(1, values.size() / std::max<std::size_t>(samples, 1));
-  // A step that shares no rhythm with the rows.
+  // A step that is not synchronous with the rows.
   const std::size_t odd_step = step == run_length ? run_length : step + (step / run_length % 2 == 0 ? 3 : 5);
-  // Each run lies in another line of the cache: what comes is fetched meanwhile.
+  // Each run lies in another cache line: the next ones are prefetched.
   const std::size_t ahead = 16 * odd_step;
   for (std::size_t from = 0; from < values.size(); from += odd_step) {
     if (from + ahead < values.size()) __builtin_prefetch(&values[from + ahead]);
@@ -235,10 +235,10 @@ bool BlockThresholds::make(const Image<std::uint8_t>& gray, const ThresholdConfi
   for (int j = 0; j < rows_; ++j) {
     for (int i = 0; i < columns_; ++i) {
       Block& block = blocks_[place(i, j)];
-      // Of the two classes that it is split into in any case.
+      // A block is always split into two classes.
       const Threshold own = around(gray, i, j, 0);
       block.mean = own.mean;
-      // A block wholly within the figure sees ground when it looks farther.
+      // A block inside the figure sees background only in a larger neighbourhood.
       for (const int margin : {block_ / 2, 3 * block_ / 2, 7 * block_ / 2}) {
         const Threshold here = around(gray, i, j, margin);
         if (!stand_apart(here)) continue;
@@ -256,8 +256,8 @@ bool BlockThresholds::make(const Image<std::uint8_t>& gray, const ThresholdConfi
 }
 
 void BlockThresholds::fill() {
-  // What has no level of its own takes the mean of its neighbours', again and again until all have one; as
-  // much brighter or darker as the block is than the class of theirs that it is nearer to.
+  // Blocks without a level take the mean of their neighbours', repeated until all have one. It is scaled by
+  // the block's brightness relative to the nearer of the neighbours' classes.
   for (bool is_open = true; is_open;) {
     is_open = false;
     const std::vector<Block> before = blocks_;

@@ -13,63 +13,64 @@
 
 namespace flexura {
 
-/// How the brightness that separates figure from ground is chosen from the picture's histogram (section 3.4).
+/// How the brightness that separates foreground and background is chosen from the picture's histogram
+/// (section 3.4).
 enum class ThresholdMethod {
   otsu,      ///< The largest variance between the two classes (N. Otsu, 1979).
   two_mode,  ///< The deepest valley between the histogram's two peaks.
-  fixed,     ///< As given.
-  by_block,  ///< Otsu's, of each block of the picture, and linear between blocks: for uneven screens.
+  fixed,     ///< `ThresholdConfig::level`.
+  by_block,  ///< Otsu's for each block of the picture, linear between blocks: for uneven screens.
 };
 const std::vector<std::string>& names_of(const ThresholdMethod*);
 
-/// Which side of the threshold the figure is on.
+/// Side of the threshold on which the foreground is.
 enum class Figure { dark, bright };
 const std::vector<std::string>& names_of(const Figure*);
 
-/// How figure and ground are told apart.
+/// Separation of foreground and background.
 struct ThresholdConfig {
   ThresholdMethod method = ThresholdMethod::otsu;
   double level = 127.5;          ///< With `fixed`, of 0 to 255.
-  std::optional<Figure> figure;  ///< Decided by the picture's border when left out: what is there is ground.
+  std::optional<Figure> figure;  ///< Default: the class at the picture's border is background.
   int block = 32;                ///< px, with `by_block`.
 };
 
-/// How often each brightness occurs; of pictures with more than 8 bits, by their upper 8 bits.
+/// Frequency of each brightness; for pictures with more than 8 bits, of their upper 8 bits.
 using Histogram = std::array<std::uint32_t, 256>;
 
-/// Of all pixels, or of a share evenly over the picture when it has more than `samples` of them.
+/// Computes the histogram of all pixels, or of an evenly spread share if there are more than `samples`.
 [[nodiscard]] Histogram histogram_of(const Image<std::uint8_t>& gray, std::size_t samples = 1U << 30U);
 
-/// A threshold, and what the histogram says of it.
+/// A threshold and the statistics of its classes.
 struct Threshold {
   ThresholdMethod method = ThresholdMethod::otsu;
   double level = 0;             ///< Between two brightnesses of 0 to 255.
-  double dark = 0, bright = 0;  ///< Mean brightness of either class.
-  double mean = 0;              ///< Of all.
+  double dark = 0, bright = 0;  ///< Mean brightness of each class.
+  double mean = 0;              ///< Mean of all.
   double spread = 0;            ///< Standard deviation within the classes.
   Figure figure = Figure::dark;
-  /// Why there is no figure to be had ("the picture is blank ..."); "" when there is.
+  /// Why no foreground can be separated ("the picture is blank ..."); "" if it can.
   std::string reason;
 };
 
-/// The threshold of a histogram by Otsu's method or between its two modes, or as fixed; with the reason why
-/// it separates nothing, if that is so.
+/// Returns the threshold of a histogram by Otsu's method, between its two modes, or as fixed; with a reason
+/// if it separates nothing.
 [[nodiscard]] Threshold threshold_of(const Histogram& histogram, const ThresholdConfig& config = {});
 
-/// The same of a picture, with the side on which the figure is. `samples`: of the histogram.
+/// Returns the threshold of a picture, with the side of the foreground. `samples`: of the histogram.
 [[nodiscard]] Threshold threshold_of(const Image<std::uint8_t>& gray, const ThresholdConfig& config,
                                      std::size_t samples = 1U << 30U);
 
-/// Thresholds by block, of a grid of blocks' middles.
+/// Thresholds of blocks, on the grid of their middles.
 class BlockThresholds {
  public:
-  /// Looks at each block with as much around it as it takes until two classes stand apart. Blocks in which
-  /// none do take what is between the others. False, and no thresholds, when no block has any.
+  /// Evaluates each block in a neighbourhood that grows until two classes separate; blocks where none do are
+  /// interpolated. Returns false, without thresholds, if no block has any.
   bool make(const Image<std::uint8_t>& gray, const ThresholdConfig& config);
-  /// The mean of the blocks in which two classes stand apart; its figure is the one that is not at the
+  /// Returns the mean of the blocks in which two classes separate; its figure is the class that is not at the
   /// picture's border.
   [[nodiscard]] Threshold mean(const Image<std::uint8_t>& gray) const;
-  /// The level at each pixel of row v, rounded up.
+  /// Sets the level at each pixel of row v, rounded up.
   void row(int v, std::vector<std::uint8_t>& levels) const;
 
  private:

@@ -14,10 +14,10 @@ using Eigen::Vector2d;
 
 constexpr int seed_count = 7;
 
-// The pixel that a place from -1 on lies in.
+// The pixel that contains a position of at least -1.
 int nearest(double place) { return static_cast<int>(place + 1.5) - 1; }
 
-// The last place within the figure from `from` along `direction`, no farther than `limit` px.
+// Returns the last distance within the component from `from` along `direction`, at most `limit` px.
 double way_out(const Components& components, const Vector2d& from, const Vector2d& direction, double limit) {
   double reach = 0;
   for (; reach < limit; reach += 1) {
@@ -49,8 +49,8 @@ TubeSeed shortest_chord(const Components& components, const Eigen::Vector2d& fro
 void tube_seeds(const Components& components, const Component& component, std::vector<TubeSeed>& seeds) {
   seeds.clear();
   const double limit = std::hypot(component.right - component.left + 1, component.bottom - component.top + 1);
-  // The runs in which every n-th of the component's pixels lies, and every n-th run: a hair across an arm has
-  // many short runs, and where an arm lies on itself there are many pixels.
+  // Uses the runs that contain every n-th pixel of the component, and every n-th run. A hair across an arm
+  // has many short runs; where an arm overlaps itself there are many pixels.
   const std::int64_t pixels = std::max<std::int64_t>(1, component.area / seed_count);
   const std::uint32_t every = std::max(1U, component.run_count / seed_count);
   const auto own = static_cast<std::uint32_t>(&component - components.list.data());

@@ -10,20 +10,20 @@
 
 namespace flexura {
 
-/// A place in a component, and the shortest chord through it.
+/// A point in a component, and the shortest chord through it.
 struct TubeSeed {
   Eigen::Vector2d center = {0, 0};  ///< The chord's middle, px.
-  Eigen::Vector2d normal = {1, 0};  ///< Along the chord.
-  double width = 0;                 ///< px
+  Eigen::Vector2d normal = {1, 0};  ///< Unit vector along the chord.
+  double width = 0;                 ///< Length of the chord, px.
 };
 
-/// The shortest of the chords through a pixel of the figure that are no longer than `limit` px, of so many
-/// evenly spread directions; none is (width above the limit) when there is none.
+/// Returns the shortest chord through a pixel of the component over `directions` evenly spaced directions. If
+/// all chords are longer than `limit` px, the returned width is above the limit.
 [[nodiscard]] TubeSeed shortest_chord(const Components& components, const Eigen::Vector2d& from, double limit,
                                       int directions = 16);
 
-/// Chords through places evenly over a component, those of middling width first: where tubes cross, or end,
-/// or a hair lies over them, chords are longer or shorter than elsewhere.
+/// Finds chords through points spread over a component, those of medium width first. Where tubes cross or
+/// end, or under a hair, chords are longer or shorter than elsewhere.
 void tube_seeds(const Components& components, const Component& component, std::vector<TubeSeed>& seeds);
 
 }  // namespace flexura

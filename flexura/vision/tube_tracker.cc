@@ -16,13 +16,13 @@ namespace {
 
 using Eigen::Vector2d;
 
-// What is left after a pixel of what is known of position, direction and curvature.
+// Share of the knowledge of position, direction and curvature that remains after a pixel.
 constexpr double memory_of_pixel = 0.7;
 
-// Edges with less than this share of the usual contrast, or this many times more, are others.
+// Edges with less than this share of the usual contrast, or more than this multiple, are other edges.
 constexpr double least_share = 0.55, most_share = 1.8;
 
-// Up to its middle a round tube is shaded much like a slope.
+// Up to its middle, the shading of a round tube is nearly linear.
 constexpr double even_share = 1.0;
 
 constexpr std::size_t most_sections = 200000;
@@ -35,11 +35,11 @@ Vector2d along(const Vector2d& normal) { return {normal.y(), -normal.x()}; }
 template <typename Value>
 struct TubeTracker<Value>::State {
   Vector2d position = {0, 0}, tangent = {1, 0};
-  double curvature = 0;  // Of the tangent's turn from u to v, 1/px.
+  double curvature = 0;  // Of the tangent's rotation from u to v, 1/px.
   double half_width = 0, widening = 0;
-  int blind = 0, in_ground = 0;  // Sections since a border was last seen; of these, in the ground.
+  int blind = 0, in_ground = 0;  // Sections since a border was last visible; of these, in the background.
   int one_sided = 0;
-  bool is_at_border = false;  // Samples of a border would lie outside the picture.
+  bool is_at_border = false;  // Whether samples of a border would lie outside the picture.
 
   void advance(double step) {
     position += step * tangent + 0.5 * curvature * step * step * across(tangent);
@@ -81,8 +81,8 @@ bool TubeTracker<Value>::is_figure(const Vector2d& pixel) const {
   return edges_.holds(pixel) && edges_.sign() * (level_ - edges_.at(pixel)) > 0;
 }
 
-// The border near `from`, along `outward`; `normal` is its own. Looked at again from where it was found,
-// until it is where it is looked for.
+// Finds the border near `from` along `outward`; `normal` is its own. Repeated from the position found until
+// it converges.
 template <typename Value>
 auto TubeTracker<Value>::look(const Vector2d& from, const Vector2d& outward, const Vector2d& normal,
                               double half_width, double capture) -> Look {
@@ -129,7 +129,7 @@ void TubeTracker<Value>::measure_blur(std::span<const CrossSection> sections) {
   constexpr std::size_t wanted = 10;
   constexpr std::size_t count = 5;
   const BlurSeries series{blur_ / (1.25 * 1.25), 1.25};
-  // What the model leaves of the picture, by blur, around what is known.
+  // Residuals of the model by blur, around the known value.
   std::array<double, count> left{};
   for (std::size_t i = 0; i < sections.size(); i += std::max<std::size_t>(1, sections.size() / wanted)) {
     const CrossSection& section = sections[i];
@@ -165,7 +165,7 @@ std::optional<CrossSection> TubeTracker<Value>::seed(const Vector2d& center, con
   return section.half_width > 0.5 ? std::optional(section) : std::nullopt;
 }
 
-// Measures where the state says the tube is, and corrects the state by it.
+// Measures the tube at its predicted position and corrects the state.
 template <typename Value>
 CrossSection TubeTracker<Value>::meet(State& state, const Gains& gains, int way) {
   const Vector2d normal = across(state.tangent);
@@ -181,7 +181,7 @@ CrossSection TubeTracker<Value>::meet(State& state, const Gains& gains, int way)
   CrossSection section{state.position, way * normal, state.half_width, {false, false}};
   if (found[0].offset && found[1].offset) {
     const double wider = 0.5 * (*found[0].offset + *found[1].offset);
-    // After a stretch without borders, what is met may be another tube's: the width tells.
+    // After a stretch without borders, this may be another tube: check the width.
     if (std::abs(wider) >= 0.25 * state.half_width + 0.3) return section;
     const double sideways = 0.5 * (*found[0].offset - *found[1].offset);
     section.center += sideways * normal, section.half_width += wider;
@@ -198,7 +198,7 @@ CrossSection TubeTracker<Value>::meet(State& state, const Gains& gains, int way)
   return section;
 }
 
-// Counts for how long borders have been missing.
+// Counts how long borders have been missing.
 template <typename Value>
 void TubeTracker<Value>::count(State& state, const CrossSection& section) const {
   const bool any = section.is_seen[0] || section.is_seen[1];
@@ -209,7 +209,7 @@ void TubeTracker<Value>::count(State& state, const CrossSection& section) const 
   if (!any && !is_figure(state.position)) ++state.in_ground;
 }
 
-// Whether that is too long, and what it means.
+// Returns the reason to stop, if borders have been missing for too long.
 template <typename Value>
 std::optional<TrackEnd> TubeTracker<Value>::stop(const State& state) const {
   const double width = 2 * state.half_width;
@@ -226,7 +226,7 @@ TrackEnd TubeTracker<Value>::follow(const CrossSection& seed, int way, std::vect
   State state;
   state.position = seed.center, state.tangent = way * along(seed.normal), state.half_width = seed.half_width;
   const Vector2d start = seed.center, start_tangent = state.tangent;
-  std::size_t last_seen = first;  // One past the last section of which a border was seen.
+  std::size_t last_seen = first;  // One past the last section with a visible border.
   std::optional<TrackEnd> end;
   const Gains gains(step_);
   while (!end && sections.size() - first < most_sections) {

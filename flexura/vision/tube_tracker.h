@@ -13,62 +13,64 @@
 
 namespace flexura {
 
-/// Where a line across a tube meets its two borders.
+/// Intersection of a line across a tube with its two borders.
 struct CrossSection {
   Eigen::Vector2d center = {0, 0};  ///< Half-way between the borders, px.
-  Eigen::Vector2d normal = {
-      0, 1};              ///< Along the line, a unit vector: the direction of travel turned from u to v.
-  double half_width = 0;  ///< px
+  /// Unit vector along the line: the direction of travel turned from u to v.
+  Eigen::Vector2d normal = {0, 1};
+  double half_width = 0;                         ///< Half of the tube's width, px.
   std::array<bool, 2> is_seen = {false, false};  ///< The border on the normal's side, and the other one.
 
   [[nodiscard]] bool is_whole() const { return is_seen[0] && is_seen[1]; }
 };
 
-/// Why a tube was followed no further.
+/// Reason why tracking a tube ended.
 enum class TrackEnd {
   free,    ///< The figure ends.
   border,  ///< The picture ends.
-  lost,    ///< Its borders are seen no more, and it does not end either.
-  closed,  ///< It comes back to where it started.
+  lost,    ///< Its borders are no longer visible, but it does not end either.
+  closed,  ///< It comes back to its start.
 };
 
-/// Follows a tube through a picture, a cross-section every pixel or two: predicted from the ones before
-/// (position, direction and curvature by a fading memory), measured on both borders. Where one border cannot
-/// be seen the other one carries on with the width; where neither can (the tube crosses itself, or a hair
-/// lies over it), it goes on along its arc for some widths.
+/// Tracks a tube through a picture with a cross-section every pixel or two. Each is predicted from the
+/// previous ones (position, direction and curvature by a fading memory) and measured on both borders. If one
+/// border is invisible, the other one continues with the known width. If both are (the tube crosses itself,
+/// or a hair covers it), it continues along its arc for some widths.
 template <typename Value>
 class TubeTracker {
  public:
-  /// `level`: of the picture, between figure and ground; `contrast`: what an edge has at least roughly.
+  /// `level`: of the picture, between foreground and background; `contrast`: approximate smallest contrast of
+  /// an edge.
   TubeTracker(const Image<Value>& picture, Figure figure, double level, double contrast, BlurredSteps& steps);
 
-  /// The cross-section near a place, `normal` roughly across the tube; none when its borders are not there.
+  /// Returns the cross-section near a point, `normal` roughly across the tube; empty if its borders are not
+  /// there.
   [[nodiscard]] std::optional<CrossSection> seed(const Eigen::Vector2d& center, const Eigen::Vector2d& normal,
                                                  double half_width);
-  /// Follows the tube from a seed along +tangent (`way` 1) or against it (-1) and appends what is found, the
-  /// seed itself not.
+  /// Tracks the tube from a seed along +tangent (`way` 1) or against it (-1) and appends the sections without
+  /// the seed.
   TrackEnd follow(const CrossSection& seed, int way, std::vector<CrossSection>& sections);
-  /// Measures a section that is known to a fraction of a pixel once more: borders not seen stay so.
-  /// `widening`: how fast the half width grows along the tangent.
+  /// Measures a section again that is known to a fraction of a pixel; invisible borders stay so. `widening`:
+  /// change of the half width along the tangent.
   void refine(CrossSection& section, double widening);
-  /// Measures how blurred the borders are at whole sections.
+  /// Measures the blur of the borders at whole sections.
   void measure_blur(std::span<const CrossSection> sections);
 
   [[nodiscard]] const EdgeFinder<Value>& edges() const { return edges_; }
   [[nodiscard]] double level() const { return level_; }
-  /// Between cross-sections, px: 1 for a thin tube, 2 for a wide one.
+  /// Returns the distance of cross-sections, px: 1 for a thin tube, 2 for a wide one.
   [[nodiscard]] double step() const { return step_; }
-  /// Standard deviation of what blurs the borders, px.
+  /// Returns the standard deviation of the borders' blur, px.
   [[nodiscard]] double blur() const { return blur_; }
-  /// Standard deviation of the picture's noise as the borders show it, and their contrast.
+  /// Return the standard deviation of the picture's noise, estimated at the borders, and their contrast.
   [[nodiscard]] double noise() const { return noise_; }
   [[nodiscard]] double contrast() const { return contrast_; }
-  /// Standard deviation of a border's place, px.
+  /// Returns the standard deviation of a border's position, px.
   [[nodiscard]] double sigma() const { return sigma_ * noise_ / contrast_; }
 
  private:
   struct State;
-  // What a step's surprise changes of what is known.
+  // Corrections of the state per unit of prediction error.
   struct Gains {
     explicit Gains(double step);
     double position, direction, curvature, width, widening;

@@ -19,14 +19,14 @@ namespace {
 
 constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
 
-// What a chart shows of a value that falls over orders of magnitude.
+// Returns the value for charts of values that fall over orders of magnitude.
 double power_of_ten(double value) {
   constexpr double least = 1e-9;
   return std::isfinite(value) ? std::log10(std::max(std::abs(value), least)) : nothing;
 }
 
-// What falls from look to look. The last look is calibrated by itself, so that no number of looks comes
-// twice.
+// Returns a chart of values that fall from look to look. The last look is calibrated separately, so that no
+// number of looks repeats.
 LineChart step_chart(const CalibrationRun& run, const char* heading) {
   LineChart chart{
       .heading = heading, .x_label = "looks of both cameras", .value_label = "size, power of ten", .x = {0}};
@@ -34,7 +34,7 @@ LineChart step_chart(const CalibrationRun& run, const char* heading) {
   return chart;
 }
 
-// `first`: at no looks, by the rig as believed.
+// `first`: the value at no looks, from the nominal rig.
 template <class Value>
 void add_line(LineChart& chart, const CalibrationRun& run, const std::string& name, double first,
               const Value& value) {
@@ -68,7 +68,7 @@ ReportFigure sigmas(const CalibrationRun& run, std::size_t number) {
   return {fmt::format("calibration-{}-sigmas", number + 1), std::move(chart)};
 }
 
-// With the optical axis as it was found.
+// Includes the optical axis as found.
 ReportFigure calibration_photograph(const CalibrationRun& run, std::size_t camera, bool is_after,
                                     std::size_t number) {
   const RigSight& sight = is_after ? *run.result.after[camera] : *run.result.before[camera];

@@ -31,7 +31,7 @@ void check_markers(const ArmConfig& arm, const std::string& path, Reader& reader
                                   fewest));
 }
 
-// The cylinder stands there alone, and upright.
+// Checks that the cylinder is alone and upright.
 void check_etalon(const CalibrateTask& task, const StandConfig& stand, const std::string& path,
                   Reader& reader) {
   if (!stand.etalon) {
@@ -39,7 +39,7 @@ void check_etalon(const CalibrateTask& task, const StandConfig& stand, const std
     return;
   }
   if (stand.arm) reader.problem_at(path, "needs the cylinder alone: expected stand.arm = false");
-  constexpr double upright = 0.01;  // m, of half a height of 1 m.
+  constexpr double upright = 0.01;  // In m, for half a height of 1 m.
   EtalonConfig unit = *stand.etalon;
   unit.position = {0, 0, 0}, unit.height = 2;
   if ((EtalonFigure(unit).middle() - Eigen::Vector3d::UnitY()).norm() > upright)
@@ -65,7 +65,7 @@ void check_arcs(const CalibrateTask& task, const ArmConfig& arm, const std::stri
         path, "has no pose, no target and moves stages with this method: expected none of these keys");
 }
 
-// What is told for another method would be told for nothing.
+// Refuses keys of other methods, which would have no effect.
 void check_idle_keys(const CalibrateTask& task, const std::string& path, Reader& reader) {
   const auto refuse = [&](const char* key, bool is_told, const char* whose) {
     if (is_told)
@@ -87,7 +87,7 @@ void check_idle_keys(const CalibrateTask& task, const std::string& path, Reader&
   refuse(".camera_prior.zero_std", task.camera_prior.zero_std != usual.camera_prior.zero_std, bundles);
 }
 
-// All that needs no shape of the arm.
+// Checks everything that needs no shape of the arm.
 void check_calibration(const CalibrateTask& task, const ArmConfig& arm,
                        const std::vector<CameraConfig>& cameras, const StandConfig& stand,
                        const std::string& path, Reader& reader) {
@@ -122,7 +122,7 @@ void check_calibration(const CalibrateTask& task, const ArmConfig& arm,
 void check_keys(const CalibrateTask& task, const Setup& setup, const std::string& path, Reader& reader) {
   const std::size_t before = reader.problems().size();
   check_calibration(task, setup.arm, setup.cameras(), setup.stand, path, reader);
-  if (reader.problems().size() > before) return;  // Poses fit the arm from here on.
+  if (reader.problems().size() > before) return;  // From here on, poses fit the arm.
   const Arm arm = setup.arm.arm();
   for (std::size_t i = 0; i < task.pose.size(); ++i)
     check_bends(arm, task.pose[i], fmt::format("{}.pose[{}]", path, i), reader);

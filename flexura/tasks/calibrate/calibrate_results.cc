@@ -103,7 +103,7 @@ Node arc_nodes(const CalibrationRun& run) {
   return {std::move(list), {}};
 }
 
-// Of one of the paper's methods.
+// Returns the members of a calibration by one of the paper's methods.
 Node::Table loop_members(const CalibrationRun& run) {
   const LoopResult& result = *run.loop;
   Node::Table members{
@@ -169,7 +169,7 @@ Node::Table run_members(const CalibrationRun& run) {
   return members;
 }
 
-// Where a name is free: rig.toml, rig-2.toml, ...
+// Returns a numbered file name: rig.toml, rig-2.toml, ...
 std::filesystem::path numbered(const std::filesystem::path& file, int number) {
   std::filesystem::path result = file;
   result.replace_filename(fmt::format("{}-{}{}", file.stem().string(), number, file.extension().string()));
@@ -195,8 +195,8 @@ bool is_found_rig(const std::filesystem::path& file) {
   }
 }
 
-// The rig of before keeps its text under another name: the oldest under the first. What is no such file keeps
-// its name, too. At any time there is a rig under this name.
+// Writes a file. A previous rig is kept under another name, the oldest under the first number. A file that is
+// no rig keeps its name. At any time there is a rig with this name.
 void save(const std::filesystem::path& file, const std::string& text) {
   if (!is_there(file)) {
     write_new_file(file, text);
@@ -242,7 +242,8 @@ std::string file_text(const FoundRigFile& file) {
   return write_toml(Codec<FoundRigFile>::write(file), fields_of(&file).info());
 }
 
-// A loop finds no rig: the file's own, whose cameras start where they were sent, and principal points.
+// A loop finds no rig. Writes the file's rig, with the cameras' initial positions where they were sent, and
+// principal points.
 std::string loop_rig_toml(const Setup& setup, const CalibrationRun& run) {
   const LoopResult& result = *run.loop;
   FoundRigFile file{setup.arm, run.found().cameras};
@@ -255,8 +256,8 @@ std::string loop_rig_toml(const Setup& setup, const CalibrationRun& run) {
          file_text(file);
 }
 
-// As long as was found. Of a section of several arcs a file says that these are equally long, and how they
-// share its bend: as they did, in all its length.
+// Sets the lengths as found. For a section of several arcs, a file assumes equal lengths and gives their
+// shares of its bend. Their bends and total length are as found.
 void set_sections(const RigModel& found, std::vector<Section>& sections) {
   const Actuation actuation = found.arm_model().actuation();
   for (Section& section : sections) {
@@ -277,7 +278,7 @@ std::string found_rig_toml(const Setup& setup, const CalibrationRun& run) {
   FoundRigFile file;
   file.arm = setup.arm;
   const RigModel& found = run.result.found.model;
-  // Markers stay where they are on each section, as these are longer or shorter than believed.
+  // Markers keep their position on each section, whose length differs from the nominal one.
   const Arm believed = setup.arm_model().shaped();
   const auto moved = [&](double s) {
     const ArmState straight = ArmState::straight(found.arm.sections.size());

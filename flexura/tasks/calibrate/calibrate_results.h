@@ -13,33 +13,33 @@
 
 namespace flexura {
 
-/// A rig as it was found, for experiments to include: the arm and the cameras, which start where they were
-/// sent.
+/// A calibrated rig, for experiments to include: the arm and the cameras, with initial positions where they
+/// were sent.
 struct FoundRigFile {
   ArmConfig arm;
   std::vector<CameraConfig> camera;
 };
 const Table<FoundRigFile>& fields_of(const FoundRigFile*);
 
-/// The file's text: TOML.
+/// Returns the file's text: TOML.
 [[nodiscard]] std::string found_rig_toml(const Setup& setup, const CalibrationRun& run);
 
-/// Writes rig.toml (rig-2.toml, ... where there is one) of a calibration that is done into the results, and
-/// where `saved_as` is no empty name that beside the experiment: a file that is there already is kept as
-/// NAME-1.toml, NAME-2.toml, ... std::runtime_error with the path when the system refuses.
+/// Writes rig.toml (rig-2.toml, ... if it exists) of a successful calibration into the results. If `saved_as`
+/// is not empty, writes it beside the experiment too. An existing file there is kept as NAME-1.toml,
+/// NAME-2.toml, ... Throws std::runtime_error with the path on a system error.
 void write_rig_file(const Setup& setup, const CalibrationRun& run, const std::string& saved_as,
                     const std::filesystem::path& results);
 
-/// Its entry in the list `calibrations` of a summary.
+/// Returns its item in the list `calibrations` of a summary.
 [[nodiscard]] Node calibration_node(const CalibrationRun& run);
 
-/// A picture with what was seen in it, and where the ideal camera would see the axis.
+/// Returns a picture with the measurements in it, and the axis as the ideal camera observes it.
 [[nodiscard]] ImagePlot sight_picture(const CalibrationRun& run, const RigSight& sight, std::string heading);
 
-/// What remains, in a sentence that begins with `when`.
+/// Returns the remaining errors as a sentence that begins with `when`.
 [[nodiscard]] std::string remainder_text(const std::string& when, const RigRemainder& left);
 
-/// A calibration in a report: how far off the rig was and became, how well it is known, what the cameras saw
+/// Returns the calibration's chapter of a report: errors of the rig before and after, uncertainties, pictures
 /// before and after. `number` from 0, for the names of figures.
 [[nodiscard]] Chapter calibration_chapter(const CalibrationRun& run, std::size_t number);
 

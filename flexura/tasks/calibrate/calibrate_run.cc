@@ -41,7 +41,7 @@ CalibrationDecisionMessage decision_message(const RigStep& step) {
   return message;
 }
 
-// Tells the log of everything.
+// Logs all events of a session.
 class LoggedSession : public RigSessionWatcher {
  public:
   LoggedSession(CalibrationRun& run, std::size_t images, TaskStage& stage, CommandedMotion& motion)
@@ -61,7 +61,7 @@ class LoggedSession : public RigSessionWatcher {
     log_.tell({calibration_moves_topic, message.time, message});
   }
   void planned(const IdealArc& arc) override {
-    // From arc to arc by way of where the arm is now.
+    // From arc to arc via the arm's current state.
     way_.push_back(motion_.at(arc.time)), way_.push_back(arc.state);
     run_.arcs.push_back({arc, rotations_of(arc.state), stage_.motors_after(way_)});
     const CommandedArc& commanded = run_.arcs.back();
@@ -75,7 +75,7 @@ class LoggedSession : public RigSessionWatcher {
     log_.recorder().picture(topic, message.time, arc.picture);
   }
   void seen(const RigSight& sight) override {
-    // With or without record.cameras: what a calibration decides is only as good as what it looked at.
+    // Independent of record.cameras: the decisions of a calibration depend on its pictures.
     const std::string& camera = name_of(sight.stance.camera);
     log_.image(camera, sight.frame, logged_image(camera, sight.frame));
     CalibrationSightingMessage message;
@@ -111,9 +111,9 @@ class LoggedSession : public RigSessionWatcher {
   }
   bool is_cancelled() override { return stage_.progress.is_cancelled(); }
 
-  // At `time` s; the last that is told.
+  // Logs the end at `time` s, the last message.
   void ended(double time) {
-    // With what a bundle knows in the end.
+    // Includes the final results of a bundle.
     CalibrationDecisionMessage message;
     if (!run_.loop && !run_.result.steps.empty()) message = decision_message(run_.result.steps.back());
     message.time = time, message.found = run_.is_done() && !run_.loop, message.ended = true;

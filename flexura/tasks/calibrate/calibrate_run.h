@@ -16,38 +16,38 @@
 
 namespace flexura {
 
-/// An arc as the simulator has it, and how it is commanded.
+/// A simulated arc and its commands.
 struct CommandedArc {
   IdealArc ideal;
-  std::vector<double> rotations;                       ///< Of its bends about their base's axis, rad.
-  std::optional<std::vector<std::int64_t>> positions;  ///< Of the motors, microsteps; arms with drives.
+  std::vector<double> rotations;  ///< Rotations of its bends about their base's axis, rad.
+  std::optional<std::vector<std::int64_t>> positions;  ///< Motor positions, microsteps; arms with drives.
 };
 
-/// What a task of kind "calibrate" did.
+/// Result of a task of kind "calibrate".
 struct CalibrationRun {
   std::string name;
-  bool is_before_etalon = false;       ///< It looked at the calibration cylinder, not at the arm.
-  std::array<std::string, 2> cameras;  ///< Their names.
-  RigModel believed;                   ///< Before.
-  RigSessionResult result;             ///< Of the method "bundle".
-  std::optional<LoopResult> loop;      ///< Of one of the paper's methods, instead.
-  std::vector<CommandedArc> arcs;      ///< Of those with arcs: one a camera.
-  MotionPtr motion;                    ///< Of the arm, as commanded, from the task's start.
-  /// What truly remains where the cameras stand, of which the session knows nothing: simulated rigs tell.
+  bool is_before_etalon = false;       ///< It used the calibration cylinder, not the arm.
+  std::array<std::string, 2> cameras;  ///< Names of the cameras.
+  RigModel believed;                   ///< Model before the calibration.
+  RigSessionResult result;             ///< Result of the method "bundle".
+  std::optional<LoopResult> loop;      ///< Result of one of the paper's methods, instead.
+  std::vector<CommandedArc> arcs;      ///< For methods with arcs: one per camera.
+  MotionPtr motion;                    ///< Commanded motion of the arm, from the task's start.
+  /// True remaining errors at the cameras' final positions, unknown to the session; only for simulated rigs.
   std::optional<RigRemainder> truth;
 
-  /// The rig as it is known when all is done: as it was believed, with what was found.
+  /// Returns the model of the rig after the calibration: the nominal one with the results.
   [[nodiscard]] RigModel found() const;
   [[nodiscard]] bool is_done() const { return loop ? loop->is_done : result.is_done; }
   [[nodiscard]] const std::string& reason() const { return loop ? loop->reason : result.reason; }
 };
 
-/// Where the ideal camera would see the axis in a picture, from base to tip, px; methods without arcs:
-/// nowhere.
+/// Returns where the ideal camera observes the axis in a picture, from base to tip, px; empty for methods
+/// without arcs.
 [[nodiscard]] std::vector<Eigen::Vector2d> ideal_axis(const CalibrationRun& run, const RigSight& sight);
 
-/// Does the task on the rig that plays; what it does, sees and decides goes to the log. `from`: where the arm
-/// was sent last.
+/// Runs the task on the rig and logs its actions, observations and decisions. `from`: last commanded state of
+/// the arm.
 [[nodiscard]] CalibrationRun run_calibration(const CalibrateTask& task, const std::string& name,
                                              const Setup& setup, const ArmState& from, TaskStage& stage);
 

@@ -14,9 +14,9 @@
 namespace flexura {
 namespace {
 
-// Every way that a calibration may take, once: out to each pose and back.
+// Returns a motion with every possible way of a calibration once: out to each pose and back.
 MotionPtr tour_of(const CalibrateTask& task, const ArmModel& arm, const ArmState& from) {
-  if (is_before_etalon(task)) return hold_motion(from, 0);  // The arm is not there.
+  if (is_before_etalon(task)) return hold_motion(from, 0);  // The arm is absent.
   std::vector<double> times = {0};
   std::vector<ArmState> states = {from};
   for (const ArmState& pose : calibration_poses(task, arm.driven())) {
@@ -28,8 +28,8 @@ MotionPtr tour_of(const CalibrateTask& task, const ArmModel& arm, const ArmState
   return keyframe_motion(std::move(times), states, Interpolation::linear);
 }
 
-// A rig; or from a loop principal points alone, which are beside the file's: nothing for a rig that was
-// found.
+// Updates the model with a rig, or with principal points only from a loop. Those replace the file's, but not
+// those of a calibrated rig.
 void learn(const CalibrationRun& run, BelievedRig& believed) {
   const RigModel found = run.found();
   if (!run.loop) believed.model = found, believed.is_found = true;

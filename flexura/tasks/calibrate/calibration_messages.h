@@ -12,90 +12,89 @@
 
 namespace flexura {
 
-// The messages of a calibration (log/messages.h).
+// Log messages of a calibration (log/messages.h).
 
 /// flexura.CalibrationMove, on /calibration/moves: a command of a calibration.
 struct CalibrationMoveMessage {
-  double time = 0;                                          ///< s
+  double time = 0;                                          ///< In s.
   std::string device;                                       ///< "arm", or a camera's name.
   std::optional<std::vector<std::array<double, 2>>> bends;  ///< Of the arm, rad.
-  std::optional<double> duration;                           ///< Of its way there, s.
+  std::optional<double> duration;                           ///< Duration of its motion, s.
   std::optional<double> pan, tilt;                          ///< Of a camera, rad.
-  std::optional<double> zoom;                               ///< A position of the lens's table.
-  std::optional<std::array<double, 3>> stage;               ///< m
+  std::optional<double> zoom;                               ///< Position in the lens's table.
+  std::optional<std::array<double, 3>> stage;               ///< In m.
 };
 
-/// flexura.CalibrationArc, on /calibration/arcs: what the simulator has of an arc that a camera is to look
-/// at.
+/// flexura.CalibrationArc, on /calibration/arcs: the simulator's data of an arc for a camera.
 struct CalibrationArcMessage {
-  double time = 0;                                     ///< s
-  std::string camera;                                  ///< Whose.
+  double time = 0;                                     ///< In s.
+  std::string camera;                                  ///< Name of the camera.
   std::string plane;                                   ///< "XOY" or "ZOY".
-  std::vector<std::array<double, 2>> bends;            ///< rad
-  std::vector<double> rotations;                       ///< Of the bends, rad.
-  std::optional<std::vector<std::int64_t>> positions;  ///< Of the motors, microsteps; arms with drives.
-  PoseMessage pose;                                    ///< Of the ideal camera,
-  double focal = 0;                                    ///< and its focal length, px.
+  std::vector<std::array<double, 2>> bends;            ///< In rad.
+  std::vector<double> rotations;                       ///< Rotations of the bends, rad.
+  std::optional<std::vector<std::int64_t>> positions;  ///< Motor positions, microsteps; arms with drives.
+  PoseMessage pose;                                    ///< Pose of the ideal camera.
+  double focal = 0;                                    ///< Its focal length, px.
 };
 
-/// A marker as it was measured in a picture.
+/// A marker as measured in a picture.
 struct MarkerMessage {
-  double s = 0;         ///< m along the unstretched arm.
-  double u = 0, v = 0;  ///< px
-  double sigma = 0;     ///< px
+  double s = 0;         ///< Position along the unstretched arm, m.
+  double u = 0, v = 0;  ///< In px.
+  double sigma = 0;     ///< In px.
 };
 
-/// Any other number, likewise.
+/// Any other number measured in a picture.
 struct SeenValueMessage {
   std::string name;  ///< With its unit.
   double value = 0;
 };
 
-/// A circle through such points.
+/// A circle through measured points.
 struct CircleMessage {
-  double u = 0, v = 0;  ///< Its centre, px.
-  double radius = 0;    ///< px
+  double u = 0, v = 0;  ///< Centre, px.
+  double radius = 0;    ///< In px.
   bool verified = false;
 };
 
-/// flexura.CalibrationSighting, on /calibration/sightings: what was measured in one picture.
+/// flexura.CalibrationSighting, on /calibration/sightings: measurements in one picture.
 struct CalibrationSightingMessage {
   double time = 0;        ///< Middle of the exposure, s.
-  std::int64_t look = 0;  ///< From 1; 0: the arm is looked for.
+  std::int64_t look = 0;  ///< From 1; 0 during the search for the arm.
   std::string camera;
   std::int64_t frame = 0;                    ///< Its number.
-  double pan = 0, tilt = 0;                  ///< As read, rad.
-  double zoom = 1;                           ///< Likewise.
-  std::array<double, 3> stage = {0, 0, 0};   ///< Likewise, m.
-  std::vector<std::array<double, 2>> bends;  ///< Likewise, rad.
+  double pan = 0, tilt = 0;                  ///< Readings, rad.
+  double zoom = 1;                           ///< Reading of the zoom.
+  std::array<double, 3> stage = {0, 0, 0};   ///< Reading of the stage, m.
+  std::vector<std::array<double, 2>> bends;  ///< Reading of the arm, rad.
   std::vector<MarkerMessage> markers;
-  std::vector<AxisPointMessage> points;                 ///< Of the median axis, from base to tip.
-  std::int64_t unknown = 0;                             ///< Markers seen that were not recognised.
-  std::optional<std::string> reason;                    ///< Why the picture is of no use.
-  std::optional<std::vector<SeenValueMessage>> values;  ///< Of the paper's methods.
-  std::optional<CircleMessage> circle;                  ///< Likewise.
-  /// Where the ideal camera would see the axis, from base to tip, px; methods with arcs.
+  std::vector<AxisPointMessage> points;  ///< Of the centerline, from base to tip.
+  std::int64_t unknown = 0;              ///< Number of observed markers that were not identified.
+  std::optional<std::string> reason;     ///< Why the picture is unusable.
+  std::optional<std::vector<SeenValueMessage>> values;  ///< Values of the paper's methods.
+  std::optional<CircleMessage> circle;                  ///< Circle of the paper's methods.
+  /// Where the ideal camera observes the axis, from base to tip, px; methods with arcs.
   std::optional<std::vector<std::array<double, 2>>> ideal;
 };
 
-/// flexura.CalibrationDecision, on /calibration/decisions: what is known after a look, and what follows.
+/// flexura.CalibrationDecision, on /calibration/decisions: results after a look, and the next action.
 struct CalibrationDecisionMessage {
-  double time = 0;                             ///< s
-  std::int64_t looks = 0;                      ///< Up to now.
-  bool found = false;                          ///< A rig was found.
-  std::optional<std::string> reason;           ///< Why no rig was found, or the end came early.
-  double rms = 0;                              ///< Of the residuals, in standard deviations.
-  std::int64_t doubts = 0;                     ///< Things seen that were left out.
-  double angle = 0;                            ///< Between the axes where the cameras would be sent, rad.
-  double angle_sigma = 0;                      ///< rad
-  std::array<double, 2> focal = {0, 0};        ///< px
-  std::array<double, 2> focal_sigma = {0, 0};  ///< Shares.
-  double zoom_ratio_sigma = 0;                 ///< Share.
+  double time = 0;                    ///< In s.
+  std::int64_t looks = 0;             ///< Number of looks so far.
+  bool found = false;                 ///< A rig was found.
+  std::optional<std::string> reason;  ///< Why no rig was found, or why the calibration ended early.
+  double rms = 0;                     ///< RMS of the residuals, in standard deviations.
+  std::int64_t doubts = 0;            ///< Number of outliers.
+  double angle = 0;        ///< Angle between the axes at the positions where the cameras would be sent, rad.
+  double angle_sigma = 0;  ///< In rad.
+  std::array<double, 2> focal = {0, 0};        ///< In px.
+  std::array<double, 2> focal_sigma = {0, 0};  ///< As shares.
+  double zoom_ratio_sigma = 0;                 ///< As a share.
   std::string next;                            ///< In words.
-  std::optional<std::string> camera, step;     ///< Of the paper's methods: whose offset, and in which step.
-  std::optional<double> offset, accepted;      ///< Likewise: how large it is, and may be.
-  std::optional<std::string> unit;             ///< Of both.
-  std::optional<bool> ended;                   ///< The last one: `next` says how it ended.
+  std::optional<std::string> camera, step;  ///< For the paper's methods: camera of the offset, and its step.
+  std::optional<double> offset, accepted;   ///< For the paper's methods: the offset, and its accepted size.
+  std::optional<std::string> unit;          ///< Unit of both.
+  std::optional<bool> ended;                ///< Last message: `next` states how it ended.
 };
 
 inline constexpr std::string_view calibration_moves_topic = "/calibration/moves";
@@ -111,7 +110,7 @@ const Table<SeenValueMessage>& fields_of(const SeenValueMessage*);
 const Table<CalibrationSightingMessage>& fields_of(const CalibrationSightingMessage*);
 const Table<CalibrationDecisionMessage>& fields_of(const CalibrationDecisionMessage*);
 
-/// Of the images that the simulator has in the place of a camera's.
+/// Returns the topic of images that the simulator has in place of a camera's.
 [[nodiscard]] std::string ideal_image_topic(std::string_view camera);
 
 }  // namespace flexura

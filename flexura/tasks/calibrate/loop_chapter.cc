@@ -19,7 +19,7 @@
 namespace flexura {
 namespace {
 
-// The offsets of one camera over its loop's pictures, each as long as it is worked on.
+// Returns a chart of the offsets of one camera over its loop's pictures, each while it is worked on.
 ReportFigure falling_offsets(const CalibrationRun& run, std::size_t i, std::size_t number) {
   LineChart chart{.heading = fmt::format("offsets of camera {}", run.cameras[i]),
                   .x_label = "pictures of both cameras",
@@ -42,7 +42,7 @@ ReportFigure falling_offsets(const CalibrationRun& run, std::size_t i, std::size
       if (step->step != first->step || step->unit != first->unit) continue;
       const auto place = static_cast<std::size_t>(std::ranges::find(looks, static_cast<double>(step->looks)) -
                                                   looks.begin());
-      // Between two of its decisions an offset is what it was: others were worked on.
+      // Between two of its decisions an offset is constant, because others were worked on.
       for (std::size_t j = last; j < place; ++j) series.values[j] = series.values[last];
       constexpr double least = 1e-6;
       series.values[place] = std::log10(std::max(std::abs(step->offset), least));
@@ -67,7 +67,7 @@ ReportFigure loop_photograph(const CalibrationRun& run, std::size_t i, bool is_a
                                     fmt::format("camera {}, {}", run.cameras[i], when)));
 }
 
-// What the simulator has of a camera's arc.
+// Returns a drawing of the simulated arc of a camera.
 ReportFigure ideal_drawing(const CalibrationRun& run, std::size_t i, std::size_t number) {
   const IdealArc& ideal = run.arcs[i].ideal;
   constexpr int count = 40;
@@ -78,9 +78,9 @@ ReportFigure ideal_drawing(const CalibrationRun& run, std::size_t i, std::size_t
   return loop_drawing(run, i, "ideal", number, std::move(plot));
 }
 
-// Its bends, rotations and drive commands.
+// Returns a text with its bends, rotations and drive commands.
 std::string arc_text(const CommandedArc& arc, const std::string& camera) {
-  // Degrees; no zero is negative.
+  // In degrees; no zero is negative.
   const auto to_hundredths = [](double angle) {
     return fmt::format("{:.2f}", std::round(100 * angle / degree) / 100 + 0.0);
   };

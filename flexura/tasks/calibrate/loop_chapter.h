@@ -7,8 +7,8 @@
 
 namespace flexura {
 
-/// A calibration by one of the paper's methods in a report: the offsets falling, and what the cameras saw
-/// before and after (the paper's Fig. 15). `number` from 0, for the names of figures.
+/// Returns the chapter of a calibration by one of the paper's methods in a report: decreasing offsets, and
+/// pictures before and after (the paper's Fig. 15). `number` from 0, for the names of figures.
 [[nodiscard]] Chapter loop_chapter(const CalibrationRun& run, std::size_t number);
 
 }  // namespace flexura

@@ -15,8 +15,8 @@
 namespace flexura {
 namespace {
 
-// The most sections of which each has numbers of its own, and of those that share a polynomial's: the work
-// grows with the third power, and with the second.
+// Most sections with independent angles, and most with a common polynomial: the work grows with the third
+// power, and with the second.
 constexpr std::size_t most_sections = 40, most_of_polynomial = 200;
 
 bool says_bends(const DynamicsTargetConfig& target) {
@@ -70,7 +70,7 @@ void check_angles(const DynamicsTask& task, const Arm& arm, const std::string& p
   }
   const Eigen::Vector2d base = AnglesAlongArm(arm, ArmState::straight(arm.sections.size())).at(0, 0);
   constexpr double rounding = 1e-6;
-  // Whole turns of all of them count for nothing.
+  // A whole turn of all azimuths has no effect.
   const double azimuth_off = std::remainder(azimuths[0] - base[0], 2 * std::numbers::pi);
   for (const auto& [name, first, own, off] :
        {std::tuple("azimuths", azimuths[0], base[0], azimuth_off),
@@ -113,7 +113,7 @@ void check_keys(const DynamicsTask& task, const Setup& setup, const std::string&
                             q / degree));
   }
   if (reader.problems().size() > before) return;
-  // The curve as it will be, not only what is given of it.
+  // Checks the whole curve, not only its given values.
   const DynamicsPlant plant(task, arm, ArmState::straight(arm.sections.size()));
   if (const double q = plant.largest_target_elevation(); q > most_elevation)
     reader.problem_at(

@@ -14,17 +14,17 @@ namespace flexura {
 
 /// flexura.DynamicsSample, on /dynamics/samples: the distributed arm at one time.
 struct DynamicsSampleMessage {
-  double time = 0;                                                    ///< s
+  double time = 0;                                                    ///< In s.
   double kinetic_energy = 0, gravity_energy = 0, elastic_energy = 0;  ///< T, V_g, V_e, J.
   double potential = 0;                                               ///< Pi, J.
   double lyapunov = 0;                                                ///< W = T + Pi, J.
-  double taken_by_law = 0, taken_by_medium = 0;                       ///< By damping since the start, J.
-  double azimuth_error = 0, elevation_error = 0;  ///< Root mean square along the arm, rad,
-  double spatial_error = 0;                       ///< and of both together (docs/control.md, eq. 15).
-  double tip_error = 0;                           ///< m
-  std::vector<double> s;                          ///< Places along the arm at rest, m,
-  std::vector<double> azimuths, elevations;       ///< and its direction there, rad.
-  std::vector<std::array<double, 3>> points;      ///< The base, these places, the tip, in W, m.
+  double taken_by_law = 0, taken_by_medium = 0;   ///< Energy removed by damping since the start, J.
+  double azimuth_error = 0, elevation_error = 0;  ///< Root mean square along the arm, rad.
+  double spatial_error = 0;                       ///< Error of both together (docs/control.md, eq. 15).
+  double tip_error = 0;                           ///< In m.
+  std::vector<double> s;                          ///< Positions along the arm at rest, m.
+  std::vector<double> azimuths, elevations;       ///< Directions of the arm there, rad.
+  std::vector<std::array<double, 3>> points;      ///< The base, these positions, the tip, in W, m.
 };
 
 inline constexpr std::string_view dynamics_samples_topic = "/dynamics/samples";

@@ -15,14 +15,14 @@
 namespace flexura {
 namespace {
 
-// Given azimuths, less the whole turns by which the first is not the base's own.
+// Returns the given azimuths, shifted so that the first one equals the base's (by whole turns).
 std::vector<double> continued(double base, std::vector<double> azimuths) {
   const double turns = azimuths.front() - base;
   for (double& azimuth : azimuths) azimuth -= turns;
   return azimuths;
 }
 
-// Of the origin from the straight way between two points.
+// Returns the distance of the origin from the segment between two points.
 double distance_to_way(const Eigen::Vector2d& from, const Eigen::Vector2d& to) {
   const Eigen::Vector2d way = to - from;
   const double length = way.squaredNorm();
@@ -30,7 +30,7 @@ double distance_to_way(const Eigen::Vector2d& from, const Eigen::Vector2d& to) {
   return (from + share * way).norm();
 }
 
-// Linear between values at equal shares.
+// Linear interpolation between values at equal shares.
 double linear_between(const std::vector<double>& values, double share) {
   const auto spans = static_cast<double>(values.size() - 1);
   const double at = std::clamp(share, 0.0, 1.0) * spans;
@@ -39,7 +39,7 @@ double linear_between(const std::vector<double>& values, double share) {
   return (1 - part) * values[i] + part * values[i + 1];
 }
 
-// A place along the arm at rest, m, as its section and the share of it.
+// Returns a position along the arm at rest, m, as its section and the share of it.
 std::pair<std::size_t, double> place_on(const std::vector<double>& lengths, double s) {
   std::size_t section = 0;
   for (; section + 1 < lengths.size() && s > lengths[section]; ++section) s -= lengths[section];
@@ -71,10 +71,10 @@ DistributedArmModel model_of(const DynamicsTask& task, const Arm& arm, const Arm
 }  // namespace
 
 AnglesAlongArm::AnglesAlongArm(const Arm& arm, const ArmState& state) : backbone_(arm, state) {
-  constexpr double step = 0.05;  // rad of bend
+  constexpr double step = 0.05;  // In rad of bend.
   const Eigen::Vector3d base = arm.X_WB.rotation.col(2);
   double before = angles_of_direction(base)[0];
-  Eigen::Vector2d level = base.head<2>();  // cos q of its length
+  Eigen::Vector2d level = base.head<2>();  // cos q of its length.
   double least_level = level.norm();
   for (const Arc& arc : backbone_.arcs()) {
     const auto count = static_cast<int>(std::ceil(arc.bend.norm() / step)) + 16;
@@ -136,7 +136,7 @@ double DynamicsPlant::largest_target_elevation() const {
   const double base = (*distributed_.model().clamp)[1];
   double largest = std::max(std::abs(base), q.cwiseAbs().maxCoeff());
   if (shapes.basis == AngleBasis::sections) return largest;  // Linear between its values.
-  // At Chebyshev's points, between which a polynomial of so few nodes hardly rises.
+  // At Chebyshev points, between which a polynomial of so few nodes hardly rises.
   constexpr int steps = 1000;
   const double length = std::accumulate(shapes.lengths.begin(), shapes.lengths.end(), 0.0);
   for (int i = 0; i <= steps; ++i) {
@@ -195,12 +195,12 @@ ArmState DynamicsPlant::state(const Eigen::VectorXd& x, const ArmState& before) 
     if (across > 0) {
       side = tangent.head<2>() / across;
     } else if (old.norm() > 0) {
-      side = old.normalized();  // Straight on, or back: the arc turns to the side where it turned before.
+      side = old.normalized();  // Straight on, or back: the arc keeps its previous side.
     }
-    // Arcs along this side that differ by whole turns have the same tangent.
+    // Arcs on this side that differ by whole turns have the same tangent.
     const double turns = std::round((old.dot(side) - turn) / (2 * std::numbers::pi));
     state.bends[i] = (turn + 2 * std::numbers::pi * turns) * side;
-    if (arm_.kind == ArmKind::planar) state.bends[i].y() = 0;  // But for rounding it is.
+    if (arm_.kind == ArmKind::planar) state.bends[i].y() = 0;  // Zero up to rounding.
     state.stretches[i] = stretches_[i];
     if (distributed_.model().has_variable_lengths)
       state.stretches[i] = 1 + x[2 * distributed_.nodes() + section] / distributed_.model().lengths[i];

@@ -18,7 +18,7 @@ double lyapunov_value(const DynamicsSample& sample) {
   return sample.energies.kinetic + sample.energies.potential;
 }
 
-// The shares and reasons are those of a law with exact angles.
+// Shares and reasons are those of a law with exact angles.
 Node verdict_node(const LyapunovVerdict& verdict, bool is_measured) {
   Node::Table members{{"monotone", {}, {verdict.is_monotone, {}}},
                       {"balanced", {}, {verdict.is_balanced, {}}},
@@ -34,7 +34,7 @@ Node verdict_node(const LyapunovVerdict& verdict, bool is_measured) {
   return {std::move(members), {}};
 }
 
-// No more samples than a picture shows, with the first and the last one.
+// Returns at most as many samples as a picture can show, with the first and the last one.
 std::vector<DynamicsSampleMessage> shown_samples(const DynamicsRun& run) {
   constexpr std::size_t most = 2000;
   const std::size_t every = run.samples.size() / most + 1;
@@ -121,7 +121,7 @@ std::vector<std::string> findings_of(const DynamicsRun& run) {
       "{:.3g} mm.",
       run.remaining.azimuth / degree, run.remaining.elevation / degree, 1e3 * run.remaining.tip));
   const double off = std::max(run.plant.start_off(), run.plant.target_off());
-  constexpr double shows = 1e-3;  // rad
+  constexpr double shows = 1e-3;  // In rad.
   if (off > shows)
     points.push_back(fmt::format(
         "The angles that the basis can have are {:.3g} deg off where the arm started and {:.3g} deg off the "

@@ -8,11 +8,12 @@
 
 namespace flexura {
 
-/// Its entry in the list `dynamics` of a summary.
+/// Returns its item in the list `dynamics` of a summary.
 [[nodiscard]] Node dynamics_node(const DynamicsRun& run);
 
-/// A task of dynamics in a report: whether Lyapunov's function fell as the theory has it, and why not; it,
-/// the energies and the errors over time. `number` from 0, for the names of figures.
+/// Returns the chapter of a task of kind "dynamics" in a report: whether the Lyapunov function decreased as
+/// in theory, and why not. Has charts of it, the energies and the errors over time. `number` from 0, for the
+/// names of figures.
 [[nodiscard]] Chapter dynamics_chapter(const DynamicsRun& run, std::size_t number);
 
 }  // namespace flexura

@@ -44,7 +44,7 @@ std::optional<AngleMeasurement> measurement_of(const Setup& setup, std::size_t n
                           .reading = task.measurement->reading};
 }
 
-// The clock's steps within the task, and its end, s since its start.
+// Returns the clock steps within the task, and its end, s since its start.
 std::vector<double> sample_times(double start, double duration, double step) {
   constexpr double rounding = 1e-9;
   std::vector<double> times;
@@ -59,10 +59,10 @@ bool is_finite(const LyapunovSample& sample) {
                        sample.damped);
 }
 
-// Follows the run as long as it goes.
+// Follows the run to its end.
 void follow(DynamicsRun& run, PotentialRun& plant, const std::vector<double>& times, double share,
             Progress& progress) {
-  // Of an arm that is at its target what is left is the integrator's: 1e-6 rad along it.
+  // At the target only the integrator's error remains: 1e-6 rad along the arm.
   constexpr double least_turn = 1e-6;
   const PotentialGains& gains = run.law.gains();
   const std::vector<double>& lengths = plant.motion().arm().model().lengths;
@@ -74,7 +74,7 @@ void follow(DynamicsRun& run, PotentialRun& plant, const std::vector<double>& ti
     run.samples.push_back({plant.motion().x(), sample});
   };
   add(plant.sample());
-  // A step of a long arm takes a while, and it may take many from one sample to the next.
+  // A step of a long arm is slow, and many may be needed from one sample to the next.
   const auto go_on = [&] {
     progress.update(plant.motion().time() / times.back(), run.name);
     return !progress.is_cancelled();

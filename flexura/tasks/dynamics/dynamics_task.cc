@@ -21,7 +21,7 @@
 namespace flexura {
 namespace {
 
-// What is to be expected before it is simulated: the straight way to its target.
+// Returns the expected motion before the simulation: straight to its target.
 MotionPtr straight_way(const DynamicsTask& task, const Arm& arm, const ArmState& from) {
   if (!is_possible(from)) return hold_motion(from, task.duration);
   const DynamicsPlant plant(task, arm, from);
@@ -29,7 +29,7 @@ MotionPtr straight_way(const DynamicsTask& task, const Arm& arm, const ArmState&
                          Interpolation::linear);
 }
 
-// The thickest of an arm's sections, m.
+// Returns the diameter of an arm's thickest section, m.
 double thickness_of(const Arm& arm) {
   double thickness = 0;
   for (const Section& section : arm.sections)
@@ -51,8 +51,8 @@ class DynamicsRunner : public TaskRunner {
     return {run_->motion, run_->is_done() ? std::nullopt : std::optional(run_->reason())};
   }
 
-  // Where the arcs that are judged are farther from the arm than it is thick; of a task that was not
-  // simulated, why. Which conditions of the theory that one violates is known all the same.
+  // Adds a caveat if the checked arcs are farther from the arm than its thickness. For a task that was not
+  // simulated, adds the reason and the violated conditions of the theory.
   void add_caveats(const ArmState& from, const std::string& ended_by, SafetyReport& report) const override {
     const Arm arm = setup().arm.arm();
     if (run_) {
@@ -73,12 +73,12 @@ class DynamicsRunner : public TaskRunner {
       report.notes.push_back(fmt::format("{}: {}", name(), violation));
   }
 
-  // What it began and ended with, and what it had come to at each time of the log.
+  // Logs the first and the last sample, and the current one at each time of the log.
   void tell_up_to(double time, RunLog& log) override {
     if (!run_) return;
     const std::size_t count = run_->samples.size();
     const auto is_past = [&](std::size_t i) {
-      constexpr double same_time = 1e-9;  // s
+      constexpr double same_time = 1e-9;  // In s.
       return run_->start + run_->samples[i].energies.time <= time + same_time;
     };
     for (; told_ < count && is_past(told_); ++told_) {
@@ -100,10 +100,10 @@ class DynamicsRunner : public TaskRunner {
  private:
   const DynamicsTask& task_;
   std::optional<DynamicsRun> run_;
-  std::size_t told_ = 0;  // Of its samples.
+  std::size_t told_ = 0;  // Number of samples logged.
 };
 
-// Where the arm is along itself is the log's to tell.
+// Omits the positions along the arm, which the log has.
 class DynamicsTable : public LogTable {
  public:
   [[nodiscard]] std::string file_name() const override { return "dynamics.csv"; }

@@ -15,7 +15,7 @@
 namespace flexura {
 namespace {
 
-// What a column holds: a quantity of a section (from 0), and the factor to base units.
+// Content of a column: a quantity of a section (from 0), and the factor to base units.
 struct Column {
   std::string_view quantity;
   std::size_t section = 0;
@@ -39,7 +39,7 @@ std::optional<Column> parse_column(std::string_view name) {
   return std::nullopt;
 }
 
-// Of a column of angles.
+// For a column of angles.
 const NumberRange& range_of(const Column& column) {
   if (column.quantity == "cord_angle") return angle_range;
   return column.quantity == "arching" ? arching_range : bend_range;
@@ -54,7 +54,7 @@ bool has_any(const std::vector<Column>& columns, std::string_view quantity) {
   return std::ranges::count(columns, quantity, &Column::quantity) > 0;
 }
 
-// The quantities that say the bends: one of these three ways.
+// Returns the quantities that define the bends, in one of up to three forms.
 std::vector<std::vector<std::string_view>> ways_to_bend(ArmKind kind) {
   if (kind == ArmKind::spatial) return {{"bend_x", "bend_y"}};
   return {{"cord_angle"}, {"arching"}, {"bend_x"}};
@@ -108,13 +108,13 @@ void check_columns(const std::vector<std::string>& names, const std::vector<Colu
         {header_row, 0, "no columns for the bends: expected arching_1, cord_angle_1 or bend_x_1, ..."});
 }
 
-// `last`: the time of the row before, s.
+// `last`: time of the previous row, s.
 std::string time_problem(double time, std::optional<double> last) {
   constexpr double longest = 1e6;
   if (!last) return time == 0 ? "" : fmt::format("time {}: expected 0 in the first row", time);
   if (time > longest) return fmt::format("time {} s: expected at most {} s", time, longest);
   if (!(time > *last)) return fmt::format("time {}: expected more than the {} before it", time, *last);
-  // Nearer ones have no rates that are numbers.
+  // Smaller differences have no finite rates.
   constexpr double least_apart = 1e-9;
   return time - *last >= least_apart ? ""
                                      : fmt::format("time {}: expected at least {} s after the {} before it",

@@ -8,22 +8,22 @@
 
 namespace flexura {
 
-/// Rows of a KeyframeProblem that hold no data: the names of the columns, and all rows as one.
+/// Values of KeyframeProblem::row without data: the column names, and all rows as one.
 inline constexpr std::ptrdiff_t header_row = -1;
 inline constexpr std::ptrdiff_t all_rows = -2;
 
-/// What is wrong with a table of keyframes, and where: `row` counts data rows from 0.
+/// An error in a table of keyframes and its place: `row` counts data rows from 0.
 struct KeyframeProblem {
   std::ptrdiff_t row = header_row;
   std::size_t column = 0;
   std::string what;
 };
 
-/// What keeps a task's columns and rows from being keyframes of an arm of this kind and number of sections.
+/// Returns why a task's columns and rows are not keyframes of an arm of this kind and number of sections.
 [[nodiscard]] std::vector<KeyframeProblem> keyframe_problems(const KeyframesTask& task, ArmKind kind,
                                                              std::size_t sections);
 
-/// The motion through the rows of a task without problems.
+/// Returns the motion through the rows of a task without problems.
 [[nodiscard]] MotionPtr keyframes_task_motion(const KeyframesTask& task, const Arm& arm);
 
 }  // namespace flexura

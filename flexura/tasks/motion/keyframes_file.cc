@@ -17,12 +17,12 @@
 namespace flexura {
 namespace {
 
-// Where the cells of a table's lines stand in its text; quick for lines in rising order.
+// Positions of the cells of a table's lines in its text; fast for lines in increasing order.
 class CellPlaces {
  public:
   explicit CellPlaces(std::string_view text) : text_(text), rest_(text) {}
 
-  // Both from 1, the cell from 0.
+  // Line and result are from 1, the cell from 0.
   int column(int line, std::size_t cell) {
     if (line < line_) line_ = 1, rest_ = text_;
     for (; line_ < line; ++line_) rest_.remove_prefix(std::min(rest_.find('\n'), rest_.size() - 1) + 1);
@@ -35,7 +35,7 @@ class CellPlaces {
   int line_ = 1;
 };
 
-// Reads the CSV file of a task of keyframes into the task.
+// Reads the CSV file of a keyframes task into the task.
 void read_keyframes(KeyframesTask& task, const ArmConfig& arm, const std::filesystem::path& folder) {
   const std::filesystem::path file = file_inside(folder, task.file);
   const std::string name = file.string();

@@ -1,5 +1,5 @@
-// Any bytes as a CSV file of keyframes: problems with their places, or a motion through states that an arm
-// can have, for planar and for spatial arms.
+// Any bytes as a CSV file of keyframes must give problems with their places, or a motion through possible
+// states. For planar and for spatial arms.
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -47,7 +47,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     task.columns = std::move(table.columns);
     task.rows = std::move(table.rows);
   } catch (const InputError&) {
-    return 0;  // csv_fuzz's business
+    return 0;  // Covered by csv_fuzz.
   }
   for (const Interpolation interpolation : {Interpolation::linear, Interpolation::smooth}) {
     task.interpolation = interpolation;

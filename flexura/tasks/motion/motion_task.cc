@@ -22,23 +22,23 @@
 namespace flexura {
 namespace {
 
-// One value for all sections, or one each.
+// Returns a section's value: one for all sections, or one each.
 template <class T>
 const T& of_section(const std::vector<T>& values, std::size_t section) {
   return values.size() == 1 ? values.front() : values[section];
 }
 
-// How far a section goes: rad of bend, and stretch as if 1 were 1 rad.
+// Returns the distance of a section's motion: rad of bend, or stretch with 1 as 1 rad.
 double distance(const ArmState& from, const ArmState& to, std::size_t section) {
   return std::max((to.bends[section] - from.bends[section]).norm(),
                   std::abs(to.stretches[section] - from.stretches[section]));
 }
 
-// The fastest trapezoid, one for all sections, with which none exceeds its own rate and acceleration; none
-// where there is no way to go.
+// Returns the fastest trapezoid, one for all sections, within each section's rate and acceleration;
+// std::nullopt if nothing moves.
 std::optional<Profile> shared_trapezoid(const MoveTask& task, const ArmState& from, const ArmState& to) {
   constexpr double unlimited = std::numeric_limits<double>::infinity();
-  double rate = unlimited;  // of the whole way, 1/s
+  double rate = unlimited;  // Of the whole way, 1/s.
   double acceleration = unlimited;
   for (std::size_t i = 0; i < from.bends.size(); ++i) {
     const double way = distance(from, to, i);
@@ -47,7 +47,7 @@ std::optional<Profile> shared_trapezoid(const MoveTask& task, const ArmState& fr
     acceleration = std::min(acceleration, of_section(*task.max_acceleration, i) / way);
   }
   if (rate == unlimited) return std::nullopt;
-  // A formula may leave the arm nowhere; the way from there takes longer than a run may.
+  // After a formula with invalid values, the motion takes longer than a run may.
   constexpr double least = 1e-300;
   return Profile::trapezoid(1.0, std::max(rate, least), std::max(acceleration, least));
 }
@@ -56,13 +56,13 @@ MotionPtr motion_of(const HoldTask& task, const ArmModel&, const ArmState& from)
   return hold_motion(from, task.duration);
 }
 
-// Where the tip shall be after it, m, when it says so.
+// Returns the tip's target, m, if the task has one.
 std::optional<Eigen::Vector3d> tip_target(const MoveTask& task) {
   if (!task.to.position) return std::nullopt;
   return vector(*task.to.position);
 }
 
-// The shape that a move goes to. The search for one starts from where the arm is.
+// Returns the target shape of a move. The search starts at the arm's state.
 ArmState state_to_reach(const MoveTask& task, const ArmModel& arm, const ArmState& from) {
   const auto tip = tip_target(task);
   if (!tip) return arm_state(arm.driven(), task.to);
@@ -71,7 +71,8 @@ ArmState state_to_reach(const MoveTask& task, const ArmModel& arm, const ArmStat
   return solve_inverse(arm, TipTarget{.position = *tip}, config).state;
 }
 
-// Of the laws that take the task's duration. Without a default, so that the compiler asks for a new law's.
+// Returns the profile of a law that uses the task's duration. Has no default, so that the compiler reports a
+// missing law.
 Profile profile_of(MoveLaw law, double duration) {
   switch (law) {
     case MoveLaw::linear:
@@ -96,7 +97,7 @@ MotionPtr motion_of(const MoveTask& task, const ArmModel& model, const ArmState&
   profiles.reserve(arm.sections.size());
   for (std::size_t i = 0; i < arm.sections.size(); ++i)
     profiles.push_back(profile_of(of_section(task.law, i), task.duration.value_or(1.0)));
-  // With one law for all, cords and bends both go on straight lines.
+  // With one law for all, cords and bends both move on straight lines.
   if (task.to.cord_angles && task.law.size() > 1) {
     std::vector<double> changes = *task.to.cord_angles;
     const std::vector<double> first = cord_angles(arm, from);
@@ -122,7 +123,7 @@ MotionPtr motion_of(const KeyframesTask& task, const ArmModel& model, const ArmS
   return keyframes_task_motion(task, arm);
 }
 
-// The formulas of one quantity, one for all sections or one each.
+// Formulas of one quantity, one for all sections or one each.
 class Formulas {
  public:
   explicit Formulas(const std::vector<std::string>& texts) {
@@ -177,7 +178,7 @@ MotionPtr motion_of(const ExpressionTask& task, const ArmModel& model, const Arm
   });
 }
 
-// A task whose motion is known from where it starts.
+// A task whose motion is known from its start.
 template <class Task>
 class MotionRunner : public TaskRunner {
  public:
@@ -193,7 +194,7 @@ class MotionRunner : public TaskRunner {
 
  private:
   void add_missed(const ArmModel& arm, TaskPlan& plan) const {
-    // A tip that comes so near to its target, as a part of the arm's length, is there.
+    // Share of the arm's length: a tip this near to its target has reached it.
     constexpr double tolerance = 1e-6;
     const auto target = tip_target(task_);
     if (!target) return;

@@ -62,7 +62,7 @@ void check_one(const KeyframesTask& task, ArmKind kind, std::size_t sections, co
     if (!task.columns.empty() || !task.rows.empty()) {
       reader.problem_at(path + ".file", "stands beside columns or rows: expected a file or those");
     }
-    return;  // looked at once the file is read
+    return;  // Checked after the file is read.
   }
   if (task.columns.empty() && task.rows.empty()) {
     reader.problem_at(path, "says nothing: expected file, or columns and rows");
@@ -76,9 +76,8 @@ void check_one(const KeyframesTask& task, ArmKind kind, std::size_t sections, co
   }
 }
 
-// A formula, of a task that takes `T`, for the sections from `first` to `last` (from 1). It has to be a
-// number all the way, as far as a hundred steps can tell; a law that fails between them is found by the check
-// of the motion.
+// Checks a formula of a task with the duration `T`, for the sections from `first` to `last` (from 1). It must
+// be finite at a hundred steps; the check of the motion finds failures between them.
 void check_formula(const std::string& text, double T, std::size_t first, std::size_t last,
                    const std::string& path, Reader& reader) {
   constexpr int steps = 100;
@@ -100,7 +99,7 @@ void check_formula(const std::string& text, double T, std::size_t first, std::si
   }
 }
 
-// The formulas of one quantity, one for all sections or one each.
+// Formulas of one quantity, one for all sections or one each.
 class FormulaCheck {
  public:
   FormulaCheck(double T, std::size_t given, std::size_t sections)
@@ -157,7 +156,7 @@ void check_one(const ExpressionTask& task, ArmKind kind, std::size_t sections, c
 void check_keys(const MoveTask& task, const Setup& setup, const std::string& path, Reader& reader) {
   const std::size_t before = reader.problems().size();
   check_one(task, setup.arm.kind, setup.arm.section.size(), path, reader);
-  if (reader.problems().size() > before) return;  // The shape fits the arm from here on.
+  if (reader.problems().size() > before) return;  // From here on, the shape fits the arm.
   check_bends(setup.arm.arm(), task.to, path + ".to", reader);
 }
 

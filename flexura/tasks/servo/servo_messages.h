@@ -12,22 +12,22 @@
 
 namespace flexura {
 
-// The messages of a servo (log/messages.h) beside its steps (servo/servo_step.h).
+// Log messages of a servo (log/messages.h), apart from its steps (servo/servo_step.h).
 
-/// Something that a servo's law compares in a picture: a pixel, or a line of some, px.
+/// A pixel or polyline that a servo's law compares in a picture, px.
 struct FeatureMarkMessage {
   std::vector<std::array<double, 2>> seen, wanted;
 };
 
-/// flexura.ServoSighting, on /servo/sightings: what a servo measured in one picture.
+/// flexura.ServoSighting, on /servo/sightings: measurements of a servo in one picture.
 struct ServoSightingMessage {
   double time = 0;  ///< Middle of the exposure, s.
   std::string camera;
   std::int64_t frame = 0;                ///< Its number.
-  std::vector<AxisPointMessage> points;  ///< Of the median axis, from base to tip.
-  /// Where the wanted shape would be seen, from base to tip, px; by the camera as it is believed to be.
+  std::vector<AxisPointMessage> points;  ///< Of the centerline, from base to tip.
+  /// Image of the target shape from base to tip, px, in the nominal camera.
   std::vector<std::array<double, 2>> wanted;
-  std::optional<std::vector<FeatureMarkMessage>> features;  ///< What the law compares.
+  std::optional<std::vector<FeatureMarkMessage>> features;  ///< Features that the law compares.
   std::optional<std::string> reason;                        ///< Why the picture shows no arm.
 };
 

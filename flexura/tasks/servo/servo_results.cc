@@ -19,7 +19,7 @@
 namespace flexura {
 namespace {
 
-// What a shape is off that is what was asked for: rounding, a polyline's corners.
+// Error of an exact shape: rounding, a polyline's corners.
 constexpr double hardly = 1e-5;
 
 Node error_node(const ServoError& error) {
@@ -35,7 +35,7 @@ Node numbers_node(const std::vector<double>& values) {
   return {std::move(numbers), {}};
 }
 
-// With the last that was seen, sent and asked for.
+// Includes the last observation, command and request.
 Node fault_node(const LimiterFault& fault, double start) {
   Node::Table members{{"time", {}, number_node(start + fault.time)}, {"reason", {}, {fault.reason, {}}}};
   const auto add = [&](const std::string& what, const ArmState& state) {
@@ -48,7 +48,8 @@ Node fault_node(const LimiterFault& fault, double start) {
   return {std::move(members), {}};
 }
 
-// The errors falling, and the law's potential: as powers of ten, over the time in the task.
+// Returns charts of the decreasing errors and the law's potential, as powers of ten over the time in the
+// task.
 std::array<ReportFigure, 2> falling_errors(const ServoRun& run, std::size_t number) {
   const auto power = [](double value, double least) { return std::log10(std::max(value, least)); };
   constexpr double least_share = 1e-7, least_potential = 1e-12;
@@ -74,7 +75,7 @@ std::array<ReportFigure, 2> falling_errors(const ServoRun& run, std::size_t numb
           ReportFigure{fmt::format("servo-{}-potential", number + 1), std::move(potential)}};
 }
 
-// A picture with the axis as measured in it, and the wanted shape as it would be seen.
+// Returns a picture with the measured axis and the image of the target shape.
 ReportFigure servo_photograph(const ServoRun& run, std::size_t i, bool is_last, std::size_t number) {
   const ServoSight& sight = is_last ? *run.result.last : *run.result.first;
   const char* when = is_last ? "last" : "first";

@@ -8,11 +8,11 @@
 
 namespace flexura {
 
-/// Its entry in the list `servos` of a summary.
+/// Returns its item in the list `servos` of a summary.
 [[nodiscard]] Node servo_node(const ServoRun& run);
 
-/// A servo in a report: errors falling, and what the cameras saw first and last with the wanted shape in it.
-/// `number` from 0, for the names of figures.
+/// Returns the chapter of a servo in a report: decreasing errors, and the first and last pictures with the
+/// target shape. `number` from 0, for the names of figures.
 [[nodiscard]] Chapter servo_chapter(const ServoRun& run, std::size_t number);
 
 }  // namespace flexura

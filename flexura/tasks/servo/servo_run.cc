@@ -18,7 +18,7 @@
 namespace flexura {
 namespace {
 
-// Tells the log of everything, and compares with the truth.
+// Logs all events, and compares with the true values.
 class LoggedServo : public ServoSessionWatcher {
  public:
   LoggedServo(const Setup& setup, const ServoConfig& session, ServoRun& run, TaskStage& stage,
@@ -68,14 +68,14 @@ class LoggedServo : public ServoSessionWatcher {
   }
   bool is_cancelled() override { return stage_.progress.is_cancelled(); }
 
-  /// To the steps of a result, which are those that were told.
+  /// Adds the truth to the steps of a result, which are the logged ones.
   void add_truth(std::vector<ServoStep>& steps) {
     for (std::size_t i = 0; i < steps.size(); ++i) steps[i].truth = std::move(truth_[i]);
   }
 
  private:
-  static constexpr std::size_t most_points = 60;  // Of an axis in the log.
-  static constexpr int wanted_points = 40;        // Of the wanted shape's image.
+  static constexpr std::size_t most_points = 60;  // Points of an axis in the log.
+  static constexpr int wanted_points = 40;        // Points of the target shape's image.
 
   static std::array<double, 2> to_hundredths(const Eigen::Vector2d& pixel) {
     return {std::round(100 * pixel.x()) / 100, std::round(100 * pixel.y()) / 100};

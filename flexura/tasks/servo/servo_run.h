@@ -14,29 +14,29 @@
 
 namespace flexura {
 
-/// What a task of kind "servo" did.
+/// Result of a task of kind "servo".
 struct ServoRun {
   std::string name;
-  std::array<std::string, 2> cameras;  ///< Their names.
+  std::array<std::string, 2> cameras;  ///< Names of the cameras.
   RigModel believed;
-  double settle = 0;  ///< As the task has it, s.
-  /// Its steps with the simulated truth, of which the session knows nothing. Where pictures are the target,
-  /// truth is compared with the shape that they seemed to show.
+  double settle = 0;  ///< From the task, s.
+  /// The session's result, whose steps have the simulated truth, unknown to the session. For targets from
+  /// pictures, the truth is compared with the shape estimated from them.
   ServoResult result;
   std::optional<ServoError> true_remaining;  ///< Mean over the last `settle` s.
-  MotionPtr motion;                          ///< Of the arm, as commanded, from the task's start.
+  MotionPtr motion;                          ///< Commanded motion of the arm, from the task's start.
 };
 
-/// Middles of the bands of an arm that turned out to be longer or shorter than its file says, m along it as
-/// it is believed to be, rising: a band stays at its share of its section.
+/// Returns the middles of the bands, m along the arm model, increasing. If calibrated lengths differ from the
+/// file's, a band keeps its share of its section.
 [[nodiscard]] std::vector<double> band_places(const Setup& setup, const Arm& believed);
 
-/// What the task asks of a session, for an arm that is in the state `from`.
+/// Returns the configuration of a session for the task, with the arm in the state `from`.
 [[nodiscard]] ServoConfig servo_config(const Setup& setup, const ServoTask& task, const RigModel& believed,
                                        const ArmState& from);
 
-/// Does the task on the rig that plays, as it is believed to be; what it does and sees goes to the log.
-/// `from`: where the arm was sent last.
+/// Runs the task on the rig with its model `believed`, and logs its actions and observations. `from`: last
+/// commanded state of the arm.
 [[nodiscard]] ServoRun run_servo(const ServoTask& task, const std::string& name, const Setup& setup,
                                  const ArmState& from, TaskStage& stage);
 

@@ -21,10 +21,10 @@
 namespace flexura {
 namespace {
 
-// A curve whose direction has these angles at equal shares of its length, linear in between.
+// Returns a curve whose direction has these angles at equal shares of its length, linear in between.
 std::vector<Eigen::Vector3d> curve_of_angles(const std::vector<double>& azimuths,
                                              const std::vector<double>& elevations, const Arm& arm) {
-  constexpr int pieces = 16;  // Between two angles; each is a straight one along its middle's direction.
+  constexpr int pieces = 16;  // Between two angles; each is straight, along the direction of its middle.
   std::vector<Eigen::Vector3d> points = {arm.X_WB.position};
   const std::size_t spans = azimuths.size() - 1;
   const double length = arm.length() / static_cast<double>(spans * pieces);
@@ -47,22 +47,22 @@ std::vector<Eigen::Vector3d> vectors(const std::vector<std::array<double, 3>>& p
   return result;
 }
 
-// The smooth curve that points are taken from: a cubic between each two of them, in each point along the
-// parabola through it and its neighbours (Catmull-Rom), but at corners of 60 degrees or more along their
-// chord.
+// Returns the smooth curve through the points: a cubic between each two of them. The tangent at a point is
+// that of the parabola through it and its neighbours (Catmull-Rom). At corners of 60 degrees or more it is
+// along the chord.
 std::vector<Eigen::Vector3d> smooth_curve(const std::vector<Eigen::Vector3d>& given) {
-  std::vector<Eigen::Vector3d> points;  // Each once.
+  std::vector<Eigen::Vector3d> points;  // Without repetitions.
   for (const Eigen::Vector3d& point : given)
     if (points.empty() || point != points.back()) points.push_back(point);
   if (points.size() < 3) return given;
   constexpr int pieces = 16;
-  constexpr double corner = 0.5;  // cos 60 degrees
+  constexpr double corner = 0.5;  // cos 60 degrees.
   const auto chord = [&](std::size_t i) -> Eigen::Vector3d { return points[i + 1] - points[i]; };
-  // Way for each chord's length, at point i of the chord that begins at k.
+  // Tangent per chord length at point i of the chord that begins at k.
   const auto tangent = [&](std::size_t i, std::size_t k) -> Eigen::Vector3d {
     Eigen::Vector3d own = chord(k).normalized();
     if (i == 0 || i + 1 == points.size()) {
-      // As a parabola through the nearest three has it.
+      // From a parabola through the nearest three points.
       const std::size_t other = i == 0 ? 1 : points.size() - 3;
       const Eigen::Vector3d there = chord(other).normalized();
       if (own.dot(there) < corner) return own;
@@ -87,7 +87,7 @@ std::vector<Eigen::Vector3d> smooth_curve(const std::vector<Eigen::Vector3d>& gi
   return curve;
 }
 
-// How far a backbone is from a curve, root mean square at equal parts of the length of both, m.
+// Returns the distance of a backbone from a curve, root mean square at equal shares of both lengths, m.
 double distance_from(const Backbone& backbone, const std::vector<Eigen::Vector3d>& points) {
   std::vector<double> lengths = {0};  // Up to each point.
   for (std::size_t i = 1; i < points.size(); ++i)

@@ -23,11 +23,11 @@
 namespace flexura {
 namespace {
 
-// The straight way to each target, slowly.
+// Returns a slow, straight motion to each target.
 MotionPtr way_to(const std::vector<std::optional<ServoTargetShape>>& shapes, const Arm& arm,
                  const ArmState& from) {
-  // s a target, and more where sections are slower: the limiter obeys their rates. A smooth way is at most
-  // three times as fast as its mean.
+  // In s per target. Slower sections take longer, because the limiter keeps their rates. A smooth motion is
+  // at most three times as fast as its mean.
   constexpr double slow = 10, faster = 3;
   const auto lasts = [&](const ArmState& a, const ArmState& b) {
     double duration = slow;
@@ -42,7 +42,7 @@ MotionPtr way_to(const std::vector<std::optional<ServoTargetShape>>& shapes, con
   std::vector<double> times = {0};
   std::vector<ArmState> states = {from};
   for (const auto& shape : shapes) {
-    if (!shape) continue;  // Nobody knows yet.
+    if (!shape) continue;  // Not known yet.
     times.push_back(times.back() + lasts(states.back(), shape->state));
     states.push_back(shape->state);
   }
@@ -57,7 +57,7 @@ class ServoRunner : public TaskRunner {
 
   [[nodiscard]] TaskWay way() const override { return TaskWay::by_rig; }
 
-  // With those of its targets of which the nearest shape of the arm stays farther away than it may.
+  // Includes the targets whose nearest shape of the arm is too far away.
   [[nodiscard]] TaskPlan plan(const ArmState& from, const MotionPtr& done) const override {
     const ArmModel arm = setup().arm_model();
     const auto shapes = servo_target_shapes(task_, arm, from);
@@ -103,7 +103,7 @@ class ServoRunner : public TaskRunner {
   std::optional<ServoRun> run_;
 };
 
-// The shapes themselves are the log's to tell.
+// Omits the shapes, which the log has.
 class ServoTable : public LogTable {
  public:
   [[nodiscard]] std::string file_name() const override { return "servo.csv"; }

@@ -13,7 +13,7 @@
 namespace flexura {
 namespace {
 
-// The unit in which people read a parameter.
+// Returns the displayed unit of a parameter.
 UnitSpelling shown_unit(const Variation& variation) {
   const auto ways = spellings(variation.unit);
   return variation.unit == Unit::radian ? ways[1] : ways[0];
@@ -34,8 +34,8 @@ double number(const std::optional<double>& value) {
   return value.value_or(std::numeric_limits<double>::quiet_NaN());
 }
 
-// A chart of some features; lines by the first source, some dots by the second, rings by the third if there
-// is one.
+// Returns a chart of some features: lines for the first source, some dots for the second, rings for the
+// third, if any.
 ReportFigure chart_of(const ImageStudy& study, const char* chart_name, LineChart chart,
                       std::span<const std::size_t> features) {
   constexpr std::size_t most_dots = 24;
@@ -54,7 +54,7 @@ ReportFigure chart_of(const ImageStudy& study, const char* chart_name, LineChart
       };
       series.values.push_back(number(study.columns[0].features[i][feature]));
       series.dots.push_back(some_of(1, 0));
-      // Between the dots, where there is room.
+      // Between the dots.
       if (study.columns.size() > 2) series.rings.push_back(some_of(2, pitch / 2));
     }
   }
@@ -69,7 +69,7 @@ ReportFigure chart_of(const ImageStudy& study, const char* chart_name, LineChart
   return {fmt::format("{}-{}", study.name, chart_name), std::move(chart)};
 }
 
-// The square, and the circle's parts that the lens shows.
+// The square, and the visible parts of the circle.
 std::vector<ImageOutline::Line> lines_of(const TargetImage& image) {
   std::vector<ImageOutline::Line> lines;
   const auto& at = image.circle;

@@ -15,7 +15,8 @@
 namespace flexura {
 namespace {
 
-// The text with "-" for all but ASCII letters, digits, "_" and inner ".", at most 100 characters.
+// Returns the text with "-" for all characters except ASCII letters, digits, "_" and inner ".", at most 100
+// characters.
 std::string file_name_of(std::string_view text) {
   std::string name;
   for (const char c : text.substr(0, 100)) {

@@ -9,20 +9,20 @@
 
 namespace flexura {
 
-/// A study as CSV: the parameter (its name in the file, base units), the features by each source in turn
-/// ("top_formula", ..., "top_rendered", ...), px, and in_image (1 or 0). What could not be measured is an
-/// empty cell.
+/// Returns a study as CSV: the parameter (its name in the file, base units), the features by each source in
+/// turn ("top_formula", ..., "top_rendered", ...), px, and in_image (1 or 0). Values that could not be
+/// measured are empty cells.
 [[nodiscard]] std::string study_csv(const ImageStudy& study);
 
-/// Writes the study's tables/NAME.csv into a results folder, and names the study so: as it is called where
-/// that can be a file's name, and otherwise than the studies before. std::runtime_error with the path when
-/// the system refuses.
+/// Writes the study's tables/NAME.csv into a results folder and sets the study's name. Its own name is kept
+/// if it is a valid file name and unique among the previous studies. Throws std::runtime_error with the path
+/// on a system error.
 void write_study_table(ImageStudy& study, const std::filesystem::path& folder);
 
-/// Its entry in the list `studies` of a summary.
+/// Returns its item in the list `studies` of a summary.
 [[nodiscard]] Node study_node(const ImageStudy& study);
 
-/// A study in a report: the target in the image, and its features over the parameter.
+/// Returns the chapter of a study in a report: the target in the image, and its features over the parameter.
 [[nodiscard]] Chapter study_chapter(const ImageStudy& study);
 
 }  // namespace flexura

@@ -12,7 +12,7 @@
 namespace flexura {
 namespace {
 
-// No time passes and nothing moves: it is worked out when the run is over.
+// Takes no time and moves nothing: computed after the run.
 class StudyRunner : public TaskRunner {
  public:
   StudyRunner(const StudyTask& task, const Setup& setup, TaskLabel label)

@@ -9,11 +9,11 @@
 
 namespace flexura {
 
-// The keys of the kind "study" stand with what it does, in study/study_config.h.
+// The keys of the kind "study" are in study/study_config.h.
 
-/// Reports what keeps the study at `path` ("task[2]") from being made with this setup.
+/// Reports why the study at `path` ("task[2]") is impossible with this setup.
 void check_keys(const StudyTask& task, const Setup& setup, const std::string& path, Reader& reader);
-/// What does such a task. Both outlive it.
+/// Returns the runner of such a task. Both arguments must outlive it.
 [[nodiscard]] std::unique_ptr<TaskRunner> runner_of(const StudyTask& task, const Setup& setup,
                                                     TaskLabel label);
 

@@ -79,6 +79,7 @@ Node arm_node(const ViewedRig& rig, bool is_visible) {
                       {"disk_color", {}, numbers(look.disk_color)},
                       {"base", {}, flat_pose_node(rig.truth.driven().X_WB)},
                       {"tendons", {}, route_nodes(rig)},
+                      {"elastic", {}, {rig.is_rod, {}}},
                       {"visible", {}, {is_visible, {}}}},
           {}};
 }

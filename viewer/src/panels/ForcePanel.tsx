@@ -122,7 +122,7 @@ function Contacts({ contacts, scene }: { contacts: Float32Array; scene: Scene })
       <legend>Contacts</legend>
       {count === 0 ? <p class="quiet" role="status">The arm touches nothing.</p> : (
         <table>
-          <thead><tr><th scope="col">With</th><th scope="col">s, m</th><th scope="col" title="Across the surface">Normal</th><th scope="col">It</th></tr></thead>
+          <thead><tr><th scope="col">With</th><th scope="col">s, m</th><th scope="col" title="Across the surface">Normal</th><th scope="col">Friction</th></tr></thead>
           <tbody>
             {Array.from({ length: count }, (_, i) => {
               const at = contact_stride * i;

@@ -36,6 +36,8 @@ export interface SceneArm {
   base: Pose;
   /** The way of each actuator: s, x and y of the cross-section. */
   tendons?: Vector3[][];
+  /** Forces bend it. */
+  elastic?: boolean;
   visible: boolean;
 }
 

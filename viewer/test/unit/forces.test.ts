@@ -26,7 +26,7 @@ test('forces are shown where some are known', () => {
 });
 
 test('a push is drawn from the point to the hand, and away when nothing pushes', () => {
-  const [part] = make_forces({ span: 1, theme: 'dark' } as PartContext);
+  const [part] = make_forces({ scene: { arm: { elastic: true } }, span: 1, theme: 'dark' } as unknown as PartContext);
   const samples = new Float32Array([0, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 0]);
   const state = (more: object): State => ({ samples, contacts: new Float32Array(0), push: null, ...more }) as unknown as State;
   const push = part.group.children[0];
@@ -43,4 +43,5 @@ test('a push is drawn from the point to the hand, and away when nothing pushes',
   part.draw!(state({ contacts: new Float32Array([0, 0.5, 0, 0, 0.5, -2, 0, 0, 2, 1]) }));
   expect([push.visible, shafts.count]).toEqual([false, 1]);
   part.dispose();
+  expect(make_forces({ scene: { arm: {} }, span: 1, theme: 'dark' } as unknown as PartContext)).toEqual([]);
 });

@@ -23,7 +23,8 @@ export function scale_end(force: number): number {
 }
 
 /** Seen through the arm, as its tendons are. */
-export function make_forces({ span, theme }: PartContext): Part[] {
+export function make_forces({ scene, span, theme }: PartContext): Part[] {
+  if (!scene.arm.elastic) return [];
   const along = new Vector3(0, 1, 0);
   const [from, way, middle, size] = [new Vector3(), new Vector3(), new Vector3(), new Vector3()];
   const turn = new Quaternion();
@@ -55,7 +56,7 @@ export function make_forces({ span, theme }: PartContext): Part[] {
   const group = new Group().add(push, shafts, heads, marks);
   const arc = new Arc();
   const pose = new_pose();
-  // Grows with what is seen: arrows can be compared from one moment to the next.
+  // Stays as long as it can: arrows can be compared from one moment to the next.
   let scale = 0;
 
   const draw_push = (state: State): void => {
@@ -94,7 +95,7 @@ export function make_forces({ span, theme }: PartContext): Part[] {
       const at = contact_stride * i + contact_force;
       most = Math.max(most, Math.hypot(contacts[at], contacts[at + 1], contacts[at + 2]));
     }
-    scale = Math.max(scale, scale_end(most));
+    if (most > scale || most < scale / 5) scale = scale_end(most);
     for (let i = 0; i < count; ++i) {
       const at = contact_stride * i;
       from.set(contacts[at + contact_point], contacts[at + contact_point + 1], contacts[at + contact_point + 2]);

@@ -7,15 +7,15 @@ namespace flexura {
 namespace {
 
 // Of the places from `first` on, the slope by s at place k of the parabola through three of them.
-struct Slope {
+struct CurveSlope {
   std::array<std::size_t, 3> places{};
   std::array<double, 3> weights{};
 };
 
-Slope slope_at(std::span<const double> s, std::size_t k) {
+CurveSlope curve_slope_at(std::span<const double> s, std::size_t k) {
   if (s.size() == 2) return {.places = {0, 1, 1}, .weights = {-1 / (s[1] - s[0]), 1 / (s[1] - s[0]), 0}};
   const std::size_t middle = std::clamp<std::size_t>(k, 1, s.size() - 2);
-  Slope slope{.places = {middle - 1, middle, middle + 1}};
+  CurveSlope slope{.places = {middle - 1, middle, middle + 1}};
   // Of Lagrange's polynomials.
   for (std::size_t i = 0; i < 3; ++i) {
     const double own = s[slope.places[i]], one = s[slope.places[(i + 1) % 3]],
@@ -42,7 +42,7 @@ RodCurve::RodCurve(std::span<const double> s) {
     add(k, 1, {1, 0, -3, 2});
     add(k + 1, 1, {0, 0, 3, -2});
     for (const bool is_end : {false, true}) {
-      const Slope slope = slope_at(s, is_end ? k + 1 : k);
+      const CurveSlope slope = curve_slope_at(s, is_end ? k + 1 : k);
       for (std::size_t i = 0; i < 3; ++i)
         if (slope.weights[i] != 0)
           add(slope.places[i], length * slope.weights[i],

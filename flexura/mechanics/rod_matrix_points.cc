@@ -10,10 +10,10 @@ namespace {
 // So much of a tie's matrix is added to its diagonal, so that it has a root.
 constexpr double of_a_root = 1e-14;
 
-using Number = RodMotion<double>::Number;
-constexpr std::size_t lanes = lanes_of<Number>;
+using PointNumber = RodMotion<double>::Number;
+constexpr std::size_t point_lanes = lanes_of<PointNumber>;
 
-void set_lane_of(Triple<Number>& to, const Triple<double>& from, std::size_t lane) {
+void set_lane_of(Triple<PointNumber>& to, const Triple<double>& from, std::size_t lane) {
   to.x[lane] = from.x, to.y[lane] = from.y, to.z[lane] = from.z;
 }
 
@@ -45,8 +45,8 @@ void RodMatrix::find_point_columns(const RodMotion<double>& motion) {
   }
   if (point_columns_.size() < size) point_columns_.resize(size);
   // So many points side by side as they were placed.
-  std::size_t done = lanes, next = 0;
-  std::array<std::array<std::array<std::array<double, 6>, 3>, 3>, lanes> along{};
+  std::size_t done = point_lanes, next = 0;
+  std::array<std::array<std::array<std::array<double, 6>, 3>, 3>, point_lanes> along{};
   for (const Pulled& pulled : pulled_) {
     const RodPoints::Point& point = points.points[pulled.point];
     const RodLayout::Section& section = layout_.sections[point.section];
@@ -55,25 +55,25 @@ void RodMatrix::find_point_columns(const RodMotion<double>& motion) {
     const double* from = part.columns.data() + (point.node - section.first_node) * 6 * part.stride;
     std::copy(from, from + 6 * part.stride, to);
     if (point.is_node) continue;
-    if (done == lanes || pulled.chosen / lanes != next) {
-      next = pulled.chosen / lanes;
+    if (done == point_lanes || pulled.chosen / point_lanes != next) {
+      next = pulled.chosen / point_lanes;
       done = 0;
-      Placement<Number> X{};
-      for (std::size_t lane = 0; lane < lanes; ++lane) {
-        const std::size_t i = std::min(next * lanes + lane, motion.chosen().size() - 1);
+      Placement<PointNumber> X{};
+      for (std::size_t lane = 0; lane < point_lanes; ++lane) {
+        const std::size_t i = std::min(next * point_lanes + lane, motion.chosen().size() - 1);
         const Placement<double>& at = motion.nodes()[points.points[motion.chosen()[i]].node];
         set_lane_of(X.x, at.x, lane), set_lane_of(X.y, at.y, lane), set_lane_of(X.z, at.z, lane),
             set_lane_of(X.position, at.position, lane);
       }
-      const RodInterval<Number> interval = still(motion.parts()[next]);
+      const RodInterval<PointNumber> interval = still(motion.parts()[next]);
       // As of whole intervals: a unit moment does what the unit force does, one half of the strains further.
       for (std::size_t r = 0; r < 3; ++r) {
-        Screw<Number> unit{};
+        Screw<PointNumber> unit{};
         if (r == 0) unit.linear.x += 1.0;
         if (r == 1) unit.linear.y += 1.0;
         if (r == 2) unit.linear.z += 1.0;
         const auto wide = interval.along_moments(X.fetch(unit));
-        for (std::size_t lane = 0; lane < lanes; ++lane) {
+        for (std::size_t lane = 0; lane < point_lanes; ++lane) {
           for (std::size_t m = 0; m < 3; ++m) {
             const auto [linear, angular] = wide[m];
             along[lane][r][m] = {linear.x[lane],  linear.y[lane],  linear.z[lane],
@@ -84,7 +84,7 @@ void RodMatrix::find_point_columns(const RodMotion<double>& motion) {
     }
     const double* of_mode = motion.points()->moments.data() + point.first_moment;
     for (std::size_t r = 0; r < 3; ++r) {
-      const auto& row = along[pulled.chosen % lanes][r];
+      const auto& row = along[pulled.chosen % point_lanes][r];
       for (std::size_t j = 0; j < section.modes; ++j) {
         const std::size_t c = section.strain[j];
         for (std::size_t m = 0; m < 3; ++m) {

@@ -12,7 +12,7 @@ namespace {
 // Of a contact of the rod with itself both sides tell: each point that is near another part.
 constexpr double of_both_sides = 0.5;
 constexpr double no_length = 1e-12;
-constexpr double same_place = 1e-9;
+constexpr double one_curve_place = 1e-9;
 // Less than this part of what it is on a line, the nearest point may be anywhere.
 constexpr double no_minimum = 1e-6;
 constexpr int most_halvings = 60;
@@ -44,7 +44,7 @@ double nearest_share(const RodCurve::Piece& curve, const Eigen::Vector3d& p) {
 
 void RodContact::set_curve(const RodChain& chain) {
   std::vector<double> s, after;
-  const double rounding = same_place * chain.rod().length();
+  const double rounding = one_curve_place * chain.rod().length();
   for (std::size_t i = 0; i < points_.size(); ++i) {
     if (!s.empty() && points_[i].s - s.back() <= rounding) {
       after.back() = points_[i].radius;

@@ -11,7 +11,9 @@ namespace flexura {
 /// files. A quantity has one property a spelling of its unit, each with the range in that unit.
 [[nodiscard]] Node json_schema(const TableInfo& info);
 
-/// The same as a Markdown reference: a section a table, a row a field.
+/// A Markdown reference: a section for each table, a row for each field. A table that occurs again has a link
+/// to its first section. Fields that all alternatives have, or that make up another table, are described
+/// once.
 [[nodiscard]] std::string markdown_reference(const TableInfo& info);
 
 }  // namespace flexura

@@ -251,8 +251,10 @@ RodState RodDynamics::rest(const Equilibrium& at) const {
 }
 
 RodState RodDynamics::start(const Eigen::VectorXd& q, const Eigen::VectorXd& v, const TendonInput& tendons,
-                            const RodLoads& loads) {
+                            const RodLoads& loads, const RodSlide* slide) {
   RodState state = rest();
+  if (slide != nullptr && slide->friction.size() != state.friction.size())
+    throw std::invalid_argument("the friction of another rod");
   if (q.size() != state.q.size() || v.size() != state.q.size())
     throw std::invalid_argument(fmt::format("expected {} modes and rates", state.q.size()));
   if (!q.allFinite() || !v.allFinite()) throw std::invalid_argument("modes or rates that are not finite");
@@ -260,7 +262,10 @@ RodState RodDynamics::start(const Eigen::VectorXd& q, const Eigen::VectorXd& v, 
   if (!problem.empty()) throw std::invalid_argument(problem);
   state.q = q;
   state.rate = v;
-  work_->hold(nullptr, Work::has_slid);
+  if (slide != nullptr)
+    work_->hold(slide->friction.data(), slide->time);
+  else
+    work_->hold(nullptr, Work::has_slid);
   work_->set_forces(state, v, tendons, loads);
   if (!Work::is_of_this_world(state.momentum) || !Work::is_of_this_world(state.force) ||
       !Work::is_of_this_world(q) || !Work::is_of_this_world(v))

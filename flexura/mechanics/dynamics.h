@@ -64,6 +64,12 @@ struct RodState {
   double contraction = 0.1;  ///< By which an iteration of the last step gained.
 };
 
+/// What is known of the friction of tendons before a time.
+struct RodSlide {
+  std::vector<double> friction = {};  ///< As of RodState.
+  double time = 0;                    ///< Since when they slide as they do now, s.
+};
+
 /// What a step was.
 struct RodStep {
   DynamicsEnd end = DynamicsEnd::converged;
@@ -135,9 +141,10 @@ class RodDynamics {
   /// At rest in an equilibrium of RodStatics: tendons that rub have been pulled in up to there.
   [[nodiscard]] RodState rest(const Equilibrium& at) const;
   /// In motion: by its modes and their rates, under what pulls from now on. Tendons that rub have slid as
-  /// they do now; they are held by nothing where they do not.
+  /// `slide` says; null: as they do now for a tenth of a second, so that those that do not slide are held by
+  /// nothing.
   [[nodiscard]] RodState start(const Eigen::VectorXd& q, const Eigen::VectorXd& v, const TendonInput& tendons,
-                               const RodLoads& loads);
+                               const RodLoads& loads, const RodSlide* slide = nullptr);
 
   /// From now on, until it is dropped, it carries the mass: the state after a jolt, with the generalized
   /// momentum of both as they were before. Energy is lost as they become one (none where both move alike).
@@ -194,7 +201,7 @@ class RodDynamics {
   /// Derivatives at a state, under what pulls. They cost as the square of the number of sections. Of tendons
   /// that rub as start() has them.
   [[nodiscard]] RodDynamicsSlopes slopes(const RodState& state, const TendonInput& tendons,
-                                         const RodLoads& loads);
+                                         const RodLoads& loads, const RodSlide* slide = nullptr);
   /// The linear motion around a state. Errors and cost as slopes(); std::invalid_argument: a tendon rubs,
   /// which has no linear model.
   [[nodiscard]] RodLinear linearize(const RodState& state, const TendonInput& tendons, const RodLoads& loads);

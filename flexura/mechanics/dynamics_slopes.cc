@@ -88,8 +88,9 @@ bool RodDynamics::Work::find_stage(const RodState& state, const TendonInput& ten
 }
 
 RodDynamicsSlopes RodDynamics::slopes(const RodState& state, const TendonInput& tendons,
-                                      const RodLoads& loads) {
-  const RodState started = start(state.q, velocity(state), tendons, loads);  // Checks; sets the tensions.
+                                      const RodLoads& loads, const RodSlide* slide) {
+  const RodState started =
+      start(state.q, velocity(state), tendons, loads, slide);  // Checks; sets the tensions.
   return work_->slopes_at(started.q, started.rate, tendons, loads);
 }
 

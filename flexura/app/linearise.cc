@@ -102,7 +102,11 @@ Node linearise_refusal(std::string problem) {
 }  // namespace
 
 LineariseAnswers::LineariseAnswers(const ArmConfig& arm, const std::optional<DriveConfig>& drive)
-    : rod_(rod_of(arm, drive)), loads_(loads_of(arm)), statics_(rod_), dynamics_(rod_) {}
+    : rod_(rod_of(arm, drive)), loads_(loads_of(arm)), statics_(rod_), dynamics_(rod_) {
+  for (std::size_t i = 0; i < rod_.tendons.size(); ++i)
+    if (rod_.tendons[i].friction > 0)
+      throw std::invalid_argument(fmt::format("tendon {}: friction has no linear model", i + 1));
+}
 
 std::string LineariseAnswers::answer(std::string_view line) {
   try {

@@ -18,7 +18,7 @@ namespace flexura {
 class LineariseAnswers {
  public:
   /// std::invalid_argument: the arm has no rod that can be computed (rod_of, rod_problems), or one that
-  /// cannot move (RodDynamics): it has no mass, or tendons with friction.
+  /// cannot move (RodDynamics): it has no mass; or tendons with friction, which has no linear model.
   LineariseAnswers(const ArmConfig& arm, const std::optional<DriveConfig>& drive);
 
   /// One line of JSON without its line end: {"converged":..,"reason":..} and, of an equilibrium that was

@@ -104,6 +104,30 @@ TEST(Filming, GivesTheSameFilmForAnyNumberOfThreads) {
   for (const std::size_t threads : {0U, 3U}) expect_same_film(one, film_of(lossy, 0.05, threads));
 }
 
+// The arm in motion is asked by all threads that render.
+TEST(Filming, OfAnArmInMotionIsTheSameForAnyNumberOfThreads) {
+  std::string moving =
+      replaced(small_pictures, "[arm]\n", "[arm]\nmodel = \"dynamic\"\ngravity = [0, -9.81, 0]\n");
+  moving = replaced(moving, "[[camera]]\nname = \"front\"", R"([[arm.tendon]]
+section = 2
+radius_mm = 10
+friction = 0.1
+[[arm.tendon]]
+section = 1
+radius_mm = 10
+angle_deg = 120
+[[camera]]
+name = "front")");
+  moving =
+      replaced(moving, "[[arm.section]]\nlength = 0.5\n[[arm.section]]\n",
+               "[[arm.section]]\nlength = 0.5\nradius = 0.02\nmaterial = { youngs_modulus = 5e6, density = "
+               "1000, damping_time = 0.02, modes = { bend = 2 } }\n[[arm.section]]\nradius = 0.02\nmaterial "
+               "= { youngs_modulus = 5e6, density = 1000, damping_time = 0.02, modes = { bend = 2 } }\n");
+  const Film one = film_of(moving, 0.05, 1);
+  EXPECT_GT(one.size(), 10U);
+  for (const std::size_t threads : {0U, 3U}) expect_same_film(one, film_of(moving, 0.05, threads));
+}
+
 TEST(Filming, GivesTheSameFilmForAnyStepOfAnArmThatStands) {
   const std::string still = replaced(small_pictures, "to = { bends = [[0.8, 0.5], [-0.4, 1.2]] }",
                                      "to = { bends = [[0, 0], [0, 0]] }");

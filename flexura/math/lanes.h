@@ -60,4 +60,25 @@ template <typename T>
   return {root, 0.5 * dual.slope / root};
 }
 
+[[nodiscard]] inline double exponential(double value) { return std::exp(value); }
+[[nodiscard]] inline Lanes exponential(const Lanes& value) {
+  return Lanes{std::exp(value[0]), std::exp(value[1])};
+}
+template <typename T>
+[[nodiscard]] Dual<T> exponential(const Dual<T>& dual) {
+  const T value = exponential(dual.value);
+  return {value, value * dual.slope};
+}
+
+/// The angle of (x, y) from the axis x, rad; it has no derivative at (0, 0).
+[[nodiscard]] inline double arc_tangent(double y, double x) { return std::atan2(y, x); }
+[[nodiscard]] inline Lanes arc_tangent(const Lanes& y, const Lanes& x) {
+  return Lanes{std::atan2(y[0], x[0]), std::atan2(y[1], x[1])};
+}
+template <typename T>
+[[nodiscard]] Dual<T> arc_tangent(const Dual<T>& y, const Dual<T>& x) {
+  return {arc_tangent(y.value, x.value),
+          (x.value * y.slope - y.value * x.slope) / (x.value * x.value + y.value * y.value)};
+}
+
 }  // namespace flexura

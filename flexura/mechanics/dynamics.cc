@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 #include <utility>
 
@@ -59,9 +60,8 @@ void require_dynamics(const Rod& rod, const RodDynamicsConfig& config) {
       throw std::invalid_argument(
           fmt::format("section {}: without rotary inertia a rod must not twist", i + 1));
   }
-  for (std::size_t i = 0; i < rod.tendons.size(); ++i)
-    if (rod.tendons[i].friction > 0)
-      throw std::invalid_argument(fmt::format("tendon {}: friction is known at rest alone", i + 1));
+  if (!(config.friction_grip > 0) || !std::isfinite(config.friction_grip))
+    throw std::invalid_argument("the grip of friction must be above 0");
 }
 
 }  // namespace
@@ -91,6 +91,7 @@ RodDynamics::Work::Work(Rod rod, const RodDynamicsConfig& given, std::span<const
   for (Eigen::VectorXd* vector : {&velocity, &q_from_, &p_from_, &q_, &momentum_, &force_, &change_, &left_})
     vector->setZero(n);
   length_slopes_.setZero(n, count);
+  pull_slopes_.setZero(n, count);
   answers_.setZero(n, count);
   give_.setZero(count, count);
   pivot_.setZero(count, count);
@@ -105,14 +106,38 @@ RodDynamics::Work::Work(Rod rod, const RodDynamicsConfig& given, std::span<const
   chain.balance(velocity, tensions, {}, 0);
   rest_lengths.assign(chain.tendon_lengths().begin(), chain.tendon_lengths().end());
   double give = 0;
+  Eigen::VectorXd gives = Eigen::VectorXd::Zero(count);
   if (count > 0 && n > 0 && chain.factor()) {
     answers_ = chain.pull_slopes();
     chain.solve(answers_);
-    give = (chain.length_slopes().transpose() * answers_).diagonal().cwiseAbs().maxCoeff();
+    gives = (chain.length_slopes().transpose() * answers_).diagonal().cwiseAbs();
+    give = gives.maxCoeff();
   }
+  if (rubs()) find_grip(gives);
   const double least = give > 0 ? least_give * give : least_give * chain.rod().length();
   for (const TendonRoute& tendon : chain.rod().tendons)
     compliance.push_back(std::max(tendon.compliance, least));
+}
+
+// Of what the rod gives to each tendon.
+void RodDynamics::Work::find_grip(const Eigen::VectorXd& give) {
+  constexpr double least_part = 1e-3;
+  const double most = give.maxCoeff() > 0 ? give.maxCoeff() : chain.rod().length();
+  grip.assign(layout.pieces, 0.0);
+  for (const RodLayout::Rubbing& rub : layout.rubbing) {
+    double length = 0;
+    for (const RodLayout::Piece& piece : rub.pieces) length += piece.run;
+    const double gives = std::max(give[static_cast<Eigen::Index>(rub.tendon)], least_part * most);
+    for (std::size_t p = 0; p < rub.pieces.size(); ++p)
+      grip[rub.first + p] = config.friction_grip / gives * rub.pieces[p].held / length;
+  }
+  motion.set_grip(grip);
+}
+
+void RodDynamics::Work::hold(const double* before, double time) {
+  held_before_ = before;
+  slide_time_ = time;
+  motion.hold(before, time);
 }
 
 std::string RodDynamics::Work::input_problem(const TendonInput& tendons, const RodLoads& loads) const {
@@ -157,6 +182,13 @@ bool RodDynamics::Work::find_velocity(const RodState& state) {
   matrix.find_columns(motion);
   if (!matrix.factor(motion, {}, nullptr, false)) return false;
   velocity = state.momentum;
+  if (layout.is_driven) {
+    // Of what moves though the modes rest.
+    left_ = velocity;
+    motion.pull({}, std::vector<double>(tensions.size(), 0.0).data(), nullptr);
+    motion.balance(momentum_.data(), force_.data());
+    velocity = left_ - momentum_;
+  }
   matrix.solve(velocity.data());
   return true;
 }
@@ -171,6 +203,16 @@ void RodDynamics::Work::set_surroundings(const RodSurroundings* given) {
   motion.set_points(points.get());
 }
 
+void RodDynamics::Work::set_forces(RodState& state, const Eigen::VectorXd& v, const TendonInput& tendons,
+                                   const RodLoads& loads) {
+  motion.place(state.q.data(), v.data());
+  set_tensions(tendons);
+  motion.pull(loads, tensions.data(), surroundings);
+  motion.balance(state.momentum.data(), state.force.data());
+  state.tensions = tensions;
+  state.friction = motion.frictions();
+}
+
 RodDynamics::RodDynamics(Rod rod, const RodDynamicsConfig& config, std::span<const RodPlace> places)
     : work_(std::make_unique<Work>(std::move(rod), config, places)) {}
 RodDynamics::~RodDynamics() = default;
@@ -180,6 +222,15 @@ RodDynamics& RodDynamics::operator=(RodDynamics&&) noexcept = default;
 void RodDynamics::set_surroundings(const RodSurroundings* surroundings) {
   work_->set_surroundings(surroundings);
 }
+void RodDynamics::stretch_rest(std::span<const double> factors, std::span<const double> rates) {
+  const std::size_t count = work_->layout.sections.size();
+  if (factors.size() != count || rates.size() != count)
+    throw std::invalid_argument("expected a factor on the length of each section, and its rate");
+  for (std::size_t i = 0; i < count; ++i)
+    if (!(factors[i] > 0) || !std::isfinite(factors[i]) || !std::isfinite(rates[i]))
+      throw std::invalid_argument("expected factors above 0 on the lengths of sections, and finite rates");
+  work_->layout.stretch_rest(factors, rates);
+}
 const RodChain& RodDynamics::chain() const { return work_->chain; }
 
 RodState RodDynamics::rest() const {
@@ -188,6 +239,7 @@ RodState RodDynamics::rest() const {
   state.q = state.momentum = state.rate = state.force = none;
   state.middle = {none, none, none};
   state.tensions.assign(work_->chain.tendons(), 0.0);
+  state.friction.assign(work_->layout.pieces, 0.0);
   return state;
 }
 
@@ -196,12 +248,24 @@ RodState RodDynamics::rest(const Equilibrium& at) const {
   if (at.q.size() != state.q.size()) throw std::invalid_argument("an equilibrium of another rod");
   state.q = at.q;
   state.tensions = at.tensions;
+  if (!work_->rubs()) return state;
+  // Friction is at its limit.
+  Work& work = *work_;
+  work.velocity.setZero();
+  work.motion.place(state.q.data(), work.velocity.data());
+  const std::vector<double> most(work.layout.pieces, std::numeric_limits<double>::max());
+  work.hold(most.data(), 0);
+  work.motion.pull({}, state.tensions.data(), nullptr);
+  state.friction = work.motion.frictions();
+  work.hold(nullptr, 0);
   return state;
 }
 
 RodState RodDynamics::start(const Eigen::VectorXd& q, const Eigen::VectorXd& v, const TendonInput& tendons,
-                            const RodLoads& loads) {
+                            const RodLoads& loads, const RodSlide* slide) {
   RodState state = rest();
+  if (slide != nullptr && slide->friction.size() != state.friction.size())
+    throw std::invalid_argument("the friction of another rod");
   if (q.size() != state.q.size() || v.size() != state.q.size())
     throw std::invalid_argument(fmt::format("expected {} modes and rates", state.q.size()));
   if (!q.allFinite() || !v.allFinite()) throw std::invalid_argument("modes or rates that are not finite");
@@ -209,14 +273,14 @@ RodState RodDynamics::start(const Eigen::VectorXd& q, const Eigen::VectorXd& v, 
   if (!problem.empty()) throw std::invalid_argument(problem);
   state.q = q;
   state.rate = v;
-  work_->motion.place(q.data(), v.data());
-  work_->set_tensions(tendons);
-  work_->motion.pull(loads, work_->tensions.data(), work_->surroundings);
-  work_->motion.balance(state.momentum.data(), state.force.data());
+  if (slide != nullptr)
+    work_->hold(slide->friction.data(), slide->time);
+  else
+    work_->hold(nullptr, Work::has_slid);
+  work_->set_forces(state, v, tendons, loads);
   if (!Work::is_of_this_world(state.momentum) || !Work::is_of_this_world(state.force) ||
       !Work::is_of_this_world(q) || !Work::is_of_this_world(v))
     throw std::invalid_argument("a motion or forces of more than 1e100, or not finite");
-  state.tensions = work_->tensions;
   return state;
 }
 
@@ -225,6 +289,8 @@ RodStep RodDynamics::step(RodState& state, const TendonInput& tendons, const Rod
   if (!(h > 0) || !std::isfinite(h)) problem = "a step must be above 0 and finite";
   if (state.q.size() != work_->chain.size() || state.momentum.size() != work_->chain.size())
     problem = "a state of another rod";
+  else if (state.friction.size() != work_->layout.pieces)
+    problem = "a state without the friction of its tendons";
   else if (!state.q.allFinite() || !state.momentum.allFinite())
     problem = "a state that is not finite";
   if (!problem.empty()) return {.end = DynamicsEnd::bad_input, .problem = problem};
@@ -249,8 +315,17 @@ Eigen::VectorXd RodDynamics::velocity(const RodState& state) {
 }
 
 RodEnergy RodDynamics::energy(const RodState& state, const RodLoads& loads) {
-  RodEnergy energy{.kinetic = 0.5 * velocity(state).dot(state.momentum)};
+  const Eigen::VectorXd v = velocity(state);
+  RodEnergy energy{.kinetic = 0.5 * v.dot(state.momentum)};
   const RodLayout& layout = work_->layout;
+  if (layout.is_driven) {
+    work_->motion.place(state.q.data(), v.data());
+    energy.kinetic = 0;
+    for (std::size_t k = 0; k < layout.nodes; ++k) {
+      const Screw<double>&P = work_->motion.momenta()[k], &V = work_->motion.velocities()[k];
+      energy.kinetic += 0.5 * (dot(P.linear, V.linear) + dot(P.angular, V.angular));
+    }
+  }
   for (const RodLayout::Section& section : layout.sections) {
     const auto q = state.q.segment(static_cast<Eigen::Index>(section.first_mode),
                                    static_cast<Eigen::Index>(section.modes));
@@ -330,6 +405,7 @@ Eigen::VectorXd RodDynamics::acceleration(const Eigen::VectorXd& q, const Eigen:
   if (q.size() != work_->chain.size() || v.size() != q.size())
     throw std::invalid_argument("modes of another rod");
   Eigen::VectorXd force(q.size());
+  work_->hold(nullptr, Work::has_slid);
   work_->motion.place(q.data(), v.data());
   work_->set_tensions(tendons);
   work_->motion.pull(loads, work_->tensions.data(), work_->surroundings);

@@ -26,11 +26,15 @@ struct RodDynamicsConfig {
   /// included, of the rod that turns so fast as a whole.
   double tolerance = 1e-7;
   int most_iterations = 30;
-  /// A step that does not converge is made anew with the radius 0, in halves of halves; so many at most. 1:
-  /// it is not.
-  int most_pieces = 64;
+  /// A step that does not converge is made anew with the radius 0, in halves of halves, each as long as
+  /// converges, but none shorter than the step over this: a power of 2. 1: it is not.
+  int most_pieces = 65536;
   /// Whether cross-sections resist to turning. Without, a rod must not twist.
   bool rotary_inertia = true;
+  /// Of tendons that rub: how many times as stiff as the rod friction gives way to a tendon before it lets it
+  /// slide. A tendon under a tension goes on by about friction times the angle by which it turns, over this,
+  /// of the way by which that tension bends the rod.
+  double friction_grip = 100;
 };
 
 /// How a step ended.
@@ -48,6 +52,8 @@ struct RodState {
   Eigen::VectorXd q;             ///< The strain modes, as of RodChain.
   Eigen::VectorXd momentum;      ///< p = M(q) v.
   std::vector<double> tensions;  ///< Of the last step, N, at the base.
+  /// By how much friction holds the tendons that rub, N, from place to place along them; of the state, too.
+  std::vector<double> friction;
 
   Eigen::VectorXd rate;  ///< dq/dt and dp/dt as the integrator has them.
   Eigen::VectorXd force;
@@ -58,13 +64,21 @@ struct RodState {
   double contraction = 0.1;  ///< By which an iteration of the last step gained.
 };
 
+/// What is known of the friction of tendons before a time.
+struct RodSlide {
+  std::vector<double> friction = {};  ///< As of RodState.
+  double time = 0;                    ///< Since when they slide as they do now, s.
+};
+
 /// What a step was.
 struct RodStep {
   DynamicsEnd end = DynamicsEnd::converged;
   std::string problem = {};  ///< Of bad input, in words.
   int iterations = 0;        ///< Linear systems solved.
-  int pieces = 1;            ///< That the step was made in, if it converged.
+  int pieces = 1;            ///< That the step was made in; 0: it did not converge.
   bool is_anew = false;      ///< It did not converge at first (RodDynamicsConfig::most_pieces).
+  double friction_work = 0;  ///< J: what friction of tendons took, with what it stored as it gave way.
+  double friction_loss = 0;  ///< Of that, what was lost; never below 0.
 
   [[nodiscard]] bool converged() const { return end == DynamicsEnd::converged; }
 };
@@ -106,8 +120,7 @@ struct RodStepSlopes {
 /// there are, and allocates nothing.
 class RodDynamics {
  public:
-  /// As RodChain. std::invalid_argument: the problems of the rod, no mass, tendons with friction, a setting
-  /// out of bounds.
+  /// As RodChain. std::invalid_argument: the problems of the rod, no mass, a setting out of bounds.
   explicit RodDynamics(Rod rod, const RodDynamicsConfig& config = {}, std::span<const RodPlace> places = {});
   ~RodDynamics();
   RodDynamics(RodDynamics&&) noexcept;
@@ -117,13 +130,22 @@ class RodDynamics {
   /// a point outside the rod.
   void set_surroundings(const RodSurroundings* surroundings);
 
+  /// From now on each section's own length is a factor of what the rod says, one a section, each > 0, that
+  /// changes by a rate, 1/s: of sections that something drives longer or shorter (RodChain::stretch_rest). In
+  /// a step both are those where its tendons are. The state stays; kinetic energy and momentum have what the
+  /// drives move. std::invalid_argument: another number of them, a factor that is not above 0, rates that are
+  /// not finite.
+  void stretch_rest(std::span<const double> factors, std::span<const double> rates);
+
   /// The rod at rest when nothing pulls.
   [[nodiscard]] RodState rest() const;
-  /// At rest in an equilibrium of RodStatics.
+  /// At rest in an equilibrium of RodStatics: tendons that rub have been pulled in up to there.
   [[nodiscard]] RodState rest(const Equilibrium& at) const;
-  /// In motion: by its modes and their rates, under what pulls from now on.
+  /// In motion: by its modes and their rates, under what pulls from now on. Tendons that rub have slid as
+  /// `slide` says; null: as they do now for a tenth of a second, so that those that do not slide are held by
+  /// nothing.
   [[nodiscard]] RodState start(const Eigen::VectorXd& q, const Eigen::VectorXd& v, const TendonInput& tendons,
-                               const RodLoads& loads);
+                               const RodLoads& loads, const RodSlide* slide = nullptr);
 
   /// From now on, until it is dropped, it carries the mass: the state after a jolt, with the generalized
   /// momentum of both as they were before. Energy is lost as they become one (none where both move alike).
@@ -147,7 +169,7 @@ class RodDynamics {
   [[nodiscard]] Eigen::VectorXd velocity(const RodState& state);
   /// Of its motion, its strains, and its weight under these loads, J.
   [[nodiscard]] RodEnergy energy(const RodState& state, const RodLoads& loads);
-  /// What damping takes from it, W.
+  /// What damping of its strains takes from it, W.
   [[nodiscard]] double dissipation(const RodState& state);
   /// Of all of the rod: linear, and angular about the base's origin.
   [[nodiscard]] Vector6d momentum(const RodState& state);
@@ -179,10 +201,12 @@ class RodDynamics {
   [[nodiscard]] Eigen::MatrixXd stiffness_matrix() const;
   [[nodiscard]] Eigen::MatrixXd damping_matrix() const;
 
-  /// Derivatives at a state, under what pulls. They cost as the square of the number of sections.
+  /// Derivatives at a state, under what pulls. They cost as the square of the number of sections. Of tendons
+  /// that rub as start() has them.
   [[nodiscard]] RodDynamicsSlopes slopes(const RodState& state, const TendonInput& tendons,
-                                         const RodLoads& loads);
-  /// The linear motion around a state. Errors and cost as slopes().
+                                         const RodLoads& loads, const RodSlide* slide = nullptr);
+  /// The linear motion around a state. Errors and cost as slopes(); std::invalid_argument: a tendon rubs,
+  /// which has no linear model.
   [[nodiscard]] RodLinear linearize(const RodState& state, const TendonInput& tendons, const RodLoads& loads);
   /// Of a step that is made in one piece. std::runtime_error: it does not converge.
   [[nodiscard]] RodStepSlopes step_slopes(const RodState& state, const TendonInput& tendons,

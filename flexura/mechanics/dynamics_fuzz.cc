@@ -95,7 +95,8 @@ Rod rod_of(Numbers& numbers) {
     rod.tendons.push_back({.section = static_cast<std::size_t>(numbers.integer(0, sections - 1)),
                            .radius = numbers.odd(numbers.uniform(0, 0.02)),
                            .angle = numbers.uniform(-4, 4),
-                           .compliance = numbers.odd(numbers.uniform(0, 1e-3))});
+                           .compliance = numbers.odd(numbers.uniform(0, 1e-3)),
+                           .friction = numbers.integer(0, 2) == 0 ? numbers.odd(numbers.uniform(0, 1)) : 0});
   return rod;
 }
 
@@ -122,6 +123,7 @@ void require_finite(const RodState& state) {
   require(std::isfinite(state.time) && state.q.allFinite() && state.momentum.allFinite());
   require(state.rate.allFinite() && state.force.allFinite());
   for (const double tension : state.tensions) require(std::isfinite(tension) && tension >= 0);
+  for (const double held : state.friction) require(std::isfinite(held));
 }
 
 void look(RodDynamics& dynamics, const RodContact& contact, const RodState& state, const RodLoads& loads) {
@@ -178,8 +180,17 @@ void run_scene(Numbers& numbers) {
     const double h = numbers.odd(numbers.power(-6, 1));
     const TendonInput now = rod.tendons.empty() ? input : after_breaks(input, breaks, state.time);
     const double before = state.time;
+    if (numbers.integer(0, 3) == 0) {
+      std::vector<double> factors, rates;
+      for (std::size_t s = 0; s < rod.sections.size(); ++s) {
+        factors.push_back(numbers.odd(numbers.uniform(0.5, 2)));
+        rates.push_back(numbers.odd(numbers.uniform(-2, 2)));
+      }
+      dynamics.stretch_rest(factors, rates);
+    }
     const RodStep step = dynamics.step(state, now, loads, h);
     require(words(step.end)[0] != 0);
+    require(!std::isnan(step.friction_work) && !std::isnan(step.friction_loss));
     require(step.converged() || state.time == before);
     require_finite(state);
     look(dynamics, contact, state, loads);

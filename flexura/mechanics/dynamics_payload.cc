@@ -72,6 +72,11 @@ RodState RodDynamics::pick_up(const RodState& state, const RodPayload& payload, 
   both.momentum += brought;
   const Eigen::VectorXd v = velocity(both);
   RodState after = start(state.q, v, tendons, loads);
+  if (work.rubs()) {
+    // What holds the tendons goes on holding them.
+    work.hold(state.friction.data(), 0);
+    work.set_forces(after, v, tendons, loads);
+  }
   after.time = state.time;
   return after;
 }
@@ -87,6 +92,11 @@ RodState RodDynamics::drop(const RodState& state, const RodPlace& place, const T
     work.bare.erase(found);
   }
   RodState after = start(state.q, v, tendons, loads);
+  if (work.rubs()) {
+    // What holds the tendons goes on holding them.
+    work.hold(state.friction.data(), 0);
+    work.set_forces(after, v, tendons, loads);
+  }
   after.time = state.time;
   return after;
 }

@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 #include <algorithm>
@@ -16,6 +18,8 @@ void RodDynamics::Work::differentiate(const Eigen::VectorXd& q, const Eigen::Vec
     differential_ = std::make_unique<RodMotion<Number>>(layout);
     differential_->set_points(points.get());
   }
+  differential_->set_grip(grip);
+  differential_->hold(held_before_, slide_time_);
   const Eigen::Index n = q.size();
   momentum.resize(n, n);
   force.resize(n, n);
@@ -56,11 +60,13 @@ RodDynamicsSlopes RodDynamics::Work::slopes_at(const Eigen::VectorXd& q, const E
   differentiate(q, v, loads, 1, 0, slopes.momentum_by_q, slopes.force_by_q);
   differentiate(q, v, loads, 0, 1, slopes.mass, slopes.force_by_v);
   motion.place(q.data(), v.data());
+  if (rubs()) motion.pull(loads, tensions.data(), surroundings);
+  Eigen::VectorXd length_slopes(q.size());
   const auto count = static_cast<Eigen::Index>(chain.tendons());
   slopes.force_by_input.setZero(q.size(), count);
   for (Eigen::Index i = 0; i < count; ++i) {
     const auto tendon = static_cast<std::size_t>(i);
-    motion.find_length_slopes(tendon, slopes.force_by_input.col(i).data());
+    motion.find_pull_slopes(tendon, tensions[tendon], slopes.force_by_input.col(i).data());
     slopes.force_by_input.col(i) *= -1;
     if (tendons.displacements.empty()) continue;
     // Its tension follows its length.
@@ -68,8 +74,8 @@ RodDynamicsSlopes RodDynamics::Work::slopes_at(const Eigen::VectorXd& q, const E
       slopes.force_by_input.col(i).setZero();
       continue;
     }
-    slopes.force_by_q -=
-        slopes.force_by_input.col(i) * slopes.force_by_input.col(i).transpose() / compliance[tendon];
+    motion.find_length_slopes(tendon, length_slopes.data());
+    slopes.force_by_q += slopes.force_by_input.col(i) * length_slopes.transpose() / compliance[tendon];
     slopes.force_by_input.col(i) /= compliance[tendon];
   }
   return slopes;
@@ -81,16 +87,21 @@ bool RodDynamics::Work::find_stage(const RodState& state, const TendonInput& ten
   if (!step_once(scheme, after, tendons, loads, h).converged()) return false;
   q = q_from_ + scheme.stage * h * velocity;
   v = velocity;
+  hold(state.friction.data(), h);
   return true;
 }
 
 RodDynamicsSlopes RodDynamics::slopes(const RodState& state, const TendonInput& tendons,
-                                      const RodLoads& loads) {
-  const RodState started = start(state.q, velocity(state), tendons, loads);  // Checks; sets the tensions.
+                                      const RodLoads& loads, const RodSlide* slide) {
+  const RodState started =
+      start(state.q, velocity(state), tendons, loads, slide);  // Checks; sets the tensions.
   return work_->slopes_at(started.q, started.rate, tendons, loads);
 }
 
 RodLinear RodDynamics::linearize(const RodState& state, const TendonInput& tendons, const RodLoads& loads) {
+  if (work_->rubs())
+    throw std::invalid_argument(
+        fmt::format("tendon {}: friction has no linear model", work_->layout.rubbing.front().tendon + 1));
   const RodDynamicsSlopes by = slopes(state, tendons, loads);
   const Eigen::Index n = state.q.size(), inputs = by.force_by_input.cols();
   const Eigen::LDLT<Eigen::MatrixXd> mass(by.mass);

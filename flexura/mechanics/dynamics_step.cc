@@ -1,6 +1,9 @@
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <utility>
 
+#include "flexura/mechanics/complementary.h"
 #include "flexura/mechanics/dynamics_work.h"
 
 namespace flexura {
@@ -11,6 +14,10 @@ constexpr double least_gain = 0.95;
 // One that gains less than this gets a new matrix, where surroundings pull.
 constexpr double slow_gain = 0.2;
 constexpr int patience = 6;
+// Of pieces of a step that converge, before they become longer again.
+constexpr int enough_in_a_row = 4;
+// Pieces that are tried at most, whether they converge or not.
+constexpr int most_tries = 4000;
 
 double greatest_change(const Eigen::VectorXd& change, const Eigen::VectorXd& scales) {
   double most = 0;
@@ -90,19 +97,31 @@ bool RodDynamics::Work::pull_tight() {
   return false;
 }
 
+// The same where tendons rub, of a matrix that is not symmetric.
+bool RodDynamics::Work::find_tensions() {
+  Complementary problem{.matrix = give_, .rhs = wanted_, .kinds = {}};
+  problem.kinds.assign(taut_.size(), Complementary::Kind::at_least_0);
+  const std::optional<Eigen::VectorXd> found = problem.solve(taut_, 1e-13 * chain.rod().length());
+  if (!found) return false;
+  found_ = *found;
+  return true;
+}
+
 // change_ is what is left at the stage, with the tensions as they are. It becomes the step without tendons;
 // then tensions are found with which they are as long as they shall be, and it has those.
 template <typename Solve>
 bool RodDynamics::Work::solve_with_tendons(const Stage& stage, Solve&& solve) {
   const Eigen::Index count = found_.size();
+  // How they pull: where they do not rub, as their lengths change.
+  const Eigen::MatrixXd& pulls = rubs() ? pull_slopes_ : length_slopes_;
   for (Eigen::Index i = 0; i < count; ++i) {
     const double tension = tensions[static_cast<std::size_t>(i)];
-    if (tension != 0) change_ += stage.stretch * tension * length_slopes_.col(i);
+    if (tension != 0) change_ += stage.stretch * tension * pulls.col(i);
   }
   left_ = change_;
   solve(change_.data());
   for (Eigen::Index i = 0; i < count; ++i) {
-    answers_.col(i) = length_slopes_.col(i);
+    answers_.col(i) = pulls.col(i);
     solve(answers_.col(i).data());
   }
   for (Eigen::Index i = 0; i < count; ++i) {
@@ -113,11 +132,11 @@ bool RodDynamics::Work::solve_with_tendons(const Stage& stage, Solve&& solve) {
     wanted_[i] = lengths_[i] - rest_lengths[tendon] + stage.tendons.displacements[tendon] +
                  stage.stretch * length_slopes_.col(i).dot(change_);
   }
-  if (!pull_tight()) return false;
+  if (!(rubs() ? find_tensions() : pull_tight())) return false;
   for (Eigen::Index i = 0; i < count; ++i) {
     const auto tendon = static_cast<std::size_t>(i);
     change_ -= stage.stretch * found_[i] * answers_.col(i);
-    left_ -= stage.stretch * found_[i] * length_slopes_.col(i);
+    left_ -= stage.stretch * found_[i] * pulls.col(i);
     pull_change_[i] = found_[i] - tensions[tendon];
     tensions[tendon] = found_[i];
   }
@@ -127,7 +146,11 @@ bool RodDynamics::Work::solve_with_tendons(const Stage& stage, Solve&& solve) {
 // Of the change of the rates: by the energy that it has in the quadratic form of the stage's equations,
 // stiffness included, as if the rod were turned as a whole; rad/s.
 double RodDynamics::Work::change_size() const {
-  return std::sqrt(std::abs(change_.dot(left_)) / turning_inertia_);
+  const double size = std::sqrt(std::abs(change_.dot(left_)) / turning_inertia_);
+  if (!rubs()) return size;
+  // Friction has no energy: where it holds, both may be across each other.
+  constexpr double part = 1e-3;
+  return std::max(size, part * greatest_change(change_, chain.scales()));
 }
 
 void RodDynamics::Work::evaluate(const Stage& stage) {
@@ -138,8 +161,11 @@ void RodDynamics::Work::evaluate(const Stage& stage) {
   change_ = p_from_ - momentum_ + stage.stretch * force_;
   if (!stage.by_displacement()) return;
   motion.find_lengths(lengths_.data());
-  for (std::size_t i = 0; i < tensions.size(); ++i)
-    motion.find_length_slopes(i, length_slopes_.col(static_cast<Eigen::Index>(i)).data());
+  for (std::size_t i = 0; i < tensions.size(); ++i) {
+    const auto column = static_cast<Eigen::Index>(i);
+    motion.find_length_slopes(i, length_slopes_.col(column).data());
+    if (rubs()) motion.find_pull_slopes(i, tensions[i], pull_slopes_.col(column).data());
+  }
 }
 
 bool RodDynamics::Work::solve_quickly(const Stage& stage) {
@@ -239,6 +265,12 @@ bool RodDynamics::Work::iterate_exactly(const Stage& stage, RodStep& result) {
       return true;
     }
     from = velocity;
+    if (rubs() && part == 1 && next < slow_gain * size) {
+      // Where friction gains, the derivative is as good as it was.
+      step = change_;
+      size = next;
+      continue;
+    }
     evaluate(stage);
     if (!factor_exactly(stage) || !solve_exactly(stage)) return false;
     step = change_;
@@ -249,6 +281,10 @@ bool RodDynamics::Work::iterate_exactly(const Stage& stage, RodStep& result) {
 
 // The stage's force, with the last change of the rates.
 void RodDynamics::Work::finish_force(const Stage& stage) {
+  if (rubs()) {
+    evaluate(stage);
+    return;
+  }
   if (surroundings != nullptr && (motion.is_coupled() || !matrix.has_columns_of(motion))) {
     evaluate(stage);
     return;
@@ -271,7 +307,7 @@ void RodDynamics::Work::finish_force(const Stage& stage) {
 }
 
 // From the stage to the step's end.
-bool RodDynamics::Work::finish(const Stage& stage, RodState& state, double h) {
+bool RodDynamics::Work::finish(const Stage& stage, RodState& state, double h, RodStep& result) {
   finish_force(stage);
   if (!force_.allFinite() || !velocity.allFinite()) return false;
   const Scheme& use = stage.scheme;
@@ -288,6 +324,10 @@ bool RodDynamics::Work::finish(const Stage& stage, RodState& state, double h) {
   state.momentum += h * use.gamma * state.force;
   state.time += h;
   std::ranges::copy(tensions, state.tensions.begin());
+  if (rubs()) {
+    find_friction_work(state, h, result);
+    std::ranges::copy(motion.frictions(), state.friction.begin());
+  }
   state.middles = state.step == h ? std::min(3, state.middles + 1) : 1;
   state.step = h;
   state.middle[2].swap(state.middle[1]);
@@ -305,61 +345,126 @@ RodStep RodDynamics::Work::step_once(const Scheme& use, RodState& state, const T
   q_from_ = state.q + use.memory * h * state.rate;
   p_from_ = state.momentum + use.memory * h * state.force;
   begin(state, stage, h);
-  const double turn = stage.stretch * greatest_change(velocity, chain.scales());
   double worst_gain = 0;
-  if (!iterate_quickly(stage, std::max(state.contraction, turn), result, worst_gain)) {
-    begin(state, stage, h);
-    velocity.setZero();
-    if (!iterate_exactly(stage, result)) return result;
+  if (rubs()) {
+    // The quick matrix knows nothing of what holds the tendons.
+    hold(state.friction.data(), h);
+    if (!iterate_exactly(stage, result)) {
+      begin(state, stage, h);
+      velocity.setZero();
+      if (!iterate_exactly(stage, result)) return result;
+    }
+  } else {
+    const double turn = stage.stretch * greatest_change(velocity, chain.scales());
+    if (!iterate_quickly(stage, std::max(state.contraction, turn), result, worst_gain)) {
+      begin(state, stage, h);
+      velocity.setZero();
+      if (!iterate_exactly(stage, result)) return result;
+    }
   }
-  if (!finish(stage, state, h)) return result;
+  if (!finish(stage, state, h, result)) return result;
   if (worst_gain > 0) state.contraction = std::min(worst_gain, 0.5);
   result.end = DynamicsEnd::converged;
   return result;
 }
 
-// The same shape, with the rates that the last steps had.
-void RodDynamics::Work::restart(RodState& state, const TendonInput& tendons, const RodLoads& loads) {
-  if (state.middles >= 2)
-    state.rate = state.middle[0] + (1 - scheme.alpha_f) * (state.middle[0] - state.middle[1]);
-  else if (state.middles == 1)
-    state.rate = state.middle[0];
+// Of the stage, for the step: what friction took, and of that what its giving way did not store.
+void RodDynamics::Work::find_friction_work(const RodState& state, double h, RodStep& result) const {
+  for (std::size_t i = 0; i < layout.pieces; ++i) {
+    const double held = motion.frictions()[i], before = state.friction[i];
+    if (grip[i] == 0) continue;
+    const double work = held * h * motion.slides()[i];
+    result.friction_work += work;
+    result.friction_loss += work - (held - before) * (held + before) / (2 * grip[i]);
+  }
+}
+
+// Long steps leave momenta in stiff strains that swing from step to step, which would be a blow in short
+// ones: the same shape, with the rates that the rod had in the middle of its last two steps. Whether most of
+// the energy was in what that leaves out.
+bool RodDynamics::Work::restart(RodState& state, const TendonInput& tendons, const RodLoads& loads) {
+  constexpr double most = 1.5;
+  const int middles = std::exchange(state.middles, 0);
+  if (middles == 0 || !find_velocity(state)) return false;
+  const double kinetic = velocity.dot(state.momentum);
+  state.rate = middles == 1 ? state.middle[0] : 0.5 * (state.middle[0] + state.middle[1]);
+  hold(state.friction.data(), 0);
   motion.place(state.q.data(), state.rate.data());
   set_tensions(tendons);
   motion.pull(loads, tensions.data(), surroundings);
   motion.balance(state.momentum.data(), state.force.data());
-  state.middles = 0;
+  return kinetic > most * state.rate.dot(state.momentum);
+}
+
+// How far tendons are pulled in where the rod is: of those that are slack, as far as they are going to be.
+std::vector<double> RodDynamics::Work::displacements_at(const RodState& state, const TendonInput& tendons) {
+  std::vector<double> pulled = tendons.displacements;
+  if (pulled.empty()) return pulled;
+  velocity.setZero();
+  motion.place(state.q.data(), velocity.data());
+  motion.find_lengths(lengths_.data());
+  for (std::size_t i = 0; i < pulled.size(); ++i) {
+    const double taut = rest_lengths[i] - lengths_[static_cast<Eigen::Index>(i)];
+    pulled[i] = state.tensions[i] > 0 ? taut + compliance[i] * state.tensions[i] : std::min(pulled[i], taut);
+  }
+  return pulled;
+}
+
+// With all the damping that there is, in halves of halves, each as long as converges. Tendons are pulled in
+// evenly: all at once would be a blow, the harder the shorter the first piece is.
+bool RodDynamics::Work::step_in_pieces(RodState& state, const TendonInput& tendons, const RodLoads& loads,
+                                       double h, RodStep& result) {
+  const Scheme damped(0);
+  const std::vector<double> pulled = displacements_at(state, tendons);
+  TendonInput now = tendons;
+  // `left` of them, of 1/parts of the step each.
+  long parts = 1, left = 1;
+  int in_a_row = 0;
+  result.pieces = 0;
+  result.friction_work = result.friction_loss = 0;
+  for (int tries = 0; left > 0; ++tries) {
+    const double rest = static_cast<double>(left - 1) / static_cast<double>(parts);
+    for (std::size_t i = 0; i < pulled.size(); ++i)
+      now.displacements[i] = tendons.displacements[i] + rest * (pulled[i] - tendons.displacements[i]);
+    const RodStep piece = step_once(damped, state, now, loads, h / static_cast<double>(parts));
+    result.end = piece.end;
+    result.iterations += piece.iterations;
+    if (!piece.converged()) {
+      in_a_row = 0;
+      parts *= 2;
+      left *= 2;
+      if (parts > config.most_pieces || tries > most_tries) return false;
+      continue;
+    }
+    result.friction_work += piece.friction_work;
+    result.friction_loss += piece.friction_loss;
+    --left;
+    ++result.pieces;
+    // What was hard may be over.
+    if (++in_a_row < enough_in_a_row || parts == 1 || left % 2 != 0) continue;
+    parts /= 2;
+    left /= 2;
+    in_a_row = 0;
+  }
+  return true;
 }
 
 RodStep RodDynamics::Work::step(RodState& state, const TendonInput& tendons, const RodLoads& loads,
                                 double h) {
   RodStep result = step_once(scheme, state, tendons, loads, h);
   if (result.converged() || config.most_pieces < 2) return result;
-  // Anew, from the rates that the last steps had, with all the damping that there is; in halves of halves.
-  // (What long steps leave in the momenta of stiff strains would be a blow in short ones.)
-  const Scheme damped(0);
-  const RodState before = state;
-  restart(state, tendons, loads);
-  int parts = 1, left = 1;
-  result.pieces = 0;
   result.is_anew = true;
-  while (left > 0) {
-    const RodStep piece = step_once(damped, state, tendons, loads, h / parts);
-    result.end = piece.end;
-    result.iterations += piece.iterations;
-    if (piece.converged()) {
-      --left;
-      ++result.pieces;
-      continue;
-    }
-    parts *= 2;
-    left *= 2;
-    if (parts > config.most_pieces) break;
-  }
-  if (result.converged())
+  const RodState before = state;
+  RodState begun = state;
+  const bool is_swinging = restart(begun, tendons, loads);
+  for (const bool anew : {is_swinging, !is_swinging}) {
+    state = anew ? begun : before;
+    if (!step_in_pieces(state, tendons, loads, h, result)) continue;
     state.time = before.time + h;
-  else
-    state = before;
+    return result;
+  }
+  state = before;
+  result.pieces = 0;
   return result;
 }
 

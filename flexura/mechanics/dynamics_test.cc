@@ -334,7 +334,8 @@ TEST(Dynamics, RefusesWhatIsNoInput) {
   EXPECT_EQ(refusal(bad, {}), "section 2: damping must be at least 0");
   bad = rod;
   bad.tendons[2].friction = 0.1;
-  EXPECT_EQ(refusal(bad, {}), "tendon 3: friction is known at rest alone");
+  EXPECT_EQ(refusal(bad, {}), "");
+  EXPECT_EQ(refusal(bad, {.friction_grip = 0}), "the grip of friction must be above 0");
 
   RodDynamics dynamics(rod);
   RodState state = dynamics.rest();

@@ -40,6 +40,14 @@ struct RodDynamics::Work {
   }
   void set_surroundings(const RodSurroundings* given);
   [[nodiscard]] std::string input_problem(const TendonInput& tendons, const RodLoads& loads) const;
+  [[nodiscard]] bool rubs() const { return !layout.rubbing.empty(); }
+  /// The state in motion under `tendons`, with its forces; friction as `motion` holds it.
+  void set_forces(RodState& state, const Eigen::VectorXd& v, const TendonInput& tendons,
+                  const RodLoads& loads);
+  /// As RodMotion's, of all that compute.
+  void hold(const double* before, double time);
+  /// Since when tendons slide as fast as they do, s, where nothing is known of what was before.
+  static constexpr double has_slid = 0.1;
   RodStep step(RodState& state, const TendonInput& tendons, const RodLoads& loads, double h);
   /// Tensions as they are given, or by displacements, where the rod was placed.
   void set_tensions(const TendonInput& tendons);
@@ -59,6 +67,7 @@ struct RodDynamics::Work {
   const RodSurroundings* surroundings = nullptr;
   std::unique_ptr<RodPoints> points = {};        ///< Where they pull beside the nodes; none: nowhere.
   std::vector<double> rest_lengths, compliance;  // m, m/N
+  std::vector<double> grip;                      // N/m, of the pieces of tendons that rub
   std::vector<double> tensions;
   Eigen::VectorXd velocity;
   /// Bodies of nodes that carry payloads, as they are without.
@@ -81,7 +90,10 @@ struct RodDynamics::Work {
   };
   RodStep step_once(const Scheme& use, RodState& state, const TendonInput& tendons, const RodLoads& loads,
                     double h);
-  void restart(RodState& state, const TendonInput& tendons, const RodLoads& loads);
+  bool restart(RodState& state, const TendonInput& tendons, const RodLoads& loads);
+  [[nodiscard]] std::vector<double> displacements_at(const RodState& state, const TendonInput& tendons);
+  bool step_in_pieces(RodState& state, const TendonInput& tendons, const RodLoads& loads, double h,
+                      RodStep& result);
   [[nodiscard]] double change_size() const;
   void begin(const RodState& state, const Stage& stage, double h);
   void guess(const RodState& state, double h);
@@ -92,19 +104,25 @@ struct RodDynamics::Work {
   bool solve_exactly(const Stage& stage);
   bool iterate_quickly(const Stage& stage, double contraction, RodStep& result, double& worst_gain);
   bool iterate_exactly(const Stage& stage, RodStep& result);
+  void find_grip(const Eigen::VectorXd& give);
+  void find_friction_work(const RodState& state, double h, RodStep& result) const;
+  bool find_tensions();
   bool factor_exactly(const Stage& stage);
   template <typename Solve>
   bool solve_with_tendons(const Stage& stage, Solve&& solve);
   bool pull_tight();
   void finish_force(const Stage& stage);
-  bool finish(const Stage& stage, RodState& state, double h);
+  bool finish(const Stage& stage, RodState& state, double h, RodStep& result);
 
   Eigen::VectorXd q_from_, p_from_, q_, momentum_, force_, change_, left_;
   double turning_inertia_ = 1;  // kg m^2
   // Of displacements: by tendon.
-  Eigen::MatrixXd length_slopes_, answers_, give_, pivot_;
+  Eigen::MatrixXd length_slopes_, pull_slopes_, answers_, give_, pivot_;
   Eigen::VectorXd lengths_, wanted_, found_, pull_change_;
   std::vector<char> taut_;
+  // Of friction, as `motion` has it.
+  const double* held_before_ = nullptr;
+  double slide_time_ = 0;
   // Of iterations with the derivative, which few steps need; made when the first does.
   std::unique_ptr<RodMotion<Dual<Lanes>>> differential_;
   Eigen::PartialPivLU<Eigen::MatrixXd> derivative_;

@@ -17,6 +17,9 @@ namespace {
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 
 constexpr int weightings = 8;
+// Of equations with friction; from one to the next it settles by so much of its standard deviation.
+constexpr int linearizations = 12;
+constexpr double settled = 0.01, settled_at_all = 1e-6;
 // Beside the variances of equations that are correlated: of rounding.
 constexpr double ridge = 1e-9;
 // Of what a coefficient is, the part that noise may make before it tells nothing.
@@ -94,11 +97,19 @@ MatrixXd inverse_covariance(const IdentificationEquations& equations, const Vect
   return size.asDiagonal() * Cholesky(0.5 * (C + C.transpose())).inverse() * size.asDiagonal();
 }
 
-}  // namespace
+// The rod with the friction that was found.
+Rod with_friction(Rod rod, const std::vector<RodParameter>& parameters, const VectorXd& values) {
+  constexpr double most = 10;
+  for (std::size_t g = 0; g < parameters.size(); ++g) {
+    if (parameters[g].kind != RodParameter::Kind::friction) continue;
+    for (const std::size_t i : rubbing_tendons(rod, parameters[g]))
+      rod.tendons[i].friction = std::clamp(values[static_cast<Index>(g)], 0.0, most);
+  }
+  return rod;
+}
 
-Identification identify(const Rod& rod, const std::vector<RodParameter>& parameters,
-                        const RodMotionRecord& record, const IdentificationConfig& config) {
-  const IdentificationEquations equations(rod, parameters, record, config);
+// The least squares of the equations around a rod's friction, from values nearby.
+Identification solve(const IdentificationEquations& equations, const std::vector<RodParameter>& parameters) {
   const auto count = static_cast<Index>(parameters.size());
   const Index rows = equations.fixed.size();
   Identification result{.values = equations.nominal,
@@ -149,6 +160,35 @@ Identification identify(const Rod& rod, const std::vector<RodParameter>& paramet
   }
   for (const Index g : seen) result.sigma[g] = std::sqrt(result.covariance(g, g));
   return result;
+}
+
+}  // namespace
+
+Identification identify(const Rod& rod, const std::vector<RodParameter>& parameters,
+                        const RodMotionRecord& record, const IdentificationConfig& config) {
+  const auto rubs = [](const RodParameter& each) { return each.kind == RodParameter::Kind::friction; };
+  const IdentificationEquations first(rod, parameters, record, config);
+  Identification found = solve(first, parameters);
+  if (std::ranges::none_of(parameters, rubs)) return found;
+  const VectorXd nominal = first.nominal;
+  found.converged = false;
+  for (int pass = 0; pass < linearizations && !found.converged; ++pass) {
+    const VectorXd before = found.values;
+    found = solve(IdentificationEquations(with_friction(rod, parameters, before), parameters, record, config),
+                  parameters);
+    found.converged = true;
+    for (std::size_t g = 0; g < parameters.size(); ++g) {
+      if (!rubs(parameters[g])) continue;
+      const auto at = static_cast<Index>(g);
+      if (found.is_observable[g] == 0) {
+        found.values[at] = nominal[at];
+        continue;
+      }
+      const double change = std::abs(found.values[at] - before[at]);
+      if (!(change <= std::max(settled * found.sigma[at], settled_at_all))) found.converged = false;
+    }
+  }
+  return found;
 }
 
 }  // namespace flexura

@@ -11,7 +11,7 @@
 // and identification").
 namespace flexura {
 
-/// A number that is looked for. Rods' equations of motion are linear in all of them.
+/// A number that is looked for. Rods' equations of motion are linear in all of them but friction.
 struct RodParameter {
   enum class Kind {
     shear,  ///< A factor on what the rod says of its stiffness against shear, as the next three.
@@ -21,6 +21,7 @@ struct RodParameter {
     stiffness,  ///< These four together: Young's modulus, of a material whose Poisson's ratio is known.
     damping,  ///< s: the damping is this times the stiffness that the rod says, instead of what the rod says.
     mass,     ///< A factor on the mass of all of the rod, inertia and weight.
+    friction,  ///< The coefficient of friction of tendons: of all, or of those that end at the section.
   };
   Kind kind = Kind::bends;
   std::optional<std::size_t> section = {};  ///< Left out: of all sections together. Of a mass left out.
@@ -65,13 +66,17 @@ struct Identification {
   /// about 1 where the rod moves as it says. Of unknown noise 1.
   double misfit = 0;
   int equations = 0;  ///< Scalar ones.
+  /// Of friction: what was found last time was less than a hundredth of its standard deviation from that, or
+  /// a millionth. Else always.
+  bool converged = true;
 };
 
 /// The parameters that fit a record best, by linear least squares of the equations of motion. Each equation
 /// is one of a mode, times a smooth bump in time, integrated by parts over a window, so that no acceleration
 /// is needed (the weak form: M. Shinbrot 1957). With known noise equations are weighted by their covariance,
 /// which that of the record makes to first order, and the bias is taken out that the noise of q and v in the
-/// coefficients makes. std::invalid_argument: the problems of the rod, parameters that overlap or none,
+/// coefficients makes. For friction the equations are made linear at what was found so far, until that stays
+/// (C. F. Gauss, I. Newton). std::invalid_argument: the problems of the rod, parameters that overlap or none,
 /// samples that do not fit.
 [[nodiscard]] Identification identify(const Rod& rod, const std::vector<RodParameter>& parameters,
                                       const RodMotionRecord& record, const IdentificationConfig& config = {});

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <memory>
+#include <optional>
 #include <stdexcept>
 #include <utility>
 
@@ -12,6 +14,14 @@
 #include "flexura/mechanics/dynamics.h"
 
 namespace flexura {
+
+std::vector<std::size_t> rubbing_tendons(const Rod& rod, const RodParameter& parameter) {
+  std::vector<std::size_t> tendons;
+  for (std::size_t i = 0; i < rod.tendons.size(); ++i)
+    if (parameter.section.value_or(rod.tendons[i].section) == rod.tendons[i].section) tendons.push_back(i);
+  return tendons;
+}
+
 namespace {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
@@ -91,9 +101,40 @@ struct Term {
   MatrixXd bump_by_q = {}, bump_by_v = {}, slope_by_q = {}, slope_by_v = {};  // Empty: none.
 };
 
-// What a parameter multiplies: part of the stiffness or damping; neither: the mass.
+// A rod at a sample, whose tendons have slid as they did at the samples up to there.
+class SlidingRod {
+ public:
+  explicit SlidingRod(RodDynamics& dynamics) : dynamics_(&dynamics) {}
+  // Goes on to the sample: what the rod's forces are there.
+  const RodState& go_on(const RodMotionRecordSample& sample, const VectorXd& v, const RodLoads& loads) {
+    before_ = now_;
+    const RodState state = dynamics_->start(sample.q, v, {.tensions = sample.tensions}, loads, slide(sample));
+    now_.emplace(state);
+    now_->time = sample.time;
+    return *now_;
+  }
+  [[nodiscard]] RodDynamicsSlopes slopes(const RodMotionRecordSample& sample, const RodLoads& loads) {
+    return dynamics_->slopes(now_.value(), {.tensions = sample.tensions}, loads, slide(sample));
+  }
+
+ private:
+  const RodSlide* slide(const RodMotionRecordSample& sample) {
+    if (!before_ || before_->friction.empty()) return nullptr;
+    slide_ = {before_->friction, sample.time - before_->time};
+    return &slide_;
+  }
+  RodDynamics* dynamics_;
+  std::optional<RodState> before_ = {}, now_ = {};
+  RodSlide slide_ = {};
+};
+
+// What a parameter multiplies: part of the stiffness or damping; rods with more and less of the friction;
+// none of these: the mass.
 struct ParameterPart {
-  MatrixXd stiffness, damping;
+  MatrixXd stiffness = {}, damping = {};
+  std::unique_ptr<RodDynamics> more = {}, less = {};
+  std::vector<SlidingRod> sliding = {};    // Of these two.
+  double coefficient = 0, difference = 0;  // Of friction, as it is, and between the two.
 };
 
 std::array<bool, 6> strains_of(RodParameter::Kind kind) {
@@ -110,6 +151,7 @@ std::array<bool, 6> strains_of(RodParameter::Kind kind) {
     case RodParameter::Kind::damping:
       return {true, true, true, true, true, true};
     case RodParameter::Kind::mass:
+    case RodParameter::Kind::friction:
       break;
   }
   return {};
@@ -138,6 +180,26 @@ MatrixXd part_of(const MatrixXd& whole, const std::vector<Index>& modes) {
   return part;
 }
 
+void set_friction(ParameterPart& part, const RodChain& chain, const RodParameter& parameter,
+                  std::vector<char>& taken) {
+  constexpr double step = 1e-3;
+  if (parameter.section && *parameter.section >= chain.elements().size())
+    throw std::invalid_argument("a parameter of a section that the rod has not");
+  const std::vector<std::size_t> tendons = rubbing_tendons(chain.rod(), parameter);
+  if (!tendons.empty()) part.coefficient = chain.rod().tendons[tendons.front()].friction;
+  Rod more = chain.rod(), less = chain.rod();
+  const double low = std::max(0.0, part.coefficient - step), high = low + 2 * step;
+  part.difference = high - low;
+  for (const std::size_t i : tendons) {
+    if (std::exchange(taken[i], char{1}) != 0) throw std::invalid_argument("parameters that overlap");
+    more.tendons[i].friction = high;
+    less.tendons[i].friction = low;
+  }
+  part.more = std::make_unique<RodDynamics>(std::move(more));
+  part.less = std::make_unique<RodDynamics>(std::move(less));
+  part.sliding = {SlidingRod(*part.more), SlidingRod(*part.less)};
+}
+
 // What moves as the parameters say, and what as the rod says.
 struct Shares {
   Shares(const RodDynamics& dynamics, const std::vector<RodParameter>& parameters)
@@ -146,8 +208,14 @@ struct Shares {
     const MatrixXd K = stiffness, D = damping;
     std::vector<char> stiffness_taken(static_cast<std::size_t>(n), 0), damping_taken = stiffness_taken;
     nominal = VectorXd::Ones(static_cast<Index>(parameters.size()));
+    std::vector<char> rubbing_taken(dynamics.chain().tendons(), 0);
     for (std::size_t g = 0; g < parameters.size(); ++g) {
       ParameterPart& part = parts.emplace_back();
+      if (parameters[g].kind == RodParameter::Kind::friction) {
+        set_friction(part, dynamics.chain(), parameters[g], rubbing_taken);
+        nominal[static_cast<Index>(g)] = part.coefficient;
+        continue;
+      }
       const std::vector<Index> modes = parameter_modes(dynamics.chain(), parameters[g]);
       if (parameters[g].kind == RodParameter::Kind::mass) {
         if (has_mass) throw std::invalid_argument("parameters that overlap");
@@ -177,42 +245,63 @@ struct Shares {
   bool has_mass = false;
 };
 
+// By a coefficient of friction: how the forces change.
+Term friction_term(ParameterPart& part, const RodMotionRecordSample& sample, const VectorXd& v,
+                   const RodLoads& loads, bool with_slopes) {
+  SlidingRod &more = part.sliding[0], &less = part.sliding[1];
+  const VectorXd most = more.go_on(sample, v, loads).force, least = less.go_on(sample, v, loads).force;
+  Term term{.bump = (most - least) / part.difference, .slope = VectorXd::Zero(v.size())};
+  if (!with_slopes) return term;
+  const RodDynamicsSlopes by_more = more.slopes(sample, loads), by_less = less.slopes(sample, loads);
+  term.bump_by_q = (by_more.force_by_q - by_less.force_by_q) / part.difference;
+  term.bump_by_v = (by_more.force_by_v - by_less.force_by_v) / part.difference;
+  term.slope_by_q = term.slope_by_v = MatrixXd::Zero(v.size(), v.size());
+  return term;
+}
+
+// to += factor from.
+void add_term(Term& to, const Term& from, double factor, bool with_slopes) {
+  to.bump += factor * from.bump;
+  to.slope += factor * from.slope;
+  if (!with_slopes) return;
+  to.bump_by_q += factor * from.bump_by_q;
+  to.bump_by_v += factor * from.bump_by_v;
+  to.slope_by_q += factor * from.slope_by_q;
+  to.slope_by_v += factor * from.slope_by_v;
+}
+
 // The terms of `fixed` and of all parameters at a sample.
-std::vector<Term> terms_at(RodDynamics& dynamics, const Shares& shares, const RodMotionRecordSample& sample,
-                           const VectorXd& v, const RodLoads& loads, bool with_slopes) {
+std::vector<Term> terms_at(RodDynamics& dynamics, SlidingRod& sliding, Shares& shares,
+                           const RodMotionRecordSample& sample, const VectorXd& v, const RodLoads& loads,
+                           bool with_slopes) {
   const MatrixXd K = dynamics.stiffness_matrix(), D = dynamics.damping_matrix();
-  const TendonInput tendons{.tensions = sample.tensions};
   const RodLoads weight{.gravity = loads.gravity};
-  const RodState all = dynamics.start(sample.q, v, tendons, loads);
+  const RodState& all = sliding.go_on(sample, v, loads);
   const RodState heavy = dynamics.start(sample.q, v, {}, weight);
   const VectorXd inner = K * sample.q + D * v;
   Term mass{.bump = heavy.force + inner, .slope = heavy.momentum};
   Term fixed{.bump = all.force - heavy.force - shares.stiffness * sample.q - shares.damping * v,
              .slope = VectorXd::Zero(v.size())};
   if (with_slopes) {
-    const RodDynamicsSlopes by = dynamics.slopes(all, tendons, loads);
+    const RodDynamicsSlopes by = sliding.slopes(sample, loads);
     const RodDynamicsSlopes heavy_by = dynamics.slopes(heavy, {}, weight);
     mass.bump_by_q = heavy_by.force_by_q + K;
     mass.bump_by_v = heavy_by.force_by_v + D;
     mass.slope_by_q = heavy_by.momentum_by_q;
     mass.slope_by_v = heavy_by.mass;
     fixed.bump_by_q = by.force_by_q - heavy_by.force_by_q - shares.stiffness;
-    fixed.bump_by_v = -shares.damping;
+    fixed.bump_by_v = by.force_by_v - heavy_by.force_by_v - shares.damping;
     fixed.slope_by_q = fixed.slope_by_v = MatrixXd::Zero(v.size(), v.size());
   }
-  if (!shares.has_mass) {
-    fixed.bump += mass.bump;
-    fixed.slope += mass.slope;
-    if (with_slopes) {
-      fixed.bump_by_q += mass.bump_by_q;
-      fixed.bump_by_v += mass.bump_by_v;
-      fixed.slope_by_q += mass.slope_by_q;
-      fixed.slope_by_v += mass.slope_by_v;
-    }
-  }
+  if (!shares.has_mass) add_term(fixed, mass, 1, with_slopes);
   std::vector<Term> terms = {fixed};
   const MatrixXd none = with_slopes ? MatrixXd::Zero(v.size(), v.size()) : MatrixXd();
-  for (const ParameterPart& part : shares.parts) {
+  for (ParameterPart& part : shares.parts) {
+    if (part.more) {
+      terms.push_back(friction_term(part, sample, v, loads, with_slopes));
+      add_term(terms.front(), terms.back(), -part.coefficient, with_slopes);
+      continue;
+    }
     if (part.stiffness.size() == 0 && part.damping.size() == 0) {
       terms.push_back(mass);
       continue;
@@ -317,7 +406,8 @@ IdentificationEquations::IdentificationEquations(const Rod& rod, const std::vect
   const Index n = dynamics.chain().size(), count = static_cast<Index>(parameters.size());
   const std::vector<RodMotionRecordSample>& samples = record.samples;
   require_record(record, n);
-  const Shares shares(dynamics, parameters);
+  Shares shares(dynamics, parameters);
+  SlidingRod sliding(dynamics);
   nominal = shares.nominal;
   const std::vector<Window> windows = windows_of(samples, config.window, n);
   const Index rows = n * static_cast<Index>(windows.size());
@@ -328,6 +418,10 @@ IdentificationEquations::IdentificationEquations(const Rod& rod, const std::vect
   const bool is_noisy = (record.q_noise.size() > 0 && !record.q_noise.isZero(0)) ||
                         samples[0].q_covariance.size() > 0,
              has_rates = samples[0].v.has_value();
+  const bool rubs =
+      std::ranges::any_of(
+          parameters, [](const RodParameter& each) { return each.kind == RodParameter::Kind::friction; }) ||
+      std::ranges::any_of(rod.tendons, [](const TendonRoute& each) { return each.friction > 0; });
   const Index directions = has_rates ? 2 * n : n;
   const VectorXd v_noise = record.v_noise.size() > 0 ? record.v_noise : VectorXd::Zero(n);
   std::vector<std::vector<NoiseWay>> ways(is_noisy ? static_cast<std::size_t>(count) + 1 : 0);
@@ -343,7 +437,8 @@ IdentificationEquations::IdentificationEquations(const Rod& rod, const std::vect
       const auto at = static_cast<Index>(k - window.first);
       return window.bump[at] != 0 || window.slope[at] != 0;
     };
-    if (std::ranges::none_of(windows, has_sample)) continue;
+    const bool counts = std::ranges::any_of(windows, has_sample);
+    if (!counts && !rubs) continue;
     const RateStencil stencil = rate_stencil(samples, k);
     VectorXd v = VectorXd::Zero(n);
     if (has_rates) {
@@ -351,7 +446,9 @@ IdentificationEquations::IdentificationEquations(const Rod& rod, const std::vect
     } else {
       for (std::size_t i = 0; i < 5; ++i) v += stencil.weights[i] * samples[stencil.first + i].q;
     }
-    const std::vector<Term> terms = terms_at(dynamics, shares, samples[k], v, record.loads, is_noisy);
+    const std::vector<Term> terms =
+        terms_at(dynamics, sliding, shares, samples[k], v, record.loads, is_noisy && counts);
+    if (!counts) continue;
     for (std::size_t w = 0; w < windows.size(); ++w) {
       const Window& window = windows[w];
       if (!has_sample(window)) continue;

@@ -8,7 +8,11 @@
 
 namespace flexura {
 
-/// The equations of motion of a record, integrated over windows: by_parameter x + fixed = 0 but for noise.
+/// Which tendons have the coefficient of friction that is a parameter.
+[[nodiscard]] std::vector<std::size_t> rubbing_tendons(const Rod& rod, const RodParameter& parameter);
+
+/// The equations of motion of a record, integrated over windows: by_parameter x + fixed = 0 but for noise. To
+/// first order in the coefficients of friction, around those of the rod.
 struct IdentificationEquations {
   /// std::invalid_argument: as identify().
   IdentificationEquations(const Rod& rod, const std::vector<RodParameter>& parameters,

@@ -79,7 +79,7 @@ RodLayout::RodLayout(const Rod& rod, const std::vector<RodGrid>& grids, bool rot
       section.tendons.push_back(i);
       for (const double t : grid.t) {
         const TendonRoute::Offset offset = rod.tendons[i].at(s_base + t * from.length);
-        section.passages.push_back({triple(offset.value), triple(offset.slope)});
+        section.passages.push_back({triple(offset.value), triple(offset.slope), triple(offset.second)});
       }
     }
     for (std::size_t m = 0; m < 3; ++m) {
@@ -101,6 +101,42 @@ RodLayout::RodLayout(const Rod& rod, const std::vector<RodGrid>& grids, bool rot
         for (std::size_t c = 0; c < 6; ++c)
           rest[(6 * m + c) * padded + section.first_interval + i] =
               section.grid.rest_moments[i][m][static_cast<Eigen::Index>(c)];
+  stretches.assign(sections.size(), 0.0);
+  find_rubbing(rod);
+}
+
+void RodLayout::find_rubbing(const Rod& rod) {
+  for (std::size_t i = 0; i < rod.tendons.size(); ++i) {
+    if (!(rod.tendons[i].friction > 0)) continue;
+    Rubbing& one = rubbing.emplace_back(
+        Rubbing{.tendon = i, .friction = rod.tendons[i].friction, .first = pieces, .pieces = {}});
+    for (std::size_t s = 0; s <= rod.tendons[i].section; ++s) {
+      const Section& section = sections[s];
+      if (section.disks.empty()) {
+        for (std::size_t k = 0; k <= section.intervals; ++k)
+          if (run[section.first_node + k] != 0) one.pieces.push_back({s, k, run[section.first_node + k], 0});
+      } else {
+        for (std::size_t k = 0; k + 1 < section.disks.size(); ++k)
+          one.pieces.push_back({s, k, section.length / static_cast<double>(section.disks.size() - 1), 0});
+      }
+    }
+    for (std::size_t k = 1; k < one.pieces.size(); ++k)
+      one.pieces[k].held = (one.pieces[k - 1].run + one.pieces[k].run) / 2;
+    pieces += one.pieces.size();
+  }
+}
+
+void RodLayout::stretch_rest(std::span<const double> factors, std::span<const double> factor_rates) {
+  constexpr std::size_t stretch = 2;  // Of the strains.
+  is_driven = false;
+  for (std::size_t s = 0; s < sections.size(); ++s) {
+    Section& section = sections[s];
+    section.grid.stretch_rest(factors[s]);
+    stretches[s] = factor_rates[s];
+    is_driven = is_driven || factor_rates[s] != 0;
+    for (std::size_t i = 0; i < section.intervals; ++i)
+      rest[stretch * padded + section.first_interval + i] = section.grid.rest_moments[i][0][stretch];
+  }
 }
 
 }  // namespace flexura

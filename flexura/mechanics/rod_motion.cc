@@ -54,6 +54,11 @@ RodMotion<S>::RodMotion(const RodLayout& layout) : layout_(layout) {
   q_.resize(layout.modes);
   v_.resize(layout.modes);
   pulls_.resize(layout.nodes);
+  if (layout.rubbing.empty()) return;
+  units_.resize(layout.pieces);
+  for (auto* list : {&growth_, &slide_, &turn_, &friction_, &left_}) list->resize(layout.pieces);
+  spins_.resize(layout.pieces);
+  smooth_.resize(layout.tendons);
 }
 
 template <typename S>
@@ -63,6 +68,7 @@ void RodMotion<S>::place(const S* q, const S* v) {
   const std::size_t padded = layout_.padded;
   for (std::size_t i = 0; i < moments_.size(); ++i) moments_[i] = layout_.rest[i] + S{};
   std::fill(rates_.begin(), rates_.end(), S{});
+  if (layout_.is_driven) add_stretch_rates();
   for (const RodLayout::Section& section : layout_.sections) {
     for (std::size_t m = 0; m < 3; ++m) {
       const double* of_mode = layout_.moments[m].data() + section.first_moment;
@@ -115,6 +121,18 @@ void RodMotion<S>::place(const S* q, const S* v) {
   for (std::size_t k = 0; k < layout_.nodes; ++k) P_[k] = momentum_of(k, V_[k]);
 }
 
+// Of sections whose lengths at rest change: of the first moment, an integral over arc length.
+template <typename S>
+void RodMotion<S>::add_stretch_rates() {
+  constexpr std::size_t stretch = 2;
+  for (std::size_t s = 0; s < layout_.sections.size(); ++s) {
+    const RodLayout::Section& section = layout_.sections[s];
+    const double part = layout_.stretches[s] / section.grid.rest.front()[stretch];
+    const std::size_t at = stretch * layout_.padded + section.first_interval;
+    for (std::size_t i = 0; i < section.intervals; ++i) rates_[at + i] += part * layout_.rest[at + i] + S{};
+  }
+}
+
 template <typename S>
 Screw<S> RodMotion<S>::momentum_of(std::size_t node, const Screw<S>& twist) const {
   const RodLayout::Body& body = layout_.bodies[node];
@@ -153,6 +171,7 @@ void RodMotion<S>::pull(const RodLoads& loads, const S* tensions, const RodSurro
     }
     W_[node] += {force, cross(X.position, force) + moment};
   }
+  if (!layout_.rubbing.empty()) find_slides();
   add_tendons(tensions);
   if (surroundings != nullptr) add_surroundings(*surroundings);
 }

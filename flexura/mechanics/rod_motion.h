@@ -32,7 +32,17 @@ class RodMotion {
   void place(const S* q, const S* v);
   /// Whether pull() takes what surroundings did last: the same shape and rates, with other slopes.
   void keep_surroundings(bool keeps) { keeps_surroundings_ = keeps; }
-  /// What pulls at them, there. `tensions`: of all tendons, N.
+  /// How tendons that rub are held from now on: by `before` N between a piece and the one before it, of all
+  /// pieces (RodLayout::pieces), and since then they slide for `time` s as fast as the rod moves where it is
+  /// placed. Null: by nothing. `before` is kept by reference.
+  void hold(const double* before, double time) {
+    held_before_ = before;
+    slide_time_ = time;
+  }
+  /// How many newtons friction gives way to for each metre that a tendon slides before it lets go, of all
+  /// pieces; is kept by reference.
+  void set_grip(const std::vector<double>& grip) { grip_ = grip.data(); }
+  /// What pulls at them, there. `tensions`: of all tendons at the base, N.
   void pull(const RodLoads& loads, const S* tensions, const RodSurroundings* surroundings);
   /// The momenta and the forces, of all modes.
   void balance(S* momentum, S* force);
@@ -75,6 +85,13 @@ class RodMotion {
   void collect(const std::vector<Screw<S>>& wrenches, S* force);
   /// The change of a tendon's length by the modes, all of them; after place().
   void find_length_slopes(std::size_t tendon, S* slopes);
+  /// The generalized forces by a tendon's tension at the base, with the opposite sign: where it does not rub,
+  /// its length slopes. `tension`: of the tendon; after pull().
+  void find_pull_slopes(std::size_t tendon, double tension, double* slopes);
+  /// By how much friction holds each piece of the tendons that rub against the one before, N: the tension
+  /// before less that after it. And how fast it slides there, towards the base, m/s. After pull().
+  [[nodiscard]] const std::vector<S>& frictions() const { return friction_; }
+  [[nodiscard]] const std::vector<S>& slides() const { return slide_; }
 
   /// At a node, under tensions in channels: the second derivative by its strains of what is for each metre
   /// the sum of the tensions times the tendons' lengths.
@@ -88,7 +105,16 @@ class RodMotion {
   };
   [[nodiscard]] Screw<S> strain_at(const RodLayout::Section& section, std::size_t node) const;
   [[nodiscard]] static Pull pull_of(const RodLayout::Passage& passage, const Screw<S>& strain);
+  [[nodiscard]] Screw<S> strain_rate_at(const RodLayout::Section& section, std::size_t node,
+                                        std::size_t s) const;
+  void add_stretch_rates();
   void add_tendons(const S* tensions);
+  // How its tendons that rub turn and slide; then what friction leaves of a tension.
+  void find_slides();
+  void follow_channel(const RodLayout::Rubbing& rub, std::size_t from, std::size_t to, Triple<S>& direction);
+  void follow_chords(const RodLayout::Rubbing& rub, std::size_t from, std::size_t to, Triple<S>& direction);
+  void rub(const RodLayout::Rubbing& rub, const S& tension);
+  void add_rubbing(const S* tensions);
   void add_surroundings(const RodSurroundings& surroundings);
   void ask_surroundings(const RodSurroundings& surroundings);
   void bound_lengths();
@@ -115,6 +141,15 @@ class RodMotion {
   std::vector<Screw<S>> along_;  // Of the tendons, of the nodes: forces on the strains.
   std::vector<Screw<S>> spare_;
   bool is_pulled_ = false;  // By tendons along its strains.
+  // Of the pieces of tendons that rub: what a unit of tension does there; how fast the piece becomes longer,
+  // how the tendon slides before it, its turning there times the friction coefficient, what holds it, and the
+  // tension.
+  std::vector<Screw<S>> units_;
+  std::vector<S> growth_, slide_, turn_, friction_, left_;
+  std::vector<S> spins_, smooth_;  // Space.
+  const double* held_before_ = nullptr;
+  const double* grip_ = nullptr;
+  double slide_time_ = 0;
   std::vector<NodeMotion> motions_;
   std::vector<NodePull> pulls_;
   const RodPoints* points_ = nullptr;

@@ -47,7 +47,14 @@ template <typename S>
 void RodMotion<S>::add_tendons(const S* tensions) {
   is_pulled_ = false;
   for (std::size_t i = 0; i < layout_.tendons; ++i) is_pulled_ = is_pulled_ || plain(tensions[i]) != 0;
+  std::fill(friction_.begin(), friction_.end(), S{});
   if (!is_pulled_) return;
+  const S* const all = tensions;
+  if (!layout_.rubbing.empty()) {
+    std::copy(tensions, tensions + layout_.tendons, smooth_.begin());
+    for (const RodLayout::Rubbing& each : layout_.rubbing) smooth_[each.tendon] = S{};
+    tensions = smooth_.data();
+  }
   for (const RodLayout::Section& section : layout_.sections) {
     for (std::size_t k = 0; k <= section.intervals && section.disks.empty(); ++k) {
       Screw<S>& along = along_[section.first_node + k];
@@ -68,6 +75,7 @@ void RodMotion<S>::add_tendons(const S* tensions) {
       });
     }
   }
+  if (!layout_.rubbing.empty()) add_rubbing(all);
 }
 
 template <typename S>
@@ -148,6 +156,7 @@ Matrix6d RodMotion<S>::tendon_stiffness(const RodLayout::Section& section, std::
 template Screw<double> RodMotion<double>::strain_at(const RodLayout::Section&, std::size_t) const;
 template void RodMotion<double>::add_strain_force(const RodLayout::Section&, std::size_t,
                                                   const Screw<double>&, double*) const;
+template RodMotion<double>::Pull RodMotion<double>::pull_of(const RodLayout::Passage&, const Screw<double>&);
 template void RodMotion<double>::add_tendons(const double*);
 template void RodMotion<double>::find_lengths(double*) const;
 template void RodMotion<double>::find_length_slopes(std::size_t, double*);
@@ -157,6 +166,8 @@ template Matrix6d RodMotion<double>::tendon_stiffness(const RodLayout::Section&,
 template Screw<Dual<Lanes>> RodMotion<Dual<Lanes>>::strain_at(const RodLayout::Section&, std::size_t) const;
 template void RodMotion<Dual<Lanes>>::add_strain_force(const RodLayout::Section&, std::size_t,
                                                        const Screw<Dual<Lanes>>&, Dual<Lanes>*) const;
+template RodMotion<Dual<Lanes>>::Pull RodMotion<Dual<Lanes>>::pull_of(const RodLayout::Passage&,
+                                                                      const Screw<Dual<Lanes>>&);
 template void RodMotion<Dual<Lanes>>::add_tendons(const Dual<Lanes>*);
 template void RodMotion<Dual<Lanes>>::find_lengths(Dual<Lanes>*) const;
 template void RodMotion<Dual<Lanes>>::find_length_slopes(std::size_t, Dual<Lanes>*);

@@ -66,7 +66,7 @@ void check_in_tube(const TendonRouteConfig& tendon, const ArmConfig& arm, const 
   }
 }
 
-// Checks that moving rods have a mass, and that nothing is used that only statics supports.
+// Checks that moving rods have a mass.
 void check_motion(const ArmConfig& arm, Reader& reader) {
   for (std::size_t i = 0; i < arm.section.size(); ++i) {
     const MaterialConfig& material = *arm.section[i].material;
@@ -74,14 +74,7 @@ void check_motion(const ArmConfig& arm, Reader& reader) {
       reader.problem_at(fmt::format("section[{}].material", i),
                         "has no mass: expected density or mass_per_length, for the arm's model is "
                         "\"dynamic\"");
-    if (arm.section[i].can_stretch())
-      reader.problem_at(fmt::format("section[{}].stretch_limits", i),
-                        "let it be driven longer: expected none, for the arm's model is \"dynamic\"");
   }
-  for (std::size_t i = 0; i < arm.tendon.size(); ++i)
-    if (arm.tendon[i].friction > 0)
-      reader.problem_at(fmt::format("tendon[{}].friction", i),
-                        "is known of arms at rest alone: expected 0, for the arm's model is \"dynamic\"");
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <stdexcept>
@@ -13,8 +14,10 @@ namespace flexura {
 namespace {
 
 constexpr RodDynamicsConfig plant_config{};
-// Of a step that does not converge.
-constexpr int most_halvings = 8;
+// Of a step in which motors may lose some of theirs, s: a fifth of what rotors take.
+constexpr double rotor_step = rotor_time / 5;
+// Before a time at which it is asked how fast sections become longer, s.
+constexpr double shortly = 1e-5;
 // Of a step, what counts as none.
 constexpr double no_time = 1e-9;
 // Nearer to each other two places of a section are one (RodDynamics).
@@ -54,14 +57,17 @@ DynamicPlant::DynamicPlant(const PlantSetup& setup)
     bases_.push_back(base);
     base += section.length;
   }
-  const std::vector<double> lost = inputs().nothing_lost();
+  may_lose_steps_ = inputs().may_lose_steps();
+  can_stretch_ = inputs().can_stretch();
   RodStatics statics(inputs().rod());
+  statics.stretch_rest(inputs().rest_stretches(0));
+  set_lengths(0);
   const Equilibrium rest =
-      statics.solve({.displacements = inputs().displacements(0, lost)}, inputs().loads(0));
+      statics.solve({.displacements = inputs().displacements(0, inputs().nothing_lost())}, inputs().loads(0));
   if (!rest.converged())
     throw std::invalid_argument(
         fmt::format("the arm comes to no rest from which it could begin: {}", words(rest.end)));
-  snapshots_.push_back({0, dynamics_.rest(rest), lost, carried_});
+  snapshots_.push_back({0, dynamics_.rest(rest), rotors_at_rest(inputs(), rest.tensions), carried_});
   hand_over(snapshots_.back(), 0);
 }
 
@@ -105,14 +111,10 @@ void DynamicPlant::advance(double time) {
     Snapshot then = snapshots_.back();
     {
       const std::lock_guard lock(mutex_);
-      grab(grabbed_at(time_of(then.index)));
-      carry(then.carried);
-      go_on(then.state, time_of(then.index), step_, then.lost, 0);
+      go_on(then, time_of(then.index), time_of(next));
       hand_over(then, time_of(next));
     }
     then.index = next;
-    // What a motor loses lets its tendon out from the next step on.
-    (void)inputs().lose_steps(time_of(next), then.state.tensions, then.lost);
     snapshots_.push_back(std::move(then));
   }
   const double oldest = time - horizon_ - 2 * step_;
@@ -122,29 +124,85 @@ void DynamicPlant::advance(double time) {
   inputs().forget_before(oldest);
 }
 
-void DynamicPlant::go_on(RodState& state, double from, double h, const std::vector<double>& lost,
-                         int halvings) const {
-  const double middle = from + h / (1 + plant_config.spectral_radius);
-  const TendonInput input{.displacements = inputs().displacements(middle, lost)};
-  // One that is pushed elsewhere meanwhile is so from the next step on.
-  if (grabbed_) spring_->set(grabbed_at(middle) == grabbed_ ? inputs().spring(middle) : std::nullopt);
-  const RodStep step = dynamics_.step(state, input, inputs().loads(middle), h);
-  if (step.converged()) {
-    const bool is_an_arm =
-        state.q.allFinite() &&
-        state.q.cwiseProduct(dynamics_.chain().scales()).cwiseAbs().maxCoeff() < greatest_strain;
-    if (!is_an_arm)
-      throw SimulationError(
-          fmt::format("at {:.4f} s the motion of the arm blows up: what moves it is too strong for steps of "
-                      "{} s",
-                      from, step_));
+std::vector<double> DynamicPlant::events(double from, double to) const {
+  const double margin = no_time * step_;
+  std::vector<double> times = inputs().events(from + margin, to - margin);
+  for (const ArmRod::Payload& payload : rod_.payloads)
+    for (const double time : {payload.from, payload.until})
+      if (time > from + margin && time < to - margin) times.push_back(time);
+  std::ranges::sort(times);
+  const auto same = std::ranges::unique(times);
+  times.erase(same.begin(), same.end());
+  return times;
+}
+
+// From one event to the next.
+void DynamicPlant::go_on(Snapshot& at, double from, double to) const {
+  grab(grabbed_at(from));
+  carry(at.carried);
+  for (const double event : events(from, to)) {
+    turn(at, from, event);
+    hand_over(at, event);
+    from = event;
+  }
+  turn(at, from, to);
+}
+
+// In short steps where motors may lose some of theirs.
+void DynamicPlant::turn(Snapshot& at, double from, double to) const {
+  if (!may_lose_steps_) {
+    move(at, from, to - from);
     return;
   }
-  if (step.end == DynamicsEnd::bad_input || halvings == most_halvings)
+  const auto is_strained = [&](double time) {
+    return are_strained(at.rotors, inputs(), at.state.tensions, time);
+  };
+  if (!is_strained(from)) {
+    const Snapshot before = at;
+    move(at, from, to - from);
+    turn_rotors(at.rotors, inputs(), at.state.tensions, to, to - from);
+    if (!is_strained(to)) return;
+    at = before;
+  }
+  const int pieces = static_cast<int>(std::ceil((to - from) / rotor_step * (1 - no_time)));
+  for (int i = 0; i < pieces; ++i) {
+    const double start = from + i * (to - from) / pieces, end = from + (i + 1) * (to - from) / pieces;
+    move(at, start, end - start);
+    turn_rotors(at.rotors, inputs(), at.state.tensions, end, end - start);
+  }
+}
+
+void DynamicPlant::move(Snapshot& at, double from, double h) const {
+  const double middle = from + h / (1 + plant_config.spectral_radius);
+  const TendonInput input{.displacements = inputs().displacements(middle, at.rotors.behind)};
+  if (can_stretch_) {
+    std::vector<double> rates = inputs().rest_stretches(from + h);
+    const std::vector<double> before = inputs().rest_stretches(from);
+    for (std::size_t i = 0; i < rates.size(); ++i) rates[i] = (rates[i] - before[i]) / h;
+    dynamics_.stretch_rest(inputs().rest_stretches(middle), rates);
+  }
+  // One that is pushed elsewhere meanwhile is so from the next step on.
+  if (grabbed_) spring_->set(grabbed_at(middle) == grabbed_ ? inputs().spring(middle) : std::nullopt);
+  const RodStep step = dynamics_.step(at.state, input, inputs().loads(middle), h);
+  if (!step.converged())
     throw SimulationError(fmt::format("at {:.4f} s the motion of the arm cannot be computed: {}", from,
                                       step.problem.empty() ? words(step.end) : step.problem));
-  go_on(state, from, h / 2, lost, halvings + 1);
-  go_on(state, from + h / 2, h / 2, lost, halvings + 1);
+  const Eigen::VectorXd& q = at.state.q;
+  if (!q.allFinite() || q.cwiseProduct(dynamics_.chain().scales()).cwiseAbs().maxCoeff() >= greatest_strain)
+    throw SimulationError(fmt::format(
+        "at {:.4f} s the motion of the arm blows up: what moves it is too strong for steps of {} s", from,
+        step_));
+}
+
+// As they are then.
+void DynamicPlant::set_lengths(double time) const {
+  if (!can_stretch_) return;
+  const std::vector<double> now = inputs().rest_stretches(time),
+                            before = inputs().rest_stretches(std::max(0.0, time - shortly));
+  std::vector<double> rates;
+  rates.reserve(now.size());
+  for (std::size_t i = 0; i < now.size(); ++i) rates.push_back((now[i] - before[i]) / shortly);
+  dynamics_.stretch_rest(now, rates);
 }
 
 const DynamicPlant::Snapshot& DynamicPlant::snapshot(double time) const {
@@ -153,36 +211,38 @@ const DynamicPlant::Snapshot& DynamicPlant::snapshot(double time) const {
   return snapshots_[from];
 }
 
-RodState DynamicPlant::state_at(double time) const {
+DynamicPlant::Snapshot DynamicPlant::at(double time) const {
   const std::lock_guard lock(mutex_);
-  if (answer_ && answer_->time == time) return answer_->state;
-  const Snapshot& from = snapshot(time);
-  RodState state = from.state;
-  grab(grabbed_at(time_of(from.index)));
-  carry(from.carried);
-  const double start = time_of(from.index);
-  if (time - start > no_time * step_) go_on(state, start, time - start, from.lost, 0);
-  answer_ = {.time = time, .state = state};
-  return state;
+  if (answer_ && answer_->time == time) return answer_->at;
+  Snapshot then = snapshot(time);
+  const double start = time_of(then.index);
+  grab(grabbed_at(start));
+  if (time - start > no_time * step_) {
+    go_on(then, start, time);
+    hand_over(then, time);
+  }
+  answer_ = {.time = time, .at = then};
+  return then;
 }
 
 Backbone DynamicPlant::backbone(double time) const {
-  const RodState state = state_at(time);
+  const Snapshot then = at(time);
   try {
-    return tube().backbone(state.q, inputs().rest_stretches(time));
+    return tube().backbone(then.state.q, inputs().rest_stretches(time));
   } catch (const std::invalid_argument&) {
     throw SimulationError(fmt::format(
         "at {:.4f} s the motion of the arm blows up: it winds more tightly than an arm can", time));
   }
 }
 
-std::vector<double> DynamicPlant::tensions(double time) const { return state_at(time).tensions; }
+std::vector<double> DynamicPlant::tensions(double time) const { return at(time).state.tensions; }
 
 std::optional<RodEnergy> DynamicPlant::energy(double time) const {
-  const RodState state = state_at(time);
+  const Snapshot then = at(time);
   const std::lock_guard lock(mutex_);
-  carry(snapshot(time).carried);
-  return dynamics_.energy(state, inputs().loads(time));
+  carry(then.carried);
+  set_lengths(time);
+  return dynamics_.energy(then.state, inputs().loads(time));
 }
 
 std::vector<char> DynamicPlant::carried_at(double time) const {
@@ -208,8 +268,9 @@ void DynamicPlant::carry(const std::vector<char>& wanted) const {
 void DynamicPlant::hand_over(Snapshot& at, double time) const {
   const std::vector<char> wanted = carried_at(time);
   if (at.carried == wanted) return;
-  const TendonInput input{.displacements = inputs().displacements(time, at.lost)};
+  const TendonInput input{.displacements = inputs().displacements(time, at.rotors.behind)};
   const RodLoads& loads = inputs().loads(time);
+  set_lengths(time);
   std::vector<char> left = at.carried;
   for (std::size_t i = 0; i < wanted.size(); ++i) {
     const RodPlace& place = rod_.payloads[i].payload.place;
@@ -238,11 +299,12 @@ void DynamicPlant::hand_over(Snapshot& at, double time) const {
 // A time is asked for twice, for what is recorded and for the warning: they are searched once.
 std::vector<PlantContact> DynamicPlant::contacts(double time) const {
   if (!contact_) return {};
-  const RodState state = state_at(time);
+  const Snapshot then = at(time);
   const std::lock_guard lock(mutex_);
   if (answer_ && answer_->time == time && answer_->contacts) return *answer_->contacts;
-  carry(snapshot(time).carried);
-  std::vector<PlantContact> result = found(contact_->find(dynamics_.point_motions(state)));
+  carry(then.carried);
+  set_lengths(time);
+  std::vector<PlantContact> result = found(contact_->find(dynamics_.point_motions(then.state)));
   if (answer_ && answer_->time == time) answer_->contacts = result;
   return result;
 }

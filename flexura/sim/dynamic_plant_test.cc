@@ -2,9 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "flexura/sim/simulated_rig.h"
@@ -163,6 +165,103 @@ TEST(DynamicPlant, IsLetGoByATendonThatBreaks) {
   EXPECT_GT((bent - straight).norm(), 0.03);
   EXPECT_LE((moving_tip(rig, 12) - straight).norm(), 1e-3);
   for (const double tension : moving_plant(rig).tensions(12)) EXPECT_EQ(tension, 0);
+}
+
+// What happens inside a step happens then: cut there, a long step says what short ones say.
+TEST(DynamicPlant, PicksUpAndBreaksInsideASteps) {
+  const auto tip = [](double step, double event) {
+    RigConfig config = moving_rig(9.81, 0.05);
+    config.arm.time_step = step;
+    for (const TendonConfig& tendon : config.drive->tendon)
+      config.arm.tendon.push_back({.section = tendon.section, .radius = 0.01, .angle = tendon.angle});
+    config.arm.tendon[0].breaks_at = event;
+    config.arm.payload = {{.section = 2, .mass = 0.02, .from = event - 0.1, .until = event + 0.05}};
+    SimulatedRig rig(config, config, numbers_renderer, 1);
+    EXPECT_TRUE(rig.ports().arm->command(bent_state(), 0));
+    rig.clock().wait_until(event + 0.15);
+    return moving_tip(rig, event + 0.15);
+  };
+  // 0.5 ms before the end of a step of 8 ms.
+  const double inside = 0.3195;
+  const Eigen::Vector3d known = tip(0.0005, inside), late = tip(0.0005, 0.32);
+  EXPECT_GT((known - late).norm(), 2e-5);
+  EXPECT_LE((tip(0.004, inside) - known).norm(), 0.5 * (known - late).norm());
+}
+
+// A motor that cannot hold its tendon falls back as its rotor does, whatever the steps are.
+TEST(DynamicPlant, LosesAsManyStepsHoweverTimeIsCut) {
+  const auto lost = [](double step) {
+    RigConfig config = moving_rig(9.81, 0.05), weak = config;
+    const double most = 1.0;  // N
+    weak.drive->motor.pull_out = {{{0, most * 0.01}, {100, 0.5 * most * 0.01}}};
+    config.arm.time_step = weak.arm.time_step = step;
+    SimulatedRig rig(config, weak, numbers_renderer, 1);
+    EXPECT_TRUE(rig.ports().arm->command(bent_state(), 0));
+    rig.clock().wait_until(3);
+    for (const double tension : moving_plant(rig).tensions(3)) EXPECT_LE(tension, 1.05 * most);
+    return moving_plant(rig).lost_steps(3);
+  };
+  const double turn = elastic_rig().drive->motor.field_turn();
+  const std::vector<double> coarse = lost(0.01), fine = lost(0.002);
+  double all = 0;
+  for (std::size_t i = 0; i < fine.size(); ++i) {
+    EXPECT_EQ(std::remainder(fine[i], turn), 0);
+    EXPECT_NEAR(coarse[i], fine[i], turn) << i;
+    all += fine[i];
+  }
+  EXPECT_GE(all, 2 * turn);
+}
+
+RigConfig rubbing_rig(RigConfig config, double friction) {
+  for (const TendonConfig& tendon : config.drive->tendon)
+    config.arm.tendon.push_back(
+        {.section = tendon.section, .radius = 0.01, .angle = tendon.angle, .friction = friction});
+  return config;
+}
+
+// Pulled in slowly it comes to rest where the static arm does, whose tendons have been pulled in, and it
+// differs from one without friction.
+TEST(DynamicPlant, RubsAsTheArmAtRestDoes) {
+  const auto tip = [](const RigConfig& config) {
+    SimulatedRig rig(config, config, numbers_renderer, 1);
+    EXPECT_TRUE(rig.ports().arm->command(bent_state(), 4));
+    rig.clock().wait_until(8);
+    return std::pair(moving_tip(rig, 8), rig.arm().plant().tensions(8));
+  };
+  const double friction = 0.2;
+  const auto [moving, pulls] = tip(rubbing_rig(moving_rig(0, 0.2), friction));
+  const auto [known, tensions] = tip(rubbing_rig(elastic_rig(), friction));
+  const auto [smooth, least] = tip(rubbing_rig(elastic_rig(), 0));
+  EXPECT_LE((moving - known).norm(), 1e-3);
+  const double most = *std::ranges::max_element(tensions);
+  EXPECT_GT(most, 1.02 * *std::ranges::max_element(least));
+  for (std::size_t i = 0; i < pulls.size(); ++i) EXPECT_NEAR(pulls[i], tensions[i], 0.1 * most) << i;
+}
+
+// Sections that commands drive longer.
+TEST(DynamicPlant, IsDrivenLonger) {
+  const auto rig_of = [](const RigConfig& config) {
+    RigConfig free = rubbing_rig(config, 0);
+    free.drive.reset();
+    for (Section& section : free.arm.section)
+      section.stretch_limits = {1, 1.3}, section.max_stretch_rate = 0.5;
+    return free;
+  };
+  const RigConfig moving = rig_of(moving_rig(9.81, 0.2)), still = rig_of(elastic_rig(9.81));
+  ArmState longer = bent_state();
+  longer.stretches = {1.2, 1.1};
+  SimulatedRig rig(moving, moving, numbers_renderer, 1), witness(still, still, numbers_renderer, 1);
+  for (SimulatedRig* each : {&rig, &witness}) {
+    ASSERT_TRUE(each->ports().arm->command(longer, 0));
+    each->clock().wait_until(0.2);
+    if (each == &rig) {
+      EXPECT_GT(moving_plant(rig).energy(0.2).value().kinetic, 1e-6);
+    }
+    each->clock().wait_until(6);
+  }
+  EXPECT_NEAR(rig.arm().backbone(6).tip().position.norm(), witness.arm().backbone(6).tip().position.norm(),
+              1e-3);
+  EXPECT_LE((moving_tip(rig, 6) - moving_tip(witness, 6)).norm(), 1e-3);
 }
 
 TEST(DynamicPlant, RefusesToBeginWhereThereIsNoRest) {

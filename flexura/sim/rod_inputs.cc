@@ -188,24 +188,50 @@ std::vector<double> RodInputs::rest_stretches(double time) const {
   return std::vector<double>(arm_.sections.size(), 1.0);
 }
 
+bool RodInputs::can_stretch() const {
+  return bends_ && std::ranges::any_of(arm_.sections, &Section::can_stretch);
+}
+
+std::vector<double> RodInputs::events(double start, double end) const {
+  std::vector<double> times;
+  for (const TendonBreak& each : breaks_)
+    if (each.time > start && each.time < end) times.push_back(each.time);
+  for (const Weighing& each : weighings_)
+    if (each.time > start && each.time < end) times.push_back(each.time);
+  return times;
+}
+
 const RodLoads& RodInputs::loads(double time) const {
   static const RodLoads none;
   return is_weighed(time) ? loads_ : none;
 }
 
-bool RodInputs::lose_steps(double time, const std::vector<double>& tensions,
-                           std::vector<double>& lost) const {
-  if (!drive_) return false;
-  bool any = false;
+bool RodInputs::may_lose_steps() const {
+  return drive_ && std::ranges::any_of(drive_->axes, [](const Axis& axis) {
+           return std::isfinite(axis.motor.pull_out_torque(0));
+         });
+}
+
+std::vector<char> RodInputs::overloaded(double time, const std::vector<double>& tensions, double part) const {
+  std::vector<char> result;
+  if (!drive_) return result;
   const std::vector<double> rates = motors_->rates(time);
-  for (std::size_t i = 0; i < lost.size(); ++i) {
+  for (std::size_t i = 0; i < drive_->axes.size(); ++i) {
     const Axis& axis = drive_->axes[i];
     const double speed = std::abs(rates[i]) * 2 * std::numbers::pi / axis.motor.resolution();
-    if (axis.torque(tensions[i]) <= axis.motor.pull_out_torque(speed)) continue;
-    lost[i] += axis.motor.field_turn();
-    any = true;
+    result.push_back(axis.torque(tensions[i]) > part * axis.motor.pull_out_torque(speed) ? 1 : 0);
   }
-  return any;
+  return result;
+}
+
+double RodInputs::field_turn(std::size_t axis) const { return drive_.value().axes[axis].motor.field_turn(); }
+
+bool RodInputs::lose_steps(double time, const std::vector<double>& tensions,
+                           std::vector<double>& lost) const {
+  const std::vector<char> over = overloaded(time, tensions);
+  for (std::size_t i = 0; i < over.size(); ++i)
+    if (over[i] != 0) lost[i] += field_turn(i);
+  return std::ranges::any_of(over, [](char each) { return each != 0; });
 }
 
 }  // namespace flexura

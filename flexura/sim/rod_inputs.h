@@ -60,10 +60,22 @@ class RodInputs {
   [[nodiscard]] std::vector<double> displacements(double time, const std::vector<double>& lost) const;
   /// How long its sections are by themselves: factors on their lengths.
   [[nodiscard]] std::vector<double> rest_stretches(double time) const;
+  /// Whether commands may drive sections longer or shorter.
+  [[nodiscard]] bool can_stretch() const;
+  /// When tendons break and the weight is switched, after `start` and before `end`, s.
+  [[nodiscard]] std::vector<double> events(double start, double end) const;
   /// What pulls at it beside its tendons.
   [[nodiscard]] const RodLoads& loads(double time) const;
   /// Whether the weight was switched after `start` and up to `end`, s.
   [[nodiscard]] bool is_weighed_anew(double start, double end) const;
+  /// Whether any motor may lose steps at all.
+  [[nodiscard]] bool may_lose_steps() const;
+  /// Of each axis, whether its motor would have to turn against more than this part of its pull-out torque,
+  /// as fast as it turns then, under these tensions, N. Empty: without a drive.
+  [[nodiscard]] std::vector<char> overloaded(double time, const std::vector<double>& tensions,
+                                             double part = 1) const;
+  /// Microsteps of a turn of an axis's field.
+  [[nodiscard]] double field_turn(std::size_t axis) const;
   /// Adds a turn of the field to what each motor has lost that would have to turn against more than it can,
   /// under these tensions, N. Whether any has.
   [[nodiscard]] bool lose_steps(double time, const std::vector<double>& tensions,

@@ -27,9 +27,9 @@ Rod rubbing_tentacle(double friction) {
 }
 
 constexpr double known_stiffness = 1.2, known_damping = 0.06, known_friction = 0.25;
-const std::vector<RodParameter> all_of_it = {
+const std::vector<RodParameter> rubbing_parameters = {
     {.kind = Kind::bends}, {.kind = Kind::damping}, {.kind = Kind::friction}};
-const Eigen::Vector3d known_values(known_stiffness, known_damping, known_friction);
+const Eigen::Vector3d known_rubbing(known_stiffness, known_damping, known_friction);
 
 Rod true_tentacle() {
   Rod rod = rubbing_tentacle(known_friction);
@@ -67,7 +67,7 @@ RodMotionRecord pulled_in_turns() {
   return record;
 }
 
-RodMotionRecord noisy(RodMotionRecord record, double q_noise, double v_noise, TestRandom& random) {
+RodMotionRecord with_noise_of(RodMotionRecord record, double q_noise, double v_noise, TestRandom& random) {
   const Eigen::Index n = record.samples[0].q.size();
   record.q_noise = Eigen::VectorXd::Constant(n, q_noise);
   record.v_noise = Eigen::VectorXd::Constant(n, v_noise);
@@ -81,18 +81,19 @@ RodMotionRecord noisy(RodMotionRecord record, double q_noise, double v_noise, Te
 TEST(IdentificationOfFriction, OfAnExactRecordGivesItBack) {
   const RodMotionRecord record = pulled_in_turns();
   for (const double believed : {0.0, 0.5}) {
-    const Identification found = identify(rubbing_tentacle(believed), all_of_it, record);
+    const Identification found = identify(rubbing_tentacle(believed), rubbing_parameters, record);
     EXPECT_TRUE(found.converged);
     for (Eigen::Index g = 0; g < 3; ++g) {
       EXPECT_TRUE(found.is_observable[static_cast<std::size_t>(g)]);
-      EXPECT_NEAR(found.values[g], known_values[g], 0.02 * known_values[g]) << g;
+      EXPECT_NEAR(found.values[g], known_rubbing[g], 0.02 * known_rubbing[g]) << g;
     }
   }
   // Without it the others are wrong by what friction does.
   const Identification smooth =
-      identify(rubbing_tentacle(0), {all_of_it.begin(), all_of_it.end() - 1}, record);
-  EXPECT_GT((smooth.values - known_values.head(2)).cwiseQuotient(known_values.head(2)).cwiseAbs().maxCoeff(),
-            0.05);
+      identify(rubbing_tentacle(0), {rubbing_parameters.begin(), rubbing_parameters.end() - 1}, record);
+  EXPECT_GT(
+      (smooth.values - known_rubbing.head(2)).cwiseQuotient(known_rubbing.head(2)).cwiseAbs().maxCoeff(),
+      0.05);
 }
 
 TEST(IdentificationOfFriction, TellsHowWrongItIsUnderNoise) {
@@ -102,11 +103,12 @@ TEST(IdentificationOfFriction, TellsHowWrongItIsUnderNoise) {
   Eigen::Vector3d squares = Eigen::Vector3d::Zero();
   double distance = 0, misfit = 0;
   for (int seed = 0; seed < seeds; ++seed) {
-    const Identification found = identify(rubbing_tentacle(0.1), all_of_it, noisy(exact, 0.05, 0.5, random));
+    const Identification found =
+        identify(rubbing_tentacle(0.1), rubbing_parameters, with_noise_of(exact, 0.05, 0.5, random));
     EXPECT_TRUE(found.converged);
-    const Eigen::Vector3d error = found.values - known_values, parts = error.cwiseQuotient(found.sigma);
+    const Eigen::Vector3d error = found.values - known_rubbing, parts = error.cwiseQuotient(found.sigma);
     EXPECT_LT(parts.cwiseAbs().maxCoeff(), 4.5);
-    EXPECT_LT(found.sigma.cwiseQuotient(known_values).maxCoeff(), 0.1);
+    EXPECT_LT(found.sigma.cwiseQuotient(known_rubbing).maxCoeff(), 0.1);
     squares += parts.cwiseAbs2() / seeds;
     distance += error.dot(found.covariance.ldlt().solve(error)) / seeds;
     misfit += found.misfit / seeds;
@@ -126,7 +128,7 @@ TEST(IdentificationOfFriction, FlagsWhatDoesNotSlide) {
                               .q = Eigen::VectorXd::Zero(4),
                               .v = Eigen::VectorXd::Zero(4),
                               .tensions = {1, 1, 1}});
-  const Identification found = identify(rubbing_tentacle(0.1), all_of_it, record);
+  const Identification found = identify(rubbing_tentacle(0.1), rubbing_parameters, record);
   EXPECT_FALSE(found.is_observable[2]);
   EXPECT_EQ(found.values[2], 0.1);
   EXPECT_TRUE(std::isinf(found.sigma[2]));

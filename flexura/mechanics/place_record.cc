@@ -24,7 +24,7 @@ constexpr double other_energy = 0.01;
 constexpr double first_noise = 1e-3, least_noise = 1e-9;
 // Root mean square of what is left, by the length: beyond it the places are none of this rod.
 constexpr double most_left = 0.05;
-constexpr int most_tries = 60;
+constexpr int most_fits = 60;
 // Of a simulated motion, s, and which part of a step's way its input is of (RodDynamics::step).
 constexpr double longest_step = 5e-3, step_share = 1 / 1.1;
 
@@ -65,7 +65,7 @@ class PlaceFit {
     linearise();
     (void)levenberg_marquardt(
         cost, {.start = 1e-6, .rise = 10, .eased = [](double value, double) { return value / 10; }},
-        most_tries,
+        most_fits,
         [&](double damping) {
           MatrixXd damped = information;
           damped.diagonal() += damping * information.diagonal();

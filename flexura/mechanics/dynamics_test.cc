@@ -354,6 +354,38 @@ TEST(Dynamics, RefusesWhatIsNoInput) {
   EXPECT_EQ(problem({}, {}, 0.01), "a state that is not finite");
 }
 
+// Tendons that give next to nothing are pulled in at once, in one long step.
+TEST(Dynamics, AStepThatDoesNotConvergeIsDivided) {
+  int divided = 0, all = 0;
+  for_random_cases(5, [&](TestRandom& random) {
+    const Rod rod = random_rod(random);
+    RodDynamics dynamics(rod), whole(rod, {.most_pieces = 1});
+    RodState state = dynamics.rest();
+    for (int i = 0; i < 3; ++i) {
+      TendonInput input;
+      for (std::size_t k = 0; k < rod.tendons.size(); ++k)
+        input.displacements.push_back(random.uniform(-2e-3, 2e-3));
+      RodState at_once = state;
+      const RodStep one = whole.step(at_once, input, {}, 4e-3);
+      const double before = state.time;
+      const RodStep step = dynamics.step(state, input, {}, 4e-3);
+      ++all;
+      ASSERT_TRUE(step.converged());
+      EXPECT_EQ(step.is_anew, !one.converged());
+      EXPECT_NEAR(state.time, before + 4e-3, 1e-12);
+      if (one.converged()) {
+        EXPECT_EQ(step.pieces, 1);
+        continue;
+      }
+      ++divided;
+      EXPECT_EQ(one.end, DynamicsEnd::did_not_converge);
+      EXPECT_EQ(at_once.q.size(), state.q.size());
+    }
+  });
+  EXPECT_GT(divided, 0);
+  EXPECT_LT(divided, all);
+}
+
 // Steps that are far too long, loads that no rod withstands: an answer or none, but no nonsense.
 TEST(Dynamics, NeverGoesOnWithWhatIsNoNumber) {
   for_random_cases(20, [](TestRandom& random) {

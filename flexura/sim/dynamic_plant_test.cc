@@ -168,7 +168,7 @@ TEST(DynamicPlant, IsLetGoByATendonThatBreaks) {
 }
 
 // What happens inside a step happens then: cut there, a long step says what short ones say.
-TEST(DynamicPlant, PicksUpAndBreaksInsideASteps) {
+TEST(DynamicPlant, PicksUpAndBreaksInsideAStep) {
   const auto tip = [](double step, double event) {
     RigConfig config = moving_rig(9.81, 0.05);
     config.arm.time_step = step;

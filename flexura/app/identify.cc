@@ -30,6 +30,8 @@ using Kind = RodParameter::Kind;
 
 // A window covers a swing, but fits several times into the record, and has samples enough.
 constexpr double least_windows = 4, least_samples_in_window = 12;
+// What is left of the equations is then five times what noise explains.
+constexpr double odd_misfit = 25;
 
 // Uniform in (0, 1), of a counter.
 double uniform_of(std::uint64_t bits) { return (static_cast<double>(bits >> 11) + 0.5) * 0x1p-53; }
@@ -254,6 +256,11 @@ int identify_command(const IdentifyArguments& arguments, std::ostream& out, std:
   } catch (const std::invalid_argument& error) {
     throw input_error(arguments.motion, error.what());
   }
+  if (found.misfit > odd_misfit)
+    err << fmt::format(
+        "note: not all of the motion is that of such an arm (misfit {:.3g}): it is sampled too "
+        "seldom, or the file's lengths, masses, tendons or loads are others\n",
+        found.misfit);
   if (arguments.json) {
     for (const IdentifiedValue& value : found.values) out << write_json(value_node(value)) << '\n';
     out << write_json(rest_node(found)) << '\n';

@@ -21,9 +21,9 @@ using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 // Of the bends' greatest energy, what a mode of another strain may have.
 constexpr double other_energy = 0.01;
 // Of the rod's length: the noise that counts before any is known, and the least that does.
-constexpr double first_noise = 1e-3, least_noise = 1e-9;
+constexpr double first_noise = 1e-3, least_noise = 1e-5;
 // Root mean square of what is left, by the length: beyond it the places are none of this rod.
-constexpr double most_left = 0.05;
+constexpr double most_left = 0.02;
 constexpr int most_fits = 60;
 // Of a simulated motion, s, and which part of a step's way its input is of (RodDynamics::step).
 constexpr double longest_step = 5e-3, step_share = 1 / 1.1;
@@ -176,17 +176,19 @@ std::vector<Index> bend_modes(const RodChain& chain) {
   return modes;
 }
 
-// dq/dt at the start, by a line through the first samples.
+// dq/dt at the start, of a parabola through the first samples.
 VectorXd first_rates(const RodMotionRecord& record) {
-  const std::size_t count = std::min<std::size_t>(record.samples.size(), 7);
-  double time = 0, square = 0;
-  for (std::size_t k = 0; k < count; ++k) time += record.samples[k].time / static_cast<double>(count);
-  VectorXd rates = VectorXd::Zero(record.samples[0].q.size());
-  for (std::size_t k = 0; k < count; ++k) {
-    const double since = record.samples[k].time - time;
-    rates += since * record.samples[k].q, square += since * since;
+  const auto count = static_cast<Index>(std::min<std::size_t>(record.samples.size(), 9));
+  const RodMotionRecordSample& first = record.samples[0];
+  if (count < 3) return (record.samples[1].q - first.q) / (record.samples[1].time - first.time);
+  MatrixXd powers(count, 3), q(count, first.q.size());
+  for (Index k = 0; k < count; ++k) {
+    const RodMotionRecordSample& sample = record.samples[static_cast<std::size_t>(k)];
+    const double since = sample.time - first.time;
+    powers.row(k) << 1, since, since * since;
+    q.row(k) = sample.q.transpose();
   }
-  return rates / square;
+  return (pseudo_inverse(powers) * q).row(1).transpose();
 }
 
 }  // namespace
@@ -215,9 +217,6 @@ RodPlaceRecord record_of_places(const Rod& rod, std::span<const RodPlace> places
     for (const Index mode : bends) there += 0.5 * stiffness[mode] * q[mode] * q[mode];
     energy = std::max(energy, there);
   }
-  if (const double left = std::sqrt(fits.square / coordinates); !(left < most_left * length))
-    throw std::invalid_argument(
-        fmt::format("no shape of the rod comes near to the places: {:.3g} m are left of them", left));
   // Of a rod that does not bend at all some remains.
   energy = std::max(energy, 1e-9 * stiffness.maxCoeff());
   spread = (2 * other_energy * energy * stiffness.cwiseInverse()).cwiseSqrt();
@@ -230,6 +229,9 @@ RodPlaceRecord record_of_places(const Rod& rod, std::span<const RodPlace> places
     fits = fit_all(fit, samples, counted, spread);
     if (noise == 0) counted = std::max(std::sqrt(fits.square / freedom), least_noise * length);
   }
+  if (const double left = std::sqrt(fits.square / coordinates); !(left < most_left * length))
+    throw std::invalid_argument(
+        fmt::format("no shape of the rod comes near to the places: {:.3g} m are left of them", left));
   RodPlaceRecord result{.record = {.samples = {}, .loads = loads},
                         .noise = counted,
                         .rms = std::sqrt(fits.square / coordinates)};

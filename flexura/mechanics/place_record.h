@@ -30,7 +30,7 @@ struct RodPlaceRecord {
 /// not show, such as a twist of a straight rod, stay near rest: beside the places count the energies of all
 /// strains, as a prior. The energy of the bends in the record is what a mode of bending may have, and a
 /// hundredth of it what a mode of another strain may. `noise`: of each coordinate, m, standard deviation; 0:
-/// not known, then what the modes leave tells it.
+/// not known, then what the modes leave tells it, but for 1e-5 of the rod's length, which counts at least.
 /// std::invalid_argument: the problems of the rod; places outside it or twice the same, numbers that are not
 /// finite, fewer than two samples, another number of positions, not more coordinates than modes, or places
 /// that no shape of the rod comes near to.

@@ -347,7 +347,7 @@ TEST(CalibrateTaskFully, ExpectsThePlayThatHeadsAreKnownToHave) {
 // Results less certain than required must be reported.
 TEST(CalibrateTaskFully, TellsWhatItDoesNotKnowAsWellAsIsWanted) {
   CalibrationBench bench(small_calibration(
-      "images = 4\nwanted = { angle_deg = 0.001, focal = 0.5 }\n" + three_poses, wrong_cameras));
+      "images = 4\nrequired_std = { angle_deg = 0.001, focal = 0.5 }\n" + three_poses, wrong_cameras));
   const RigSessionResult result = bench.calibrate_bundle(bench.ports());
   ASSERT_TRUE(result.is_done) << result.reason;
   const auto tells = [&](const std::string& part) {

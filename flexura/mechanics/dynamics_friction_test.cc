@@ -15,13 +15,13 @@
 namespace flexura {
 namespace {
 
-constexpr double coefficient = 0.3, offset = 0.05;
+constexpr double rubs_by = 0.3, off_axis = 0.05;
 
 // A rod that bends evenly and that its viscosity keeps from swinging, with a tendon that rubs.
 Rod rubbing_rod(int modes = 1) {
   Rod rod = elastica(modes);
   rod.sections[0].damping_time = 2;
-  rod.tendons = {{.section = 0, .radius = offset, .friction = coefficient}};
+  rod.tendons = {{.section = 0, .radius = off_axis, .friction = rubs_by}};
   return rod;
 }
 
@@ -30,8 +30,8 @@ double bend_of(const RodDynamics& dynamics, const RodState& state) {
 }
 
 // Goes on, with a tension that goes evenly to another one and then stays.
-void pull(RodDynamics& dynamics, RodState& state, double from, double to, double ramp, double rest,
-          double h = 0.05) {
+void pull_tendon(RodDynamics& dynamics, RodState& state, double from, double to, double ramp, double rest,
+                 double h = 0.05) {
   const double start = state.time;
   while (state.time < start + ramp + rest - h / 2) {
     const double part = std::min(1.0, (state.time + h / 2 - start) / ramp);
@@ -43,39 +43,39 @@ void pull(RodDynamics& dynamics, RodState& state, double from, double to, double
 
 // EI bend = the mean of T d exp(-+mu s bend) over the length (L. Euler, J. Eytelwein).
 double pull_for(double bend, double mu) {
-  return mu == 0 ? bend / offset : bend * mu * bend / (offset * (1 - std::exp(-mu * bend)));
+  return mu == 0 ? bend / off_axis : bend * mu * bend / (off_axis * (1 - std::exp(-mu * bend)));
 }
 
 TEST(DynamicsFriction, OfAnEvenBendIsThatOfACapstan) {
   RodDynamics dynamics(rubbing_rod());
   RodState state = dynamics.rest();
-  pull(dynamics, state, 0, 30, 40, 60);
+  pull_tendon(dynamics, state, 0, 30, 40, 60);
   const double pulled_in = bend_of(dynamics, state);
-  EXPECT_NEAR(pull_for(pulled_in, coefficient), 30, 0.1);
+  EXPECT_NEAR(pull_for(pulled_in, rubs_by), 30, 0.1);
   const Equilibrium known = RodStatics(rubbing_rod()).solve({.tensions = {30}}, {});
   EXPECT_NEAR(pulled_in, known.q[dynamics.chain().elements()[0].grid().first[4]], 2e-3);
   // Let out to 20 N, from further out.
-  pull(dynamics, state, 30, 40, 20, 40);
-  pull(dynamics, state, 40, 20, 60, 60);
-  EXPECT_NEAR(pull_for(bend_of(dynamics, state), -coefficient), 20, 0.1);
+  pull_tendon(dynamics, state, 30, 40, 20, 40);
+  pull_tendon(dynamics, state, 40, 20, 60, 60);
+  EXPECT_NEAR(pull_for(bend_of(dynamics, state), -rubs_by), 20, 0.1);
 }
 
 TEST(DynamicsFriction, ATendonThatIsPulledToAndFroGoesAroundALoop) {
   RodDynamics dynamics(rubbing_rod(3));
   RodState state = dynamics.rest();
-  pull(dynamics, state, 0, 20, 60, 40);
+  pull_tendon(dynamics, state, 0, 20, 60, 40);
   const double first = bend_of(dynamics, state);
-  pull(dynamics, state, 20, 40, 60, 0);
+  pull_tendon(dynamics, state, 20, 40, 60, 0);
   const double top = bend_of(dynamics, state);
-  pull(dynamics, state, 40, 20, 60, 40);
+  pull_tendon(dynamics, state, 40, 20, 60, 40);
   const double back = bend_of(dynamics, state);
   EXPECT_GT(back, 1.1 * first);
   EXPECT_LT(back, top);
   // Around once more it is where it was.
-  pull(dynamics, state, 20, 0.5, 60, 40);
-  pull(dynamics, state, 0.5, 20, 60, 40);
+  pull_tendon(dynamics, state, 20, 0.5, 60, 40);
+  pull_tendon(dynamics, state, 0.5, 20, 60, 40);
   EXPECT_NEAR(bend_of(dynamics, state), first, 0.02 * first);
-  pull(dynamics, state, 20, 40, 60, 0);
+  pull_tendon(dynamics, state, 20, 40, 60, 0);
   EXPECT_NEAR(bend_of(dynamics, state), top, 0.02 * top);
 }
 
@@ -298,9 +298,9 @@ TEST(DynamicsFriction, PullsByMoreOnItsWayIn) {
   const double in = state.tensions[0];
   go(0.04, 0.06);
   go(0.06, 0.04);
-  const double out = state.tensions[0], bend = 0.04 / offset;
-  EXPECT_NEAR(in, pull_for(bend, coefficient), 0.05 * in);
-  EXPECT_NEAR(out, pull_for(bend, -coefficient), 0.05 * out);
+  const double out = state.tensions[0], bend = 0.04 / off_axis;
+  EXPECT_NEAR(in, pull_for(bend, rubs_by), 0.05 * in);
+  EXPECT_NEAR(out, pull_for(bend, -rubs_by), 0.05 * out);
 }
 
 TEST(DynamicsFriction, HasNoLinearModel) {

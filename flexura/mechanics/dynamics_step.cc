@@ -17,7 +17,7 @@ constexpr int patience = 6;
 // Of pieces of a step that converge, before they become longer again.
 constexpr int enough_in_a_row = 4;
 // Pieces that are tried at most, whether they converge or not.
-constexpr int most_tries = 4000;
+constexpr int most_tries = 1000;
 
 double greatest_change(const Eigen::VectorXd& change, const Eigen::VectorXd& scales) {
   double most = 0;

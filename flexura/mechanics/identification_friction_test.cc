@@ -26,21 +26,21 @@ Rod rubbing_tentacle(double friction) {
   return rod;
 }
 
-constexpr double known_stiffness = 1.2, known_damping = 0.06, known_friction = 0.25;
-const std::vector<RodParameter> rubbing_parameters = {
+constexpr double true_stiffness = 1.2, true_damping = 0.06, true_friction = 0.25;
+const std::vector<RodParameter> sought_with_friction = {
     {.kind = Kind::bends}, {.kind = Kind::damping}, {.kind = Kind::friction}};
-const Eigen::Vector3d known_rubbing(known_stiffness, known_damping, known_friction);
+const Eigen::Vector3d truly_with_friction(true_stiffness, true_damping, true_friction);
 
-Rod true_tentacle() {
-  Rod rod = rubbing_tentacle(known_friction);
+Rod true_rubbing_tentacle() {
+  Rod rod = rubbing_tentacle(true_friction);
   RodSection& section = rod.sections[0];
-  section.damping = Vector6d(known_damping * section.stiffness_at(0));
-  section.stiffness = Vector6d(known_stiffness * section.stiffness_at(0));
+  section.damping = Vector6d(true_damping * section.stiffness_at(0));
+  section.stiffness = Vector6d(true_stiffness * section.stiffness_at(0));
   return rod;
 }
 
 // Tendons pull in turns, so that they slide all the time.
-std::vector<double> tensions_at(double time) {
+std::vector<double> tensions_in_turns(double time) {
   std::vector<double> tensions;
   for (const double phase : {0.0, 2.1, 4.2})
     tensions.push_back(40 + 30 * std::sin(5 * time + phase) + 6 * std::sin(11 * time + 2 * phase));
@@ -51,7 +51,7 @@ RodMotionRecord pulled_in_turns() {
   constexpr double sample_time = 8e-3;
   constexpr int pieces = 8;
   constexpr double h = sample_time / pieces;
-  RodDynamics dynamics(true_tentacle(), {.spectral_radius = 1, .tolerance = 1e-9});
+  RodDynamics dynamics(true_rubbing_tentacle(), {.spectral_radius = 1, .tolerance = 1e-9});
   const RodLoads weight{.gravity = {0, 0, 9.81}};
   RodState state = dynamics.rest();
   RodMotionRecord record{.samples = {}, .loads = weight};
@@ -59,15 +59,15 @@ RodMotionRecord pulled_in_turns() {
     const double time = k * sample_time;
     if (k >= 0)
       record.samples.push_back(
-          {.time = time, .q = state.q, .v = dynamics.velocity(state), .tensions = tensions_at(time)});
+          {.time = time, .q = state.q, .v = dynamics.velocity(state), .tensions = tensions_in_turns(time)});
     for (int i = 0; i < pieces; ++i)
       EXPECT_TRUE(
-          dynamics.step(state, {.tensions = tensions_at(time + (i + 0.5) * h)}, weight, h).converged());
+          dynamics.step(state, {.tensions = tensions_in_turns(time + (i + 0.5) * h)}, weight, h).converged());
   }
   return record;
 }
 
-RodMotionRecord with_noise_of(RodMotionRecord record, double q_noise, double v_noise, TestRandom& random) {
+RodMotionRecord with_errors(RodMotionRecord record, double q_noise, double v_noise, TestRandom& random) {
   const Eigen::Index n = record.samples[0].q.size();
   record.q_noise = Eigen::VectorXd::Constant(n, q_noise);
   record.v_noise = Eigen::VectorXd::Constant(n, v_noise);
@@ -81,19 +81,21 @@ RodMotionRecord with_noise_of(RodMotionRecord record, double q_noise, double v_n
 TEST(IdentificationOfFriction, OfAnExactRecordGivesItBack) {
   const RodMotionRecord record = pulled_in_turns();
   for (const double believed : {0.0, 0.5}) {
-    const Identification found = identify(rubbing_tentacle(believed), rubbing_parameters, record);
+    const Identification found = identify(rubbing_tentacle(believed), sought_with_friction, record);
     EXPECT_TRUE(found.converged);
     for (Eigen::Index g = 0; g < 3; ++g) {
       EXPECT_TRUE(found.is_observable[static_cast<std::size_t>(g)]);
-      EXPECT_NEAR(found.values[g], known_rubbing[g], 0.02 * known_rubbing[g]) << g;
+      EXPECT_NEAR(found.values[g], truly_with_friction[g], 0.02 * truly_with_friction[g]) << g;
     }
   }
   // Without it the others are wrong by what friction does.
   const Identification smooth =
-      identify(rubbing_tentacle(0), {rubbing_parameters.begin(), rubbing_parameters.end() - 1}, record);
-  EXPECT_GT(
-      (smooth.values - known_rubbing.head(2)).cwiseQuotient(known_rubbing.head(2)).cwiseAbs().maxCoeff(),
-      0.05);
+      identify(rubbing_tentacle(0), {sought_with_friction.begin(), sought_with_friction.end() - 1}, record);
+  EXPECT_GT((smooth.values - truly_with_friction.head(2))
+                .cwiseQuotient(truly_with_friction.head(2))
+                .cwiseAbs()
+                .maxCoeff(),
+            0.05);
 }
 
 TEST(IdentificationOfFriction, TellsHowWrongItIsUnderNoise) {
@@ -104,11 +106,12 @@ TEST(IdentificationOfFriction, TellsHowWrongItIsUnderNoise) {
   double distance = 0, misfit = 0;
   for (int seed = 0; seed < seeds; ++seed) {
     const Identification found =
-        identify(rubbing_tentacle(0.1), rubbing_parameters, with_noise_of(exact, 0.05, 0.5, random));
+        identify(rubbing_tentacle(0.1), sought_with_friction, with_errors(exact, 0.05, 0.5, random));
     EXPECT_TRUE(found.converged);
-    const Eigen::Vector3d error = found.values - known_rubbing, parts = error.cwiseQuotient(found.sigma);
+    const Eigen::Vector3d error = found.values - truly_with_friction,
+                          parts = error.cwiseQuotient(found.sigma);
     EXPECT_LT(parts.cwiseAbs().maxCoeff(), 4.5);
-    EXPECT_LT(found.sigma.cwiseQuotient(known_rubbing).maxCoeff(), 0.1);
+    EXPECT_LT(found.sigma.cwiseQuotient(truly_with_friction).maxCoeff(), 0.1);
     squares += parts.cwiseAbs2() / seeds;
     distance += error.dot(found.covariance.ldlt().solve(error)) / seeds;
     misfit += found.misfit / seeds;
@@ -128,7 +131,7 @@ TEST(IdentificationOfFriction, FlagsWhatDoesNotSlide) {
                               .q = Eigen::VectorXd::Zero(4),
                               .v = Eigen::VectorXd::Zero(4),
                               .tensions = {1, 1, 1}});
-  const Identification found = identify(rubbing_tentacle(0.1), rubbing_parameters, record);
+  const Identification found = identify(rubbing_tentacle(0.1), sought_with_friction, record);
   EXPECT_FALSE(found.is_observable[2]);
   EXPECT_EQ(found.values[2], 0.1);
   EXPECT_TRUE(std::isinf(found.sigma[2]));

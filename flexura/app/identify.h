@@ -13,15 +13,15 @@ namespace flexura {
 
 /// What `flexura identify` is told.
 struct IdentifyArguments {
-  std::string experiment;
-  std::string motion;  ///< A results folder, a log or a table of places.
-  std::vector<std::string> sets;
-  std::optional<double> from, to;    ///< s
-  std::optional<double> noise_mm;    ///< Of measured places; a log's places get it.
-  std::optional<double> window;      ///< s
-  std::optional<std::int64_t> seed;  ///< Of the errors that a log's places get.
-  bool mass = false;                 ///< Look for a factor on the mass too.
-  bool alike = false;                ///< All sections are of one material.
+  std::string experiment = {};
+  std::string motion = {};  ///< A results folder, a log or a table of places.
+  std::vector<std::string> sets = {};
+  std::optional<double> from = {}, to = {};  ///< s
+  std::optional<double> noise_mm = {};       ///< Of measured places; a log's places get it.
+  std::optional<double> window = {};         ///< s
+  std::optional<std::int64_t> seed = {};     ///< Of the errors that a log's places get.
+  bool mass = false;                         ///< Look for a factor on the mass too.
+  bool alike = false;                        ///< All sections are of one material.
   bool json = false;
 };
 

@@ -181,7 +181,7 @@ TEST_F(Identify, RefusesWhatIsNoMotionOfTheArm) {
       refused({.experiment = step_response, .motion = results(), .sets = {"arm.base.position=[0, 0, 0]"}}),
       HasSubstr("has an arm whose base stands 0.8 m from the experiment's arm"));
   EXPECT_THAT(
-      refused({.experiment = step_response, .motion = results(), .sets = {"arm.section.0.length=0.4"}}),
+      refused({.experiment = step_response, .motion = results(), .sets = {"arm.section.0.length=0.3"}}),
       HasSubstr("no shape of the rod comes near to the places"));
   EXPECT_THAT(
       refused({.experiment = checkout_file("examples/01_paper_arm/experiment.toml"), .motion = results()}),

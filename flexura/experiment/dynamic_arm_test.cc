@@ -126,6 +126,9 @@ TEST(BadDynamicFiles, EachGetsALineWithPlaceValueAndExpectation) {
               HasSubstr("arm.payload[0].section: is section 2 of an arm of 1"));
   EXPECT_THAT(error_of_file(moving_with("friction = 0.4", "stiffness = 0")),
               HasSubstr("arm.contact.stiffness = 0"));
+  // The paper's arcs are of an arm that does not sag.
+  EXPECT_THAT(error_of_file(moving_rod + std::string("[[task]]\nkind = \"calibrate\"\nmethod = \"arcs\"\n")),
+              HasSubstr("task[0].method: needs an arm that its drives bend into arcs"));
   EXPECT_THAT(error_of_file(moving_with("model = \"dynamic\"", "model = \"dynamic\"\ntime_step = 0")),
               HasSubstr("arm.time_step"));
 }

@@ -22,7 +22,7 @@ using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 constexpr double other_energy = 0.01;
 // Of the rod's length: the noise that counts before any is known, and the least that does.
 constexpr double first_noise = 1e-3, least_noise = 1e-5;
-// Root mean square of what is left, by the length: beyond it the places are none of this rod.
+// What bends alone leave, root mean square, by the length: beyond it the places are none of this rod.
 constexpr double most_left = 0.02;
 constexpr int most_tries = 60;
 // Of a simulated motion, s, and which part of a step's way its input is of (RodDynamics::step).
@@ -217,6 +217,9 @@ RodPlaceRecord record_of_places(const Rod& rod, std::span<const RodPlace> places
     for (const Index mode : bends) there += 0.5 * stiffness[mode] * q[mode] * q[mode];
     energy = std::max(energy, there);
   }
+  if (const double left = std::sqrt(fits.square / coordinates); !(left < most_left * length))
+    throw std::invalid_argument(
+        fmt::format("no shape of the rod comes near to the places: {:.3g} m are left of them", left));
   // Of a rod that does not bend at all some remains.
   energy = std::max(energy, 1e-9 * stiffness.maxCoeff());
   spread = (2 * other_energy * energy * stiffness.cwiseInverse()).cwiseSqrt();
@@ -229,9 +232,6 @@ RodPlaceRecord record_of_places(const Rod& rod, std::span<const RodPlace> places
     fits = fit_all(fit, samples, counted, spread);
     if (noise == 0) counted = std::max(std::sqrt(fits.square / freedom), least_noise * length);
   }
-  if (const double left = std::sqrt(fits.square / coordinates); !(left < most_left * length))
-    throw std::invalid_argument(
-        fmt::format("no shape of the rod comes near to the places: {:.3g} m are left of them", left));
   RodPlaceRecord result{.record = {.samples = {}, .loads = loads},
                         .noise = counted,
                         .rms = std::sqrt(fits.square / coordinates)};

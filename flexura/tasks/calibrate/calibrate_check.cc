@@ -54,6 +54,11 @@ void check_etalon(const CalibrateTask& task, const StandConfig& stand, const std
 }
 
 void check_arcs(const CalibrateTask& task, const ArmConfig& arm, const std::string& path, Reader& reader) {
+  if (arm.mechanics != ArmMechanics::kinematic)
+    reader.problem_at(
+        path + ".method",
+        "needs an arm that its drives bend into arcs, and an elastic one sags: expected bundle, or "
+        "the elastic arm under [truth.arm]");
   constexpr std::size_t arcs = 4;
   if (calibration_poses(task, arm.arm()).size() < arcs)
     reader.problem_at(

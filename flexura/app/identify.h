@@ -13,8 +13,8 @@ namespace flexura {
 
 /// What `flexura identify` is told.
 struct IdentifyArguments {
-  std::string experiment;
-  std::string motion;  ///< A results folder, a log or a table of places.
+  std::string experiment = {};
+  std::string motion = {};  ///< A results folder, a log or a table of places.
   std::vector<std::string> sets = {};
   std::optional<double> from = {}, to = {};  ///< s
   std::optional<double> noise_mm = {};       ///< Of measured places; a log's places get it.

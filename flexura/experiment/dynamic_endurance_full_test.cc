@@ -83,8 +83,9 @@ TEST(DynamicEndurance, TenMinutesOfAnArmInMotionKeepTheirMemory) {
   for (std::size_t i = 0; i < minutes.heap.size(); ++i)
     std::printf("after %zu min: heap %.2f MB, resident %.2f MB\n", i + 1, minutes.heap[i] / a_megabyte,
                 minutes.memory[i] / a_megabyte);
-  // The log's index of chunks grows, by some bytes each.
-  EXPECT_LE(minutes.heap[9] - minutes.heap[0], 0.5 * a_megabyte);
+  // The report keeps up to 10,000 of the run's states, whatever its length; the log's index of chunks grows
+  // by some bytes each.
+  EXPECT_LE(minutes.heap[9] - minutes.heap[0], 4 * a_megabyte);
   EXPECT_LE(minutes.memory[9] - minutes.memory[0], 4 * a_megabyte);
 }
 

@@ -68,6 +68,7 @@ struct TouchChange {
 struct TouchHold {
   Eigen::Matrix3d stiffness = Eigen::Matrix3d::Zero(), damping = Eigen::Matrix3d::Zero();
 };
+/// Returns what holds at a touch with this force.
 [[nodiscard]] TouchHold hold_of(const ContactLaw& law, const Touch& touch, const TouchForce& at);
 
 /// The same, with its derivatives by the node's motion, where the body lies still.

@@ -102,11 +102,12 @@ TEST(RecordOfPlaces, ItsCovariancesCountAsNoiseDoes) {
                                                 {.kind = RodParameter::Kind::damping}};
   for (RodMotionRecordSample& sample : record.samples)
     sample.q_covariance = Eigen::VectorXd::LinSpaced(n, 1e-6, 4e-6).asDiagonal();
-  const Identification found = identify(rod, parameters, record);
+  const IdentificationConfig config{.window = 0.2};
+  const Identification found = identify(rod, parameters, record, config);
   RodMotionRecord by_noise = record;
   for (RodMotionRecordSample& sample : by_noise.samples) sample.q_covariance.resize(0, 0);
   by_noise.q_noise = Eigen::VectorXd::LinSpaced(n, 1e-6, 4e-6).cwiseSqrt();
-  const Identification same = identify(rod, parameters, by_noise);
+  const Identification same = identify(rod, parameters, by_noise, config);
   for (Eigen::Index g = 0; g < 3; ++g) {
     EXPECT_NEAR(found.values[g], same.values[g], 1e-7 * same.values[g]);
     EXPECT_NEAR(found.sigma[g], same.sigma[g], 1e-6 * same.sigma[g]);

@@ -26,12 +26,15 @@ class RodCurve {
     Eigen::Vector3d middle = Eigen::Vector3d::Zero();
     double reach = 0;
 
+    /// Returns the point x(u), m, for u in [0, 1].
     [[nodiscard]] Eigen::Vector3d at(double u) const {
       return powers.col(0) + u * (powers.col(1) + u * (powers.col(2) + u * powers.col(3)));
     }
+    /// Returns dx/du.
     [[nodiscard]] Eigen::Vector3d slope_at(double u) const {
       return powers.col(1) + u * (2 * powers.col(2) + 3 * u * powers.col(3));
     }
+    /// Returns d2x/du2.
     [[nodiscard]] Eigen::Vector3d bend_at(double u) const {
       return 2 * powers.col(2) + 6 * u * powers.col(3);
     }

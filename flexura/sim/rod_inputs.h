@@ -40,6 +40,7 @@ class RodInputs {
   [[nodiscard]] bool is_weighed(double time) const;
   /// What pushes the arm. std::invalid_argument: as Plant::push.
   void push(double time, const std::optional<PlantPush>& push);
+  /// Returns what pushes the arm at a time; std::nullopt if nothing does.
   [[nodiscard]] std::optional<PlantPush> pushed(double time) const;
   /// The same as a spring of the rod, in the frame of its base.
   [[nodiscard]] std::optional<PointSpring> spring(double time) const;

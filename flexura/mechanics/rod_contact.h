@@ -125,8 +125,8 @@ class RodContact final : public RodSurroundings {
                      Found&& found) const;
   void find_meetings(std::span<const std::size_t> chosen, std::span<const NodeMotion> points) const;
   void find_pieces(std::span<const std::size_t> chosen, std::span<const NodeMotion> points) const;
-  [[nodiscard]] bool meet(const Piece& piece, std::span<const NodeMotion> points, std::size_t point,
-                          std::size_t at, Meeting& meeting) const;
+  [[nodiscard]] bool meet(const Piece& piece, std::span<const NodeMotion> points, std::size_t index,
+                          std::size_t k, Meeting& meeting) const;
   [[nodiscard]] MeetingSlopes slopes_of(std::span<const NodeMotion> points, const Meeting& meeting,
                                         const TouchForce& at) const;
 

@@ -212,14 +212,14 @@ void RodMotion<S>::find_pull_slopes(std::size_t tendon, double tension, double* 
     std::fill(slopes, slopes + layout_.modes, 0.0);
     std::ranges::fill(spare_, Screw<double>{});
     bool has_chords = false;
-    using Number = Dual<double>;
-    Number left{tension, 1};
+    using Tension = Dual<double>;
+    Tension left{tension, 1};
     for (std::size_t p = 0; p < found->pieces.size(); ++p) {
       const RodLayout::Piece& piece = found->pieces[p];
       const RodLayout::Section& section = layout_.sections[piece.section];
       const std::size_t at = found->first + p;
       if (p > 0)
-        left -= held_by(left, turn_[at] + Number{}, slide_time_ * slide_[at] + Number{}, grip_[at],
+        left -= held_by(left, turn_[at] + Tension{}, slide_time_ * slide_[at] + Tension{}, grip_[at],
                         held_before_ != nullptr ? held_before_[at] : 0.0);
       if (section.disks.empty()) {
         add_strain_force(section, piece.at, piece.run * left.slope * units_[at], slopes);

@@ -33,7 +33,8 @@ double nearest_share(const RodCurve::Piece& curve, const Eigen::Vector3d& p) {
     const double towards = off.dot(slope), change = off.dot(curve.bend_at(u)) - slope.squaredNorm();
     (towards > 0 ? low : high) = u;
     double next = u - towards / change;
-    if (!(next > low && next < high)) next = 0.5 * (low + high);
+    const bool is_between = next > low && next < high;
+    if (!is_between) next = 0.5 * (low + high);
     if (std::abs(next - u) < 1e-15) return next;
     u = next;
   }

@@ -9,7 +9,8 @@ namespace flexura {
 
 std::string spring_problem(const PointSpring& spring) {
   if (!spring.to.allFinite() || !spring.force.allFinite()) return "a spring's place or force is not finite";
-  if (!(spring.at >= 0 && spring.at <= 1)) return "a spring's place is outside its section";
+  const bool is_inside = spring.at >= 0 && spring.at <= 1;
+  if (!is_inside) return "a spring's place is outside its section";
   if (!(spring.stiffness >= 0) || !std::isfinite(spring.stiffness))
     return "a spring's stiffness must be at least 0 and finite";
   if (!(spring.most > 0) || !std::isfinite(spring.most))

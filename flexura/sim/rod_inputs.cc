@@ -116,7 +116,8 @@ void RodInputs::push(double time, const std::optional<PlantPush>& push) {
 PointSpring RodInputs::spring_of(const PlantPush& push) const {
   constexpr double rounding = 1e-9;  // of the arm's length
   const double length = rod_.length();
-  if (!(push.s_rest >= -rounding * length && push.s_rest <= (1 + rounding) * length))
+  const bool is_on_arm = push.s_rest >= -rounding * length && push.s_rest <= (1 + rounding) * length;
+  if (!is_on_arm)
     throw std::invalid_argument(fmt::format("a push at s = {}: expected 0 to {:.6g} m", push.s_rest, length));
   PointSpring spring{.stiffness = push.stiffness, .most = push.most};
   double left = push.s_rest;

@@ -298,7 +298,8 @@ class Page {
     std::vector<const FieldInfo*> own;
     for (const FieldInfo& field : info.fields) {
       const bool is_common = std::ranges::find(common, field.name, &FieldInfo::name) != common.end();
-      if (!is_common && !(has_part && part->table->find(field.name) != nullptr)) own.push_back(&field);
+      const bool is_in_part = has_part && part->table->find(field.name) != nullptr;
+      if (!is_common && !is_in_part) own.push_back(&field);
     }
     const std::string also = has_part ? fmt::format(" It also has the keys of {}.", part->link) : "";
     const std::string rows = rows_of(own);

@@ -221,8 +221,10 @@ TEST(ContactRod, ForcesOfTheModesHaveTheDerivativesByDifferences) {
       EXPECT_LT((slopes.force_by_v.col(j) - by_v).norm(), 1e-4 * (1 + by_v.norm())) << j;
     }
   });
-  EXPECT_GT(touched % 1000, 0);  // The floor,
-  EXPECT_GT(touched, 1000);      // and itself.
+  // Sanitized builds try too few cases for both.
+  if (one_case_of > 1) return;
+  EXPECT_GT(touched % 1000, 0) << "the floor";
+  EXPECT_GT(touched, 1000) << "and itself";
 }
 
 TEST(ContactRod, TurnedWithItsFrameNothingChanges) {

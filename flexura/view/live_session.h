@@ -77,7 +77,7 @@ class LiveSession : public PictureSession {
   void halt();
   void reset();
   void weigh(bool on);
-  void push(ClientId client, const PushRequest& push);
+  void push(ClientId client, const PushRequest& request);
   void release();
   void watch_yielding();
   void tell_pace();

@@ -42,8 +42,8 @@ void add_errors(MeasuredMotion& motion, double noise, std::int64_t seed) {
   for (std::size_t k = 0; k < motion.samples.size(); ++k)
     for (std::size_t i = 0; i < motion.places.size(); ++i)
       for (std::size_t c = 0; c < 3; ++c) {
-        const double radius = std::sqrt(-2 * std::log(uniform_of(hash(first, k, i, c, 0))));
-        const double angle = 2 * std::numbers::pi * uniform_of(hash(first, k, i, c, 1));
+        const double radius = std::sqrt(-2 * std::log(uniform_of(hash(first, k, i, c, std::uint64_t{0}))));
+        const double angle = 2 * std::numbers::pi * uniform_of(hash(first, k, i, c, std::uint64_t{1}));
         motion.samples[k].positions[i][static_cast<Index>(c)] += noise * radius * std::cos(angle);
       }
 }
@@ -172,9 +172,10 @@ void refuse_what_is_not_known(const IdentifyArguments& arguments, const ArmConfi
   if (!arm.payload.empty())
     throw input_error(arguments.experiment,
                       "arm.payload: payloads are not known to identification: expected none");
-  if (arguments.noise_mm && !(*arguments.noise_mm > 0 && std::isfinite(*arguments.noise_mm)))
+  const auto is_good = [](double value) { return value > 0 && std::isfinite(value); };
+  if (arguments.noise_mm && !is_good(*arguments.noise_mm))
     throw input_error("--noise-mm", fmt::format("{}: expected a number above 0", *arguments.noise_mm));
-  if (arguments.window && !(*arguments.window > 0 && std::isfinite(*arguments.window)))
+  if (arguments.window && !is_good(*arguments.window))
     throw input_error("--window", fmt::format("{}: expected a number above 0", *arguments.window));
 }
 

@@ -16,7 +16,7 @@ struct TimeSpan {
   std::optional<double> from = {}, to = {};
 
   /// Whether it has the time.
-  [[nodiscard]] bool has(double time) const { return !(from && time < *from) && !(to && time > *to); }
+  [[nodiscard]] bool has(double time) const { return (!from || time >= *from) && (!to || time <= *to); }
 };
 
 /// Places of an arm over time, in the frame of its base, as they were measured or logged.

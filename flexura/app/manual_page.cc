@@ -35,6 +35,7 @@ std::string roff_lines(const std::string& text) {
 
 std::string entry(const OptionHelp& option) {
   std::vector<std::string> names;
+  names.reserve(option.names.size());
   for (const std::string& name : option.names) names.push_back("\\fB" + roff(name) + "\\fR");
   const bool has_value =
       option.takes != Takes::nothing && !option.value.empty() && option.value != option.names.front();

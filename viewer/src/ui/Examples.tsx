@@ -26,7 +26,7 @@ export function Examples() {
     void viewer.commander.open_example(name);
   };
   return (
-    <dialog ref={dialog} class="help examples" aria-labelledby="examples-title" onClose={() => (app.dialog.value = null)}>
+    <dialog ref={dialog} class="examples" aria-labelledby="examples-title" onClose={() => (app.dialog.value = null)}>
       <header>
         <h2 id="examples-title">Open an example</h2>
         <button type="button" class="button quiet square" aria-label="Close" onClick={() => (app.dialog.value = null)}>

@@ -1,8 +1,9 @@
-// A planar arm's own ways of saying its shape: the fake one, and the one that `flexura view` shows without a file.
+// A planar arm's own ways of saying its shape: the fake one, and the paper's arm by the program.
 import type { Page } from 'playwright-core';
 import { beforeAll, describe, expect, test } from 'vitest';
 import { planar_rig } from '../fake/rigs';
 import { colors_in, server_state, slide, stage_at_rest, tip_on_screen, until } from './browser';
+import { fileURLToPath } from 'node:url';
 import { faked, opened_before, started, type Served } from './opened';
 import { program } from './program';
 
@@ -61,5 +62,6 @@ function planar_tests(start: () => Promise<Served>): void {
 }
 
 // The fake one stands in for the program where there is none.
-if (program) describe('the paper’s arm, before the cameras that stand there without a word', () => planar_tests(started));
+const paper_arm = fileURLToPath(new URL('../../../examples/01_paper_arm/experiment.toml', import.meta.url));
+if (program) describe('the paper’s arm, before the cameras that stand there without a word', () => planar_tests(() => started(paper_arm)));
 else describe('a planar arm', () => planar_tests(() => faked(planar_rig())));

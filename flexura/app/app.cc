@@ -96,12 +96,23 @@ void add_check(CLI::App& app, Command& chosen) {
   });
 }
 
+constexpr const char* statics_footer =
+    "A line says what pulls, or where the arm shall be; all in the frame of the arm's base:\n"
+    "  {\"tensions\":[4,0,0,0,2,0],\"tip_force\":[0,0,-0.1],\"at\":[0.1,0.2]}\n"
+    "  {\"displacements\":[0.004,0,0,0,0.002,0],\"gravity\":[0,0,-9.81]}\n"
+    "  {\"target\":{\"tip\":[0.1,0.1,0.3],\"direction\":[0,0,1],\"most_tension\":20}}\n"
+    "A target has tip, direction or rotation [w,x,y,z], or shape\n"
+    "[{\"at\":0.2,\"position\":[x,y,z]},...]; the answer has the tensions of least effort,\n"
+    "whether it was reached, and the residual, m.";
+
 // The commands that answer lines about an arm.
 void add_answers(CLI::App& app, Command& chosen, const std::string& name, const std::string& meaning,
-                 int (*command)(const std::string&, std::istream&, std::ostream&)) {
+                 int (*command)(const std::string&, std::istream&, std::ostream&),
+                 const std::string& footer = "") {
   auto file = std::make_shared<std::string>();
   CLI::App* answers = app.add_subcommand(name, meaning + ": JSON lines in, JSON lines out");
   answers->add_option("ARM", *file, "A file with [arm] (an experiment, or an arm alone)")->required();
+  answers->footer(footer);
   answers->callback(
       [&chosen, file, command] { chosen = [file, command] { return command(*file, std::cin, std::cout); }; });
 }
@@ -309,7 +320,7 @@ int parse_and_run(int argc, const char* const* argv) {
   add_view(app, chosen);
   add_answers(app, chosen, "fk", "Forward kinematics", forward_command);
   add_answers(app, chosen, "ik", "Inverse kinematics", inverse_command);
-  add_answers(app, chosen, "statics", "Equilibrium of an elastic arm", statics_command);
+  add_answers(app, chosen, "statics", "Equilibrium of an elastic arm", statics_command, statics_footer);
   add_answers(app, chosen, "linearise", "Motion of an elastic arm around its equilibrium", linearise_command);
   add_render(app, chosen);
   add_measure(app, chosen);

@@ -197,8 +197,7 @@ void RodResponse::slopes(const ArmState& command, Eigen::MatrixXd& by_command) c
   const Answer& here = answer(command);
   if (!here.at.converged()) {
     by_command.setConstant(std::numeric_limits<double>::quiet_NaN());
-  } else if (!has_driven_lengths_ &&
-             std::ranges::all_of(here.at.tensions, [](double tension) { return tension > 0; })) {
+  } else if (!has_driven_lengths_) {
     // The solver and the fit are where this was answered.
     analytic_slopes(by_command);
   } else {
@@ -210,7 +209,7 @@ void RodResponse::slopes(const ArmState& command, Eigen::MatrixXd& by_command) c
 void RodResponse::analytic_slopes(Eigen::MatrixXd& by_command) const {
   // What was answered last may have been asked of another thread's command since: not with mutex_ held.
   const ArmState& command = last_->command;
-  const Eigen::MatrixXd q_by_command = statics_.slopes().q_by_input * displacement_slopes(command);
+  const Eigen::MatrixXd q_by_command = statics_.slopes(RodStatics::Slack::is_taut).q_by_input * displacement_slopes(command);
   fine_.place_with_columns(last_->at.q);
   Eigen::MatrixXd places(J_.rows(), q_by_command.cols());
   RodElement::Columns twists(6, fine_.size());

@@ -106,7 +106,7 @@ Equilibrium StaticPlant::solved(double time, const Equilibrium& near, const std:
   const TendonInput input{.displacements = inputs().displacements(time, lost)};
   const std::lock_guard lock(mutex_);
   statics_.stretch_rest(inputs().rest_stretches(time));
-  Equilibrium at = statics_.solve(input, inputs().loads(time), near);
+  Equilibrium at = statics_.settle(input, inputs().loads(time), near);
   if (!at.converged())
     throw SimulationError(fmt::format("at {:.3f} s the arm comes to no rest under its tendons and loads: {}",
                                       time, words(at.end)));

@@ -30,9 +30,8 @@ class RodResponse : public ArmResponse {
   RodResponse(const Arm& driven, const Rod& rod, RodLoads loads, std::optional<Drive> drive);
 
   [[nodiscard]] ArmState shape(const ArmState& command) const override;
-  /// By the equilibrium's derivatives where every tendon is taut. Where one hangs slack a small change may
-  /// tighten it, and derivatives differ from side to side: there it is the change over `secant` to both
-  /// sides. So it is of arms whose sections are driven longer.
+  /// By the equilibrium's derivatives, in which a tendon that hangs slack counts as just taut: they are those
+  /// beyond its slack. Of arms whose sections are driven longer it is the change over `secant` to both sides.
   void slopes(const ArmState& command, Eigen::MatrixXd& by_command) const override;
   static constexpr double secant = 0.02;  ///< rad
 

@@ -182,8 +182,8 @@ RodFall::Saddle RodFall::leave_saddle(Eigen::VectorXd& q, const std::vector<Held
   const double ahead = look(q, tendons) ? energy_ : huge;
   if (!has_energy_ && ahead < huge) return Saddle::left;
   q -= 2 * direction.col(0);
-  if (const bool turns = look(q, tendons) && energy_ <= ahead; turns == (pushes_ % 2 == 0))
-    return Saddle::left;
+  // The lower side first, then the other one.
+  if (look(q, tendons) && (energy_ <= ahead) == (pushes_ % 2 == 0)) return Saddle::left;
   q += 2 * direction.col(0);
   return look(q, tendons) ? Saddle::left : Saddle::none;
 }

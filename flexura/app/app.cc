@@ -270,8 +270,11 @@ int parse_and_run(int argc, const char* const* argv) {
               R"(echo '{"bends":[[0.5,0],[0,0.5]]}' | flexura fk arm.toml)", forward_command);
   add_answers(app, chosen, "ik", "Inverse kinematics: from a target of the tip to bends",
               R"(echo '{"position":[0.2,0.45,0.1]}' | flexura ik arm.toml)", inverse_command);
-  add_answers(app, chosen, "statics", "Equilibrium of an elastic arm under tensions and loads",
-              R"(echo '{"tensions":[4,0,0,2,0,0]}' | flexura statics tendons.toml)", statics_command);
+  add_answers(app, chosen, "statics",
+              "Equilibrium of an elastic arm under tensions and loads, or tensions for a target",
+              R"(echo '{"tensions":[4,0,0,2,0,0]}' | flexura statics tendons.toml
+echo '{"target":{"tip":[0.1,0.1,0.36]}}' | flexura statics tendons.toml)",
+              statics_command);
   add_answers(app, chosen, "linearise", "Linear model of an elastic arm's motion around its equilibrium",
               R"(echo '{"tensions":[4,0,0,2,0,0]}' | flexura linearise tendons.toml)", linearise_command);
   add_identify(app, chosen);

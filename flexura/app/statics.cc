@@ -9,30 +9,33 @@
 #include <vector>
 
 #include "flexura/app/rod_request.h"
+#include "flexura/app/statics_target.h"
 #include "flexura/base/problems.h"
 #include "flexura/log/messages.h"
 #include "flexura/mechanics/arm_rod.h"
+#include "flexura/mechanics/inverse_statics.h"
 #include "flexura/store/json.h"
 
 namespace flexura {
 namespace {
 
-// Each becomes a node of the rod.
-constexpr std::size_t max_places = 1000;
-
 /// A line of input.
 struct StaticsRequest : RodRequest {
+  std::optional<StaticsTarget> target;    ///< Where the arm shall be: the tensions are to be found.
   std::optional<std::vector<double>> at;  ///< Arc lengths at rest, m.
 };
 
 const Table<StaticsRequest>& fields_of(const StaticsRequest*) {
   static const auto table = [] {
     Table<StaticsRequest> made("statics request", "What pulls at the arm, and where along it to answer.");
-    add_rod_fields(made).field("at", &StaticsRequest::at,
-                               {.meaning = "arc lengths at rest",
-                                .unit = Unit::metre,
-                                .range = at_least(0),
-                                .count = {0, max_places}});
+    add_rod_fields(made)
+        .field("target", &StaticsRequest::target,
+               {.meaning = "where the arm shall be, instead of what pulls at its tendons"})
+        .field("at", &StaticsRequest::at,
+               {.meaning = "arc lengths at rest",
+                .unit = Unit::metre,
+                .range = at_least(0),
+                .count = {0, max_statics_places}});
     return made;
   }();
   return table;
@@ -44,6 +47,11 @@ StaticsRequest read_request(const Rod& rod, std::string_view line) {
   StaticsRequest request;
   if (fields_of(static_cast<const StaticsRequest*>(nullptr)).read(document, reader, request)) {
     check_rod_request(rod, request, reader);
+    if (request.target) {
+      check_statics_target(rod, *request.target, reader);
+      if (request.tensions || request.displacements)
+        reader.problem_at("target", "is given beside tensions or displacements: expected one of them");
+    }
     const double length = rod.length();
     for (std::size_t i = 0; request.at && i < request.at->size(); ++i) {
       if ((*request.at)[i] <= length * (1 + 1e-12)) continue;
@@ -53,15 +61,6 @@ StaticsRequest read_request(const Rod& rod, std::string_view line) {
   }
   reader.throw_if_any();
   return request;
-}
-
-RodPlace place_of(const Rod& rod, double s) {
-  std::size_t section = 0;
-  while (section + 1 < rod.sections.size() && s > rod.sections[section].length) {
-    s -= rod.sections[section].length;
-    ++section;
-  }
-  return {.section = section, .at = std::clamp(s / rod.sections[section].length, 0.0, 1.0)};
 }
 
 Node numbers(const std::vector<double>& values) {
@@ -106,6 +105,15 @@ Node::Table answer_of(const Equilibrium& found) {
           {"ambiguous", {}, {found.ambiguous, {}}}};
 }
 
+// What is left between the target and what was found.
+void add_residual(const InverseStaticsResult& result, const StaticsTarget& target, Node::Table& members) {
+  members.push_back({"reached", {}, {result.reached(), {}}});
+  if (!result.reached()) members.push_back({"why_not", {}, {result.problem, {}}});
+  members.push_back({"residual", {}, {result.position_error, {}}});
+  if (target.direction || target.rotation)
+    members.push_back({"residual_angle", {}, {result.angle_error, {}}});
+}
+
 Node error_node(std::string problem) { return {Node::Table{{"error", {}, {std::move(problem), {}}}}, {}}; }
 
 }  // namespace
@@ -122,15 +130,27 @@ std::string StaticsAnswers::problem(std::string_view line) const {
   }
 }
 
+InverseStaticsResult StaticsAnswers::aimed(const StaticsTarget& target, const RodLoads& loads) {
+  const std::vector<double> most(rod_.tendons.size(), target.most_tension);
+  if (!target.shape) return solve_inverse_statics(statics_, target.target(rod_), loads, most);
+  RodStatics statics(rod_, target.places(rod_));
+  return solve_inverse_statics(statics, target.target(rod_), loads, most);
+}
+
 std::string StaticsAnswers::answer(std::string_view line) {
   try {
     const StaticsRequest request = read_request(rod_, line);
     std::vector<RodPlace> places;
-    for (const double s : request.at.value_or(std::vector<double>{})) places.push_back(place_of(rod_, s));
-    const Equilibrium found = statics_.solve(request.tendons(), request.loads(rod_, loads_));
+    for (const double s : request.at.value_or(std::vector<double>{})) places.push_back(place_along(rod_, s));
+    std::optional<InverseStaticsResult> inverse;
+    if (request.target) inverse = aimed(*request.target, request.loads(rod_, loads_));
+    const Equilibrium found =
+        inverse ? inverse->equilibrium : statics_.solve(request.tendons(), request.loads(rod_, loads_));
     if (found.end == StaticsEnd::bad_input) return write_json(error_node(found.problem));
     Node::Table members = answer_of(found);
-    if (request.at && members.size() > 2) {
+    const bool has_answer = members.size() > 2;
+    if (inverse && has_answer) add_residual(*inverse, *request.target, members);
+    if (request.at && has_answer) {
       RodChain chain(rod_, places);
       chain.place(found.q);
       members.push_back({"at", {}, place_nodes(chain, places)});

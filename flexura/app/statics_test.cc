@@ -140,6 +140,57 @@ TEST(AnswerStatics, DoesNotDependOnTheLinesBefore) {
   }
 }
 
+double number_of(const Node& answer, const char* name) { return *answer.find(name)->as<double>(); }
+
+TEST(AnswerStatics, FindsTheTensionsOfATarget) {
+  StaticsAnswers answers = wire_answers();
+  const Node made = answer_to(answers, R"({"tensions":[4,0,0,0,2,0],"at":[0.1,0.2,0.3]})");
+  const auto quaternion = listed_numbers(made.find("tip")->find("rotation"));
+  const std::string tip = fmt::format("\"tip\":[{}]", fmt::join(tip_position(made), ",")),
+                    rotation = fmt::format("\"rotation\":[{}]", fmt::join(quaternion, ","));
+  std::string shape = "\"shape\":[";
+  const auto& at = *made.find("at")->as<Node::Array>();
+  for (std::size_t i = 0; i < at.size(); ++i)
+    shape +=
+        fmt::format("{}{{\"at\":{},\"position\":[{}]}}", i == 0 ? "" : ",", 0.1 * static_cast<double>(i + 1),
+                    fmt::join(listed_numbers(at[i].find("position")), ","));
+  shape += "]";
+  for (const std::string& target : {tip, tip + "," + rotation, shape, tip + ",\"direction\":[0.3,0.5,1]"}) {
+    const bool has_angle = target.find("tip") != std::string::npos && target != tip;
+    const Node answer = answer_to(answers, "{\"target\":{" + target + "},\"at\":[0.4]}");
+    ASSERT_NE(answer.find("residual"), nullptr) << target;
+    EXPECT_EQ(answer.find("residual_angle") != nullptr, has_angle) << target;
+    double effort = 0;
+    std::string again = "{\"tensions\":[";
+    for (const double tension : listed_numbers(answer.find("tensions"))) {
+      EXPECT_GE(tension, 0);
+      effort += tension * tension;
+      again += fmt::format("{},", tension);
+    }
+    again.back() = ']';
+    EXPECT_THAT(tip_position(answer_to(answers, again + "}")), near(tip_position(answer), 1e-9)) << target;
+    if (target.find("direction") != std::string::npos) continue;  // Which those tensions do not make.
+    EXPECT_TRUE(*answer.find("reached")->as<bool>()) << target;
+    EXPECT_EQ(answer.find("why_not"), nullptr);
+    EXPECT_LE(number_of(answer, "residual"), 1e-7) << target;
+    EXPECT_LE(effort, 20 + 1e-4) << target;
+    EXPECT_TRUE(*answer.find("stable")->as<bool>());
+  }
+}
+
+TEST(AnswerStatics, SaysHowFarATargetIsOutOfReach) {
+  StaticsAnswers answers = wire_answers();
+  const Node answer = answer_to(answers, R"({"target":{"tip":[0,0,0.5]},"gravity":[0,0,-1]})");
+  EXPECT_TRUE(*answer.find("converged")->as<bool>());
+  EXPECT_FALSE(*answer.find("reached")->as<bool>());
+  EXPECT_THAT(*answer.find("why_not")->as<std::string>(), HasSubstr("bounds"));
+  EXPECT_NEAR(number_of(answer, "residual"), 0.1, 1e-3);
+  // Under a force that pulls the tip aside tendons pull against it.
+  const Node held = answer_to(answers, R"({"target":{"tip":[0,0,0.399]},"tip_force":[0.02,0,0]})");
+  EXPECT_TRUE(*held.find("reached")->as<bool>()) << write_json(held);
+  EXPECT_THAT(tip_position(held), near({0, 0, 0.399}, 1e-7));
+}
+
 TEST(AnswerStatics, SaysNothingOfWhatItDoesNotFind) {
   StaticsAnswers answers = answers_of_text(R"([arm]
 kind = "spatial"
@@ -173,6 +224,21 @@ TEST(AnswerStatics, AnswersABadLineWithItsError) {
       {R"({"gravity":[1,2,-1e300]})", "gravity[2] = -1e+300: expected a number from"},
       {R"({"at":[0.41]})", "at[0]: 0.41 is beyond the tip: expected at most 0.4 m"},
       {R"({"at":[-1]})", "at[0] = -1: expected a number at least 0 m"},
+      {R"({"target":{}})", "target: asks for nothing: expected tip, direction, rotation or shape"},
+      {R"({"target":[1,2,3]})", "expected a table"},
+      {R"({"target":{"tip":[1,2]}})", "target.tip is an array of 2: expected an array of 3"},
+      {R"({"target":{"tip":[1,2,1e300]}})", "target.tip[2] = 1e+300: expected a number from"},
+      {R"({"target":{"tip":[0,0,1]},"tensions":[0,0,0,0,0,0]})",
+       "target: is given beside tensions or displacements: expected one of them"},
+      {R"({"target":{"direction":[0,0,0]}})", "target.direction: is zero: expected a direction"},
+      {R"({"target":{"rotation":[1,1,1,1]}})", "target.rotation"},
+      {R"({"target":{"direction":[0,0,1],"rotation":[1,0,0,0]}})", "says the orientation twice"},
+      {R"({"target":{"shape":[]}})", "target.shape"},
+      {R"({"target":{"shape":[{"at":0.5,"position":[0,0,0]}]}})",
+       "target.shape[0].at: 0.5 is beyond the tip: expected at most 0.4 m"},
+      {R"({"target":{"tip":[0,0,1],"most_tension":0}})",
+       "target.most_tension = 0: expected a number above 0"},
+      {R"({"target":{"tp":[0,0,1]}})", "did you mean \\\"tip\\\"?"},
       {R"({"tension":[]})", "did you mean \\\"tensions\\\"?"},
   };
   for (const auto& [line, error] : lines) {
@@ -192,6 +258,17 @@ TEST(StaticsCommand, AnswersEveryLineInOrder) {
   EXPECT_THAT(given[0], HasSubstr("\"tip\""));
   EXPECT_THAT(given[1], HasSubstr("\"error\""));
   EXPECT_EQ(given[2], given[0]);
+}
+
+TEST(AnswerStatics, RefusesATargetOfAnArmWithoutTendons) {
+  StaticsAnswers answers = answers_of_text(R"([arm]
+kind = "spatial"
+[[arm.section]]
+length = 0.5
+material = { youngs_modulus = 1e6, radius_mm = 1 }
+)");
+  EXPECT_THAT(answers.answer(R"({"target":{"tip":[0,0,0.4]}})"),
+              HasSubstr("is for an arm with tendons, which this one has not"));
 }
 
 TEST(StaticsCommand, RefusesAnArmThatIsNotElastic) {

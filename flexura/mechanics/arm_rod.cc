@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <memory>
 #include <numbers>
 #include <stdexcept>
@@ -110,6 +112,29 @@ RodLoads loads_of(const ArmConfig& arm) {
 
 namespace {
 
+// Of a tendon's way through a piece of a section: how far it goes along the rod, for each metre of that, at
+// the least. Nearer to the middle of a bend, and beyond it, where no rod can be, it goes on shortening as it
+// did here, instead of becoming longer again.
+constexpr double least_along = 0.02;
+
+// How long a piece is whose way is `way`, of which `along` is the part along the rod and `piece` the rod's
+// length; and its derivative by three numbers of a section.
+struct PieceLength {
+  double length = 0;
+  Eigen::RowVector3d slope = Eigen::RowVector3d::Zero();
+};
+
+PieceLength piece_length(const Eigen::Vector3d& way, const Eigen::Matrix3d& way_by_state, double along,
+                         const Eigen::RowVector3d& along_by_state, double piece) {
+  const double least = least_along * piece;
+  if (along >= least) return {way.norm(), way.transpose() / way.norm() * way_by_state};
+  const double aside = std::max(0.0, way.squaredNorm() - along * along),
+               edge = std::sqrt(aside + least * least);
+  const Eigen::RowVector3d aside_by_state = 2 * (way.transpose() * way_by_state - along * along_by_state);
+  const double beyond = (along - least) * least / edge;
+  return {edge + beyond, (0.5 - 0.5 * beyond / edge) / edge * aside_by_state + least / edge * along_by_state};
+}
+
 // How long a tendon is when the sections are arcs, m, and how that changes with each section's
 // (bend_x, bend_y, stretch).
 class TendonOnArcs {
@@ -147,8 +172,9 @@ class TendonOnArcs {
       by_state.col(0) = Eigen::Vector3d(0, 1 / of_section, 0).cross(offset.value);
       by_state.col(1) = Eigen::Vector3d(-1 / of_section, 0, 0).cross(offset.value);
       by_state.col(2) = Eigen::Vector3d(0, 0, 1);
-      length += weight * way.norm();
-      change += weight * way.transpose() / way.norm() * by_state;
+      const PieceLength piece = piece_length(way, by_state, way.z(), by_state.row(2), 1);
+      length += weight * piece.length;
+      change += weight * piece.slope;
     }
     return change;
   }
@@ -168,8 +194,18 @@ class TendonOnArcs {
         by_state.col(c) = t * (disk.linear.col(c) + Eigen::Vector3d(disk.angular.col(c)).cross(arm));
       by_state.col(2) = disk.position / stretch;
       const Eigen::Vector3d way = hole - before;
-      length += way.norm();
-      change += way.transpose() / way.norm() * (by_state - before_by_state);
+      const Eigen::Matrix3d way_by_state = by_state - before_by_state;
+      // Along the rod halfway between the disks.
+      const double halfway = t - 0.5 / section.disks;
+      const ArcMotion middle = arc_motion(halfway * bend, halfway * section.length * stretch);
+      const Eigen::Vector3d z = middle.rotation.col(2);
+      Eigen::RowVector3d along_by_state = z.transpose() * way_by_state;
+      for (int c = 0; c < 2; ++c)
+        along_by_state[c] += halfway * way.dot(Eigen::Vector3d(middle.angular.col(c)).cross(z));
+      const PieceLength piece_of_way =
+          piece_length(way, way_by_state, way.dot(z), along_by_state, section.length / section.disks);
+      length += piece_of_way.length;
+      change += piece_of_way.slope;
       before = hole;
       before_by_state = by_state;
     }

@@ -28,7 +28,8 @@ namespace flexura {
 [[nodiscard]] RodLoads loads_of(const ArmConfig& arm);
 
 /// How far each tendon of a rod is pulled in, m, when its sections are arcs bent and stretched as `state`
-/// says: what is believed of an arm whose tendons are pulled to bend it so. std::invalid_argument: a state of
+/// says: what is believed of an arm whose tendons are pulled to bend it so. A bend whose middle a tendon
+/// would pass, which no rod makes, pulls it in by more the stronger it is. std::invalid_argument: a state of
 /// another number of sections.
 [[nodiscard]] TendonDisplacements arc_displacements(const Rod& rod, const ArmState& state);
 /// Their derivative by every section's (bend_x, bend_y, stretch): one row a tendon, 3 columns a section.

@@ -174,6 +174,33 @@ TEST(ArmRod, TurnsWhatPullsIntoTheFrameOfTheBase) {
   EXPECT_TRUE(loads.ends[1].following);
 }
 
+// A tendon 60 mm beside a section of 0.2 m reaches the middle of its bend at 3.3 rad.
+TEST(ArmRod, PullsTendonsInByMoreTheStrongerABendIs) {
+  for (const int disks : {0, 10}) {
+    for (const double end_radius : {0.06, 0.02}) {
+      ArmConfig arm = wire_arm();
+      arm.section.resize(1);
+      arm.tendon = {{.section = 1, .radius = 0.06, .angle = 0.3, .end_radius = end_radius}};
+      Rod rod = rod_of(arm);
+      rod.sections[0].disks = disks;
+      const auto state = [](double bend) {
+        ArmState bent = ArmState::straight(1);
+        bent.bends[0] = bend * Eigen::Vector2d(std::cos(0.3), std::sin(0.3));
+        return bent;
+      };
+      const auto pulled = [&](double bend) { return arc_displacements(rod, state(bend)).pulled[0]; };
+      for (double bend = 0.05; bend < 9; bend += 0.05) {
+        EXPECT_GT(pulled(bend), pulled(bend - 0.05)) << bend << ", disks " << disks;
+        const double along = arc_displacement_slopes(rod, state(bend))
+                                 .row(0)
+                                 .head<2>()
+                                 .dot(Eigen::Vector2d(std::cos(0.3), std::sin(0.3)));
+        EXPECT_NEAR(along, (pulled(bend + 1e-6) - pulled(bend - 1e-6)) / 2e-6, 1e-4) << bend;
+      }
+    }
+  }
+}
+
 TEST(ArmRod, RefusesAnArmWithoutAMaterial) {
   ArmConfig arm = wire_arm();
   arm.section[1].material.reset();

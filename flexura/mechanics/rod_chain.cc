@@ -127,7 +127,8 @@ void RodChain::balance(const Eigen::VectorXd& q, std::span<const double> tension
   for (std::size_t i = 0; i < tendons(); ++i) {
     if (rod_.tendons[i].friction == 0) continue;
     RodElement::Run run;
-    for (RodElement& element : elements_) element.rub(i, rod_.tendons[i].friction, run);
+    const double friction = is_rubbing_ ? rod_.tendons[i].friction : 0;
+    for (RodElement& element : elements_) element.rub(i, friction, run);
   }
   lengths_.setZero();
   Vector6d beyond = Vector6d::Zero();
@@ -150,8 +151,46 @@ double RodChain::strain_energy() const {
   return sum;
 }
 
-bool RodChain::factor() {
+double RodChain::load_energy(const RodLoads& loads) const {
+  double sum = 0;
+  for (const RodElement& element : elements_)
+    if (is_loaded_) sum += element.load_energy(loads);
+  return sum;
+}
+
+bool RodChain::has_energy(const RodLoads& loads) const { return is_conservative(loads) && !has_friction(); }
+
+void RodChain::find_stiffness() const {
+  if (!stiffness_.empty()) return;
+  for (const RodElement& element : elements_) {
+    stiffness_.push_back(element.stiffness());
+    stiffness_factors_.emplace_back(stiffness_.back());
+  }
+}
+
+Eigen::VectorXd RodChain::stiffness_times(const Eigen::VectorXd& dq) const {
+  find_stiffness();
+  Eigen::VectorXd result(size_);
+  for (std::size_t i = 0; i < elements_.size(); ++i)
+    result.segment(first_[i], elements_[i].size()) =
+        stiffness_[i] * dq.segment(first_[i], elements_[i].size());
+  return result;
+}
+
+double RodChain::stiffness_norm(const Eigen::VectorXd& residual) const {
+  find_stiffness();
+  double square = 0;
+  for (std::size_t i = 0; i < elements_.size(); ++i) {
+    if (elements_[i].size() == 0) continue;
+    const Eigen::VectorXd part = residual.segment(first_[i], elements_[i].size());
+    square += stiffness_factors_[i].matrixL().solve(part).squaredNorm();
+  }
+  return std::sqrt(square);
+}
+
+bool RodChain::factor(double share) {
   negative_ = 0;
+  if (share != 0) find_stiffness();
   Matrix6d beyond = Matrix6d::Zero();  // The wrench of all sections after, by the twist of where they begin.
   for (std::size_t i = elements_.size(); i-- > 0;) {
     const RodElement& element = elements_[i];
@@ -161,6 +200,7 @@ bool RodChain::factor() {
       continue;
     }
     pivot.matrix = element.tangent;
+    if (share != 0) pivot.matrix += share * stiffness_[i];
     if (is_loaded_) {
       const RodElement::Columns& A = element.columns().back();
       pivot.wrench_by_modes = element.wrench_by_modes;
@@ -237,7 +277,8 @@ Eigen::MatrixXd RodChain::parameter_slopes(const Eigen::Vector3d& gravity) const
 }
 
 bool RodChain::has_friction() const {
-  return std::ranges::any_of(rod_.tendons, [](const TendonRoute& tendon) { return tendon.friction > 0; });
+  return is_rubbing_ &&
+         std::ranges::any_of(rod_.tendons, [](const TendonRoute& tendon) { return tendon.friction > 0; });
 }
 
 Eigen::VectorXd RodChain::friction_change(const Eigen::VectorXd& dq, std::span<const double> tensions) const {
@@ -255,6 +296,13 @@ Eigen::VectorXd RodChain::friction_change(const Eigen::VectorXd& dq, std::span<c
     }
   }
   return result;
+}
+
+Eigen::MatrixXd RodChain::friction_form(std::span<const double> tensions) const {
+  Eigen::MatrixXd form(size_, size_);
+  for (Eigen::Index j = 0; j < size_; ++j)
+    form.col(j) = friction_change(Eigen::VectorXd::Unit(size_, j), tensions);
+  return form;
 }
 
 void RodChain::columns_at(std::size_t element, std::size_t node, Eigen::Ref<RodElement::Columns> J) const {

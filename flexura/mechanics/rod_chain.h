@@ -55,13 +55,28 @@ class RodChain {
   /// r by the share of the loads, size().
   [[nodiscard]] const Eigen::VectorXd& load_slope() const { return load_slope_; }
   [[nodiscard]] double strain_energy() const;
+  /// Of the last balance: minus the work of all of the loads from the base's origin on, J. It is an energy
+  /// where has_energy().
+  [[nodiscard]] double load_energy(const RodLoads& loads) const;
+  /// Whether r is the gradient of an energy under these loads: no moments, no loads that follow, no friction.
+  [[nodiscard]] bool has_energy(const RodLoads& loads) const;
 
-  /// Factors the derivative of r at the last balance. False: it has no inverse.
-  bool factor();
+  /// Factors the derivative of r at the last balance, with `share` of the stiffness of the rod itself added.
+  /// False: it has no inverse.
+  bool factor(double share = 0);
+  /// The stiffness of the rod itself, a second derivative of its energy, times dq, size().
+  [[nodiscard]] Eigen::VectorXd stiffness_times(const Eigen::VectorXd& dq) const;
+  /// How large a residual is: the square root of what the rod's strains would cost if it pulled alone, J^1/2.
+  [[nodiscard]] double stiffness_norm(const Eigen::VectorXd& residual) const;
   /// How many negative eigenvalues it has, as the elimination counts them; 0: the rod is stable while
   /// tensions and loads stay. Of loads without an energy (moments, loads that follow) 1 where its determinant
   /// is negative, else 0: the rod does not fall aside slowly; whether it flutters is a matter of its mass.
   [[nodiscard]] int negative_count() const { return negative_; }
+  /// The same of the derivative where tendons that are held add what they do: `of_give` is how many negative
+  /// eigenvalues the tendons' give has.
+  [[nodiscard]] int negative_count(int of_give) const {
+    return is_symmetric_ ? negative_ - of_give : (negative_ + of_give) % 2;
+  }
   /// rhs becomes what the derivative makes to rhs; size() x columns.
   void solve(Eigen::Ref<Eigen::MatrixXd> rhs);
 
@@ -70,11 +85,16 @@ class RodChain {
   /// columns are there.
   [[nodiscard]] Eigen::MatrixXd parameter_slopes(const Eigen::Vector3d& gravity) const;
 
+  /// Whether tendons rub, as they do from the beginning.
+  void set_rubbing(bool on) { is_rubbing_ = on; }
   /// Whether a tendon rubs: then the derivative that is factored leaves out that friction changes with q.
   [[nodiscard]] bool has_friction() const;
   /// What that is along dq, of the residual at the last balance under these tensions.
   [[nodiscard]] Eigen::VectorXd friction_change(const Eigen::VectorXd& dq,
                                                 std::span<const double> tensions) const;
+
+  /// That of every mode: size() x size().
+  [[nodiscard]] Eigen::MatrixXd friction_form(std::span<const double> tensions) const;
 
   /// Poses of all nodes at q. Balance finds them, with columns, only where loads or chords need them.
   void place(const Eigen::VectorXd& q);
@@ -94,6 +114,7 @@ class RodChain {
     Eigen::Matrix<double, Eigen::Dynamic, 6> by_base;  // dq by the twist of the base.
     RodElement::Columns wrench_by_modes;               // Of all from this section on.
   };
+  void find_stiffness() const;
   static void solve_pivot(const Pivot& pivot, Eigen::Ref<Eigen::MatrixXd> rhs);
 
   Rod rod_;
@@ -102,9 +123,12 @@ class RodChain {
   Eigen::Index size_ = 0;
   Eigen::VectorXd scales_, residual_, load_slope_, lengths_;
   Eigen::MatrixXd slopes_, pull_slopes_;
-  bool is_loaded_ = false, is_symmetric_ = true, has_chords_ = false;
+  bool is_rubbing_ = true, is_loaded_ = false, is_symmetric_ = true, has_chords_ = false;
   int negative_ = 0;
   std::vector<Pivot> pivots_;
+  // Of each element, once somebody asks.
+  mutable std::vector<Eigen::MatrixXd> stiffness_;
+  mutable std::vector<Eigen::LLT<Eigen::MatrixXd>> stiffness_factors_;
 };
 
 }  // namespace flexura

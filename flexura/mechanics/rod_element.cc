@@ -239,6 +239,32 @@ void RodElement::add_weight_slope(const Eigen::Vector3d& gravity, Vector6d& all,
   }
 }
 
+Eigen::MatrixXd RodElement::stiffness() const {
+  Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(size(), size());
+  for (std::size_t k = 0; k < grid_.t.size(); ++k) {
+    const Vector6d weighted = grid_.weight[k] * length_ * grid_.stiffness[k];
+    const auto modes = grid_.at_node.col(static_cast<Eigen::Index>(k));
+    grid_.for_modes([&](int a, int j) {
+      grid_.for_modes([&](int b, int l) {
+        if (a == b) sum(j, l) += weighted[a] * modes[j] * modes[l];
+      });
+    });
+  }
+  return sum;
+}
+
+double RodElement::load_energy(const RodLoads& loads) const {
+  double sum = 0;
+  for (std::size_t k = 0; k < grid_.t.size(); ++k)
+    sum -= grid_.weight[k] * length_ *
+           (grid_.mass_per_length[k] * loads.gravity + loads.per_length).dot(X_[k].position);
+  for (std::size_t i = 0; i < masses_.size(); ++i)
+    sum -= masses_[i].mass * loads.gravity.dot(X_[grid_.mass_nodes[i]] * masses_[i].offset);
+  for (const EndLoad& end : loads.ends)
+    if (end.section == index_) sum -= end.force.dot(X_.back().position);
+  return sum;
+}
+
 // What all of the loads do at each node.
 void RodElement::find_forces(const RodLoads& loads) {
   const Eigen::Vector3d none = Eigen::Vector3d::Zero();

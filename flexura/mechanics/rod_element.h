@@ -76,6 +76,12 @@ class RodElement {
   /// after this one. The columns are there.
   void load(const RodLoads& loads, double share, const Vector6d& beyond);
 
+  /// Of what its strains cost, the second derivative by its modes, size() x size(): the same in all shapes.
+  [[nodiscard]] Eigen::MatrixXd stiffness() const;
+  /// Minus the work that loads without moments do from the base's origin on, J. The poses are there. Of loads
+  /// that follow there is no such number, and they count as if they did not follow.
+  [[nodiscard]] double load_energy(const RodLoads& loads) const;
+
   // NOLINTBEGIN(performance-unnecessary-value-param): an Eigen::Ref is written through.
   /// Adds the residual's change by a part of its stiffness against shear, stretch, bends and twist.
   void add_stiffness_slopes(Eigen::Ref<Eigen::MatrixXd> slopes) const;

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "flexura/kinematics/tendons.h"
+#include "flexura/math/dense.h"
 #include "flexura/mechanics/arm_rod.h"
 #include "flexura/model/actuation.h"
 #include "flexura/model/backbone.h"
@@ -197,20 +198,21 @@ void RodResponse::slopes(const ArmState& command, Eigen::MatrixXd& by_command) c
   const Answer& here = answer(command);
   if (!here.at.converged()) {
     by_command.setConstant(std::numeric_limits<double>::quiet_NaN());
-  } else if (!has_driven_lengths_ &&
-             std::ranges::all_of(here.at.tensions, [](double tension) { return tension > 0; })) {
+  } else if (!has_driven_lengths_) {
     // The solver and the fit are where this was answered.
-    analytic_slopes(by_command);
+    analytic_slopes(RodStatics::Slack::hangs, by_command);
+    if (std::ranges::any_of(here.at.tensions, [](double tension) { return tension == 0; }))
+      go_beyond_slack(by_command);
   } else {
     secant_slopes(here, by_command);
   }
 }
 
 // Of the rod's places by the command, and of the arcs nearest to them by these.
-void RodResponse::analytic_slopes(Eigen::MatrixXd& by_command) const {
+void RodResponse::analytic_slopes(RodStatics::Slack slack, Eigen::MatrixXd& by_command) const {
   // What was answered last may have been asked of another thread's command since: not with mutex_ held.
   const ArmState& command = last_->command;
-  const Eigen::MatrixXd q_by_command = statics_.slopes().q_by_input * displacement_slopes(command);
+  const Eigen::MatrixXd q_by_command = statics_.slopes(slack).q_by_input * displacement_slopes(command);
   fine_.place_with_columns(last_->at.q);
   Eigen::MatrixXd places(J_.rows(), q_by_command.cols());
   RodElement::Columns twists(6, fine_.size());
@@ -231,6 +233,29 @@ void RodResponse::analytic_slopes(Eigen::MatrixXd& by_command) const {
     if (part.is_spatial) by_command.row(row + 1) = arcs.row(part.at + 1);
     if (part.is_stretchable) by_command.row(row + 2) = arcs.row(part.stretch_at());
   }
+}
+
+// Some commands do no more than take up slack, and the derivative is singular. Along these, which are those
+// to which the arm answers by less than half of what it would if all tendons were taut, it counts as if they
+// were.
+void RodResponse::go_beyond_slack(Eigen::MatrixXd& by_command) const {
+  constexpr double least_part = 0.5;
+  Eigen::MatrixXd taut(by_command.rows(), by_command.cols());
+  taut.setZero();
+  analytic_slopes(RodStatics::Slack::is_taut, taut);
+  std::vector<Eigen::Index> bends;
+  for (Eigen::Index c = 0; c < by_command.cols(); ++c) {
+    if (c % 3 == 2)
+      by_command.col(c) = taut.col(c);
+    else
+      bends.push_back(c);
+  }
+  const Eigen::MatrixXd as_taut = taut(Eigen::all, bends), as_is = by_command(Eigen::all, bends);
+  const Eigen::MatrixXd part = pseudo_inverse(as_taut) * as_is;
+  const SymmetricEigen answers = symmetric_eigen(part.transpose() * part);
+  const Eigen::Index dead = (answers.values.array() < least_part * least_part).count();
+  const auto along = answers.vectors.leftCols(dead);
+  by_command(Eigen::all, bends) = as_is + (as_taut - as_is) * along * along.transpose();
 }
 
 void RodResponse::secant_slopes(const Answer& kept, Eigen::MatrixXd& by_command) const {

@@ -30,9 +30,9 @@ class RodResponse : public ArmResponse {
   RodResponse(const Arm& driven, const Rod& rod, RodLoads loads, std::optional<Drive> drive);
 
   [[nodiscard]] ArmState shape(const ArmState& command) const override;
-  /// By the equilibrium's derivatives where every tendon is taut. Where one hangs slack a small change may
-  /// tighten it, and derivatives differ from side to side: there it is the change over `secant` to both
-  /// sides. So it is of arms whose sections are driven longer.
+  /// By the equilibrium's derivatives. Where tendons hang slack, along commands that would only take up their
+  /// slack, those beyond it: as if all tendons were just taut. Of arms whose sections are driven longer it is
+  /// the change over `secant` to both sides.
   void slopes(const ArmState& command, Eigen::MatrixXd& by_command) const override;
   static constexpr double secant = 0.02;  ///< rad
 
@@ -53,7 +53,8 @@ class RodResponse : public ArmResponse {
   const Answer& answer(const ArmState& command) const;
   [[nodiscard]] ArmState fitted(const Equilibrium& at, const ArmState& command) const;
   [[nodiscard]] ArmState along_tangents(const ArmState& command) const;
-  void analytic_slopes(Eigen::MatrixXd& by_command) const;
+  void analytic_slopes(RodStatics::Slack slack, Eigen::MatrixXd& by_command) const;
+  void go_beyond_slack(Eigen::MatrixXd& by_command) const;
   void secant_slopes(const Answer& kept, Eigen::MatrixXd& by_command) const;
 
   Arm driven_, shaped_;  // in the rod's frame

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Dense>
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -143,6 +145,51 @@ TEST(RodResponse, InverseKinematicsUnderLoadReachTheTip) {
     const Eigen::Vector3d tip = model.driven().X_WB * tip_of(arm, result.state).position;
     EXPECT_LE((tip - there).norm(), 1e-3);
   });
+}
+
+// Steps by the derivative, undamped and no longer than `longest` rad, as laws of a servo take them: how far
+// the arcs are from the goal at the end, rad.
+double left_by_a_law(const ArmModel& model, const ArmState& goal, int steps) {
+  constexpr double gain = 0.2, longest = 0.05;
+  const std::size_t arcs = goal.bends.size();
+  ArmState command = ArmState::straight(2);
+  double left = 0;
+  for (int step = 0; step < steps; ++step) {
+    const ArmState shape = model.actuation().shape(command);
+    Eigen::VectorXd error(2 * static_cast<Eigen::Index>(arcs));
+    Eigen::MatrixXd slopes, by_bends(error.size(), 4);
+    model.actuation().slopes(command, slopes);
+    for (std::size_t k = 0; k < arcs; ++k) {
+      const auto row = static_cast<Eigen::Index>(k);
+      error.segment<2>(2 * row) = shape.bends[k] - goal.bends[k];
+      for (Eigen::Index s = 0; s < 2; ++s)
+        by_bends.block<2, 2>(2 * row, 2 * s) = slopes.block<2, 2>(3 * row, 3 * s);
+    }
+    left = error.cwiseAbs().maxCoeff();
+    Eigen::Vector4d change = by_bends.colPivHouseholderQr().solve(-gain * error);
+    change *= std::min(1.0, longest / change.norm());
+    for (std::size_t s = 0; s < 2; ++s)
+      command.bends[s] += change.segment<2>(2 * static_cast<Eigen::Index>(s));
+  }
+  return left;
+}
+
+TEST(RodResponse, ALawGoesOnWhereTendonsHangSlack) {
+  for (const double mass : {0.0, 0.2}) {
+    ArmConfig arm = sleeved_arm(mass, 3);
+    for (Section& section : arm.section) section.material->youngs_modulus = 200e9;
+    const ArmModel model = arm_model_of(arm, std::nullopt);
+    for_random_cases(12, [&](TestRandom& random) {
+      ArmState command = bent(random, 1.4);
+      // Along a tendon, so that the two others of the section hang slack.
+      if (random.integer(0, 1) == 0)
+        for (std::size_t s = 0; s < 2; ++s) {
+          const double angle = (120 * random.integer(0, 2) + 40 * static_cast<double>(s + 1)) * degrees;
+          command.bends[s] = random.uniform(0.5, 1.6) * Eigen::Vector2d(std::cos(angle), std::sin(angle));
+        }
+      EXPECT_LE(left_by_a_law(model, model.actuation().shape(command), 250), 1e-4) << mass << " kg/m";
+    });
+  }
 }
 
 TEST(RodResponse, HasNoShapeWhereTheArmComesToNoRest) {

@@ -13,26 +13,21 @@
 namespace flexura {
 namespace {
 
-// Newton's steps are measured in radians of a section's bend, and parts of its length (RodChain::scales).
-constexpr double settled_step = 1e-10;
-// Steps that do not shrink by this lead somewhere else.
-constexpr double contraction = 0.6;
 constexpr int max_descent = 30;
 // Less slack than this, of the rod's length, counts as zero.
 constexpr double slack_margin = 1e-12;
 // Of tendons that are said to give nothing: of what the rod gives.
 constexpr double stiff_part = 1e-8;
 
-// The way from no load on.
-constexpr double first_stride = 0.2, longest_stride = 1, shortest_stride = 1e-7;
-constexpr double shortest_at_branch = 1e-3;
-constexpr int max_strides = 2000, max_correction = 8;
-constexpr int max_iterations = 1500;  // Linear systems of one search.
-constexpr double longest_way = 400;   // Sections turn around many times.
-constexpr double least_share = -0.5;  // Of the load, where a way turned back.
-
 bool all_finite(const std::vector<double>& values) {
   return std::ranges::all_of(values, [](double value) { return std::isfinite(value); });
+}
+
+Equilibrium bad_input(std::string problem) {
+  Equilibrium result;
+  result.end = StaticsEnd::bad_input;
+  result.problem = std::move(problem);
+  return result;
 }
 
 }  // namespace
@@ -66,7 +61,8 @@ RodStatics::RodStatics(Rod rod, std::span<const RodPlace> places) : chain_(std::
     chain_.solve(solved_);
     give = (chain_.length_slopes().transpose() * solved_).diagonal().cwiseAbs().maxCoeff();
   }
-  least_compliance_ = give > 0 ? stiff_part * give : stiff_part * chain_.rod().length();
+  give_ = give > 0 ? give : chain_.rod().length();
+  least_compliance_ = stiff_part * give_;
 }
 
 std::string RodStatics::input_problem() const {
@@ -176,7 +172,7 @@ bool RodStatics::find_tensions(const Unknowns& at, double share) {
   if (pulling.empty()) return true;
   const Eigen::MatrixXd give = problem.matrix(pulling, pulling);
   const SymmetricEigen eigen = symmetric_eigen(0.5 * (give + give.transpose()));
-  negative_ -= static_cast<int>((eigen.values.array() < 0).count());
+  negative_ = chain_.negative_count(static_cast<int>((eigen.values.array() < 0).count()));
   return true;
 }
 
@@ -209,88 +205,6 @@ RodStatics::Descent RodStatics::descend(Unknowns& at, double share) {
   return descent;
 }
 
-// By pseudo-arclength (H. Keller, 1977): along the way on which load and shape change together, which turns
-// where the load has an extremum.
-bool RodStatics::follow(Equilibrium& result, Unknowns& at) {
-  const double a_section = 1.0 / static_cast<double>(chain_.elements().size());
-  const auto dot = [&](const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
-    return a_section * a.cwiseProduct(chain_.scales()).dot(b.cwiseProduct(chain_.scales()));
-  };
-  double share = 0, stride = first_stride, way = 0;
-  Unknowns direction{Eigen::VectorXd::Zero(at.q.size()), Eigen::VectorXd::Zero(at.tensions.size())};
-  double rise = 1;  // The share's part of the direction.
-  int negative = 0;
-  result.end = StaticsEnd::out_of_steps;
-  for (int step = 0; step < max_strides; ++step) {
-    if (iterations_ > max_iterations || !linearize(at, share)) return false;
-    const double norm = std::sqrt(1 + dot(tangent_.q, tangent_.q));
-    const double sense = dot(tangent_.q, direction.q) + rise < 0 ? -1 : 1;
-    direction.q = sense / norm * tangent_.q;
-    direction.tensions = sense / norm * tangent_.tensions;
-    const double risen = sense / norm;
-    const bool turned = risen * rise < 0;
-    rise = risen;
-    if (turned) result.snapped = result.ambiguous = true;
-    if (negative_ != negative && !turned && step > 0) result.ambiguous = true;
-    negative = negative_;
-
-    const std::vector<char> taut = taut_;
-    double afterwards = 0;  // The stride before it became short at a branch point.
-    for (;; stride *= 0.5) {
-      if (stride < shortest_stride) return false;
-      taut_ = taut;
-      Unknowns next{at.q + stride * direction.q, at.tensions + stride * direction.tensions};
-      double next_share = share + stride * rise, before = 0;
-      bool settled = false;
-      int correction = 0;
-      for (; correction < max_correction && !settled; ++correction) {
-        if (!linearize(next, next_share)) break;
-        const double change = -dot(direction.q, newton_.q) / (dot(direction.q, tangent_.q) + rise);
-        newton_.q += change * tangent_.q;
-        newton_.tensions += change * tangent_.tensions;
-        const double size = std::max(measure(newton_), std::abs(change));
-        if (!(size <= (correction == 0 ? 0.5 * stride : contraction * before)) && size > settled_step) break;
-        next.q += newton_.q;
-        next.tensions += newton_.tensions;
-        next_share += change;
-        before = size;
-        settled = size < 1e-6;
-      }
-      if (!settled) continue;
-      // Another sign of stability without a turn: a branch leaves the way here, or it was jumped over. Only
-      // the first stays however short the stride is.
-      const bool turns = dot(tangent_.q, direction.q) + rise < 0;
-      if (negative_ != negative && !turns) {
-        afterwards = std::max(afterwards, stride);
-        if (stride > shortest_at_branch) continue;
-      }
-      if ((share < 1) == (next_share >= 1)) {
-        const double part = (1 - share) / (next_share - share);
-        Unknowns there{at.q + part * (next.q - at.q), at.tensions + part * (next.tensions - at.tensions)};
-        const Eigen::VectorXd started = there.q;
-        const Descent descent = descend(there, 1);
-        const Eigen::VectorXd moved = there.q - started;
-        if (!descent.settled || std::sqrt(dot(moved, moved)) > stride) continue;
-        at = there;
-        if (descent.negative != negative) result.ambiguous = true;
-        negative_ = descent.negative;
-        return true;
-      }
-      way += stride;
-      at = next;
-      share = next_share;
-      if (correction <= 3) stride = std::min(longest_stride, 1.6 * stride);
-      if (negative_ != negative && !turns) stride = std::max(stride, afterwards);
-      break;
-    }
-    if (way > longest_way || share < least_share) {
-      result.end = StaticsEnd::no_equilibrium;
-      return false;
-    }
-  }
-  return false;
-}
-
 // Whether no part of the rod is turned inside out.
 bool RodStatics::is_right_way_out() const {
   return std::ranges::all_of(chain_.elements(), [](const RodElement& element) {
@@ -298,7 +212,13 @@ bool RodStatics::is_right_way_out() const {
   });
 }
 
-void RodStatics::finish(Equilibrium& result, const Unknowns& at) {
+void RodStatics::finish(Equilibrium& result, const Unknowns& at, const Descent& descent) {
+  is_solved_ = descent.settled;
+  at_ = at.q;
+  if (is_solved_) {
+    result.end = StaticsEnd::converged;
+    result.stable = descent.negative == 0;
+  }
   result.q = at.q;
   for (std::size_t i = 0; i < pulls_.size(); ++i) {
     if (by_displacement_)
@@ -325,7 +245,7 @@ Equilibrium RodStatics::solve_from(const Unknowns& start, bool is_cold) {
   const Unknowns rest{Eigen::VectorXd::Zero(start.q.size()), Eigen::VectorXd::Zero(start.tensions.size())};
   iterations_ = 0;
   const std::vector<char> taut = taut_;
-  Unknowns at = start;
+  Unknowns at = start, last_stable = rest;
   Descent descent = descend(at, 1);
   bool found = descent.settled && descent.always_stable;
   if (!found) {
@@ -339,8 +259,8 @@ Equilibrium RodStatics::solve_from(const Unknowns& start, bool is_cold) {
     if (!found) {
       std::ranges::fill(taut_, char{1});
       at = rest;
-      found = follow(result, at);
-      descent.negative = negative_;
+      found = follow(result, at, last_stable);
+      descent = {.settled = found, .negative = negative_};
     }
   }
   // A rod cannot pass through itself.
@@ -348,13 +268,21 @@ Equilibrium RodStatics::solve_from(const Unknowns& start, bool is_cold) {
     found = false;
     result.end = StaticsEnd::no_equilibrium;
   }
-  is_solved_ = found;
-  at_ = at.q;
-  if (found) {
-    result.end = StaticsEnd::converged;
-    result.stable = descent.negative == 0;
+  if (!found) {
+    // Down from where it was, else from where the way was last stable.
+    Unknowns falling = start;
+    found = !is_cold && fall(falling, descent);
+    if (!found) {
+      falling = last_stable;
+      found = fall(falling, descent);
+    }
+    if (found) {
+      at = falling;
+      result.snapped = result.ambiguous = true;
+    }
   }
-  finish(result, at);
+  descent.settled = found;
+  finish(result, at, descent);
   return result;
 }
 
@@ -367,30 +295,34 @@ Equilibrium RodStatics::solve(const TendonInput& tendons, const RodLoads& loads)
   return solve(tendons, loads, {});
 }
 
-Equilibrium RodStatics::solve(const TendonInput& tendons, const RodLoads& loads, const Equilibrium& near) {
+std::string RodStatics::take(const TendonInput& tendons, const RodLoads& loads) {
   input_ = tendons;
   loads_ = loads;
   by_displacement_ = !tendons.displacements.empty();
   is_solved_ = false;
-  if (std::string problem = input_problem(); !problem.empty()) {
-    Equilibrium result;
-    result.end = StaticsEnd::bad_input;
-    result.problem = std::move(problem);
-    return result;
-  }
+  return input_problem();
+}
+
+bool RodStatics::is_start(const Equilibrium& near) const {
+  return near.q.size() == chain_.size() && near.tensions.size() == taut_.size() && near.converged();
+}
+
+RodStatics::Unknowns RodStatics::start_at(const Equilibrium& near) {
   std::ranges::fill(taut_, char{1});
-  const bool is_cold =
-      near.q.size() != chain_.size() || near.tensions.size() != taut_.size() || !near.converged();
   Unknowns start{Eigen::VectorXd::Zero(chain_.size()),
                  Eigen::VectorXd::Zero(static_cast<Eigen::Index>(taut_.size()))};
-  if (!is_cold) {
-    start.q = near.q;
-    for (std::size_t i = 0; i < taut_.size() && by_displacement_; ++i) {
-      start.tensions[static_cast<Eigen::Index>(i)] = near.tensions[i];
-      taut_[i] = near.tensions[i] > 0 ? 1 : 0;
-    }
+  if (!is_start(near)) return start;
+  start.q = near.q;
+  for (std::size_t i = 0; i < taut_.size() && by_displacement_; ++i) {
+    start.tensions[static_cast<Eigen::Index>(i)] = near.tensions[i];
+    taut_[i] = near.tensions[i] > 0 ? 1 : 0;
   }
-  return solve_from(start, is_cold);
+  return start;
+}
+
+Equilibrium RodStatics::solve(const TendonInput& tendons, const RodLoads& loads, const Equilibrium& near) {
+  if (std::string problem = take(tendons, loads); !problem.empty()) return bad_input(std::move(problem));
+  return solve_from(start_at(near), !is_start(near));
 }
 
 }  // namespace flexura

@@ -37,9 +37,11 @@ struct Equilibrium {
   std::string problem;  ///< Of bad input, in words.
   /// Stays where it is after a small push, under tensions or displacements as they are given.
   bool stable = false;
-  /// On the way from no load it came to a greatest load and passed to another branch: a real rod jumps.
+  /// A real rod jumps here: on the way from no load the load had a maximum, or the way ended, and the rod
+  /// fell to another equilibrium.
   bool snapped = false;
-  /// More than one equilibrium was met: a branch left the way, or it turned.
+  /// There are more equilibria than this one, as far as was seen: a branch left the way, it turned, or the
+  /// rod fell from where it had been.
   bool ambiguous = false;
   int iterations = 0;                  ///< Linear systems solved.
   Eigen::VectorXd q;                   ///< The strain modes (RodChain).
@@ -70,7 +72,8 @@ struct EquilibriumSlopes {
 };
 
 /// Solves rods for equilibrium: minima of their energy in reduced strains (F. Boyer, F. Renda et al.,
-/// geometric variable strain), by Newton's method from no load on along a growing share of it.
+/// geometric variable strain), by Newton's method from no load on along a growing share of it; where that way
+/// ends without all of the load, by the fall from where the rod was last stable on it (RodFall).
 class RodStatics {
  public:
   /// As RodChain.
@@ -83,9 +86,19 @@ class RodStatics {
   [[nodiscard]] Equilibrium solve(const TendonInput& tendons, const RodLoads& loads);
   /// From an equilibrium nearby, or from rest where that does not lead there directly.
   [[nodiscard]] Equilibrium solve(const TendonInput& tendons, const RodLoads& loads, const Equilibrium& near);
+  /// Where a rod that stands like `near` comes to rest: the equilibrium nearby if it is stable, else the one
+  /// to which it falls from `near`. From rest where `near` is none. An equilibrium that is not stable comes
+  /// back only where no fall from it found a stable one.
+  [[nodiscard]] Equilibrium settle(const TendonInput& tendons, const RodLoads& loads,
+                                   const Equilibrium& near);
+  /// The same from the rod at rest.
+  [[nodiscard]] Equilibrium settle(const TendonInput& tendons, const RodLoads& loads);
 
+  /// What slack tendons do in slopes(): nothing, or what they would if they were just taut, held there in both
+  /// directions.
+  enum class Slack { hangs, is_taut };
   /// At what was last solved, which converged. std::logic_error: nothing was.
-  [[nodiscard]] EquilibriumSlopes slopes();
+  [[nodiscard]] EquilibriumSlopes slopes(Slack slack = Slack::hangs);
 
   /// Of the rod at rest, m.
   [[nodiscard]] const std::vector<double>& rest_lengths() const { return rest_lengths_; }
@@ -93,6 +106,11 @@ class RodStatics {
   [[nodiscard]] const RodChain& chain() const { return chain_; }
 
  private:
+  // Newton's steps are measured in radians of a section's bend, and parts of its length (RodChain::scales).
+  static constexpr double settled_step = 1e-10;
+  // Steps that do not shrink by this lead somewhere else.
+  static constexpr double contraction = 0.6;
+
   struct Unknowns {
     Eigen::VectorXd q, tensions;
   };
@@ -110,15 +128,21 @@ class RodStatics {
   bool find_tensions(const Unknowns& at, double share);
   [[nodiscard]] double compliance(std::size_t tendon) const;
   Descent descend(Unknowns& at, double share);
-  bool follow(Equilibrium& result, Unknowns& at);
+  bool follow(Equilibrium& result, Unknowns& at, Unknowns& last_stable);
+  bool fall(Unknowns& at, Descent& descent);
+  bool fall_on(Unknowns& at, Descent& descent);
   [[nodiscard]] bool is_right_way_out() const;
-  void finish(Equilibrium& result, const Unknowns& at);
+  // Takes the input; its problem, "" if it has none.
+  std::string take(const TendonInput& tendons, const RodLoads& loads);
+  [[nodiscard]] bool is_start(const Equilibrium& near) const;
+  Unknowns start_at(const Equilibrium& near);
+  void finish(Equilibrium& result, const Unknowns& at, const Descent& descent);
   Equilibrium solve_from(const Unknowns& start, bool is_cold);
-  void solve_with_friction(Eigen::MatrixXd& rhs);
 
   RodChain chain_;
   std::vector<double> rest_lengths_;
   double least_compliance_ = 0;  // m/N
+  double give_ = 0;              // Of the rod at rest to its tendons, m/N.
   TendonInput input_;
   RodLoads loads_;
   bool by_displacement_ = false;

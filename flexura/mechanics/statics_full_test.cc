@@ -8,6 +8,7 @@
 #include "tests/support/random_cases.h"
 #include "tests/support/random_rods.h"
 #include "tests/support/shooting_rod.h"
+#include "tests/support/upright_arms.h"
 
 namespace flexura {
 namespace {
@@ -73,6 +74,10 @@ TEST(StaticsWitness, EachModeMoreComesNearer) {
     EXPECT_LE(fine, 0.2 * coarse + 1e-8);
     EXPECT_LE(finest, 0.2 * fine + 2e-8);
   });
+}
+
+TEST(StaticsFallFull, HundredsOfSoftUprightArmsComeToAStableRest) {
+  for_random_cases(400, [](TestRandom& random) { expect_upright_arm_rests(random); });
 }
 
 }  // namespace

@@ -1,4 +1,5 @@
 // How an equilibrium answers to what pulls and to what the rod is made of.
+#include <Eigen/LU>
 #include <cmath>
 #include <stdexcept>
 #include <vector>
@@ -7,29 +8,8 @@
 #include "flexura/mechanics/statics.h"
 
 namespace flexura {
-namespace {
 
-// Of a solution's friction.
-constexpr int max_corrections = 200;
-
-}  // namespace
-
-// What the derivative makes to rhs, with what friction adds to it: by corrections, each smaller by about the
-// friction times the angle that tendons turn.
-void RodStatics::solve_with_friction(Eigen::MatrixXd& rhs) {
-  const Eigen::MatrixXd wanted = rhs;
-  chain_.solve(rhs);
-  for (int i = 0; i < max_corrections && chain_.has_friction(); ++i) {
-    Eigen::MatrixXd next = wanted;
-    for (Eigen::Index c = 0; c < rhs.cols(); ++c) next.col(c) -= chain_.friction_change(rhs.col(c), pulls_);
-    chain_.solve(next);
-    const double change = (next - rhs).cwiseAbs().maxCoeff(), size = next.cwiseAbs().maxCoeff();
-    rhs = next;
-    if (!(change > 1e-13 * size)) break;
-  }
-}
-
-EquilibriumSlopes RodStatics::slopes() {
+EquilibriumSlopes RodStatics::slopes(Slack slack) {
   if (!is_solved_) throw std::logic_error("slopes of an equilibrium that was not found");
   const Eigen::Index n = chain_.size(), count = static_cast<Eigen::Index>(pulls_.size());
   chain_.balance(at_, pulls_, loads_, 1);
@@ -45,15 +25,24 @@ EquilibriumSlopes RodStatics::slopes() {
 
   Eigen::MatrixXd by_tension = -chain_.pull_slopes(), by_tip = J.transpose(),
                   by_parameters = -chain_.parameter_slopes(loads_.gravity);
-  solve_with_friction(by_tension);
-  solve_with_friction(by_tip);
-  solve_with_friction(by_parameters);
+  // What friction adds to the derivative that is factored.
+  Eigen::PartialPivLU<Eigen::MatrixXd> friction;
+  if (chain_.has_friction() && n > 0) {
+    Eigen::MatrixXd form = chain_.friction_form(pulls_);
+    chain_.solve(form);
+    form.diagonal().array() += 1;
+    friction.compute(form);
+  }
+  for (Eigen::MatrixXd* columns : {&by_tension, &by_tip, &by_parameters}) {
+    chain_.solve(*columns);
+    if (friction.rows() > 0) *columns = friction.solve(*columns).eval();
+  }
   EquilibriumSlopes slopes;
   slopes.tensions_by_input = Eigen::MatrixXd::Identity(count, count);
   if (by_displacement_) {
     std::vector<Eigen::Index> taut;
     for (std::size_t i = 0; i < taut_.size(); ++i)
-      if (pulls_[i] > 0) taut.push_back(static_cast<Eigen::Index>(i));
+      if (pulls_[i] > 0 || slack == Slack::is_taut) taut.push_back(static_cast<Eigen::Index>(i));
     Eigen::MatrixXd give = lengths_by_q(taut, Eigen::all) * by_tension(Eigen::all, taut);
     for (std::size_t a = 0; a < taut.size(); ++a) {
       const auto at = static_cast<Eigen::Index>(a);

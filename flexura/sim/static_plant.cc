@@ -121,7 +121,7 @@ Equilibrium StaticPlant::solved(double time, const Equilibrium& near, const std:
   const std::lock_guard lock(mutex_);
   grab(place);
   statics_.stretch_rest(inputs().rest_stretches(time));
-  Equilibrium at = statics_.solve(input, loads, near);
+  Equilibrium at = statics_.settle(input, loads, near);
   if (!at.converged())
     throw SimulationError(fmt::format("at {:.3f} s the arm comes to no rest under its tendons and loads: {}",
                                       time, words(at.end)));

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <string>
 #include <thread>
 #include <vector>
 
@@ -236,6 +237,32 @@ TEST(StaticPlant, IsWithoutWeightFromATimeOn) {
   ASSERT_TRUE(plant_of(rig).weigh(8.5, true));
   EXPECT_LT((tip(rig, 8.5) - sagged).norm(), 1e-7);
   EXPECT_EQ(plant_of(rig).warning(8.5), "");
+}
+
+// Upright, and so heavy that it cannot stand: it falls to a side, and over to another one as it is sent
+// there.
+TEST(StaticPlant, SnapsWhereItBucklesAndGoesOn) {
+  RigConfig config = free_rig(9.81);
+  config.arm.gravity = {0, -9.81, 0};
+  for (Section& section : config.arm.section) section.material->density *= 40;
+  SimulatedRig rig(config, config, numbers_renderer, 1);
+  int snaps = 0, looks = 0;
+  for (int way = 0; way < 4; ++way) {
+    ArmState state = ArmState::straight(2);
+    for (Eigen::Vector2d& bend : state.bends) bend = {way % 2 == 0 ? 0.8 : -0.8, 0.1 * way};
+    ASSERT_TRUE(rig.ports().arm->command(state, 0));
+    for (int i = 0; i < 40; ++i) {
+      rig.clock().wait_until(rig.clock().now() + 0.1);
+      const double now = rig.clock().now();
+      const Equilibrium at = plant_of(rig).equilibrium(now);
+      ASSERT_TRUE(at.converged() && at.stable) << now;
+      const std::string warning = plant_of(rig).warning(now);
+      EXPECT_EQ(warning.find("not stable"), std::string::npos) << now;
+      snaps += warning.empty() ? 0 : 1, ++looks;
+    }
+  }
+  EXPECT_GT(snaps, 0);
+  EXPECT_LT(snaps, looks / 2);
 }
 
 TEST(StaticPlant, APullOutTorqueIsBetweenItsPoints) {

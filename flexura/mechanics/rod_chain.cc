@@ -136,6 +136,7 @@ void RodChain::balance(const Eigen::VectorXd& q, std::span<const double> tension
     RodElement& element = elements_[i];
     element.stress(tensions);
     if (is_loaded_) element.load(loads, share, beyond);
+    element.add_bending();
     beyond += element.wrench;
     residual_.segment(first_[i], element.size()) = element.residual;
     load_slope_.segment(first_[i], element.size()) = element.by_share;

@@ -1,5 +1,6 @@
 #include "flexura/mechanics/rod_element.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -45,7 +46,7 @@ RodElement::RodElement(const RodSection& section, std::span<const TendonRoute> t
   const auto n = static_cast<Eigen::Index>(size());
   const std::size_t nodes = grid_.t.size();
   const auto count = static_cast<Eigen::Index>(tendons.size());
-  residual = by_share = q_ = Eigen::VectorXd::Zero(n);
+  residual = by_share = by_place_ = q_ = Eigen::VectorXd::Zero(n);
   tangent = Eigen::MatrixXd::Zero(n, n);
   by_base = Eigen::MatrixXd::Zero(n, 6);
   wrench_by_modes = step_ = moved_ = turned_ = Columns::Zero(6, n);
@@ -59,6 +60,7 @@ RodElement::RodElement(const RodSection& section, std::span<const TendonRoute> t
   const Vector6d still = Vector6d::Zero();
   twist_.resize(nodes - 1, MagnusStep({still, still, still}));
   by_moments_.resize(nodes - 1);
+  across_.resize(nodes - 1, still);
   F_.resize(nodes, Vector6d::Zero());
   D_.resize(nodes, Matrix6d::Zero());
 }
@@ -118,6 +120,7 @@ void RodElement::stress(std::span<const double> tension) {
   length_slopes.setZero();
   pull_slopes.setZero();
   strain_energy = 0;
+  std::ranges::fill(across_, Vector6d::Zero());
   for (std::size_t k = 0; k < grid_.t.size(); ++k) {
     const double weight = grid_.weight[k] * length_;
     if (weight == 0) continue;
@@ -154,11 +157,8 @@ void RodElement::stress(std::span<const double> tension) {
     grid_.for_modes([&](int c, int j) { residual[j] += weight * force[c] * grid_.at_node(j, column); });
     add_block(by_strain, grid_.at_node, grid_.at_node, k, weight);
   }
-  for (std::size_t i = 0; i < tendons_.size() && has_chords(); ++i) {
-    for (std::size_t piece = 0; piece + 1 < grid_.disks.size(); ++piece)
-      add_chord(i, grid_.disks[piece], grid_.disks[piece + 1], tension[tendons_[i]],
-                passages_[i][grid_.disks[piece]].left);
-  }
+  for (std::size_t piece = 0; piece + 1 < grid_.disks.size(); ++piece)
+    add_chords(grid_.disks[piece], grid_.disks[piece + 1], tension);
   by_share.setZero();
   by_base.setZero();
   wrench_by_modes.setZero();
@@ -166,54 +166,69 @@ void RodElement::stress(std::span<const double> tension) {
   wrench.setZero();
 }
 
-// A wrench W that pulls at all that lies beyond an interval turns with what lies before it, from the node
-// `from` on, and the interval's twist does not add up: factor times both.
+// A wrench W, times factor, pulls at all that lies beyond an interval. It turns with what lies before it, from
+// the node `from` on; what it does to the interval's own twist waits for add_bending().
 void RodElement::add_geometry(std::size_t interval, const Vector6d& W, std::size_t from, double factor) {
+  across_[interval] += factor * W;
   step_.noalias() = A_[interval + 1] - A_[interval];
-  if (interval > from) {
-    moved_.noalias() = A_[interval] - A_[from];
-    turned_.noalias() = bracket_form(W).transpose().lazyProduct(moved_);
-    tangent.noalias() += factor * step_.transpose().lazyProduct(turned_);
-  }
-  const Vector6d local = adjoint(X_[interval]).transpose() * W;
-  const Matrix6d form = exp_[interval].jacobian_form(local).transpose();
-  MagnusStep::Form second = twist_[interval].form(exp_[interval].jacobian.transpose() * local);
-  const MagnusStep::Slopes& by = by_moments_[interval];
-  for (std::size_t b = 0; b < 3; ++b) {
-    const Matrix6d turned = form * by[b];
-    for (std::size_t a = 0; a < 3; ++a) {
-      second[a][b] += by[a].transpose() * turned;
-      add_block(second[a][b], grid_.moments[a], grid_.moments[b], interval, factor);
+  if (interval == from) return;
+  moved_.noalias() = A_[interval] - A_[from];
+  turned_.noalias() = bracket_form(W).transpose().lazyProduct(moved_);
+  tangent.noalias() += factor * step_.transpose().lazyProduct(turned_);
+}
+
+// The twist of an interval is no sum of those of its parts: its second derivative by the moments of the
+// strain, times all that pulls at it.
+void RodElement::add_bending() {
+  for (std::size_t interval = 0; interval < across_.size(); ++interval) {
+    if (across_[interval].isZero(0)) continue;
+    const Vector6d local = adjoint(X_[interval]).transpose() * across_[interval];
+    const Matrix6d form = exp_[interval].jacobian_form(local).transpose();
+    MagnusStep::Form second = twist_[interval].form(exp_[interval].jacobian.transpose() * local);
+    const MagnusStep::Slopes& by = by_moments_[interval];
+    for (std::size_t b = 0; b < 3; ++b) {
+      const Matrix6d turned = form * by[b];
+      for (std::size_t a = 0; a < 3; ++a) {
+        second[a][b] += by[a].transpose() * turned;
+        add_block(second[a][b], grid_.moments[a], grid_.moments[b], interval, 1);
+      }
     }
   }
 }
 
-// The energy of a straight piece is its tension times its length.
-void RodElement::add_chord(std::size_t tendon, std::size_t from, std::size_t to, double tension,
-                           double left) {
-  const Eigen::Vector3d a = X_[from] * passages_[tendon][from].offset,
-                        b = X_[to] * passages_[tendon][to].offset;
-  const double distance = (b - a).norm();
-  const Eigen::Vector3d u = (b - a) / distance;
-  const Vector6d W = wrench_at(a, u, Eigen::Vector3d::Zero());
-  const auto place = static_cast<Eigen::Index>(tendons_[tendon]);
-  tendon_lengths[place] += distance;
+// The energy of a straight piece is its tension times its length. All tendons between the same two disks move
+// with the same columns, so their wrenches add up before these are multiplied.
+void RodElement::add_chords(std::size_t from, std::size_t to, std::span<const double> tensions) {
   moved_.noalias() = A_[to] - A_[from];
-  length_slopes.col(place).noalias() += moved_.transpose().lazyProduct(W);
-  pull_slopes.col(place).noalias() += left * moved_.transpose().lazyProduct(W);
-  if (tension == 0) return;
-  tension *= left;
-  residual.noalias() += tension * moved_.transpose().lazyProduct(W);
-  // The end b moves, as seen from a.
-  Eigen::Matrix<double, 3, 6> point;
-  point << Eigen::Matrix3d::Identity(), -skew(b);
-  const Eigen::Matrix<double, 3, 6> across =
-      tension / distance * (Eigen::Matrix3d::Identity() - u * u.transpose()) * point;
-  Matrix6d turned;
-  turned << across, skew(a) * across;
+  Vector6d pull = Vector6d::Zero();
+  Matrix6d turned = Matrix6d::Zero();
+  for (std::size_t i = 0; i < tendons_.size(); ++i) {
+    const Passage& begin = passages_[i][from];
+    const Eigen::Vector3d a = X_[from] * begin.offset, b = X_[to] * passages_[i][to].offset;
+    const double distance = (b - a).norm();
+    const Eigen::Vector3d u = (b - a) / distance;
+    const Vector6d W = wrench_at(a, u, Eigen::Vector3d::Zero());
+    const auto place = static_cast<Eigen::Index>(tendons_[i]);
+    tendon_lengths[place] += distance;
+    by_place_.noalias() = moved_.transpose().lazyProduct(W);
+    length_slopes.col(place) += by_place_;
+    pull_slopes.col(place) += begin.left * by_place_;
+    const double tension = tensions[tendons_[i]] * begin.left;
+    if (tension == 0) continue;
+    pull += tension * W;
+    // The end b moves, as seen from a.
+    Eigen::Matrix<double, 3, 6> point;
+    point << Eigen::Matrix3d::Identity(), -skew(b);
+    const Eigen::Matrix<double, 3, 6> across =
+        tension / distance * (Eigen::Matrix3d::Identity() - u * u.transpose()) * point;
+    turned.topRows<3>() += across;
+    turned.bottomRows<3>() += skew(a) * across;
+  }
+  if (turned.isZero(0)) return;
+  residual.noalias() += moved_.transpose().lazyProduct(pull);
   turned_.noalias() = turned.lazyProduct(moved_);
   tangent.noalias() += moved_.transpose().lazyProduct(turned_);
-  for (std::size_t interval = from; interval < to; ++interval) add_geometry(interval, W, from, tension);
+  for (std::size_t interval = from; interval < to; ++interval) add_geometry(interval, pull, from, 1);
 }
 
 void RodElement::add_stiffness_slopes(Eigen::Ref<Eigen::MatrixXd> slopes) const {

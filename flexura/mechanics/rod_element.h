@@ -75,6 +75,8 @@ class RodElement {
   /// Adds what loads do, `share` of them, where `beyond` is the wrench of all of the loads of the sections
   /// after this one. The columns are there.
   void load(const RodLoads& loads, double share, const Vector6d& beyond);
+  /// After both: adds to the tangent what chords and loads do to the twists of the intervals.
+  void add_bending();
 
   /// Of what its strains cost, the second derivative by its modes, size() x size(): the same in all shapes.
   [[nodiscard]] Eigen::MatrixXd stiffness() const;
@@ -123,7 +125,7 @@ class RodElement {
   [[nodiscard]] const std::vector<Passage>* passages_of(std::size_t tendon) const;
   // What a wrench makes of how the intervals turn each other.
   void add_geometry(std::size_t interval, const Vector6d& W, std::size_t from, double factor);
-  void add_chord(std::size_t tendon, std::size_t from, std::size_t to, double tension, double left);
+  void add_chords(std::size_t from, std::size_t to, std::span<const double> tensions);
   void find_forces(const RodLoads& loads);
   void add_block(const Matrix6d& block, const Eigen::MatrixXd& left, const Eigen::MatrixXd& right,
                  std::size_t column, double factor);
@@ -137,7 +139,7 @@ class RodElement {
   std::vector<std::size_t> tendons_;
   std::vector<std::vector<Passage>> passages_;
 
-  Eigen::VectorXd q_, rates_;
+  Eigen::VectorXd q_, rates_, by_place_;
   std::vector<Vector6d> strain_;  // At the nodes.
   std::vector<Pose> X_;
   std::vector<Columns> A_;
@@ -145,6 +147,7 @@ class RodElement {
   std::vector<MagnusStep> twist_;
   std::vector<MagnusStep::Slopes> by_moments_;
   std::vector<TwistExponential> exp_;
+  std::vector<Vector6d> across_;  // All that pulls at what lies beyond it, of chords and loads.
   // Of each node, what pulls there, and that by its twist.
   std::vector<Vector6d> F_;
   std::vector<Matrix6d> D_;

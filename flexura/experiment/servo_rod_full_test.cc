@@ -15,10 +15,10 @@
 namespace flexura {
 namespace {
 
-// What is seen of the arm at the end is as far from the rod as the servo says that it may be. Of each pose
-// the shape has some six numbers that pictures tell, so that the mean square of ten poses in units of sigma^2
-// is 1 within 0.18 (one standard deviation); three arcs a section add to that what a rod is not arcs. Bounds
-// are those of four standard deviations below, and of eight above.
+// The observed shape at the end is as far from the rod as the stated standard deviation allows. Pictures
+// determine some six numbers of each pose, so that the mean square of twelve poses in units of sigma^2 is 1
+// within 0.17 (one standard deviation). The bounds are four standard deviations below and ten above: the
+// errors of an axis found in pictures have a systematic part, and three arcs a section are not quite a rod.
 TEST(ServoOfARod, EndsWithinItsStatedSigma) {
   double square = 0, worst = 0;
   int poses = 0, done = 0;
@@ -30,7 +30,7 @@ TEST(ServoOfARod, EndsWithinItsStatedSigma) {
     ServoSetup setup;
     setup.arm += "\nbend_profile = [1, 1, 1]";
     std::string text = servo_file(
-        fmt::format("tolerance = 0.004\nsettle = 0.5\n[[task.target]]\nbends = [{}]\n", bends), setup);
+        fmt::format("tolerance = 0.004\nsettle = 1\n[[task.target]]\nbends = [{}]\n", bends), setup);
     let_sag("arm", 200e9, text);
     ServoBench bench(text);
     const Experiment& experiment = bench.experiment();
@@ -48,11 +48,11 @@ TEST(ServoOfARod, EndsWithinItsStatedSigma) {
     // The arm rests: the last sight is of where it is now.
     const ServoStep& last = result.steps.back();
     ASSERT_TRUE(last.seen);
-    ASSERT_GT(last.sigma, 0);
+    ASSERT_TRUE(result.sigma && *result.sigma > 0);
     const Arm arm = experiment.arm_model().shaped();
     const ServoError off = servo_error(bench.rig().arm().backbone(bench.rig().clock().now()),
                                        Backbone(arm, *last.seen), arm.length());
-    const double ratio = off.rms / last.sigma;
+    const double ratio = off.rms / *result.sigma;
     square += ratio * ratio, worst = std::max(worst, ratio);
   });
   ASSERT_GE(4 * done, 3 * poses);
@@ -61,7 +61,7 @@ TEST(ServoOfARod, EndsWithinItsStatedSigma) {
   RecordProperty("times_sigma", fmt::format("{:.2f}, largest {:.2f}", rms, worst));
   if (one_case_of == 1) {
     EXPECT_GE(rms, 0.5);
-    EXPECT_LE(rms, 1.6);
+    EXPECT_LE(rms, 2);
   }
   EXPECT_LE(worst, 4);
 }

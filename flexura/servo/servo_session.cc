@@ -76,6 +76,7 @@ class Session {
     result_.is_done = result_.reason.empty();
     result_.fault = kept_;
     result_.first = observer_.first(), result_.last = observer_.last();
+    if (result_.last) result_.sigma = observer_.sigma_of_last();
     if (result_.missed_steps > 0)
       watcher_.told(rig_.now(),
                     fmt::format("{} steps of {:.4g} s were missed", result_.missed_steps, config_.step));

@@ -30,6 +30,9 @@ struct ServoResult {
   std::optional<double> settled;        ///< Time from the start until the error stays below 2 %, s.
   double overshoot = 0;                 ///< How far the tip went past its target, share of its way.
   std::optional<ServoError> remaining;  ///< Mean over the last `settle` s.
+  /// Standard deviation of the last observed shape along the arm, share of its length, by its pictures alone;
+  /// empty if there was none.
+  std::optional<double> sigma;
   /// Last observation, command and request before the servo ended early, for any reason; `time` since the
   /// start.
   std::optional<LimiterFault> fault;

@@ -108,8 +108,14 @@ ArmState ShapeObserver::expected(ArmState driven) const {
                : driven;
 }
 
-double ShapeObserver::sigma() const {
-  const ShapeEstimate& estimate = last_->estimate;
+double ShapeObserver::sigma() const { return relative_sigma(last_->estimate); }
+
+double ShapeObserver::sigma_of_last() const {
+  return relative_sigma(
+      ShapeEstimator(prior_, patient_estimator(doubt_)).follow(last_->seen, last_->estimate.shape));
+}
+
+double ShapeObserver::relative_sigma(const ShapeEstimate& estimate) const {
   const double common = doubt_.is_any() ? 1 : estimate.scale;
   return estimate.rms_sigma() / (common * length_);
 }

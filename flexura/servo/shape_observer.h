@@ -46,8 +46,14 @@ class ShapeObserver {
   /// arm, share of its length. Errors of cameras without a prior are equal in every picture and are not
   /// included.
   [[nodiscard]] double sigma() const;
+  /// The same by the last pictures alone, without earlier ones. The filter takes the errors of
+  /// successive pictures as independent. Those of an arm at rest are not, and do not average: its `sigma()`
+  /// is then too small, several times so if camera errors are estimated. This one holds there.
+  [[nodiscard]] double sigma_of_last() const;
 
  private:
+  // Standard deviation of the shape along the arm, share of its length.
+  [[nodiscard]] double relative_sigma(const ShapeEstimate& estimate) const;
   void estimate(ServoSight& sight, const std::optional<ArmState>& expected);
   [[nodiscard]] ShapeEstimate shape_of(const ServoSight& sight, const std::optional<ArmState>& expected);
 

@@ -113,6 +113,8 @@ Node servo_node(const ServoRun& run) {
   members.push_back({"overshoot", {}, number_node(result.overshoot)});
   if (result.missed > hardly) members.push_back({"target_missed", {}, number_node(result.missed)});
   if (result.remaining) members.push_back({"remaining", {}, error_node(*result.remaining)});
+  if (result.sigma && std::isfinite(*result.sigma))
+    members.push_back({"sigma", {}, number_node(*result.sigma)});
   if (run.true_remaining) members.push_back({"remaining_in_truth", {}, error_node(*run.true_remaining)});
   if (result.fault) members.push_back({"fault", {}, fault_node(*result.fault, result.start)});
   return {std::move(members), {}};
@@ -137,6 +139,11 @@ Chapter servo_chapter(const ServoRun& run, std::size_t number) {
   if (result.remaining)
     chapter.points.push_back(fmt::format("The mean of its last {:.3g} s, as seen: {}.", run.settle,
                                          error_text(*result.remaining)));
+  if (result.sigma && std::isfinite(*result.sigma))
+    chapter.points.push_back(
+        fmt::format("Standard deviation of the last observed shape: {:.3f} % of the arm's length, root mean "
+                    "square.",
+                    100 * *result.sigma));
   if (run.true_remaining)
     chapter.points.push_back(fmt::format("The mean of its last {:.3g} s, in the simulated truth: {}.",
                                          run.settle, error_text(*run.true_remaining)));

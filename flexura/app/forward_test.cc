@@ -107,7 +107,7 @@ TEST(AnswerForward, AnswersABadLineWithItsError) {
   const std::vector<std::pair<const char*, const char*>> lines{
       {"", "not JSON"},
       {"{", "column 2: not JSON"},
-      {"{}", "says no shape"},
+      {"{}", "has no shape"},
       {"[]", "expected a table"},
       {"null", "expected a table"},
       {R"({"bends":[[0,0]]})", "bends: 1 given: expected 2"},

@@ -119,7 +119,7 @@ Node value_node(const IdentifiedValue& value) {
   const double nothing = std::numeric_limits<double>::quiet_NaN();
   Node::Table line = {{"parameter", {}, text_node(value.name)}};
   if (value.section) line.push_back({"section", {}, {static_cast<std::int64_t>(*value.section), {}}});
-  line.push_back({"told", {}, {value.is_told, {}}});
+  line.push_back({"observable", {}, {value.is_told, {}}});
   line.push_back({"value", {}, number_node(value.is_told ? value.value : nothing)});
   line.push_back({"sigma", {}, number_node(value.is_told ? value.sigma : nothing)});
   line.push_back({"nominal", {}, number_node(value.nominal)});
@@ -155,7 +155,7 @@ void print_table(const IdentifiedArm& found, std::ostream& out) {
     const std::string of = value.section ? fmt::format("section {}: ", *value.section) : "";
     out << fmt::format("{:<34}", of + words_of(value.name));
     out << (value.is_told ? fmt::format("{:>12.5g}{:>12.2g}", value.value, value.sigma)
-                          : fmt::format("{:>24}", "not told by this motion"));
+                          : fmt::format("{:>24}", "not observable in this motion"));
     out << fmt::format("{:>12.5g}\n", value.nominal);
   }
   out << fmt::format("{} places at {} times, which the rod's shapes meet within {} (rms); misfit {:.2f}\n",

@@ -88,7 +88,7 @@ void expect_the_truth(const std::vector<Node>& lines) {
   for (std::size_t i = 0; i < known.size(); ++i) {
     EXPECT_EQ(*lines[i].find("parameter")->as<std::string>(), known[i].parameter);
     EXPECT_EQ(*lines[i].find("section")->as<std::int64_t>(), known[i].section);
-    EXPECT_TRUE(*lines[i].find("told")->as<bool>());
+    EXPECT_TRUE(*lines[i].find("observable")->as<bool>());
     EXPECT_EQ(number_in(lines[i], "nominal"), known[i].nominal);
     const double sigma = number_in(lines[i], "sigma");
     EXPECT_NEAR(number_in(lines[i], "value"), known[i].value, 3 * sigma) << i;
@@ -152,9 +152,9 @@ TEST_F(Identify, SaysWhatAMotionDoesNotTell) {
                            .window = 0.15,
                            .json = true});
   for (const Node& line : json_lines(found.out))
-    if (line.find("told") != nullptr &&
+    if (line.find("observable") != nullptr &&
         std::string(*line.find("parameter")->as<std::string>()) == "damping_time") {
-      EXPECT_FALSE(*line.find("told")->as<bool>());
+      EXPECT_FALSE(*line.find("observable")->as<bool>());
       EXPECT_TRUE(line.find("value")->empty());
     }
 }

@@ -146,8 +146,9 @@ std::vector<std::string> notes_of(const std::vector<BoardPictures>& cameras, con
     const auto& untold = fit.cameras[i].untold;
     if (!untold.empty() && untold.front() >= 4)
       notes.push_back(
-          fmt::format("the views do not tell {} of a lens: fewer coefficients with --distortion, or boards "
-                      "that reach the image's corners, would",
+          fmt::format("{} of the lens is not observable in these views: use fewer coefficients with "
+                      "--distortion, or boards "
+                      "that reach the image's corners",
                       parameter_names[static_cast<std::size_t>(untold.front())]));
   }
   return notes;

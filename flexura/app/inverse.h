@@ -9,7 +9,7 @@
 namespace flexura {
 
 /// Answers one line of `flexura ik`: a JSON object {"position":[x,y,z]} with an optional "direction":[x,y,z]
-/// or "rotation":[w,x,y,z], or {"curve":[[x,y,z],...]}; optional "wish", "start" and "all"
+/// or "rotation":[w,x,y,z], or {"curve":[[x,y,z],...]}; optional "prefer", "start" and "all"
 /// (docs/command-line.md). The answer is one line of JSON without its line end:
 /// {"converged":..,"reason":..,"bends":[[bx,by],...],"stretches":[..],"position_error":..,"angle_error":..},
 /// with "archings" instead of "bends" for a planar arm, "nearest" and "distance" when not converged, or

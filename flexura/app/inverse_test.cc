@@ -170,7 +170,7 @@ TEST(AnswerInverse, BeginsAtTheStartAndFollowsTheWish) {
   const std::string plain = answer_inverse(arm, R"({"position":[0.2,0.6,0.1]})");
   EXPECT_NE(there, plain);
   const std::string wished =
-      answer_inverse(arm, R"({"position":[0.2,0.6,0.1],"wish":"least_bending",)" + start + "}");
+      answer_inverse(arm, R"({"position":[0.2,0.6,0.1],"prefer":"least_bending",)" + start + "}");
   EXPECT_NE(there, wished);
   EXPECT_TRUE(flag(parsed(wished), "converged"));
 }
@@ -192,8 +192,8 @@ TEST(AnswerInverse, AnswersABadLineWithItsError) {
        "rotation: has the norm 0: expected a unit quaternion"},
       {R"({"position":[0,1,0],"rotation":[1,0,0,0.1]})", "has the norm 1.00499"},
       {R"({"position":[0,1,0],"rotation":[1,0,0]})", "expected an array of 4"},
-      {R"({"position":[0,1,0],"rotation":[1,0,0,0],"direction":[0,1,0]})", "says the orientation twice"},
-      {R"({"position":[0,1,0],"wish":"more"})", "expected one of"},
+      {R"({"position":[0,1,0],"rotation":[1,0,0,0],"direction":[0,1,0]})", "gives the orientation twice"},
+      {R"({"position":[0,1,0],"prefer":"more"})", "expected one of"},
       {R"({"position":[0,1,0],"all":1})", "expected true or false"},
       {R"({"position":[0,1,0],"start":{"bends":[[0,0]]}})", "start.bends: 1 given: expected 3"},
       {R"({"position":[0,1,0],"start":{"archings":[0,0,0]}})", "is for planar arms"},

@@ -30,7 +30,7 @@ const Table<StaticsRequest>& fields_of(const StaticsRequest*) {
     Table<StaticsRequest> made("statics request", "What pulls at the arm, and where along it to answer.");
     add_rod_fields(made)
         .field("target", &StaticsRequest::target,
-               {.meaning = "where the arm shall be, instead of what pulls at its tendons"})
+               {.meaning = "target of the arm, instead of tensions or displacements"})
         .field("at", &StaticsRequest::at,
                {.meaning = "arc lengths at rest",
                 .unit = Unit::metre,

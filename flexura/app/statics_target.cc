@@ -18,11 +18,11 @@ constexpr double farthest_target = 1e6;
 
 const Table<StaticsPoint>& fields_of(const StaticsPoint*) {
   static const auto table =
-      Table<StaticsPoint>("statics point", "Where a point of the arm shall be.")
+      Table<StaticsPoint>("statics point", "Target of a point of the arm.")
           .field("at", &StaticsPoint::at,
                  {.meaning = "its arc length at rest", .unit = Unit::metre, .range = at_least(0)})
           .field("position", &StaticsPoint::position,
-                 {.meaning = "where it shall be",
+                 {.meaning = "its target position",
                   .unit = Unit::metre,
                   .range = between(-farthest_target, farthest_target)});
   return table;
@@ -30,7 +30,7 @@ const Table<StaticsPoint>& fields_of(const StaticsPoint*) {
 
 const Table<StaticsTarget>& fields_of(const StaticsTarget*) {
   static const auto table =
-      Table<StaticsTarget>("statics target", "Where the arm shall be.")
+      Table<StaticsTarget>("statics target", "Target of the arm.")
           .field("tip", &StaticsTarget::tip,
                  {.meaning = "the tip's position",
                   .unit = Unit::metre,
@@ -79,7 +79,7 @@ void check_statics_target(const Rod& rod, const StaticsTarget& target, Reader& r
   if (!target.tip && !target.direction && !target.rotation && !target.shape)
     reader.problem_at("target", "asks for nothing: expected tip, direction, rotation or shape");
   if (target.direction && target.rotation)
-    reader.problem_at("target", "says the orientation twice: expected direction or rotation, not both");
+    reader.problem_at("target", "gives the orientation twice: expected direction or rotation, not both");
   if (target.direction && !(vector(*target.direction).norm() > 1e-9))
     reader.problem_at("target.direction", "is zero: expected a direction");
   if (target.rotation) {

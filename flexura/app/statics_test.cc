@@ -232,7 +232,7 @@ TEST(AnswerStatics, AnswersABadLineWithItsError) {
        "target: is given beside tensions or displacements: expected one of them"},
       {R"({"target":{"direction":[0,0,0]}})", "target.direction: is zero: expected a direction"},
       {R"({"target":{"rotation":[1,1,1,1]}})", "target.rotation"},
-      {R"({"target":{"direction":[0,0,1],"rotation":[1,0,0,0]}})", "says the orientation twice"},
+      {R"({"target":{"direction":[0,0,1],"rotation":[1,0,0,0]}})", "gives the orientation twice"},
       {R"({"target":{"shape":[]}})", "target.shape"},
       {R"({"target":{"shape":[{"at":0.5,"position":[0,0,0]}]}})",
        "target.shape[0].at: 0.5 is beyond the tip: expected at most 0.4 m"},

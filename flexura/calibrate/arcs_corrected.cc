@@ -142,7 +142,7 @@ class ArcsCorrected : public ArcsLoop {
     if (off <= farthest * foretold_->sigma) return std::nullopt;
     return fmt::format(
         "the last pictures do not agree with those before: the angle between the axes is {:.3f} deg, "
-        "foretold were {:.3f} deg with a standard deviation of {:.3f} deg",
+        "the prediction is {:.3f} deg with a standard deviation of {:.3f} deg",
         angle_.value / degree, foretold_->value / degree, foretold_->sigma / degree);
   }
 
@@ -222,7 +222,7 @@ class ArcsCorrected : public ArcsLoop {
     if (off <= loop_.config().accepted || is_there)
       what = "holds, or nothing finer can be commanded";
     else if (off > 0.5 * last && !is_far)
-      what = "holds: the pictures tell nothing finer";
+      what = "holds: the pictures resolve nothing finer";
     else
       next = wanted_[i];
     if (next)

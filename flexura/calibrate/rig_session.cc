@@ -69,8 +69,9 @@ class Session {
     constexpr double hopeless = 3 * degree;
     if (const double sigma = result_.steps.back().sigmas.angle; !(sigma < hopeless))
       return fmt::format(
-          "the pictures tell the angle between the axes to {:.2g} deg only: more images, other poses or "
-          "turns of the heads tell more",
+          "the standard deviation of the angle between the axes is still {:.2g} deg: take more images, other "
+          "poses or "
+          "turns of the heads",
           sigma / degree);
     result_.is_done = true;
     return std::nullopt;
@@ -258,8 +259,8 @@ class Session {
       result_.verified[i] = foretelling.px;
       if (!(foretelling.sigmas <= most))
         return fmt::format(
-            "camera {} sees the {} {:.1f} px from where it was foretold after the move, which is {:.1f} "
-            "times what is not known: a head with play, or one that was pushed{}",
+            "after the move camera {} sees the {} {:.1f} px from its predicted place, {:.1f} "
+            "standard deviations: a head with backlash, or one that was pushed{}",
             name(i), what_, foretelling.px, foretelling.sigmas,
             config_.etalon ? "" : ", or an arm that bends otherwise each time");
     }
@@ -293,7 +294,7 @@ class Session {
     const auto note = [&](const std::string& what, double known, double asked, const char* unit) {
       if (known > asked)
         result_.wanted.notes.push_back(
-            fmt::format("{} known to {:.2g}{}, where {:.2g} is wanted: more pictures tell it better", what,
+            fmt::format("standard deviation of {}: {:.2g}{}, required {:.2g}: take more pictures", what,
                         known, unit, asked));
     };
     note("the angle between the axes is", is.angle / degree, wanted.angle / degree, " degrees");
@@ -305,8 +306,8 @@ class Session {
     constexpr double suspicious_rms = 1.2;
     if (result_.found.rms > suspicious_rms)
       result_.wanted.notes.push_back(fmt::format(
-          "the pictures differ from the best rig by {:.2g} standard deviations (root mean square): the "
-          "arm may bend otherwise than is believed, and shapes that are seen may be wrong by more than "
+          "the residuals of the best rig are {:.2g} standard deviations (root mean square): the "
+          "arm may bend differently from its model, and estimated shapes may be wrong by more than "
           "is stated",
           result_.found.rms));
   }

@@ -125,7 +125,7 @@ bool tells_of_cameras(const ShapeFit& fit) {
 std::string elsewhere(std::size_t picture, const ViewError& error) {
   return fmt::format(
       "picture {} would need its camera turned by {:.2g} degrees and {:.3g} % {} in focal length, far more "
-      "than is doubted",
+      "than its prior allows",
       picture + 1, error.turn.norm() / degree, 100 * std::abs(std::expm1(error.focal)),
       error.focal < 0 ? "shorter" : "longer");
 }
@@ -281,7 +281,7 @@ ShapeEstimate ShapeEstimator::answer(const ShapeProblem& problem, ShapeFit fit) 
   const double sigma = result.rms_sigma();
   constexpr double hopeless = 0.05;
   if (!(sigma < hopeless * length)) {
-    result.reason = "the images do not tell the shape";
+    result.reason = "the shape is not observable in the images";
     return result;
   }
   if (std::string reason = bent_beyond_arms(fit.shape); !reason.empty()) {
@@ -292,7 +292,7 @@ ShapeEstimate ShapeEstimator::answer(const ShapeProblem& problem, ShapeFit fit) 
     result.is_elsewhere = tells_of_cameras(fit);
     result.reason = result.is_elsewhere
                         ? elsewhere(*view, fit.shape.views[*view])
-                        : "the cameras would have to stand otherwise by far more than is doubted";
+                        : "the cameras would have to be elsewhere, by far more than their priors allow";
     return result;
   }
   if (const auto picture = picture_of_another(problem.sightings(), fit)) {

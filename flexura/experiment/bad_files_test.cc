@@ -135,7 +135,7 @@ TEST(BadFiles, EachGetsALineWithPlaceValueAndExpectation) {
       {"bad angle", file_with("0.2]", "true]"),
        "x.toml:10:24: task[0].to.archings_pi[1] = true: expected a number from"},
       {"two ways", file_with("to.archings_pi", "to.cord_angles = [1, 2]\nto.archings_pi"),
-       "task[0].to: says the bends in more than one way"},
+       "task[0].to: gives the bends in more than one way"},
       {"out of the plane", file_with("archings_pi = [0.1, 0.2]", "bends = [[0.1, 0.2], [0.1, 0]]"),
        "task[0].to.bends[0]: leaves the plane: expected bend_y = 0 for a planar arm"},
       {"planar words for a spatial arm", file_with("planar", "spatial"),

@@ -203,7 +203,7 @@ TEST(CalibrateTaskFully, StopsWhereTheCylinderIsSeenElsewhereAfterTheMove) {
   PushesBeforeTheMove watcher(pan);
   const RigSessionResult result = bench.calibrate_bundle(ports, watcher);
   EXPECT_FALSE(result.is_done);
-  EXPECT_NE(result.reason.find("from where it was foretold after the move"), std::string::npos)
+  EXPECT_NE(result.reason.find("from its predicted place"), std::string::npos)
       << result.reason;
   EXPECT_GT(result.verified[0], 4);  // Half a degree at 800 px is 7 px.
   CalibrationBench::expect_back(ports);
@@ -355,7 +355,7 @@ TEST(CalibrateTaskFully, TellsWhatItDoesNotKnowAsWellAsIsWanted) {
                                [&](const std::string& note) { return note.find(part) != std::string::npos; });
   };
   EXPECT_TRUE(tells("the angle between the axes is known to"));
-  EXPECT_TRUE(tells("degrees, where 0.001 is wanted"));
+  EXPECT_TRUE(tells("degrees, required 0.001"));
   EXPECT_FALSE(tells("focal length"));
 }
 

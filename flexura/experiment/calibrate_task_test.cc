@@ -69,7 +69,7 @@ TEST(CalibrateTask, StopsWhereTheMoveEndsElsewhereThanItWasForetold) {
       "images = 8\n" + three_poses, both_heads("{ pan = { backlash_deg = 3 }, tilt = { zero_deg = 0 } }")));
   const RigSessionResult result = bench.calibrate_bundle(bench.ports());
   EXPECT_FALSE(result.is_done);
-  EXPECT_THAT(result.reason, HasSubstr("from where it was foretold after the move, which is"));
+  EXPECT_THAT(result.reason, HasSubstr("from its predicted place, "));
   bench.expect_back();
 }
 
@@ -278,7 +278,7 @@ TEST(CalibrateTask, LeavesALogASummaryAReportAndARigToInclude) {
   const auto states = logged<ArmStateMessage>(result, arm_state_topic);
   EXPECT_TRUE(std::ranges::is_sorted(states, {}, &ArmStateMessage::time));
   EXPECT_GT(counts["/calibration/moves"], 6U);
-  EXPECT_EQ(counts["/calibration/sightings"], 8U);
+  EXPECT_EQ(counts["/calibration/observations"], 8U);
   EXPECT_EQ(counts["/calibration/decisions"], 3U);
   EXPECT_GE(counts["/camera/front"], 4U);
   EXPECT_NEAR(states.back().time, *result.summary.find("duration")->as<double>(), 1e-6);

@@ -31,11 +31,11 @@ struct OddClock {
 
 const std::vector<OddClock>& odd_clocks() {
   static const std::vector<OddClock> list = {
-      {[](double now) { return now + 1000; }, " tells of a time that is 1000 s from now"},
-      {[](double now) { return now - 1000; }, " tells of nothing since 1000 s ago"},
-      {[](double) { return 0.4; }, " tells of nothing since 0.3"},
+      {[](double now) { return now + 1000; }, ": its timestamp is 1000 s in the future"},
+      {[](double now) { return now - 1000; }, ": no reading for 1000 s"},
+      {[](double) { return 0.4; }, ": no reading for 0.3"},
       {[](double) { return std::numeric_limits<double>::infinity(); }, ""},
-      {[](double) { return 1e300; }, " tells of a time that is 1e+300 s from now"}};
+      {[](double) { return 1e300; }, ": its timestamp is 1e+300 s in the future"}};
   return list;
 }
 
@@ -113,7 +113,7 @@ TEST(ServoClocks, ReadingsThatAreRepeatedDoNoHarm) {
 // Its pictures are ignored: the arm waits, and the servo ends.
 TEST(ServoClocks, ACameraWhoseClockIsOddIsNotBelieved) {
   const std::vector<std::pair<Shown, std::string>> cases = {
-      {[](double now) { return now + 1000; }, "camera side: its picture tells of a time that is "},
+      {[](double now) { return now + 1000; }, "camera side: its picture's timestamp is "},
       {[](double now) { return now - 1000; }, "s older than the one before"},
       {[](double) { return 0.4; }, "no pictures come"}};
   for (const auto& [shown, reason] : cases) {
@@ -133,8 +133,8 @@ TEST(ServoClocks, ACameraWhoseClockIsOddIsNotBelieved) {
 
 // For a moment: later pictures must be used again.
 TEST(ServoClocks, ACameraWhoseClockWasOddIsBelievedAgain) {
-  for (const auto& [off, said] : {std::pair{1000.0, " a time that is "},
-                                  std::pair{std::numeric_limits<double>::quiet_NaN(), " no time"}}) {
+  for (const auto& [off, said] : {std::pair{1000.0, " 1000 s in the future"},
+                                  std::pair{std::numeric_limits<double>::quiet_NaN(), " not finite"}}) {
     ServoBench bench(servo_file(servo_target));
     RigPorts ports = bench.ports();
     OddCamera camera(*ports.cameras[1].camera,
@@ -143,7 +143,7 @@ TEST(ServoClocks, ACameraWhoseClockWasOddIsBelievedAgain) {
     ServoNotes notes;
     const ServoResult result = bench.servo(ports, notes);
     EXPECT_TRUE(result.is_done) << result.reason;
-    EXPECT_TRUE(notes.has(std::string("camera side: its picture tells of") + said));
+    EXPECT_TRUE(notes.has(std::string("camera side: its picture's timestamp is") + said));
     EXPECT_TRUE(notes.has("the arm is seen again"));
     EXPECT_EQ(result.missed_steps, 0);
     for (const ServoStep& step : result.steps)

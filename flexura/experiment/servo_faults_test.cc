@@ -318,7 +318,7 @@ TEST(ServoFaults, AnArmThatTellsNoTimeIsStopped) {
   ServoNotes notes;
   const ServoResult result = bench.servo(ports, notes);
   EXPECT_FALSE(result.is_done);
-  EXPECT_NE(result.reason.find("the arm tells of no time"), std::string::npos) << result.reason;
+  EXPECT_NE(result.reason.find("the arm's timestamp is not finite"), std::string::npos) << result.reason;
   ASSERT_TRUE(result.fault);
   bench.rig().clock().wait_until(bench.rig().clock().now() + 0.5);
   EXPECT_FALSE(bench.ports().arm->read().value().moving);
@@ -332,7 +332,7 @@ TEST(ServoFaults, PicturesOfNoTimeAreNoPictures) {
   ServoNotes notes;
   const ServoResult result = bench.servo(ports, notes);
   ASSERT_TRUE(result.is_done) << result.reason;
-  EXPECT_TRUE(notes.has("camera side: its picture tells of no time"));
+  EXPECT_TRUE(notes.has("camera side: its picture's timestamp is not finite"));
   EXPECT_TRUE(notes.has("the arm is seen again"));
   EXPECT_LT(bench.truth(servo_wish).rms, 0.006);
   for (const ServoStep& step : result.steps) {

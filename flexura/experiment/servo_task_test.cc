@@ -170,7 +170,7 @@ TEST(Servo, GivesUpWithoutACamera) {
 
 TEST(Servo, StopsWhenTheArmFails) {
   for (const auto& [kind, words] : {std::pair{BrokenArm::Kind::refuses, "the arm: refused: not today"},
-                                    std::pair{BrokenArm::Kind::nowhere, "tell of no shape"},
+                                    std::pair{BrokenArm::Kind::nowhere, "readings are not finite"},
                                     std::pair{BrokenArm::Kind::gone, "the arm: link lost: no answer"}}) {
     ServoBench bench(servo_file(servo_target));
     RigPorts ports = bench.ports();

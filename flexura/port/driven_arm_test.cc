@@ -217,7 +217,7 @@ TEST(DrivenArm, OfAControllerThatTellsNonsenseNothingIsBelieved) {
     EXPECT_THAT(arm.read().fault()->what, HasSubstr("positions that are no numbers"));
   }
   port.at.pop_back();
-  EXPECT_THAT(arm.read().fault()->what, HasSubstr("tells of 2 axes"));
+  EXPECT_THAT(arm.read().fault()->what, HasSubstr("reports 2 axes"));
 }
 
 }  // namespace

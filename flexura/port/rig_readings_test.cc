@@ -60,14 +60,14 @@ TEST(RigReadings, AnArmThatIsInNoStateIsToldInWords) {
   for (double* number : {&arm.says.state.bends[1].y(), &arm.says.state.stretches[1]}) {
     const double before = *number;
     *number = none;
-    EXPECT_EQ(trouble_of(arm), "the arm's drives tell of no shape: some of their numbers are none");
+    EXPECT_EQ(trouble_of(arm), "the arm's readings are not finite");
     *number = before;
   }
   arm.says.time = none;
-  EXPECT_EQ(trouble_of(arm), "the arm tells of no time: a number is none");
+  EXPECT_EQ(trouble_of(arm), "the arm's timestamp is not finite");
   arm.says.time = 0;
   arm.says.state.stretches.pop_back();
-  EXPECT_EQ(trouble_of(arm), "the arm's drives tell of 2 sections and 1 stretches, the arm has 2");
+  EXPECT_EQ(trouble_of(arm), "the arm's drives report 2 sections and 1 stretches: expected 2");
   arm.fault = PortFault{FaultKind::link_lost, "gone"};
   EXPECT_EQ(trouble_of(arm), "the arm: link lost: gone");
 }

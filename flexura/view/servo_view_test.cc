@@ -106,7 +106,7 @@ TEST_F(ServoView, ShowsWantedSeenAndTrueShapesWhileARunGoesOn) {
   ASSERT_GT(all.size(), 10);
   const Node& extras = all[all.size() / 2];
   const Node::Array& ghosts = list_in(extras, "ghosts");
-  ASSERT_THAT(ids_of(ghosts), ElementsAre("wanted", "seen", "truth"));
+  ASSERT_THAT(ids_of(ghosts), ElementsAre("target", "seen", "truth"));
   const ViewedRig& rig = *seen->rig;
   EXPECT_LT((tip_of(ghosts[0]) - tip_pose(rig.model.driven(), wanted_shape).position).norm(), 1e-9);
   const double off = (tip_of(ghosts[2]) - tip_of(ghosts[0])).norm();
@@ -115,7 +115,7 @@ TEST_F(ServoView, ShowsWantedSeenAndTrueShapesWhileARunGoesOn) {
   const Node::Array& overlays = list_in(extras, "overlays");
   ASSERT_EQ(overlays.size(), 2);
   for (const Node& overlay : overlays) {
-    EXPECT_THAT(ids_of(list_in(overlay, "layers")), ElementsAre("seen", "wanted"));
+    EXPECT_THAT(ids_of(list_in(overlay, "layers")), ElementsAre("seen", "target"));
     for (const Node& line : list_in(overlay, "layers")) EXPECT_GT(list_in(line, "points").size(), 20);
   }
   EXPECT_TRUE(list_in(all.back(), "ghosts").empty()) << "with the servo its shapes are gone";
@@ -163,7 +163,7 @@ TEST_F(ServoView, IsInTheRecordingUponItsPictures) {
   for (const char* camera : {"front", "side"})
     session.take(me, ImagesRequest{camera, 30, 80}, [](const ViewAnswer&) {});
   const Node extras = extras_at(session, messenger, 0.5);
-  EXPECT_THAT(ids_of(list_in(extras, "ghosts")), ElementsAre("wanted", "seen", "truth"));
+  EXPECT_THAT(ids_of(list_in(extras, "ghosts")), ElementsAre("target", "seen", "truth"));
   session.advance(1);
   const Node::Array& overlays = list_in(extras, "overlays");
   ASSERT_EQ(overlays.size(), 2);
@@ -175,7 +175,7 @@ TEST_F(ServoView, IsInTheRecordingUponItsPictures) {
   const double end = session.hello().duration;
   EXPECT_THAT(ids_of(list_in(extras_at(session, messenger, end), "ghosts")), ElementsAre("truth"))
       << "at rest nothing is wanted";
-  EXPECT_THAT(ids_of(list_in(extras_at(session, messenger, end - 1.05), "ghosts")), Contains("wanted"))
+  EXPECT_THAT(ids_of(list_in(extras_at(session, messenger, end - 1.05), "ghosts")), Contains("target"))
       << "to its last command";
 }
 
@@ -291,8 +291,8 @@ TEST(ServoExtras, DrawWhatTheLawComparesWithLinesBetween) {
             id + R"("lines","color":"#da77f2","lines":[[[1.0,2.0],[3.0,4.0]]],"dashed":false})" + "\n" + id +
                 R"("points","color":"#22b8cf","of":"seen","points":[[1.0,2.0]]})" + "\n" + id +
                 R"("lines","color":"#22b8cf","of":"seen","lines":[[[5.0,6.0],[7.0,8.0]]],"dashed":false})" +
-                "\n" + id + R"("points","color":"#ff922b","of":"wanted","points":[[3.0,4.0]]})" + "\n" + id +
-                R"("lines","color":"#ff922b","of":"wanted","lines":[[[5.0,8.0],[7.0,6.0]]],"dashed":true})" +
+                "\n" + id + R"("points","color":"#ff922b","of":"target","points":[[3.0,4.0]]})" + "\n" + id +
+                R"("lines","color":"#ff922b","of":"target","lines":[[[5.0,8.0],[7.0,6.0]]],"dashed":true})" +
                 "\n");
 }
 

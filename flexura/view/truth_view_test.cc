@@ -227,7 +227,7 @@ TEST_F(WrittenTruth, StandsBesideWhatAServoDrawsOfARod) {
     recorder.truth(1, lain(0.3));
   });
   const Node extras = extras_at(1);
-  EXPECT_THAT(ghosts_in(extras), ElementsAre("wanted", "seen", "truth"));
+  EXPECT_THAT(ghosts_in(extras), ElementsAre("target", "seen", "truth"));
   EXPECT_EQ(*extras.find("title")->as<std::string>(), "Servo");
   EXPECT_LT((tip_of_last(extras) - lain(0.3).tip().position).norm(), 1e-9);
   EXPECT_EQ(extras.find("along")->find("curves")->as<Node::Array>()->size(), 1U) << "of what is seen";

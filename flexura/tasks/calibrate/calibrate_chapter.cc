@@ -106,7 +106,7 @@ std::string text_of(const CalibrationRun& run) {
       "{} looks of both cameras at the {}, {} pictures, in which {} were measured. The rig that explains "
       "them best leaves {:.2f} standard deviations root mean square. Heads, stages and zooms were then sent "
       "to where both cameras look at it along orthogonal axes with equal zoom, in one move. In fresh "
-      "pictures after it, what was measured was {:.2f} px and {:.2f} px from where it was foretold.",
+      "pictures after it the prediction errors were {:.2f} px and {:.2f} px.",
       result.looks, is_arm ? "arm" : "cylinder", result.pictures[0] + result.pictures[1], measured,
       result.found.rms, result.verified[0], result.verified[1]);
 }
@@ -127,8 +127,9 @@ std::vector<std::string> points_of(const CalibrationRun& run) {
   const auto& blind = result.observability.blindness;
   constexpr std::size_t most = 6;
   for (std::size_t i = 0; i < std::min(most, blind.size()); ++i)
-    points.push_back(fmt::format("Not told by these pictures ({:.0f} % of what was not known is left): {}",
-                                 100 * blind[i].share, blind[i].words));
+    points.push_back(
+        fmt::format("Not observable in these pictures ({:.0f} % of the prior uncertainty is left): {}",
+                    100 * blind[i].share, blind[i].words));
   if (blind.size() > most)
     points.push_back(fmt::format("and {} more combinations, in summary.json", blind.size() - most));
   return points;

@@ -12,7 +12,7 @@ build=${FLEXURA_STUDY_BUILD:-build/release}
 
 if [ -z "${FLEXURA_STUDY_BUILD:-}" ]; then cmake --preset release; fi
 cmake --build "$build" --target calibration_study paper_study
-# Trials of other code are none of this one's.
+# Trials of other commits are kept apart.
 trials_kept=build/studies/calibration/$(git rev-parse --short HEAD)
 picture=docs/images/calibration-study.svg
 mkdir -p docs/studies "$trials_kept"

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# median axes, markers and two-view shapes of random arms against the renderer's truth: ./dev study seeing [CASES] [SEED]
+# centerlines, markers and two-view shapes of random arms against true values: ./dev study seeing [CASES] [SEED]
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 cases=${1:-10000}
@@ -24,7 +24,7 @@ wait $!
   echo "Random arms of one to four sections and one radius, before white, 1.2 to 3 m away, from any side. Cameras without distortion; pictures of 640 x 480 px by the [renderer](../renderer.md) with noise (standard deviation of 8-bit values) and blur (PSF, px), measured as in [vision](../vision.md). Errors are distances of samples with both borders visible, after correction for the camera, from the backbone's exact image."
   echo
   echo "- *Median*, *90 %*: of each picture's rms. *rms*, *99 %*: all samples. *Middle*: without correction."
-  echo "- *Not seen*: samples bridged where the arm covers itself, hides an end, or points at the camera. *Bridged ones too* includes them."
+  echo "- *Not observed*: samples bridged where the arm covers itself, hides an end, or points at the camera. *Bridged ones too* includes them."
   echo "- *Cross themselves*: arms with a crossing in the backbone's image."
   echo "- *Ends*: median distance of free ends from the backbone's."
   echo

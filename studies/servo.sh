@@ -44,7 +44,7 @@ END
   echo "## The same targets without pictures"
   echo
   echo "Here laws get the exact shape of an ideal arm, two frames late. Derivatives are those of the whole way"
-  echo "([eq. 20a](../control.md#laws-of-images)) or where the arm stands. \"With noise\": axes 0.1 px aside (standard"
+  echo "([eq. 20a](../control.md#laws-of-images)) or at the current shape. \"With noise\": axes 0.1 px aside (standard"
   echo "deviation, at each of 120 places, constant along the way)."
   echo
   "$build/bin/servo_study" 200 "$seed" 1 exact

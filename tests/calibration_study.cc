@@ -199,8 +199,8 @@ void print(const std::string& title, const std::vector<Outcome>& all) {
       [](const Outcome& o) { return o.figures.zoom_ratio.error / o.figures.zoom_ratio.sigma; });
   row("aim at the arm: error, mm", 1e-3, 3, [](const Outcome& o) { return o.figures.aim; });
   row("residuals over noise", 1, 4, [](const Outcome& o) { return o.rms; });
-  row("the axes in truth, from 90 deg, deg", degree, 4, [](const Outcome& o) { return o.off_square; });
-  row("the zoom ratio in truth, from 1, %", 0.01, 3, [](const Outcome& o) { return o.zoom_off; });
+  row("true axes, from 90 deg, deg", degree, 4, [](const Outcome& o) { return o.off_square; });
+  row("true zoom ratio, from 1, %", 0.01, 3, [](const Outcome& o) { return o.zoom_off; });
   fmt::print("\n");
 }
 
@@ -225,7 +225,7 @@ void print_aims(const std::string& kind, bool are_heads_exact, const std::vector
         focal);
   }
   row("residuals at most 1.05 of the noise", 1.05, 1, all, [](const Outcome& one) { return one.rms; });
-  row("axes in truth within 0.0375 deg of 90", 0.0375 * degree, degree, all,
+  row("true axes within 0.0375 deg of 90", 0.0375 * degree, degree, all,
       [](const Outcome& one) { return one.off_square; });
 }
 
@@ -269,11 +269,11 @@ void print_heads(std::uint64_t seed) {
   for (int i = 0; i < draws; ++i) off.push_back(random.uniform(-half, half) - random.uniform(-half, half));
   const auto within = std::ranges::count_if(off, [](double one) { return std::abs(one) <= half; });
   fmt::print(
-      "## What heads leave open\n\nIf all of a rig were known but where two pans stand within half a step of "
-      "what they count, the axes would end within half a step of 90 degrees in {:.1f} % of {} cases: a bound "
-      "for one move that is decided before it.\n\n{}{}\n",
+      "## The bound of head resolution\n\nWith everything known except two pan angles within half a step, the "
+      "axes end within half a step of 90 degrees in {:.1f} % of {} cases: a bound for one move decided "
+      "beforehand.\n\n{}{}\n",
       100.0 * static_cast<double>(within) / draws, draws, spread_head,
-      spread_row("the axes in truth, from 90 deg, deg", off, degree, 4));
+      spread_row("true axes, from 90 deg, deg", off, degree, 4));
 }
 
 }  // namespace
@@ -291,13 +291,13 @@ int main(int argc, char** argv) {
     double noise;
     bool is_alike;
   };
-  const std::string alike = ", arms known to bend alike in every pose";
+  const std::string alike = ", bend errors known to be common";
   const std::array kinds = {
-      Kind{"Heads that stand within half a step of what they count, noise 0.2 px", false, 0.2, false},
-      Kind{"Heads that stand within half a step of what they count, noise 0.2 px" + alike, false, 0.2, true},
-      Kind{"Heads that stand where they count, noise 0.2 px", true, 0.2, false},
-      Kind{"Heads that stand where they count, noise 0.2 px" + alike, true, 0.2, true},
-      Kind{"Heads that stand where they count, noise 0.1 px", true, 0.1, false}};
+      Kind{"Heads within half a step, noise 0.2 px", false, 0.2, false},
+      Kind{"Heads within half a step, noise 0.2 px" + alike, false, 0.2, true},
+      Kind{"Exact heads, noise 0.2 px", true, 0.2, false},
+      Kind{"Exact heads, noise 0.2 px" + alike, true, 0.2, true},
+      Kind{"Exact heads, noise 0.1 px", true, 0.1, false}};
   std::array<std::vector<Outcome>, kinds.size()> all;
   for (std::size_t kind = 0; kind < kinds.size(); ++kind) {
     RigTrialConfig config;
@@ -316,7 +316,7 @@ int main(int argc, char** argv) {
     for (std::thread& thread : threads) thread.join();
     print(kinds[kind].title, outcomes);
   }
-  fmt::print("## What is aimed at\n\n");
+  fmt::print("## Aims\n\n");
   fmt::print("{}", aim_head);
   for (std::size_t kind = 0; kind < kinds.size(); ++kind)
     print_aims(kinds[kind].title, kinds[kind].is_exact, all[kind]);

@@ -158,7 +158,7 @@ bool judge(const std::vector<Hour>& hours) {
 void print_hours(const std::vector<Hour>& hours, double seconds) {
   fmt::print(
       "| from, h | steps | with pictures | at rest, rms, % (most) | on the way, rms, % (most) | held back | "
-      "told | heap, kB | resident, kB |\n| ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |\n");
+      "messages | heap, kB | resident, kB |\n| ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |\n");
   for (std::size_t i = 0; i < hours.size(); ++i) {
     const Hour& hour = hours[i];
     fmt::print("| {:.4g} | {} | {} | {:.4f} ({:.4f}) | {:.4f} ({:.4f}) | {} | {} | {:.1f} | {:.0f} |\n",
@@ -188,7 +188,7 @@ bool endure(double seconds, double step, std::uint64_t seed) {
   const ServoResult result = servo_in_session(bench.ports(), model, config, book);
   print_hours(book.hours, seconds);
   fmt::print("- ended: {}; steps missed: {}; fault: {}; steps kept: {}\n",
-             result.is_done ? "there" : result.reason, result.missed_steps,
+             result.is_done ? "done" : result.reason, result.missed_steps,
              result.fault ? result.fault->reason : "none", result.steps.size());
   const bool is_level_all = judge(book.hours);
   fmt::print("\n");

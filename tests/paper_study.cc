@@ -114,7 +114,7 @@ double larger(const std::array<double, 2>& values) {
 }
 
 void print_bundle(const std::string& method, const std::vector<CalibrationTrial>& trials) {
-  fmt::print("What `{}` finds, beside what is true:\n\n", method);
+  fmt::print("Results of `{}` against true values:\n\n", method);
   fmt::print("{}", spread_head);
   const auto row = [&](const std::string& name, double unit, int digits, const Number& number) {
     fmt::print("{}", spread_row(name, of_done(trials, number), unit, digits));
@@ -130,8 +130,8 @@ void print_bundle(const std::string& method, const std::vector<CalibrationTrial>
   rows("angle between the axes", "deg", degree, 4, [](const auto& is) { return is.angle; });
   rows("front: focal length", "%", 0.01, 3, [](const auto& is) { return is.focal[0]; });
   rows("side: focal length", "%", 0.01, 3, [](const auto& is) { return is.focal[1]; });
-  row("residuals over what is claimed of each", 1, 4, [](const auto& one) { return one.bundle.rms; });
-  row("the axes in truth, from 90 deg, deg", degree, 4, [](const auto& one) { return one.angle; });
+  row("residuals over claimed sigma", 1, 4, [](const auto& one) { return one.bundle.rms; });
+  row("true axes, from 90 deg, deg", degree, 4, [](const auto& one) { return one.angle; });
   fmt::print("\n");
 }
 
@@ -154,9 +154,9 @@ void print_aims(const std::string& method, const std::vector<CalibrationTrial>& 
       [](const auto& one) { return one.bundle.angle.error; });
   row({"focal lengths known within 0.3 %", 0.003, 0.01, {}},
       [](const auto& one) { return larger({one.bundle.focal[0].error, one.bundle.focal[1].error}); });
-  row({"residuals at most 1.05 of what is claimed of each", 1.05, 1, {}},
+  row({"residuals at most 1.05 of claimed sigma", 1.05, 1, {}},
       [](const auto& one) { return one.bundle.rms; });
-  row({"axes in truth within 0.0375 deg of 90", 0.0375 * degree, degree, {}}, angle);
+  row({"true axes within 0.0375 deg of 90", 0.0375 * degree, degree, {}}, angle);
 }
 
 void print_known(const MethodTrials& all) {

@@ -25,13 +25,13 @@ int compare(std::size_t motions, std::size_t samples, std::uint64_t seed) {
   print_row("contacts in these states", found.contacts);
   print_row("of these outside every reported span (missed)", found.contacts_missed);
   print_row("reported spans longer than two samples that no sample confirms (refuted)", found.refuted);
-  print_row("reported spans with a sample worse than their worst value, by more than 1e-4 (m, or of it)",
+  print_row("reported spans with a sample worse than their worst value, by more than 1e-4 (m, or relative)",
             found.understated);
-  print_row("the same, and the check says that it may be so", found.doubted);
+  print_row("the same, with a caveat of the check", found.doubted);
   std::printf(
-      "| what the worst values are short of, where the check says nothing (m, or of it), at most | %.1e |\n",
+      "| largest shortfall of worst values without a caveat (m, or relative) | %.1e |\n",
       found.most_understated);
-  print_row("reported spans whose worst value is not there at its time", found.overstated);
+  print_row("reported spans with a worst value not found at its time", found.overstated);
   const bool is_right =
       found.missed + found.contacts_missed + found.refuted + found.understated + found.overstated == 0;
   return is_right ? 0 : 1;

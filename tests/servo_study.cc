@@ -286,8 +286,8 @@ void study(Cameras cameras, const ServoWorld& world, std::vector<Method> methods
   for (std::thread& one : pool) one.join();
   fmt::print(
       "| law | converged | to 2 %, s (median / 95 %) | overshoot, % (95 %) | left, rms, % (median / 95 %) | "
-      "left, most, % (largest) | tip, % (95 %) | nearest to a limit | floor, cameras believed | floor, "
-      "cameras doubted |\n"
+      "left, most, % (largest) | tip, % (95 %) | nearest to a limit | floor, nominal cameras | floor, "
+      "camera prior |\n"
       "| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |\n");
   for (std::size_t j = 0; j < methods.size(); ++j)
     print_row(methods[j].name, arrivals[j], cameras == Cameras::wrong);
@@ -317,7 +317,7 @@ void study_exact(const std::string& way, std::size_t targets, std::uint64_t seed
     for (const bool has_secants : {true, false}) {
       if (!has_secants && !has_both) continue;
       loop.has_secants = has_secants;
-      const char* which = has_secants && has_both ? "of the whole way" : "where it stands";
+      const char* which = has_secants && has_both ? "of the whole way" : "at the current shape";
       fmt::print("{}\n", exact_row(loop, method.law, method.name + " | " + which, ways, noise));
     }
   }
@@ -353,11 +353,11 @@ int main(int count, char** arguments) {
   }
   if (is_asked("sagging")) {
     fmt::print(
-        "## An arm that sags, believed to be one arc a section; cameras half a degree and 1 % wrong\n\n");
+        "## A sagging arm, modelled as one arc a section; cameras half a degree and 1 % wrong\n\n");
     study(Cameras::wrong, {.sags = true}, laws_of_sagging_arm(), way, targets, seed, threads);
-    fmt::print("## The same arm, believed to be three arcs a section; cameras and profile as calibrated\n\n");
+    fmt::print("## The same arm, modelled as three arcs a section; cameras and profile as calibrated\n\n");
     study(Cameras::calibrated, {.arcs = 3, .sags = true}, laws_of_sagging_arm(), way, targets, seed, threads);
-    fmt::print("## The same arm, believed to be such rods, 20 % stiffer; cameras as calibrated\n\n");
+    fmt::print("## The same arm, modelled as such rods, 20 % stiffer; cameras as calibrated\n\n");
     study(Cameras::calibrated, {.arcs = 3, .sags = true, .knows = true}, laws_of_sagging_arm(), way, targets,
           seed, threads);
   }

@@ -153,7 +153,7 @@ int study(int cases, std::uint64_t seed) {
       const ShapeEstimate found = estimator.estimate(sightings);
       tallies[k].add(found, one, k == 0);
       if (is_told)
-        std::fprintf(stderr, "%d %zu %s error %.4f %% rms %.3f px doubted %.2f notes %zu%s\n", i, k,
+        std::fprintf(stderr, "%d %zu %s error %.4f %% rms %.3f px outliers %.2f notes %zu%s\n", i, k,
                      found.is_found ? "found" : "lost",
                      found.is_found ? 100 * relative_shape_error(found.shape, truth) : 0.0, found.rms,
                      found.doubted, found.notes.size(),

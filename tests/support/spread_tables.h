@@ -34,7 +34,7 @@ struct Aim {
 };
 
 inline constexpr const char* aim_head =
-    "| | aim | keep to it | verdict | of the root mean square | worst |\n"
+    "| | aim | within | verdict | rms verdict | worst |\n"
     "| --- | --- | ---: | --- | --- | ---: |\n";
 
 inline std::string aim_row(const std::string& of, const Aim& aim, std::size_t trials) {

@@ -9,14 +9,14 @@
 namespace flexura {
 namespace {
 
-// The wrench of a force f at p, and of a moment.
+// Returns the wrench of a force f at p, and of a moment.
 Vector6d wrench_at(const Eigen::Vector3d& p, const Eigen::Vector3d& f, const Eigen::Vector3d& moment) {
   Vector6d W;
   W << f, p.cross(f) + moment;
   return W;
 }
 
-// Of a force that keeps its direction, by a twist of the body at whose point p it pulls.
+// Derivative of the wrench of a dead force on point p of a body, by a twist of the body.
 Matrix6d dead_force_slope(const Eigen::Vector3d& p, const Eigen::Vector3d& f) {
   Matrix6d D = Matrix6d::Zero();
   const Eigen::Matrix3d F = skew(f);
@@ -25,7 +25,7 @@ Matrix6d dead_force_slope(const Eigen::Vector3d& p, const Eigen::Vector3d& f) {
   return D;
 }
 
-// Of a wrench that turns with the body.
+// Derivative of a wrench that follows the body.
 Matrix6d following_slope(const Vector6d& W) { return -bracket_form(W).transpose(); }
 
 }  // namespace
@@ -91,7 +91,7 @@ void RodElement::place_with_columns(const Pose& X_BS) {
     by_moments_[i] = twist_[i].slopes();
     exp_[i] = TwistExponential(twist_[i].twist());
     X_[i + 1] = X_[i] * exp_[i].pose;
-    // How the interval's end moves by the moments of its strain.
+    // Motion of the interval's end by the moments of its strain.
     const Matrix6d moves = adjoint(X_[i]) * exp_[i].jacobian;
     A_[i + 1] = A_[i];
     for (std::size_t m = 0; m < 3; ++m) {
@@ -166,8 +166,8 @@ void RodElement::stress(std::span<const double> tension) {
   wrench.setZero();
 }
 
-// A wrench W that pulls at all that lies beyond an interval turns with what lies before it, from the node
-// `from` on, and the interval's twist does not add up: factor times both.
+// A wrench W on everything beyond an interval turns with everything before it, from the node `from` on, and
+// the interval's twists do not commute. Adds factor times both effects.
 void RodElement::add_geometry(std::size_t interval, const Vector6d& W, std::size_t from, double factor) {
   step_.noalias() = A_[interval + 1] - A_[interval];
   if (interval > from) {
@@ -204,7 +204,7 @@ void RodElement::add_chord(std::size_t tendon, std::size_t from, std::size_t to,
   if (tension == 0) return;
   tension *= left;
   residual.noalias() += tension * moved_.transpose().lazyProduct(W);
-  // The end b moves, as seen from a.
+  // Motion of the end b relative to a.
   Eigen::Matrix<double, 3, 6> point;
   point << Eigen::Matrix3d::Identity(), -skew(b);
   const Eigen::Matrix<double, 3, 6> across =
@@ -265,7 +265,7 @@ double RodElement::load_energy(const RodLoads& loads) const {
   return sum;
 }
 
-// What all of the loads do at each node.
+// Computes the forces of all loads at each node.
 void RodElement::find_forces(const RodLoads& loads) {
   const Eigen::Vector3d none = Eigen::Vector3d::Zero();
   for (std::size_t k = 0; k < grid_.t.size(); ++k) {
@@ -307,7 +307,7 @@ void RodElement::load(const RodLoads& loads, double share, const Vector6d& beyon
   for (std::size_t k = grid_.t.size() - 1; k > 0; --k) {
     W += F_[k];
     add_geometry(k - 1, W, 0, -share);
-    // step_ is how the interval's end moves by it.
+    // step_ is the motion of the interval's end by it.
     by_share.noalias() -= step_.transpose().lazyProduct(W);
     by_base.noalias() += share * step_.transpose().lazyProduct(bracket_form(W).transpose());
     moved_.noalias() = Matrix6d(share * D_[k]).lazyProduct(A_[k]);

@@ -14,7 +14,7 @@ namespace flexura {
 /// A parameter to estimate. A rod's equations of motion are linear in all parameters except friction.
 struct RodParameter {
   enum class Kind {
-    shear,  ///< Factor on the rod's shear stiffness; the next three likewise.
+    shear,  ///< Factor on the rod's shear stiffness. The next three are factors on theirs.
     stretch,
     bends,  ///< In both directions.
     twist,
@@ -71,8 +71,8 @@ struct Identification {
 };
 
 /// Estimates the parameters that fit a record best, by linear least squares of the equations of motion. Each
-/// equation of a mode is multiplied by a smooth bump in time and integrated by parts over a window, so that
-/// no acceleration is needed (weak form: M. Shinbrot 1957). With known noise the equations are weighted by
+/// equation of a mode is multiplied by a smooth bump in time and integrated by parts over a window (weak
+/// form: M. Shinbrot 1957). So no acceleration is needed. With known noise the equations are weighted by
 /// their covariance, propagated from the record to first order. The bias from noise of q and v in the
 /// coefficients is removed. With friction the equations are linearised at the last values until these
 /// converge (C. F. Gauss, I. Newton). Throws std::invalid_argument for an invalid rod, overlapping or no

@@ -30,9 +30,10 @@ struct RodPlaceRecord {
 /// as a twist of a straight rod, stay near the undeformed value: the energies of all strains are a prior. A
 /// mode of bending may have the energy of the bends in the record, a mode of another strain a hundredth of
 /// it. `noise`: standard deviation of each coordinate, m. 0: unknown; then it is estimated from the
-/// residuals, at least 1e-5 of the rod's length. Throws std::invalid_argument for an invalid rod, places
-/// outside it or duplicate, numbers that are not finite, fewer than two samples, wrong numbers of positions,
-/// no more coordinates than modes, or places that no shape of the rod approaches.
+/// residuals, at least 1e-5 of the rod's length. Throws std::invalid_argument for an invalid rod, numbers
+/// that are not finite, fewer than two samples, or wrong numbers of positions. Throws it also for places that
+/// are duplicate, outside the rod, or not approached by any of its shapes, and if there are no more
+/// coordinates than modes.
 [[nodiscard]] RodPlaceRecord record_of_places(const Rod& rod, std::span<const RodPlace> places,
                                               std::span<const RodPlaceSample> samples, const RodLoads& loads,
                                               double noise = 0);

@@ -33,9 +33,9 @@ class RodFall {
   /// Moves q to an equilibrium and returns each tendon's tension there. Returns false if it found none or the
   /// rod turns inside out.
   bool fall(Eigen::VectorXd& q, std::vector<Held>& tendons);
-  /// Whether the second derivative does not decide stability: a direction has no stiffness (free rotation in
-  /// a rotationally symmetric world), or tendons that are just taut hold the rod, which was tested by pushes
-  /// to several sides.
+  /// Whether the second derivative does not decide stability. Either a direction has no stiffness (free
+  /// rotation in a rotationally symmetric world), or tendons that are just taut hold the rod, as tested by
+  /// pushes to several sides.
   [[nodiscard]] bool is_neutral() const { return is_neutral_; }
   /// Number of linear systems solved.
   [[nodiscard]] int iterations() const { return iterations_; }

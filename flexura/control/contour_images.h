@@ -79,9 +79,9 @@ class ContourImages {
 
 /// Computes the distance of the measured from the desired edges, across the edges, px. The pixels are in the
 /// order of at.pixels. The normals are those of the contours `at` and, for the desired ones,
-/// `desired_normals`. The distance is along the direction half-way between the two normals: that is the way
-/// of a piece of edge that turns evenly. 0 where one of the three has no edge. Throws std::invalid_argument
-/// for other numbers of points.
+/// `desired_normals`. The distance is along the direction half-way between the two normals, as a piece of
+/// edge with uniform rotation moves. 0 where one of the three has no edge. Throws std::invalid_argument for
+/// other numbers of points.
 // NOLINTBEGIN(performance-unnecessary-value-param): an Eigen::Ref is written through.
 void contour_error(const ContourImage& at, const Eigen::Ref<const Eigen::Matrix2Xd>& seen,
                    const Eigen::Ref<const Eigen::Matrix2Xd>& desired,

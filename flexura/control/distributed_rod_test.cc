@@ -68,8 +68,8 @@ Angles angles_of(RodDynamics& rod, const RodState& state, const std::vector<RodP
 
 constexpr RodDynamicsConfig exact{.spectral_radius = 1, .tolerance = 1e-11, .rotary_inertia = false};
 
-// In a plane a polynomial curvature is a polynomial angle, and an even one a linear angle: both models have
-// the same shapes, so they agree but for the rod's quadrature.
+// In a plane a polynomial curvature is a polynomial angle, and a constant one a linear angle. Both models
+// have the same shapes, so they agree up to the rod's quadrature.
 TEST(DistributedArmAndRod, AgreeInAPlaneInEnergiesAndAccelerations) {
   double most = 0;
   for_random_cases(24, [&most](TestRandom& random) {

@@ -19,8 +19,8 @@ struct LimiterConfig {
   std::optional<Drive> drive = {};  ///< Limits of its motors' speed, step rate, acceleration, position.
   /// Time between rows of the command list that the motors follow, s: rates change within that. 0: `step`.
   double list_step = 0;
-  std::vector<Obstacle> obstacles = {};  ///< Obstacles that no way may touch, with looks_ahead.
-  bool looks_ahead = true;  ///< Every way is checked for contact (check_motions) until the arm would rest.
+  std::vector<Obstacle> obstacles = {};  ///< Obstacles that no path may touch, with looks_ahead.
+  bool looks_ahead = true;  ///< Checks every path for contact (check_motions) until the arm would rest.
   int most_braking = 200;   ///< Most steps to come to rest.
 };
 

@@ -112,12 +112,12 @@ RodLoads loads_of(const ArmConfig& arm) {
 
 namespace {
 
-// Of a tendon's way through a piece of a section: how far it goes along the rod, for each metre of that, at
-// the least. Nearer to the middle of a bend, and beyond it, where no rod can be, it goes on shortening as it
-// did here, instead of becoming longer again.
+// Least length of a tendon's path through a piece of a section along the rod, per metre of that path. Nearer
+// to the middle of a bend, and beyond it, where no rod can be, the path length continues linearly. So it does
+// not grow again.
 constexpr double least_along = 0.02;
 
-// How long a piece is whose way is `way`, of which `along` is the part along the rod and `piece` the rod's
+// Length of a piece with the path `way`, of which `along` is the part along the rod and `piece` the rod's
 // length; and its derivative by three numbers of a section.
 struct PieceLength {
   double length = 0;
@@ -135,8 +135,8 @@ PieceLength piece_length(const Eigen::Vector3d& way, const Eigen::Matrix3d& way_
   return {edge + beyond, (0.5 - 0.5 * beyond / edge) / edge * aside_by_state + least / edge * along_by_state};
 }
 
-// How long a tendon is when the sections are arcs, m, and how that changes with each section's
-// (bend_x, bend_y, stretch).
+// Length of a tendon if the sections are arcs, m, and its derivative by each section's (bend_x, bend_y,
+// stretch).
 class TendonOnArcs {
  public:
   TendonOnArcs(const Rod& rod, const TendonRoute& tendon, const ArmState& state)
@@ -195,7 +195,7 @@ class TendonOnArcs {
       by_state.col(2) = disk.position / stretch;
       const Eigen::Vector3d way = hole - before;
       const Eigen::Matrix3d way_by_state = by_state - before_by_state;
-      // Along the rod halfway between the disks.
+      // Direction along the rod halfway between the disks.
       const double halfway = t - 0.5 / section.disks;
       const ArcMotion middle = arc_motion(halfway * bend, halfway * section.length * stretch);
       const Eigen::Vector3d z = middle.rotation.col(2);

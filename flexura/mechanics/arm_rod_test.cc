@@ -14,7 +14,7 @@
 namespace flexura {
 namespace {
 
-// As a file describes two_section_robot(), without its tendons.
+// The arm of two_section_robot() as a file describes it, without its tendons.
 ArmConfig wire_arm() {
   ArmConfig arm;
   arm.kind = ArmKind::spatial;

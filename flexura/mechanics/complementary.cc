@@ -26,7 +26,8 @@ std::optional<Eigen::VectorXd> Complementary::solve(std::vector<char>& held_off,
       x(open) = part.partialPivLu().solve(wanted).eval();
     }
     if (!x.allFinite()) return std::nullopt;
-    // What would go below 0 is held there, then what is below its own bound is let go; the worst first.
+    // Holds variables at 0 that would become negative, then releases those below their bound; the worst
+    // first.
     Eigen::Index worst = -1;
     double least = 0;
     for (const Eigen::Index i : open) {

@@ -7,10 +7,10 @@
 namespace flexura {
 namespace {
 
-// Below this part of the force at rest, a contact that comes apart fades out.
+// Below this part of the static force, a separating contact fades out.
 constexpr double fading = 0.1;
 
-// x where it is above `fading`, 0 below -fading, with a slope between.
+// Positive part of x, smoothed between -fading and fading, with its derivative.
 void positive_part(double x, double& value, double& slope) {
   if (x >= fading) {
     value = x;
@@ -24,8 +24,8 @@ void positive_part(double x, double& value, double& slope) {
 }
 
 struct Sliding {
-  double normal_speed = 0, speed = 0;                  // Of the latter, that of slip, made smooth.
-  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  // Of the ball's surface against the body.
+  double normal_speed = 0, speed = 0;                  // Normal and smoothed tangential (slip) speed.
+  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  // Velocity of the ball's surface relative to the body.
   ContactPress press;
 };
 
@@ -39,7 +39,7 @@ Sliding sliding_of(const ContactLaw& law, const Touch& touch, const TouchForce& 
   return sliding;
 }
 
-// Friction for each newton of normal force, by the slip, negative.
+// Friction per newton of normal force, derivative by the slip, negated.
 Eigen::Matrix3d rub_by_slip(const ContactLaw& law, const Sliding& sliding, const Eigen::Vector3d& slip) {
   const Eigen::Vector3d part = slip / sliding.speed;
   return law.friction / sliding.speed * (Eigen::Matrix3d::Identity() - part * part.transpose());
@@ -86,7 +86,7 @@ ContactPress press(const ContactLaw& law, double depth, double rate) {
   return {.force = spring * share, .by_depth = slope * share, .by_rate = spring * share_slope * law.damping};
 }
 
-// It is normal_force along, with along = n - friction slip / speed.
+// The force is normal_force * along, with along = n - friction slip / speed.
 TouchChange::Rows force_change(const ContactLaw& law, const Touch& touch, const TouchForce& at,
                                const TouchChange& change) {
   const Sliding sliding = sliding_of(law, touch, at);

@@ -74,7 +74,7 @@ TEST(ContactShape, NormalsAndCurvaturesAreTheDerivativesOfTheDistance) {
     constexpr double h = 1e-6;
     const NearestPoint at = shape.nearest(p), after = shape.nearest(p + h * along),
                        before = shape.nearest(p - h * along);
-    // Not across an edge, where a derivative jumps.
+    // Skips edges, where a derivative jumps.
     if ((after.curvature - before.curvature).norm() > 1e-3 * (1 + at.curvature.norm())) return;
     if ((after.normal - before.normal).norm() > 0.1) return;
     EXPECT_NEAR((after.distance - before.distance) / (2 * h), at.normal.dot(along), 1e-7);
@@ -131,7 +131,7 @@ TEST(ContactLaw, ItsDerivativesAreThoseByDifferences) {
                          .friction = random.uniform(0, 1),
                          .slip_speed = random.uniform(0.01, 0.3),
                          .transition = 1e-3};
-    // Near the surface.
+    // Moves the node close to the surface.
     const NearestPoint nearest = shape.nearest(node.pose.position);
     const double radius = random.uniform(0.005, 0.02);
     node.pose.position -= (nearest.distance - radius * random.uniform(0.2, 0.95)) * nearest.normal;
@@ -142,7 +142,7 @@ TEST(ContactLaw, ItsDerivativesAreThoseByDifferences) {
     const auto wrench = [&](const NodeMotion& there) {
       return touch_force(law, touch_of(shape, there, radius)).wrench();
     };
-    // Not across an edge, where the curvature jumps.
+    // Skips edges, where the curvature jumps.
     const auto curvature = [&](const NodeMotion& there) {
       return shape.nearest(there.pose.position).curvature;
     };
@@ -160,7 +160,7 @@ TEST(ContactLaw, ItsDerivativesAreThoseByDifferences) {
     ++touched;
     EXPECT_LT((pull.by_pose - by_pose).norm(), 1e-5 * (1 + by_pose.norm()));
     EXPECT_LT((pull.by_twist - by_twist).norm(), 1e-5 * (1 + by_twist.norm()));
-    // What holds has no negative eigenvalue.
+    // The semidefinite parts have no negative eigenvalue.
     const Eigen::SelfAdjointEigenSolver<Matrix6d> spring(pull.stiffness), damper(pull.damping);
     EXPECT_GT(spring.eigenvalues().minCoeff(), -1e-9 * (1 + pull.stiffness.norm()));
     EXPECT_GT(damper.eigenvalues().minCoeff(), -1e-9 * (1 + pull.damping.norm()));
@@ -184,7 +184,7 @@ TEST(ContactLaw, NeverPullsAndIsInsideTheFrictionCone) {
     const Eigen::Vector3d along = at.force - at.force.y() * Eigen::Vector3d::UnitY();
     EXPECT_LE(along.norm(), law.friction * at.normal_force * (1 + 1e-12));
     EXPECT_LE(along.dot(at.slip), 0);
-    // It dissipates: what the damper adds works against the motion.
+    // The damper's force works against the motion.
     const double still = press(law, depth, 0).force, rate = -node.twist.head<3>().y();
     EXPECT_GE((press(law, depth, rate).force - still) * rate, -1e-12);
   });
@@ -310,7 +310,7 @@ TEST(Surroundings, AddUp) {
     EXPECT_EQ(all[k].by_twist, one[k].by_twist + other[k].by_twist);
     EXPECT_EQ(all[k].stiffness, one[k].stiffness + other[k].stiffness);
   }
-  // At points, that of the one part which has some.
+  // The points are those of the one part that has some.
   ASSERT_EQ(both.points().size(), count);
   std::vector<std::size_t> chosen;
   both.choose(nodes, lengths, chosen);

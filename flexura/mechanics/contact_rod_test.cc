@@ -28,7 +28,7 @@ Eigen::Vector3d sum_of(const std::vector<ContactForce>& contacts) {
   return sum;
 }
 
-// What the clamp does to the rod: its strain at the base times the stiffness.
+// Force of the clamp on the rod: the strain at the base times the stiffness.
 Eigen::Vector3d clamp_force(const Rod& rod, const RodChain& chain, const Eigen::VectorXd& q,
                             const Eigen::VectorXd& v) {
   const RodGrid& grid = chain.elements()[0].grid();
@@ -46,7 +46,7 @@ TEST(ContactRod, ARodThatFallsOnAFloorComesToRest) {
     RodState state = moving.dynamics.rest();
     double energy = 0, most_slip = 0;
     moving.go(state, {}, weight, 1e-3, 1.0, [&](const RodState& now) {
-      // What is stored in the springs of contacts is at most depth^2 / 2 times their stiffness.
+      // Contact springs store at most depth^2 / 2 times their stiffness.
       double stored = 0;
       for (const ContactForce& contact : moving.touching(now)) {
         stored += 0.5 * stiffness * 0.01 * contact.depth * contact.depth;
@@ -65,7 +65,7 @@ TEST(ContactRod, ARodThatFallsOnAFloorComesToRest) {
       most_slip = std::max(most_slip, contact.slip.norm());
       EXPECT_TRUE(contact.sticks);
       EXPECT_EQ(contact.obstacle, std::optional<std::size_t>(0));
-      // The tip's node stands for half an interval.
+      // The tip's node represents half an interval.
       EXPECT_NEAR(contact.normal_force, stiffness * 0.005 * (contact.depth - 0.5e-5),
                   1e-5 * contact.normal_force);
     }
@@ -105,7 +105,7 @@ TEST(ContactRod, TheMomentumChangesByWeightFloorAndClamp) {
   EXPECT_GT(floor.x(), 0.2 * mass * 9.81);
 }
 
-// On a floor that it lies on along its length, forces for each metre do not depend on the nodes.
+// Where the rod touches the floor along its length, forces per metre do not depend on the nodes.
 TEST(ContactRod, ForcesConvergeWithTheNodes) {
   std::vector<double> forces;
   for (const double spacing : {0.02, 0.01, 0.005}) {
@@ -144,7 +144,7 @@ TEST(ContactRod, ATentacleGraspsAPost) {
     force += contact.normal_force;
   }
   EXPECT_GT(force, 0.5);
-  // Around it: seen from the post's axis they are on different sides.
+  // It encloses the post: seen from its axis, contacts are on different sides.
   const auto side = [](const ContactForce& contact) {
     return Eigen::Vector2d(contact.point.x() - 0.055, contact.point.z() - 0.1).normalized();
   };
@@ -154,7 +154,7 @@ TEST(ContactRod, ATentacleGraspsAPost) {
   EXPECT_LT(least, 0);
 }
 
-// What is between the nodes moves as the rod does: a point is where it is as a node.
+// Points between nodes move with the rod: a point is where it would be as a node.
 TEST(ContactRod, PointsMoveAsTheRodDoes) {
   Rod rod = soft_arm(1e6, 4);
   rod.sections[0].rest_curvature = {{3, -2, 1}, {5, 1, 0}};
@@ -181,7 +181,7 @@ TEST(ContactRod, PointsMoveAsTheRodDoes) {
   });
 }
 
-// Of forces at points, in both sections, by the modes and their rates.
+// Derivatives of forces at points, in both sections, by the modes and their rates.
 TEST(ContactRod, ForcesOfTheModesHaveTheDerivativesByDifferences) {
   Rod rod = soft_arm(1e6, 3);
   rod.sections.push_back(rod.sections[0]);
@@ -199,7 +199,7 @@ TEST(ContactRod, ForcesOfTheModesHaveTheDerivativesByDifferences) {
       q[j] = random.uniform(-0.1, 0.1) / moving.dynamics.chain().scales()[j];
       v[j] = random.uniform(-0.5, 0.5) / moving.dynamics.chain().scales()[j];
     }
-    // Rolled up.
+    // Rolled-up shape.
     for (const RodElement& element : moving.dynamics.chain().elements())
       q[moving.dynamics.chain().first(
             static_cast<std::size_t>(&element - moving.dynamics.chain().elements().data())) +

@@ -11,7 +11,7 @@
 namespace flexura {
 namespace {
 
-// Nearer than this to a centre or an axis, a direction from it is rounding.
+// Nearer than this to a centre or an axis, the direction from it is only rounding.
 constexpr double no_direction = 1e-12;
 
 [[noreturn]] void refuse(const std::string& name, const char* kind, const char* what) {
@@ -37,7 +37,7 @@ Eigen::Vector3d across(const Eigen::Vector3d& axis) {
   return axis.cross(Eigen::Vector3d::Unit(least)).normalized();
 }
 
-// Outside along the rows where a box ends: from its nearest point, in its axes.
+// Vector from the nearest point of a box to an outside point, in the box's axes.
 Eigen::Vector3d beyond_box(const Eigen::Vector3d& p, const Eigen::Vector3d& half) {
   return p.cwiseAbs() - half;
 }

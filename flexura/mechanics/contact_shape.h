@@ -9,9 +9,9 @@
 
 namespace flexura {
 
-/// Of a point near a body: its signed distance to the surface, m, negative inside; the unit normal there, out
-/// of the body, which is the distance's gradient; and the derivative of the normal, symmetric, 1/m. The
-/// nearest point of the surface is point - distance normal.
+/// Point near a body: its signed distance to the surface, m, negative inside; the outward unit normal, which
+/// is the distance's gradient; and the normal's derivative, symmetric, 1/m. The nearest point of the surface
+/// is point - distance normal.
 struct NearestPoint {
   double distance = std::numeric_limits<double>::infinity();
   Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();
@@ -22,23 +22,23 @@ struct NearestPoint {
 /// rod's base.
 class ContactShape {
  public:
-  /// `X_BW`: the pose of the obstacle's frame in the base's. std::invalid_argument: numbers that are not
-  /// finite, a size that is not above 0, a normal or a rotation without direction.
+  /// `X_BW`: pose of the obstacle's frame in the base's. Throws std::invalid_argument for numbers that are
+  /// not finite, a size that is not positive, or a normal or rotation of zero norm.
   ContactShape(const ObstacleConfig& obstacle, const Pose& X_BW);
 
-  /// Always finite for a finite point. Where several points of the surface are nearest (the centre of a ball,
-  /// the axis of a capsule, the diagonals of a box) one of them is taken.
+  /// Returns the nearest point; finite for any finite point. If several points of the surface are nearest
+  /// (centre of a ball, axis of a capsule, diagonals of a box) it returns one of them.
   [[nodiscard]] NearestPoint nearest(const Eigen::Vector3d& p_B) const;
-  /// The signed distance alone.
+  /// Returns the signed distance only.
   [[nodiscard]] double distance(const Eigen::Vector3d& p_B) const;
-  /// So much of the rod, from its base on, may touch it; m.
+  /// Length of rod from the base on that may touch the body without effect, m.
   [[nodiscard]] double ignore_base() const { return ignore_base_; }
 
  private:
   struct Plane {
     Eigen::Vector3d point, normal;
   };
-  // A ball where `length` is 0.
+  // `length` 0: a ball.
   struct Capsule {
     Eigen::Vector3d from, along;
     double length, radius;

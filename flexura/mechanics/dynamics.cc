@@ -13,7 +13,7 @@
 namespace flexura {
 namespace {
 
-// Of tendons that are said to give nothing: of what the rod gives (RodStatics).
+// Compliance of tendons given as inextensible, relative to the rod's own (RodStatics).
 constexpr double least_give = 1e-8;
 
 bool every_finite(const std::vector<double>& values) {
@@ -119,7 +119,7 @@ RodDynamics::Work::Work(Rod rod, const RodDynamicsConfig& given, std::span<const
     compliance.push_back(std::max(tendon.compliance, least));
 }
 
-// Of what the rod gives to each tendon.
+// Sets bristle stiffnesses from the rod's compliance to each tendon.
 void RodDynamics::Work::find_grip(const Eigen::VectorXd& give) {
   constexpr double least_part = 1e-3;
   const double most = give.maxCoeff() > 0 ? give.maxCoeff() : chain.rod().length();
@@ -183,7 +183,7 @@ bool RodDynamics::Work::find_velocity(const RodState& state) {
   if (!matrix.factor(motion, {}, nullptr, false)) return false;
   velocity = state.momentum;
   if (layout.is_driven) {
-    // Of what moves though the modes rest.
+    // Subtracts momentum of motion at constant modes (driven lengths).
     left_ = velocity;
     motion.pull({}, std::vector<double>(tensions.size(), 0.0).data(), nullptr);
     motion.balance(momentum_.data(), force_.data());

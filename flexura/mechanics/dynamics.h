@@ -16,69 +16,68 @@
 
 namespace flexura {
 
-/// How a rod's motion is integrated.
+/// Settings of the time integration.
 struct RodDynamicsConfig {
-  /// What is left after each step of what moves too fast for it, from 0 to 1; 1: no numerical damping, the
-  /// step is the implicit midpoint rule. Nearer to 1 steps are more exact; but where they are longer than a
-  /// rod's periods and the rod has no damping of its own, motion may gain energy from much above 0.1 on.
+  /// Part of motion too fast for the step that is left after a step, from 0 to 1. 1: no numerical damping,
+  /// the step is the implicit midpoint rule. Nearer to 1 steps are more exact. But where steps are longer
+  /// than the periods of an undamped rod, motion may gain energy from much above 0.1 on.
   double spectral_radius = 0.1;
-  /// How exactly a step's equations are solved, rad/s: errors of the rates have at most the energy, stiffness
-  /// included, of the rod that turns so fast as a whole.
+  /// Tolerance of a step's equations, rad/s. Errors of the rates have at most the energy, stiffness included,
+  /// of the rod turning at this rate as a whole.
   double tolerance = 1e-7;
   int most_iterations = 30;
-  /// A step that does not converge is made anew with the radius 0, in halves of halves, each as long as
-  /// converges, but none shorter than the step over this: a power of 2. 1: it is not.
+  /// A step that does not converge is repeated with spectral radius 0 in halves of halves, each as long as
+  /// converges. The shortest piece is the step over this number, a power of 2. 1: steps are not divided.
   int most_pieces = 65536;
-  /// Whether cross-sections resist to turning. Without, a rod must not twist.
+  /// Whether cross-sections have rotary inertia. Without it a rod must not twist.
   bool rotary_inertia = true;
-  /// Of tendons that rub: how many times as stiff as the rod friction gives way to a tendon before it lets it
-  /// slide. A tendon under a tension goes on by about friction times the angle by which it turns, over this,
-  /// of the way by which that tension bends the rod.
+  /// Stiffness of tendon friction before sliding, relative to the rod's stiffness against that tendon. A
+  /// sticking tendon yields by about friction times turning angle over this number of the distance by which
+  /// its tension bends the rod.
   double friction_grip = 100;
 };
 
 /// How a step ended.
 enum class DynamicsEnd {
   converged,
-  bad_input,  ///< A number that is not finite, a tension below 0, a list of another length, a step of 0.
-  did_not_converge,  ///< Too long a step for what pulls.
+  bad_input,         ///< A number that is not finite, a tension below 0, a list of wrong length, a step of 0.
+  did_not_converge,  ///< The step is too long for the loads.
 };
-/// That, for people.
+/// Returns a description for users.
 [[nodiscard]] const char* words(DynamicsEnd end);
 
-/// A rod in motion. Time, q and momentum are its state; the rest is what the integrator remembers.
+/// State of a rod in motion: time, q, momentum and friction. The other fields are the integrator's memory.
 struct RodState {
   double time = 0;               ///< s
-  Eigen::VectorXd q;             ///< The strain modes, as of RodChain.
+  Eigen::VectorXd q;             ///< Strain modes, as in RodChain.
   Eigen::VectorXd momentum;      ///< p = M(q) v.
-  std::vector<double> tensions;  ///< Of the last step, N, at the base.
-  /// By how much friction holds the tendons that rub, N, from place to place along them; of the state, too.
+  std::vector<double> tensions;  ///< Tensions of the last step at the base, N.
+  /// Friction force on each tendon with friction, N, from place to place along it; part of the state.
   std::vector<double> friction;
 
-  Eigen::VectorXd rate;  ///< dq/dt and dp/dt as the integrator has them.
+  Eigen::VectorXd rate;  ///< dq/dt and, in force, dp/dt as the integrator has them.
   Eigen::VectorXd force;
-  std::array<Eigen::VectorXd, 3>
-      middle;                ///< The last steps' rates, newest first, from which the next begins.
-  int middles = 0;           ///< How many there are.
-  double step = 0;           ///< Of how long a step, s.
-  double contraction = 0.1;  ///< By which an iteration of the last step gained.
+  std::array<Eigen::VectorXd, 3> middle;  ///< Rates of the last steps, newest first, used to start the next.
+  int middles = 0;                        ///< Number of valid entries of `middle`.
+  double step = 0;                        ///< Length of the last step, s.
+  double contraction = 0.1;               ///< Contraction factor of the last step's iterations.
 };
 
-/// What is known of the friction of tendons before a time.
+/// Known state of tendon friction before a time.
 struct RodSlide {
-  std::vector<double> friction = {};  ///< As of RodState.
-  double time = 0;                    ///< Since when they slide as they do now, s.
+  std::vector<double> friction = {};  ///< As in RodState.
+  double time = 0;                    ///< For how long tendons have slid at the present rate, s.
 };
 
-/// What a step was.
+/// Result of a step.
 struct RodStep {
   DynamicsEnd end = DynamicsEnd::converged;
-  std::string problem = {};  ///< Of bad input, in words.
+  std::string problem = {};  ///< For bad input, in words.
   int iterations = 0;        ///< Linear systems solved.
-  int pieces = 1;            ///< That the step was made in; 0: it did not converge.
-  bool is_anew = false;      ///< It did not converge at first (RodDynamicsConfig::most_pieces).
-  double friction_work = 0;  ///< J: what friction of tendons took, with what it stored as it gave way.
-  double friction_loss = 0;  ///< Of that, what was lost; never below 0.
+  int pieces = 1;            ///< Number of pieces that the step was divided into; 0: it did not converge.
+  bool is_anew = false;      ///< The first attempt did not converge (RodDynamicsConfig::most_pieces).
+  double friction_work = 0;  ///< Work done against tendon friction, energy stored in bristles included, J.
+  double friction_loss = 0;  ///< Dissipated part of friction_work, never below 0, J.
 
   [[nodiscard]] bool converged() const { return end == DynamicsEnd::converged; }
 };
@@ -88,127 +87,129 @@ struct RodPayload {
   RodPlace place = {};
   double mass = 0;                                     ///< kg; >= 0
   Eigen::Vector3d offset = Eigen::Vector3d::Zero();    ///< In the frame of the place, m.
-  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< Before, in the base's frame, m/s.
+  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< Before pick-up, in the base's frame, m/s.
 };
 
-/// Derivatives of a rod's motion. Its equations are p = M(q) v and dp/dt = f(q, v, input); all are matrices
-/// with a row for each mode. The input are tensions, or displacements where those are given; columns of slack
-/// tendons are 0 then.
+/// Derivatives of a rod's motion, p = M(q) v and dp/dt = f(q, v, input). All matrices have a row for each
+/// mode. The input is tensions, or displacements if those are given; then columns of slack tendons are 0.
 struct RodDynamicsSlopes {
   Eigen::MatrixXd mass;           ///< M = dp/dv
   Eigen::MatrixXd momentum_by_q;  ///< dp/dq at constant v.
   Eigen::MatrixXd force_by_q, force_by_v, force_by_input;
 };
 
-/// Motion around a state: x' = A x + B u.
+/// Linear motion around a state: x' = A x + B u.
 struct RodLinear {
-  Eigen::MatrixXd A, B;            ///< Of x = (q, p).
-  Eigen::MatrixXd A_rest, B_rest;  ///< Of x = (q, v), which is so around a rod at rest.
-  /// Of the tip, 6 x modes: velocity of its origin and angular velocity by v, in the base's frame.
+  Eigen::MatrixXd A, B;            ///< For x = (q, p).
+  Eigen::MatrixXd A_rest, B_rest;  ///< For x = (q, v), valid around a rod at rest.
+  /// Velocity of the tip's origin and angular velocity by v, 6 x modes, in the base's frame.
   Eigen::MatrixXd tip_by_q;
-  Eigen::MatrixXd lengths_by_q;  ///< Of the tendons, tendons x modes.
+  Eigen::MatrixXd lengths_by_q;  ///< Tendon lengths by the modes, tendons x modes.
 };
 
 /// Derivatives of a step: of (q, p, rate, force) after it, all that the integrator remembers.
 struct RodStepSlopes {
-  Eigen::MatrixXd by_state;  ///< By the same before it.
+  Eigen::MatrixXd by_state;  ///< By (q, p, rate, force) before it.
   Eigen::MatrixXd by_input;
 };
 
-/// Rods in motion: Lagrange's equations in the strain modes of RodStatics, with the same nodes, so that what
-/// is at rest there is so here. In the frame of the base. A step costs as much for each section however many
-/// there are, and allocates nothing.
+/// Dynamics of rods: Lagrange's equations in the strain modes of RodStatics, with the same nodes. So an
+/// equilibrium of RodStatics is at rest here. All quantities are in the frame of the base. The cost of a step
+/// is linear in the number of sections. A step allocates no memory.
 class RodDynamics {
  public:
-  /// As RodChain. std::invalid_argument: the problems of the rod, no mass, a setting out of bounds.
+  /// Parameters as RodChain. Throws std::invalid_argument for an invalid rod, no mass, or a setting out of
+  /// bounds.
   explicit RodDynamics(Rod rod, const RodDynamicsConfig& config = {}, std::span<const RodPlace> places = {});
   ~RodDynamics();
   RodDynamics(RodDynamics&&) noexcept;
   RodDynamics& operator=(RodDynamics&&) noexcept;
 
-  /// What pulls beside tendons and loads; is kept by reference. Null: nothing. std::invalid_argument: it has
-  /// a point outside the rod.
+  /// Sets wrenches besides tendons and loads; kept by reference. Null: none. Throws std::invalid_argument if
+  /// one of its points is outside the rod.
   void set_surroundings(const RodSurroundings* surroundings);
 
-  /// From now on each section's own length is a factor of what the rod says, one a section, each > 0, that
-  /// changes by a rate, 1/s: of sections that something drives longer or shorter (RodChain::stretch_rest). In
-  /// a step both are those where its tendons are. The state stays; kinetic energy and momentum have what the
-  /// drives move. std::invalid_argument: another number of them, a factor that is not above 0, rates that are
-  /// not finite.
+  /// From now on each section's undeformed length is multiplied by a factor > 0 that changes at a rate, 1/s,
+  /// for driven sections (RodChain::stretch_rest). Both lists have one number a section. In a step they are
+  /// taken at the time of its tendons. The state does not change; kinetic energy and momentum include the
+  /// driven motion. Throws std::invalid_argument for lists of wrong length, factors that are not positive, or
+  /// rates that are not finite.
   void stretch_rest(std::span<const double> factors, std::span<const double> rates);
 
-  /// The rod at rest when nothing pulls.
+  /// Returns the unloaded rod at rest.
   [[nodiscard]] RodState rest() const;
-  /// At rest in an equilibrium of RodStatics: tendons that rub have been pulled in up to there.
+  /// Returns the rod at rest in an equilibrium of RodStatics. Tendons with friction have been pulled in to
+  /// reach it.
   [[nodiscard]] RodState rest(const Equilibrium& at) const;
-  /// In motion: by its modes and their rates, under what pulls from now on. Tendons that rub have slid as
-  /// `slide` says; null: as they do now for a tenth of a second, so that those that do not slide are held by
-  /// nothing.
+  /// Returns a state in motion by modes and their rates, under the loads from now on. `slide`: how tendons
+  /// with friction have slid. Null: at their present rate for a tenth of a second; then friction does not
+  /// hold tendons that do not slide.
   [[nodiscard]] RodState start(const Eigen::VectorXd& q, const Eigen::VectorXd& v, const TendonInput& tendons,
                                const RodLoads& loads, const RodSlide* slide = nullptr);
 
-  /// From now on, until it is dropped, it carries the mass: the state after a jolt, with the generalized
-  /// momentum of both as they were before. Energy is lost as they become one (none where both move alike).
-  /// What pulls from now on is given. The chain does not have the mass. std::invalid_argument: a place that
-  /// is no node, a mass below 0, numbers that are not finite.
+  /// Adds a point mass to the rod until it is dropped and returns the state after the inelastic impact. The
+  /// generalized momentum of both is conserved; energy is lost unless both moved alike. The loads given are
+  /// those from now on. The chain does not have the mass. Throws std::invalid_argument for a place that is
+  /// not a node, a mass below 0, or numbers that are not finite.
   [[nodiscard]] RodState pick_up(const RodState& state, const RodPayload& payload, const TendonInput& tendons,
                                  const RodLoads& loads);
-  /// Lets go of all that it picked up there. The mass leaves with the velocity that it has, and the rod keeps
-  /// its own.
+  /// Releases all payloads at a place. They leave with their velocity, and the rod keeps its own.
   [[nodiscard]] RodState drop(const RodState& state, const RodPlace& place, const TendonInput& tendons,
                               const RodLoads& loads);
 
-  /// Goes on by h seconds. Tendons and loads are those after h / (1 + spectral radius), as good as constant
-  /// in the step. Where it does not converge the state is what it was.
+  /// Advances the state by h seconds. Tendons and loads are those at h / (1 + spectral radius) and count as
+  /// constant in the step. If the step does not converge, the state does not change.
   RodStep step(RodState& state, const TendonInput& tendons, const RodLoads& loads, double h);
 
-  /// Of a state that was stepped at least three times with one h: how far the last step's error in time moves
-  /// the tip, m, to first order; else 0.
+  /// Returns the error of the last step at the tip, m, to first order in time. 0 unless the state made at
+  /// least three steps of one length.
   [[nodiscard]] double step_error(const RodState& state);
-  /// The rates of the modes.
+  /// Returns the rates of the modes.
   [[nodiscard]] Eigen::VectorXd velocity(const RodState& state);
-  /// Of its motion, its strains, and its weight under these loads, J.
+  /// Returns kinetic, strain and gravitational energy under these loads, J.
   [[nodiscard]] RodEnergy energy(const RodState& state, const RodLoads& loads);
-  /// What damping of its strains takes from it, W.
+  /// Returns the power dissipated by strain damping, W.
   [[nodiscard]] double dissipation(const RodState& state);
-  /// Of all of the rod: linear, and angular about the base's origin.
+  /// Returns the momentum of the rod: linear, and angular about the base's origin.
   [[nodiscard]] Vector6d momentum(const RodState& state);
-  /// Of a place that is a node: the section's ends and what was asked for.
+  /// Returns the motion at a node: a section's end or a requested place.
   [[nodiscard]] NodeMotion motion(const RodState& state, const RodPlace& place);
-  /// Of all nodes, and metres of rod for each in an integral along it: as RodSurroundings has them.
+  /// Returns the motion of all nodes, and (node_runs) the length of rod of each in an integral along it, m,
+  /// as in RodSurroundings.
   [[nodiscard]] std::vector<NodeMotion> motions(const RodState& state);
   [[nodiscard]] std::span<const double> node_runs() const;
-  /// Of all points at which the surroundings may pull (RodSurroundings::points()).
+  /// Returns the motion of all points at which the surroundings may act (RodSurroundings::points()).
   [[nodiscard]] std::vector<NodeMotion> point_motions(const RodState& state);
   /// X_BT
   [[nodiscard]] Pose tip(const RodState& state);
-  /// How long the tendons are, m.
+  /// Returns the lengths of the tendons, m.
   [[nodiscard]] std::vector<double> tendon_lengths(const RodState& state);
   /// M(q), dense.
   [[nodiscard]] Eigen::MatrixXd mass_matrix(const Eigen::VectorXd& q);
-  /// dv/dt under what pulls: M^-1 of all forces, at linear cost.
+  /// Returns dv/dt, M^-1 times all forces, at linear cost.
   [[nodiscard]] Eigen::VectorXd acceleration(const Eigen::VectorXd& q, const Eigen::VectorXd& v,
                                              const TendonInput& tendons, const RodLoads& loads);
 
-  /// The generalized forces that the acceleration `a` needs beside weight, loads, stiffness, damping and
-  /// surroundings: what tendons or others have to make. At linear cost. std::invalid_argument: as start().
+  /// Returns the generalized forces needed for the acceleration `a` besides weight, loads, stiffness, damping
+  /// and surroundings. Tendons or others must make them. Linear cost. Throws std::invalid_argument as
+  /// start().
   [[nodiscard]] Eigen::VectorXd needed_forces(const Eigen::VectorXd& q, const Eigen::VectorXd& v,
                                               const Eigen::VectorXd& a, const RodLoads& loads);
-  /// The tendons' lengths by the modes, tendons x modes: tensions make the generalized forces -
-  /// lengths_by_q^T tensions. std::invalid_argument: as start().
+  /// Returns the derivatives of tendon lengths by the modes, tendons x modes. Tensions make the generalized
+  /// forces -lengths_by_q^T tensions. Throws std::invalid_argument as start().
   [[nodiscard]] Eigen::MatrixXd lengths_by_q(const Eigen::VectorXd& q);
-  /// K of the strains' energy q^T K q / 2, and D of the viscosity's forces - D v; modes x modes.
+  /// Return K of the strain energy q^T K q / 2, and D of the viscous forces -D v; modes x modes.
   [[nodiscard]] Eigen::MatrixXd stiffness_matrix() const;
   [[nodiscard]] Eigen::MatrixXd damping_matrix() const;
 
-  /// Derivatives at a state, under what pulls. They cost as the square of the number of sections. Of tendons
-  /// that rub as start() has them.
+  /// Returns the derivatives at a state. Their cost grows with the square of the number of sections. `slide`
+  /// as in start().
   [[nodiscard]] RodDynamicsSlopes slopes(const RodState& state, const TendonInput& tendons,
                                          const RodLoads& loads, const RodSlide* slide = nullptr);
-  /// The linear motion around a state. Errors and cost as slopes(); std::invalid_argument: a tendon rubs,
-  /// which has no linear model.
+  /// Returns the linear motion around a state. Cost and errors as slopes(). Also throws std::invalid_argument
+  /// if a tendon has friction, which has no linear model.
   [[nodiscard]] RodLinear linearize(const RodState& state, const TendonInput& tendons, const RodLoads& loads);
-  /// Of a step that is made in one piece. std::runtime_error: it does not converge.
+  /// Returns the derivatives of an undivided step. Throws std::runtime_error if it does not converge.
   [[nodiscard]] RodStepSlopes step_slopes(const RodState& state, const TendonInput& tendons,
                                           const RodLoads& loads, double h);
 

@@ -5,7 +5,7 @@
 #include "flexura/mechanics/dynamics.h"
 #include "tests/support/known_rods.h"
 
-// Sanitizers have an allocator of their own.
+// Sanitizers replace the allocator.
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
 
 #include "tests/support/malloc_count.h"

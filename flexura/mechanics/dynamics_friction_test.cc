@@ -11,13 +11,13 @@
 #include "tests/support/random_cases.h"
 #include "tests/support/random_rods.h"
 
-// Friction of tendons in motion.
+// Tests of tendon friction in motion.
 namespace flexura {
 namespace {
 
 constexpr double rubs_by = 0.3, off_axis = 0.05;
 
-// A rod that bends evenly and that its viscosity keeps from swinging, with a tendon that rubs.
+// An evenly bending, strongly damped rod with one tendon that has friction.
 Rod rubbing_rod(int modes = 1) {
   Rod rod = elastica(modes);
   rod.sections[0].damping_time = 2;
@@ -29,7 +29,7 @@ double bend_of(const RodDynamics& dynamics, const RodState& state) {
   return state.q[dynamics.chain().elements()[0].grid().first[4]];
 }
 
-// Goes on, with a tension that goes evenly to another one and then stays.
+// Steps through a linear tension ramp followed by constant tension.
 void pull_tendon(RodDynamics& dynamics, RodState& state, double from, double to, double ramp, double rest,
                  double h = 0.05) {
   const double start = state.time;
@@ -41,7 +41,7 @@ void pull_tendon(RodDynamics& dynamics, RodState& state, double from, double to,
   }
 }
 
-// EI bend = the mean of T d exp(-+mu s bend) over the length (L. Euler, J. Eytelwein).
+// Solves EI bend = mean of T d exp(-+mu s bend) over the length for the tension (L. Euler, J. Eytelwein).
 double pull_for(double bend, double mu) {
   return mu == 0 ? bend / off_axis : bend * mu * bend / (off_axis * (1 - std::exp(-mu * bend)));
 }
@@ -54,7 +54,7 @@ TEST(DynamicsFriction, OfAnEvenBendIsThatOfACapstan) {
   EXPECT_NEAR(pull_for(pulled_in, rubs_by), 30, 0.1);
   const Equilibrium known = RodStatics(rubbing_rod()).solve({.tensions = {30}}, {});
   EXPECT_NEAR(pulled_in, known.q[dynamics.chain().elements()[0].grid().first[4]], 2e-3);
-  // Let out to 20 N, from further out.
+  // Lets the tendon out to 20 N, starting from larger displacement.
   pull_tendon(dynamics, state, 30, 40, 20, 40);
   pull_tendon(dynamics, state, 40, 20, 60, 60);
   EXPECT_NEAR(pull_for(bend_of(dynamics, state), -rubs_by), 20, 0.1);
@@ -71,7 +71,7 @@ TEST(DynamicsFriction, ATendonThatIsPulledToAndFroGoesAroundALoop) {
   const double back = bend_of(dynamics, state);
   EXPECT_GT(back, 1.1 * first);
   EXPECT_LT(back, top);
-  // Around once more it is where it was.
+  // A second loop ends at the same shape.
   pull_tendon(dynamics, state, 20, 0.5, 60, 40);
   pull_tendon(dynamics, state, 0.5, 20, 60, 40);
   EXPECT_NEAR(bend_of(dynamics, state), first, 0.02 * first);
@@ -79,7 +79,7 @@ TEST(DynamicsFriction, ATendonThatIsPulledToAndFroGoesAroundALoop) {
   EXPECT_NEAR(bend_of(dynamics, state), top, 0.02 * top);
 }
 
-// A rod that swings comes to rest where friction holds it: between what it is pulled in and let out to.
+// A swinging rod comes to rest between the equilibria of a tendon pulled in and let out.
 TEST(DynamicsFriction, ComesToRestInTheBandOfTheStatics) {
   Rod rod = rubbing_rod(3);
   rod.sections[0].damping_time = 0.05;
@@ -94,7 +94,7 @@ TEST(DynamicsFriction, ComesToRestInTheBandOfTheStatics) {
   const Eigen::Index at = dynamics.chain().elements()[0].grid().first[4];
   EXPECT_GE(bend, inwards.q[at] - 1e-6);
   EXPECT_LE(bend, without.q[at] + (without.q[at] - inwards.q[at]) * 1.5);
-  // And it stays there.
+  // It stays there.
   for (int i = 0; i < 100; ++i) ASSERT_TRUE(dynamics.step(state, {.tensions = {20}}, {}, 0.05).converged());
   EXPECT_NEAR(bend_of(dynamics, state), bend, 1e-9);
 }
@@ -145,7 +145,7 @@ struct RubbingRobot {
   Eigen::VectorXd q, v;
 };
 
-// By differences so small that no tendon turns back in between.
+// Jacobian by differences so small that no tendon reverses in between.
 Eigen::MatrixXd jacobian_of(const std::function<Eigen::VectorXd(const Eigen::VectorXd&)>& f,
                             const Eigen::VectorXd& x) {
   Eigen::MatrixXd J(x.size(), x.size());
@@ -215,7 +215,7 @@ TEST(DynamicsFriction, TheDerivativesOfAStepAreThoseByDifferences) {
   });
 }
 
-// Friction never gives energy, whatever tensions and displacements do; and what it takes is what is missing.
+// Friction never adds energy for any tensions and displacements, and its work balances the energy.
 TEST(DynamicsFriction, NeverGivesEnergy) {
   for_random_cases(20, [](TestRandom& random) {
     const RubbingRobot robot(random);
@@ -283,7 +283,7 @@ TEST(DynamicsFriction, ConvergesWithTheStep) {
   EXPECT_LE(fine, 2e-3);
 }
 
-// Pulled in to and fro by displacements it pulls by more on its way in than on its way out.
+// With alternating displacements the tension is higher inwards than outwards.
 TEST(DynamicsFriction, PullsByMoreOnItsWayIn) {
   RodDynamics dynamics(rubbing_rod(3));
   RodState state = dynamics.rest();

@@ -18,7 +18,7 @@ constexpr double all_pull_after = 0.2;  // s
 struct Robot {
   explicit Robot(TestRandom& random) : rod(random_rod(random)), loads(random_loads(random, rod)) {
     tendons.tensions = random_tensions(random, rod, 8);
-    for (EndLoad& end : loads.ends) end.following = false;  // By which rods flutter.
+    for (EndLoad& end : loads.ends) end.following = false;  // Follower loads make rods flutter.
   }
   [[nodiscard]] TendonInput tendons_at(double time) const {
     TendonInput now = tendons;
@@ -41,8 +41,8 @@ struct Robot {
   TendonInput tendons;
 };
 
-// Robots without damping and with little, pulled within 0.2 s, in the steps of cameras. Some whip about so
-// that a step does not converge; that is said, and the state stays a rod's.
+// Undamped and slightly damped robots, pulled within 0.2 s, at camera steps. Some whip so that a step does
+// not converge: this is reported, and the state stays valid.
 TEST(DynamicsProperty, ManyRobotsMoveInTheStepsOfCameras) {
   long iterations = 0, steps = 0, anew = 0;
   int all = 0, given_up = 0;
@@ -73,7 +73,7 @@ TEST(DynamicsProperty, ManyRobotsMoveInTheStepsOfCameras) {
               static_cast<double>(iterations) / static_cast<double>(steps), anew, steps, given_up, all);
 }
 
-// With damping they come to rest where statics says.
+// Damped robots come to rest at the static equilibrium.
 TEST(DynamicsProperty, ManyRobotsComeToRestInEquilibrium) {
   double worst = 0;
   int others = 0, all = 0;
@@ -91,7 +91,7 @@ TEST(DynamicsProperty, ManyRobotsComeToRestInEquilibrium) {
     const Equilibrium at = RodStatics(robot.rod).solve(robot.tendons, robot.loads);
     ASSERT_TRUE(at.converged());
     ++all;
-    // Another branch: where several are, or from where it is.
+    // Another branch: reached where several equilibria exist, or by statics from this shape.
     RodStatics statics(robot.rod);
     Equilibrium near = at;
     near.q = state.q;

@@ -1,5 +1,5 @@
-// Any bytes as a rod in motion: its sections, tendons, loads, obstacles, payloads and steps, numbers that
-// are no numbers among them. Each step converges or says why not, and no result is NaN.
+// Interprets any bytes as a rod in motion: sections, tendons, loads, obstacles, payloads and steps, including
+// numbers that are not finite. Each step converges or reports why not, and no result is NaN.
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -18,7 +18,7 @@ namespace {
 
 using namespace flexura;
 
-// Numbers of the input; 0 where it ends.
+// Numbers from the input; 0 after its end.
 class Numbers {
  public:
   explicit Numbers(std::span<const std::uint8_t> bytes) : bytes_(bytes) {}
@@ -28,9 +28,9 @@ class Numbers {
     const int first = byte(), second = byte();
     return low + (high - low) * (256 * first + second) / 65535.0;
   }
-  // Powers of ten between.
+  // Logarithmically distributed between powers of ten.
   double power(double low, double high) { return std::pow(10.0, uniform(low, high)); }
-  // Mostly that; now and then what should not be there.
+  // Mostly the usual value; sometimes an invalid one.
   double odd(double usual) {
     constexpr double infinity = std::numeric_limits<double>::infinity();
     switch (byte()) {
@@ -149,7 +149,7 @@ void run_scene(Numbers& numbers) {
                                    .transition = numbers.odd(numbers.power(-6, -3))},
                            .itself = numbers.integer(0, 1) == 0,
                            .itself_apart = numbers.uniform(2, 8)};
-  // At nodes, and between them.
+  // Contact points at nodes, and between them.
   if (numbers.integer(0, 1) == 0) touches.places = contact_places(rod, numbers.uniform(0.01, 0.1));
   const int obstacles = numbers.integer(0, 2);
   for (int i = 0; i < obstacles; ++i) touches.obstacles.push_back(obstacle_of(numbers));

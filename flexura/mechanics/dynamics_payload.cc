@@ -27,7 +27,7 @@ std::size_t node_of(const RodLayout& layout, const RodPlace& place) {
   return section.first_node + at;
 }
 
-// A body and a point mass as one.
+// Combines a body and a point mass.
 RodLayout::Body with_point(const RodLayout::Body& body, double mass, const Eigen::Vector3d& at) {
   const double all = body.mass + mass;
   if (!(all > 0)) return body;
@@ -53,7 +53,7 @@ RodState RodDynamics::pick_up(const RodState& state, const RodPayload& payload, 
   if (state.q.size() != work.chain.size() || !state.q.allFinite() || !state.momentum.allFinite())
     throw std::invalid_argument("a state of another rod, or not finite");
   const std::size_t node = node_of(work.layout, payload.place);
-  // What the mass brings: J^T m u.
+  // Momentum of the payload: J^T m u.
   work.velocity.setZero();
   work.motion.place(state.q.data(), work.velocity.data());
   const Placement<double>& X = work.motion.nodes()[node];
@@ -73,7 +73,7 @@ RodState RodDynamics::pick_up(const RodState& state, const RodPayload& payload, 
   const Eigen::VectorXd v = velocity(both);
   RodState after = start(state.q, v, tendons, loads);
   if (work.rubs()) {
-    // What holds the tendons goes on holding them.
+    // Friction of the tendons persists.
     work.hold(state.friction.data(), 0);
     work.set_forces(after, v, tendons, loads);
   }
@@ -93,7 +93,7 @@ RodState RodDynamics::drop(const RodState& state, const RodPlace& place, const T
   }
   RodState after = start(state.q, v, tendons, loads);
   if (work.rubs()) {
-    // What holds the tendons goes on holding them.
+    // Friction of the tendons persists.
     work.hold(state.friction.data(), 0);
     work.set_forces(after, v, tendons, loads);
   }

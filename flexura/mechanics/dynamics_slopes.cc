@@ -9,7 +9,7 @@
 
 namespace flexura {
 
-// By numbers with slopes: so many directions in each evaluation as an instruction takes.
+// Uses dual numbers: each evaluation has as many directions as an instruction has lanes.
 void RodDynamics::Work::differentiate(const Eigen::VectorXd& q, const Eigen::VectorXd& v,
                                       const RodLoads& loads, double by_q, double by_v,
                                       Eigen::MatrixXd& momentum, Eigen::MatrixXd& force) {
@@ -69,7 +69,7 @@ RodDynamicsSlopes RodDynamics::Work::slopes_at(const Eigen::VectorXd& q, const E
     motion.find_pull_slopes(tendon, tensions[tendon], slopes.force_by_input.col(i).data());
     slopes.force_by_input.col(i) *= -1;
     if (tendons.displacements.empty()) continue;
-    // Its tension follows its length.
+    // The tension follows the tendon's length.
     if (tensions[tendon] == 0) {
       slopes.force_by_input.col(i).setZero();
       continue;
@@ -94,7 +94,7 @@ bool RodDynamics::Work::find_stage(const RodState& state, const TendonInput& ten
 RodDynamicsSlopes RodDynamics::slopes(const RodState& state, const TendonInput& tendons,
                                       const RodLoads& loads, const RodSlide* slide) {
   const RodState started =
-      start(state.q, velocity(state), tendons, loads, slide);  // Checks; sets the tensions.
+      start(state.q, velocity(state), tendons, loads, slide);  // Checks input and sets the tensions.
   return work_->slopes_at(started.q, started.rate, tendons, loads);
 }
 
@@ -144,7 +144,7 @@ RodStepSlopes RodDynamics::step_slopes(const RodState& state, const TendonInput&
   const double stretch = scheme.stage * h, memory = scheme.memory * h;
   const Eigen::MatrixXd shape = by.momentum_by_q - stretch * by.force_by_q;
   const Eigen::PartialPivLU<Eigen::MatrixXd> derivative(by.mass - stretch * by.force_by_v + stretch * shape);
-  // Columns: q, p, rate, force, input. What the stage begins with, then the stage, then the step's end.
+  // Columns: q, p, rate, force, input. First the stage's start, then the stage, then the step's end.
   const Eigen::Index columns = 4 * n + inputs;
   const auto none = Eigen::MatrixXd::Zero(n, columns);
   const Eigen::MatrixXd one = Eigen::MatrixXd::Identity(n, n);

@@ -14,7 +14,7 @@
 namespace flexura {
 namespace {
 
-// A rod with some of everything, in motion.
+// A rod in motion with all kinds of sections, tendons and loads.
 struct Moving {
   explicit Moving(TestRandom& random) : rod(random_rod(random)) {
     const bool has_disks = random.integer(0, 2) == 0;
@@ -44,7 +44,7 @@ void expect_same(const Eigen::MatrixXd& found, const Eigen::MatrixXd& known, dou
   EXPECT_LE((found - known).cwiseAbs().maxCoeff(), part * known.cwiseAbs().maxCoeff());
 }
 
-// Springs to where the rod is at rest, and drag: forces at nodes that depend on poses and velocities.
+// Springs to the undeformed shape, and viscous drag: forces at nodes that depend on poses and velocities.
 class Honey : public RodSurroundings {
  public:
   void pull(std::span<const NodeMotion> nodes, std::span<const double> run,
@@ -53,7 +53,7 @@ class Honey : public RodSurroundings {
       const Eigen::Vector3d p = nodes[k].pose.position;
       const Eigen::Vector3d u = nodes[k].twist.head<3>() + nodes[k].twist.tail<3>().cross(p);
       const Eigen::Vector3d force = run[k] * (-drag * u.norm() * u - spring * p);
-      // By the place p and by the velocity u there: dp = [1, -p x] twist, du = [1, -p x] change + w x dp.
+      // Derivatives of position p and velocity u: dp = [1, -p x] twist, du = [1, -p x] change + w x dp.
       Eigen::Matrix<double, 3, 6> moves;
       moves << Eigen::Matrix3d::Identity(), -cross(p);
       const Eigen::Matrix3d by_u = -run[k] * drag *
@@ -81,7 +81,7 @@ class Honey : public RodSurroundings {
   static constexpr double drag = 0.3, spring = 2;
 };
 
-// dT/dv = p, dT/dq in the forces, and T = p . v / 2: Lagrange's equations.
+// Lagrange's equations: dT/dv = p, dT/dq appears in the forces, and T = p . v / 2.
 TEST(DynamicsSlopes, MomentaAndForcesAreThoseOfTheKineticEnergy) {
   for_random_cases(10, [](TestRandom& random) {
     const Moving moving(random);
@@ -121,7 +121,7 @@ TEST(DynamicsSlopes, MomentaAndForcesAreThoseOfTheKineticEnergy) {
     balance(moving.q, moving.v);
     EXPECT_NEAR(0.5 * momentum.dot(moving.v), energy, 1e-12 * energy);
     expect_same(momentum.transpose(), by_v.value, 1e-8);
-    // The forces of stiffness are far greater.
+    // The stiffness forces are far greater.
     EXPECT_LE((force - inner - by_q.value.transpose()).cwiseAbs().maxCoeff(),
               1e-8 * by_q.value.cwiseAbs().maxCoeff() + 1e-13 * inner.cwiseAbs().maxCoeff());
   });
@@ -147,7 +147,7 @@ TEST(DynamicsSlopes, TheMassMatrixIsSymmetricAndPositive) {
   });
 }
 
-// Newton and Euler against Lagrange: M a = f - (dp/dq) v.
+// Newton-Euler accelerations satisfy Lagrange's M a = f - (dp/dq) v.
 TEST(DynamicsSlopes, AccelerationsAreThoseOfLagrangesEquations) {
   const Honey honey;
   for_random_cases(10, [&](TestRandom& random) {
@@ -247,7 +247,7 @@ TEST(DynamicsSlopes, OfAStepAreThoseByDifferences) {
   }
 }
 
-// A small motion around an equilibrium is that of the linear model.
+// A small motion around an equilibrium follows the linear model.
 TEST(DynamicsSlopes, TheLinearModelIsTheMotionNearby) {
   Rod rod = two_section_robot();
   for (RodSection& section : rod.sections) {

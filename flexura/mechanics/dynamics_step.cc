@@ -9,21 +9,21 @@
 namespace flexura {
 namespace {
 
-// An iteration that gains less than this goes nowhere.
+// An iteration whose error shrinks less than by this factor counts as diverging.
 constexpr double least_gain = 0.95;
-// One that gains less than this gets a new matrix, where surroundings pull.
+// With surroundings, an iteration with less gain than this gets a new matrix.
 constexpr double slow_gain = 0.2;
 constexpr int patience = 6;
-// Of pieces of a step that converge, before they become longer again.
+// Number of converged pieces of a step before they become longer again.
 constexpr int enough_in_a_row = 4;
-// Pieces that are tried at most, whether they converge or not.
+// Largest number of pieces tried, converged or not.
 constexpr int most_tries = 1000;
 
 double greatest_change(const Eigen::VectorXd& change, const Eigen::VectorXd& scales) {
   double most = 0;
   for (Eigen::Index j = 0; j < change.size(); ++j) {
     const double size = std::abs(change[j] * scales[j]);
-    if (!(size <= most)) most = size;  // Not a number stays.
+    if (!(size <= most)) most = size;  // Keeps NaN.
     if (std::isnan(most)) return most;
   }
   return most;
@@ -31,7 +31,7 @@ double greatest_change(const Eigen::VectorXd& change, const Eigen::VectorXd& sca
 
 }  // namespace
 
-// The rates at the step's stage, from those of the steps before: a parabola through them.
+// Extrapolates the rates at the step's stage from those of the last steps by a parabola.
 void RodDynamics::Work::guess(const RodState& state, double h) {
   const bool is_same = state.step == h;
   if (is_same && state.middles >= 3) {
@@ -45,13 +45,13 @@ void RodDynamics::Work::guess(const RodState& state, double h) {
   }
 }
 
-// What is the sum of x_i answers_i along what pulls tight, of a small positive definite matrix: tensions of
-// at least 0, by changing one at a time what is slack (principal pivots).
+// Solves for the x_i >= 0 of taut tendons in the sum of x_i answers_i, for a small positive definite matrix,
+// by changing one slack tendon at a time (principal pivots).
 bool RodDynamics::Work::pull_tight() {
   const Eigen::Index count = found_.size();
   const double rounding = 1e-13 * chain.rod().length();
   for (int round = 0; round < 50 + 10 * static_cast<int>(count); ++round) {
-    // Cholesky's, of the rows that are taut.
+    // Cholesky decomposition of the rows of taut tendons.
     found_.setZero();
     for (Eigen::Index i = 0; i < count; ++i) {
       if (taut_[static_cast<std::size_t>(i)] == 0) continue;
@@ -97,7 +97,7 @@ bool RodDynamics::Work::pull_tight() {
   return false;
 }
 
-// The same where tendons rub, of a matrix that is not symmetric.
+// Solves for tensions with friction, where the matrix is not symmetric.
 bool RodDynamics::Work::find_tensions() {
   Complementary problem{.matrix = give_, .rhs = wanted_, .kinds = {}};
   problem.kinds.assign(taut_.size(), Complementary::Kind::at_least_0);
@@ -107,12 +107,12 @@ bool RodDynamics::Work::find_tensions() {
   return true;
 }
 
-// change_ is what is left at the stage, with the tensions as they are. It becomes the step without tendons;
-// then tensions are found with which they are as long as they shall be, and it has those.
+// On entry change_ is the residual at the stage with the present tensions. It becomes the step without
+// tendons. Then tensions are found that meet the given lengths, and change_ includes them.
 template <typename Solve>
 bool RodDynamics::Work::solve_with_tendons(const Stage& stage, Solve&& solve) {
   const Eigen::Index count = found_.size();
-  // How they pull: where they do not rub, as their lengths change.
+  // How tensions act: without friction, by the derivatives of the lengths.
   const Eigen::MatrixXd& pulls = rubs() ? pull_slopes_ : length_slopes_;
   for (Eigen::Index i = 0; i < count; ++i) {
     const double tension = tensions[static_cast<std::size_t>(i)];
@@ -143,12 +143,12 @@ bool RodDynamics::Work::solve_with_tendons(const Stage& stage, Solve&& solve) {
   return true;
 }
 
-// Of the change of the rates: by the energy that it has in the quadratic form of the stage's equations,
-// stiffness included, as if the rod were turned as a whole; rad/s.
+// Returns the size of the change of the rates, rad/s: the rate of the rod turned as a whole with the same
+// energy in the quadratic form of the stage's equations, stiffness included.
 double RodDynamics::Work::change_size() const {
   const double size = std::sqrt(std::abs(change_.dot(left_)) / turning_inertia_);
   if (!rubs()) return size;
-  // Friction has no energy: where it holds, both may be across each other.
+  // Friction has no energy, and both vectors may be orthogonal where it holds.
   constexpr double part = 1e-3;
   return std::max(size, part * greatest_change(change_, chain.scales()));
 }
@@ -197,7 +197,8 @@ void RodDynamics::Work::begin(const RodState& state, const Stage& stage, double 
   guess(state, h);
 }
 
-// By the matrix of the stage's first shape, which leaves out how inertia turns with the rod, and loads.
+// Iterates with the matrix of the stage's first shape, which neglects the rotation of inertia and loads with
+// the rod.
 bool RodDynamics::Work::iterate_quickly(const Stage& stage, double contraction, RodStep& result,
                                         double& worst_gain) {
   double before = 0;
@@ -220,7 +221,7 @@ bool RodDynamics::Work::iterate_quickly(const Stage& stage, double contraction, 
     if (before > 0) {
       contraction = size / before;
       worst_gain = std::max(worst_gain, contraction);
-      // What touches changes as the rod moves.
+      // Contact changes as the rod moves.
       is_stale = surroundings != nullptr && contraction > slow_gain;
       if (result.iterations > patience && contraction > least_gain && size > config.tolerance) return false;
     }
@@ -240,8 +241,8 @@ bool RodDynamics::Work::factor_exactly(const Stage& stage) {
   return true;
 }
 
-// Newton's method with the derivative, each step of it as long as makes what the next one would be shorter
-// (P. Deuflhard's natural monotonicity test).
+// Newton's method with the exact derivative. Each step is damped to shorten the next one (P. Deuflhard's
+// natural monotonicity test).
 bool RodDynamics::Work::iterate_exactly(const Stage& stage, RodStep& result) {
   evaluate(stage);
   if (!change_.allFinite() || !factor_exactly(stage) || !solve_exactly(stage)) return false;
@@ -266,7 +267,7 @@ bool RodDynamics::Work::iterate_exactly(const Stage& stage, RodStep& result) {
     }
     from = velocity;
     if (rubs() && part == 1 && next < slow_gain * size) {
-      // Where friction gains, the derivative is as good as it was.
+      // If friction iterations converge, the old derivative is good enough.
       step = change_;
       size = next;
       continue;
@@ -279,7 +280,7 @@ bool RodDynamics::Work::iterate_exactly(const Stage& stage, RodStep& result) {
   return false;
 }
 
-// The stage's force, with the last change of the rates.
+// Updates the stage's force by the last change of the rates.
 void RodDynamics::Work::finish_force(const Stage& stage) {
   if (rubs()) {
     evaluate(stage);
@@ -306,7 +307,7 @@ void RodDynamics::Work::finish_force(const Stage& stage) {
   if (surroundings != nullptr) matrix.add_pull_change(motion, stage.stretch, change_.data(), force_.data());
 }
 
-// From the stage to the step's end.
+// Computes the step's end from the stage.
 bool RodDynamics::Work::finish(const Stage& stage, RodState& state, double h, RodStep& result) {
   finish_force(stage);
   if (!force_.allFinite() || !velocity.allFinite()) return false;
@@ -336,7 +337,7 @@ bool RodDynamics::Work::finish(const Stage& stage, RodState& state, double h, Ro
   return true;
 }
 
-// With x = (q, p): the stage's x = from + stretch dx/dt, in which dq/dt = v and p = M(q) v. What is sought is
+// With x = (q, p), the stage is x = from + stretch dx/dt, in which dq/dt = v and p = M(q) v. The unknown is
 // v.
 RodStep RodDynamics::Work::step_once(const Scheme& use, RodState& state, const TendonInput& tendons,
                                      const RodLoads& loads, double h) {
@@ -347,7 +348,7 @@ RodStep RodDynamics::Work::step_once(const Scheme& use, RodState& state, const T
   begin(state, stage, h);
   double worst_gain = 0;
   if (rubs()) {
-    // The quick matrix knows nothing of what holds the tendons.
+    // The quick matrix does not include friction.
     hold(state.friction.data(), h);
     if (!iterate_exactly(stage, result)) {
       begin(state, stage, h);
@@ -368,7 +369,7 @@ RodStep RodDynamics::Work::step_once(const Scheme& use, RodState& state, const T
   return result;
 }
 
-// Of the stage, for the step: what friction took, and of that what its giving way did not store.
+// Computes from the stage the friction work of the step and its dissipated part (not stored in the bristles).
 void RodDynamics::Work::find_friction_work(const RodState& state, double h, RodStep& result) const {
   for (std::size_t i = 0; i < layout.pieces; ++i) {
     const double held = motion.frictions()[i], before = state.friction[i];
@@ -379,9 +380,9 @@ void RodDynamics::Work::find_friction_work(const RodState& state, double h, RodS
   }
 }
 
-// Long steps leave momenta in stiff strains that swing from step to step, which would be a blow in short
-// ones: the same shape, with the rates that the rod had in the middle of its last two steps. Whether most of
-// the energy was in what that leaves out.
+// Long steps leave oscillating momenta in stiff strains, which would be an impact in short steps. Restarts
+// from the same shape with the mean rates of the last two steps. Returns whether the old kinetic energy was
+// over 1.5 times the new one.
 bool RodDynamics::Work::restart(RodState& state, const TendonInput& tendons, const RodLoads& loads) {
   constexpr double most = 1.5;
   const int middles = std::exchange(state.middles, 0);
@@ -396,7 +397,7 @@ bool RodDynamics::Work::restart(RodState& state, const TendonInput& tendons, con
   return kinetic > most * state.rate.dot(state.momentum);
 }
 
-// How far tendons are pulled in where the rod is: of those that are slack, as far as they are going to be.
+// Returns the tendons' displacements at the present shape; for slack ones the target displacement.
 std::vector<double> RodDynamics::Work::displacements_at(const RodState& state, const TendonInput& tendons) {
   std::vector<double> pulled = tendons.displacements;
   if (pulled.empty()) return pulled;
@@ -410,14 +411,14 @@ std::vector<double> RodDynamics::Work::displacements_at(const RodState& state, c
   return pulled;
 }
 
-// With all the damping that there is, in halves of halves, each as long as converges. Tendons are pulled in
-// evenly: all at once would be a blow, the harder the shorter the first piece is.
+// Repeats the step with full numerical damping in halves of halves, each as long as converges. Tendons are
+// pulled in evenly, since all at once would be a harder impact the shorter the first piece is.
 bool RodDynamics::Work::step_in_pieces(RodState& state, const TendonInput& tendons, const RodLoads& loads,
                                        double h, RodStep& result) {
   const Scheme damped(0);
   const std::vector<double> pulled = displacements_at(state, tendons);
   TendonInput now = tendons;
-  // `left` of them, of 1/parts of the step each.
+  // `left` pieces remain, each 1/parts of the step.
   long parts = 1, left = 1;
   int in_a_row = 0;
   result.pieces = 0;
@@ -440,7 +441,7 @@ bool RodDynamics::Work::step_in_pieces(RodState& state, const TendonInput& tendo
     result.friction_loss += piece.friction_loss;
     --left;
     ++result.pieces;
-    // What was hard may be over.
+    // Tries longer pieces again, since the difficult part may have passed.
     if (++in_a_row < enough_in_a_row || parts == 1 || left % 2 != 0) continue;
     parts /= 2;
     left /= 2;

@@ -12,7 +12,7 @@
 #include "tests/support/random_cases.h"
 #include "tests/support/random_rods.h"
 
-// Sections that are driven longer and shorter while the rod moves.
+// Tests of sections whose length is driven while the rod moves.
 namespace flexura {
 namespace {
 
@@ -41,7 +41,7 @@ TEST(DynamicsStretch, TheKineticEnergyIsThatOfWhatIsCarriedAlong) {
   EXPECT_NEAR(dynamics.motion(state, {.section = 1}).twist[2], speed, 1e-12);
 }
 
-// Lagrange's: p = dT/dv and what is left of the forces without stiffness is dT/dq.
+// Lagrange's equations: p = dT/dv, and the forces without stiffness are dT/dq.
 TEST(DynamicsStretch, MomentaAndForcesAreThoseOfTheKineticEnergy) {
   for_random_cases(6, [](TestRandom& random) {
     Rod rod = random_rod(random);
@@ -83,7 +83,7 @@ TEST(DynamicsStretch, MomentaAndForcesAreThoseOfTheKineticEnergy) {
   });
 }
 
-// Driven longer, it comes to rest where statics says; with its tendons held, too.
+// A driven rod comes to rest at the static equilibrium, also with held tendons.
 TEST(DynamicsStretch, ComesToRestWhereTheStaticsSays) {
   Rod rod = two_soft_sections(2e7);
   for (RodSection& section : rod.sections) section.damping_time = 0.2;

@@ -22,7 +22,7 @@ Rod bending_heavy_rod(int modes = 8) {
   return rod;
 }
 
-// So many steps of a motion that converge.
+// Makes this number of steps and expects convergence.
 void go(RodDynamics& dynamics, RodState& state, const TendonInput& tendons, const RodLoads& loads, double h,
         double until) {
   const long steps = std::lround((until - state.time) / h);
@@ -40,7 +40,7 @@ Eigen::Vector3d tip_of_tentacle(const Rod& rod, const RodDynamicsConfig& config,
   return dynamics.tip(state).position;
 }
 
-// Of so many of the lowest, by the eigenvalues of stiffness and mass at rest.
+// Lowest frequencies by the eigenvalues of stiffness and mass at rest.
 std::vector<double> frequencies(const Rod& rod) {
   RodDynamics dynamics(rod);
   const RodDynamicsSlopes slopes = dynamics.slopes(dynamics.rest(), {}, {});
@@ -52,7 +52,7 @@ std::vector<double> frequencies(const Rod& rod) {
   return result;
 }
 
-// Euler's and Bernoulli's rod; the turning cross-sections make it slower by about (wave number x radius /
+// Frequencies of Euler's and Bernoulli's rod. Rotary inertia lowers them by about (wave number x radius /
 // 2)^2 / 2.
 TEST(Dynamics, ARodHasTheFrequenciesOfEulerAndBernoulli) {
   const std::vector<double> found = frequencies(bending_heavy_rod(18));
@@ -63,12 +63,12 @@ TEST(Dynamics, ARodHasTheFrequenciesOfEulerAndBernoulli) {
   }
   Rod slender = bending_heavy_rod(18);
   slender.sections[0].radius = {1e-5, 1e-5};
-  slender.sections[0].youngs_modulus *= 1e4;  // The same frequencies.
+  slender.sections[0].youngs_modulus *= 1e4;  // Leaves the frequencies unchanged.
   const std::vector<double> thin = frequencies(slender);
   for (std::size_t i = 0; i < known.size(); ++i) EXPECT_NEAR(thin[i], known[i], 1e-6 * known[i]);
 }
 
-// The heavy rod, held level by 20 g at its tip that fall off.
+// The heavy rod, held level by a mass of 20 g at its tip, which is released.
 TEST(Dynamics, ALoadThatFallsOffLeavesTheRodToItself) {
   const RodLoads weight{.gravity = {-9.81, 0, 0}};
   RodLoads loaded = weight;
@@ -151,7 +151,7 @@ TEST(Dynamics, TheErrorOfAStepIsToldToFirstOrder) {
   EXPECT_GT(error, 0.1 * told);
 }
 
-// For 10 s in steps of 0.1 ms, and it does not drift.
+// Energy is conserved without drift for 10 s in steps of 0.1 ms.
 TEST(Dynamics, WithoutDampingEnergyStays) {
   const RodLoads weight{.gravity = {-9.81, 0, 0}};
   RodLoads loaded = weight;
@@ -170,7 +170,7 @@ TEST(Dynamics, WithoutDampingEnergyStays) {
   EXPECT_LE(last, 1.2 * first);
 }
 
-// What damping and tendons take and give is what the energy changes by.
+// The energy changes by the work of damping and tendons.
 TEST(Dynamics, PowerIsBalanced) {
   Rod rod = two_section_robot();
   for (RodSection& section : rod.sections) {
@@ -222,7 +222,7 @@ TEST(Dynamics, GravityPullsAtTheMomentum) {
   });
 }
 
-// In equilibrium nothing moves, by tensions or displacements, in channels or between disks.
+// An equilibrium does not move, by tensions or displacements, in channels or between disks.
 TEST(Dynamics, WhatIsAtRestStays) {
   for_random_cases(24, [](TestRandom& random) {
     Rod rod = random_rod(random);
@@ -255,7 +255,7 @@ TEST(Dynamics, WhatIsAtRestStays) {
   });
 }
 
-// Turned about z together with its loads and tendons, a rod moves likewise.
+// A rod turned about z with its loads and tendons moves in the same way.
 TEST(Dynamics, NothingDependsOnHowTheBaseIsTurned) {
   const double angle = 0.7;
   const Eigen::Matrix3d turn = Eigen::AngleAxisd(angle, Eigen::Vector3d::UnitZ()).toRotationMatrix();
@@ -279,7 +279,7 @@ TEST(Dynamics, NothingDependsOnHowTheBaseIsTurned) {
   EXPECT_LE((turn * one.tip(state).position - other.tip(turned_state).position).norm(), 1e-9);
 }
 
-// Tensions of taut tendons hold them to their lengths on the way, and a tendon that is let out hangs slack.
+// Taut tendons keep their lengths in motion, and a tendon that is let out becomes slack.
 TEST(Dynamics, TendonsThatArePulledInBendTheRod) {
   Rod rod = two_section_robot();
   for (RodSection& section : rod.sections) {
@@ -354,7 +354,7 @@ TEST(Dynamics, RefusesWhatIsNoInput) {
   EXPECT_EQ(problem({}, {}, 0.01), "a state that is not finite");
 }
 
-// Tendons that give next to nothing are pulled in at once, in one long step.
+// Nearly inextensible tendons are pulled in at once, in one long step.
 TEST(Dynamics, AStepThatDoesNotConvergeIsDivided) {
   int divided = 0, all = 0;
   for_random_cases(5, [&](TestRandom& random) {
@@ -386,7 +386,7 @@ TEST(Dynamics, AStepThatDoesNotConvergeIsDivided) {
   EXPECT_LT(divided, all);
 }
 
-// Steps that are far too long, loads that no rod withstands: an answer or none, but no nonsense.
+// Far too long steps and excessive loads give a valid result or an error, never a number that is not finite.
 TEST(Dynamics, NeverGoesOnWithWhatIsNoNumber) {
   for_random_cases(20, [](TestRandom& random) {
     const Rod rod = random_rod(random);

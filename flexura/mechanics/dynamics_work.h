@@ -15,7 +15,7 @@
 
 namespace flexura {
 
-/// What RodDynamics has and works with.
+/// Data and methods of RodDynamics.
 struct RodDynamics::Work {
   Work(Rod rod, const RodDynamicsConfig& given, std::span<const RodPlace> places);
 
@@ -29,32 +29,32 @@ struct RodDynamics::Work {
           memory(alpha_f * (1 - gamma / alpha_m)),
           error(1.0 / 12 + 0.25 * (1 - rho) * (1 - rho) / ((1 + rho) * (1 + rho))) {}
     double alpha_f, alpha_m, gamma;
-    double stage;   ///< Of the step, times the stage's rate: from where it was to the stage.
-    double memory;  ///< And times the rate that is remembered.
-    double error;   ///< Times h^3 x''': the error of a step.
+    double stage;   ///< Factor of the step times the stage's rate: from the start to the stage.
+    double memory;  ///< Factor of the step times the remembered rate.
+    double error;   ///< Step error in units of h^3 x'''.
   };
 
-  /// Whether the numbers are so small that energies and velocities made of them are finite.
+  /// Returns whether all numbers are small enough for finite energies and velocities.
   [[nodiscard]] static bool is_of_this_world(const Eigen::VectorXd& numbers) {
     return (numbers.array().abs() < 1e100).all();
   }
   void set_surroundings(const RodSurroundings* given);
   [[nodiscard]] std::string input_problem(const TendonInput& tendons, const RodLoads& loads) const;
   [[nodiscard]] bool rubs() const { return !layout.rubbing.empty(); }
-  /// The state in motion under `tendons`, with its forces; friction as `motion` holds it.
+  /// Sets the state in motion under `tendons`, with its forces; friction as held by `motion`.
   void set_forces(RodState& state, const Eigen::VectorXd& v, const TendonInput& tendons,
                   const RodLoads& loads);
-  /// As RodMotion's, of all that compute.
+  /// Calls RodMotion::hold of all instances that compute.
   void hold(const double* before, double time);
-  /// Since when tendons slide as fast as they do, s, where nothing is known of what was before.
+  /// How long tendons are assumed to have slid at their present rate, s, if nothing else is known.
   static constexpr double has_slid = 0.1;
   RodStep step(RodState& state, const TendonInput& tendons, const RodLoads& loads, double h);
-  /// Tensions as they are given, or by displacements, where the rod was placed.
+  /// Sets tensions as given, or by displacements at the present shape.
   void set_tensions(const TendonInput& tendons);
-  /// The rod placed at a state, mass matrix factored, velocity_ there.
+  /// Places the rod at a state, factors the mass matrix and sets velocity_.
   bool find_velocity(const RodState& state);
-  /// Of momenta and forces at q and v under `tensions`: a column for each mode, of whose amount and rate the
-  /// changes are by_q and by_v.
+  /// Differentiates momenta and forces at q and v under `tensions`. There is a column for each mode, which
+  /// changes q by by_q and v by by_v.
   void differentiate(const Eigen::VectorXd& q, const Eigen::VectorXd& v, const RodLoads& loads, double by_q,
                      double by_v, Eigen::MatrixXd& by_mode_of_momentum, Eigen::MatrixXd& by_mode_of_force);
 
@@ -65,18 +65,18 @@ struct RodDynamics::Work {
   RodMotion<double> motion;
   RodMatrix matrix;
   const RodSurroundings* surroundings = nullptr;
-  std::unique_ptr<RodPoints> points = {};        ///< Where they pull beside the nodes; none: nowhere.
+  std::unique_ptr<RodPoints> points = {};        ///< Where they act besides the nodes; null: nowhere.
   std::vector<double> rest_lengths, compliance;  // m, m/N
-  std::vector<double> grip;                      // N/m, of the pieces of tendons that rub
+  std::vector<double> grip;                      // N/m, of the pieces of tendons with friction
   std::vector<double> tensions;
   Eigen::VectorXd velocity;
-  /// Bodies of nodes that carry payloads, as they are without.
+  /// Bodies of nodes that carry payloads, without the payloads.
   std::vector<std::pair<std::size_t, RodLayout::Body>> bare = {};
 
-  /// The same where they are, with the input; tensions are those of the input.
+  /// Returns the derivatives at the present shape, input included; tensions are those of the input.
   [[nodiscard]] RodDynamicsSlopes slopes_at(const Eigen::VectorXd& q, const Eigen::VectorXd& v,
                                             const TendonInput& tendons, const RodLoads& loads);
-  /// Makes the step with the state as it is; where its stage is.
+  /// Solves the step's stage from the state as it is.
   [[nodiscard]] bool find_stage(const RodState& state, const TendonInput& tendons, const RodLoads& loads,
                                 double h, Eigen::VectorXd& q, Eigen::VectorXd& v);
 
@@ -85,7 +85,7 @@ struct RodDynamics::Work {
     const Scheme& scheme;
     const TendonInput& tendons;
     const RodLoads& loads;
-    double stretch;  // The step's length times scheme.stage.
+    double stretch;  // Step length times scheme.stage.
     [[nodiscard]] bool by_displacement() const { return !tendons.displacements.empty(); }
   };
   RodStep step_once(const Scheme& use, RodState& state, const TendonInput& tendons, const RodLoads& loads,
@@ -97,9 +97,9 @@ struct RodDynamics::Work {
   [[nodiscard]] double change_size() const;
   void begin(const RodState& state, const Stage& stage, double h);
   void guess(const RodState& state, double h);
-  // The stage's momenta and forces at `velocity`; change_ is what is left of them.
+  // Computes the stage's momenta and forces at `velocity`; change_ becomes the residual.
   void evaluate(const Stage& stage);
-  // change_ becomes the change of the rates, by the quick matrix and by the derivative.
+  // Replaces change_ by the change of the rates, by the quick matrix or the derivative.
   bool solve_quickly(const Stage& stage);
   bool solve_exactly(const Stage& stage);
   bool iterate_quickly(const Stage& stage, double contraction, RodStep& result, double& worst_gain);
@@ -116,14 +116,14 @@ struct RodDynamics::Work {
 
   Eigen::VectorXd q_from_, p_from_, q_, momentum_, force_, change_, left_;
   double turning_inertia_ = 1;  // kg m^2
-  // Of displacements: by tendon.
+  // For displacement input, by tendon.
   Eigen::MatrixXd length_slopes_, pull_slopes_, answers_, give_, pivot_;
   Eigen::VectorXd lengths_, wanted_, found_, pull_change_;
   std::vector<char> taut_;
-  // Of friction, as `motion` has it.
+  // Friction state, as in `motion`.
   const double* held_before_ = nullptr;
   double slide_time_ = 0;
-  // Of iterations with the derivative, which few steps need; made when the first does.
+  // For iterations with the exact derivative, which few steps need; created on first use.
   std::unique_ptr<RodMotion<Dual<Lanes>>> differential_;
   Eigen::PartialPivLU<Eigen::MatrixXd> derivative_;
 };

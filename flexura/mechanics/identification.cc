@@ -17,19 +17,19 @@ namespace {
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 
 constexpr int weightings = 8;
-// Of equations with friction; from one to the next it settles by so much of its standard deviation.
+// Number of linearisations with friction, and their tolerance as part of a standard deviation.
 constexpr int linearizations = 12;
 constexpr double settled = 0.01, settled_at_all = 1e-6;
-// Beside the variances of equations that are correlated: of rounding.
+// Ridge for rounding, relative to the variances of correlated equations.
 constexpr double ridge = 1e-9;
-// Of what a coefficient is, the part that noise may make before it tells nothing.
+// Largest part of a coefficient that may be noise before its parameter counts as unobservable.
 constexpr double most_noise = 0.5;
-// Of scaled information: less is none.
+// Least scaled information of an observable direction.
 constexpr double least_information = 1e-9;
 
 double trace_of(const MatrixXd& A, const MatrixXd& B) { return A.cwiseProduct(B).sum(); }
 
-// Which parameters the information tells: none that a direction without information has a part in.
+// Returns which parameters are observable: those without a part in any direction that has no information.
 std::vector<char> observable(const MatrixXd& information, const MatrixXd& by_noise) {
   const Index count = information.rows();
   std::vector<char> is(static_cast<std::size_t>(count), 0);
@@ -51,10 +51,11 @@ std::vector<char> observable(const MatrixXd& information, const MatrixXd& by_noi
   return is;
 }
 
-// Weighted least squares of A x + c by the inverse covariance W, less what noise makes of them.
+// Weighted least squares of A x + c by the inverse covariance W, with the noise's contribution subtracted.
 struct Fit {
-  MatrixXd information, by_noise;  // Of all parameters; by_noise of what noise makes of the coefficients.
-  VectorXd slope;                  // Of half the sum of squares at the values, without that of noise.
+  // Of all parameters; by_noise is the contribution of noise in the coefficients.
+  MatrixXd information, by_noise;
+  VectorXd slope;  // Gradient of half the sum of squares at the values, without the noise's contribution.
 };
 
 Fit fit_at(const IdentificationEquations& equations, const MatrixXd& W, const VectorXd& values) {
@@ -78,7 +79,7 @@ Fit fit_at(const IdentificationEquations& equations, const MatrixXd& W, const Ve
 MatrixXd inverse_covariance(const IdentificationEquations& equations, const VectorXd& values) {
   const Index rows = equations.fixed.size();
   if (!equations.has_noise()) {
-    // Of the same scale, and no more is known.
+    // Equations of the same scale; no more is known.
     return equations.scales.cwiseAbs2().cwiseInverse().asDiagonal();
   }
   MatrixXd C = MatrixXd::Zero(rows, rows);
@@ -97,7 +98,7 @@ MatrixXd inverse_covariance(const IdentificationEquations& equations, const Vect
   return size.asDiagonal() * Cholesky(0.5 * (C + C.transpose())).inverse() * size.asDiagonal();
 }
 
-// The rod with the friction that was found.
+// Returns the rod with the estimated friction.
 Rod with_friction(Rod rod, const std::vector<RodParameter>& parameters, const VectorXd& values) {
   constexpr double most = 10;
   for (std::size_t g = 0; g < parameters.size(); ++g) {
@@ -108,7 +109,7 @@ Rod with_friction(Rod rod, const std::vector<RodParameter>& parameters, const Ve
   return rod;
 }
 
-// The least squares of the equations around a rod's friction, from values nearby.
+// Solves the least squares around a rod's friction, starting from nearby values.
 Identification solve(const IdentificationEquations& equations, const std::vector<RodParameter>& parameters) {
   const auto count = static_cast<Index>(parameters.size());
   const Index rows = equations.fixed.size();
@@ -134,7 +135,7 @@ Identification solve(const IdentificationEquations& equations, const std::vector
     const VectorXd scale = clear.diagonal().cwiseAbs().cwiseSqrt().cwiseInverse();
     const Cholesky factors(scale.asDiagonal() * clear * scale.asDiagonal());
     if (!factors.is_definite()) {
-      // Noise hides what they tell.
+      // Noise hides the information.
       std::ranges::fill(result.is_observable, char{0});
       result.values = equations.nominal;
       seen.clear();

@@ -73,7 +73,7 @@ void require_record(const RodMotionRecord& record, Index modes) {
     throw std::invalid_argument("noise of rates is that of rates that are known, beside that of modes");
 }
 
-// Rates by differences: of the polynomial through five samples.
+// Rates by differences: derivative of the polynomial through five samples.
 struct RateStencil {
   std::size_t first = 0;
   std::array<double, 5> weights{};
@@ -94,18 +94,18 @@ RateStencil rate_stencil(const std::vector<RodMotionRecordSample>& samples, std:
   return stencil;
 }
 
-// A column of the equations of one sample: (what is multiplied by the bump) and by its slope, and both by q
-// and v.
+// Column of the equations of one sample: the factor of the bump and that of its slope, and the derivatives of
+// both by q and v.
 struct Term {
   VectorXd bump = {}, slope = {};
-  MatrixXd bump_by_q = {}, bump_by_v = {}, slope_by_q = {}, slope_by_v = {};  // Empty: none.
+  MatrixXd bump_by_q = {}, bump_by_v = {}, slope_by_q = {}, slope_by_v = {};  // Empty: zero.
 };
 
-// A rod at a sample, whose tendons have slid as they did at the samples up to there.
+// A rod at a sample, whose tendons have slid as in the samples before.
 class SlidingRod {
  public:
   explicit SlidingRod(RodDynamics& dynamics) : dynamics_(&dynamics) {}
-  // Goes on to the sample: what the rod's forces are there.
+  // Advances to the sample and returns the state with its forces.
   const RodState& go_on(const RodMotionRecordSample& sample, const VectorXd& v, const RodLoads& loads) {
     before_ = now_;
     const RodState state = dynamics_->start(sample.q, v, {.tensions = sample.tensions}, loads, slide(sample));
@@ -128,13 +128,13 @@ class SlidingRod {
   RodSlide slide_ = {};
 };
 
-// What a parameter multiplies: part of the stiffness or damping; rods with more and less of the friction;
-// none of these: the mass.
+// What a parameter multiplies: part of the stiffness or damping, or rods with more and less friction.
+// Neither: the mass.
 struct ParameterPart {
   MatrixXd stiffness = {}, damping = {};
   std::unique_ptr<RodDynamics> more = {}, less = {};
-  std::vector<SlidingRod> sliding = {};    // Of these two.
-  double coefficient = 0, difference = 0;  // Of friction, as it is, and between the two.
+  std::vector<SlidingRod> sliding = {};    // For these two rods.
+  double coefficient = 0, difference = 0;  // Friction coefficient, and the difference between the two rods.
 };
 
 std::array<bool, 6> strains_of(RodParameter::Kind kind) {
@@ -157,7 +157,7 @@ std::array<bool, 6> strains_of(RodParameter::Kind kind) {
   return {};
 }
 
-// Which modes a parameter is of.
+// Returns the modes that a parameter affects.
 std::vector<Index> parameter_modes(const RodChain& chain, const RodParameter& parameter) {
   if (parameter.section && *parameter.section >= chain.elements().size())
     throw std::invalid_argument("a parameter of a section that the rod has not");
@@ -200,7 +200,7 @@ void set_friction(ParameterPart& part, const RodChain& chain, const RodParameter
   part.sliding = {SlidingRod(*part.more), SlidingRod(*part.less)};
 }
 
-// What moves as the parameters say, and what as the rod says.
+// Parts of the forces that depend on parameters, and those of the given rod.
 struct Shares {
   Shares(const RodDynamics& dynamics, const std::vector<RodParameter>& parameters)
       : stiffness(dynamics.stiffness_matrix()), damping(dynamics.damping_matrix()) {
@@ -239,13 +239,13 @@ struct Shares {
       (is_damping ? part.damping : part.stiffness) = part_of(K, modes);
     }
   }
-  MatrixXd stiffness, damping;  // As the rod says.
+  MatrixXd stiffness, damping;  // Of the given rod.
   std::vector<ParameterPart> parts;
   VectorXd nominal;
   bool has_mass = false;
 };
 
-// By a coefficient of friction: how the forces change.
+// Returns the derivative of the forces by a friction coefficient.
 Term friction_term(ParameterPart& part, const RodMotionRecordSample& sample, const VectorXd& v,
                    const RodLoads& loads, bool with_slopes) {
   SlidingRod &more = part.sliding[0], &less = part.sliding[1];
@@ -259,7 +259,7 @@ Term friction_term(ParameterPart& part, const RodMotionRecordSample& sample, con
   return term;
 }
 
-// to += factor from.
+// Computes to += factor from.
 void add_term(Term& to, const Term& from, double factor, bool with_slopes) {
   to.bump += factor * from.bump;
   to.slope += factor * from.slope;
@@ -270,7 +270,7 @@ void add_term(Term& to, const Term& from, double factor, bool with_slopes) {
   to.slope_by_v += factor * from.slope_by_v;
 }
 
-// The terms of `fixed` and of all parameters at a sample.
+// Returns the terms of `fixed` and of all parameters at a sample.
 std::vector<Term> terms_at(RodDynamics& dynamics, SlidingRod& sliding, Shares& shares,
                            const RodMotionRecordSample& sample, const VectorXd& v, const RodLoads& loads,
                            bool with_slopes) {
@@ -319,11 +319,11 @@ std::vector<Term> terms_at(RodDynamics& dynamics, SlidingRod& sliding, Shares& s
   return terms;
 }
 
-// A window: the bump (1 - s^2)^4 in time, times what each sample counts in an integral.
+// A window: the bump (1 - s^2)^4 in time, times the integration weight of each sample.
 struct Window {
-  std::size_t first = 0;  // Of the samples whose noise has a part.
+  std::size_t first = 0;  // First of the samples whose noise contributes.
   std::size_t count = 0;
-  VectorXd bump = {}, slope = {};  // From `first` on.
+  VectorXd bump = {}, slope = {};  // Starting at `first`.
 };
 
 std::vector<Window> windows_of(const std::vector<RodMotionRecordSample>& samples, double given, Index modes) {
@@ -361,8 +361,8 @@ std::vector<Window> windows_of(const std::vector<RodMotionRecordSample>& samples
   return windows;
 }
 
-// How the noise of samples comes into a column of a window: modes x (samples x directions of noise), in
-// standard deviations.
+// Effect of the samples' noise on a column of a window: modes x (samples x noise directions), in standard
+// deviations.
 using NoiseWay = MatrixXd;
 
 MatrixXd covariance_of(const std::vector<Window>& windows, const std::vector<NoiseWay>& a,
@@ -386,11 +386,11 @@ MatrixXd covariance_of(const std::vector<Window>& windows, const std::vector<Noi
   return C;
 }
 
-// Its product with its transpose is the covariance of a sample's modes.
+// Returns a factor; its product with its transpose is the covariance of a sample's modes.
 MatrixXd noise_root(const RodMotionRecord& record, std::size_t k) {
   const MatrixXd& covariance = record.samples[k].q_covariance;
   if (covariance.size() == 0) return record.q_noise.asDiagonal();
-  // L^-1 as what L makes of the unit, and back: L = C L^-T.
+  // L^-1 by applying L to the unit matrix, and back: L = C L^-T.
   return covariance * Cholesky(covariance)
                           .solve_lower(MatrixXd::Identity(covariance.rows(), covariance.cols()))
                           .transpose();

@@ -10,7 +10,7 @@
 #include "tests/support/known_rods.h"
 #include "tests/support/random_cases.h"
 
-// The friction of tendons by how a rod moved.
+// Tests of identifying tendon friction from motion.
 namespace flexura {
 namespace {
 
@@ -88,7 +88,7 @@ TEST(IdentificationOfFriction, OfAnExactRecordGivesItBack) {
       EXPECT_NEAR(found.values[g], truly_with_friction[g], 0.02 * truly_with_friction[g]) << g;
     }
   }
-  // Without it the others are wrong by what friction does.
+  // Without the friction parameter the others absorb its effect.
   const Identification smooth =
       identify(rubbing_tentacle(0), {sought_with_friction.begin(), sought_with_friction.end() - 1}, record);
   EXPECT_GT((smooth.values - truly_with_friction.head(2))
@@ -116,14 +116,14 @@ TEST(IdentificationOfFriction, TellsHowWrongItIsUnderNoise) {
     distance += error.dot(found.covariance.ldlt().solve(error)) / seeds;
     misfit += found.misfit / seeds;
   }
-  // Of 12 seeds the mean square is 1 +- 0.41, the mean of the distance 3 +- 0.7.
+  // For 12 seeds the expected mean square is 1 +- 0.41, the mean of the distance 3 +- 0.7.
   EXPECT_GT(squares.minCoeff(), 0.2);
   EXPECT_LT(squares.maxCoeff(), 3);
   EXPECT_NEAR(distance, 3, 2.5);
   EXPECT_NEAR(misfit, 1, 0.4);
 }
 
-// A rod that hangs still says nothing of its friction.
+// A hanging rod at rest gives no information about its friction.
 TEST(IdentificationOfFriction, FlagsWhatDoesNotSlide) {
   RodMotionRecord record;
   for (int k = 0; k < 100; ++k)

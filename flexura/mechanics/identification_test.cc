@@ -15,7 +15,7 @@ namespace {
 
 using Kind = RodParameter::Kind;
 
-// What is believed: a soft rod of two sections with three tendons to each one's end.
+// The model: a soft rod of two sections with three tendons to each one's end.
 Rod believed_tentacle(StrainModes modes = {.shear = 0, .stretch = 0, .bend = 2, .twist = 0}) {
   Rod rod = soft_tentacle();
   rod.sections[0].length = 0.3;
@@ -31,7 +31,7 @@ struct TrueTentacle {
   double first = 1.25, second = 0.8, damping = 0.05, mass = 1.1;
 };
 
-// Stiffness and mass by factors, and a damping of so many seconds of the stiffness that is believed.
+// The true rod: stiffness and mass by factors, damping as a time times the model's stiffness.
 Rod true_tentacle(Rod rod, const TrueTentacle& truth) {
   for (std::size_t i = 0; i < 2; ++i) {
     RodSection& section = rod.sections[i];
@@ -44,7 +44,7 @@ Rod true_tentacle(Rod rod, const TrueTentacle& truth) {
 
 constexpr double sample_time = 8e-3;
 
-// Tendons pull from rest on, and another way after a second.
+// Tendons pull from rest, and differently after a second.
 RodMotionRecord step_response(const Rod& rod, bool with_rates, const RodLoads& loads = soft_tentacle_weight(),
                               const std::vector<double>& pull = {4, 0, 3, 0, 5, 0},
                               const std::vector<double>& back = {0, 5, 0, 3, 0, 4}) {
@@ -57,7 +57,7 @@ RodMotionRecord step_response(const Rod& rod, bool with_rates, const RodLoads& l
     if (with_rates) sample.v = dynamics.velocity(state);
     record.samples.push_back(sample);
     for (int i = 0; i < 8; ++i) {
-      // The jump lies half-way between two samples.
+      // The jump is half-way between two samples.
       const bool is_after = (k + (i + 0.5) / 8 + 0.5) * sample_time > 1;
       EXPECT_TRUE(
           dynamics.step(state, {.tensions = is_after ? back : pull}, loads, sample_time / 8).converged());
@@ -66,7 +66,7 @@ RodMotionRecord step_response(const Rod& rod, bool with_rates, const RodLoads& l
   return record;
 }
 
-// Errors of each mode, 1/m, and of its rate.
+// Adds errors to each mode, 1/m, and to its rate.
 RodMotionRecord noisy(RodMotionRecord record, double q_noise, double v_noise, TestRandom& random) {
   const Eigen::Index n = record.samples[0].q.size();
   record.q_noise = Eigen::VectorXd::Constant(n, q_noise);
@@ -98,7 +98,7 @@ TEST(Identification, OfAnExactRecordGivesTheRodBack) {
   }
 }
 
-// Values within three standard deviations, and those of many seeds as wide as is told.
+// Values are within three standard deviations, and their spread over many seeds is as stated.
 TEST(Identification, TellsHowWrongItIsUnderNoise) {
   for (const bool with_rates : {false, true}) {
     const RodMotionRecord exact = step_response(true_tentacle(believed_tentacle(), {}), with_rates);
@@ -121,7 +121,8 @@ TEST(Identification, TellsHowWrongItIsUnderNoise) {
       mahalanobis += error.dot(found.covariance.ldlt().solve(error)) / seeds;
       misfit += found.misfit / seeds;
     }
-    // Of 16 seeds the mean square is 1 +- 0.35, the mean 0 +- 0.25, the mean of the distance 4 +- 0.7.
+    // For 16 seeds the expected mean square is 1 +- 0.35, the mean 0 +- 0.25, the mean of the distance 4 +-
+    // 0.7.
     EXPECT_GT(squares.minCoeff(), 0.3);
     EXPECT_LT(squares.maxCoeff(), 2.4);
     EXPECT_LT(sum.cwiseAbs().maxCoeff(), 0.9);
@@ -130,7 +131,7 @@ TEST(Identification, TellsHowWrongItIsUnderNoise) {
   }
 }
 
-// In a plane nothing twists, and the rod's stiffness against it is not seen.
+// Planar motion does not twist, so the twist stiffness is unobservable.
 TEST(Identification, FlagsWhatTheRecordDoesNotTell) {
   const Rod believed = believed_tentacle({.shear = 0, .stretch = 0, .bend = 2, .twist = 1});
   const RodLoads down{.gravity = {-9.81, 0, 0}};
@@ -159,7 +160,7 @@ TEST(Identification, FlagsWhatTheRecordDoesNotTell) {
   }
 }
 
-// Left to itself without weight a rod tells ratios alone: mass, stiffness and damping by one factor.
+// A free rod without weight shows only ratios: mass, stiffness and damping up to one factor.
 TEST(Identification, FlagsFactorsThatOnlyTheirRatiosTell) {
   const Rod truth = true_tentacle(believed_tentacle(), {});
   RodDynamics dynamics(truth, {.spectral_radius = 1});
@@ -175,7 +176,7 @@ TEST(Identification, FlagsFactorsThatOnlyTheirRatiosTell) {
     EXPECT_FALSE(all.is_observable[g]);
     EXPECT_TRUE(std::isinf(all.sigma[static_cast<Eigen::Index>(g)]));
   }
-  // With the mass believed the others are known by it.
+  // With a known mass the others are observable.
   const Identification some = identify(believed_tentacle(), {all_of_it.begin(), all_of_it.end() - 1}, record);
   for (Eigen::Index g = 0; g < 3; ++g)
     EXPECT_NEAR(some.values[g], known_values[g] / 1.1, 3e-3 * known_values[g]);

@@ -14,7 +14,7 @@
 namespace flexura {
 namespace {
 
-// Below this part of the greatest, what a tendon adds to the others counts for nothing.
+// Relative threshold: below it a tendon counts as linearly dependent on the others.
 constexpr double same_pull = 1e-7;
 
 void require_modes(const Eigen::VectorXd& values, Eigen::Index count, const char* name) {
@@ -35,7 +35,7 @@ Eigen::VectorXd most_tensions(const TensionFitConfig& config, Eigen::Index count
   return Eigen::Map<const Eigen::VectorXd>(config.most.data(), count);
 }
 
-// Of blocks along the diagonal, one a section.
+// Assembles a block diagonal matrix, one block a section.
 Eigen::MatrixXd of_sections(const RodLayout& layout, Eigen::MatrixXd RodLayout::Section::* part) {
   const auto n = static_cast<Eigen::Index>(layout.modes);
   Eigen::MatrixXd whole = Eigen::MatrixXd::Zero(n, n);

@@ -7,71 +7,70 @@
 #include "flexura/mechanics/dynamics.h"
 #include "flexura/mechanics/rod.h"
 
-// Inverse dynamics: the tensions that a motion needs (docs/mechanics.md, "Inverse dynamics and
-// identification").
+// Inverse dynamics: tensions needed for a motion (docs/mechanics.md, "Inverse dynamics and identification").
 namespace flexura {
 
-/// A rod's motion at a time.
+/// Motion of a rod at one time.
 struct RodMotionSample {
   double time = 0;    ///< s
-  Eigen::VectorXd q;  ///< The strain modes, as of RodChain.
+  Eigen::VectorXd q;  ///< Strain modes, as in RodChain.
   Eigen::VectorXd v;  ///< dq/dt
   Eigen::VectorXd a;  ///< dv/dt
 };
 
-/// Which tensions are looked for.
+/// Settings of the tension fit.
 struct TensionFitConfig {
-  std::vector<double> most = {};  ///< N, one a tendon, each >= 0; empty: as much as is needed.
-  /// What effort counts beside what is missing, as a part of what the tendons make: of tensions that make the
-  /// same forces it takes those of the least sum of squares, and falsifies others by about as much; > 0.
+  std::vector<double> most = {};  ///< Maxima, N, one a tendon, each >= 0; empty: unbounded.
+  /// Weight of the effort relative to the missing forces; > 0. Among tensions that make the same forces, the
+  /// ones with the least sum of squares are taken. The relative error of other tensions is about this number.
   double effort = 1e-10;
 };
 
-/// Tensions that come nearest to generalized forces.
+/// Tensions that come nearest to target generalized forces.
 struct TensionFit {
-  std::vector<double> tensions;  ///< N, one a tendon, each from 0 to its most.
-  Eigen::VectorXd wanted;        ///< The generalized forces that were asked for.
-  Eigen::VectorXd missing;       ///< What is left of them: wanted less what the tensions make.
-  /// How large that is: the energy that the rod would store under them, J. Forces of wanted energy E that
-  /// are missed altogether have the missing energy E.
+  std::vector<double> tensions;  ///< N, one a tendon, each from 0 to its maximum.
+  Eigen::VectorXd wanted;        ///< Target generalized forces.
+  Eigen::VectorXd missing;       ///< Remaining forces: target minus those of the tensions.
+  /// Energies that the rod would store under the target and the missing forces, J. If no tension helps, both
+  /// are equal.
   double wanted_energy = 0, missing_energy = 0;
-  /// Whether no other tensions, of whatever sign, make the same forces: the tendons do not depend on each
-  /// other.
+  /// Whether the tensions are unique, regardless of sign: the tendons are linearly independent.
   bool is_determined = false;
 
-  /// The part of what was wanted that is missing, 0 to 1: the root of these energies' ratio.
+  /// Returns the missing part of the target, 0 to 1: the root of the ratio of the energies.
   [[nodiscard]] double residual() const;
 };
 
-/// The tensions that come nearest to generalized forces `wanted` at q: those of the least missing energy f^T
-/// K^-1 f / 2, K the rod's stiffness, so that stiff strains count as little as they give. Of many that do,
-/// those of least effort. std::invalid_argument: another number of modes or bounds, numbers that are not
-/// finite, a bound below 0.
+/// Returns the tensions that come nearest to the generalized forces `wanted` at q. They minimise the missing
+/// energy f^T K^-1 f / 2 with the rod's stiffness K, so that stiff strains have little weight. Among several
+/// minima it takes that of least effort. Throws std::invalid_argument for lists of wrong length, numbers that
+/// are not finite, or a bound below 0.
 [[nodiscard]] TensionFit nearest_tensions(RodDynamics& dynamics, const Eigen::VectorXd& q,
                                           const Eigen::VectorXd& wanted, const TensionFitConfig& config = {});
 
-/// The tensions of a motion at one time, under loads: nearest_tensions to its needed_forces. Errors likewise.
+/// Returns the tensions of a motion at one time under loads: nearest_tensions to its needed_forces. Throws as
+/// nearest_tensions.
 [[nodiscard]] TensionFit inverse_dynamics(RodDynamics& dynamics, const RodMotionSample& motion,
                                           const RodLoads& loads, const TensionFitConfig& config = {});
-/// The same along a motion.
+/// Returns the tensions along a motion.
 [[nodiscard]] std::vector<TensionFit> inverse_dynamics(RodDynamics& dynamics,
                                                        std::span<const RodMotionSample> motion,
                                                        const RodLoads& loads,
                                                        const TensionFitConfig& config = {});
 
-/// The tensions that hold the rod at rest at q under loads. Errors likewise.
+/// Returns the tensions that hold the rod at rest at q under loads. Throws as nearest_tensions.
 [[nodiscard]] TensionFit gravity_compensation(RodDynamics& dynamics, const Eigen::VectorXd& q,
                                               const RodLoads& loads, const TensionFitConfig& config = {});
 
-/// Gains of a law that follows a motion.
+/// Gains of computed torque.
 struct ComputedTorqueGains {
   double position = 0;  ///< Kp, 1/s^2
-  double velocity = 0;  ///< Kd, 1/s; 2 sqrt(Kp) lets errors fall without a swing.
+  double velocity = 0;  ///< Kd, 1/s; 2 sqrt(Kp) is critical damping.
 };
 
-/// The tensions that accelerate a rod at q, v by wanted.a + Kd (wanted.v - v) + Kp (wanted.q - q): where they
-/// make all of the forces, the error e of all modes obeys e'' + Kd e' + Kp e = 0. Errors likewise; gains that
-/// are not finite.
+/// Returns the tensions that accelerate a rod at q, v by wanted.a + Kd (wanted.v - v) + Kp (wanted.q - q). If
+/// they make all of the forces, the error e of all modes obeys e'' + Kd e' + Kp e = 0. Throws as
+/// nearest_tensions, and for gains that are not finite.
 [[nodiscard]] TensionFit computed_torque(RodDynamics& dynamics, const Eigen::VectorXd& q,
                                          const Eigen::VectorXd& v, const RodMotionSample& wanted,
                                          const ComputedTorqueGains& gains, const RodLoads& loads,

@@ -14,7 +14,7 @@
 namespace flexura {
 namespace {
 
-// The two-section robot with a mass and a viscosity.
+// The two-section robot with mass and viscosity.
 Rod robot_in_motion(StrainModes modes) {
   Rod rod = two_section_robot();
   for (RodSection& section : rod.sections) {
@@ -25,7 +25,7 @@ Rod robot_in_motion(StrainModes modes) {
   return rod;
 }
 
-// One soft section that bends as an arc, under four tendons of which pairs pull against each other.
+// One soft section that bends as an arc, under four tendons in antagonistic pairs.
 Rod arc_under_four_tendons() {
   Rod rod = soft_tentacle();
   rod.sections[0].modes = {.shear = 0, .stretch = 0, .bend = 1, .twist = 0};
@@ -98,7 +98,7 @@ TEST(InverseDynamics, OfAMotionUnderKnownTensionsGivesThemBack) {
   }
 }
 
-// The accelerations are those of the motion alone, by differences of its rates.
+// Accelerations are finite differences of a simulated motion's rates.
 TEST(InverseDynamics, TakesAccelerationsByDifferencesOfASimulatedMotion) {
   RodDynamics dynamics(arc_under_four_tendons(), {.spectral_radius = 1, .tolerance = 1e-10});
   RodState state = dynamics.rest();
@@ -113,7 +113,7 @@ TEST(InverseDynamics, TakesAccelerationsByDifferencesOfASimulatedMotion) {
   for (const std::size_t k : {20u, 50u, 90u}) {
     const TensionFit fit = inverse_dynamics(
         dynamics, {.q = q[k], .v = v[k], .a = (v[k + 1] - v[k - 1]) / (2 * h)}, level_weight);
-    EXPECT_FALSE(fit.is_determined);  // But of least effort are those that pull.
+    EXPECT_FALSE(fit.is_determined);  // But tensions of least effort recover those that pull.
     EXPECT_LT(fit.residual(), 1e-4);
     for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(fit.tensions[i], tendons.tensions[i], 0.02);
   }
@@ -128,7 +128,7 @@ TEST(InverseDynamics, GravityCompensationHoldsAPoseOfStatics) {
   const TensionFit fit = gravity_compensation(dynamics, at.q, level_weight);
   EXPECT_LT(fit.residual(), 1e-6);
   for (std::size_t i = 0; i < 6; ++i) EXPECT_NEAR(fit.tensions[i], tensions[i], 1e-5);
-  // Where less than that may be pulled, the nearest within bounds, and what is missing.
+  // With low maxima it returns the nearest tensions within bounds, and the missing part.
   const TensionFit bounded = gravity_compensation(dynamics, at.q, level_weight, {.most = {1, 9, 9, 9, 9, 9}});
   EXPECT_EQ(bounded.tensions[0], 1);
   EXPECT_GT(bounded.residual(), 0.1);
@@ -145,7 +145,7 @@ TEST(InverseDynamics, TellsWhatTooFewTendonsMiss) {
   const TensionFit fit = gravity_compensation(dynamics, q, level_weight);
   EXPECT_GT(fit.residual(), 0.1);
   EXPECT_LE(fit.residual(), 1);
-  // No tensions nearby miss less.
+  // No tensions nearby have a smaller missing energy.
   const Eigen::MatrixXd stiffness = dynamics.stiffness_matrix(), lengths = dynamics.lengths_by_q(q);
   for (int i = 0; i < 6; ++i) {
     for (const double change : {-0.01, 0.01}) {
@@ -156,7 +156,7 @@ TEST(InverseDynamics, TellsWhatTooFewTendonsMiss) {
   }
 }
 
-// A circle of bends: q = r (cos wt, sin wt) from a start beside it.
+// A circle of bends: q = r (cos wt, sin wt), with an initial error.
 TEST(ComputedTorque, FollowsAMotionWithAnErrorThatFalls) {
   RodDynamics dynamics(arc_under_four_tendons(), {.spectral_radius = 1});
   const double radius = 1.5, rate = 6, h = 1e-3;
@@ -175,7 +175,7 @@ TEST(ComputedTorque, FollowsAMotionWithAnErrorThatFalls) {
     ASSERT_TRUE(dynamics.step(state, {.tensions = fit.tensions}, level_weight, h).converged());
     errors.push_back((state.q - wanted(state.time).q).norm());
   }
-  // e'' + 40 e' + 400 e = 0 from e = 0.4 r, e' = r w, as far as tensions stay for a step.
+  // Expected error: e'' + 40 e' + 400 e = 0 from e = 0.4 r, e' = r w, up to the hold of tensions in a step.
   for (const int step : {50, 100, 200, 300}) {
     const double t = step * h, slow = std::exp(-20 * t);
     const Eigen::Vector2d start(-0.4 * radius, 0), speed(0, -radius * rate);

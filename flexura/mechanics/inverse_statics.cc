@@ -18,9 +18,9 @@ namespace {
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 
 constexpr DescentLimits far{.iterations = 200, .slope = 1e-4};
-// For the nearest to what is out of reach.
+// Limits of the search for the nearest point of an unreachable target.
 constexpr DescentLimits slow{.iterations = 400, .slope = 1e-6};
-// Of the tolerance: what searches aim at, so that the effort is not what the tolerance leaves open.
+// Accuracy of the searches relative to the tolerance, so that the tolerance does not affect the effort.
 constexpr double aim = 0.01;
 
 std::string input_problem(const RodStatics& statics, const RodTarget& target, const std::vector<double>& most,
@@ -61,7 +61,7 @@ std::string input_problem(const RodStatics& statics, const RodTarget& target, co
   return "";
 }
 
-// Searches, each from other tensions, and the best that they found.
+// Searches from different tensions, and the best result so far.
 class InverseSearch {
  public:
   InverseSearch(RodStatics& statics, const RodTarget& target, const RodLoads& loads,
@@ -91,7 +91,7 @@ class InverseSearch {
   }
 
  private:
-  // The unit of tensions: what moves the rod by about its length, as it answers to begin with.
+  // Sets the unit of tensions: what moves the rod by about its length, by its initial derivative.
   bool begin(InverseStaticsResult& result) {
     set_bounds();
     x_.setZero();
@@ -119,7 +119,8 @@ class InverseSearch {
     project(bounds_, x_);
   }
 
-  // The robot as it is, or without tensions; some of all; each tendon alone; at random. False: not a new one.
+  // Starts: the robot's state or zero tensions; some tension on all; each tendon alone; at random. Returns
+  // false if the start is not new.
   bool set_start(int start) {
     const int count = static_cast<int>(most_.size());
     x_.setZero();
@@ -146,7 +147,7 @@ class InverseSearch {
     const bool is_least = is_met && run_down_to_least(descent_, x_);
     Equilibrium at = problem_.at(x_, from_, descent_.r, descent_.J);
     const double square = descent_.r.squaredNorm();
-    // Reached from nearby alone it is another equilibrium than the robot's.
+    // A solution reached only from nearby is another equilibrium than the robot's.
     const bool is_reached = at.stable && is_within();
     const bool is_better = is_reached ? !is_reached_ || x_.squaredNorm() < best_.squaredNorm()
                                       : !is_reached_ && square < best_square_;
@@ -157,7 +158,7 @@ class InverseSearch {
     near_ = std::move(at);
   }
 
-  // Where much is left, Gauss and Newton's model of the curvature is wrong by as much.
+  // For large residuals Gauss and Newton's model of the curvature is wrong.
   void come_nearest() {
     if (best_.size() == 0 || best_square_ == 0) return;
     x_ = best_;

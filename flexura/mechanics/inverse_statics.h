@@ -9,74 +9,73 @@
 #include "flexura/mechanics/rod_chain.h"
 #include "flexura/mechanics/statics.h"
 
-// Inverse statics: the tensions that bring a rod's equilibrium where it is wanted, under loads too
-// (docs/mechanics.md, "Inverse statics"). The same question has the same answer, bit for bit.
+// Inverse statics: tensions that bring a rod's equilibrium to a target, also under loads (docs/mechanics.md,
+// "Inverse statics"). The result is reproducible bit for bit.
 namespace flexura {
 
-/// Where a rod shall be, in the frame of its base. What is left out is free; something is asked for.
+/// Target of a rod, in the frame of its base. Omitted parts are free; at least one must be given.
 struct RodTarget {
-  /// A place of the rod, and where it shall be, m.
+  /// A place of the rod and its target, m.
   struct Place {
-    RodPlace place = {};  ///< A node: one that the RodStatics was given, or a section's end.
+    RodPlace place = {};  ///< A node: a place given to the RodStatics, or a section's end.
     Eigen::Vector3d position = Eigen::Vector3d::Zero();
   };
 
   std::optional<Eigen::Vector3d> position = {};   ///< Of the tip, m.
-  std::optional<Eigen::Vector3d> direction = {};  ///< Of the tip's z axis; not zero, of any length.
-  std::optional<Eigen::Matrix3d> rotation = {};   ///< Of the tip; with it `direction` must be left out.
-  /// What an error of direction or rotation counts, m for each radian; > 0.
+  std::optional<Eigen::Vector3d> direction = {};  ///< Of the tip's z axis; nonzero, of any length.
+  std::optional<Eigen::Matrix3d> rotation = {};   ///< Of the tip; excludes `direction`.
+  /// Weight of errors of direction or rotation, m per radian; > 0.
   double angle_weight = 0.1;
   std::vector<Place> places = {};  ///< A shape.
 };
 
-/// Where a search begins, and what counts as found.
+/// Start and tolerances of the search.
 struct InverseStaticsConfig {
-  /// The robot as it is: the search begins with its tensions, and equilibria are those that are reached from
-  /// it. Left out: without tensions, and from rest.
+  /// The robot's present state: the search starts with its tensions and its branch of equilibria. Default:
+  /// without tensions, from the undeformed rod.
   std::optional<Equilibrium> start = {};
-  /// Each place is met within it, m, and angles within it by their weight; > 0.
+  /// Largest error of each place, m, and of weighted angles; > 0.
   double tolerance = 1e-8;
-  int max_starts = 12;  ///< Searches from different tensions, until one reaches the target; >= 1.
-  /// Makes all of them and takes the one of least effort: it may have several minima.
+  int max_starts = 12;  ///< Largest number of searches from different tensions; >= 1.
+  /// Makes all searches and takes the result of least effort, since the effort may have several minima.
   bool all_starts = false;
 };
 
 /// How a search for tensions ended.
 enum class InverseStaticsEnd {
   reached,         ///< Within the tolerance, by a stable equilibrium.
-  nearest,         ///< No search reached it; the tensions found are those that come nearest.
-  bad_input,       ///< `problem` says what.
-  no_equilibrium,  ///< None was found to begin with.
+  nearest,         ///< No search reached it; the result comes nearest.
+  bad_input,       ///< Described in `problem`.
+  no_equilibrium,  ///< No initial equilibrium was found.
 };
-/// That, for people.
+/// Returns a description for users.
 [[nodiscard]] const char* words(InverseStaticsEnd end);
 
-/// Tensions that bring a rod where it is wanted, or nearest to it.
+/// Tensions that bring a rod to a target, or nearest to it.
 struct InverseStaticsResult {
   InverseStaticsEnd end = InverseStaticsEnd::bad_input;
-  std::string problem;  ///< Of what is not reached, in words.
-  /// Reached, and the sum of squares of the tensions has a minimum among all that reach it nearby.
+  std::string problem;  ///< Why the target was not reached, in words.
+  /// Whether the target was reached with a local minimum of the sum of squared tensions.
   bool is_least = false;
-  std::vector<double> tensions;  ///< N, each from 0 to its most. Empty with bad input.
-  /// Under these tensions. Its `displacements` are what a drive pulls in, m.
+  std::vector<double> tensions;  ///< N, each from 0 to its maximum. Empty for bad input.
+  /// Equilibrium under these tensions. Its `displacements` are what a drive pulls in, m.
   Equilibrium equilibrium;
-  double position_error = 0;  ///< Of the tip and all places, the largest, m.
-  double angle_error = 0;     ///< From the direction or rotation asked for, rad; else 0.
+  double position_error = 0;  ///< Largest error of the tip and all places, m.
+  double angle_error = 0;     ///< Error of the target direction or rotation, rad; 0 without one.
   double effort = 0;          ///< The sum of squares of the tensions, N^2.
-  int evaluations = 0;        ///< Equilibria looked for.
-  int starts = 0;             ///< Searches made.
+  int evaluations = 0;        ///< Number of equilibria computed.
+  int starts = 0;             ///< Number of searches.
 
   [[nodiscard]] bool reached() const { return end == InverseStaticsEnd::reached; }
 };
 
 /// Finds tensions between 0 and `most` (N, one a tendon, finite) that bring the equilibrium under `loads` to
-/// the target, and of these those of least effort; where none do, those of the least sum of squares of the
-/// distances (and weighted angles). Loads count as they are: it is inverse kinematics under load. Never
-/// throws for bad input: the result says what it was. `statics` is afterwards as it was solved with the
-/// result's tensions, so that its slopes() are those there.
+/// the target with least effort (inverse kinematics under load). If none do, it minimises the sum of squared
+/// distances and weighted angles. Reports bad input in the result and does not throw. Afterwards `statics` is
+/// solved with the result's tensions, so its slopes() belong to them.
 ///
-/// By Levenberg and Marquardt within bounds (BoundedDescent), then along the tensions that reach the target
-/// by stabilized sequential quadratic programming (S. J. Wright 1998): where most tendons are slack,
+/// Method: Levenberg and Marquardt within bounds (BoundedDescent), then stabilized sequential quadratic
+/// programming (S. J. Wright 1998) along the tensions that reach the target. Where most tendons are slack,
 /// constraints depend on each other.
 [[nodiscard]] InverseStaticsResult solve_inverse_statics(RodStatics& statics, const RodTarget& target,
                                                          const RodLoads& loads,

@@ -27,7 +27,7 @@ void ask(TestRandom& random, Wish wish, bool is_loaded, Tally& tally) {
   RodStatics statics(rod, wish == Wish::shape ? places : std::vector<RodPlace>{});
   const Equilibrium made = statics.solve({.tensions = tensions}, loads);
   ASSERT_TRUE(made.converged());
-  if (!made.stable) return;  // Nor is it reached.
+  if (!made.stable) return;  // Unstable targets are not reached.
   RodTarget target;
   if (wish != Wish::shape) target.position = made.tip.position;
   if (wish == Wish::direction) target.direction = made.tip.rotation.col(2);

@@ -44,7 +44,7 @@ void expect_reached(const InverseStaticsResult& result, const std::vector<double
   EXPECT_NEAR(result.effort, effort_of(result.tensions), 1e-12 * result.effort);
 }
 
-// A target that is known to be within reach.
+// A reachable target.
 struct Made {
   Made(TestRandom& random, bool is_loaded)
       : rod(coarse(random_rod(random))),
@@ -73,18 +73,18 @@ void expect_no_more_effort(int cases, bool is_loaded) {
     const InverseStaticsResult first = solve_inverse_statics(made.statics, target, made.loads, made.most);
     expect_reached(first, made.most);
     evaluations += first.evaluations, ++count;
-    // What is found is where the tip comes to rest, too.
+    // The tip also reaches the target when solved from the undeformed rod.
     const Equilibrium again = RodStatics(made.rod).solve({.tensions = first.tensions}, made.loads);
     ASSERT_TRUE(again.converged());
     EXPECT_LE((again.tip.position - made.at.tip.position).norm(), 1e-7);
     EXPECT_EQ(first.equilibrium.displacements.size(), made.most.size());
-    // The minimum next to the tensions that made it.
+    // Finds the minimum next to the tensions that made the target.
     const InverseStaticsResult beside =
         solve_inverse_statics(made.statics, target, made.loads, made.most, {.start = made.at});
     expect_reached(beside, made.most);
     EXPECT_LE(beside.effort, enough);
     if (first.effort <= enough) return;
-    // The nearest minimum was another.
+    // Otherwise the nearest minimum was another.
     const InverseStaticsResult best = solve_inverse_statics(made.statics, target, made.loads, made.most,
                                                             {.max_starts = 60, .all_starts = true});
     expect_reached(best, made.most);
@@ -107,9 +107,9 @@ TEST(InverseStatics, AtTheLeastEffortNoTensionsThatKeepTheTipAreLess) {
         solve_inverse_statics(made.statics, {.position = made.at.tip.position}, made.loads, made.most);
     expect_reached(result, made.most);
     ++count;
-    // Where J is nearly singular, nanometres cost newtons, and the tolerance hides the minimum.
+    // If J is nearly singular, nanometres cost newtons, and the tolerance hides the minimum.
     if (!result.is_least) ++missed;
-    // Karush's, Kuhn's and Tucker's conditions, where they are unique.
+    // Karush-Kuhn-Tucker conditions, where the multipliers are unique.
     const Eigen::MatrixXd J = made.statics.slopes().tip_by_input.topRows<3>();
     const auto tensions = Eigen::Map<const Eigen::VectorXd>(result.tensions.data(), J.cols());
     constexpr double slack = 1e-5;
@@ -231,7 +231,7 @@ TEST(InverseStatics, AShortPullSaysThatBoundsHoldIt) {
 }
 
 TEST(InverseStatics, AnEquilibriumThatDoesNotLastIsNotReached) {
-  // Twice the buckling load of L. Euler, along the rod.
+  // Twice L. Euler's buckling load, along the rod.
   RodStatics statics(two_section_robot());
   const RodLoads loads{.ends = {{.section = 1, .force = {0, 0, -0.3}}}};
   const Equilibrium straight = statics.solve({}, loads);

@@ -13,12 +13,13 @@ namespace {
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 
 constexpr int most_steps = 60, most_passes = 10;
-// What a constraint gives for each multiplier.
+// Regularisation: constraint violation per multiplier.
 constexpr double give = 1e-11;
-constexpr double level = 1e-7;  // Smaller steps count as zero; of |x|.
+constexpr double level = 1e-7;  // Smaller steps count as zero, relative to |x|.
 constexpr DescentLimits back{.iterations = 8, .slope = 1e-8};
 
-// Of the Lagrangian, by a step and what its gradient changed by: stays positive definite.
+// Updates the Lagrangian's second derivative by a step and the change of its gradient; it stays positive
+// definite.
 void update(MatrixXd& H, const VectorXd& step, VectorXd change) {
   const VectorXd known = H * step;
   const double along = step.dot(known), curved = step.dot(change);
@@ -87,7 +88,7 @@ bool run_down_to_least(BoundedDescent& descent, VectorXd& x) {
   MatrixXd J = descent.J, H = MatrixXd::Identity(count, count);
   double part = 1;
   for (int i = 0; i < most_steps; ++i) {
-    // Each pass takes back what the constraints gave.
+    // Each pass corrects the constraint violation of the regularisation.
     VectorXd step;
     const MatrixXd A = H + J.transpose() * J / give;
     for (int pass = 0; pass < most_passes; ++pass) {
@@ -101,10 +102,10 @@ bool run_down_to_least(BoundedDescent& descent, VectorXd& x) {
     candidate = x + part * step;
     project(descent.bounds, candidate);
     const bool is_back = descent.descend(back, candidate) == Descent::met;
-    // Steps that are not kept tell of curvature as well.
+    // Rejected steps show the curvature as well.
     const VectorXd moved = candidate - x;
     if (is_back) update(H, moved, moved - (descent.J - J).transpose() * multipliers);
-    // Of the Lagrangian: what the problem's tolerance leaves open of the effort counts for nothing.
+    // Compares Lagrangians, which cancels the effort within the problem's tolerance.
     const double change = 0.5 * (candidate.squaredNorm() - x.squaredNorm()) - multipliers.dot(descent.r - r);
     if (is_back && change <= -1e-4 * part * curved) {
       x = candidate, r = descent.r, J = descent.J;

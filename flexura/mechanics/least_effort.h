@@ -6,18 +6,18 @@
 
 namespace flexura {
 
-/// The d of least d^T A d / 2 + b^T d with low <= d <= high, for a positive definite A and bounds that
-/// include 0. By an active set.
+/// Returns the d that minimises d^T A d / 2 + b^T d with low <= d <= high, for a positive definite A and
+/// bounds that include 0. Active set method.
 [[nodiscard]] Eigen::VectorXd least_in_box(const Eigen::MatrixXd& A, const Eigen::VectorXd& b,
                                            const Eigen::VectorXd& low, const Eigen::VectorXd& high);
 
-/// Moves x, where the descent's problem is met and whose r and J the descent has, along its solutions to
-/// where |x| is least nearby, within the bounds, intervals from 0 for each variable. x stays a solution.
-/// Whether it is such a minimum.
+/// Moves x along the solutions of the descent's problem to a nearby minimum of |x| within the bounds, which
+/// are intervals from 0 for each variable. On entry x is a solution and the descent has its r and J; x stays
+/// a solution. Returns whether x is such a minimum.
 ///
-/// By stabilized sequential quadratic programming (S. J. Wright 1998), which takes derivatives that depend on
-/// each other, with M. J. D. Powell's damped updates of the Lagrangian's second derivative. Each step comes
-/// back to the solutions by a descent, and counts if |x| is then less.
+/// Stabilized sequential quadratic programming (S. J. Wright 1998), which handles dependent constraints, with
+/// M. J. D. Powell's damped updates of the Lagrangian's second derivative. Each step ends with a descent back
+/// to the solutions and is kept if |x| is smaller.
 bool run_down_to_least(BoundedDescent& descent, Eigen::VectorXd& x);
 
 }  // namespace flexura

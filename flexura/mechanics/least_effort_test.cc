@@ -30,7 +30,7 @@ TEST(LeastEffort, TheLeastInABoxPressesOnlyAgainstItsSides) {
   });
 }
 
-// x on a sphere about a point: the nearest to 0 is known.
+// x on a sphere: the point nearest to 0 is known.
 class OnASphere final : public BoundedProblem {
  public:
   [[nodiscard]] Eigen::Index row_count() const override { return 1; }
@@ -49,12 +49,12 @@ TEST(LeastEffort, OfASphereTheNearestPointIsFound) {
   for_random_cases(100, [](TestRandom& random) {
     OnASphere sphere;
     sphere.middle = random.vector<4>(0.5, 1.0);
-    // Beside 0, which the sphere leaves out; bent more than |x|^2 is, or less.
+    // The sphere does not contain 0; its curvature is more or less than that of |x|^2.
     sphere.radius = random.uniform(0.1, 0.9) * sphere.middle.norm();
     Bounds bounds;
     for (Eigen::Index i = 0; i < 4; ++i) bounds.push_back(Bound::interval(i, 0, 3));
     BoundedDescent descent(sphere, bounds, 4);
-    // From behind its middle one may come down to a corner of the bounds instead.
+    // From behind the centre the search may end at a corner of the bounds instead.
     Eigen::VectorXd x = 0.5 * sphere.middle + 0.3 * random.vector<4>(-1.0, 1.0);
     project(bounds, x);
     ASSERT_EQ(descent.descend({}, x), Descent::met);

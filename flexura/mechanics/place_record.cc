@@ -18,14 +18,16 @@ namespace {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 
-// Of the bends' greatest energy, what a mode of another strain may have.
+// Prior energy of a mode of another strain, relative to the bends' greatest energy.
 constexpr double other_energy = 0.01;
-// Of the rod's length: the noise that counts before any is known, and the least that does.
+// Noise relative to the rod's length: initial value while unknown, and lower bound.
 constexpr double first_noise = 1e-3, least_noise = 1e-5;
-// What bends alone leave, root mean square, by the length: beyond it the places are none of this rod.
+// Largest root mean square residual of a fit by bends alone, relative to the length. Above it the places do
+// not belong to this rod.
 constexpr double most_left = 0.02;
 constexpr int most_fits = 60;
-// Of a simulated motion, s, and which part of a step's way its input is of (RodDynamics::step).
+// Longest step of a simulated motion, s, and the part of a step at which its input is taken
+// (RodDynamics::step).
 constexpr double longest_step = 5e-3, step_share = 1 / 1.1;
 
 class PlaceFit {
@@ -46,7 +48,8 @@ class PlaceFit {
 
   [[nodiscard]] const RodChain& chain() const { return chain_; }
 
-  // From `q` on, to the least |p(q) - positions|^2 / noise^2 + |q / spread|^2. What is left of the positions.
+  // Minimises |p(q) - positions|^2 / noise^2 + |q / spread|^2 from `q` on. Returns the residual of the
+  // positions.
   VectorXd fit(std::span<const Eigen::Vector3d> positions, double noise, const VectorXd& spread,
                VectorXd& q) {
     wanted_ = positions, noise_ = noise;
@@ -86,7 +89,7 @@ class PlaceFit {
     covariance_ = Cholesky(information).inverse();
     return left;
   }
-  // Of the last fit.
+  // Returns the covariance of the last fit.
   [[nodiscard]] const MatrixXd& covariance() const { return covariance_; }
 
  private:
@@ -147,11 +150,11 @@ void require_samples(std::span<const RodPlaceSample> samples, std::size_t places
   }
 }
 
-// All samples' modes, each fit beginning where the one before ended.
+// Fits all samples' modes, each fit starting at the result of the one before.
 struct Fits {
   std::vector<VectorXd> modes;
   std::vector<MatrixXd> covariances;
-  double square = 0;  // Of what is left, the sum.
+  double square = 0;  // Sum of squared residuals.
 };
 Fits fit_all(PlaceFit& places, std::span<const RodPlaceSample> samples, double noise,
              const VectorXd& spread) {
@@ -166,7 +169,7 @@ Fits fit_all(PlaceFit& places, std::span<const RodPlaceSample> samples, double n
   return fits;
 }
 
-// Which of the modes are bends.
+// Returns which modes are bends.
 std::vector<Index> bend_modes(const RodChain& chain) {
   std::vector<Index> modes;
   for (std::size_t i = 0; i < chain.elements().size(); ++i)
@@ -176,7 +179,7 @@ std::vector<Index> bend_modes(const RodChain& chain) {
   return modes;
 }
 
-// dq/dt at the start, of a parabola through the first samples.
+// Returns dq/dt at the start by a parabola through the first samples.
 VectorXd first_rates(const RodMotionRecord& record) {
   const auto count = static_cast<Index>(std::min<std::size_t>(record.samples.size(), 9));
   const RodMotionRecordSample& first = record.samples[0];
@@ -207,7 +210,7 @@ RodPlaceRecord record_of_places(const Rod& rod, std::span<const RodPlace> places
   const VectorXd stiffness = RodDynamics(rod).stiffness_matrix().diagonal();
   const std::vector<Index> bends = bend_modes(fit.chain());
 
-  // By bends alone, to know how much energy there is. A strain of 10 rad in a section is any bend.
+  // First fits bends alone to find their energy. A prior of 10 rad in a section allows any bend.
   VectorXd spread = VectorXd::Constant(n, 1e-4).cwiseQuotient(fit.chain().scales());
   for (const Index mode : bends) spread[mode] = 10 / fit.chain().scales()[mode];
   Fits fits = fit_all(fit, samples, first_noise * length, spread);
@@ -220,7 +223,7 @@ RodPlaceRecord record_of_places(const Rod& rod, std::span<const RodPlace> places
   if (const double left = std::sqrt(fits.square / coordinates); !(left < most_left * length))
     throw std::invalid_argument(
         fmt::format("no shape of the rod comes near to the places: {:.3g} m are left of them", left));
-  // Of a rod that does not bend at all some remains.
+  // Lower bound for a rod that does not bend.
   energy = std::max(energy, 1e-9 * stiffness.maxCoeff());
   spread = (2 * other_energy * energy * stiffness.cwiseInverse()).cwiseSqrt();
   for (const Index mode : bends) spread[mode] = std::sqrt(2e4 * energy / stiffness[mode]);
@@ -260,7 +263,7 @@ double places_missed(const Rod& rod, std::span<const RodPlace> places,
       const double run = samples[k].time - samples[k - 1].time;
       const int steps = static_cast<int>(std::ceil(run / longest_step));
       for (int i = 0; i < steps; ++i) {
-        // Tensions change evenly between two samples; a step takes those near its end.
+        // Tensions are linear between two samples; a step takes those near its end.
         const double share = (i + step_share) / steps;
         TendonInput input{.tensions = motion[k].tensions};
         for (std::size_t t = 0; t < input.tensions.size(); ++t)

@@ -8,39 +8,39 @@
 #include "flexura/mechanics/rod.h"
 #include "flexura/mechanics/rod_chain.h"
 
-// From measured places along a rod to its strain modes: what a laboratory has, made to what identification
-// takes (docs/mechanics.md, "Identification").
+// Strain modes from places measured along a rod, as input of the identification (docs/mechanics.md,
+// "Identification").
 namespace flexura {
 
-/// What was measured of a rod at a time.
+/// Measurement of a rod's places at one time.
 struct RodPlaceSample {
-  double time = 0;                         ///< s, above that of the one before.
-  std::vector<Eigen::Vector3d> positions;  ///< Of the places, in the frame of the rod's base, m.
-  std::vector<double> tensions = {};       ///< N, one a tendon, each >= 0; empty: none pulls.
+  double time = 0;                         ///< s, above that of the sample before.
+  std::vector<Eigen::Vector3d> positions;  ///< Measured places, in the frame of the rod's base, m.
+  std::vector<double> tensions = {};       ///< N, one a tendon, each >= 0; empty: zero.
 };
 
-/// The motion of a rod's modes that measured places show.
+/// Motion of a rod's modes from measured places.
 struct RodPlaceRecord {
-  RodMotionRecord record;  ///< With the modes' standard deviations; the modes' rates are not in it.
-  double noise = 0;        ///< Of each coordinate of a place, m, standard deviation: as given, or as found.
-  double rms = 0;          ///< What the modes leave of the coordinates, root mean square, m.
+  RodMotionRecord record;  ///< With the modes' standard deviations, without their rates.
+  double noise = 0;        ///< Standard deviation of each coordinate of a place, m, given or estimated.
+  double rms = 0;          ///< Root mean square residual of the coordinates, m.
 };
 
-/// The modes that come nearest to places, at each time by least squares, under loads. Strains that places do
-/// not show, such as a twist of a straight rod, stay near rest: beside the places count the energies of all
-/// strains, as a prior. The energy of the bends in the record is what a mode of bending may have, and a
-/// hundredth of it what a mode of another strain may. `noise`: of each coordinate, m, standard deviation; 0:
-/// not known, then what the modes leave tells it, but for 1e-5 of the rod's length, which counts at least.
-/// std::invalid_argument: the problems of the rod; places outside it or twice the same, numbers that are not
-/// finite, fewer than two samples, another number of positions, not more coordinates than modes, or places
-/// that no shape of the rod comes near to.
+/// Fits the modes to places at each time by least squares, under loads. Strains that places do not show, such
+/// as a twist of a straight rod, stay near the undeformed value: the energies of all strains are a prior. A
+/// mode of bending may have the energy of the bends in the record, a mode of another strain a hundredth of
+/// it. `noise`: standard deviation of each coordinate, m. 0: unknown; then it is estimated from the
+/// residuals, at least 1e-5 of the rod's length. Throws std::invalid_argument for an invalid rod, numbers
+/// that are not finite, fewer than two samples, or wrong numbers of positions. Throws it also for places that
+/// are duplicate, outside the rod, or not approached by any of its shapes, and if there are no more
+/// coordinates than modes.
 [[nodiscard]] RodPlaceRecord record_of_places(const Rod& rod, std::span<const RodPlace> places,
                                               std::span<const RodPlaceSample> samples, const RodLoads& loads,
                                               double noise = 0);
 
-/// How far a rod is from the places when it moves by itself under the record's tensions, from its first
-/// sample on: root mean square of the distances of all places at all times, m. Infinite: its motion cannot be
-/// computed. std::invalid_argument: as record_of_places(); a record that is not of these samples; errors of
+/// Simulates the rod under the record's tensions from its first sample on. Returns the root mean square
+/// distance of all places at all times, m; infinity if the motion cannot be computed. Throws
+/// std::invalid_argument as record_of_places() or for a record that is not of these samples, and errors of
 /// RodDynamics.
 [[nodiscard]] double places_missed(const Rod& rod, std::span<const RodPlace> places,
                                    std::span<const RodPlaceSample> samples, const RodPlaceRecord& record);

@@ -13,7 +13,7 @@
 namespace flexura {
 namespace {
 
-// Two soft sections of unlike stiffness, and places along them.
+// Two soft sections of different stiffness, and places along them.
 Rod soft_pair(int twist = 1) {
   Rod rod = soft_arm(3e5, 2);
   rod.sections[0].modes.shear = 0;
@@ -29,7 +29,7 @@ std::vector<RodPlace> eight_places() {
   return places;
 }
 
-// The rod falls to its side; its places as they are, and its modes.
+// The rod falls to its side: its true places and modes.
 struct Fall {
   std::vector<RodPlaceSample> samples;
   std::vector<Eigen::VectorXd> modes;
@@ -60,7 +60,7 @@ TEST(RecordOfPlaces, OfExactPlacesGivesTheModesBack) {
   const Eigen::VectorXd scales = RodChain(rod).scales();
   for (std::size_t k = 0; k < known.modes.size(); ++k) {
     const Eigen::VectorXd error = (found.record.samples[k].q - known.modes[k]).cwiseProduct(scales);
-    // Whether an arm that is nearly straight twists is hardly seen.
+    // The twist of a nearly straight arm is hardly visible.
     EXPECT_LT(error.cwiseAbs().maxCoeff(), 2e-2) << k;
     EXPECT_EQ(found.record.samples[k].time, known.samples[k].time);
   }
@@ -86,12 +86,12 @@ TEST(RecordOfPlaces, TellsHowWrongTheModesAre) {
       const Eigen::VectorXd error = sample.q - known.modes[k];
       square += error.dot(sample.q_covariance.inverse() * error) / static_cast<double>(error.size());
     }
-    // 60 times 10 errors: 1 +- 0.06.
+    // 60 times 10 errors: expected 1 +- 0.06.
     EXPECT_NEAR(square / 60, 1, 0.3);
   }
 }
 
-// A covariance without correlations is the noise of each mode, and a section's stiffness is one number.
+// A diagonal covariance gives the same result as noise per mode, and a section's stiffness is one number.
 TEST(RecordOfPlaces, ItsCovariancesCountAsNoiseDoes) {
   const Rod rod = soft_pair(0);
   RodMotionRecord record =

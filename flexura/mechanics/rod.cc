@@ -16,7 +16,7 @@ double between(const std::array<double, 2>& ends, double t) { return ends[0] + (
 bool is_positive(double value) { return std::isfinite(value) && value > 0; }
 bool is_at_least_0(double value) { return std::isfinite(value) && value >= 0; }
 
-// Value and first two derivatives of a polynomial.
+// Returns value and first two derivatives of a polynomial.
 std::array<double, 3> polynomial(const std::vector<double>& coefficients, double s) {
   std::array<double, 3> p{};
   for (std::size_t i = coefficients.size(); i-- > 0;) {

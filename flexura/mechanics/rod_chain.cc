@@ -17,13 +17,13 @@ bool is_none(const RodLoads& loads) {
   return loads.gravity.isZero(0) && loads.per_length.isZero(0) && loads.ends.empty() && loads.springs.empty();
 }
 
-// Whether loads are the gradient of an energy.
+// Returns whether loads are the gradient of an energy.
 bool is_conservative(const RodLoads& loads) {
   return std::ranges::all_of(loads.ends,
                              [](const EndLoad& end) { return !end.following && end.moment.isZero(0); });
 }
 
-// As many nodes as it takes to follow how tendons wind, where nothing is said.
+// Sets as many nodes as winding tendons need, by default.
 void set_nodes(RodSection& section, const std::vector<TendonRoute>& tendons, std::size_t index) {
   if (section.nodes != 0) return;
   double turns = 0;
@@ -39,7 +39,7 @@ void set_nodes(RodSection& section, const std::vector<TendonRoute>& tendons, std
 
 bool is_part(double at) { return at >= 0 && at <= 1; }
 
-// The sign of the determinant, which itself may be beyond what doubles hold.
+// Returns the sign of the determinant, whose value may exceed the range of doubles.
 bool is_negative(const Eigen::PartialPivLU<Eigen::MatrixXd>& lu) {
   const auto below = (lu.matrixLU().diagonal().array() < 0).count();
   return (lu.permutationP().determinant() < 0) != (below % 2 != 0);
@@ -192,7 +192,7 @@ double RodChain::stiffness_norm(const Eigen::VectorXd& residual) const {
 bool RodChain::factor(double share) {
   negative_ = 0;
   if (share != 0) find_stiffness();
-  Matrix6d beyond = Matrix6d::Zero();  // The wrench of all sections after, by the twist of where they begin.
+  Matrix6d beyond = Matrix6d::Zero();  // Wrench of all distal sections, by the twist of their base.
   for (std::size_t i = elements_.size(); i-- > 0;) {
     const RodElement& element = elements_[i];
     Pivot& pivot = pivots_[i];

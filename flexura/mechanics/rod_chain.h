@@ -14,95 +14,100 @@
 
 namespace flexura {
 
-/// A rod's sections joined: what its modes q make of it, the balance r(q) of all that pulls, and linear
-/// systems with r's derivative, at a cost that grows with the number of sections alone. For r = 0 the rod is
-/// in equilibrium; r is then the gradient of the total energy, if loads have one. In the frame of the base.
+/// The joined sections of a rod: shape by the modes q, balance r(q) of all generalized forces, and linear
+/// systems with r's derivative, at a cost linear in the number of sections. For r = 0 the rod is in
+/// equilibrium. If the loads have an energy, r is the gradient of the total energy. All in the frame of the
+/// base.
 ///
-/// A section feels of those before it only the twist of its base, and of those after it only a wrench; so
-/// from the tip to the base each section's modes are eliminated, as in the articulated-body algorithm (R.
+/// A section receives only the twist of its base from proximal sections and only a wrench from distal ones.
+/// So each section's modes are eliminated from tip to base, as in the articulated-body algorithm (R.
 /// Featherstone, Rigid Body Dynamics Algorithms, ch. 7).
 class RodChain {
  public:
-  /// `places` are nodes, so that their poses are known without interpolation. std::invalid_argument: the
-  /// problems of the rod, or a place outside it.
+  /// `places` become nodes, so that their poses need no interpolation. Throws std::invalid_argument for an
+  /// invalid rod or a place outside it.
   explicit RodChain(Rod rod, std::span<const RodPlace> places = {});
 
   [[nodiscard]] const Rod& rod() const { return rod_; }
-  /// Of q.
+  /// Returns the number of modes.
   [[nodiscard]] Eigen::Index size() const { return size_; }
   [[nodiscard]] std::size_t tendons() const { return rod_.tendons.size(); }
-  /// Of each mode: what makes it a number without a unit. A section's length for bends and twists, which
+  /// Returns for each mode the factor that removes its unit: a section's length for bends and twists, which
   /// become radians, 1 for stretch and shear.
   [[nodiscard]] const Eigen::VectorXd& scales() const { return scales_; }
   [[nodiscard]] const std::vector<RodElement>& elements() const { return elements_; }
-  /// q of element i starts here.
+  /// Returns the index in q of the first mode of element i.
   [[nodiscard]] Eigen::Index first(std::size_t element) const { return first_[element]; }
 
-  /// Each section's own length at rest becomes a factor of what the rod says, one a section, each > 0: of
-  /// sections that something drives longer or shorter. Arc lengths at rest, and what is counted by them, stay
-  /// those of the rod. std::invalid_argument: another number of factors, or a factor that is not above 0.
+  /// Multiplies each section's undeformed length by a factor > 0, one a section, for driven sections. Arc
+  /// lengths, and what is given by them, still refer to the original rod. Throws std::invalid_argument for a
+  /// wrong number of factors, or a factor that is not positive.
   void stretch_rest(std::span<const double> factors);
 
-  /// Balances the rod at q under tensions, N, and a share of the loads.
+  /// Computes the balance at q under tensions, N, and a share of the loads.
   void balance(const Eigen::VectorXd& q, std::span<const double> tensions, const RodLoads& loads,
                double share);
-  /// Of the last balance: r, size(); the tendons' lengths, m; these by q, size() x tendons(); r by the
-  /// tensions at the base, which is the same where there is no friction.
+  /// Return results of the last balance: r, size(); tendon lengths, m; their derivatives by q, size() x
+  /// tendons(); and the derivative of r by the tensions at the base, which is equal to the latter without
+  /// friction.
   [[nodiscard]] const Eigen::VectorXd& residual() const { return residual_; }
   [[nodiscard]] const Eigen::VectorXd& tendon_lengths() const { return lengths_; }
   [[nodiscard]] const Eigen::MatrixXd& length_slopes() const { return slopes_; }
   [[nodiscard]] const Eigen::MatrixXd& pull_slopes() const { return pull_slopes_; }
-  /// r by the share of the loads, size().
+  /// Returns the derivative of r by the share of the loads, size().
   [[nodiscard]] const Eigen::VectorXd& load_slope() const { return load_slope_; }
   [[nodiscard]] double strain_energy() const;
-  /// Of the last balance: minus the work of all of the loads from the base's origin on, J. It is an energy
-  /// where has_energy().
+  /// Returns minus the work of all loads from the base's origin on at the last balance, J. It is an energy if
+  /// has_energy().
   [[nodiscard]] double load_energy(const RodLoads& loads) const;
-  /// Whether r is the gradient of an energy under these loads: no moments, no loads that follow, no friction.
+  /// Returns whether r is the gradient of an energy under these loads: no moments, follower loads or
+  /// friction.
   [[nodiscard]] bool has_energy(const RodLoads& loads) const;
 
-  /// Factors the derivative of r at the last balance, with `share` of the stiffness of the rod itself added.
-  /// False: it has no inverse.
+  /// Factors the derivative of r at the last balance plus `share` of the rod's stiffness. Returns false if it
+  /// is singular.
   bool factor(double share = 0);
-  /// The stiffness of the rod itself, a second derivative of its energy, times dq, size().
+  /// Returns the rod's stiffness, the second derivative of its strain energy, times dq, size().
   [[nodiscard]] Eigen::VectorXd stiffness_times(const Eigen::VectorXd& dq) const;
-  /// How large a residual is: the square root of what the rod's strains would cost if it pulled alone, J^1/2.
+  /// Returns the size of a residual, J^1/2: the square root of the strain energy under this residual alone.
   [[nodiscard]] double stiffness_norm(const Eigen::VectorXd& residual) const;
-  /// How many negative eigenvalues it has, as the elimination counts them; 0: the rod is stable while
-  /// tensions and loads stay. Of loads without an energy (moments, loads that follow) 1 where its determinant
-  /// is negative, else 0: the rod does not fall aside slowly; whether it flutters is a matter of its mass.
+  /// Returns the number of negative eigenvalues as counted by the elimination; 0: the rod is stable at
+  /// constant tensions and loads. For moments and follower loads it is 1 if the determinant is negative, else
+  /// 0: this shows static divergence. Flutter depends on the mass.
   [[nodiscard]] int negative_count() const { return negative_; }
-  /// The same of the derivative where tendons that are held add what they do: `of_give` is how many negative
-  /// eigenvalues the tendons' give has.
+  /// Returns this number for the derivative with held tendons. `of_give`: number of negative eigenvalues of
+  /// the tendons' compliance matrix.
   [[nodiscard]] int negative_count(int of_give) const {
     return is_symmetric_ ? negative_ - of_give : (negative_ + of_give) % 2;
   }
-  /// rhs becomes what the derivative makes to rhs; size() x columns.
+  /// Replaces rhs by the solution for it; size() x columns.
   void solve(Eigen::Ref<Eigen::MatrixXd> rhs);
 
-  /// r at the last balance by each section's parameters, size() x 5 sections: by parts by which its stiffness
-  /// against shear, stretch, bends and twist changes, and its mass along its length under this gravity. The
-  /// columns are there.
+  /// Returns the derivatives of r at the last balance by each section's parameters, size() x 5 sections:
+  /// relative changes of its stiffness against shear, stretch, bends and twist, and of its mass per length
+  /// under this gravity. Requires the columns.
   [[nodiscard]] Eigen::MatrixXd parameter_slopes(const Eigen::Vector3d& gravity) const;
 
-  /// Whether tendons rub, as they do from the beginning.
+  /// Switches tendon friction; initially on.
   void set_rubbing(bool on) { is_rubbing_ = on; }
-  /// Whether a tendon rubs: then the derivative that is factored leaves out that friction changes with q.
+  /// Returns whether a tendon has friction. Then the factored derivative neglects the change of friction with
+  /// q.
   [[nodiscard]] bool has_friction() const;
-  /// What that is along dq, of the residual at the last balance under these tensions.
+  /// Returns this neglected change along dq of the residual at the last balance under these tensions.
   [[nodiscard]] Eigen::VectorXd friction_change(const Eigen::VectorXd& dq,
                                                 std::span<const double> tensions) const;
 
-  /// That of every mode: size() x size().
+  /// Returns the neglected change for every mode: size() x size().
   [[nodiscard]] Eigen::MatrixXd friction_form(std::span<const double> tensions) const;
 
-  /// Poses of all nodes at q. Balance finds them, with columns, only where loads or chords need them.
+  /// Computes the poses of all nodes at q. Balance computes them, with columns, only if loads or chords need
+  /// them.
   void place(const Eigen::VectorXd& q);
-  /// The same, with columns.
+  /// Computes poses and columns.
   void place_with_columns(const Eigen::VectorXd& q);
   [[nodiscard]] const Pose& tip() const { return elements_.back().poses().back(); }
-  /// The twist of a node by q, 6 x size(), about the base's origin; after place_with_columns(). An Eigen::Ref
-  /// is written through.
+  /// Writes the twist of a node by q, 6 x size(), about the base's origin; after place_with_columns(). An
+  /// Eigen::Ref is written through.
   void columns_at(std::size_t element, std::size_t node, Eigen::Ref<RodElement::Columns> J) const;
 
  private:
@@ -112,7 +117,7 @@ class RodChain {
     bool is_definite = false;
     Eigen::MatrixXd matrix;                            // Condensed.
     Eigen::Matrix<double, Eigen::Dynamic, 6> by_base;  // dq by the twist of the base.
-    RodElement::Columns wrench_by_modes;               // Of all from this section on.
+    RodElement::Columns wrench_by_modes;               // Of this section and all distal ones.
   };
   void find_stiffness() const;
   static void solve_pivot(const Pivot& pivot, Eigen::Ref<Eigen::MatrixXd> rhs);
@@ -126,7 +131,7 @@ class RodChain {
   bool is_rubbing_ = true, is_loaded_ = false, is_symmetric_ = true, has_chords_ = false;
   int negative_ = 0;
   std::vector<Pivot> pivots_;
-  // Of each element, once somebody asks.
+  // For each element, on first use.
   mutable std::vector<Eigen::MatrixXd> stiffness_;
   mutable std::vector<Eigen::LLT<Eigen::MatrixXd>> stiffness_factors_;
 };

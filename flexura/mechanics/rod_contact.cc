@@ -18,7 +18,7 @@ void require_radii(const RodContactConfig& config, std::size_t sections) {
                                             config.radii.size(), sections));
 }
 
-// Whether a later place is after an earlier one, in a rod of so many sections.
+// Throws unless the places rise along a rod with this number of sections.
 void require_places(const std::vector<RodPlace>& places, std::size_t sections) {
   for (std::size_t i = 0; i < places.size(); ++i) {
     const RodPlace& place = places[i];
@@ -100,13 +100,13 @@ void RodContact::pull(std::span<const NodeMotion> /*nodes*/, std::span<const dou
   for (NodePull& pull : pulls) pull.clear();
 }
 
-// Each point of an interval between two nodes lies in a ball: those of a curve of the length l between ends
-// that are c apart are no further from where they would be on the line than l sqrt(p (1 - p) (1 - c^2/l^2)),
-// with p their part of the length (M. Stewart's theorem for the triangle of the ends and the point).
+// Each point of an interval between two nodes is in a ball. Points of a curve of length l between ends at the
+// distance c are within l sqrt(p (1 - p) (1 - c^2/l^2)) of their place on the line, with p their part of the
+// length (M. Stewart's theorem for the triangle of the ends and the point).
 void RodContact::choose(std::span<const NodeMotion> nodes, std::span<const double> lengths,
                         std::vector<std::size_t>& chosen) const {
   std::ranges::fill(is_chosen_, 0);
-  double longest = 0;  // Of the rod for each metre at rest.
+  double longest = 0;  // Largest stretch of the rod.
   for (std::size_t k = 0; k < intervals_.size(); ++k) {
     const Interval& interval = intervals_[k];
     const Eigen::Vector3d &begin = nodes[interval.first_node].pose.position,
@@ -147,7 +147,7 @@ void RodContact::choose_near_obstacles(const Interval& interval, const Ball& bal
   }
 }
 
-// Where an obstacle is met: found(index among the chosen, obstacle, touch).
+// Calls found(index among the chosen, obstacle, touch) for each contact with an obstacle.
 template <typename Found>
 void RodContact::for_obstacles(std::span<const std::size_t> chosen, std::span<const NodeMotion> points,
                                Found&& found) const {

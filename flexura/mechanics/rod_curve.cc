@@ -6,7 +6,7 @@
 namespace flexura {
 namespace {
 
-// Of the places from `first` on, the slope by s at place k of the parabola through three of them.
+// Slope by s, at place k, of the parabola through three places from `first` on.
 struct CurveSlope {
   std::array<std::size_t, 3> places{};
   std::array<double, 3> weights{};
@@ -16,7 +16,7 @@ CurveSlope curve_slope_at(std::span<const double> s, std::size_t k) {
   if (s.size() == 2) return {.places = {0, 1, 1}, .weights = {-1 / (s[1] - s[0]), 1 / (s[1] - s[0]), 0}};
   const std::size_t middle = std::clamp<std::size_t>(k, 1, s.size() - 2);
   CurveSlope slope{.places = {middle - 1, middle, middle + 1}};
-  // Of Lagrange's polynomials.
+  // Derivatives of Lagrange polynomials.
   for (std::size_t i = 0; i < 3; ++i) {
     const double own = s[slope.places[i]], one = s[slope.places[(i + 1) % 3]],
                  other = s[slope.places[(i + 2) % 3]];
@@ -38,7 +38,7 @@ RodCurve::RodCurve(std::span<const double> s) {
       const auto at = std::ranges::find(segment.places, place) - segment.places.begin();
       segment.weights.row(at) += factor * form;
     };
-    // Hermite's cubics.
+    // Hermite cubics.
     add(k, 1, {1, 0, -3, 2});
     add(k + 1, 1, {0, 0, 3, -2});
     for (const bool is_end : {false, true}) {
@@ -56,7 +56,7 @@ RodCurve::Piece RodCurve::piece(const Segment& segment, const std::array<Eigen::
   piece.powers.setZero();
   for (std::size_t i = 0; i < 4; ++i)
     piece.powers += places[i] * segment.weights.row(static_cast<Eigen::Index>(i));
-  // Inside of the hull of Bezier's points.
+  // Inside the hull of the Bezier points.
   const Eigen::Vector3d begin = piece.at(0), end = piece.at(1), one = begin + piece.slope_at(0) / 3,
                         other = end - piece.slope_at(1) / 3;
   piece.middle = 0.5 * (begin + end);

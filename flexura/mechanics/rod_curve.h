@@ -8,19 +8,18 @@
 
 namespace flexura {
 
-/// A smooth curve through places along a rod: a cubic between each two, whose slope at a place is that of the
-/// parabola through it and its neighbours. So its tangent does not jump, and it is off a smooth rod by the
-/// fourth power of the spacing.
+/// A smooth curve through places along a rod: a cubic between each two, with the slope at a place from the
+/// parabola through it and its neighbours. The tangent is continuous, and the error on a smooth rod is of
+/// fourth order in the spacing.
 class RodCurve {
  public:
-  /// From a place to the next: with its places, x(u) = sum of weights.row(i) . (1, u, u^2, u^3) x_i, u from 0
-  /// to
-  /// 1. The second and the third are those that it lies between.
+  /// Segment from a place to the next, with its places: x(u) = sum of weights.row(i) . (1, u, u^2, u^3) x_i,
+  /// u from 0 to 1. It is between the second and the third place.
   struct Segment {
     std::array<std::size_t, 4> places{};
     Eigen::Matrix4d weights = Eigen::Matrix4d::Zero();
   };
-  /// Where a segment lies: x(u) = sum of powers.col(k) u^k, within a ball.
+  /// Geometry of a segment: x(u) = sum of powers.col(k) u^k, within a ball.
   struct Piece {
     Eigen::Matrix<double, 3, 4> powers;
     Eigen::Vector3d middle = Eigen::Vector3d::Zero();
@@ -41,11 +40,11 @@ class RodCurve {
   };
 
   RodCurve() = default;
-  /// `s`: of the places along the rod, rising, m.
+  /// `s`: positions of the places along the rod, rising, m.
   explicit RodCurve(std::span<const double> s);
 
   [[nodiscard]] const std::vector<Segment>& segments() const { return segments_; }
-  /// Where a segment lies when its places are there.
+  /// Returns the geometry of a segment for given places.
   [[nodiscard]] static Piece piece(const Segment& segment, const std::array<Eigen::Vector3d, 4>& places);
 
  private:

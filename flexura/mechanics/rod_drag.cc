@@ -82,7 +82,7 @@ void RodDrag::pull(std::span<const NodeMotion> nodes, std::span<const double> ru
     pull.by_twist << by_twist, skew(p) * by_twist;
     pull.by_pose << by_pose, skew(p) * by_pose - skew(force) * moved;
     pull.is_idle = false;
-    // Of the force, by_velocity is negative semidefinite.
+    // by_velocity of the force is negative semidefinite.
     pull.is_held = true;
     pull.stiffness.setZero();
     pull.damping = -moved.transpose() * by_twist;

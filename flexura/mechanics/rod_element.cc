@@ -10,14 +10,14 @@
 namespace flexura {
 namespace {
 
-// The wrench of a force f at p, and of a moment.
+// Returns the wrench of a force f at p, and of a moment.
 Vector6d wrench_at(const Eigen::Vector3d& p, const Eigen::Vector3d& f, const Eigen::Vector3d& moment) {
   Vector6d W;
   W << f, p.cross(f) + moment;
   return W;
 }
 
-// Of a force that keeps its direction, by a twist of the body at whose point p it pulls.
+// Derivative of the wrench of a dead force on point p of a body, by a twist of the body.
 Matrix6d dead_force_slope(const Eigen::Vector3d& p, const Eigen::Vector3d& f) {
   Matrix6d D = Matrix6d::Zero();
   const Eigen::Matrix3d F = skew(f);
@@ -26,7 +26,7 @@ Matrix6d dead_force_slope(const Eigen::Vector3d& p, const Eigen::Vector3d& f) {
   return D;
 }
 
-// Of a wrench that turns with the body.
+// Derivative of a wrench that follows the body.
 Matrix6d following_slope(const Vector6d& W) { return -bracket_form(W).transpose(); }
 
 }  // namespace
@@ -93,7 +93,7 @@ void RodElement::place_with_columns(const Pose& X_BS) {
     by_moments_[i] = twist_[i].slopes();
     exp_[i] = TwistExponential(twist_[i].twist());
     X_[i + 1] = X_[i] * exp_[i].pose;
-    // How the interval's end moves by the moments of its strain.
+    // Motion of the interval's end by the moments of its strain.
     const Matrix6d moves = adjoint(X_[i]) * exp_[i].jacobian;
     A_[i + 1] = A_[i];
     for (std::size_t m = 0; m < 3; ++m) {
@@ -166,8 +166,8 @@ void RodElement::stress(std::span<const double> tension) {
   wrench.setZero();
 }
 
-// A wrench W, times factor, pulls at all that lies beyond an interval. It turns with what lies before it, from
-// the node `from` on; what it does to the interval's own twist waits for add_bending().
+// The wrench factor * W on everything beyond an interval turns with everything before it, from the node
+// `from` on. Its effect on the interval's own twist is left to add_bending().
 void RodElement::add_geometry(std::size_t interval, const Vector6d& W, std::size_t from, double factor) {
   across_[interval] += factor * W;
   step_.noalias() = A_[interval + 1] - A_[interval];
@@ -177,8 +177,8 @@ void RodElement::add_geometry(std::size_t interval, const Vector6d& W, std::size
   tangent.noalias() += factor * step_.transpose().lazyProduct(turned_);
 }
 
-// The twist of an interval is no sum of those of its parts: its second derivative by the moments of the
-// strain, times all that pulls at it.
+// The twists of an interval's parts do not commute: adds the second derivative of its twist by the moments of
+// its strain, times the wrench on it.
 void RodElement::add_bending() {
   for (std::size_t interval = 0; interval < across_.size(); ++interval) {
     if (across_[interval].isZero(0)) continue;
@@ -197,7 +197,7 @@ void RodElement::add_bending() {
 }
 
 // The energy of a straight piece is its tension times its length. All tendons between the same two disks move
-// with the same columns, so their wrenches add up before these are multiplied.
+// with the same columns, so that their wrenches are added before the products with these.
 void RodElement::add_chords(std::size_t from, std::size_t to, std::span<const double> tensions) {
   moved_.noalias() = A_[to] - A_[from];
   Vector6d pull = Vector6d::Zero();
@@ -216,7 +216,7 @@ void RodElement::add_chords(std::size_t from, std::size_t to, std::span<const do
     const double tension = tensions[tendons_[i]] * begin.left;
     if (tension == 0) continue;
     pull += tension * W;
-    // The end b moves, as seen from a.
+    // Motion of the end b relative to a.
     Eigen::Matrix<double, 3, 6> point;
     point << Eigen::Matrix3d::Identity(), -skew(b);
     const Eigen::Matrix<double, 3, 6> across =
@@ -280,7 +280,7 @@ double RodElement::load_energy(const RodLoads& loads) const {
   return sum;
 }
 
-// What all of the loads do at each node.
+// Computes the forces of all loads at each node.
 void RodElement::find_forces(const RodLoads& loads) {
   const Eigen::Vector3d none = Eigen::Vector3d::Zero();
   for (std::size_t k = 0; k < grid_.t.size(); ++k) {
@@ -322,7 +322,7 @@ void RodElement::load(const RodLoads& loads, double share, const Vector6d& beyon
   for (std::size_t k = grid_.t.size() - 1; k > 0; --k) {
     W += F_[k];
     add_geometry(k - 1, W, 0, -share);
-    // step_ is how the interval's end moves by it.
+    // step_ is the motion of the interval's end by it.
     by_share.noalias() -= step_.transpose().lazyProduct(W);
     by_base.noalias() += share * step_.transpose().lazyProduct(bracket_form(W).transpose());
     moved_.noalias() = Matrix6d(share * D_[k]).lazyProduct(A_[k]);

@@ -13,16 +13,16 @@
 
 namespace flexura {
 
-/// One section of a rod at work: its shape, and the balance of what it is made of with what pulls at it.
-/// Nothing is allocated after the constructor.
+/// Evaluation of one section of a rod: its shape, and the balance of its internal forces with the loads.
+/// Allocates only in the constructor.
 ///
-/// All in the frame of the rod's base. Twists and wrenches are about its origin, so that a column of a
-/// Jacobian stays the same beyond what it moves, and wrenches only add up.
+/// All in the frame of the rod's base. Twists and wrenches are about its origin. So a Jacobian column is
+/// constant distal of what it moves, and wrenches add up directly.
 class RodElement {
  public:
   using Columns = Eigen::Matrix<double, 6, Eigen::Dynamic>;
 
-  /// `s_base`: arc length from the rod's base to the section's, m. `at`: places, from 0 to 1, that are to be
+  /// `s_base`: arc length from the rod's base to the section's, m. `at`: places, from 0 to 1, that become
   /// nodes.
   RodElement(const RodSection& section, std::span<const TendonRoute> tendons, std::size_t index,
              double s_base, std::span<const double> at);
@@ -30,100 +30,102 @@ class RodElement {
   [[nodiscard]] int size() const { return grid_.size; }
   [[nodiscard]] const RodGrid& grid() const { return grid_; }
   [[nodiscard]] double length() const { return length_; }
-  /// Whether its tendons' forces depend on how its parts lie to each other, not on its strains alone.
+  /// Whether its tendons' forces depend on the relative poses of its parts, not on strains only.
   [[nodiscard]] bool has_chords() const { return !grid_.disks.empty(); }
 
-  /// The section's own length at rest becomes this factor of what its description says.
+  /// Sets the section's undeformed length to this factor times the original one.
   void stretch_rest(double factor) { grid_.stretch_rest(factor); }
-  /// What its modes are worth, `size()`.
+  /// Sets the mode values, `size()`.
   void set_modes(const Eigen::Ref<const Eigen::VectorXd>& q);
   [[nodiscard]] const Eigen::VectorXd& modes() const { return q_; }
-  /// Where the nodes lie when its base lies so.
+  /// Computes node poses for a pose of its base.
   void place(const Pose& X_BS);
-  /// The same, and how they move by the modes (columns()).
+  /// Computes node poses and their derivatives by the modes (columns()).
   void place_with_columns(const Pose& X_BS);
-  /// At the nodes.
+  /// Strains at the nodes.
   [[nodiscard]] const std::vector<Vector6d>& strains() const { return strain_; }
-  /// Of the nodes, z along the rod.
+  /// Poses of the nodes, z along the rod.
   [[nodiscard]] const std::vector<Pose>& poses() const { return X_; }
-  /// Of each node, 6 x size(): its twist by each mode.
+  /// Twist of each node by each mode, 6 x size().
   [[nodiscard]] const std::vector<Columns>& columns() const { return A_; }
 
-  /// How a tendon has run since its base: by what angle it has turned, rad, and in what direction it leaves,
-  /// in the frame of a section's end; zero at the base.
+  /// Path of a tendon since its base: the turning angle, rad, and its direction in the frame of a section's
+  /// end; zero at the base.
   struct Run {
     double turned = 0;
     Eigen::Vector3d direction = Eigen::Vector3d::Zero();
   };
-  /// Of a run, by a change of the modes of all sections.
+  /// Derivative of a run by a change of the modes of all sections.
   struct RunChange {
     double turned = 0;
     Eigen::Vector3d direction = Eigen::Vector3d::Zero();
     Vector6d base = Vector6d::Zero();  ///< Twist of the next section's base.
   };
-  /// Follows a tendon of the rod through the section: from its run at the base to that at the end. What is
-  /// left of its tension at each node by friction is kept for stress(). Chords need the poses.
+  /// Follows a tendon of the rod through the section, from its run at the base to that at the end. Keeps the
+  /// part of its tension that friction leaves at each node for stress(). Chords need the poses.
   void rub(std::size_t tendon, double friction, Run& run);
-  /// Follows what a change dq of the modes makes of that, as rub() found it last, and adds to the residual's
-  /// change what friction does to it. `run`: at the base, which is followed again. Chords need the columns.
+  /// Follows the effect of a change dq of the modes on the last result of rub(), and adds the change of
+  /// friction to the residual's change. `run`: at the base, advanced as in rub(). Chords need the columns.
   void rub_change(std::size_t tendon, double friction, double tension, const Eigen::VectorXd& dq, Run& run,
                   RunChange& change, Eigen::Ref<Eigen::VectorXd> residual_change) const;
-  /// The balance of what it is made of and of its tendons: residual, tangent, tendons' lengths and their
-  /// slopes. `tension`: at the base, N, one a tendon of the rod. Chords need the columns. Friction is taken
-  /// as it is: what it loses more as the tendon turns further is not in the tangent.
+  /// Balances internal and tendon forces: residual, tangent, tendon lengths and their derivatives. `tension`:
+  /// at the base, N, one a tendon of the rod. Chords need the columns. Friction is frozen: its change with
+  /// the turning angle is not in the tangent.
   void stress(std::span<const double> tension);
-  /// Adds what loads do, `share` of them, where `beyond` is the wrench of all of the loads of the sections
-  /// after this one. The columns are there.
+  /// Adds `share` of the loads, where `beyond` is the wrench of all loads on distal sections. Requires the
+  /// columns.
   void load(const RodLoads& loads, double share, const Vector6d& beyond);
-  /// After both: adds to the tangent what chords and loads do to the twists of the intervals.
+  /// To be called last: adds the effect of chords and loads on the intervals' twists to the tangent.
   void add_bending();
 
-  /// Of what its strains cost, the second derivative by its modes, size() x size(): the same in all shapes.
+  /// Returns the second derivative of its strain energy by its modes, size() x size(); equal in all shapes.
   [[nodiscard]] Eigen::MatrixXd stiffness() const;
-  /// Minus the work that loads without moments do from the base's origin on, J. The poses are there. Of loads
-  /// that follow there is no such number, and they count as if they did not follow.
+  /// Returns minus the work of loads without moments from the base's origin on, J. Requires the poses.
+  /// Follower loads have no potential and count as dead loads.
   [[nodiscard]] double load_energy(const RodLoads& loads) const;
 
   // NOLINTBEGIN(performance-unnecessary-value-param): an Eigen::Ref is written through.
-  /// Adds the residual's change by a part of its stiffness against shear, stretch, bends and twist.
+  /// Adds the residual's derivative by relative changes of its stiffness against shear, stretch, bends and
+  /// twist.
   void add_stiffness_slopes(Eigen::Ref<Eigen::MatrixXd> slopes) const;
-  /// Adds that by a part of its mass along its length, and the wrench of all of that. The columns are there.
+  /// Adds the derivative by a relative change of its mass per length, and the total wrench of that mass.
+  /// Requires the columns.
   void add_weight_slope(const Eigen::Vector3d& gravity, Vector6d& all,
                         Eigen::Ref<Eigen::VectorXd> slope) const;
   // NOLINTEND(performance-unnecessary-value-param)
 
-  /// The gradient of its energy by its modes, less what loads do.
+  /// Gradient of its energy by its modes, minus the loads.
   Eigen::VectorXd residual;
-  /// Of the residual, by its modes.
+  /// Derivative of the residual by its modes.
   Eigen::MatrixXd tangent;
-  /// Of the residual, by a twist of its base: size() x 6, negative.
+  /// Derivative of the residual by a twist of its base, size() x 6, negated.
   Eigen::Matrix<double, Eigen::Dynamic, 6> by_base;
-  /// Of the residual, by the share of the loads.
+  /// Derivative of the residual by the share of the loads.
   Eigen::VectorXd by_share;
-  /// Of its loads' wrench, that share of it, by its modes and by a twist of its base.
+  /// Derivative of the wrench of the given share of its loads, by its modes and by a twist of its base.
   Columns wrench_by_modes;
   Matrix6d wrench_by_base = Matrix6d::Zero();
-  /// Of all of its loads.
+  /// Wrench of all of its loads.
   Vector6d wrench = Vector6d::Zero();
-  /// How long each tendon of the rod is in it, m; that by its modes, size() x tendons; and the residual by
-  /// the tensions at the base, which is the same where friction leaves all of them.
+  /// Length of each tendon of the rod in it, m; its derivative by the modes, size() x tendons; and the
+  /// residual's derivative by the tensions at the base, equal to the latter without friction.
   Eigen::VectorXd tendon_lengths;
   Eigen::MatrixXd length_slopes, pull_slopes;
-  /// Of its strains, J.
+  /// Strain energy, J.
   double strain_energy = 0;
 
  private:
-  // Where a tendon passes a node.
+  // Passage of a tendon at a node.
   struct Passage {
     Eigen::Vector3d offset, slope, second;
-    double left = 1;  // Of the tension at the tendon's base; of a chord that begins here.
+    double left = 1;  // Remaining part of the tension at the tendon's base; for a chord that begins here.
   };
   [[nodiscard]] static Eigen::Vector3d way(const Passage& passage, const Vector6d& strain);
   [[nodiscard]] static Eigen::Vector3d way_slope(const Passage& passage, const Vector6d& strain,
                                                  const Vector6d& slope);
   [[nodiscard]] Vector6d strain_slope(std::size_t node) const;
   [[nodiscard]] const std::vector<Passage>* passages_of(std::size_t tendon) const;
-  // What a wrench makes of how the intervals turn each other.
+  // Adds the geometric stiffness of a wrench, by which intervals turn each other.
   void add_geometry(std::size_t interval, const Vector6d& W, std::size_t from, double factor);
   void add_chords(std::size_t from, std::size_t to, std::span<const double> tensions);
   void find_forces(const RodLoads& loads);
@@ -135,7 +137,7 @@ class RodElement {
   double length_;
   std::size_t index_;
   std::vector<PointMass> masses_;
-  // Of each tendon that runs here: its place in the rod's list, and how it passes the nodes.
+  // Tendons through this section: their indices in the rod's list, and their passages at the nodes.
   std::vector<std::size_t> tendons_;
   std::vector<std::vector<Passage>> passages_;
 
@@ -143,12 +145,12 @@ class RodElement {
   std::vector<Vector6d> strain_;  // At the nodes.
   std::vector<Pose> X_;
   std::vector<Columns> A_;
-  // Of each interval: its twist by the moments of its strain, and exp of that.
+  // For each interval: its twist by the moments of its strain, and exp of the twist.
   std::vector<MagnusStep> twist_;
   std::vector<MagnusStep::Slopes> by_moments_;
   std::vector<TwistExponential> exp_;
-  std::vector<Vector6d> across_;  // All that pulls at what lies beyond it, of chords and loads.
-  // Of each node, what pulls there, and that by its twist.
+  std::vector<Vector6d> across_;  // Wrench of chords and loads on everything beyond the interval.
+  // For each node: the wrench on it, and its derivative by the node's twist.
   std::vector<Vector6d> F_;
   std::vector<Matrix6d> D_;
   Columns step_, moved_, turned_;  // Space for columns.

@@ -12,15 +12,15 @@ namespace flexura {
 namespace {
 
 constexpr int max_falls = 400, max_tries = 60;
-// Radians of a section's bend (RodChain::scales) in one step: longer ones might pass over where it rests.
+// Longest step, radians of a section's bend (RodChain::scales): longer ones might pass over an equilibrium.
 constexpr double longest_fall = 0.5;
 constexpr double at_rest = 1e-9;
-// Of the rod's stiffness: what is added first, and what is so little that none is added.
+// Share of the rod's stiffness added: first value, value below which none is added, and maximum.
 constexpr double first_part = 0.1, no_part = 1e-3, most_part = 1e9;
-// Out of a saddle, as above.
+// Size of a push out of a saddle, in the unit of longest_fall.
 constexpr double push = 0.02;
 constexpr int max_inverse = 40;
-// Of the stiffness: less than this is no stiffness, positive or negative.
+// Relative to the stiffness: a smaller eigenvalue counts as no stiffness, positive or negative.
 constexpr double neutral = 1e-7;
 constexpr int max_pushes = 6;
 constexpr double same_energy = 1e-9;
@@ -41,7 +41,7 @@ double RodFall::measure(const Eigen::VectorXd& change) const {
 
 bool RodFall::look(const Eigen::VectorXd& q, const std::vector<Held>& tendons) {
   if (!q.allFinite()) return false;
-  // Tensions of held tendons follow from their lengths, which follow from q alone.
+  // Tensions of held tendons follow from their lengths, which depend on q only.
   for (std::size_t i = 0; i < tendons.size(); ++i) tensions_[i] = tendons[i].is_held ? 0 : tendons[i].tension;
   if (std::ranges::any_of(tendons, &Held::is_held)) {
     chain_.balance(q, tensions_, loads_, 1);
@@ -95,7 +95,7 @@ int RodFall::solve(double share, const std::vector<Held>& tendons) {
       give(at, at) += held.compliance + held.penalty;
     }
     if (!give.allFinite()) return -1;
-    // Of the whole, by the signs of both parts of it (E. Haynsworth, 1968).
+    // Inertia of the whole matrix from both parts (E. Haynsworth, 1968).
     const SymmetricEigen eigen = symmetric_eigen(0.5 * (give + give.transpose()));
     negative = chain_.negative_count(static_cast<int>((eigen.values.array() < 0).count()));
     give_inverse_ = pseudo_inverse(give);
@@ -131,7 +131,7 @@ RodFall::Step RodFall::step(Eigen::VectorXd& q, const std::vector<Held>& tendons
     const Eigen::VectorXd held_back = share_ * chain_.stiffness_times(step_), before = residual_;
     const double energy = energy_;
     const Eigen::VectorXd next = q + step_;
-    // Of what the step's equations say, how much is wrong.
+    // Relative error of the step's linearised equations.
     double wrong = 1;
     if (look(next, tendons)) {
       if (has_energy_) {
@@ -155,7 +155,7 @@ RodFall::Step RodFall::step(Eigen::VectorXd& q, const std::vector<Held>& tendons
   return Step::none;
 }
 
-// Along the direction in which the least energy is, found by inverse iteration.
+// Leaves along the eigenvector of the least eigenvalue, found by inverse iteration.
 RodFall::Saddle RodFall::leave_saddle(Eigen::VectorXd& q, const std::vector<Held>& tendons) {
   double share = first_part;
   while (solve(share, tendons) != 0) {
@@ -166,7 +166,7 @@ RodFall::Saddle RodFall::leave_saddle(Eigen::VectorXd& q, const std::vector<Held
   for (Eigen::Index i = 0; i < q.size(); ++i)
     direction(i, 0) = std::sin(1 + 2.4 * static_cast<double>(i) + 0.5 * pushes_) / chain_.scales()[i];
   double least = 0;
-  const int inversions = pushes_ < 2 ? max_inverse : 1;  // Then elsewhere.
+  const int inversions = pushes_ < 2 ? max_inverse : 1;  // Then another direction.
   for (int i = 0; i < inversions; ++i) {
     const Eigen::VectorXd stiffness = chain_.stiffness_times(direction);
     const double square = stiffness.dot(direction.col(0));
@@ -182,7 +182,7 @@ RodFall::Saddle RodFall::leave_saddle(Eigen::VectorXd& q, const std::vector<Held
   const double ahead = look(q, tendons) ? energy_ : huge;
   if (!has_energy_ && ahead < huge) return Saddle::left;
   q -= 2 * direction.col(0);
-  // The lower side first, then the other one.
+  // Tries the lower side first, then the other one.
   if (look(q, tendons) && (energy_ <= ahead) == (pushes_ % 2 == 0)) return Saddle::left;
   q += 2 * direction.col(0);
   return look(q, tendons) ? Saddle::left : Saddle::none;
@@ -193,7 +193,7 @@ bool RodFall::fall(Eigen::VectorXd& q, std::vector<Held>& tendons) {
   has_energy_ = chain_.has_energy(loads_), has_friction_ = chain_.has_friction();
   is_neutral_ = false;
   if (!look(q, tendons)) return false;
-  double lowest = huge;  // Of saddles.
+  double lowest = huge;  // Lowest energy of the saddles met.
   for (int i = 0; i < max_falls; ++i) {
     const Step made = step(q, tendons);
     if (made == Step::none) return false;
@@ -201,7 +201,7 @@ bool RodFall::fall(Eigen::VectorXd& q, std::vector<Held>& tendons) {
     const bool is_saddle = share_ > 0 && solve(0, tendons) != 0;
     share_ = last_share_ = 0;
     if (is_saddle) {
-      // Back at one that it has been pushed from: tendons that are just taut hold it there.
+      // Back at an equilibrium that it was pushed from: tendons that are just taut hold it there.
       pushes_ = energy_ < lowest - same_energy * scale_ ? 0 : pushes_ + 1;
       lowest = std::min(lowest, energy_);
       is_neutral_ = has_energy_ && pushes_ >= max_pushes;

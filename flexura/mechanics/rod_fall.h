@@ -9,46 +9,48 @@
 
 namespace flexura {
 
-/// How a rod falls: from any shape downhill to rest, as if it were slowed by a viscosity in proportion to its
-/// stiffness and had no mass. Each step is one of implicit Euler, which is Newton's method with a share of
-/// the stiffness added, little where the energy is convex. Where there is an energy (no friction, no moments
-/// or loads that follow) each step lowers it, and saddles are left along the direction in which the energy
-/// falls; else each step is as long as its equations stay near to linear.
+/// Viscous descent of a rod's potential energy from any shape to an equilibrium, as if the rod had no mass
+/// and a viscosity in proportion to its stiffness. Each step is implicit Euler: Newton's method with a share
+/// of the stiffness added, small where the energy is convex. With an energy (no friction, moments or follower
+/// loads) each step lowers it, and saddles are left along the direction in which it falls. Otherwise each
+/// step is as long as its equations stay nearly linear.
 class RodFall {
  public:
-  /// A tendon's input: it pulls with a given tension, or it is held at its base.
+  /// Input of a tendon: a given tension, or held at its base.
   struct Held {
-    double tension = 0;  ///< N, where nothing holds it.
+    double tension = 0;  ///< N, if it is not held.
     bool is_held = false;
-    double length = 0;      ///< At which it begins to pull, m.
-    double compliance = 0;  ///< m/N, > 0 of held ones.
-    /// How much more it gives while it is being held, m/N; about `tension` (augmented Lagrangian: M.
-    /// Hestenes, M. J. D. Powell 1969). What it pulls in the end comes back as `tension`.
+    double length = 0;      ///< Length above which it pulls, m.
+    double compliance = 0;  ///< m/N, > 0 for held ones.
+    /// Additional compliance while held, m/N, about `tension` (augmented Lagrangian: M. Hestenes, M. J. D.
+    /// Powell 1969). The final tension is returned as `tension`.
     double penalty = 0;
   };
 
-  /// Uses the chain, whose state changes.
+  /// Uses the chain and changes its state.
   RodFall(RodChain& chain, const RodLoads& loads);
 
-  /// From q to rest, and each tendon's tension there. False: it found no rest, or the rod turns inside out.
+  /// Moves q to an equilibrium and returns each tendon's tension there. Returns false if it found none or the
+  /// rod turns inside out.
   bool fall(Eigen::VectorXd& q, std::vector<Held>& tendons);
-  /// Whether it rests where its second derivative says less than that: a direction has no stiffness (nothing
-  /// holds the rod against going around, in a world that is the same all around), or tendons that are just
-  /// taut hold it, which has been tried by pushes to several sides.
+  /// Whether the second derivative does not decide stability. Either a direction has no stiffness (free
+  /// rotation in a rotationally symmetric world), or tendons that are just taut hold the rod, as tested by
+  /// pushes to several sides.
   [[nodiscard]] bool is_neutral() const { return is_neutral_; }
-  /// Linear systems solved.
+  /// Number of linear systems solved.
   [[nodiscard]] int iterations() const { return iterations_; }
 
  private:
   enum class Step { made, rest, none };
   enum class Saddle { left, neutral, none };
-  // Residual, tensions and, where there is one, energy at q. False: not finite, or inside out.
+  // Computes residual, tensions and, if there is one, energy at q. Returns false if not finite or inside out.
   bool look(const Eigen::VectorXd& q, const std::vector<Held>& tendons);
-  // Makes step_ under this share of the stiffness; how many eigenvalues are negative. -1: no solution.
+  // Computes step_ with this share of the stiffness. Returns the number of negative eigenvalues, or -1
+  // without a solution.
   int solve(double share, const std::vector<Held>& tendons);
-  // The same while tendons keep their tensions.
+  // Solves with constant tendon tensions.
   void solve_untied(Eigen::MatrixXd& columns) const;
-  // What a right-hand side, its first columns, becomes by the derivative that solve() has factored.
+  // Completes a solution of right-hand sides (first columns) with the derivative factored by solve().
   void finish_solve(Eigen::MatrixXd& columns) const;
   [[nodiscard]] double measure(const Eigen::VectorXd& change) const;
   Step step(Eigen::VectorXd& q, const std::vector<Held>& tendons);
@@ -57,14 +59,14 @@ class RodFall {
   RodChain& chain_;
   const RodLoads& loads_;
   bool has_energy_ = false, has_friction_ = false, is_neutral_ = false;
-  double share_ = 0, last_share_ = 0;  // of the stiffness: of the step to come, and of the one made
+  double share_ = 0, last_share_ = 0;  // added stiffness of the next step and of the last one
   int iterations_ = 0, pushes_ = 0;
-  double energy_ = 0, scale_ = 0;  // J, and of what its parts are
+  double energy_ = 0, scale_ = 0;  // J, and the magnitude of its terms
   std::vector<double> tensions_;
-  std::vector<Eigen::Index> taut_;  // held ones that pull
+  std::vector<Eigen::Index> taut_;  // held tendons that pull
   Eigen::VectorXd residual_, step_;
-  Eigen::PartialPivLU<Eigen::MatrixXd> friction_;  // what it makes of that derivative
-  Eigen::MatrixXd by_taut_, give_inverse_;         // of the derivative that is factored
+  Eigen::PartialPivLU<Eigen::MatrixXd> friction_;  // correction of the factored derivative
+  Eigen::MatrixXd by_taut_, give_inverse_;         // of the factored derivative
 };
 
 }  // namespace flexura

@@ -1,4 +1,4 @@
-// What friction leaves of tendons' tensions along a section, and how that changes with its shape.
+// Remaining tension of tendons with friction along a section, and its derivative by the shape.
 #include <algorithm>
 #include <cmath>
 
@@ -11,7 +11,8 @@ double angle_between(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   return std::atan2(a.cross(b).norm(), a.dot(b));
 }
 
-// Of unit vectors, by changes of both; 0 where they are one, for there it has no derivative.
+// Derivative of the angle between unit vectors by changes of both; 0 where they are equal, where it is not
+// differentiable.
 double angle_change(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& da,
                     const Eigen::Vector3d& db) {
   const Eigen::Vector3d cross = a.cross(b);
@@ -27,12 +28,12 @@ Eigen::Vector3d unit_change(const Eigen::Vector3d& vector, const Eigen::Vector3d
 
 }  // namespace
 
-// How a tendon goes on for each metre of the section, in the cross-section's frame.
+// Returns the tendon's tangent per metre of the section, in the cross-section's frame.
 Eigen::Vector3d RodElement::way(const Passage& passage, const Vector6d& strain) {
   return strain.head<3>() + strain.tail<3>().cross(passage.offset) + passage.slope;
 }
 
-// How that changes for each metre, the turning of the frame included.
+// Returns the derivative of the tangent by arc length, rotation of the frame included.
 Eigen::Vector3d RodElement::way_slope(const Passage& passage, const Vector6d& strain, const Vector6d& slope) {
   const Eigen::Vector3d u = strain.tail<3>();
   return u.cross(way(passage, strain)) + slope.head<3>() + slope.tail<3>().cross(passage.offset) +

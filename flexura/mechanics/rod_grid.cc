@@ -11,7 +11,7 @@ namespace {
 
 constexpr double same_place = 1e-9;
 
-// With fewer its modes cannot be distinguished, and loads are summed up too coarsely.
+// With fewer nodes modes cannot be distinguished, and the integration of loads is too coarse.
 int nodes_needed(const std::array<int, 6>& counts) {
   return std::max(5, *std::ranges::max_element(counts) + 2);
 }
@@ -89,12 +89,12 @@ void RodGrid::stretch_rest(double factor) {
   const double change = factor - rest.front()[stretch];
   if (change == 0) return;
   for (Vector6d& strain : rest) strain[stretch] = factor;
-  // The first moment is an integral over arc length: in proportion for what is constant.
+  // The first moment is an integral over arc length: proportional for a constant.
   for (auto& of_interval : rest_moments) of_interval[0][stretch] *= factor / (factor - change);
 }
 
 void RodGrid::integrate_nodes() {
-  // Of the Lagrange polynomials of the nodes that count in integrals.
+  // Lagrange polynomials of the nodes used in integrals.
   const auto nodes = static_cast<Eigen::Index>(t.size());
   cumulative.setZero(nodes, nodes);
   std::vector<std::size_t> counting;

@@ -10,36 +10,36 @@
 
 namespace flexura {
 
-/// Where a section of a rod is looked at, and what its strain modes are there. Places are parts t of its
-/// length. Mode j is a Legendre polynomial of one strain; modes of a strain lie together, by rising degree.
+/// Nodes of a section and the values of its strain modes there. Places are parts t of its length. Mode j is a
+/// Legendre polynomial of one strain; modes of a strain are adjacent, by rising degree.
 struct RodGrid {
-  /// `at`: places, from 0 to 1, that are to be nodes too.
+  /// `at`: places, from 0 to 1, that become nodes too.
   RodGrid(const RodSection& section, std::span<const double> at);
 
-  /// Of a strain: the first of its modes, and how many it has.
+  /// For each strain: index of its first mode, and number of modes.
   std::array<int, 6> first{}, count{};
-  int size = 0;  ///< Of all modes.
+  int size = 0;  ///< Number of all modes.
 
-  std::vector<double> t;          ///< Of the nodes, from 0 to 1.
-  std::vector<double> weight;     ///< Of the nodes in an integral over t; their sum is 1.
-  Eigen::MatrixXd at_node;        ///< Modes x nodes: what each mode is there.
-  Eigen::MatrixXd slope_at_node;  ///< The same by arc length, 1/m.
-  /// Nodes x nodes: integrals over t up to each node, of what has values at the nodes.
+  std::vector<double> t;          ///< Nodes, from 0 to 1.
+  std::vector<double> weight;     ///< Weights of the nodes in an integral over t; their sum is 1.
+  Eigen::MatrixXd at_node;        ///< Modes x nodes: value of each mode.
+  Eigen::MatrixXd slope_at_node;  ///< Modes x nodes: derivative of each mode by arc length, 1/m.
+  /// Nodes x nodes: integrates nodal values over t up to each node.
   Eigen::MatrixXd cumulative;
   /// Modes x intervals between nodes: the three moments (magnus_moments) of each mode in each.
   std::array<Eigen::MatrixXd, 3> moments;
-  /// At the nodes: of the section, its strain at rest, and that by arc length.
+  /// At the nodes: stiffness, undeformed strain, and its derivative by arc length.
   std::vector<Vector6d> stiffness, rest, rest_slope;
-  std::vector<std::array<Vector6d, 3>> rest_moments;  ///< Of that in the intervals.
+  std::vector<std::array<Vector6d, 3>> rest_moments;  ///< Moments of the undeformed strain in the intervals.
   std::vector<double> mass_per_length;                ///< At the nodes, kg/m.
-  std::vector<std::size_t> disks;       ///< The nodes that are disks, base and end among them; or none.
-  std::vector<std::size_t> mass_nodes;  ///< Of the section's point masses.
+  std::vector<std::size_t> disks;       ///< Nodes that are disks, base and end included; empty without disks.
+  std::vector<std::size_t> mass_nodes;  ///< Nodes of the section's point masses.
 
-  /// The section's own length at rest becomes a factor of what it was: its stretch at rest, whatever pulls.
+  /// Multiplies the section's undeformed length by a factor: its undeformed stretch under any load.
   void stretch_rest(double factor);
-  /// The node at t. It is one.
+  /// Returns the index of the node at t, which must be one.
   [[nodiscard]] std::size_t node_at(double place) const;
-  /// Where the mode j of strain c is: f(c, j) for all.
+  /// Calls f(c, j) for each mode j of each strain c.
   template <typename Function>
   void for_modes(Function&& f) const {
     for (int c = 0; c < 6; ++c) {
@@ -47,8 +47,8 @@ struct RodGrid {
       for (int j = first[strain]; j < first[strain] + count[strain]; ++j) f(c, j);
     }
   }
-  /// The strain, or its moment, that modes of the amounts q make beside that at rest; `modes` is a column of
-  /// the above.
+  /// Returns the strain, or its moment, of the mode values q without the undeformed part; `modes` is a column
+  /// of the matrices above.
   template <typename Column>
   [[nodiscard]] Vector6d strain(const Vector6d& at_rest, const Eigen::VectorXd& q,
                                 const Column& modes) const {

@@ -9,9 +9,9 @@
 
 namespace flexura {
 
-/// One interval of a rod between two nodes: X = exp(twist), twist the Magnus expansion (math/magnus.h) of the
-/// moments of its strain. With the moments' rates as slopes, T = Dual, it has velocities, and what a wrench
-/// does along moments has how that changes, which is what Lagrange's equations ask for.
+/// One interval of a rod between two nodes: X = exp(twist), with the Magnus expansion (math/magnus.h) of the
+/// moments of its strain. With T = Dual, moments' rates as slopes give velocities. The projection of a wrench
+/// on the moments then has its rate, as Lagrange's equations need.
 template <typename T>
 class RodInterval {
  public:
@@ -27,7 +27,7 @@ class RodInterval {
   }
 
   [[nodiscard]] const Screw<T>& twist() const { return twist_; }
-  /// The square of the angle by which it turns.
+  /// Squared turning angle.
   [[nodiscard]] T square() const { return dot(twist_.angular, twist_.angular); }
   /// exp(twist).
   [[nodiscard]] Placement<T> placement() const {
@@ -41,7 +41,7 @@ class RodInterval {
             .z = {xz - sw.y, yz + sw.x, 1.0 - (xx + yy)},
             .position = v + cosc_ * wv + deficit_ * cross(w, wv)};
   }
-  /// The twist of its end by a change of `twist`.
+  /// Twist of its end by a change of `twist`.
   [[nodiscard]] Screw<T> moved(const Screw<T>& change) const {
     Screw<T> power = change, sum = change;
     for (std::size_t n = 0; n < 4; ++n) {
@@ -50,7 +50,7 @@ class RodInterval {
     }
     return sum;
   }
-  /// What a wrench at its end, in the frame of its beginning, does along the three moments.
+  /// Projection of a wrench at its end, in the frame of its beginning, on the three moments.
   [[nodiscard]] std::array<Screw<T>, 3> along_moments(const Screw<T>& wrench) const {
     Screw<T> power = wrench, w = wrench;
     for (std::size_t n = 0; n < 4; ++n) {
@@ -66,11 +66,10 @@ class RodInterval {
             by_V + transposed_bracket(a1_, by_C), (1.0 / 12) * w + by_U + 2.0 * by_E};
   }
 
-  /// Of the first part of numbers with slopes.
+  /// Values of dual numbers.
   template <typename Q>
   friend RodInterval<Q> still(const RodInterval<Dual<Q>>& moving);
-  /// How fast the twist of its end, by which it moves against its beginning, changes while the rates of the
-  /// moments stay.
+  /// Rate of the twist of its end relative to its beginning at constant rates of the moments.
   template <typename Q>
   friend Screw<Q> drift_of(const RodInterval<Dual<Q>>& moving);
 
@@ -78,8 +77,8 @@ class RodInterval {
   template <typename Q>
   friend class RodInterval;
 
-  // exp and its derivative are polynomials of ad(twist) with these coefficients (math/se3.cc), functions of
-  // the angle's square; here all follow from two power series.
+  // exp and its derivative are polynomials of ad(twist) with these coefficients (math/se3.cc), which are
+  // functions of the squared angle. Here all follow from two power series.
   void find_coefficients() {
     const T x = square();
     const double most = greatest(x);
@@ -95,7 +94,7 @@ class RodInterval {
     c_ = {2.0 * cosc_ - 0.5 * sinc_, 2.5 * deficit_ - 0.5 * cosc_, c3, c4};
   }
 
-  // As many terms as a full turn needs.
+  // Number of terms for a full turn.
   static constexpr std::size_t max_terms = 24;
   static constexpr std::array<std::array<double, max_terms>, 2> series = [] {
     std::array<std::array<double, max_terms>, 2> c{};
@@ -113,7 +112,7 @@ class RodInterval {
   T sinc_, cosc_, deficit_;
 };
 
-/// Without the slopes.
+/// Returns the values without slopes.
 template <typename Q>
 [[nodiscard]] Triple<Q> value_of(const Triple<Dual<Q>>& a) {
   return {a.x.value, a.y.value, a.z.value};
@@ -122,13 +121,13 @@ template <typename Q>
 [[nodiscard]] Screw<Q> value_of(const Screw<Dual<Q>>& a) {
   return {value_of(a.linear), value_of(a.angular)};
 }
-/// The slopes alone.
+/// Returns the slopes.
 template <typename Q>
 [[nodiscard]] Screw<Q> slope_of(const Screw<Dual<Q>>& a) {
   return {{a.linear.x.slope, a.linear.y.slope, a.linear.z.slope},
           {a.angular.x.slope, a.angular.y.slope, a.angular.z.slope}};
 }
-/// A value and its slope.
+/// Combines a value and its slope.
 template <typename Q>
 [[nodiscard]] Screw<Dual<Q>> dual_of(const Screw<Q>& a, const Screw<Q>& b) {
   return {{{a.linear.x, b.linear.x}, {a.linear.y, b.linear.y}, {a.linear.z, b.linear.z}},
@@ -139,7 +138,7 @@ template <typename Q>
 [[nodiscard]] Screw<Q> drift_of(const RodInterval<Dual<Q>>& moving) {
   const Screw<Q> a1 = slope_of(moving.a1_), a2 = slope_of(moving.a2_), E = slope_of(moving.E_),
                  U = slope_of(moving.U_), V = slope_of(moving.V_);
-  const Screw<Q> C = 2.0 * bracket(a1, a2);  // Second derivatives from here on; of E less that, of U that.
+  const Screw<Q> C = 2.0 * bracket(a1, a2);  // Second derivatives from here on: E'' = -C, U'' = C.
   const Screw<Q> of_V = (1.0 / 60) * (2.0 * bracket(a1, E) - bracket(value_of(moving.a1_), C));
   const Screw<Q> of_twist = (1.0 / 240) * (2.0 * bracket(U, V) + bracket(C, value_of(moving.V_)) +
                                            bracket(value_of(moving.U_), of_V));

@@ -9,7 +9,7 @@ constexpr std::size_t widest = lanes_of<Lanes>;
 
 Triple<double> triple(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
 
-// A slice of the rod and the point masses on it as one body.
+// Combines a slice of the rod and its point masses into one body.
 RodLayout::Body body_of(const RodSection& section, const RodGrid& grid, std::size_t node,
                         bool rotary_inertia) {
   struct Part {
@@ -127,7 +127,7 @@ void RodLayout::find_rubbing(const Rod& rod) {
 }
 
 void RodLayout::stretch_rest(std::span<const double> factors, std::span<const double> factor_rates) {
-  constexpr std::size_t stretch = 2;  // Of the strains.
+  constexpr std::size_t stretch = 2;  // Index among the strains.
   is_driven = false;
   for (std::size_t s = 0; s < sections.size(); ++s) {
     Section& section = sections[s];

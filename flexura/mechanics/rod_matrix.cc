@@ -38,7 +38,7 @@ RodMatrix::RodMatrix(const RodLayout& layout) : layout_(layout), by_moments_(54 
 void RodMatrix::find_columns(const RodMotion<double>& motion) {
   using Number = RodMotion<double>::Number;
   constexpr std::size_t width = lanes_of<Number>;
-  // An interval's first node.
+  // First node of each interval.
   std::array<const Placement<double>*, width> at{};
   std::size_t s = 0;
   for (std::size_t first = 0; first < layout_.intervals; first += width) {
@@ -58,9 +58,8 @@ void RodMatrix::find_columns(const RodMotion<double>& motion) {
           set(X.position, at[lane]->position);
     }
     const RodInterval<Number> interval = still(motion.intervals()[first / width]);
-    // Unit forces, in the interval's frame. What a unit moment does along the angular strains is what the
-    // unit force does along the linear ones, and along these it does nothing: brackets are those of dual
-    // numbers.
+    // Unit forces, in the interval's frame. A unit moment acts on the angular strains as the unit force acts
+    // on the linear ones. It does not act on the linear strains, since brackets are those of dual numbers.
     for (std::size_t r = 0; r < 3; ++r) {
       Screw<Number> unit{};
       if (r == 0) unit.linear.x += 1.0;
@@ -99,7 +98,7 @@ void RodMatrix::find_columns(const RodMotion<double>& motion) {
           for (std::size_t j = first; j < last; ++j) to[j] = from[j] + (m1[j] * y1 + m2[j] * y2 + m3[j] * y3);
         };
         for (std::size_t r = 0; r < 3; ++r) add(r, 3 * c + r);
-        // Linear strains do not turn what is beyond; the columns' rows stay 0 there.
+        // Linear strains do not turn distal nodes; these column rows stay 0.
         if (c < 3) continue;
         for (std::size_t r = 0; r < 3; ++r) add(r + 3, 3 * (c - 3) + r);
       }
@@ -128,7 +127,7 @@ RodMatrix::Block RodMatrix::block_of(const RodLayout::Body& body, const Placemen
           -my, mx,  0,   xz,  yz,  zz};
 }
 
-// A^T H A, its lower triangle; H A for the base.
+// Adds the lower triangle of A^T H A, and H A for the base.
 void RodMatrix::add_product(Part& part, const double* A, const Block& H, bool has_base) {
   const std::size_t stride = part.stride;
   multiply(H, A, part.space.data(), stride);
@@ -138,7 +137,7 @@ void RodMatrix::add_product(Part& part, const double* A, const Block& H, bool ha
     const double a0 = A[j], a1 = A[stride + j], a2 = A[2 * stride + j], a3 = A[3 * stride + j],
                  a4 = A[4 * stride + j], a5 = A[5 * stride + j];
     double* row = part.matrix.data() + j * stride;
-    // To the end of the instruction that holds the diagonal.
+    // Up to the end of the instruction that holds the diagonal.
     const std::size_t last = std::min(stride, (j / step_of_rows + 1) * step_of_rows);
     for (std::size_t l = 0; l < last; ++l)
       row[l] += ((a0 * b0[l] + a1 * b1[l]) + (a2 * b2[l] + a3 * b3[l])) + (a4 * b4[l] + a5 * b5[l]);
@@ -147,7 +146,8 @@ void RodMatrix::add_product(Part& part, const double* A, const Block& H, bool ha
   for (std::size_t l = 0; l < 6 * stride; ++l) part.by_base[l] += part.space[l];
 }
 
-// Of the tendons' way through a node: the second derivative of their lengths by its strains, times tension.
+// Adds the tendons' geometric stiffness at a node: the second derivative of their lengths by its strains,
+// times tension.
 void RodMatrix::add_tendons(std::size_t s, const RodMotion<double>& motion, const double* tensions,
                             double factor) {
   const RodLayout::Section& section = layout_.sections[s];
@@ -167,7 +167,7 @@ void RodMatrix::add_tendons(std::size_t s, const RodMotion<double>& motion, cons
   }
 }
 
-// Cholesky's, by rows, and L^-1 of what the base feels.
+// Cholesky decomposition by rows, and L^-1 of the coupling to the base.
 bool RodMatrix::factor_part(Part& part, std::size_t modes, bool has_base) {
   const std::size_t stride = part.stride;
   for (std::size_t i = 0; i < modes; ++i) {

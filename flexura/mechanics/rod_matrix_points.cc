@@ -7,7 +7,7 @@
 namespace flexura {
 namespace {
 
-// So much of a tie's matrix is added to its diagonal, so that it has a root.
+// Part of a tie's matrix added to its diagonal, so that it has a root.
 constexpr double of_a_root = 1e-14;
 
 using PointNumber = RodMotion<double>::Number;
@@ -33,7 +33,8 @@ void RodMatrix::add_pull(Block& H, const NodePull& pull, const Factors& factors)
   }
 }
 
-// Those of the nodes where their intervals begin, and what the modes do in their part of these.
+// Computes point columns: those of the node where the interval begins, plus the effect of the modes in the
+// part of the interval.
 void RodMatrix::find_point_columns(const RodMotion<double>& motion) {
   const RodPoints& points = *motion.points();
   std::size_t size = 0;
@@ -44,7 +45,7 @@ void RodMatrix::find_point_columns(const RodMotion<double>& motion) {
     size += 6 * parts_[section].stride;
   }
   if (point_columns_.size() < size) point_columns_.resize(size);
-  // So many points side by side as they were placed.
+  // Points side by side, as they were placed.
   std::size_t done = point_lanes, next = 0;
   std::array<std::array<std::array<std::array<double, 6>, 3>, 3>, point_lanes> along{};
   for (const Pulled& pulled : pulled_) {
@@ -66,7 +67,7 @@ void RodMatrix::find_point_columns(const RodMotion<double>& motion) {
             set_lane_of(X.position, at.position, lane);
       }
       const RodInterval<PointNumber> interval = still(motion.parts()[next]);
-      // As of whole intervals: a unit moment does what the unit force does, one half of the strains further.
+      // As for whole intervals: a unit moment acts as the unit force does, one half of the strains further.
       for (std::size_t r = 0; r < 3; ++r) {
         Screw<PointNumber> unit{};
         if (r == 0) unit.linear.x += 1.0;
@@ -170,7 +171,7 @@ void RodMatrix::solve(double* x) const {
 
 void RodMatrix::add_pull_change(const RodMotion<double>& motion, double stretch, const double* x,
                                 double* force) const {
-  // How far the rod's sections move each other; then what changes, from the tip on.
+  // First the relative motion of the sections, then the change of forces, from the tip on.
   Vector6d moved = Vector6d::Zero(), beyond = Vector6d::Zero();
   for (std::size_t s = 0; s + 1 < parts_.size(); ++s)
     moved += node_twist(s, layout_.sections[s].intervals, x);

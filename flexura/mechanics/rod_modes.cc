@@ -13,13 +13,13 @@ namespace {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXcd;
 
-// Of matrices by unit masses, mass = L L^T.
+// Transforms a matrix to unit masses, mass = L L^T.
 MatrixXd by_unit_mass(const MatrixXd& L, const MatrixXd& A) {
   const MatrixXd half = L.triangularView<Eigen::Lower>().solve(A);
   return L.triangularView<Eigen::Lower>().solve(half.transpose()).transpose();
 }
 
-// A rate, 1/s, about that of the slower of the modes.
+// Returns a rate close to that of the slower modes, 1/s.
 double slow_rate(const MatrixXd& L, const MatrixXd& K) {
   const Eigen::VectorXd squares = symmetric_eigen(by_unit_mass(L, 0.5 * (K + K.transpose()))).values;
   std::vector<double> sizes;
@@ -29,8 +29,8 @@ double slow_rate(const MatrixXd& L, const MatrixXd& K) {
   return square > 0 && std::isfinite(square) ? std::sqrt(square) : 1;
 }
 
-// Of M x'' + D x' + K x = 0: those of (A - shift)^-1, of which the greatest are those next to the shift. Time
-// in units of 1/shift.
+// Returns the eigenvalues of (A - shift)^-1 for M x'' + D x' + K x = 0. The largest belong to the eigenvalues
+// of A nearest to the shift. Time is in units of 1/shift.
 VectorXcd eigenvalues_near(double shift, const MatrixXd& L, const MatrixXd& K, const MatrixXd& D) {
   const Index n = K.rows();
   const MatrixXd mass = L * L.transpose();
@@ -51,12 +51,12 @@ RodModes rod_modes(const RodDynamicsSlopes& at_rest) {
   if (n == 0) return modes;
   const MatrixXd K = -at_rest.force_by_q, D = -at_rest.force_by_v;
   const Cholesky mass(at_rest.mass);
-  // L^-1 of ones is L's inverse.
+  // L^-1 of the unit matrix.
   const MatrixXd L = mass.solve_lower(MatrixXd::Identity(n, n))
                          .triangularView<Eigen::Lower>()
                          .solve(MatrixXd::Identity(n, n));
   modes.eigenvalues = eigenvalues_near(slow_rate(L, K), L, K, D);
-  // Of conjugates the amounts are the same but for rounding, or not: by pairs.
+  // Absolute values of conjugates may differ by rounding, so pairs are sorted together.
   using Number = std::complex<double>;
   std::vector<Number> upper;
   for (const Number& value : modes.eigenvalues)

@@ -7,20 +7,20 @@
 
 namespace flexura {
 
-/// How a rod swings around where it is at rest.
+/// Natural modes of a rod around an equilibrium.
 struct RodModes {
-  /// Of A of x = (q, v), as many as x: by growing amount, of pairs that with the negative imaginary part
-  /// first, 1/s.
+  /// Eigenvalues of A of x = (q, v), 1/s, sorted by absolute value; in pairs the one with negative imaginary
+  /// part is first.
   Eigen::VectorXcd eigenvalues;
-  /// Of each pair, in that order: |eigenvalue| / 2 pi, Hz, and - real part / |eigenvalue|. What falls without
-  /// a swing has none.
+  /// For each pair, in that order: |eigenvalue| / 2 pi, Hz, and -real part / |eigenvalue|. Overdamped modes
+  /// are not in these lists.
   std::vector<double> frequencies, damping_ratios;
 };
 
-/// Those of derivatives at rest (RodDynamics::slopes). Slow ones are exact to rounding although tendons that
-/// are held are very stiff: they come from the inverse of A, shifted. Of fast ones about 1e-16 times the
-/// square of the ratio to the slow is wrong. Not finite where that inverse does not exist, for a shift in
-/// general.
+/// Returns the modes from derivatives at rest (RodDynamics::slopes). They come from the shifted inverse of A.
+/// So slow modes are exact to rounding although held tendons are very stiff. Fast ones have a relative error
+/// of about 1e-16 times the square of their ratio to the slow ones. Not finite where that inverse does not
+/// exist, for a shift in general.
 [[nodiscard]] RodModes rod_modes(const RodDynamicsSlopes& at_rest);
 
 }  // namespace flexura

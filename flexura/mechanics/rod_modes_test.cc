@@ -35,7 +35,7 @@ TEST(RodModes, OfACantileverAreThoseOfEulerAndBernoulli) {
   }
 }
 
-// Of viscosity D = T K the damping ratio is T w / 2, and beyond 1 nothing swings.
+// With viscosity D = T K the damping ratio is T w / 2; above 1 there are no oscillations.
 TEST(RodModes, AreDampedInProportionToTheirFrequency) {
   const double time = 1e-3;
   const RodModes free = modes_at_rest(steel_rod(0)), damped = modes_at_rest(steel_rod(time));
@@ -73,14 +73,14 @@ TEST(RodModes, AreTheEigenvaluesOfTheLinearModel) {
   }
 }
 
-// A tendon that is held and gives nothing holds the direction of the tip in its plane (roots of tan x = -tanh
-// x instead of cos x cosh x = -1). It gives 1e-8 of what the rod does, and slow modes are exact all the same.
+// An inextensible held tendon fixes the tip's direction in its plane (roots of tan x = -tanh x instead of cos
+// x cosh x = -1). Its compliance is 1e-8 of the rod's, and slow modes are still exact.
 TEST(RodModes, OfARodWhoseTendonIsHeldAreStifferInItsPlane) {
   Rod rod = steel_rod(0, false);
   rod.sections[0].modes.bend = 6;
   const RodModes free = modes_at_rest(rod), held = modes_at_rest(rod, {.displacements = {1e-3}});
   ASSERT_EQ(free.frequencies.size(), held.frequencies.size());
-  EXPECT_NEAR(held.frequencies[0], free.frequencies[0], 0.01 * free.frequencies[0]);  // Across it.
+  EXPECT_NEAR(held.frequencies[0], free.frequencies[0], 0.01 * free.frequencies[0]);  // Transverse to it.
   const double ratio = std::pow(2.365020372 / 1.875104069, 2);
   EXPECT_NEAR(held.frequencies[1], ratio * free.frequencies[0], 2e-4 * held.frequencies[1]);
   EXPECT_GT(held.frequencies.back(), 100 * free.frequencies.back());

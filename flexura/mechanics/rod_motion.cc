@@ -7,7 +7,7 @@
 namespace flexura {
 namespace {
 
-// Six numbers, `stride` apart.
+// Reads six numbers with distance `stride`.
 template <typename N, typename S>
 Screw<N> load_screw(const S* from, std::size_t stride) {
   return {{load_lanes(from), load_lanes(from + stride), load_lanes(from + 2 * stride)},
@@ -121,7 +121,7 @@ void RodMotion<S>::place(const S* q, const S* v) {
   for (std::size_t k = 0; k < layout_.nodes; ++k) P_[k] = momentum_of(k, V_[k]);
 }
 
-// Of sections whose lengths at rest change: of the first moment, an integral over arc length.
+// For driven sections: the first moment is an integral over arc length.
 template <typename S>
 void RodMotion<S>::add_stretch_rates() {
   constexpr std::size_t stretch = 2;
@@ -194,7 +194,7 @@ void RodMotion<S>::add_modes(const std::vector<S>& of_moments, S* sums) const {
 template <typename S>
 void RodMotion<S>::balance(S* momentum, S* force) {
   const std::size_t padded = layout_.padded;
-  Screw<S> P{}, W{};  // Of all that lies beyond.
+  Screw<S> P{}, W{};  // Sums over all distal nodes.
   for (std::size_t s = layout_.sections.size(); s-- > 0;) {
     const RodLayout::Section& section = layout_.sections[s];
     for (std::size_t i = section.intervals; i-- > 0;) {

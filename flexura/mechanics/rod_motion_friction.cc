@@ -1,5 +1,5 @@
-// Friction of tendons along their ways, as the rod moves: how they turn and slide, and what that leaves of
-// their tensions (docs/mechanics.md, "Friction in motion").
+// Tendon friction in motion: turning and sliding of tendons along their paths, and the remaining tension
+// (docs/mechanics.md, "Tendon friction in motion").
 #include <algorithm>
 #include <cstddef>
 #include <type_traits>
@@ -10,18 +10,18 @@
 namespace flexura {
 namespace {
 
-// Of the angle by which a section turns a tendon: less is smooth.
+// Relative to a section's turning of a tendon: smaller turning is smoothed.
 constexpr double least_turn = 1e-7;
-// More turning than this, times the coefficient, leaves nothing.
+// Turning times friction coefficient above which no tension remains.
 constexpr double most_turn = 30;
-// Of what a tendon slides beyond what friction gives way to: from there on it has let go.
+// Sliding, in units of the bristles' deflection, after which friction is at its limit.
 constexpr double let_go = 40;
 
 inline double number_of(double value) { return value; }
 inline double number_of(const Dual<double>& value) { return value.value; }
 inline double number_of(const Dual<Lanes>& value) { return value.value[0]; }
 
-// |a|, smooth where it is 0.
+// |a|, smooth at 0.
 template <typename S>
 S size_of(const Triple<S>& a, double least) {
   return square_root(least * least + dot(a, a)) - (least + S{});
@@ -37,10 +37,9 @@ S at_most(const S& value, double most) {
   return number_of(value) > most ? most + S{} : value;
 }
 
-// By how much friction holds a tendon under a tension where it turns by `turn` (times the coefficient), when
-// it has slid on by `slide` m towards the base since it was held by `before`. Friction gives way as P. R.
-// Dahl's bristles do: dF/ds = grip (1 -+ F / limit), so that it comes from wherever it is to the capstan's,
-// which it does not exceed.
+// Friction force where a tendon turns by `turn` (times the coefficient) after sliding by `slide` m towards
+// the base, starting from `before`. P. R. Dahl's bristles: dF/ds = grip (1 -+ F / limit), so that it
+// approaches the capstan's limit from any value and does not exceed it.
 template <typename S>
 S held_by(const S& tension, const S& turn, const S& slide, double grip, double before) {
   const S one = 1.0 + S{};
@@ -70,7 +69,7 @@ Screw<S> RodMotion<S>::strain_rate_at(const RodLayout::Section& section, std::si
 }
 
 // Pieces of a section where the tendon runs in a channel. `direction`: of the tendon before, in the frame of
-// the section's base, and after it in that of its end.
+// the section's base; on return after it, in the frame of its end.
 template <typename S>
 void RodMotion<S>::follow_channel(const RodLayout::Rubbing& rub, std::size_t from, std::size_t to,
                                   Triple<S>& direction) {
@@ -89,7 +88,7 @@ void RodMotion<S>::follow_channel(const RodLayout::Rubbing& rub, std::size_t fro
     const Screw<S> rate = strain_rate_at(section, k, s);
     growth_[at] =
         rub.pieces[p].run * (dot(pull.along.linear, rate.linear) + dot(pull.along.angular, rate.angular));
-    // How the way turns for each metre, with the cross-section.
+    // Derivative of the tangent by arc length, rotation of the cross-section included.
     Screw<S> slope{};
     const Vector6d& rest = section.grid.rest_slope[k];
     for (std::size_t c = 0; c < 6; ++c) component(slope, c) = rest[static_cast<Eigen::Index>(c)] + S{};
@@ -116,7 +115,7 @@ void RodMotion<S>::follow_channel(const RodLayout::Rubbing& rub, std::size_t fro
   direction = units_[rub.first + to - 1].linear;
 }
 
-// The same between disks.
+// Pieces between disks.
 template <typename S>
 void RodMotion<S>::follow_chords(const RodLayout::Rubbing& rub, std::size_t from, std::size_t to,
                                  Triple<S>& direction) {
@@ -154,13 +153,14 @@ void RodMotion<S>::find_slides() {
         follow_chords(rub, from, to, direction);
       from = to;
     }
-    // It is held at its end; what lies beyond a place becomes shorter as it slides there towards the base.
+    // It is fastened at its end. The part beyond a place becomes shorter by the sliding there towards the
+    // base.
     S slide{};
     for (std::size_t p = rub.pieces.size(); p-- > 0;) {
       const std::size_t at = rub.first + p;
       slide -= growth_[at];
       slide_[at] = slide;
-      // Between nodes the sum of a quadrature may be below 0 where the tendon hardly turns.
+      // The quadrature may be negative between nodes where the tendon hardly turns.
       const S turned = number_of(turn_[at]) > 0 ? turn_[at] : S{};
       turn_[at] = at_most(rub.friction * turned, most_turn);
     }

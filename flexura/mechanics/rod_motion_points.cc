@@ -9,10 +9,10 @@
 namespace flexura {
 namespace {
 
-// A little more than the sum of what rounds.
+// Slightly more than the accumulated rounding.
 constexpr double a_little_more = 1 + 1e-9;
 
-// How a point's motion changes a wrench.
+// Change of a wrench by a point's motion.
 Screw<double> wrench_change_of(const Matrix6d&, const Matrix6d&, const Placement<double>&,
                                const Screw<double>&) {
   return {};
@@ -54,7 +54,7 @@ void set_motion(NodeMotion& motion, const Placement<S>& X, const Screw<S>& V) {
 double number_of(const Lanes& value, std::size_t lane) { return value[lane]; }
 Dual<Lanes> number_of(const Dual<Lanes>& value, std::size_t) { return value; }
 
-// One of several numbers side by side.
+// Returns one of several numbers side by side.
 template <typename N>
 auto lane_of(const Triple<N>& a, std::size_t lane) {
   return Triple<decltype(number_of(a.x, lane))>{number_of(a.x, lane), number_of(a.y, lane),
@@ -95,7 +95,7 @@ void RodMotion<S>::set_points(const RodPoints* points) {
   lengths_.resize(layout_.intervals);
 }
 
-// Of the rod in the intervals, at most: each mode of a strain is at most its amount.
+// Upper bounds of the rod's lengths in the intervals: each mode of a strain is at most its absolute value.
 template <typename S>
 void RodMotion<S>::bound_lengths() {
   constexpr std::size_t linear = 3, stretch = 2;
@@ -199,12 +199,12 @@ void RodMotion<S>::add_surroundings(const RodSurroundings& surroundings) {
   }
   for (const PointCoupling& each : couplings_)
     point_W_[each.at] += wrench_change_of(each.by_pose, each.by_twist, point_X_[each.of], point_V_[each.of]);
-  // The rod before the interval feels it as if it were at the interval's beginning.
+  // Proximal of the interval the wrench acts as if at the interval's beginning.
   for (std::size_t i = 0; i < chosen_.size(); ++i)
     if (!point_pulls_[i].is_idle) W_[points_->points[chosen_[i]].node] += point_W_[i];
 }
 
-// What pulls at points does along the strains of the interval before them.
+// Projects wrenches at points on the strains of the interval before them.
 template <typename S>
 void RodMotion<S>::add_point_forces(S* force) const {
   constexpr std::size_t width = lanes_of<Number>;

@@ -26,8 +26,8 @@ typename RodMotion<S>::Pull RodMotion<S>::pull_of(const RodLayout::Passage& pass
   return {.along = {u, cross(offset, u)}, .length = length};
 }
 
-// add(from, to, along, length): the straight pieces of a tendon, from node to node, where a unit of tension
-// is that wrench.
+// Calls add(from, to, along, length) for the straight pieces of a tendon, from node to node; `along` is the
+// wrench of a unit tension.
 template <typename S>
 template <typename Add>
 void RodMotion<S>::for_chords(const RodLayout::Section& section, std::size_t tendon, Add&& add) const {

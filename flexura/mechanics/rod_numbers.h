@@ -7,10 +7,10 @@
 #include "flexura/math/screw.h"
 #include "flexura/math/se3.h"
 
-// What the motion of rods is written with, for numbers of any kind: with slopes or without.
+// Arithmetic of rod motions for any numbers: plain or dual.
 namespace flexura {
 
-/// Without a slope.
+/// Constant without slope.
 template <typename S>
 [[nodiscard]] Triple<S> constant(const Triple<double>& a) {
   return {a.x + S{}, a.y + S{}, a.z + S{}};
@@ -24,7 +24,7 @@ template <typename S>
   return constant<S>(Triple<double>{a.x(), a.y(), a.z()});
 }
 
-/// The value alone; of several that are the same, one.
+/// Returns the value alone; for several equal lanes, one of them.
 [[nodiscard]] inline double plain(double value) { return value; }
 [[nodiscard]] inline double plain(const Dual<Lanes>& value) { return value.value[0]; }
 template <typename S>
@@ -36,7 +36,7 @@ template <typename S>
   return (Vector6d() << plain(a.linear), plain(a.angular)).finished();
 }
 
-/// One of the six numbers.
+/// Returns one of the six numbers.
 template <typename S>
 [[nodiscard]] S& component(Screw<S>& a, std::size_t c) {
   Triple<S>& half = c < 3 ? a.linear : a.angular;
@@ -52,7 +52,7 @@ template <typename S>
   return i == 1 ? half.y : half.z;
 }
 
-/// Of a force f at p.
+/// Wrench of a force f at p.
 template <typename S>
 [[nodiscard]] Screw<S> wrench_at(const Triple<S>& p, const Triple<S>& f) {
   return {f, cross(p, f)};

@@ -50,7 +50,7 @@ TEST(RodPayload, APayloadThatFallsOffLetsTheTipJumpUp) {
   EXPECT_LT(low, height - 0.01);
   const Pose tip = dynamics.tip(state);
   state = dynamics.drop(state, load.place, {}, pull_of_earth);
-  // What left was at rest: the energy that is less is that of its height alone.
+  // The dropped mass was at rest: the energy decreases by its potential energy only.
   EXPECT_NEAR(dynamics.energy(state, pull_of_earth).total() - energy,
               0.03 * pull_of_earth.gravity.dot(tip * load.offset), 2e-6);
   const double dropped = dynamics.energy(state, pull_of_earth).total();
@@ -80,7 +80,7 @@ TEST(RodPayload, PicksUpWithTheMomentumOfBoth) {
     RodPayload load{.mass = random.uniform(0.001, 0.1), .offset = random.vector<3>(-0.01, 0.01)};
     const Eigen::Vector3d at = tip.pose * load.offset;
     const double energy = dynamics.energy(before, {}).total();
-    // It moves as the place does: nothing is lost.
+    // It moves with the place: no energy is lost.
     load.velocity = tip.twist.head<3>() + tip.twist.tail<3>().cross(at);
     const RodState with = dynamics.pick_up(before, load, {}, {});
     EXPECT_LT((dynamics.velocity(with) - v).norm(), 1e-7 * v.norm());

@@ -12,7 +12,7 @@
 namespace flexura {
 namespace {
 
-// Nearer to a node a point is it.
+// A point nearer to a node than this counts as the node.
 constexpr double at_the_node = 1e-9;
 
 }  // namespace

@@ -15,7 +15,7 @@
 namespace flexura {
 namespace {
 
-// Of Gauss and Newton's steps that bring arcs to a rod.
+// Number of Gauss-Newton steps that fit arcs to a rod.
 constexpr int max_fit_steps = 20;
 constexpr double stretch_secant = 0.005;
 
@@ -23,12 +23,12 @@ std::size_t arcs_of(const Section& section) {
   return section.bend_profile ? section.bend_profile->size() : 1;
 }
 
-// Of each arc: enough that even a single one sees what its section is.
+// Sample places of each arc; enough for a single arc to represent its section.
 std::size_t samples_an_arc(const Section& section) {
   return std::max<std::size_t>(4, (12 + arcs_of(section) - 1) / arcs_of(section));
 }
 
-// Where arc `arc` of a section has its sample `k`, as a part of the section's length.
+// Place of sample `k` of arc `arc` of a section, as a part of the section's length.
 double place_of(const Section& section, std::size_t arc, std::size_t k) {
   const std::size_t count = samples_an_arc(section);
   return static_cast<double>(arc * count + k + 1) / static_cast<double>(arcs_of(section) * count);
@@ -124,7 +124,7 @@ const RodResponse::Answer& RodResponse::answer(const ArmState& command) const {
   return *last_;
 }
 
-// Arcs whose ends have the rod's tangents: where the fit begins. The rod is placed.
+// Returns arcs whose ends have the rod's tangents: start of the fit. The rod must be placed.
 ArmState RodResponse::along_tangents(const ArmState& command) const {
   ArmState shape = ArmState::straight(ends_.size());
   Eigen::Matrix3d R = Eigen::Matrix3d::Identity();
@@ -199,7 +199,7 @@ void RodResponse::slopes(const ArmState& command, Eigen::MatrixXd& by_command) c
   if (!here.at.converged()) {
     by_command.setConstant(std::numeric_limits<double>::quiet_NaN());
   } else if (!has_driven_lengths_) {
-    // The solver and the fit are where this was answered.
+    // Solver and fit are at this command.
     analytic_slopes(RodStatics::Slack::hangs, by_command);
     if (std::ranges::any_of(here.at.tensions, [](double tension) { return tension == 0; }))
       go_beyond_slack(by_command);
@@ -208,9 +208,9 @@ void RodResponse::slopes(const ArmState& command, Eigen::MatrixXd& by_command) c
   }
 }
 
-// Of the rod's places by the command, and of the arcs nearest to them by these.
+// Derivatives of the rod's places by the command, and of the nearest arcs by the places.
 void RodResponse::analytic_slopes(RodStatics::Slack slack, Eigen::MatrixXd& by_command) const {
-  // What was answered last may have been asked of another thread's command since: not with mutex_ held.
+  // mutex_ is held, so no other thread has changed last_.
   const ArmState& command = last_->command;
   const Eigen::MatrixXd q_by_command = statics_.slopes(slack).q_by_input * displacement_slopes(command);
   fine_.place_with_columns(last_->at.q);
@@ -235,9 +235,8 @@ void RodResponse::analytic_slopes(RodStatics::Slack slack, Eigen::MatrixXd& by_c
   }
 }
 
-// Some commands do no more than take up slack, and the derivative is singular. Along these, which are those
-// to which the arm answers by less than half of what it would if all tendons were taut, it counts as if they
-// were.
+// Some commands only take up slack, and the derivative is singular. These are the commands with less than
+// half the response of an arm whose tendons are all taut. Along them the derivative is that of the taut arm.
 void RodResponse::go_beyond_slack(Eigen::MatrixXd& by_command) const {
   constexpr double least_part = 0.5;
   Eigen::MatrixXd taut(by_command.rows(), by_command.cols());
@@ -282,7 +281,7 @@ void RodResponse::secant_slopes(const Answer& kept, Eigen::MatrixXd& by_command)
     if (part.is_stretchable)
       column(c + 2, stretch_secant, [i](ArmState& state) -> double& { return state.stretches[i]; });
   }
-  // The solver and the fit are elsewhere now.
+  // Solver and fit are at another command now.
   last_.reset();
 }
 

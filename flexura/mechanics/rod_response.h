@@ -17,30 +17,30 @@
 
 namespace flexura {
 
-/// An elastic rod as what commands make of an arm (docs/mechanics.md, "Believed"). A command's bends say how
-/// far each tendon is pulled in: as far as arcs of these bends would. Without a drive its stretches are
-/// factors on the sections' own lengths. The rod comes to rest, and its shape is the chain of arcs that lies
-/// nearest to it, by least squares of places along the rod.
+/// Shape of an arm that is an elastic rod under commands (docs/mechanics.md, "The rod as a model"). A
+/// command's bends set the displacement of each tendon: that of arcs with these bends. Without a drive its
+/// stretches are factors on the sections' own lengths. The shape is the chain of arcs nearest to the rod's
+/// equilibrium, by least squares of places along the rod.
 class RodResponse : public ArmResponse {
  public:
-  /// `driven` has an arc for each number of its sections' bend profiles. With a drive, its tendons say how
-  /// far they are pulled in, from the drive's pretension on; without one, the rod's. std::invalid_argument:
-  /// another number of sections or tendons, the problems of the rod, no rest under the pretension, or under
-  /// weight and loads without a command.
+  /// `driven` has an arc for each number of its sections' bend profiles. Displacements are those of the
+  /// drive's tendons from the drive's pretension on; without a drive, those of the rod's tendons. Throws
+  /// std::invalid_argument for wrong numbers of sections or tendons, an invalid rod, no equilibrium under the
+  /// pretension, or none under weight and loads without a command.
   RodResponse(const Arm& driven, const Rod& rod, RodLoads loads, std::optional<Drive> drive);
 
   [[nodiscard]] ArmState shape(const ArmState& command) const override;
-  /// By the equilibrium's derivatives. Where tendons hang slack, along commands that would only take up their
-  /// slack, those beyond it: as if all tendons were just taut. Of arms whose sections are driven longer it is
-  /// the change over `secant` to both sides.
+  /// Derivatives from the equilibrium. Along commands that only take up slack they are those beyond the
+  /// slack, with all tendons just taut. If sections have driven lengths they are central differences with
+  /// step `secant`.
   void slopes(const ArmState& command, Eigen::MatrixXd& by_command) const override;
   static constexpr double secant = 0.02;  ///< rad
 
-  /// How the rod stands, in its frame. It did not converge where the arm comes to no rest.
+  /// Returns the rod's equilibrium in its frame; not converged if there is none.
   [[nodiscard]] Equilibrium equilibrium(const ArmState& command) const;
 
  private:
-  // What was answered last.
+  // The last answer.
   struct Answer {
     ArmState command;
     Equilibrium at;
@@ -48,7 +48,7 @@ class RodResponse : public ArmResponse {
   };
   [[nodiscard]] std::vector<double> displacements(const ArmState& command) const;
   [[nodiscard]] Eigen::MatrixXd displacement_slopes(const ArmState& command) const;
-  // With mutex_ held, as what follows.
+  // This and the following functions require mutex_.
   Equilibrium solved(const ArmState& command, const Equilibrium& near) const;
   const Answer& answer(const ArmState& command) const;
   [[nodiscard]] ArmState fitted(const Equilibrium& at, const ArmState& command) const;
@@ -60,24 +60,24 @@ class RodResponse : public ArmResponse {
   Arm driven_, shaped_;  // in the rod's frame
   RodLoads loads_;
   std::optional<Drive> drive_;
-  std::vector<double> tight_;  // what the pretension pulls in, m
+  std::vector<double> tight_;  // displacements of the pretension, m
   ArmVariables variables_;     // of shapes
-  // Places of the rod to which arcs are fitted, of its chain and of the chain of arcs.
+  // Places of the rod to which arcs are fitted, in its chain and in the chain of arcs.
   struct Place {
     std::size_t element = 0, node = 0;
     MaterialPoint on_arcs;
   };
   std::vector<Place> places_;
-  std::vector<std::size_t> ends_;    // those where an arc ends
+  std::vector<std::size_t> ends_;    // those at the end of an arc
   bool has_driven_lengths_ = false;  // sections change their length on command
 
   mutable std::mutex mutex_;
   mutable RodStatics statics_;
   mutable RodChain fine_;
-  mutable Equilibrium straight_;  // of the command that bends nothing
+  mutable Equilibrium straight_;  // of the command without bends
   mutable std::optional<Answer> last_;
   mutable BackboneJacobian jacobian_;
-  mutable Eigen::MatrixXd J_;                 // of the places by the arcs' variables, where they were fitted
+  mutable Eigen::MatrixXd J_;                 // of the places by the arcs' variables, at the fit
   mutable Eigen::LDLT<Eigen::MatrixXd> fit_;  // of J_^T J_
 };
 

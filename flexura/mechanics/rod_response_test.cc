@@ -20,7 +20,7 @@ namespace {
 
 constexpr double degrees = std::numbers::pi / 180;
 
-// Two wires in sleeves of so much mass a metre, each bent by three tendons to its end.
+// Two wires in sleeves of the given mass per metre, each bent by three tendons to its end.
 ArmConfig sleeved_arm(double mass, std::size_t arcs) {
   ArmConfig arm;
   arm.kind = ArmKind::spatial;
@@ -60,7 +60,7 @@ ArmState bent(TestRandom& random, double most) {
   return state;
 }
 
-// What a static solver of its own makes of a command: the tip, in the base's frame.
+// Tip under a command by a separate static solver, in the base's frame.
 Pose tip_of(const ArmConfig& arm, const ArmState& command) {
   const Rod rod = rod_of(arm);
   RodStatics statics(rod);
@@ -79,7 +79,7 @@ double tip_distance(const ArmConfig& arm, const ArmState& command) {
 TEST(RodResponse, IsTheChainOfArcsNearestToTheRod) {
   for_random_cases(10, [&](TestRandom& random) {
     const ArmState command = bent(random, 1);
-    // The more arcs, the nearer.
+    // More arcs are nearer.
     const double with_two = tip_distance(sleeved_arm(0.2, 2), command),
                  with_six = tip_distance(sleeved_arm(0.2, 6), command);
     EXPECT_LE(with_two, 6e-3);
@@ -147,8 +147,8 @@ TEST(RodResponse, InverseKinematicsUnderLoadReachTheTip) {
   });
 }
 
-// Steps by the derivative, undamped and no longer than `longest` rad, as laws of a servo take them: how far
-// the arcs are from the goal at the end, rad.
+// Steps by the derivative, undamped and no longer than `longest` rad, as a servo's law does. Returns the
+// final distance of the arcs from the goal, rad.
 double left_by_a_law(const ArmModel& model, const ArmState& goal, int steps) {
   constexpr double gain = 0.2, longest = 0.05;
   const std::size_t arcs = goal.bends.size();
@@ -181,7 +181,7 @@ TEST(RodResponse, ALawGoesOnWhereTendonsHangSlack) {
     const ArmModel model = arm_model_of(arm, std::nullopt);
     for_random_cases(12, [&](TestRandom& random) {
       ArmState command = bent(random, 1.4);
-      // Along a tendon, so that the two others of the section hang slack.
+      // Along one tendon, so that the two others of the section are slack.
       if (random.integer(0, 1) == 0)
         for (std::size_t s = 0; s < 2; ++s) {
           const double angle = (120 * random.integer(0, 2) + 40 * static_cast<double>(s + 1)) * degrees;
@@ -203,7 +203,7 @@ TEST(RodResponse, HasNoShapeWhereTheArmComesToNoRest) {
   Eigen::MatrixXd slopes;
   model.actuation().slopes(nowhere, slopes);
   EXPECT_FALSE(slopes.allFinite());
-  // Nor is there such an arm where there is no rest without a command.
+  // An arm without equilibrium at zero command is rejected.
   arm.load.push_back({.section = 2, .force = {0, -1e9, 0}, .following = true});
   EXPECT_THROW((void)arm_model_of(arm, std::nullopt), std::invalid_argument);
 }
@@ -262,7 +262,7 @@ TEST(RodResponse, BelievesThreeArcsASectionWhereNothingElseIsSaid) {
   const ArmModel model = arm_model_of(arm, std::nullopt);
   EXPECT_EQ(model.actuation().arcs(), 6U);
   EXPECT_FALSE(model.actuation().is_identity());
-  // A section of one arc is still not what is commanded.
+  // Even one arc a section differs from the command.
   const ArmModel one = arm_model_of(sleeved_arm(0.2, 1), std::nullopt);
   EXPECT_FALSE(one.actuation().is_identity());
   EXPECT_EQ(one.shaped().sections[0].max_bend, std::numeric_limits<double>::infinity());

@@ -5,15 +5,15 @@
 #include "flexura/math/so3.h"
 #include "flexura/mechanics/rod_contact.h"
 
-// How a rod meets itself: a point's ball a smooth curve through the others.
+// Self-contact: a point's ball against a smooth curve through the other points.
 namespace flexura {
 namespace {
 
-// Of a contact of the rod with itself both sides tell: each point that is near another part.
+// Both sides of a self-contact report it: each point that is near another part.
 constexpr double of_both_sides = 0.5;
 constexpr double no_length = 1e-12;
 constexpr double one_curve_place = 1e-9;
-// Less than this part of what it is on a line, the nearest point may be anywhere.
+// Below this part of its value on a line, the curvature of the distance does not define a nearest point.
 constexpr double no_minimum = 1e-6;
 constexpr int most_halvings = 60;
 constexpr std::size_t not_chosen = std::numeric_limits<std::size_t>::max();
@@ -24,8 +24,8 @@ Eigen::Matrix<double, 3, 6> moved_by_twist(const Eigen::Vector3d& p) {
   return rows;
 }
 
-// Where the distance from p is least, between u = 0, towards which it falls, and u = 1: Newton's method
-// in a bracket.
+// Finds the u of least distance from p between u = 0, towards which the distance falls, and u = 1. Newton's
+// method in a bracket.
 double nearest_share(const RodCurve::Piece& curve, const Eigen::Vector3d& p) {
   double low = 0, high = 1, u = 0.5;
   for (int i = 0; i < most_halvings; ++i) {
@@ -67,7 +67,7 @@ void RodContact::set_curve(const RodChain& chain) {
   }
 }
 
-// Points of two intervals that may be near each other; with those through which the curve runs there.
+// Chooses points of two intervals that may be near each other, and those of the curve there.
 void RodContact::choose_near_itself(const Interval& one, const Interval& other, double apart) const {
   const auto beside = [&](std::size_t i) {
     const std::size_t first = i - std::min<std::size_t>(i, 3), last = std::min(i + 3, points_.size() - 1);
@@ -76,7 +76,7 @@ void RodContact::choose_near_itself(const Interval& one, const Interval& other, 
   for (std::size_t i = one.first_point; i < one.first_point + one.points; ++i) {
     for (std::size_t j = other.first_point; j < other.first_point + other.points; ++j) {
       if (!(points_[j].s - points_[i].s > apart_)) continue;
-      // Between two points it is near one of them.
+      // A place between two points is near one of them.
       const double reach =
           balls_[i].radius + balls_[j].radius + points_[i].radius + points_[j].radius + apart;
       if (!((balls_[i].middle - balls_[j].middle).squaredNorm() < reach * reach)) continue;
@@ -105,7 +105,7 @@ void RodContact::find_pieces(std::span<const std::size_t> chosen, std::span<cons
   }
 }
 
-// Where a point's ball is in the rest of the rod: each place that is nearer than those beside it.
+// Finds where a point's ball meets the rest of the rod: each place that is nearer than its neighbours.
 void RodContact::find_meetings(std::span<const std::size_t> chosen,
                                std::span<const NodeMotion> points) const {
   meetings_.clear();
@@ -127,7 +127,7 @@ bool RodContact::meet(const Piece& piece, std::span<const NodeMotion> points, st
   const double reach = piece.curve.reach + point.radius + std::max(stretch.radius, stretch.end_radius);
   if (!((p - piece.curve.middle).squaredNorm() < reach * reach)) return false;
 
-  // From which side it is nearest: at an end of what counts it may be that end.
+  // Side from which the distance is least: at an end of the valid range it may be that end.
   const bool falls = (p - piece.curve.at(0)).dot(piece.curve.slope_at(0)) > 0,
              rises = !((p - piece.curve.at(1)).dot(piece.curve.slope_at(1)) > 0);
   const std::size_t last = stretches_.size() - 1;
@@ -170,7 +170,7 @@ bool RodContact::meet(const Piece& piece, std::span<const NodeMotion> points, st
   touch.radius = point.radius;
   touch.run = of_both_sides * point.run;
   meeting.arm = off - point.radius * touch.nearest.normal;
-  // Of where they touch; that of the other side is shared as its place is.
+  // Velocity at the touching point; on the other side interpolated with its place.
   const auto velocity = [&](std::size_t i, const Eigen::Vector3d& at) -> Eigen::Vector3d {
     return points[i].twist.head<3>() + points[i].twist.tail<3>().cross(at);
   };
@@ -182,9 +182,9 @@ bool RodContact::meet(const Piece& piece, std::span<const NodeMotion> points, st
   return true;
 }
 
-// With p the point, x_a the places, b_a(u) their shares, x = sum of b_a x_a, off = p - x: off is
-// perpendicular to x' as long as u is inside, so that (x' . x' - off . x'') du = x' . (dp - sum of b_a dx_a)
-// + off . sum of b_a' dx_a.
+// With p the point, x_a the places, b_a(u) their shares, x = sum of b_a x_a and off = p - x: off is
+// perpendicular to x' while u is inside. Hence (x' . x' - off . x'') du = x' . (dp - sum of b_a dx_a) + off .
+// sum of b_a' dx_a.
 RodContact::MeetingSlopes RodContact::slopes_of(std::span<const NodeMotion> points, const Meeting& meeting,
                                                 const TouchForce& at) const {
   using Rows = Eigen::Matrix<double, 3, 30>;
@@ -213,11 +213,11 @@ RodContact::MeetingSlopes RodContact::slopes_of(std::span<const NodeMotion> poin
   change.normal.setZero(3, 30);
   change.velocity = twisted;
   slopes.force_by_twist = force_change(law_, touch, at, change);
-  const Rows moves = apart - meeting.slope * slopes.share;  // Of off.
+  const Rows moves = apart - meeting.slope * slopes.share;  // Derivative of off.
   if (distance > no_length) change.normal = (moves - n * (n.transpose() * moves)) / distance;
   change.depth = -n.transpose() * moves + (stretch.end_radius - stretch.radius) * slopes.share;
   slopes.point = center - touch.radius * change.normal;
-  slopes.moves = moves - touch.radius * change.normal;  // Of the arm.
+  slopes.moves = moves - touch.radius * change.normal;  // Derivative of the arm.
   Rows velocity = skew(points[meeting.points[0]].twist.tail<3>()) * slopes.point;
   for (Eigen::Index i = 0; i < 4; ++i) {
     const NodeMotion& place = points[meeting.points[static_cast<std::size_t>(i) + 1]];
@@ -239,7 +239,7 @@ void RodContact::couple(std::span<const std::size_t> chosen, std::span<const Nod
     const TouchForce at = touch_force(law_, meeting.touch);
     const MeetingSlopes slopes = slopes_of(points, meeting, at);
     for (std::size_t i = 0; i < 5; ++i) {
-      // Of the wrench share [f; y x f], y the place with the arm.
+      // Derivative of the wrench share [f; y x f], with y the place plus the arm.
       const auto row = static_cast<Eigen::Index>(i) - 1;
       const double share = i == 0 ? 1 : -meeting.shares[row], by_share = i == 0 ? 0 : -meeting.slopes[row];
       const Eigen::Vector3d& x = points[meeting.points[i]].pose.position;

@@ -23,7 +23,7 @@ std::vector<NodeMotion> one_moved(std::vector<NodeMotion> nodes, std::size_t nod
   return nodes;
 }
 
-// Of all wrenches by the motion of all nodes.
+// Derivatives of all wrenches by the motion of all nodes.
 TEST(RodSelfContact, ItsDerivativesAreThoseByDifferencesWhereItTouchesItself) {
   const Rod rod = soft_arm();
   const RodChain chain(rod);
@@ -37,7 +37,7 @@ TEST(RodSelfContact, ItsDerivativesAreThoseByDifferencesWhereItTouchesItself) {
                                      .radii = {{0.03, 0.02}},
                                      .itself_apart = 3,
                                      .places = places});
-    // Curled up.
+    // Curled-up shape.
     std::vector<NodeMotion> nodes(count);
     const double radius = random.uniform(0.03, 0.04), rise = random.uniform(0, 0.02);
     for (std::size_t k = 0; k < count; ++k) {
@@ -54,7 +54,7 @@ TEST(RodSelfContact, ItsDerivativesAreThoseByDifferencesWhereItTouchesItself) {
     touched += couplings.empty() ? 0 : 1;
     Vector6d sum = Vector6d::Zero();
     for (const NodePull& pull : pulls) sum += pull.wrench;
-    EXPECT_LT(sum.norm(), 1e-12);  // To each its opposite.
+    EXPECT_LT(sum.norm(), 1e-12);  // Each wrench has its opposite.
     constexpr double h = 1e-7;
     for (std::size_t node = 0; node < count; ++node) {
       for (Eigen::Index c = 0; c < 6; ++c) {
@@ -77,7 +77,7 @@ TEST(RodSelfContact, ItsDerivativesAreThoseByDifferencesWhereItTouchesItself) {
   EXPECT_GT(touched, 5 / one_case_of);
 }
 
-// Curled up by a tendon it meets itself, and stays outside.
+// Curled up by a tendon it touches itself without penetration.
 TEST(RodSelfContact, ARodThatCurlsUpDoesNotPassThroughItself) {
   RodContactConfig touches{.law = {.stiffness = 1e5}}, ghost = touches;
   ghost.itself = false;
@@ -87,7 +87,7 @@ TEST(RodSelfContact, ARodThatCurlsUpDoesNotPassThroughItself) {
     RodState state = moving.dynamics.rest();
     for (int i = 1; i <= 24; ++i) moving.go(state, {.tensions = {0.5 * i}}, {}, 2e-3, 0.04 * i);
     moving.go(state, {.tensions = {12}}, {}, 2e-3, 1.2);
-    // From the base to what is further than ten radii along it.
+    // From the base to places further than ten radii along it.
     const std::vector<NodeMotion> points = moving.dynamics.point_motions(state);
     for (std::size_t k = 0; k < points.size(); ++k) {
       const Eigen::Vector3d p = points[k].pose.position;
@@ -104,9 +104,9 @@ TEST(RodSelfContact, ARodThatCurlsUpDoesNotPassThroughItself) {
   EXPECT_LT(nearest[1], 0.012);
 }
 
-// A moment at its tip rolls it up into a plane coil that closes on itself. Every step converges at once; the
-// tip converges as the steps shrink; what it pushes itself sums up to nothing; and it is as deep as the law
-// says.
+// A moment at its tip rolls it up into a plane coil that closes on itself. Every step converges without
+// division, and the tip converges with the step. Internal forces sum to 0, and the depth follows the contact
+// law.
 TEST(RodSelfContact, ACoilThatClosesOnItselfConverges) {
   const Rod rod = soft_arm(1e6, 8);
   const double full = rod.sections[0].stiffness_at(0)[3] / 0.025;  // To a radius of three times its own.
@@ -142,8 +142,7 @@ TEST(RodSelfContact, ACoilThatClosesOnItselfConverges) {
       for (const ContactForce& contact : contacts) {
         EXPECT_FALSE(contact.is_deep);
         EXPECT_LT(contact.depth, 1e-3);
-        // Both sides tell, each for half of what it stands for; what comes apart pushes less, and never
-        // pulls.
+        // Both sides report it, each with half of its length. Separating contacts push less and never pull.
         if (contact.index == 0 || contact.index + 1 == points.size()) continue;
         const ContactPress still = press(moving.contact.law(), contact.depth, 0);
         EXPECT_GE(contact.normal_force, 0);

@@ -27,7 +27,7 @@ SpringPull spring_pull(const PointSpring& spring, const Eigen::Vector3d& point) 
   using Rows = Eigen::Matrix<double, 3, 6>;
   const Eigen::Vector3d share = spring.stiffness * (spring.to - point) / spring.most;
   const double soft = std::hypot(1.0, share.norm());
-  // Of the force by the point, negative.
+  // Derivative of the force by the point, negated.
   const Eigen::Matrix3d k =
       spring.stiffness / soft * (Eigen::Matrix3d::Identity() - share * share.transpose() / (soft * soft));
   const Eigen::Vector3d force = spring_force(spring, point);
@@ -64,7 +64,7 @@ void RodSpring::pull(std::span<const NodeMotion> nodes, std::span<const double> 
   pull.is_idle = false;
   pull.wrench = at.wrench;
   pull.by_pose = at.by_pose;
-  // The force's lever turns: that part may have negative eigenvalues.
+  // The rotation of the force's lever may have negative eigenvalues.
   pull.is_held = true;
   pull.stiffness = at.stiffness;
 }

@@ -13,30 +13,32 @@
 
 namespace flexura {
 
-/// What is wrong with a spring, in words: numbers that are not finite or out of bounds. "": nothing.
+/// Returns what is wrong with a spring, in words: numbers that are not finite or out of bounds. "" if it is
+/// valid.
 [[nodiscard]] std::string spring_problem(const PointSpring& spring);
 
-/// The force of a spring at a point of the rod, N; both in the base's frame. It has an energy.
+/// Returns the force of a spring at a point of the rod, N; both in the base's frame. It is conservative.
 [[nodiscard]] Eigen::Vector3d spring_force(const PointSpring& spring, const Eigen::Vector3d& point);
 
-/// That as a wrench about the base's origin, and its derivative by a small twist of the node at that point.
+/// The force as a wrench about the base's origin, and its derivative by a small twist of the node at that
+/// point.
 struct SpringPull {
   Vector6d wrench = Vector6d::Zero();
   Matrix6d by_pose = Matrix6d::Zero();
-  /// The part of -by_pose that has no negative eigenvalue: all but that of the force's lever.
+  /// Part of -by_pose without negative eigenvalues: all but the lever's rotation.
   Matrix6d stiffness = Matrix6d::Zero();
 };
-/// Of the node whose position is `point`.
+/// Returns the wrench at the node whose position is `point`.
 [[nodiscard]] SpringPull spring_pull(const PointSpring& spring, const Eigen::Vector3d& point);
 
-/// A spring at a rod in motion, which can be set anew from step to step.
+/// A spring on a moving rod, which can change from step to step.
 class RodSpring final : public RodSurroundings {
  public:
-  /// At the node that is nearest to the place: one of the chain of RodDynamics.
+  /// Attaches it to the node nearest to the place, of the chain of RodDynamics.
   RodSpring(const RodChain& chain, const RodPlace& place);
 
-  /// From now on it pulls so, whatever place the spring says; none: it does not pull. std::invalid_argument:
-  /// the spring's problem.
+  /// Sets the spring, ignoring the place in it; std::nullopt: no force. Throws std::invalid_argument for an
+  /// invalid spring.
   void set(const std::optional<PointSpring>& spring);
 
   void pull(std::span<const NodeMotion> nodes, std::span<const double> run,

@@ -66,7 +66,7 @@ TEST(RodSpring, SaysWhatIsWrongWithIt) {
   EXPECT_EQ(dynamics.step(state, {}, loads, 1e-3).end, DynamicsEnd::bad_input);
 }
 
-// A force at the end is that of an end load; one further in bends a light cantilever as beams do.
+// A force at the end equals an end load; a force further in bends a light cantilever as in beam theory.
 TEST(RodSpring, BendsACantileverAsAForceThereDoes) {
   const Rod rod = soft_arm();
   RodLoads at_end, by_spring;
@@ -86,7 +86,7 @@ TEST(RodSpring, BendsACantileverAsAForceThereDoes) {
   EXPECT_NEAR(at.tip.position.x(), aside, 0.02 * aside);
 }
 
-// At rest the point is where the spring's force and the arm's agree.
+// At rest the spring's force balances the arm's.
 TEST(RodSpring, DrawsThePointUntilBothAreEven) {
   RodLoads loads;
   loads.springs = {{.to = {0.15, 0.05, 0.35}, .stiffness = 20, .most = 5}};

@@ -11,10 +11,10 @@
 namespace flexura {
 namespace {
 
-// In lengths of the rod, of tensions without an equilibrium: farther than all others.
+// Error assigned to tensions without an equilibrium, in lengths of the rod; larger than all others.
 constexpr double nowhere = 1e3;
 
-// Of an angle: angle / sin(angle), and that by the cosine.
+// angle / sin(angle), and its derivative by the cosine.
 struct TurnFactor {
   double value, by_cosine;
 };
@@ -80,7 +80,7 @@ Equilibrium RodTargetProblem::at(const Eigen::VectorXd& x, const Equilibrium& ne
   try {
     slopes_ = statics_.slopes();
   } catch (const std::runtime_error&) {
-    return found;  // Just where an equilibrium ends.
+    return found;  // At the limit of existence of an equilibrium.
   }
   const RodChain& chain = statics_.chain();
   Eigen::Index row = 0;
@@ -111,7 +111,7 @@ void RodTargetProblem::turn_rows(Eigen::VectorXd& r, Eigen::MatrixXd& J) const {
     J.bottomRows<3>() = weight * unit * pseudo_inverse(so3_left_jacobian(error)) * turn;
     return;
   }
-  // In the two axes square to the direction: of length the angle, the way the tip's z is off.
+  // Components in two axes perpendicular to the direction; their length is the angle.
   const Eigen::Matrix3d axes = rotation_from_z(*target_.direction);
   const Eigen::Vector3d z = R.col(2), in_axes = axes.transpose() * z;
   const double angle = std::atan2(in_axes.head<2>().norm(), in_axes.z());

@@ -11,11 +11,11 @@
 
 namespace flexura {
 
-/// How far a rod under tensions x (in `unit`s of N) is from a target: r in lengths of the rod. Each
-/// evaluation is an equilibrium, found from the nearest of those before it, with its exact derivatives.
+/// Residual of a rod under tensions x (in `unit`s of N) from a target: r in lengths of the rod. Each
+/// evaluation is an equilibrium, solved from the nearest earlier one, with its exact derivatives.
 class RodTargetProblem final : public BoundedProblem {
  public:
-  /// `most`: of each tension, N. Where it is 0 the tendon is left out.
+  /// `most`: maximum of each tension, N. Tendons with maximum 0 are omitted.
   RodTargetProblem(RodStatics& statics, const RodTarget& target, const RodLoads& loads,
                    std::span<const double> most, double tolerance);
 
@@ -23,16 +23,16 @@ class RodTargetProblem final : public BoundedProblem {
   void linearise(const Eigen::VectorXd& x, Eigen::VectorXd& r, Eigen::MatrixXd& J) override;
   [[nodiscard]] bool is_met(const Eigen::VectorXd& r) const override;
 
-  /// The next search begins here; from rest where it did not converge.
+  /// Sets where the next search begins: at `near`, or at the undeformed rod if `near` did not converge.
   void begin(const Equilibrium& near);
-  /// The equilibrium at x, from that near; r and J as in linearise().
+  /// Returns the equilibrium at x, solved from `near`; r and J as in linearise().
   Equilibrium at(const Eigen::VectorXd& x, const Equilibrium& near, Eigen::VectorXd& r, Eigen::MatrixXd& J);
-  /// Of r: the largest distance of a place, m; the angle, rad.
+  /// Returns from r the largest distance of a place, m, and (angle_error) the angle, rad.
   [[nodiscard]] double position_error(const Eigen::VectorXd& r) const;
   [[nodiscard]] double angle_error(const Eigen::VectorXd& r) const;
 
   double unit = 1;      ///< N
-  int evaluations = 0;  ///< Equilibria looked for.
+  int evaluations = 0;  ///< Number of equilibria computed.
 
  private:
   struct Node {
@@ -47,7 +47,7 @@ class RodTargetProblem final : public BoundedProblem {
   std::vector<double> most_;
   double length_, tolerance_;
   std::vector<Node> nodes_;
-  Eigen::Index rows_ = 0, angles_ = 0;  // The rows of angles are the last.
+  Eigen::Index rows_ = 0, angles_ = 0;  // Rows of angles come last.
   TendonInput input_;
   Equilibrium near_;
   double near_square_ = 0;
@@ -55,7 +55,7 @@ class RodTargetProblem final : public BoundedProblem {
   RodElement::Columns columns_, twist_;
 };
 
-/// The node of a rod at a place; empty: no node lies there.
+/// Returns the node of a rod at a place; std::nullopt if there is none.
 [[nodiscard]] std::optional<std::size_t> node_of(const RodChain& chain, const RodPlace& place);
 
 }  // namespace flexura

@@ -14,9 +14,9 @@ namespace flexura {
 namespace {
 
 constexpr int max_descent = 30;
-// Less slack than this, of the rod's length, counts as zero.
+// Slack below this part of the rod's length counts as zero.
 constexpr double slack_margin = 1e-12;
-// Of tendons that are said to give nothing: of what the rod gives.
+// Compliance of tendons given as inextensible, relative to the rod's own.
 constexpr double stiff_part = 1e-8;
 
 bool all_finite(const std::vector<double>& values) {
@@ -54,7 +54,7 @@ RodStatics::RodStatics(Rod rod, std::span<const RodPlace> places) : chain_(std::
   chain_.balance(newton_.q, pulls_, {}, 0);
   rest_lengths_.assign(chain_.tendon_lengths().begin(), chain_.tendon_lengths().end());
   if (count == 0) return;
-  // Of how the rod at rest gives to its tendons, a part that no measurement would show.
+  // An unmeasurably small part of the undeformed rod's compliance to its tendons.
   solved_ = chain_.pull_slopes();
   double give = 0;
   if (chain_.size() > 0 && chain_.factor()) {
@@ -112,7 +112,7 @@ bool RodStatics::linearize(const Unknowns& at, double share) {
   solved_.col(0) = -chain_.residual();
   solved_.col(1) = -chain_.load_slope();
   if (by_displacement_) {
-    // Of the residual without tendons: their tensions are found anew.
+    // Uses the residual without tendons: their tensions are solved anew.
     solved_.col(0) += chain_.pull_slopes() * at.tensions;
     solved_.rightCols(tendons) = -chain_.pull_slopes();
   } else if (!input_.tensions.empty()) {
@@ -128,9 +128,8 @@ bool RodStatics::linearize(const Unknowns& at, double share) {
   return newton_.q.allFinite() && newton_.tensions.allFinite() && tangent_.q.allFinite();
 }
 
-// The lengths of tendons answer to shape and tensions alike: to first order, a tendon is too long by
-// excess - give tensions. It is not (it hangs slack), or it is as long as its displacement leaves it and
-// pulls.
+// Tendon lengths depend on shape and tensions. To first order a tendon is too long by excess - give tensions.
+// It is slack, or it has the length of its displacement and pulls.
 bool RodStatics::find_tensions(const Unknowns& at, double share) {
   const auto tendons = static_cast<Eigen::Index>(pulls_.size());
   const auto answers = solved_.rightCols(tendons);
@@ -151,7 +150,7 @@ bool RodStatics::find_tensions(const Unknowns& at, double share) {
   newton_.tensions = tensions - at.tensions;
   newton_.q += answers * tensions;
 
-  // As the load grows: what pulls goes on pulling; what is just taut may begin to.
+  // Derivative by the load: taut tendons stay taut; those that are just taut may begin to pull.
   const Eigen::VectorXd slack = problem.matrix * tensions - problem.rhs;
   std::vector<Eigen::Index> pulling;
   for (Eigen::Index i = 0; i < tendons; ++i) {
@@ -165,7 +164,7 @@ bool RodStatics::find_tensions(const Unknowns& at, double share) {
   }
   problem.rhs = by_share;
   std::vector<char> growing(pulls_.size(), 0);
-  // Where that has no end the way goes on as if none began.
+  // Without a solution, the path continues as if no tendon became taut.
   tangent_.tensions = problem.solve(growing, rounding).value_or(Eigen::VectorXd::Zero(tendons));
   tangent_.q += answers * tangent_.tensions;
 
@@ -176,7 +175,7 @@ bool RodStatics::find_tensions(const Unknowns& at, double share) {
   return true;
 }
 
-// Tendons that say the same twice share what they pull by what little each gives.
+// Redundant tendons share their load by their small compliance.
 double RodStatics::compliance(std::size_t tendon) const {
   return std::max(chain_.rod().tendons[tendon].compliance, least_compliance_);
 }
@@ -195,7 +194,7 @@ RodStatics::Descent RodStatics::descend(Unknowns& at, double share) {
     at.tensions += newton_.tensions;
     descent.negative = negative_;
     descent.always_stable = descent.always_stable && negative_ == 0;
-    // What is left after a step falls with its square.
+    // The residual after a step falls with its square.
     if (size <= settled_step || (before > 0 && size * size * size <= settled_step * before * before * 1e-2)) {
       descent.settled = true;
       return descent;
@@ -205,7 +204,7 @@ RodStatics::Descent RodStatics::descend(Unknowns& at, double share) {
   return descent;
 }
 
-// Whether no part of the rod is turned inside out.
+// Returns whether no part of the rod is turned inside out.
 bool RodStatics::is_right_way_out() const {
   return std::ranges::all_of(chain_.elements(), [](const RodElement& element) {
     return std::ranges::all_of(element.strains(), [](const Vector6d& strain) { return strain[2] > 0; });
@@ -269,7 +268,7 @@ Equilibrium RodStatics::solve_from(const Unknowns& start, bool is_cold) {
     result.end = StaticsEnd::no_equilibrium;
   }
   if (!found) {
-    // Down from where it was, else from where the way was last stable.
+    // Descends from the given start, else from the last stable shape of the path.
     Unknowns falling = start;
     found = !is_cold && fall(falling, descent);
     if (!found) {

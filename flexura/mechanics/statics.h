@@ -12,117 +12,118 @@
 
 namespace flexura {
 
-/// What holds a rod's tendons. Either list has one number a tendon, or is empty.
+/// Input of a rod's tendons. Each list has one number a tendon, or is empty.
 struct TendonInput {
   std::vector<double> tensions = {};  ///< N, at the base; >= 0.
-  /// How far each is pulled in at the base, m, from where it is taut without tension on the rod as it is at
-  /// rest. A tendon that is let out further than the rod takes hangs slack.
+  /// Length of each tendon pulled in at the base, m, from where it is just taut on the undeformed rod. A
+  /// tendon let out further than the rod takes up is slack.
   std::vector<double> displacements = {};
 };
 
 /// How a search for an equilibrium ended.
 enum class StaticsEnd {
   converged,
-  bad_input,  ///< A number that is not finite, a tension below 0, a list of another length.
-  /// Or the rod would have to pass through itself.
-  no_equilibrium,  ///< The way from no load on led past every bound before all of the load was there.
-  out_of_steps,    ///< Nor was an end of it seen.
+  bad_input,  ///< A number that is not finite, a tension below 0, a list of wrong length.
+  /// The load path left all bounds before full load, or the rod would have to pass through itself.
+  no_equilibrium,
+  out_of_steps,  ///< Neither an equilibrium nor an end of the path was found.
 };
-/// That, for people.
+/// Returns a description for users.
 [[nodiscard]] const char* words(StaticsEnd end);
 
-/// A rod at rest under what pulls at it, in the frame of its base.
+/// Equilibrium of a rod under tendons and loads, in the frame of its base.
 struct Equilibrium {
   StaticsEnd end = StaticsEnd::out_of_steps;
-  std::string problem;  ///< Of bad input, in words.
-  /// Stays where it is after a small push, under tensions or displacements as they are given.
+  std::string problem;  ///< For bad input, in words.
+  /// A small push decays, with tensions or displacements kept as given.
   bool stable = false;
-  /// A real rod jumps here: on the way from no load the load had a maximum, or the way ended, and the rod
-  /// fell to another equilibrium.
+  /// A real rod jumps here: on the load path the load had a maximum, or the path ended and the rod descended
+  /// to another equilibrium.
   bool snapped = false;
-  /// There are more equilibria than this one, as far as was seen: a branch left the way, it turned, or the
-  /// rod fell from where it had been.
+  /// Other equilibria exist, as far as detected: the path branched or turned, or the rod descended to another
+  /// equilibrium.
   bool ambiguous = false;
   int iterations = 0;                  ///< Linear systems solved.
   Eigen::VectorXd q;                   ///< The strain modes (RodChain).
-  std::vector<double> tensions;        ///< N, at the base; 0 of slack ones.
-  std::vector<double> tendon_lengths;  ///< Of their ways through the rod, from base to end, m.
+  std::vector<double> tensions;        ///< N, at the base; 0 for slack ones.
+  std::vector<double> tendon_lengths;  ///< Path lengths through the rod, from base to end, m.
   std::vector<double>
-      displacements;         ///< Pulled in at the base, m; of slack ones that at which they were taut.
+      displacements;  ///< Pulled in at the base, m; for slack ones the value at which they would be taut.
   double strain_energy = 0;  ///< J
   Pose tip;                  ///< X_BT
 
   [[nodiscard]] bool converged() const { return end == StaticsEnd::converged; }
 };
 
-/// Changes of an equilibrium by what pulls at it, with all else kept: by tensions where these are given, by
-/// displacements where those are.
+/// Derivatives of an equilibrium: by tensions where these are given, else by displacements, and by loads and
+/// parameters.
 struct EquilibriumSlopes {
   Eigen::MatrixXd q_by_input;         ///< size() x tendons. Columns of slack tendons are 0.
-  Eigen::MatrixXd tensions_by_input;  ///< Tendons x tendons, N/m; the identity where tensions are given.
+  Eigen::MatrixXd tensions_by_input;  ///< Tendons x tendons, N/m; the identity if tensions are given.
   Eigen::MatrixXd lengths_by_input;   ///< Tendons x tendons.
-  Eigen::MatrixXd q_by_tip;  ///< size() x 6: by a force and a moment at the tip, in the base's frame.
+  Eigen::MatrixXd q_by_tip;           ///< size() x 6: by force and moment at the tip, base's frame.
   Eigen::MatrixXd
       tip_by_input;  ///< 6 x tendons: velocity of the tip's origin and angular velocity, base's frame.
-  Eigen::Matrix<double, 6, 6> tip_by_tip;  ///< Compliance: the same by a force and a moment at the tip.
-  /// The same by each section's parameters, 6 x 5 sections: by parts by which its stiffness against shear,
-  /// stretch, bends and twist changes, and its mass along its length.
+  Eigen::Matrix<double, 6, 6> tip_by_tip;  ///< Compliance: tip motion by force and moment at the tip.
+  /// Tip motion by each section's parameters, 6 x 5 sections: relative changes of its stiffness against
+  /// shear, stretch, bends and twist, and of its mass per length.
   Eigen::MatrixXd tip_by_parameters;
-  Eigen::MatrixXd q_by_parameters;  ///< size() x 5 sections: likewise.
+  Eigen::MatrixXd q_by_parameters;  ///< size() x 5 sections, by the same parameters.
 };
 
 /// Solves rods for equilibrium: minima of their energy in reduced strains (F. Boyer, F. Renda et al.,
-/// geometric variable strain), by Newton's method from no load on along a growing share of it; where that way
-/// ends without all of the load, by the fall from where the rod was last stable on it (RodFall).
+/// geometric variable strain). Newton's method follows the load path from zero load. Where the path ends
+/// before full load, the rod descends the energy from its last stable shape (RodFall).
 class RodStatics {
  public:
-  /// As RodChain.
+  /// Parameters as RodChain.
   explicit RodStatics(Rod rod, std::span<const RodPlace> places = {});
 
-  /// As RodChain::stretch_rest, of what is solved from now on. Displacements go on counting from the rod as
-  /// it was.
+  /// Sets length factors as RodChain::stretch_rest, from the next solution on. Displacements still count from
+  /// the original rod.
   void stretch_rest(std::span<const double> factors);
-  /// From the rod at rest.
+  /// Solves from the undeformed rod.
   [[nodiscard]] Equilibrium solve(const TendonInput& tendons, const RodLoads& loads);
-  /// From an equilibrium nearby, or from rest where that does not lead there directly.
+  /// Solves from a nearby equilibrium, or from the undeformed rod if that does not converge directly.
   [[nodiscard]] Equilibrium solve(const TendonInput& tendons, const RodLoads& loads, const Equilibrium& near);
-  /// Where a rod that stands like `near` comes to rest: the equilibrium nearby if it is stable, else the one
-  /// to which it falls from `near`. From rest where `near` is none. An equilibrium that is not stable comes
-  /// back only where no fall from it found a stable one.
+  /// Returns the equilibrium that a rod with the shape of `near` reaches: the nearby one if it is stable,
+  /// else the one at the end of the descent from `near`. Starts from the undeformed rod if `near` did not
+  /// converge. Returns an unstable equilibrium only if no descent from it found a stable one.
   [[nodiscard]] Equilibrium settle(const TendonInput& tendons, const RodLoads& loads,
                                    const Equilibrium& near);
-  /// The same from the rod at rest.
+  /// Settles from the undeformed rod.
   [[nodiscard]] Equilibrium settle(const TendonInput& tendons, const RodLoads& loads);
 
-  /// What slack tendons do in slopes(): nothing, or what they would if they were just taut, held there in both
+  /// Treatment of slack tendons in slopes(): no effect, or as if they were just taut and held in both
   /// directions.
   enum class Slack { hangs, is_taut };
-  /// At what was last solved, which converged. std::logic_error: nothing was.
+  /// Returns the derivatives at the last solution, which converged. Throws std::logic_error without one.
   [[nodiscard]] EquilibriumSlopes slopes(Slack slack = Slack::hangs);
 
-  /// Of the rod at rest, m.
+  /// Returns tendon lengths of the undeformed rod, m.
   [[nodiscard]] const std::vector<double>& rest_lengths() const { return rest_lengths_; }
-  /// The rod, placed as it was last solved.
+  /// Returns the rod, placed at the last solution.
   [[nodiscard]] const RodChain& chain() const { return chain_; }
 
  private:
   // Newton's steps are measured in radians of a section's bend, and parts of its length (RodChain::scales).
   static constexpr double settled_step = 1e-10;
-  // Steps that do not shrink by this lead somewhere else.
+  // Steps that shrink less than by this factor lead to another solution.
   static constexpr double contraction = 0.6;
 
   struct Unknowns {
     Eigen::VectorXd q, tensions;
   };
-  // What Newton's method made of a start.
+  // Result of Newton's method from a start.
   struct Descent {
     bool settled = false;
-    int negative = 0;  // Of the last derivative, as stability counts them.
-    // So were all on the way, the start under all of the load among them: no other branch lay between.
+    int negative = 0;  // Negative eigenvalues of the last derivative, as used for stability.
+    // Whether all derivatives were positive definite, that of the start under full load included: no other
+    // branch lay between.
     bool always_stable = true;
   };
   [[nodiscard]] std::string input_problem() const;
-  // F, and the solutions of F' y = -F and F' y = -dF/dshare.
+  // Computes F, and the solutions of F' y = -F and F' y = -dF/dshare.
   bool linearize(const Unknowns& at, double share);
   [[nodiscard]] double measure(const Unknowns& change) const;
   bool find_tensions(const Unknowns& at, double share);
@@ -132,7 +133,7 @@ class RodStatics {
   bool fall(Unknowns& at, Descent& descent);
   bool fall_on(Unknowns& at, Descent& descent);
   [[nodiscard]] bool is_right_way_out() const;
-  // Takes the input; its problem, "" if it has none.
+  // Takes the input and returns its problem, "" if it is valid.
   std::string take(const TendonInput& tendons, const RodLoads& loads);
   [[nodiscard]] bool is_start(const Equilibrium& near) const;
   Unknowns start_at(const Equilibrium& near);
@@ -142,15 +143,15 @@ class RodStatics {
   RodChain chain_;
   std::vector<double> rest_lengths_;
   double least_compliance_ = 0;  // m/N
-  double give_ = 0;              // Of the rod at rest to its tendons, m/N.
+  double give_ = 0;              // Compliance of the undeformed rod to its tendons, m/N.
   TendonInput input_;
   RodLoads loads_;
   bool by_displacement_ = false;
-  std::vector<char> taut_;     // Of displacement input, as last found: where the next search begins.
-  std::vector<double> pulls_;  // Tensions as chain_ takes them.
+  std::vector<char> taut_;     // For displacements, as last found: start of the next search.
+  std::vector<double> pulls_;  // Tensions passed to chain_.
   Eigen::MatrixXd solved_;     // Columns: by F, by the share, by each tendon's tension.
   Unknowns newton_, tangent_;
-  Eigen::VectorXd at_;  // q of what was last solved.
+  Eigen::VectorXd at_;  // q of the last solution.
   int negative_ = 0, iterations_ = 0;
   bool is_solved_ = false;
 };

@@ -1,4 +1,4 @@
-// Equilibria that are found by falling.
+// Equilibria found by descending the potential energy.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -11,14 +11,14 @@
 namespace flexura {
 namespace {
 
-// What tendons give while the rod falls, of what the rod gives to them; by how much less each time after that
-// their tensions are not those of the tendons as they are; how often.
+// Extra compliance of tendons during the descent, relative to the rod's own; its reduction each time the
+// tensions still differ from those of the given tendons; and how often.
 constexpr double first_penalty = 1e-3, penalty_factor = 0.2;
 constexpr int max_penalties = 16;
-// Newton's method at the end goes no farther, in radians of a section's bend.
+// Largest change by Newton's method at the end, in radians of a section's bend.
 constexpr double nearby = 0.3;
-constexpr double unmoved = 1e-6;  // Likewise.
-// Of tensions, from one penalty to the next.
+constexpr double unmoved = 1e-6;  // In the same unit.
+// Relative change of tensions from one penalty to the next.
 constexpr double no_change = 1e-8;
 
 }  // namespace
@@ -27,7 +27,7 @@ bool RodStatics::fall(Unknowns& at, Descent& descent) {
   Unknowns there = at;
   bool rests = fall_on(there, descent);
   if (!rests && chain_.has_friction()) {
-    // Friction may drive it around. From where it would rest without it is not far.
+    // Friction may keep it moving around. The frictionless equilibrium is not far.
     there = at;
     chain_.set_rubbing(false);
     rests = fall_on(there, descent);
@@ -43,7 +43,7 @@ bool RodStatics::fall_on(Unknowns& at, Descent& descent) {
   std::vector<RodFall::Held> held(pulls_.size());
   for (std::size_t i = 0; i < held.size(); ++i) {
     if (by_displacement_) {
-      // Where tendons contradict each other they pull with more than any shape needs that they allow.
+      // Upper bound of tensions of contradicting tendons; above what any shape needs.
       const double most = chain_.rod().length() / give_;
       held[i] = {.tension = std::clamp(at.tensions[static_cast<Eigen::Index>(i)], 0.0, most),
                  .is_held = true,
@@ -72,12 +72,12 @@ bool RodStatics::fall_on(Unknowns& at, Descent& descent) {
     descent = descend(there, 1);
     const double moved = measure({there.q - at.q, {}});
     if (descent.settled && is_right_way_out() && moved <= (descent.negative == 0 ? nearby : unmoved)) {
-      // What tendons hold that are just taut is stable, too.
+      // Equilibria held by tendons that are just taut are stable, too.
       descent.negative = 0;
       at = there;
       return true;
     }
-    // Newton's method does not get to where there is friction, or a direction almost without stiffness.
+    // Newton's method does not converge with friction or nearly without stiffness in a direction.
     if (change <= no_change * most) {
       (void)linearize(at, 1);
       descent = {.settled = true, .negative = 0};
@@ -112,7 +112,7 @@ Equilibrium RodStatics::settle(const TendonInput& tendons, const RodLoads& loads
   }
   result = solve(tendons, loads, near);
   if (!result.converged() || result.stable) return result;
-  // It stands where nothing holds it.
+  // Descends from a shape that is not in equilibrium.
   Descent descent;
   at = start_at(result);
   if (!fall(at, descent)) return solve(tendons, loads, near);

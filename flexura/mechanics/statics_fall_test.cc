@@ -13,7 +13,7 @@
 namespace flexura {
 namespace {
 
-// Many more: statics_full_test.cc.
+// Larger test: statics_full_test.cc.
 TEST(StaticsFall, SoftUprightArmsComeToAStableRest) {
   for_random_cases(25, [](TestRandom& random) { expect_upright_arm_rests(random); });
 }
@@ -34,7 +34,7 @@ Rod upright_wires(double mass) {
   return rod;
 }
 
-// It bears 0.54 kg/m alone; tendons hold it up to more.
+// It bears 0.54 kg/m alone, and more with tendons.
 TEST(StaticsFall, AHeavyArmThatCannotStandFallsOver) {
   const Rod rod = upright_wires(20);
   const RodLoads weight{.gravity = {0, 0, -9.81}};
@@ -60,19 +60,20 @@ TEST(StaticsFall, AColumnThatNothingHoldsFallsToASide) {
   EXPECT_FALSE(upright.stable);
   EXPECT_TRUE(fallen.stable);
   EXPECT_TRUE(fallen.snapped && fallen.ambiguous);
-  // To any side, as far as one that is pushed a little.
+  // It bends to any side, as far as a rod that is pushed a little.
   Rod planar = elastica(8);
   planar.sections[0].modes.planar = true;
   const Equilibrium aside = RodStatics(planar).solve({}, {.ends = {{.section = 0, .force = {1e-3, 0, -3}}}});
   EXPECT_NEAR(fallen.tip.position.head<2>().norm(), std::abs(aside.tip.position.x()), 5e-3);
   EXPECT_NEAR(fallen.tip.position.z(), aside.tip.position.z(), 5e-3);
-  // There it stays.
+  // It stays there.
   const Equilibrium again = statics.settle({}, pushed, fallen);
   EXPECT_TRUE(again.converged() && again.stable);
   EXPECT_LE((again.tip.position - fallen.tip.position).norm(), 1e-6);
 }
 
-// Three tendons that are just taut let a column's ends not tilt: it bears more than alone, though none pulls.
+// Three tendons that are just taut prevent tilting of a column's ends: it bears more than alone, at zero
+// tension.
 TEST(StaticsFall, TendonsThatAreJustTautHoldAColumn) {
   Rod rod = elastica(6);
   for (int k = 0; k < 3; ++k)
@@ -83,14 +84,14 @@ TEST(StaticsFall, TendonsThatAreJustTautHoldAColumn) {
   ASSERT_TRUE(held.converged());
   EXPECT_TRUE(held.stable);
   EXPECT_LE(held.tip.position.head<2>().norm(), 1e-6);
-  // Four times the load, and its ends slide against each other.
+  // At four times the load its ends slide against each other.
   const Equilibrium over = statics.settle(taut, {.ends = {{.section = 0, .force = {0, 0, -14}}}});
   ASSERT_TRUE(over.converged());
   EXPECT_TRUE(over.stable && over.snapped);
   EXPECT_GE(over.tip.position.head<2>().norm(), 0.05);
 }
 
-// What has no energy: it comes to rest, or says that it did not.
+// Without an energy it comes to rest or reports that it did not.
 TEST(StaticsFall, FrictionAndFollowingLoadsAreFollowedToRest) {
   int found = 0, asked = 0;
   for_random_cases(12, [&](TestRandom& random) {
@@ -121,7 +122,7 @@ TEST(StaticsFall, FrictionAndFollowingLoadsAreFollowedToRest) {
   EXPECT_GE(found, asked - 3);
 }
 
-// Two tendons let a heavy arm lean; pulled past the top it snaps, from where it is.
+// Two tendons let a heavy arm lean; pulled past the top it snaps from its present shape.
 TEST(StaticsFall, SettlesWhereItFallsToFromWhereItIs) {
   Rod rod = elastica(8);
   rod.sections[0].modes.planar = true;
@@ -136,7 +137,7 @@ TEST(StaticsFall, SettlesWhereItFallsToFromWhereItIs) {
   const Equilibrium way = statics.solve({.tensions = {1.2 * 1.5 / 0.05}}, weight);
   ASSERT_TRUE(over.converged() && over.stable && over.ambiguous);
   EXPECT_LE((over.tip.position - way.tip.position).norm(), 1e-8);
-  // And stays there when the tension goes back: there are two.
+  // It stays there when the tension is reduced again: there are two equilibria.
   const Equilibrium back = statics.settle({.tensions = {1.1 * 1.5 / 0.05}}, weight, over);
   ASSERT_TRUE(back.converged() && back.stable);
   EXPECT_LT(back.tip.position.x(), -0.5);

@@ -13,7 +13,7 @@
 namespace flexura {
 namespace {
 
-// What pulls at the base, where a rod lies so: where shooting begins.
+// Wrench at the base of a rod in equilibrium: start of the shooting method.
 Vector6d wrench_at_base(const Rod& rod, const Equilibrium& at, const std::vector<double>& tensions,
                         const RodLoads& loads) {
   RodChain chain(rod);
@@ -44,7 +44,7 @@ TEST(StaticsWitness, AThousandRobotsFromACold) {
     worst = std::max(worst, difference);
     EXPECT_LE(difference, 2e-3);
     if (difference < 1e-6) return;
-    // It was the modes that were too few.
+    // The difference came from too few modes.
     const Equilibrium finely = RodStatics(finer(rod, 9)).solve({.tensions = tensions}, loads);
     ASSERT_TRUE(finely.converged());
     EXPECT_LE((shot.tip.position - finely.tip.position).norm(), 0.05 * difference + 1e-6);
@@ -57,7 +57,7 @@ TEST(StaticsWitness, AThousandRobotsFromACold) {
 TEST(StaticsWitness, EachModeMoreComesNearer) {
   for_random_cases(12, [](TestRandom& random) {
     Rod rod = random_rod(random);
-    for (RodSection& section : rod.sections) section.masses.clear();  // There the curvature has a kink.
+    for (RodSection& section : rod.sections) section.masses.clear();  // The curvature has a kink there.
     const std::vector<double> tensions = random_tensions(random, rod, 6);
     RodLoads loads = random_loads(random, rod);
     loads.gravity = random.vector<3>(-10.0, 10.0);

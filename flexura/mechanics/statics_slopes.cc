@@ -1,4 +1,4 @@
-// How an equilibrium answers to what pulls and to what the rod is made of.
+// Derivatives of an equilibrium by loads, tendons and parameters of the rod.
 #include <Eigen/LU>
 #include <cmath>
 #include <stdexcept>
@@ -19,13 +19,13 @@ EquilibriumSlopes RodStatics::slopes(Slack slack) {
   const std::vector<RodElement>& elements = chain_.elements();
   RodElement::Columns J(6, n);
   chain_.columns_at(elements.size() - 1, elements.back().poses().size() - 1, J);
-  // Of the tip's own origin, and a force and a moment there.
+  // Velocity of the tip's origin, and a force and a moment there.
   const Eigen::Vector3d p = chain_.tip().position;
   for (Eigen::Index c = 0; c < n; ++c) J.col(c).head<3>() += J.col(c).tail<3>().cross(p);
 
   Eigen::MatrixXd by_tension = -chain_.pull_slopes(), by_tip = J.transpose(),
                   by_parameters = -chain_.parameter_slopes(loads_.gravity);
-  // What friction adds to the derivative that is factored.
+  // Correction of the factored derivative for friction.
   Eigen::PartialPivLU<Eigen::MatrixXd> friction;
   if (chain_.has_friction() && n > 0) {
     Eigen::MatrixXd form = chain_.friction_form(pulls_);

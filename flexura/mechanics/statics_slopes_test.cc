@@ -113,7 +113,7 @@ void expect_slopes(RodStatics& statics, const TendonInput& input, const RodLoads
   }
 }
 
-// By stiffness and weight of each section, with tensions kept and with displacements kept.
+// By stiffness and weight of each section, at constant tensions and at constant displacements.
 TEST(StaticsSlopes, ByParametersAreThoseByDifferences) {
   for_random_cases(12, [](TestRandom& random) {
     Rod rod = coarse(random_rod(random), random);

@@ -22,7 +22,7 @@ TEST(StaticsTendons, DisplacementsLeadBackToTheirTensions) {
     RodStatics statics(rod);
     const Equilibrium pulled = statics.solve({.tensions = tensions}, loads);
     ASSERT_TRUE(pulled.converged());
-    // Those without tension hang in the rod as it is: let out further, they stay slack.
+    // Tendons without tension follow the shape; let out further, they stay slack.
     std::vector<double> displacements = pulled.displacements;
     for (std::size_t i = 0; i < tensions.size(); ++i)
       if (tensions[i] == 0) displacements[i] -= 0.001;
@@ -48,7 +48,7 @@ TEST(StaticsTendons, ATendonThatIsLetOutHangsSlackAndDoesNotPush) {
   EXPECT_LE((tight.tip.position - Eigen::Vector3d(0, 0, 0.4)).head<2>().norm(), 1e-9);
 }
 
-// Four on a section, two of which are pulled in against each other, without any give: the others hang slack.
+// Four inextensible tendons on a section, two of them pulled in against each other: the others are slack.
 TEST(StaticsTendons, ThatContradictEachOtherPullOrHangSlack) {
   Rod rod = two_section_robot();
   rod.sections.pop_back();
@@ -67,7 +67,7 @@ TEST(StaticsTendons, ThatContradictEachOtherPullOrHangSlack) {
   ASSERT_TRUE(all.converged() && all.stable);
   EXPECT_FALSE(all.ambiguous);
   for (const double tension : all.tensions) EXPECT_GT(tension, 0.5);
-  // A rod that does not stretch takes no pretension by lengths, but bends by what they differ.
+  // An inextensible rod takes no pretension by lengths, but bends by their differences.
   rod.sections[0].modes.stretch = 0;
   const Equilibrium stiff =
       RodStatics(rod).solve({.displacements = {2e-3, 0, -2e-3, 0}}, {.gravity = {3, 1, -9}});
@@ -82,14 +82,14 @@ TEST(StaticsTendons, FrictionIsThatOfACapstan) {
   RodStatics statics(rod);
   const Equilibrium at = statics.solve({.tensions = {30}}, {});
   ASSERT_TRUE(at.converged());
-  // EI bend = the mean of T d exp(-mu s bend) over the length.
+  // EI bend = mean of T d exp(-mu s bend) over the length.
   const double bend = at.q[statics.chain().elements()[0].grid().first[4]];
   EXPECT_NEAR(bend, 30 * 0.05 * (1 - std::exp(-0.3 * bend)) / (0.3 * bend), 1e-8);
 }
 
 TEST(StaticsTendons, FrictionWithoutModesToHoldItBackIsThatOfTheEquations) {
-  // With as many modes as it takes, each place has the curvature of what is left of the tension there:
-  // EI u = T d exp(-mu angle), so exp(mu angle) grows evenly along the rod.
+  // With enough modes, each place has the curvature of the remaining tension there: EI u = T d exp(-mu
+  // angle), so exp(mu angle) is linear along the rod.
   Rod rod = elastica(10);
   const double mu = 0.4, d = 0.05, tension = 30;
   rod.tendons = {{.section = 0, .radius = d, .friction = mu}};
@@ -101,7 +101,7 @@ TEST(StaticsTendons, FrictionWithoutModesToHoldItBackIsThatOfTheEquations) {
   EXPECT_NEAR(std::atan2(z.x(), z.z()), angle, 1e-9);
 }
 
-// docs/drives.md: of a bend u, all lengths between n disks shrink by sinc(|u| / 2n).
+// docs/drives.md: for a bend u, all lengths between n disks shrink by sinc(|u| / 2n).
 TEST(StaticsTendons, RunStraightBetweenDisks) {
   for_random_cases(20, [](TestRandom& random) {
     Rod rod = elastica(1);
@@ -135,7 +135,7 @@ TEST(StaticsTendons, BetweenManyDisksAreThoseOfAChannel) {
       return (at.tip.position - channel.tip.position).norm();
     };
     const double few = with_disks(10), many = with_disks(40);
-    // The second power of the pieces' length.
+    // Second order in the pieces' length.
     if (few > 1e-7) {
       EXPECT_NEAR(std::log2(few / many), 4, 1.2);
     }
@@ -143,7 +143,7 @@ TEST(StaticsTendons, BetweenManyDisksAreThoseOfAChannel) {
   });
 }
 
-// The kink force where a tendon passes the end of a section that it does not end at: one section as two.
+// The kink force where a tendon passes the end of a section: one section equals two.
 TEST(StaticsTendons, PassTheEndsOfSectionsAsIfThereWereNone) {
   for_random_cases(20, [](TestRandom& random) {
     Rod rod = random_rod(random);

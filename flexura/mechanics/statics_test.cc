@@ -81,7 +81,7 @@ TEST(Statics, ACantileverUnderItsWeight) {
     const Equilibrium at = statics.solve({}, {.gravity = {known.weight, 0, 0}});
     ASSERT_TRUE(at.converged());
     EXPECT_NEAR(at.tip.position.x(), known.drop, 1e-5);
-    // The same as a force along the rod.
+    // Equal to a force along the rod.
     const Equilibrium spread = statics.solve({}, {.per_length = {known.weight, 0, 0}});
     expect_near(spread.tip.position, at.tip.position, 1e-12);
   }
@@ -98,7 +98,7 @@ TEST(Statics, AMomentRollsARodToACircle) {
   }
 }
 
-// Euler: a clamped column with a free end buckles under pi^2 EI / 4 L^2.
+// Euler: a clamped column with a free end buckles at pi^2 EI / 4 L^2.
 TEST(Statics, AColumnIsStableUpToItsBucklingLoad) {
   const double critical = std::numbers::pi * std::numbers::pi / 4;
   RodStatics statics(elastica(8));
@@ -114,7 +114,7 @@ TEST(Statics, AColumnIsStableUpToItsBucklingLoad) {
   expect_near(above.tip.position, {0, 0, 1}, 1e-9);
 }
 
-// Pushed aside by ever so little, it falls to that side: the way bends off before the branch point.
+// With a tiny imperfection it buckles to that side: the load path bends off before the branch point.
 TEST(Statics, AColumnFallsTheWayItIsPushed) {
   const double critical = std::numbers::pi * std::numbers::pi / 4;
   for (const double over : {1.02, 1.5, 3.0}) {
@@ -131,7 +131,7 @@ TEST(Statics, AColumnFallsTheWayItIsPushed) {
   }
 }
 
-// M. Beck's column, under a force that follows its end, does not fall aside however it is cut into sections.
+// M. Beck's column under a follower load has no static divergence, however it is divided into sections.
 TEST(Statics, StabilityUnderFollowingLoadsDoesNotDependOnSections) {
   for (const std::size_t cut : {1u, 2u, 4u}) {
     Rod column = elastica(6);
@@ -153,8 +153,8 @@ TEST(Statics, ARodIsNotTurnedInsideOut) {
   EXPECT_FALSE(at.converged());
 }
 
-// A column that is curved to one side, and heavier than it can bear, falls to that side; a tendon on the
-// other side holds it up, until it jumps over.
+// A column that is curved to one side and heavier than its buckling load falls to that side. A tendon on the
+// other side holds it up, until it snaps over.
 TEST(Statics, AColumnThatIsPulledOverSnaps) {
   Rod rod = elastica(8);
   rod.sections[0].modes.planar = true;
@@ -204,8 +204,8 @@ TEST(Statics, RefusesWhatIsNoInput) {
   }
 }
 
-// A section that is driven longer is the longer section of the same substance: each strain a metre is
-// less by the factor, so the stiffness is more by it and the mass a metre less.
+// A section driven longer equals a longer section of the same material: each strain per metre is lower by the
+// factor, so the stiffness is higher by it and the mass per metre lower.
 TEST(Statics, ASectionThatIsDrivenLongerIsALongerOne) {
   for_random_cases(10, [](TestRandom& random) {
     Rod rod = two_section_robot();
@@ -230,7 +230,7 @@ TEST(Statics, ASectionThatIsDrivenLongerIsALongerOne) {
     ASSERT_TRUE(b.converged());
     EXPECT_LE((a.tip.position - b.tip.position).norm(), 1e-9 * base);
     EXPECT_NEAR(a.strain_energy, b.strain_energy, 1e-9 * b.strain_energy);
-    // And back again.
+    // Back to the original length.
     driven.stretch_rest(std::vector<double>{1, 1});
     const Equilibrium before = driven.solve(pulls, loads), fresh = RodStatics(rod).solve(pulls, loads);
     EXPECT_LE((before.tip.position - fresh.tip.position).norm(), 1e-12 * base);

@@ -1,4 +1,4 @@
-// The way from no load on to all of it.
+// Load path from zero to full load.
 #include <algorithm>
 #include <cmath>
 #include <vector>
@@ -13,11 +13,11 @@ constexpr double shortest_at_branch = 1e-3;
 constexpr int max_strides = 2000, max_correction = 8;
 constexpr int max_iterations = 1500;  // Linear systems of one search.
 constexpr double longest_way = 400;   // Sections turn around many times.
-constexpr double least_share = -0.5;  // Of the load, where a way turned back.
+constexpr double least_share = -0.5;  // Share of the load at which a reversed path ends.
 
 }  // namespace
 
-// By pseudo-arclength (H. Keller, 1977): along the way on which load and shape change together, which turns
+// Pseudo-arclength continuation (H. Keller, 1977): load and shape change together along the path, which turns
 // where the load has an extremum.
 bool RodStatics::follow(Equilibrium& result, Unknowns& at, Unknowns& last_stable) {
   const double a_section = 1.0 / static_cast<double>(chain_.elements().size());
@@ -26,7 +26,7 @@ bool RodStatics::follow(Equilibrium& result, Unknowns& at, Unknowns& last_stable
   };
   double share = 0, stride = first_stride, way = 0;
   Unknowns direction{Eigen::VectorXd::Zero(at.q.size()), Eigen::VectorXd::Zero(at.tensions.size())};
-  double rise = 1;  // The share's part of the direction.
+  double rise = 1;  // Component of the direction along the load share.
   int negative = 0;
   bool is_stable = true;  // So far.
   result.end = StaticsEnd::out_of_steps;
@@ -46,7 +46,7 @@ bool RodStatics::follow(Equilibrium& result, Unknowns& at, Unknowns& last_stable
     if (is_stable) last_stable = at;
 
     const std::vector<char> taut = taut_;
-    double afterwards = 0;  // The stride before it became short at a branch point.
+    double afterwards = 0;  // The stride before it was reduced at a branch point.
     for (;; stride *= 0.5) {
       if (stride < shortest_stride) return false;
       taut_ = taut;
@@ -68,8 +68,8 @@ bool RodStatics::follow(Equilibrium& result, Unknowns& at, Unknowns& last_stable
         settled = size < 1e-6;
       }
       if (!settled) continue;
-      // Another sign of stability without a turn: a branch leaves the way here, or it was jumped over. Only
-      // the first stays however short the stride is.
+      // A change of stability without a turn: a branch leaves the path here, or was jumped over. Only the
+      // former remains at small strides.
       const bool turns = dot(tangent_.q, direction.q) + rise < 0;
       if (negative_ != negative && !turns) {
         afterwards = std::max(afterwards, stride);

@@ -9,7 +9,7 @@
 namespace flexura {
 namespace {
 
-// Let out so far, m, a tendon of no arm is taut.
+// Displacement at which any tendon is slack, m.
 constexpr double let_out = -1e6;
 
 }  // namespace

@@ -8,16 +8,16 @@
 
 namespace flexura {
 
-/// Several surroundings of one rod, as one: their pulls are added.
+/// Several surroundings of one rod combined: their wrenches are added.
 class Surroundings final : public RodSurroundings {
  public:
-  /// They are kept by reference. std::invalid_argument: a null pointer, or two of them that pull at points
+  /// Keeps references. Throws std::invalid_argument for a null pointer, or if two of them act at points
   /// between nodes.
   explicit Surroundings(std::vector<const RodSurroundings*> parts);
-  /// Not from two threads at once.
+  /// Not thread-safe.
   void pull(std::span<const NodeMotion> nodes, std::span<const double> run,
             std::span<NodePull> pulls) const override;
-  /// Those of the one that has some, as all below.
+  /// Points of the one part that has some; the following functions also use that part.
   [[nodiscard]] std::span<const RodPlace> points() const override;
   void choose(std::span<const NodeMotion> nodes, std::span<const double> lengths,
               std::vector<std::size_t>& chosen) const override;
@@ -40,9 +40,9 @@ struct TendonBreak {
   double time = 0;  ///< s
 };
 
-/// What is left of an input at a time when tendons break: the tension of a broken tendon is 0; of
-/// displacements it is let out so far that it stays slack. Of an input without tensions and displacements
-/// nothing changes. std::invalid_argument: a tendon that is not in the list.
+/// Returns the input at a time when tendons break. A broken tendon has tension 0, or a displacement at which
+/// it is always slack. An empty input stays empty. Throws std::invalid_argument for a tendon that is not in
+/// the list.
 [[nodiscard]] TendonInput after_breaks(TendonInput input, std::span<const TendonBreak> breaks, double time);
 
 }  // namespace flexura

@@ -8,21 +8,21 @@
 
 namespace flexura {
 
-/// Answers one line of `flexura ik`: a JSON object {"position":[x,y,z]} with an optional "direction":[x,y,z]
-/// or "rotation":[w,x,y,z], or {"curve":[[x,y,z],...]}; optional "wish", "start" and "all"
-/// (docs/command-line.md). The answer is one line of JSON without its line end:
-/// {"converged":..,"reason":..,"bends":[[bx,by],...],"stretches":[..],"position_error":..,"angle_error":..},
-/// with "archings" instead of "bends" for a planar arm, "nearest" and "distance" when not converged, or
-/// "solutions" when all are asked for; {"error":"..."} for a line that cannot be answered. Never throws on
-/// account of the line.
+/// Answers one line of `flexura ik`. The line is a JSON object {"position":[x,y,z]} with an optional
+/// "direction":[x,y,z] or "rotation":[w,x,y,z], or {"curve":[[x,y,z],...]}; optional "wish", "start" and
+/// "all" (docs/command-line.md). The answer is one line of JSON without its line end:
+/// {"converged":..,"reason":..,"bends":[[bx,by],...],"stretches":[..],"position_error":..,"angle_error":..}.
+/// A planar arm has "archings" instead of "bends". "nearest" and "distance" are added if not converged, and
+/// "solutions" if "all" is set. A line that cannot be answered gives {"error":"..."}. Never throws because of
+/// the line's contents.
 [[nodiscard]] std::string answer_inverse(const ArmModel& arm, std::string_view line);
-/// The same of an arm of arcs.
+/// Answers one line of `flexura ik` for an arm of arcs.
 [[nodiscard]] inline std::string answer_inverse(const Arm& arm, std::string_view line) {
   return answer_inverse(ArmModel(arm), line);
 }
 
-/// What is wrong with a line of `flexura ik`, "" for one that can be answered. Never throws on account of the
-/// line.
+/// Returns what is wrong with a line of `flexura ik`, or "" if it can be answered. Never throws because of
+/// the line's contents.
 [[nodiscard]] std::string inverse_problem(const Arm& arm, std::string_view line);
 
 }  // namespace flexura

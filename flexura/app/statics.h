@@ -13,18 +13,18 @@ namespace flexura {
 
 /// Answers lines of `flexura statics` about one arm: JSON objects {"tensions":[...]} or
 /// {"displacements":[...]}, or neither, with optional "tip_force", "tip_moment", "gravity" and "at"
-/// (docs/command-line.md), all in the frame of the arm's base. An answer depends on its line alone.
+/// (docs/command-line.md). All are in the frame of the arm's base. An answer depends only on its line.
 class StaticsAnswers {
  public:
-  /// std::invalid_argument: the arm has no rod that can be computed (rod_of, rod_problems).
+  /// Throws std::invalid_argument if the arm has no computable rod (rod_of, rod_problems).
   StaticsAnswers(const ArmConfig& arm, const std::optional<DriveConfig>& drive);
 
-  /// One line of JSON without its line end: {"converged":..,"reason":..} and, of what converged,
+  /// Returns one line of JSON without its line end: {"converged":..,"reason":..}. If converged, it also has
   /// "tip":{"position":[..],"rotation":[w,x,y,z]},"tensions":[..],"displacements":[..],"strain_energy":..,
-  /// "stable":..,"snapped":..,"ambiguous":.. and "at":[poses] where asked for; {"error":"..."} for a line
-  /// that cannot be answered. Never throws on account of the line.
+  /// "stable":..,"snapped":..,"ambiguous":.. and "at":[poses] if requested. A line that cannot be answered
+  /// gives {"error":"..."}. Never throws because of the line's contents.
   [[nodiscard]] std::string answer(std::string_view line);
-  /// What keeps the line from being answered, in words; "": nothing does.
+  /// Returns why the line cannot be answered; "" if it can.
   [[nodiscard]] std::string problem(std::string_view line) const;
 
  private:

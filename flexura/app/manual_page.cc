@@ -9,8 +9,8 @@
 namespace flexura {
 namespace {
 
-// Escapes text for roff, where backslashes, leading dots and quotes have a meaning; marks hyphens as
-// breakable.
+// Escapes text for roff: backslashes, leading dots and quotes have a meaning there, and lines may break at a
+// plain hyphen.
 std::string roff(const std::string& text) {
   std::string escaped;
   for (const char c : text) {

@@ -49,7 +49,7 @@ Node marker_node(const MarkerSighting& marker) {
 struct MeasuredAxis {
   // `fitted`: the samples for circles and ellipses; only the backbone's image if it is known.
   std::vector<AxisSample> shown, fitted;
-  std::vector<bool> is_backbone;  // Empty: nowhere.
+  std::vector<bool> is_backbone;  // Whether a sample is the backbone's image; empty: none is.
 
   // Returns whether a sample has a known error. Bridged samples between visible ones do not, nor do those
   // where the lens has no rays.

@@ -1,6 +1,6 @@
-// Any bytes as the input of `flexura statics`, on a stiff arm under its own tendons and a soft one under a
-// drive's: for each line, one line of JSON without NaN. Of inputs with a line that can be answered one in ten
-// is, for an equilibrium takes a hundred times as long as all else.
+// Fuzzes the input of `flexura statics` with any bytes, on a stiff arm with its own tendons and a soft one
+// with those of a drive. Each line must give one line of JSON without NaN. Only one in ten inputs with a
+// valid line is answered: an equilibrium takes a hundred times as long as all else.
 #include <array>
 #include <cstdint>
 #include <cstdlib>
@@ -18,9 +18,9 @@ namespace {
 
 using namespace flexura;
 
-// Short enough for inputs that are longer.
+// Short enough that inputs can exceed it.
 constexpr std::size_t longest = 1000;
-// So many lines of an input are answered.
+// Number of lines of an input to answer.
 constexpr std::size_t most_lines = 8;
 
 ArmConfig arm_of(ModesConfig modes, double youngs_modulus) {
@@ -68,7 +68,7 @@ void check_statics(std::string_view text, std::string_view line) {
   if ((node.find("tip") != nullptr) != *converged->as<bool>()) std::abort();
 }
 
-// What stands before the next line end, which is taken, too.
+// Returns the text before the next line end and removes both from `text`.
 std::string_view take_text_line(std::string_view& text) {
   const std::size_t end = text.find('\n');
   const std::string_view line = text.substr(0, end);

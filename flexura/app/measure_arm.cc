@@ -122,7 +122,7 @@ bool measure_arm(const Job& job) {
   if (!is_found) job.answer.add("reason", text_node(arm.is_found() ? "the arm has no markers" : arm.reason));
   if (!job.photograph.is_mask)
     if (auto note = hint_of_exposure(job.gray)) notes.push_back(std::move(*note));
-  // A camera that says for which size it is described has been held to it.
+  // A camera with a given size has already been checked against the picture.
   if (lens && !job.config.camera->size)
     if (auto note = hint_of_size(*lens, job.gray.width(), job.gray.height()))
       notes.push_back(std::move(*note));

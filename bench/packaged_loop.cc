@@ -81,8 +81,8 @@ std::unique_ptr<Peer> painter(Painter kind, const Setting& setting) {
   return nullptr;
 }
 
-// The packaged parts for one turn, one after the other in one thread: two pictures, without noise; OpenCV on
-// both; a step of vpServo. Nobody estimates a shape.
+// Runs the packaged parts of one cycle in sequence in one thread: two noise-free pictures, OpenCV on both,
+// one step of vpServo. No shape is estimated.
 void packaged(benchmark::State& state, Painter kind) {
   try {
     cv::setNumThreads(1);

@@ -12,7 +12,7 @@ build=${FLEXURA_STUDY_BUILD:-build/release}
 
 if [ -z "${FLEXURA_STUDY_BUILD:-}" ]; then cmake --preset release; fi
 cmake --build "$build" --target calibration_study paper_study
-# Trials of other code are none of this one's.
+# Keep the trials per commit: those of other code are not reused.
 trials_kept=build/studies/calibration/$(git rev-parse --short HEAD)
 picture=docs/images/calibration-study.svg
 mkdir -p docs/studies "$trials_kept"

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# median axes, markers and two-view shapes of random arms against the renderer's truth: ./dev study seeing [CASES] [SEED]
+# centerlines, markers and two-view shapes of random arms against the renderer's truth: ./dev study seeing [CASES] [SEED]
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 cases=${1:-10000}
@@ -9,7 +9,7 @@ build=${FLEXURA_STUDY_BUILD:-build/release}
 
 if [ -z "${FLEXURA_STUDY_BUILD:-}" ]; then cmake --preset release; fi
 cmake --build "$build" --target seeing_study shape_study
-# Whose programs these are, and whether they are as committed.
+# The commit that the programs were built from, and whether it has changes.
 sources=$(sed -n 's/^CMAKE_HOME_DIRECTORY:INTERNAL=//p' "$build/CMakeCache.txt")
 commit=$(git -C "$sources" describe --always --exclude '*' --abbrev=7 --dirty=', changed')
 mkdir -p docs/studies build/studies

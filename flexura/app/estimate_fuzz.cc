@@ -54,9 +54,9 @@ struct Asked {
 };
 
 // Bits of `ways`: known base, known length, known sections, thresholds by block, markers, few sections, as
-// thorough as the program. Few sections (many attempts at bending the last one where no shape explains the
-// pictures) and the thorough search (which goes on if nothing is found) take most of the time. Only some
-// cases use them.
+// thorough as the program. The last two take most of the time and are used in few cases. With few sections
+// the last one is tried with many bends if no shape explains the pictures. A thorough search goes on if
+// nothing is found.
 flexura::EstimateConfig config_of(unsigned ways) {
   flexura::EstimateConfig config;
   std::optional<Eigen::Vector3d> base;

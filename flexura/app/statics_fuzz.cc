@@ -1,6 +1,6 @@
-// Fuzzes the input of `flexura statics` with any bytes, on a stiff arm with its own tendons and a soft one
-// with those of a drive. Each line must give one line of JSON without NaN. Only one in ten inputs with a
-// valid line is answered: an equilibrium takes a hundred times as long as all else.
+// Fuzzes the input of `flexura statics` with any bytes. One arm is stiff and has its own tendons; the other
+// is soft and has those of a drive. Each line must give one line of JSON without NaN. Only one in ten inputs
+// with a valid line is answered: an equilibrium takes a hundred times as long as all else.
 #include <array>
 #include <cstdint>
 #include <cstdlib>

@@ -23,12 +23,12 @@ DartRod::DartRod(const RodSection& section, const Eigen::Vector3d& gravity, int 
   model_->skeleton = dart::dynamics::Skeleton::create("rod");
   dart::dynamics::BodyNode* parent = nullptr;
   for (int i = 0; i < joints; ++i) {
-    // From the middle of a piece to that of the next, or to the end.
+    // From the middle of a piece to that of the next one, or to the end.
     const double length = i + 1 < joints ? piece : piece / 2;
     const double mass = section.mass_per_length_at(0) * length, radius = section.radius[0];
     const double across = mass * (3 * radius * radius + length * length) / 12,
                  along = mass * radius * radius / 2;
-    // Without names of their own it says of each that it gets another.
+    // Unique names avoid a warning from DART for each renamed joint.
     UniversalJoint::Properties of_joint;
     of_joint.mName = "joint " + std::to_string(i);
     const auto [joint, body] = model_->skeleton->createJointAndBodyNodePair<UniversalJoint>(

@@ -7,9 +7,9 @@
 
 namespace flexura {
 
-/// A rod of one section that bends, as DART's chain of rigid bodies: so many universal joints, each in the
-/// middle of an equal piece of the rod with the piece's stiffness and damping. DART goes on by its
-/// semi-implicit Euler steps, springs and dampers of joints implicit.
+/// A bending rod of one section as DART's chain of rigid bodies. Each universal joint is in the middle of an
+/// equal piece of the rod and has its stiffness and damping. DART integrates by semi-implicit Euler steps,
+/// with implicit joint springs and dampers.
 class DartRod {
  public:
   DartRod(const RodSection& section, const Eigen::Vector3d& gravity, int joints, double step);
@@ -17,10 +17,10 @@ class DartRod {
   DartRod(const DartRod&) = delete;
   DartRod& operator=(const DartRod&) = delete;
 
-  /// Straight, and at rest.
+  /// Makes the rod straight and at rest.
   void reset();
   void step();
-  /// In the frame of the base.
+  /// Returns the tip's position in the frame of the base, m.
   [[nodiscard]] Eigen::Vector3d tip() const;
 
  private:

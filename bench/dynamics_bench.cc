@@ -20,10 +20,10 @@
 #include "bench/dart_rod.h"
 #endif
 
-// How fast a rod moves: half a second of a soft tentacle that falls from where it is straight and level.
-// `error_mm` is how far the tip is off after 0.25 and 0.5 s, the greater of the two; `times_real` by how much
-// faster than time it goes, of CPU time. Of bends alone the tip is known (an independent solver's,
-// tests/support/known_rods.h); else it is that of the same rod with more modes in shorter steps.
+// Benchmarks of rod dynamics: half a second of a soft tentacle that falls from a straight, level start.
+// `error_mm` is the larger of the tip's errors after 0.25 and 0.5 s. `times_real` is simulated time over CPU
+// time. With bends alone the reference tip is that of an independent solver (tests/support/known_rods.h).
+// Otherwise it is that of the same rod with more modes and shorter steps.
 namespace flexura {
 namespace {
 
@@ -38,7 +38,7 @@ void count(benchmark::State& state, double seconds, const Tips& found, const Tip
   state.counters["times_real"] = benchmark::Counter(seconds, benchmark::Counter::kIsIterationInvariantRate);
 }
 
-// Half a second, from the start on; the tip in its middle and at its end.
+// A run of half a second, which gives the tip's position in the middle and at the end.
 struct Fall {
   Rod rod;
   RodDynamicsConfig config;
@@ -57,7 +57,7 @@ struct Fall {
     }
     tips[1] = dynamics.tip(state).position;
   }
-  // With what it touches, if it does.
+  // The dynamics with their contacts, if any.
   struct Moving {
     RodDynamics dynamics;
     std::optional<RodContact> contact;
@@ -83,7 +83,7 @@ void bench_fall(benchmark::State& state, const Fall& fall, const Tips& known) {
   count(state, until, tips, known);
 }
 
-// In so many steps, with so many nodes.
+// Returns the falling tentacle with these numbers of steps and nodes.
 Fall falling_tentacle(std::int64_t steps, std::int64_t nodes) {
   Fall fall{.rod = soft_tentacle(), .config = {.spectral_radius = 0.8, .tolerance = 1e-3}, .tendons = {}};
   fall.rod.sections[0].nodes = static_cast<int>(nodes);
@@ -103,7 +103,7 @@ BENCHMARK(fall_bends)
     ->Args({200, 6})
     ->Unit(benchmark::kMicrosecond);
 
-// The same by 24 joints of MuJoCo's, in each direction.
+// The same fall with MuJoCo: 24 joints in each direction.
 void fall_mujoco(benchmark::State& state) {
   const Rod rod = soft_tentacle();
   const double step = until / static_cast<double>(state.range(1));
@@ -132,7 +132,7 @@ BENCHMARK(fall_mujoco)
     ->Unit(benchmark::kMicrosecond);
 
 #ifdef FLEXURA_HAS_DART
-// And by 24 of DART's.
+// The same fall with DART: 24 universal joints.
 void fall_dart(benchmark::State& state) {
   const Rod rod = soft_tentacle();
   const double step = until / static_cast<double>(state.range(0));
@@ -195,7 +195,8 @@ Fall with_tendons(Fall fall, bool by_displacement) {
   return fall;
 }
 
-// With three tendons: by tensions (0), by displacements (1); bends alone (0), all strains (1).
+// The fall with three tendons, prescribed by tensions (0) or displacements (1); bends alone (0) or all
+// strains (1).
 void fall_tendons(benchmark::State& state) {
   Fall fall = with_tendons(falling_tentacle(state.range(2), 5), state.range(0) != 0);
   if (state.range(1) != 0) fall = with_all_strains(fall);
@@ -206,9 +207,9 @@ BENCHMARK(fall_tendons)
     ->ArgsProduct({{0, 1}, {0, 1}, {50, 200}})
     ->Unit(benchmark::kMicrosecond);
 
-// The soft tentacle falls on a post, alone (1) and with three tendons (2), beside the same rod free (0);
-// bends alone (0) or all strains (1), each bend with so many modes. It touches at places so many mm apart,
-// which need not be nodes.
+// The soft tentacle falls on a post, alone (1) and with three tendons (2), compared with the free tentacle
+// (0). Bends alone (0) or all strains (1); `modes` is the number of modes of each bend. Contact places are
+// `mm` apart and need not be nodes.
 void fall_on_a_post(benchmark::State& state) {
   Fall fall = falling_tentacle(state.range(2), state.range(3));
   const int post = static_cast<int>(state.range(0)), strains = static_cast<int>(state.range(1));
@@ -234,8 +235,7 @@ BENCHMARK(fall_on_a_post)
     ->ArgsProduct({{0, 2}, {1}, {50, 100, 200}, {7}, {6}, {15}})
     ->Unit(benchmark::kMicrosecond);
 
-// A tentacle that a tendon curls up until it lies on itself: what that takes (1), beside one that does not
-// feel itself (0).
+// A tendon curls a tentacle up until it lies on itself: with self-contact (1) and without (0).
 void curl_up(benchmark::State& state) {
   Rod rod = soft_arm_with_tendon(1e6);
   RodDynamics dynamics(rod);
@@ -259,7 +259,7 @@ void curl_up(benchmark::State& state) {
 }
 BENCHMARK(curl_up)->ArgName("itself")->Arg(0)->Arg(1)->Unit(benchmark::kMicrosecond);
 
-// The heavy steel rod with all strains, no damping, whose tendon lets go of 5 of its 15 N.
+// The heavy steel rod with all strains and no damping; its tendon's tension drops from 15 to 10 N.
 void heavy_rod_released(benchmark::State& state) {
   const RodLoads weight{.gravity = {9.81, 0, 0}};
   const auto tip = [&](double step, int bend, double tolerance) {
@@ -287,7 +287,7 @@ BENCHMARK(heavy_rod_released)
     ->Arg(100)
     ->Unit(benchmark::kMicrosecond);
 
-// Mass matrix, all forces, and accelerations of three sections with six constant strains each.
+// Computes mass matrix, all forces and accelerations of three sections with six constant strains each.
 void accelerations_of_3_sections(benchmark::State& state) {
   RodSection section{
       .length = 0.2, .radius = {5e-3, 5e-3}, .youngs_modulus = 1e9, .shear_modulus = 4e8, .density = 1000};
@@ -303,7 +303,7 @@ void accelerations_of_3_sections(benchmark::State& state) {
 }
 BENCHMARK(accelerations_of_3_sections)->Unit(benchmark::kMicrosecond);
 
-// A step of an arm of so many sections.
+// One step of an arm with this number of sections.
 void step_of_sections(benchmark::State& state) {
   const auto sections = static_cast<std::size_t>(state.range(0));
   RodSection section{.length = 1.0 / static_cast<double>(sections),

@@ -12,7 +12,7 @@ namespace flexura {
 
 EglContext::EglContext(LlvmpipeThreads threads) {
   setenv("LIBGL_ALWAYS_SOFTWARE", "1", 1);
-  // Read by each llvmpipe anew, and each display has its own.
+  // Each new llvmpipe reads the variable, and each display has its own llvmpipe.
   if (threads == LlvmpipeThreads::none)
     setenv("LP_NUM_THREADS", "0", 1);
   else

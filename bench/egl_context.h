@@ -2,14 +2,14 @@
 
 namespace flexura {
 
-/// Where llvmpipe fills its pixels.
+/// The threads in which llvmpipe rasterises.
 enum class LlvmpipeThreads {
-  none,         ///< In the thread that calls: everything in one.
-  as_it_comes,  ///< In as many more as it finds processors.
+  none,         ///< Everything in the calling thread.
+  as_it_comes,  ///< llvmpipe's default: one more thread per processor.
 };
 
-/// An OpenGL context of Mesa's llvmpipe without a window or a display, current while it lives; one at a time.
-/// std::runtime_error: there is none, or another renderer answers.
+/// An OpenGL context of Mesa's llvmpipe without a window or a display, current during its lifetime; only one
+/// at a time. Throws std::runtime_error if there is none, or if another renderer answers.
 class EglContext {
  public:
   explicit EglContext(LlvmpipeThreads threads);

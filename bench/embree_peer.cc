@@ -131,20 +131,20 @@ class EmbreePeer final : public Peer {
     }
   }
 
-  // Of one of the rays that share a pixel.
+  // Returns the image coordinate of one of the rays of a pixel.
   [[nodiscard]] float place_of(int pixel, int ray) const {
     return static_cast<float>(pixel) - 0.5f +
            (static_cast<float>(ray) + 0.5f) / static_cast<float>(rays_across_);
   }
 
-  // Of eight pixels in a row; `u` and `v` are the first ray's.
+  // Adds rays for eight pixels in a row; `u` and `v` are the first ray's coordinates.
   void add_rays(float u, float v, std::array<float, packet>& light, std::array<float, packet>& depth) const {
     const float x = (u - middle_.x()) * slope_.x(), y = (v - middle_.y()) * slope_.y();
     RTCRayHit8 rays = {};
     for (int i = 0; i < packet; ++i) {
       rays.ray.dir_x[i] = x + static_cast<float>(i) * slope_.x();
       rays.ray.dir_y[i] = y;
-      rays.ray.dir_z[i] = 1;  // So that tfar is the depth.
+      rays.ray.dir_z[i] = 1;  // Makes tfar the depth.
       rays.ray.tfar[i] = std::numeric_limits<float>::infinity();
       rays.ray.mask[i] = ~0U;
       rays.hit.geomID[i] = rays.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
@@ -182,13 +182,13 @@ class EmbreePeer final : public Peer {
   View view_;
   Eigen::Vector3f light_;
   float ambient_, directional_;
-  Eigen::Vector2f middle_, slope_;  // Of pixels and rays.
+  Eigen::Vector2f middle_, slope_;  // Mapping from pixels to rays.
   int rays_across_;
   RTCDevice device_;
   RTCScene scene_;
   PeerMesh mesh_;
   unsigned first_of_screens_ = 0;
-  std::vector<float> albedo_of_triangle_, albedo_of_curve_;  // Gray.
+  std::vector<float> albedo_of_triangle_, albedo_of_curve_;  // Gray values.
   Image<std::uint8_t> gray_;
   Image<float> depth_;
 };

@@ -1,5 +1,6 @@
-// Calibrating cameras from the corners of boards, beside OpenCV; corners are found already. Thirteen views of
-// a 9 x 6 board: drawn ones with noise 0.15 px, and the pairs of pictures of Debian's package opencv-doc.
+// Benchmarks of camera calibration from board corners, compared with OpenCV; corner detection is not
+// included. Data: thirteen views of a 9 x 6 board, drawn ones with noise 0.15 px, and the pairs of pictures
+// of Debian's package opencv-doc.
 #include <benchmark/benchmark.h>
 
 #include <Eigen/Core>
@@ -31,7 +32,7 @@ using Views = std::vector<BoardView>;
 const BoardTarget board;
 const std::vector<Eigen::Vector2d> points = board.points();
 
-// What a pair of cameras sees.
+// Returns the drawn views of a pair of cameras.
 Views drawn_pairs() {
   const Intrinsics lens{
       .fx = 533, .fy = 533, .cx = 342, .cy = 234, .distortion = {-0.28, 0.04, 0.001, 0, 0.02}};
@@ -41,7 +42,7 @@ Views drawn_pairs() {
   return seen_boards(truth, points, 0.15, random);
 }
 
-// None where a picture is not there or shows no board.
+// Returns the views in the real pictures; empty if a picture is missing or shows no board.
 Views real_pairs() {
   const std::filesystem::path folder = "/usr/share/doc/opencv-doc/examples/data";
   Views views;
@@ -67,14 +68,14 @@ const Views& pairs(bool are_real) {
   return are_real ? real : drawn;
 }
 
-// What one camera of them sees.
+// Returns the views of one camera of a pair.
 Views side(const Views& pairs, std::size_t camera) {
   Views views;
   for (const BoardView& pair : pairs) views.push_back({{pair.pixels[camera]}});
   return views;
 }
 
-// The first camera alone; or each alone, and then both with the step between them.
+// The first camera alone; or each camera alone, and then both with their relative pose.
 enum Cameras : std::uint8_t { one, each_and_both };
 
 void calibrate(benchmark::State& state, bool are_real, Cameras cameras) {

@@ -11,9 +11,9 @@
 #include "flexura/kinematics/inverse.h"
 #include "flexura/kinematics/spatial.h"
 
-// A solve of inverse kinematics for three spatial sections of 0.3, 0.25 and 0.2 m bent up to 120 degrees:
-// over the same thousand random reachable targets, from nothing (cold) and from a state whose bends are off
-// by up to 0.1 rad (warm), as when a target is followed.
+// Benchmarks of inverse kinematics for three spatial sections of 0.3, 0.25 and 0.2 m, bent up to 120 degrees.
+// All solve for the same thousand random reachable targets. Cold: without a start. Warm: from a state whose
+// bends are off by up to 0.1 rad, as in target following.
 namespace flexura {
 namespace {
 
@@ -26,7 +26,7 @@ struct Question {
   InverseConfig warm;
 };
 
-// SplitMix64, in [0, 1).
+// Returns a random number in [0, 1) (SplitMix64).
 double random(std::uint64_t& state) {
   std::uint64_t z = (state += 0x9E3779B97F4A7C15);
   z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9;
@@ -91,11 +91,11 @@ void inverse_warm(benchmark::State& state) { solve(state, true); }
 BENCHMARK(inverse_cold)->ArgName("kind")->Arg(position)->Arg(direction)->Arg(pose);
 BENCHMARK(inverse_warm)->ArgName("kind")->Arg(position)->Arg(direction)->Arg(pose);
 
-// Full poses by Orocos KDL's Levenberg-Marquardt on the same arm as a chain of 72 joints, beside the third
-// kind above: targets where the chain itself has its tip in the same states, from straight but for 0.1 rad a
-// section (cold: exactly straight is singular) and from the same near states (warm), to 1e-9 of the arm's
-// length and 1e-9 rad. It has no limits and makes one descent, of up to 500 iterations as by default; ours
-// keeps to limits, and tries again. What KDL does not solve is counted, not hidden.
+// Full poses by Orocos KDL's Levenberg-Marquardt solver on the same arm as a chain of 72 joints, for
+// comparison with the third kind above. Targets are the chain's own tips in the same states. Cold: from 0.1
+// rad a section, as exactly straight is singular. Warm: from the same near states. Tolerances: 1e-9 of the
+// arm's length and 1e-9 rad. KDL has no limits and makes one descent of up to 500 iterations, its default;
+// Flexura keeps to limits and retries. Targets that KDL does not solve are counted.
 void solve_by_kdl(benchmark::State& state, bool is_warm) {
   const Arm arm = three_sections();
   const std::vector<Question> all = questions(arm, pose);
@@ -109,7 +109,7 @@ void solve_by_kdl(benchmark::State& state, bool is_warm) {
     forward.JntToCart(kdl_joints(arm, question.wanted), targets.emplace_back());
     starts.push_back(kdl_joints(arm, is_warm ? question.near : bent));
   }
-  // Weights of positions and angles: both in the tolerance's unit.
+  // Weights of positions and angles, relative to their tolerances.
   Eigen::Matrix<double, 6, 1> weights;
   weights << Eigen::Vector3d::Constant(1.0 / arm.length()), Eigen::Vector3d::Ones();
   KDL::ChainIkSolverPos_LMA solver(chain, weights, 1e-9);

@@ -7,18 +7,18 @@
 
 #include "flexura/model/arm.h"
 
-// An arm as Orocos KDL can have it: a chain of rigid links.
+// Represents an arm for Orocos KDL, as a chain of rigid links.
 namespace flexura {
 
-/// How many links a section is made of, so that there are 72 revolute joints: of 8 planar sections 9, of 3
-/// spatial ones 12 with universal joints.
+/// Returns the number of links of a section, such that there are 72 revolute joints. Each of 8 planar
+/// sections has 9 links; each of 3 spatial ones has 12, with universal joints.
 [[nodiscard]] inline unsigned kdl_links(const Arm& arm) {
   const std::size_t axes = arm.kind == ArmKind::planar ? 1 : 2;
   return static_cast<unsigned>(72 / (axes * arm.sections.size()));
 }
 
-/// Each section as equal rigid links with a joint in the middle of each, in the base's frame. The two axes of
-/// universal joints change places from one to the next, else the arm would twist.
+/// Returns each section as equal rigid links with a joint in the middle of each, in the base's frame. The two
+/// axes of universal joints alternate from one to the next; otherwise the arm would twist.
 [[nodiscard]] inline KDL::Chain kdl_chain(const Arm& arm) {
   const std::vector<Section>& sections = arm.sections;
   const unsigned links = kdl_links(arm);
@@ -43,7 +43,7 @@ namespace flexura {
   return chain;
 }
 
-/// The chain's joints in a state of the arm (without stretch), rad.
+/// Returns the chain's joint angles in a state of the arm (without stretch), rad.
 [[nodiscard]] inline KDL::JntArray kdl_joints(const Arm& arm, const ArmState& state) {
   const unsigned links = kdl_links(arm);
   const unsigned axes = arm.kind == ArmKind::planar ? 1 : 2;

@@ -17,15 +17,15 @@
 #include "flexura/kinematics/planar.h"
 #include "flexura/kinematics/spatial.h"
 
-// How long one arm a call takes, and the same curve in Orocos KDL. All go over the same thousand random
-// states, bends uniform in +-2 rad in each direction.
+// Benchmarks of forward kinematics, one arm a call, and the same curve in Orocos KDL. All use the same
+// thousand random states, with bends uniform in +-2 rad in each direction.
 namespace flexura {
 namespace {
 
 constexpr std::size_t count = 1000;
 using std::numbers::pi;
 
-// SplitMix64, in [low, high).
+// Returns a random number in [low, high) (SplitMix64).
 double random(std::uint64_t& state, double low, double high) {
   std::uint64_t z = (state += 0x9E3779B97F4A7C15);
   z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9;
@@ -56,7 +56,7 @@ Case make_case(ArmKind kind, const std::vector<double>& lengths, bool stretches)
 Case planar_case() { return make_case(ArmKind::planar, {2., 3., 1., 2., 4., 2., 1., 1.}, false); }
 Case spatial_case(bool stretches) { return make_case(ArmKind::spatial, {0.3, 0.25, 0.2}, stretches); }
 
-// Calls body(number of a state) over and over.
+// Calls body(index of a state) repeatedly.
 template <typename Body>
 void one_by_one(benchmark::State& state, Body&& body) {
   std::size_t next = 0;
@@ -73,7 +73,7 @@ void tip_of_3_sections(benchmark::State& state) {
 }
 BENCHMARK(tip_of_3_sections);
 
-// The tip's pose and its Jacobian, 6 x 9.
+// Computes the tip's pose and its Jacobian, 6 x 9.
 void jacobian_of_3_sections(benchmark::State& state) {
   const Case c = spatial_case(true);
   BackboneJacobian backbone;
@@ -86,7 +86,7 @@ void jacobian_of_3_sections(benchmark::State& state) {
 }
 BENCHMARK(jacobian_of_3_sections);
 
-// The Jacobians of 100 points along the arm.
+// Computes the Jacobians of 100 points along the arm.
 void jacobians_along_3_sections(benchmark::State& state) {
   const Case c = spatial_case(true);
   std::vector<MaterialPoint> points;
@@ -143,7 +143,8 @@ KdlCase kdl_case(const Case& c) {
   return result;
 }
 
-// How far KDL's tips are from the arcs' ends, in parts of the arm's length: that it is the same curve.
+// Returns the largest distance of KDL's tips from the arcs' ends, relative to the arm's length: checks that
+// both are the same curve.
 double largest_deviation(const Case& c, const KdlCase& kdl) {
   KDL::ChainFkSolverPos_recursive solver(kdl.chain);
   Arm arm = c.arm;
@@ -171,7 +172,7 @@ BENCHMARK(tip_of_3_sections_kdl);
 void points_of_8_sections_kdl(benchmark::State& state) { forward_kdl(state, planar_case()); }
 BENCHMARK(points_of_8_sections_kdl);
 
-// The tip's pose and its Jacobian, 6 x 72.
+// Computes the tip's pose and its Jacobian, 6 x 72.
 void jacobian_of_3_sections_kdl(benchmark::State& state) {
   const KdlCase kdl = kdl_case(spatial_case(false));
   KDL::ChainFkSolverPos_recursive forward(kdl.chain);

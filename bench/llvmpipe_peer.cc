@@ -17,7 +17,7 @@ namespace flexura {
 namespace {
 
 constexpr double nearest = 0.5, farthest = 4;  // m
-// Depth z is drawn at depth_offset + depth_factor / z of OpenGL's -1 to 1.
+// Depth z maps to depth_offset + depth_factor / z in OpenGL's range -1 to 1.
 constexpr double depth_offset = (farthest + nearest) / (farthest - nearest);
 constexpr double depth_factor = -2 * farthest * nearest / (farthest - nearest);
 
@@ -79,7 +79,7 @@ void add_plane(GLenum place, GLenum format, int samples, const View& view) {
   glFramebufferRenderbuffer(GL_FRAMEBUFFER, place, GL_RENDERBUFFER, plane);
 }
 
-// All that is made stays until the context goes.
+// OpenGL objects live until the context is destroyed.
 class LlvmpipePeer final : public Peer {
  public:
   LlvmpipePeer(const Setting& setting, LlvmpipeConfig config)
@@ -93,7 +93,7 @@ class LlvmpipePeer final : public Peer {
     glBindFramebuffer(GL_READ_FRAMEBUFFER, result_);
     glEnable(GL_DEPTH_TEST);
     glEnable(GL_CULL_FACE);
-    glFrontFace(GL_CW);  // Rows from the top: the image is upside down to OpenGL.
+    glFrontFace(GL_CW);  // Rows start at the top: for OpenGL the image is upside down.
     glViewport(0, 0, view_.width, view_.height);
     glPixelStorei(GL_PACK_ALIGNMENT, 1);
     pixels_ = {view_.width, view_.height, is_gray() ? 1 : 4};
@@ -140,7 +140,7 @@ class LlvmpipePeer final : public Peer {
     const Light& light = setting.scene.light;
     const Eigen::Vector3f way = light_in_camera(setting);
     const auto place = [&](const char* name) { return glGetUniformLocation(program_, name); };
-    // Pixel middles stand at half numbers to OpenGL.
+    // OpenGL's pixel centers have half-integer coordinates.
     glUniform4f(place("lens"), static_cast<float>(2 * lens.fx / view_.width),
                 static_cast<float>(2 * lens.fy / view_.height),
                 static_cast<float>((2 * lens.cx + 1) / view_.width - 1),

@@ -10,13 +10,13 @@
 namespace flexura {
 
 struct LlvmpipeConfig {
-  int samples = 0;  ///< A pixel, where there are several.
+  int samples = 0;  ///< Samples per pixel; 0: no multisampling.
   PixelKind pixels = PixelKind::color;
   bool reads_depth = false;
   LlvmpipeThreads threads = LlvmpipeThreads::none;
 };
 
-/// The scene's triangles drawn by Mesa's llvmpipe through OpenGL, shaded by pixel.
+/// Returns a renderer that draws the scene's triangles by Mesa's llvmpipe through OpenGL, shaded per pixel.
 [[nodiscard]] std::unique_ptr<Peer> llvmpipe_peer(const Setting& setting, LlvmpipeConfig config);
 
 }  // namespace flexura

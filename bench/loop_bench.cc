@@ -1,5 +1,6 @@
-// The whole loop of a servo, two noisy pictures of 640 x 480 px a turn: rendered, segmented, the shape
-// estimated, the arm controlled; packaged_loop.cc has the sum of the best packaged parts for it.
+// Benchmarks of the whole servo loop with two noisy pictures of 640 x 480 px a cycle: rendering,
+// segmentation, shape estimation, control. packaged_loop.cc has the sum of the best packaged parts for
+// comparison.
 #include <benchmark/benchmark.h>
 
 #include <Eigen/Core>
@@ -26,7 +27,7 @@
 namespace flexura {
 namespace {
 
-// Does one thing again and again in a thread of its own.
+// Repeats one task in its own thread.
 class Helper {
  public:
   ~Helper() {
@@ -54,7 +55,7 @@ class Helper {
   std::thread thread_;
 };
 
-// An arm that goes to and fro between two shapes as its pictures tell.
+// An arm servoed back and forth between two shapes by its pictures.
 class Loop {
  public:
   Loop(int threads, const Sides& sides) {
@@ -103,13 +104,13 @@ class Loop {
     limiting_ += watch.lap();
     expected_ = sight_.estimate.shape.state;
     off_ = std::max(off_, servo_error(arm_, expected_, before).rms);
-    // Where it was seen, moved by what was sent since.
+    // The last estimate, moved by the commands sent since.
     for (std::size_t i = 0; i < expected_.bends.size(); ++i)
       expected_.bends[i] += state_.bends[i] - before.bends[i];
     own_ += own.lap();
   }
 
-  // Processor times in us a turn, of both cameras together; `own_us`: all that the calling thread does.
+  // Reports CPU times, us per cycle, for both cameras together. `own_us`: total of the calling thread.
   void tell(benchmark::State& state) const {
     const double us = 1e6 / static_cast<double>(turns_);
     state.counters["draw_us"] = us * (eyes_[0].drawing + eyes_[1].drawing);
@@ -137,7 +138,7 @@ class Loop {
   std::unique_ptr<Helper> helper_;
   int turns_ = 0;
   double fitting_ = 0, control_ = 0, limiting_ = 0, own_ = 0;  // s
-  double off_ = 0;  // Of the worst estimate, from the truth, root mean square, share of the length.
+  double off_ = 0;  // Rms error of the worst estimate, relative to the length.
 };
 
 void whole_loop(benchmark::State& state, const Sides& sides) {

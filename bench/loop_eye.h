@@ -17,7 +17,7 @@ namespace flexura {
 
 inline constexpr int loop_width = 640, loop_height = 480;
 
-/// The scene of the renderers' comparison, with its rings or without, from 30 degrees to both sides.
+/// The scene of the renderer comparison, with or without rings, seen from 30 degrees to either side.
 struct Sides {
   bool has_rings = true;
   double aside = std::numbers::pi / 6;
@@ -43,7 +43,7 @@ inline SensorConfig noisy() {
   return {.width = loop_width, .height = loop_height, .full_well = 10000, .read_noise = 1.5, .psf = 0.7};
 }
 
-/// One camera, and what it takes to see the arm with it.
+/// One camera, with the sensor and the vision code for its pictures.
 struct Eye {
   View view = {};
   std::uint64_t number = 0;
@@ -54,10 +54,10 @@ struct Eye {
   Image<std::uint8_t> picture = Image<std::uint8_t>(loop_width, loop_height);
   ArmFinder finder = ArmFinder();
   Sighting seen = {};
-  double drawing = 0, reading = 0, finding = 0;  // s, of all turns
+  double drawing = 0, reading = 0, finding = 0;  // Totals over all cycles, s.
 };
 
-/// Of the calling thread's processor time: others on the machine do not count.
+/// Measures the calling thread's CPU time, which other load on the machine does not affect.
 class Stopwatch {
  public:
   double lap() {

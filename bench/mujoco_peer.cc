@@ -34,7 +34,7 @@ std::string capsule(const ArmLook& arm, int i) {
                      text(ring == arm.markers.end() ? arm.albedo : ring->albedo));
 }
 
-// As bright as it shall be together with the light that falls on it.
+// Returns the screen, with an emission that gives full brightness together with the light falling on it.
 std::string screen(const Screen& screen, const Light& light) {
   const double shine = std::max(0.0, screen.X_WS.rotation.col(2).dot(light.direction.normalized()));
   const double emission = 1 - light.ambient - light.directional * shine;
@@ -50,7 +50,7 @@ std::string screen(const Screen& screen, const Light& light) {
 std::string model_of(const Setting& setting, MujocoConfig config) {
   const View& view = setting.view;
   const Light& light = setting.scene.light;
-  // Its cameras look along -z, y up.
+  // MuJoCo's cameras look along -z, with y up.
   const Eigen::Vector3d right = view.X_WC.rotation.col(0), up = -view.X_WC.rotation.col(1);
   const double height_angle = 2 * std::atan(0.5 * view.height / view.lens.intrinsics().fy);
   std::string model = fmt::format(
@@ -135,7 +135,7 @@ class MujocoPeer final : public Peer {
   EglContext context_{LlvmpipeThreads::none};
   mjModel* model_;
   mjData* data_;
-  Image<std::uint8_t> rgb_;  // From the bottom row.
+  Image<std::uint8_t> rgb_;  // Rows from the bottom.
   Image<float> depth_;
   mjvOption option_{};
   mjvCamera camera_{};

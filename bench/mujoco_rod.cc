@@ -22,7 +22,7 @@ std::string xml_of(const RodSection& section, const Eigen::Vector3d& gravity, in
       "constraint='disable'/></option><worldbody>",
       step, gravity.x(), gravity.y(), gravity.z(), name);
   for (int i = 0; i < joints; ++i) {
-    // From the middle of a piece to that of the next, or to the end.
+    // From the middle of a piece to that of the next one, or to the end.
     const double length = i + 1 < joints ? piece : piece / 2;
     const double mass = section.mass_per_length_at(0) * length, radius = section.radius[0];
     const double across = mass * (3 * radius * radius + length * length) / 12,

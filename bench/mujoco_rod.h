@@ -7,11 +7,11 @@
 
 namespace flexura {
 
-/// How MuJoCo goes on in time.
+/// MuJoCo's time integrators.
 enum class MujocoIntegrator { euler, implicit, runge_kutta };
 
-/// A rod of one section that bends, as MuJoCo's chain of rigid bodies: so many joints, each in the middle of
-/// an equal piece of the rod with the piece's stiffness and damping, bend in two directions.
+/// A bending rod of one section as MuJoCo's chain of rigid bodies. Each joint bends in two directions. It is
+/// in the middle of an equal piece of the rod and has its stiffness and damping.
 class MujocoRod {
  public:
   MujocoRod(const RodSection& section, const Eigen::Vector3d& gravity, int joints,
@@ -20,10 +20,10 @@ class MujocoRod {
   MujocoRod(const MujocoRod&) = delete;
   MujocoRod& operator=(const MujocoRod&) = delete;
 
-  /// Straight, and at rest.
+  /// Makes the rod straight and at rest.
   void reset();
   void step();
-  /// In the frame of the base.
+  /// Returns the tip's position in the frame of the base, m.
   [[nodiscard]] Eigen::Vector3d tip() const;
 
  private:

@@ -1,4 +1,4 @@
-// The packaged parts for a turn of the whole loop: llvmpipe or MuJoCo, OpenCV, ViSP.
+// The packaged parts for one cycle of the whole loop: llvmpipe or MuJoCo, OpenCV, ViSP.
 #include <benchmark/benchmark.h>
 
 #include <Eigen/Core>
@@ -21,8 +21,8 @@
 namespace flexura {
 namespace {
 
-// Gray of colour, Otsu's threshold, components, contours and the distance transform: whole pixels, and no
-// axis.
+// Finds the arm by OpenCV: gray conversion, Otsu's threshold, components, contours and distance transform.
+// This gives whole pixels and no centerline.
 class OpenCvEye {
  public:
   void look(const Image<std::uint8_t>& picture) {
@@ -45,7 +45,7 @@ class OpenCvEye {
   std::vector<std::vector<cv::Point>> contours_;
 };
 
-// 25 places along the arm in both pictures, as one free camera's 50 points.
+// Returns the images of 25 places along the arm in both pictures, as 50 points of one free camera.
 std::vector<VispPoint> points_of(const ArmState& state) {
   constexpr int places = 25;
   FeatureImages images(setting_arm(), FeatureSet::of_points(places));
@@ -81,13 +81,14 @@ std::unique_ptr<Peer> painter(Painter kind, const Setting& setting) {
   return nullptr;
 }
 
-// The packaged parts for one turn, one after the other in one thread: two pictures, without noise; OpenCV on
-// both; a step of vpServo. Nobody estimates a shape.
+// Runs the packaged parts of one cycle in sequence in one thread: two noise-free pictures, OpenCV on both,
+// one step of vpServo. No shape is estimated.
 void packaged(benchmark::State& state, Painter kind) {
   try {
     cv::setNumThreads(1);
     const std::array<Setting, 2> settings = both_settings(with_rings);
-    // One context at a time may be current: both pictures are of the first view, which is as much work.
+    // Only one context may be current at a time. Both pictures therefore show the first view, which is as
+    // much work.
     const std::unique_ptr<Peer> peer = painter(kind, settings[0]);
     std::array<Image<std::uint8_t>, 2> pictures;
     for (std::size_t i = 0; i < 2; ++i) {

@@ -6,13 +6,13 @@
 
 namespace flexura {
 
-/// A frame as it is compared.
+/// A frame to compare.
 struct PeerPicture {
   Image<std::uint8_t> pixels;  ///< Gray or red, green, blue; 255 is light 1, without gamma.
   Image<float> depth;          ///< Along the optical axis, m.
 };
 
-/// A renderer under measurement.
+/// A renderer to benchmark.
 class Peer {
  public:
   Peer() = default;
@@ -20,9 +20,9 @@ class Peer {
   Peer& operator=(const Peer&) = delete;
   virtual ~Peer() = default;
 
-  /// Draws a frame and brings its numbers into main memory: what is measured.
+  /// Draws a frame and copies its pixels into main memory. This is the measured operation.
   virtual void draw() = 0;
-  /// A frame, with its depth even where draw() leaves it behind.
+  /// Returns a frame with its depth, even if draw() does not read the depth back.
   virtual PeerPicture picture() = 0;
 };
 

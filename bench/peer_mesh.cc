@@ -28,7 +28,7 @@ class MeshMaker {
     }
   }
 
-  // The arm's flat end at s; `way` is 1 at the tip and -1 at the base.
+  // Adds the arm's flat end at s; `way` is 1 at the tip and -1 at the base.
   void add_end(double s, const Color& albedo, int way) {
     const Pose X_CS = X_CW_ * pose_at(setting_.scene.arm, s);
     const std::uint32_t first = add_circle(s, albedo, way);
@@ -52,7 +52,8 @@ class MeshMaker {
   [[nodiscard]] const PeerMesh& mesh() const { return mesh_; }
 
  private:
-  // Around the arm at s; normals outwards, or along the backbone where `way` is not 0.
+  // Adds a ring of corners around the arm at s. Their normals point outwards, or along the backbone if `way`
+  // is not 0.
   std::uint32_t add_circle(double s, const Color& albedo, int way) {
     const Pose X_CS = X_CW_ * pose_at(setting_.scene.arm, s);
     const auto first = static_cast<std::uint32_t>(mesh_.corners.size());

@@ -10,22 +10,22 @@
 
 namespace flexura {
 
-/// A part of the arm of one colour.
+/// A part of the arm with one colour.
 struct Strip {
-  double s_from = 0, s_to = 0;  ///< m from the base.
+  double s_from = 0, s_to = 0;  ///< Arc lengths from the base, m.
   Color albedo;
 };
-/// From the base to the tip.
+/// Returns the strips from the base to the tip.
 [[nodiscard]] std::vector<Strip> strips_of(const ArmLook& arm);
 
-/// The backbone's frame, in W.
+/// Returns the backbone's frame at s, in W.
 [[nodiscard]] Pose pose_at(const ArmLook& arm, double s);
-/// Of a tube of one radius, m.
+/// Returns the radius of an arm of constant radius, m.
 [[nodiscard]] double radius_of(const ArmLook& arm);
 [[nodiscard]] double length_of(const ArmLook& arm);
 
-/// What a surface shows at a corner: albedo * (ambient + directional * max(0, normal . light)). A screen,
-/// which shines by itself, has the normal 0 and its brightness over `ambient` as albedo.
+/// A corner of a surface. Its brightness is albedo * (ambient + directional * max(0, normal . light)). A
+/// screen shines by itself: its normal is 0 and its albedo is its brightness over `ambient`.
 struct Corner {
   Eigen::Vector3f position;  ///< In C, m.
   Eigen::Vector3f normal;    ///< In C.
@@ -37,11 +37,11 @@ struct PeerMesh {
   std::vector<std::uint32_t> triangles;  ///< Three corners each, counter-clockwise from outside.
 };
 
-/// Arm and screens in triangles: 24 sides, a hundred rows of quadrangles a metre, 5,186 triangles in
+/// Returns arm and screens as triangles: 24 sides, a hundred rows of quadrangles a metre, 5,186 triangles in
 /// `setting()`.
 [[nodiscard]] PeerMesh mesh_of(const Setting& setting);
 
-/// Towards the light, in C.
+/// Returns the direction towards the light, in C.
 [[nodiscard]] Eigen::Vector3f light_in_camera(const Setting& setting);
 
 }  // namespace flexura

@@ -1,5 +1,6 @@
-// Other renderers beside ours, with one scene: each draws 640x480 pixels and has the numbers in main memory.
-// CPU times are those of all threads of the process together; unless a name says otherwise there is one.
+// Compares other renderers with Flexura's on one scene. Each draws 640x480 pixels and copies them into main
+// memory. CPU times are totals of all threads of the process; only one thread runs unless the name states
+// otherwise.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -23,7 +24,7 @@ namespace {
 
 constexpr int width = 640, height = 480;
 
-// Ours: light and depth, and with a sensor that adds anything the 8-bit image.
+// Flexura's renderer: light and depth, and with `is_read` also the sensor's 8-bit image.
 class OurPeer final : public Peer {
  public:
   OurPeer(const Setting& setting, const SensorConfig& sensor, bool is_read)
@@ -57,10 +58,10 @@ double light_at(const Image<std::uint8_t>& pixels, int u, int v) {
   return gray_of(Color(pixels.at(u, v, 0), pixels.at(u, v, 1), pixels.at(u, v, 2)) / 255.0);
 }
 
-// How far a peer's frame is ours.
+// How closely a peer's frame matches Flexura's.
 struct Likeness {
-  double covered_by_depth = 0, covered_by_light = 0;  // Share of the pixels, over ours.
-  double equal_depth = 0, equal_light = 0;            // Share of the pixels: to 2 mm; to 0.03 of full scale.
+  double covered_by_depth = 0, covered_by_light = 0;  // Covered share of the pixels, relative to Flexura's.
+  double equal_depth = 0, equal_light = 0;  // Share of equal pixels: to 2 mm; to 0.03 of full scale.
 
   [[nodiscard]] bool is_one_scene() const {
     return std::abs(covered_by_depth - 1) < 0.03 && std::abs(covered_by_light - 1) < 0.03 &&
@@ -75,7 +76,7 @@ Likeness likeness(const PeerPicture& peer, const Setting& setting) {
   for (int v = 0; v < height; ++v) {
     for (int u = 0; u < width; ++u) {
       const double light = light_at(peer.pixels, u, v);
-      // The screen is at 0.85, the arm and its rings below 0.25.
+      // The screen's light is 0.85, that of the arm and its rings below 0.25.
       light_count += light < 0.5 ? 1 : 0;
       our_light_count += ours.light.at(u, v) < 0.5f ? 1 : 0;
       depths += std::abs(peer.depth.at(u, v) - ours.depth.at(u, v)) < 0.002f ? 1 : 0;
@@ -124,7 +125,7 @@ void measure_embree(const std::string& name, EmbreeShape shape, int rays_across)
   measure("embree/" + name, [=](const Setting& scene) { return embree_peer(scene, shape, rays_across); });
 }
 
-// The least that any of them can do.
+// Lower bound for any renderer: writes all pixels.
 template <typename Value, int channels>
 void write(benchmark::State& state) {
   Image<Value> pixels(width, height, channels);
@@ -158,7 +159,7 @@ void measure_all() {
     measure_llvmpipe("color_depth" + more + "_default_threads",
                      {.samples = samples, .reads_depth = true, .threads = LlvmpipeThreads::as_it_comes});
     measure_mujoco("color_depth" + more, {.samples = samples});
-    // As many sides as the triangles have, and as few stacks as change nothing that is seen.
+    // As many sides as the triangle mesh, and so few stacks that nothing visible changes.
     measure_mujoco("color_depth_coarse" + more, {.samples = samples, .slices = 24, .stacks = 4});
   }
   measure_embree("gray_depth_triangles", EmbreeShape::triangles, 1);

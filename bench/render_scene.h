@@ -10,8 +10,8 @@
 
 namespace flexura {
 
-/// An arm of 1 m in three sections, 2 cm thick from its middle, with twelve rings, before a white screen; it
-/// covers a fifth of the image.
+/// An arm of 1 m in three sections, with twelve rings, in front of a white screen. It is 2 cm thick from its
+/// middle on and covers a fifth of the image.
 struct Setting {
   Scene scene;
   View view;
@@ -41,7 +41,7 @@ inline Setting setting(int width, int height) {
   Screen& screen = result.scene.screens.emplace_back();
   screen.X_WS.position = {0, 0.4, -0.5};
   screen.size = {4, 4};
-  // From +Z along -Z: x to the right, y down.
+  // Camera on +Z looking along -Z: x to the right, y down.
   result.view.X_WC.rotation << 1, 0, 0, 0, -1, 0, 0, 0, -1;
   result.view.X_WC.position = {0.19, 0.054, 1.5};
   result.view.width = width, result.view.height = height;
@@ -50,9 +50,9 @@ inline Setting setting(int width, int height) {
   return result;
 }
 
-/// A laboratory's: the same arm, less bent and with twelve bands in three colours, seen from 2.5 m by one of
-/// two cameras, with the edges of both their screens. `tip`: the radius there over that at the base; in
-/// between the arm tapers evenly.
+/// Returns a laboratory setting: the same arm, less bent and with twelve bands in three colours, seen from
+/// 2.5 m by one of two cameras. The edges of both their screens are visible. `tip` is the ratio of the radii
+/// at tip and base; the arm tapers linearly.
 inline Setting laboratory_setting(int width, int height, double tip = 1) {
   Arm arm = setting_arm();
   const double sections = static_cast<double>(arm.sections.size());
@@ -81,10 +81,10 @@ inline Setting laboratory_setting(int width, int height, double tip = 1) {
   return result;
 }
 
-/// Everything nearer than this is the arm, everything beyond the screen, m.
+/// Depth that separates the arm (nearer) from the screen (beyond), m.
 inline constexpr float screen_begins = 1.9f;
 
-/// The share of the pixels that show the arm.
+/// Returns the share of the pixels that show the arm.
 inline double covered_share(const Image<float>& depth) {
   const auto count = std::ranges::count_if(depth.values(), [](float one) { return one < screen_begins; });
   return static_cast<double>(count) / static_cast<double>(depth.values().size());

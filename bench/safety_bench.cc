@@ -17,7 +17,7 @@ namespace {
 constexpr double step = 0.01;    // s
 constexpr double duration = 10;  // s
 
-// The laboratory arm of the examples: three spatial sections.
+// Returns the laboratory arm of the examples: three spatial sections.
 Arm laboratory_arm() {
   Arm arm;
   arm.kind = ArmKind::spatial;
@@ -32,7 +32,7 @@ Arm laboratory_arm() {
   return arm;
 }
 
-// Bows, curls and sways within 10 s, without touching anything.
+// Returns a motion of 10 s that bows, curls and sways without touching anything.
 MotionPtr laboratory_motion() {
   const auto state = [](std::array<double, 6> bends) {
     ArmState result = ArmState::straight(3);
@@ -71,7 +71,7 @@ void laboratory_10_s_four_obstacles(benchmark::State& state) {
 }
 BENCHMARK(laboratory_10_s_four_obstacles)->Unit(benchmark::kMillisecond);
 
-// The same as a formula would give it: every state of the clock.
+// The same motion as a function of time, which the check has to sample at every clock step.
 void laboratory_10_s_sampled(benchmark::State& state) {
   const MotionPtr law = laboratory_motion();
   check(state, laboratory_arm(), function_motion(duration, [law](double t) { return law->at(t); }),
@@ -79,7 +79,7 @@ void laboratory_10_s_sampled(benchmark::State& state) {
 }
 BENCHMARK(laboratory_10_s_sampled)->Unit(benchmark::kMillisecond);
 
-// Nine motors at every row of the command list, and by the law's rates between the rows.
+// Checks nine motors at every row of the command list, and by the motion law's rates between the rows.
 void laboratory_10_s_motors(benchmark::State& state) {
   const Arm arm = laboratory_arm();
   Drive drive;
@@ -109,7 +109,7 @@ void laboratory_10_s_motors(benchmark::State& state) {
 }
 BENCHMARK(laboratory_10_s_motors)->Unit(benchmark::kMillisecond);
 
-// The paper's planar arm of eight sections goes to its final position by minimum jerk.
+// Checks the paper's planar arm of eight sections moving to its final position by minimum jerk.
 void paper_10_s(benchmark::State& state) {
   constexpr std::array<double, 8> lengths = {2., 3., 1., 2., 4., 2., 1., 1.};
   constexpr std::array<double, 8> archings_pi = {.05, .05, .1, .1, .05, -.3, .2, -.35};

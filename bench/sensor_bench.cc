@@ -7,7 +7,7 @@
 namespace flexura {
 namespace {
 
-// A dark bar of a fifth of the image's width that leans across a bright screen.
+// Returns the light of a slanted dark bar, a fifth of the image's width, in front of a bright screen.
 Image<float> light_of(const SensorConfig& config) {
   const int width = static_cast<int>(config.width), height = static_cast<int>(config.height);
   Image<float> light(width, height, config.channels(), 0.8f);

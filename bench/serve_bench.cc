@@ -1,5 +1,5 @@
-// What the viewer's server costs at the pace of a viewer: CPU time of the whole process (the server's thread
-// and the one that posts) over wall time. The client is a process of its own, and its time is not counted.
+// Benchmarks the viewer's server at the pace of a viewer: CPU time of the whole process (server thread and
+// posting thread) over wall time. The client is a separate process whose time is not counted.
 #include <benchmark/benchmark.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -24,7 +24,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using flexura::ClientId;
 
-constexpr int most_counted = 200;  // An exit status says no more.
+constexpr int most_counted = 200;  // Limit of what an exit status can hold.
 
 class Listener : public flexura::Host {
  public:
@@ -34,8 +34,7 @@ class Listener : public flexura::Host {
   void asked(std::string, std::function<void(flexura::HttpAnswer)>) override {}
 };
 
-/// A process that connects to the server whose request it gets through a pipe, and reads until the server
-/// ends.
+/// A process that receives the server's request through a pipe, connects, and reads until the server ends.
 class Reader {
  public:
   Reader() {
@@ -55,7 +54,7 @@ class Reader {
       std::abort();
     ::close(pipe_[1]);
   }
-  /// How many messages it has read, when the server has gone; most_counted stands for more too.
+  /// Returns the number of messages read, once the server has ended; at most most_counted.
   [[nodiscard]] int count() const {
     int status = 0;
     ::waitpid(child_, &status, 0);
@@ -90,7 +89,7 @@ double cpu_seconds() {
   return seconds(usage.ru_utime) + seconds(usage.ru_stime);
 }
 
-/// `streams` messages of `size` bytes each, `rate` times a second.
+/// Sends `streams` messages of `size` bytes each, `rate` times a second.
 void pace(benchmark::State& state, std::uint32_t streams, std::size_t size, int rate) {
   const Reader reader;
   double cpu = 0.0;

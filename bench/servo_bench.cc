@@ -1,5 +1,5 @@
-// One control step: the features of two cameras' images and their derivatives, damped least squares on them;
-// beside ViSP's vpServo on the same points.
+// Benchmarks of one control step: the features in two cameras' images, their derivatives, and damped least
+// squares. ViSP's vpServo on the same points is measured for comparison.
 #include <benchmark/benchmark.h>
 
 #include <array>
@@ -24,7 +24,7 @@ const ArmState& goal() {
   return state;
 }
 
-// The arm on its way there, over and over.
+// Returns states of the arm on its way to the goal, to be repeated.
 const std::vector<ArmState>& way() {
   constexpr int count = 64;
   static const std::vector<ArmState> states = [] {
@@ -38,7 +38,7 @@ const std::vector<ArmState>& way() {
   return states;
 }
 
-// Argument: places along the arm; each is seen twice.
+// Argument: number of places along the arm; each is seen by both cameras.
 void points_step(benchmark::State& state) {
   const Arm arm = servo_arm();
   const std::array<View, 2> views = servo_views();
@@ -63,7 +63,7 @@ void points_step(benchmark::State& state) {
 }
 BENCHMARK(points_step)->Arg(12)->Arg(25)->Arg(50);
 
-// Its first half: the features and their derivatives.
+// The first half of the step: the features and their derivatives.
 void points_features(benchmark::State& state) {
   const std::array<View, 2> views = servo_views();
   FeatureImages images(servo_arm(), FeatureSet::of_points(static_cast<int>(state.range(0))));
@@ -77,8 +77,8 @@ void points_features(benchmark::State& state) {
 }
 BENCHMARK(points_features)->Arg(12)->Arg(25)->Arg(50);
 
-// The same with what a servo looks at besides: what is wanted as the cameras would see it, and all of it
-// through the interface that its laws share.
+// The step as a servo uses it, through the interface that its laws share. It also predicts the desired
+// features as the cameras would see them.
 void as_used(benchmark::State& state) {
   const auto kind = static_cast<ServoLawKind>(state.range(0));
   const Arm arm = servo_arm();
@@ -109,7 +109,7 @@ void as_used(benchmark::State& state) {
 }
 BENCHMARK(as_used)->DenseRange(0, 5);
 
-// ViSP's of as many points: the images of `places` along the arm in both cameras, as one free camera's.
+// Returns ViSP's points: the images of `places` along the arm in both cameras, as those of one free camera.
 std::vector<VispPoint> visp_points(const ArmState& state, int places) {
   FeatureImages images(servo_arm(), FeatureSet::of_points(places));
   const std::array<View, 2> views = servo_views();

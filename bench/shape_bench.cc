@@ -1,4 +1,5 @@
-// Two pictures of 640 x 480 px to the arm's shape: on its own, and following from the picture before.
+// Benchmarks of estimating the arm's shape from two pictures of 640 x 480 px, without a start and tracking
+// from the picture before.
 #include <benchmark/benchmark.h>
 
 #include <array>
@@ -18,7 +19,8 @@
 namespace flexura {
 namespace {
 
-// An arm of three sections that swings before two cameras, some pixels from picture to picture, and back.
+// An arm of three sections that swings back and forth in front of two cameras, by some pixels from picture to
+// picture.
 struct Film {
   Arm arm;
   std::array<View, 2> views;
@@ -60,7 +62,7 @@ const Film& film() {
   return made;
 }
 
-// 0: the arm is known; 1: its base and length are.
+// Returns an estimator with prior knowledge: 0: the arm; 1: only base position and length.
 ShapeEstimator estimator(std::int64_t known) {
   const Arm& arm = film().arm;
   return ShapeEstimator(known == 0 ? ShapePrior{.arm = arm} : unknown_arm(arm.X_WB.position, arm.length()));
@@ -96,8 +98,8 @@ void fit_following(benchmark::State& state) {
 }
 BENCHMARK(fit_following)->Arg(0)->Arg(1)->Unit(benchmark::kMicrosecond);
 
-// As a servo does it: what is wrong with the views is estimated, too, what was seen before counts, and drives
-// tell how the arm went on.
+// Tracks as a servo does: camera errors are estimated, too, earlier observations count, and the drives'
+// commands predict the motion.
 void fit_tracking(benchmark::State& state) {
   std::vector<std::vector<Sighting>> sightings = film().sightings;
   for (std::vector<Sighting>& seen : sightings)

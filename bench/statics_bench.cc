@@ -10,9 +10,9 @@
 #include "flexura/mechanics/statics.h"
 #include "tests/support/known_rods.h"
 
-// How long an equilibrium takes: from the rod at rest (cold), and from one nearby (warm). `error_m` is how
-// far the tip is from that of an independent solver (tests/support/known_rods.h has the robots,
-// statics_test.cc the figures).
+// Benchmarks of equilibria: from the rod at rest (cold), and from a nearby one (warm). `error_m` is the
+// distance of the tip from that of an independent solver. The robots are in tests/support/known_rods.h, the
+// values in statics_test.cc.
 namespace flexura {
 namespace {
 
@@ -23,7 +23,7 @@ struct Case {
   Eigen::Vector3d tip;
 };
 
-// Under tendons alone; under a force; a heavy rod under one tendon.
+// Returns a known case: tendons alone; with a force; a heavy rod with one tendon.
 Case known_case(std::int64_t which) {
   Case known{.rod = two_section_robot(), .tendons = {}, .loads = {}, .tip = {}};
   if (which == 0) {
@@ -38,7 +38,7 @@ Case known_case(std::int64_t which) {
     known.loads.gravity = {9.81, 0, 0};
     known.tip = {0.182211695, 0, 0.453229271};
   }
-  // With these the error of each is below a micrometre.
+  // With these modes each case's error is below a micrometre.
   for (RodSection& section : known.rod.sections)
     section.modes = {.shear = 1, .stretch = 1, .bend = 4, .twist = 2};
   return known;
@@ -74,7 +74,7 @@ void statics_warm(benchmark::State& state) {
 }
 BENCHMARK(statics_warm)->Arg(0)->Arg(1)->Arg(2)->Unit(benchmark::kMicrosecond);
 
-// The two-section robot with its tendons pulled in by so much, which have 0.1 mm/N of give.
+// The two-section robot with prescribed displacements of its tendons, whose compliance is 0.1 mm/N.
 void statics_displacements(benchmark::State& state) {
   Rod rod = known_case(0).rod;
   for (TendonRoute& tendon : rod.tendons) tendon.compliance = 1e-4;
@@ -84,7 +84,8 @@ void statics_displacements(benchmark::State& state) {
 }
 BENCHMARK(statics_displacements)->Unit(benchmark::kMicrosecond);
 
-// A heavy arm of so many sections, a tendon to the end of each, warm: a cost that grows with their number.
+// A heavy arm with this number of sections and a tendon to the end of each, warm. Shows how the cost grows
+// with the number of sections.
 void statics_sections(benchmark::State& state) {
   const auto count = static_cast<std::size_t>(state.range(0));
   Rod rod;
@@ -111,8 +112,8 @@ void statics_sections(benchmark::State& state) {
 }
 BENCHMARK(statics_sections)->RangeMultiplier(10)->Range(1, 100)->Unit(benchmark::kMicrosecond);
 
-// Tensions of least effort for tips beside that of 4 0 0 0 2 0: from rest (0), and from the robot at the last
-// of them (1).
+// Tensions of least effort for tips near that of tensions 4 0 0 0 2 0. Starts from rest (0), or from the
+// previous solution (1).
 void inverse_statics(benchmark::State& state) {
   const Case known = known_case(0);
   RodStatics statics(known.rod);

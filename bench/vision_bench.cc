@@ -1,4 +1,5 @@
-// Finding an arm's median axis in a picture, beside what OpenCV does to find it without an axis.
+// Benchmarks of finding an arm's centerline in a picture, compared with OpenCV's steps, which give no
+// centerline.
 #include <benchmark/benchmark.h>
 
 #include <cstddef>
@@ -28,7 +29,7 @@ std::vector<SeenArm> random_arms(int columns, bool color) {
   return made;
 }
 
-// A few pictures of random arms, the same every time; made once.
+// Returns a few pictures of random arms, made once and always the same.
 const std::vector<SeenArm>& arms(int width) {
   static const std::vector<SeenArm> small = random_arms(640, false), large = random_arms(1920, false);
   return width == 640 ? small : large;
@@ -86,7 +87,8 @@ void threshold_and_components(benchmark::State& state) {
 }
 BENCHMARK(threshold_and_components)->Arg(640)->Arg(1920)->Unit(benchmark::kMicrosecond);
 
-// Otsu's threshold, components, contours and the distance transform: whole pixels, and no axis.
+// Finds the arm by OpenCV: Otsu's threshold, components, contours and distance transform. This gives whole
+// pixels and no centerline.
 void find_by_opencv(const cv::Mat& gray) {
   cv::Mat mask, labels, stats, centroids, distance;
   cv::threshold(gray, mask, 0, 255, cv::THRESH_BINARY_INV | cv::THRESH_OTSU);

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# an arm servoed for a simulated day, what drifts and grows: ./dev study endurance [HOURS] [SEED]
+# an arm servoed for a simulated day, to see which errors and memory grow: ./dev study endurance [HOURS] [SEED]
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 hours=${1:-24}

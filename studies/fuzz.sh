@@ -9,9 +9,9 @@ mapfile -t all < <(find flexura -name '*_fuzz.cc' -exec basename {} .cc \; | sor
 targets=("${@:3}")
 [ "${#targets[@]}" -gt 0 ] || targets=("${all[@]}")
 
-# What draws or reads pictures takes milliseconds a case: by a build that is optimised (ASan alone), and in ten parts,
-# as many at a time as there are cores; those that are done are not run again with the same program, so a run that was
-# stopped goes on.
+# Targets that draw or read pictures take milliseconds a case. They use an optimised build (ASan alone) and run in ten
+# parts, as many at a time as there are cores. Parts already done with the same program are skipped, so a stopped run
+# can be continued.
 is_of_scenes() { [[ " render_fuzz estimate_fuzz measure_fuzz " == *" $1 "* ]]; }
 parts_of() { if is_of_scenes "$1"; then echo 10; else echo 1; fi; }
 scenes=() others=()
@@ -25,14 +25,14 @@ if [ "${#scenes[@]}" -gt 0 ]; then
 fi
 export ASAN_OPTIONS=detect_leaks=1:detect_stack_use_after_return=1 UBSAN_OPTIONS=print_stacktrace=1
 
-# As many at a time as there are cores; each in a folder of its own, for the input that it leaves when it fails.
+# Runs one part of a target. Each part has its own folder for the input that a failure leaves behind.
 run_part() {
   local target=$1 part=$2 folder=$PWD/build/studies/fuzz/$1/$2 root=$PWD
   local build=asan parts
   parts=$(parts_of "$target")
   if is_of_scenes "$target"; then build=scenes; fi
-  # Any bytes are a scene: most of them are drawn at random rather than changed from the corpus. A text of random bytes
-  # is refused at its first.
+  # For render_fuzz any bytes are a scene, so most inputs are drawn at random rather than mutated from the corpus. Text
+  # formats reject random bytes at once.
   local fresh=0
   [ "$target" != render_fuzz ] || fresh=0.9
   mkdir -p "$folder"
@@ -53,10 +53,10 @@ parts=()
 for target in "${targets[@]}"; do
   for ((part = 0; part < $(parts_of "$target"); ++part)); do parts+=("$target $part"); done
 done
-# shellcheck disable=SC2016 # It is that shell which puts its words in.
+# shellcheck disable=SC2016 # The inner shell expands the variables.
 printf '%s\n' "${parts[@]}" | xargs -P "$(nproc)" -L1 bash -euo pipefail -c 'run_part "$@"' run_part
 
-# The row of a target: from the log of this run, or the one that the page has.
+# Prints a target's table row: from this run's log, or the row already in the page.
 row_of() {
   if [[ " ${targets[*]} " == *" $1 "* ]]; then
     awk -v target="$1" -v seed="$seed" -v commit="$(git rev-parse --short HEAD)" '
@@ -74,8 +74,8 @@ row_of() {
   fi
 }
 
-# What a target says of its cases itself; of those that did not run, what the page says, with what was written to it by
-# hand: a paragraph for each.
+# Prints a target's statistics on its cases. For targets that did not run, prints the page's paragraph, including manual
+# additions.
 words_of() {
   if [[ " ${targets[*]} " == *" $1 "* ]]; then
     awk -v target="$1" '

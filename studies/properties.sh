@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# all properties that tests hold over random cases, of many times as many: ./dev study properties [TIMES] [FOLDER...]
+# all property tests, with many times as many random cases: ./dev study properties [TIMES] [FOLDER...]
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 times=${1:-10}

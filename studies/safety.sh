@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# checks of random motions held against dense samples: ./dev study safety [MOTIONS] [SAMPLES] [SEED]
+# checks of random motions compared with dense samples: ./dev study safety [MOTIONS] [SAMPLES] [SEED]
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 motions=${1:-1000}

@@ -9,7 +9,7 @@ build=${FLEXURA_STUDY_BUILD:-build/release}
 
 if [ -z "${FLEXURA_STUDY_BUILD:-}" ]; then cmake --preset release; fi
 cmake --build "$build" --target seeing_study shape_study
-# Whose programs these are, and whether they are as committed.
+# The commit that the programs were built from, and whether it has changes.
 sources=$(sed -n 's/^CMAKE_HOME_DIRECTORY:INTERNAL=//p' "$build/CMakeCache.txt")
 commit=$(git -C "$sources" describe --always --exclude '*' --abbrev=7 --dirty=', changed')
 mkdir -p docs/studies build/studies

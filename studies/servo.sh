@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
-# an arm steered to random shapes by each law: ./dev study servo [TARGETS] [SEED] [TURNED] [SAGGING]
+# an arm servoed to random shapes by each law: ./dev study servo [TARGETS] [SEED] [TURNED] [SAGGING]
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 targets=${1:-200}
 seed=${2:-1}
-turned=${3:-40}  # Targets of the arm that is mounted a quarter turn round,
-sagging=${4:-20} # and of the arm that sags.
+turned=${3:-40}  # Number of targets of the arm mounted with a quarter turn.
+sagging=${4:-20} # Number of targets of the sagging arm.
 page=docs/studies/servo.md
 build=${FLEXURA_STUDY_BUILD:-build/release}
 

@@ -1,23 +1,23 @@
 #!/usr/bin/env python3
-"""Checks that what the documents say can be done can be done, and that their links lead somewhere.
+"""Checks that the examples in the documents work, and that their links have targets.
 
 usage: check_docs.py [--root ROOT] [--bin BIN --prefix PREFIX]
 
-BIN is the folder of the built programs, PREFIX an installed Flexura; without them only links and the blocks'
-form are checked. Each document has a scratch folder of its own, holding a copy of examples/. Its fenced blocks, in
-order:
-  console    each line "$ COMMAND" is run there with BIN in PATH (a trailing \\ continues it). The lines after it, if
-             any, are what it prints: "..." stands for any text, a line "..." for any lines. It has to succeed, or to
-             end as its comment "# exit status N" says. "./dev ..." is not run: the command has to exist. With --view no
-             browser is opened, and SIGTERM ends the viewer once the results are there.
-  cmake      is how the programs after it are built: one program, of main.cc
-  cpp        a whole program is compiled against PREFIX and run; what it prints is in its comments "// prints: ..."
-  any other  no check but these two, which hold for every language:
-             a first line with "file: NAME" writes the block to NAME in the scratch folder;
-             a first line with "from: PATH" says that the rest stands in PATH, word for word.
+BIN is the folder of the built programs, PREFIX an installed Flexura; without them only links and the form of the
+blocks are checked. Each document gets its own scratch folder with a copy of examples/. Its fenced blocks are processed
+in order:
+  console    Each line "$ COMMAND" is run there with BIN in PATH (a trailing \\ continues it). The lines after it, if
+             any, are its expected output: "..." matches any text, a line "..." any lines. It has to succeed, or to
+             end with the status N of its comment "# exit status N". "./dev ..." is not run, but the command has to
+             exist. With --view no browser is opened, and SIGTERM ends the viewer once the results exist.
+  cmake      The build of the programs after it: one program, made from main.cc.
+  cpp        A whole program, compiled against PREFIX and run. Its comments "// prints: ..." give the expected output.
+  any other  Only these two checks, which apply to every language:
+             A first line with "file: NAME" writes the block to NAME in the scratch folder.
+             A first line with "from: PATH" requires that PATH contains the rest, word for word.
 
-The version is looked at as well: where it is said, it is that of CMakeLists.txt (VERSIONS lists the places). And
-names in the prose, but for the changes': of `Class::member` one source has both words, of `Suite.Test` there is the test.
+Versions in other files have to match that of CMakeLists.txt (VERSIONS lists the places). Names in the prose, except in
+the change log, have to exist: one source has both words of `Class::member`, and `Suite.Test` is a test.
 """
 
 import argparse
@@ -62,7 +62,7 @@ class Block:
 
 
 def split(text):
-    """A document's fenced blocks and, with them blanked out, its prose."""
+    """Returns a document's fenced blocks, and its prose with the blocks blanked out."""
     blocks, prose, block, indent = [], [], None, ""
     for number, line in enumerate(text.splitlines(), 1):
         fence = FENCE.match(line)
@@ -78,7 +78,7 @@ def split(text):
 
 
 def commands(block):
-    """(line number, command, expected lines) for each command of a console block."""
+    """Returns (line number, command, expected lines) for each command of a console block."""
     found, continued = [], False
     for number, line in enumerate(block.lines, block.line + 1):
         if continued:
@@ -95,7 +95,7 @@ def commands(block):
 
 
 def matches(expected, output):
-    """Whether the text `output` is what the lines `expected` describe."""
+    """Returns whether the text `output` matches the lines `expected`."""
     pattern = ""
     for line in expected:
         if line.strip() == "...":
@@ -106,7 +106,7 @@ def matches(expected, output):
 
 
 def anchors(text):
-    """The fragments that a document's headings can be reached by."""
+    """Returns the URL fragments of a document's headings."""
     titles = [line.lstrip("#").strip() for line in split(text)[1] if re.match(r"#+ ", line)]
     return {re.sub(r"[^\w\- ]", "", title.lower()).replace(" ", "-") for title in titles}
 
@@ -126,7 +126,7 @@ def broken_links(document):
 
 
 class Sources:
-    """What names the C++ sources of a project have."""
+    """The names in the C++ sources of a project."""
 
     def __init__(self, root):
         self.words, self.tests = [], set()
@@ -162,14 +162,14 @@ class Runner:
             shutil.copytree(root / "examples", scratch / "examples")
 
     def call(self, command, **options):
-        """The exit status and output of a command run in the scratch folder."""
+        """Runs a command in the scratch folder and returns its exit status and output."""
         done = subprocess.run(command, cwd=self.scratch, env=self.environment, stdin=subprocess.DEVNULL,
                               stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=600,
                               check=False, **options)
         return done.returncode, done.stdout
 
     def call_viewed(self, command):
-        """Likewise of a run that is looked at."""
+        """Does the same for a run with --view, without a browser."""
         headless = command.replace(" --view", " --view --no-browser --port 0", 1)
         with subprocess.Popen(["bash", "-c", f"exec {headless}"], cwd=self.scratch, env=self.environment,
                               stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
@@ -185,7 +185,7 @@ class Runner:
         return process.returncode, output
 
     def run(self, block):
-        """Yields (line, what is wrong) for one block."""
+        """Yields (line, problem) for one block."""
         header = HEADER.match(block.lines[0]) if block.lines else None
         if header and header[1] == "from":
             yield from self.compare(block, header[2])
@@ -254,7 +254,7 @@ class Runner:
 
 
 def version_problems(root):
-    """Where a version is another than that of the CMake project."""
+    """Yields the places with a version other than that of the CMake project."""
     project = root / "CMakeLists.txt"
     version = project.exists() and re.search(r"project\(\w+ VERSION (\S+)", project.read_text())
     if not version:
@@ -272,7 +272,7 @@ def documents(root):
 
 
 def problems(root, programs, prefix):
-    """What is wrong in the documents at `root`, one text each."""
+    """Yields the problems of the documents at `root`, one text each."""
     yield from version_problems(root)
     sources = Sources(root)
     for document in documents(root):

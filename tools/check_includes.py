@@ -1,18 +1,19 @@
 #!/usr/bin/env python3
-"""Checks that every folder of flexura/ includes and links only folders on a strictly lower floor, and
-links just those that it includes.
+"""Checks that every folder of flexura/ includes and links only folders on a strictly lower floor.
+It also checks that a folder links exactly those that it includes.
 
 usage: check_includes.py [ROOT]
 
-ROOT/flexura/floors.txt lists the folders with their floors. Printed, one a line, and exit status 1:
-an include or a link that goes up or sideways or past the list, one from a folder within a folder
-to another one there, an include of a folder that is not
-linked, a link to one that nothing includes, a folder that the list lacks, a folder of the list
-without its flexura_folder(NAME ...), and a type that two headers define: the compiler sees no two of
-them at once, and the linker joins what it should not. Also what is wrong in
-ROOT/flexura/public_headers.txt, where there is one: a header that is not there or is listed twice,
-one that includes a header which is not listed, and one below "# What these include" that none
-includes.
+ROOT/flexura/floors.txt lists the folders with their floors. Problems are printed, one per line, and
+set exit status 1:
+- an include or a link to a folder that is not on a lower floor, or not in the list;
+- an include from a folder within a folder to another one there;
+- an include of a folder that is not linked, or a link to a folder that nothing includes;
+- a folder missing from the list, or a folder of the list without its flexura_folder(NAME ...);
+- a type defined in two headers: the compiler never sees both, and the linker merges their code.
+If ROOT/flexura/public_headers.txt exists, it must not have:
+- a header that does not exist or is listed twice, or one that includes a header not listed;
+- a header below "# What these include" that no listed header includes.
 """
 
 import re
@@ -27,7 +28,7 @@ LINK = re.compile(r"\bflexura::(\w+)")
 
 
 def read_floors(path):
-    """The floor of each folder in a floors.txt, by folder."""
+    """Returns the floor of each folder in a floors.txt, by folder."""
     floors = {}
     for line in path.read_text().splitlines():
         words = line.split("#")[0].split()
@@ -60,7 +61,7 @@ def check_source(root, floors, folder, source):
 
 
 def check_rooms(root, folder, source):
-    """A folder in a folder of flexura/ is a room: it includes none beside it."""
+    """Yields includes between subfolders of a folder of flexura/, which are not allowed."""
     parts = source.relative_to(root / "flexura" / folder).parts
     if len(parts) < 2:
         return
@@ -72,7 +73,7 @@ def check_rooms(root, folder, source):
 
 
 def included_folders(root, floors, folder):
-    """The folders that the sources of `folder` include, and those that its tests do."""
+    """Returns the folders that the sources of `folder` include, and those that its tests include."""
     by_library, by_tests = set(), set()
     for source in (root / "flexura" / folder).rglob("*"):
         if source.suffix in (".cc", ".h"):
@@ -139,7 +140,7 @@ def check_public(root):
 
 
 def problems(root):
-    """What is wrong in the tree at `root`, a line each."""
+    """Yields the problems of the tree at `root`, a line each."""
     floors = read_floors(root / "flexura/floors.txt")
     for folder in sorted(entry.name for entry in (root / "flexura").iterdir() if entry.is_dir()):
         if folder not in floors:

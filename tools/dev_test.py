@@ -1,4 +1,4 @@
-"""Tests of what ./dev reads from files that Flexura writes."""
+"""Tests of how ./dev reads files that Flexura and ctest write."""
 
 import subprocess
 import tempfile
@@ -7,7 +7,7 @@ from pathlib import Path
 
 root = Path(__file__).resolve().parent.parent
 
-# As `flexura run` writes it; the tasks' tips stand in lines of their own.
+# Format of `flexura run`; the tasks' tips are nested deeper.
 summary = """{
   "title": "a \\"tip\\": {\\"position\\": [9,9,9]}",
   "tip_at_start": {
@@ -31,7 +31,7 @@ summary = """{
 
 
 def function_of(name):
-    """The text of one function of ./dev, without the rest of it."""
+    """Returns the text of one function of ./dev."""
     lines = (root / "dev").read_text().splitlines()
     first = lines.index(f"{name}() {{")
     return "\n".join(lines[first : lines.index("}", first) + 1])
@@ -56,7 +56,7 @@ class Dev(unittest.TestCase):
         self.assertEqual((ended.returncode, ended.stdout), (1, ""))
 
     def show_failures(self, output):
-        """What is told of one failed test that wrote these lines, beside one that passed."""
+        """Returns what is printed for a failed test with this output, next to a test that passed."""
         with tempfile.TemporaryDirectory() as folder:
             Path(folder, "LastTest.log").write_text(
                 "1/2 Testing: good\nOutput:\nall went well\n<end of output>\n2/2 Testing: bad\nOutput:\n"

@@ -1,15 +1,14 @@
 #!/usr/bin/env python3
-"""Makes the reference of the public headers, OUT/html/index.html, by Doxygen.
+"""Makes the reference of the public headers, OUT/html/index.html, with Doxygen.
 
 usage: make_reference.py OUT
 
-What is documented are the headers of flexura/public_headers.txt up to its second comment, with
-docs/library.md in front. Anything that Doxygen finds wrong in a comment is printed, a line each, and
-so are a class without one and a function without one; then the exit status is 1. Of overloads one
-comment does. None is needed by data members, by what only asks an object for something without an
-argument, by what is defaulted or deleted, overrides or is an operator, by constructors that move or that make a
-...Config of nothing, and by fields_of and names_of, which base/table.h tells of: there the name says
-all.
+It documents the headers of flexura/public_headers.txt up to its second comment, with docs/library.md as
+front page. Problems are printed, a line each, and set exit status 1: errors that Doxygen finds in
+comments, and classes and functions without a comment. One comment per set of overloads is enough. No
+comment is needed, as the name says all, for: data members; const functions without arguments; defaulted
+or deleted functions; overrides; operators; move constructors; default constructors of a ...Config;
+fields_of and names_of, which base/table.h describes.
 """
 
 import re
@@ -39,12 +38,12 @@ SETTINGS = {
 }
 
 
-# Of which one type after the other has one.
+# Functions that many types have.
 KNOWN = ("fields_of", "names_of")
 
 
 def interface(root):
-    """The headers of the interface, as paths from `root`."""
+    """Returns the headers of the interface, as paths from `root`."""
     sections = re.split(r"^#.*$", (root / "flexura/public_headers.txt").read_text(), flags=re.M)
     return ["flexura/" + header for header in sections[2].split()]
 
@@ -54,7 +53,7 @@ def version(root):
 
 
 def front_page(root, out):
-    """docs/library.md without its links to other documents, which the reference lacks."""
+    """Writes docs/library.md without links to documents that the reference lacks; returns its path."""
     text = (root / "docs/library.md").read_text()
     page = out / "library.md"
     page.write_text(re.sub(r"\[([^\]]*)\]\([\w./-]+\.md[^)]*\)", r"\1", text))
@@ -62,7 +61,7 @@ def front_page(root, out):
 
 
 def complaints(told):
-    """What of Doxygen's words counts, with paths from the root."""
+    """Yields the relevant lines of Doxygen's output, with paths from the root."""
     for line in told.splitlines():
         if re.search(r"warning: Member .* is not documented", line) or not line.strip():
             continue
@@ -70,7 +69,7 @@ def complaints(told):
 
 
 def needs_words(function):
-    """Whether a memberdef of a function is one whose name does not say all."""
+    """Returns whether a function's memberdef needs a comment."""
     arguments, name = function.findtext("argsstring") or "", function.findtext("name")
     has_no_argument = arguments.startswith("()")
     is_constructor = not function.findtext("type")
@@ -82,7 +81,7 @@ def needs_words(function):
 
 
 def silent_functions(xml):
-    """The functions without a comment in Doxygen's XML, as lines that say where."""
+    """Yields a line with the place of each function without a comment in Doxygen's XML."""
     for path in sorted(xml.glob("*.xml")):
         for compound in ElementTree.parse(path).getroot().iter("compounddef"):
             is_inner = compound.findtext("compoundname").endswith("_detail")
@@ -105,7 +104,7 @@ def silent_functions(xml):
 def main():
     out = Path(sys.argv[1]).resolve()
     out.mkdir(parents=True, exist_ok=True)
-    shutil.rmtree(out / "xml", ignore_errors=True)  # Doxygen leaves what is no more.
+    shutil.rmtree(out / "xml", ignore_errors=True)  # Doxygen does not delete stale files.
     page = front_page(ROOT, out)
     settings = SETTINGS | {
         "USE_MDFILE_AS_MAINPAGE": page,

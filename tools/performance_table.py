@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Prints the table of docs/performance.md: what each part takes, beside its aim and a peer of the same run.
+"""Prints the table of docs/performance.md: the time of each part, its aim, and a peer from the same run.
 
 usage: tools/performance_table.py [BIN] [--repetitions N]
 
@@ -20,7 +20,7 @@ TIME_UNITS = {"ns": 1e-9, "us": 1e-6, "ms": 1e-3, "s": 1.0}
 
 @dataclass(frozen=True)
 class Row:
-    """One row: what is measured, where, how long it may take (s; None: no aim), and the peer of the same run."""
+    """One row: what is measured, where, the aim (s; None: no aim), and the peer from the same run."""
 
     what: str
     program: str
@@ -82,7 +82,7 @@ ROWS = [
 
 
 def measure(folder: Path, program: str, names: list[str], repetitions: int) -> dict[str, float]:
-    """Medians in s of the benchmarks of one program whose names begin with these."""
+    """Returns the medians, s, of one program's benchmarks with these names, with or without arguments."""
     pattern = "|".join(f"^{re.escape(name)}(/|$)" for name in names)
     command = [
         str(folder / program),
@@ -102,7 +102,7 @@ def measure(folder: Path, program: str, names: list[str], repetitions: int) -> d
 
 
 def pick(found: dict[str, float], name: str) -> float | None:
-    """The benchmark of this name, or the first one that goes on after it with a slash."""
+    """Returns the value of the benchmark with this name, or of the first one with this name and arguments."""
     for one, value in found.items():
         if one == name or one.startswith(name + "/"):
             return value

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Tests of performance_table.py, with programs that print what a benchmark would."""
+"""Tests of performance_table.py, with programs that print the output of benchmarks."""
 
 import json
 import subprocess
@@ -15,7 +15,7 @@ TOOL = Path(performance_table.__file__)
 
 
 def runs_of(name: str, nanoseconds: float) -> list[dict]:
-    """A run and its median, as Google Benchmark writes them; the run counts for nothing."""
+    """A run and its median, as Google Benchmark writes them; only the median is to be used."""
     common = {"run_name": name, "time_unit": "ns"}
     return [
         {**common, "run_type": "iteration", "cpu_time": 9 * nanoseconds},

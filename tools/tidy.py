@@ -1,16 +1,17 @@
 #!/usr/bin/env python3
-"""Runs clang-tidy on the project's sources, in parallel, and only where the answer is not known yet.
+"""Runs clang-tidy on the project's sources, in parallel, and only where no result is known yet.
 
 usage: tidy.py --build BUILD [--all]
 
-BUILD holds a compile_commands.json. tools/tidy_record.txt, committed, holds the digests of the sources' code,
-without comments, as it was when clang-tidy last passed on them. Without --all, it checks the sources (.cc) of the product that differ from the
-record. With --all it checks every source, tests and benchmarks too, which also shows what a changed header means for
-those that include it. Each source of the product that passes is brought up to date in the record, as it was before.
+BUILD holds a compile_commands.json. tools/tidy_record.txt, committed, holds digests of the sources' code, without
+comments, for which clang-tidy last passed. Without --all, the product's sources (.cc) that differ from the record are
+checked. With --all every source is checked, including tests and benchmarks. That also shows the effects of a changed
+header on the sources that include it. The record is updated for each source of the product that passes, with its
+digest from before the check.
 
 A source that passed is not checked again on the same machine while its text, the project headers it reaches, its
-compile command and .clang-tidy stay the same: the passes are remembered, as empty files named by the hash of all
-that, under $FLEXURA_TIDY_CACHE (default ~/.cache/flexura/tidy).
+compile command and .clang-tidy stay the same. Passes are remembered as empty files, named by the hash of all that,
+under $FLEXURA_TIDY_CACHE (default ~/.cache/flexura/tidy).
 """
 
 import argparse
@@ -29,19 +30,19 @@ ROOT = Path(__file__).resolve().parent.parent
 TIDY = "clang-tidy-19"
 SETTINGS = ROOT / ".clang-tidy"
 RECORD = ROOT / "tools/tidy_record.txt"
-# Texts, which may hold what looks like a comment, and comments.
+# String literals, which may contain comment markers, and comments.
 TOKEN = re.compile(r'R"(\w*)\((?:.|\n)*?\)\1"|"(?:\\.|[^"\\\n])*"|//[^\n]*|/\*(?:.|\n)*?\*/')
 INCLUDE = re.compile(r'^\s*#\s*include\s*"([^"]+)"', re.MULTILINE)
 
 
 def include_folders(command):
-    """The folders of the project (sources, generated) that a compile command searches."""
+    """Returns the folders of the project (sources, generated) that a compile command searches."""
     folders = re.findall(r"(?:-I|-isystem )(\S+)", command)
     return [Path(folder) for folder in folders if Path(folder).is_relative_to(ROOT)]
 
 
 def reached(source, folders):
-    """The source and the project's headers that it includes, directly or not."""
+    """Returns the source and the project's headers that it includes, directly or indirectly."""
     files, waiting = set(), [source]
     while waiting:
         file = waiting.pop()
@@ -60,7 +61,7 @@ def tidy_version():
 
 
 def key(command, files):
-    """Names what clang-tidy's answer depends on, the same wherever the project lies."""
+    """Returns a hash of all that clang-tidy's result depends on, independent of the project's location."""
     digest = hashlib.sha256()
     digest.update(tidy_version())
     digest.update(command.replace(str(ROOT), "").encode())
@@ -70,7 +71,7 @@ def key(command, files):
 
 
 def without_comments(text):
-    """The code alone: clang-tidy heeds no comment but NOLINT. White space counts once."""
+    """Returns the code without comments and repeated white space; clang-tidy reads only NOLINT comments."""
     def kept(token):
         is_comment = token[0].startswith(("//", "/*"))
         return " " if is_comment and "NOLINT" not in token[0] else token[0]
@@ -79,33 +80,33 @@ def without_comments(text):
 
 
 def digests(files):
-    """The first 16 hex digits of the SHA-256 of each file's code, by the file's path in the project."""
+    """Returns the first 16 hex digits of the SHA-256 of each file's code, by the file's path in the project."""
     names = sorted(str(file.relative_to(ROOT)) for file in files)
     codes = [without_comments((ROOT / name).read_text()) for name in names]
     return {name: hashlib.sha256(code.encode()).hexdigest()[:16] for name, code in zip(names, codes)}
 
 
 def recorded(record):
-    """The digests of a record, by file; none when there is no record."""
+    """Returns the digests of a record, by file; empty if there is no record."""
     if not record.exists():
         return {}
     return dict(reversed(line.split()) for line in record.read_text().splitlines())
 
 
 def is_product(source):
-    """Whether it is compiled into the libraries or the program."""
+    """Returns whether the source is compiled into the libraries or the program."""
     return source.is_relative_to(ROOT / "flexura") and not source.stem.endswith(("_test", "_fuzz"))
 
 
 def changed_since(record, sources):
-    """The sources that differ from the record; all of them when the settings do."""
+    """Returns the sources that differ from the record; all of them if the settings differ."""
     now, before = digests({SETTINGS, *sources}), recorded(record)
     changed = {ROOT / name for name, digest in now.items() if before.get(name) != digest}
     return [source for source in sources if source in changed or SETTINGS in changed]
 
 
 def check(build, source, passed):
-    """clang-tidy's exit status and findings; a pass makes the file `passed`."""
+    """Runs clang-tidy; returns its exit status and findings. A pass creates the file `passed`."""
     done = subprocess.run([TIDY, "-p", build, "--quiet", source], capture_output=True, text=True, check=False)
     if done.returncode == 0:
         passed.touch()
@@ -113,7 +114,7 @@ def check(build, source, passed):
 
 
 def check_all(build, waiting):
-    """Checks sources side by side, prints what is found, and returns how many have findings."""
+    """Checks sources in parallel, prints the findings, and returns the number of sources with findings."""
     failed = 0
     with ThreadPoolExecutor(os.cpu_count()) as pool:
         answers = pool.map(lambda item: check(build, *item), waiting.items())
@@ -125,7 +126,7 @@ def check_all(build, waiting):
 
 
 def keep_record(known, passed):
-    """The record with the digests of what has passed; `known` are all the sources that may stay in it."""
+    """Updates the record with the digests in `passed`; only files in `known` stay in it."""
     names = {str(source.relative_to(ROOT)) for source in known}
     kept = {name: digest for name, digest in recorded(RECORD).items() if name in names}
     kept.update(passed)
@@ -142,7 +143,7 @@ def main():
 
     entries = json.loads((arguments.build / "compile_commands.json").read_text())
     commands = {Path(entry["file"]): entry["command"] for entry in entries}
-    # What the build has written itself.
+    # Skip sources generated by the build.
     commands = {source: command for source, command in commands.items() if not source.is_relative_to(ROOT / "build")}
     reach = {source: reached(source, include_folders(command)) for source, command in commands.items()}
     reach = {source: {file for file in files if not file.is_relative_to(ROOT / "build")}
@@ -151,7 +152,7 @@ def main():
     passes = {source: cache / key(commands[source], reach[source]) for source in sources}
     waiting = {source: passed for source, passed in passes.items() if not passed.exists()}
 
-    # Tests and benchmarks are never compared with the record. A file that is edited meanwhile has not passed.
+    # Tests and benchmarks are never compared with the record. A file edited during the check has not passed.
     kept = {SETTINGS, *filter(is_product, reach)}
     before = digests(kept)
     start = time.monotonic()
@@ -160,7 +161,7 @@ def main():
         failed = check_all(arguments.build, waiting)
     finally:
         done = {source for source, passed in passes.items() if passed.exists()}
-        # What was to be looked at and has not passed is looked at again, even where its own text is as before.
+        # Sources checked without a pass leave the record, so that they are checked again even if unchanged.
         passed = (done if failed else done | {SETTINGS}) & kept
         keep_record(kept - (set(sources) - done), {name: before[name] for name in digests(passed)})
     print(f"clang-tidy: {len(sources)} of {len(reach)} sources, {len(waiting)} of them checked now in "

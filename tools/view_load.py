@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What `flexura view` costs: starts it, looks at it as one page does, and prints its CPU time.
+"""Measures the CPU time of `flexura view` while one client watches it as the page does.
 
     tools/view_load.py build/release/bin/flexura [EXPERIMENT.toml | RESULTS] [--seconds 10]
 """
@@ -16,7 +16,7 @@ import time
 
 
 class Page:
-    """A client of docs/viewer-protocol.md: counts states and images, and acknowledges these."""
+    """A client of docs/viewer-protocol.md: counts states and images, and acknowledges images."""
 
     def __init__(self, url):
         address, token = url.split("/#token=")

@@ -121,7 +121,7 @@ void add_check(CLI::App& app, Command& chosen) {
   });
 }
 
-// The commands that answer lines about an arm.
+// Adds a command that answers lines of JSON about an arm.
 void add_answers(CLI::App& app, Command& chosen, const std::string& name, const std::string& meaning,
                  const std::string& example,
                  int (*command)(const std::string&, std::istream&, std::ostream&)) {
@@ -196,7 +196,7 @@ void add_schema(CLI::App& app, Command& chosen) {
   command->callback([&chosen, format] { chosen = [format] { return schema_command(*format, std::cout); }; });
 }
 
-// What prints a part of the command line's own help.
+// Adds the commands that print completion scripts and the manual page.
 void add_helpers(CLI::App& app, Command& chosen) {
   auto shell = std::make_shared<std::string>();
   CLI::App* completion =
@@ -241,7 +241,8 @@ bool is_unknown_command(const CLI::App& app, std::string_view word) {
   return true;
 }
 
-// A script with an unset variable gives an empty text: CLI11 would read it as nothing, or as 0.
+// Rejects empty values, which come from scripts with unset variables. CLI11 would read one as no value, or as
+// 0.
 std::string refuse_empty(const std::string& value) { return value.empty() ? "expected no empty text" : ""; }
 
 void refuse_empty_values(CLI::App& app) {
@@ -294,7 +295,7 @@ echo '{"target":{"tip":[0.1,0.1,0.36]}}' | flexura statics tendons.toml)",
 }  // namespace
 
 int run_app(int argc, const char* const* argv) noexcept {
-  // A limit on the size of files is then reported like a full disk.
+  // Ignoring the signal makes a file size limit report an error like a full disk.
   std::signal(SIGXFSZ, SIG_IGN);
   try {
     const int status = parse_and_run(argc, argv);

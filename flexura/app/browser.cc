@@ -23,7 +23,7 @@ bool is_set(const char* name) {
 
 bool has_screen() { return is_set("DISPLAY") || is_set("WAYLAND_DISPLAY"); }
 
-// A new file that only this user reads; empty where there can be none.
+// Writes the redirecting page to a new file that only this user can read. Returns an empty path on failure.
 std::filesystem::path write_page(const std::string& url) {
   std::error_code error;
   const auto folder = std::filesystem::temp_directory_path(error);
@@ -39,7 +39,8 @@ std::filesystem::path write_page(const std::string& url) {
   return is_written ? std::filesystem::path(name) : std::filesystem::path();
 }
 
-// Starts the program in a session of its own, so that what ends this one leaves it alone, and forgets it.
+// Starts the opener as a detached process, in its own session so that signals to this program's group do not
+// end it.
 void start(const std::string& argument) {
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
@@ -54,7 +55,7 @@ void start(const std::string& argument) {
   std::string program = opener, page = argument;
   char* const arguments[] = {program.data(), page.data(), nullptr};
   pid_t process = -1;
-  // Where it cannot be started the address has been printed all the same.
+  // A failed start is ignored: the address has been printed anyway.
   (void)::posix_spawnp(&process, opener, &actions, &attributes, arguments, environ);
   posix_spawnattr_destroy(&attributes);
   posix_spawn_file_actions_destroy(&actions);

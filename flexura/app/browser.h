@@ -5,9 +5,9 @@
 
 namespace flexura {
 
-/// Opens an address in the user's browser, where there is a screen, and keeps it out of the list of
-/// processes, which others can read: what is opened is a small file of this user that leads there. It goes
-/// with this object.
+/// Opens a URL in the user's browser if there is a display. Other users can read the process list, so the URL
+/// is not passed as an argument: the browser opens a small file that redirects to it. Only this user can read
+/// the file, and the destructor deletes it.
 class BrowserPage {
  public:
   explicit BrowserPage(const std::string& url);
@@ -16,7 +16,7 @@ class BrowserPage {
   BrowserPage& operator=(const BrowserPage&) = delete;
 
  private:
-  std::filesystem::path file_;  // empty: none
+  std::filesystem::path file_;  // Empty if no file was written.
 };
 
 }  // namespace flexura

@@ -1,6 +1,6 @@
-// Any text as a file of measured cameras: refused in words at a place in the file, or cameras whose frames
-// are frames, that see what lies before them where it comes from, and that say the same when they are written
-// again.
+// Fuzzes files of measured cameras with any text. A text is rejected with an error at a place in the file, or
+// gives cameras. Their orientations must be rotations, projecting and unprojecting must agree, and writing
+// and rereading must preserve them.
 #include <Eigen/Core>
 #include <cmath>
 #include <cstddef>
@@ -30,7 +30,7 @@ std::vector<MeasuredCamera> read(const std::string& text, std::size_t count) {
   return flexura::standing_cameras(flexura::parse_toml(text, "cameras.toml"), count);
 }
 
-// How many pictures there are to be for the file to be taken.
+// Returns the number of pictures for which the file is accepted.
 std::size_t count_of(const std::string& text) {
   const flexura::Node file = flexura::parse_toml(text, "cameras.toml");
   const flexura::Node* cameras = file.find("camera");

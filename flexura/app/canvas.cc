@@ -13,7 +13,7 @@ namespace {
 
 using Eigen::Vector2d;
 
-// No line is drawn farther than this from the picture's first pixel.
+// Maximum distance of drawn lines from the first pixel, px.
 constexpr double farthest = 1e6;
 
 }  // namespace

@@ -14,11 +14,11 @@ using PenColor = std::array<std::uint8_t, 3>;
 /// Draws thin lines over a picture.
 class Canvas {
  public:
-  /// Of a gray picture or one of three channels.
+  /// Copies a gray or three-channel picture.
   explicit Canvas(const Image<std::uint8_t>& picture);
 
   void line(const Eigen::Vector2d& from, const Eigen::Vector2d& to, const PenColor& color);
-  /// A cross of so many pixels to each side.
+  /// Draws a cross that extends `size` pixels to each side.
   void cross(const Eigen::Vector2d& at, double size, const PenColor& color);
   void ellipse(const EllipseFit& ellipse, const PenColor& color);
 

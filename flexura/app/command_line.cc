@@ -9,7 +9,7 @@
 namespace flexura {
 namespace {
 
-// What a value is, from the word that stands for it in the help.
+// Returns the kind of a value, from its placeholder in the help.
 Takes taken(const std::string& value) {
   if (value.find('|') != std::string::npos) return Takes::choice;
   if (value == "EXPERIMENT" || value == "ARM" || value == "WHAT") return Takes::experiment;
@@ -71,7 +71,7 @@ ProgramHelp program_help(const CLI::App& app) {
     one.name = command->get_name();
     one.group = command->get_group();
     one.meaning = command->get_description();
-    // The example stands below its heading, two columns in.
+    // The example follows its heading, indented by two columns.
     for (const std::string& line : split(command->get_footer(), '\n'))
       if (line.starts_with("  ")) one.example += (one.example.empty() ? "" : "\n") + line.substr(2);
     for (const CLI::Option* option : command->get_options())

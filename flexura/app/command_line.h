@@ -10,10 +10,10 @@
 
 namespace flexura {
 
-/// What a command does once its arguments are read: its exit status.
+/// Runs a command with the parsed arguments and returns its exit status.
 using Command = std::function<int()>;
 
-/// The headings of `flexura --help`, in their order.
+/// The headings of `flexura --help`, in order of appearance.
 namespace command_group {
 inline constexpr const char* experiments = "Set up and run an experiment";
 inline constexpr const char* answers = "Ask about an arm (JSON lines in, JSON lines out)";
@@ -21,17 +21,17 @@ inline constexpr const char* pictures = "Make and measure pictures";
 inline constexpr const char* program = "Help for files and shells";
 }  // namespace command_group
 
-/// A command under its heading, with an example that can be pasted into a shell.
+/// Adds a command under a heading, with an example that can be pasted into a shell.
 CLI::App* add_command(CLI::App& app, const std::string& name, const char* group, const std::string& meaning,
                       const std::string& example);
 
 /// Adds `--set PATH=VALUE`, which changes a value of the experiment file.
 void add_set_option(CLI::App& command, std::vector<std::string>& sets);
 
-/// Adds render, measure, estimate and intrinsics.
+/// Adds the commands render, measure, estimate and intrinsics.
 void add_picture_commands(CLI::App& app, Command& chosen);
 
-/// The command line as the completion and the manual page need it.
+/// Returns the description of the command line that completion and manual page need.
 [[nodiscard]] ProgramHelp program_help(const CLI::App& app);
 
 }  // namespace flexura

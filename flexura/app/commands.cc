@@ -41,7 +41,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// Every wall-clock value of a run, in the one file that may differ from run to run.
+// Writes all wall-clock values of a run to the only file that may differ from run to run.
 void write_timing(const std::filesystem::path& folder, std::time_t started, double wall,
                   const Node& summary) {
   const double simulated = *summary.find("duration")->as<double>();
@@ -64,8 +64,7 @@ void print_result(const Experiment& experiment, const RunResult& result, std::os
   tell(out, "results", result.folder.string());
 }
 
-// A run that people look at, while it goes on and then until somebody ends the program, which ends a run
-// early.
+// A run with a viewer, which stays open until the program is stopped. Stopping during the run cancels it.
 class WatchedRun {
  public:
   WatchedRun(const Experiment& experiment, const std::shared_ptr<RunLink>& link,
@@ -80,7 +79,8 @@ class WatchedRun {
   OpenViewer viewer_;
 };
 
-// A run that nobody looks at: told to stop it ends early, told again at once, as if it were killed.
+// A run without a viewer. The first stop signal cancels it; a second one ends the program at once, as the
+// default handler would.
 class UnwatchedRun {
  public:
   explicit UnwatchedRun(const std::shared_ptr<RunLink>& link)
@@ -88,21 +88,22 @@ class UnwatchedRun {
           if (times_told_++ > 0) std::_Exit(exit_of_signal(stop_.come()));
           link->cancel();
         }) {}
-  /// The signal that told it; 0: none did.
+  /// Returns the first stop signal received; 0: none.
   [[nodiscard]] int told() const { return stop_.come(); }
 
  private:
-  int times_told_ = 0;  // Of the signals' thread.
+  int times_told_ = 0;  // Used only in the signal thread.
   StopSignal stop_;
 };
 
-// The films of a run's cameras.
+// Exports the films of a run's cameras.
 ExportResult export_films(const std::filesystem::path& results) {
   const Experiment experiment = load_experiment(file_of_results(results, experiment_file_name));
   return export_mp4(results, experiment.true_rig().cameras);
 }
 
-// By answers about the elastic arm of a file; whether there is one that they can be given about.
+// Answers lines about the elastic arm in a file with an `Answers` object. Throws InputError if the arm does
+// not allow one.
 template <typename Answers>
 int answer_about_rod(const std::string& arm_file, std::istream& in, std::ostream& out) {
   const Experiment experiment = load_experiment(arm_file);
@@ -137,7 +138,7 @@ int run_command(const RunArguments& arguments, std::ostream& out, std::ostream& 
   }
   const RunResult result = run_experiment(experiment, folder, *link, link.get());
   progress.clear();
-  // A film is an extra: a run without ffmpeg is as good, and who has told it to stop does not wait for one.
+  // The film is optional: the run succeeds without ffmpeg, and a cancelled run does not wait for it.
   if (experiment.record.cameras && result.outcome != RunOutcome::cancelled) {
     try {
       (void)export_films(folder);
@@ -147,7 +148,7 @@ int run_command(const RunArguments& arguments, std::ostream& out, std::ostream& 
   }
   write_timing(folder, started, std::chrono::duration<double>(Clock::now() - start).count(), result.summary);
   for (std::size_t i = 0; i < result.reasons.size(); ++i) {
-    // Behind why it was cancelled comes what is unsafe of it.
+    // After the reason of a cancellation come the reasons why the run was unsafe.
     const bool is_second = result.outcome == RunOutcome::cancelled && i > 0;
     tell(err, name_of(is_second ? RunOutcome::unsafe : result.outcome), result.reasons[i]);
   }

@@ -12,28 +12,28 @@ namespace flexura {
 
 /// The program's exit statuses (docs/command-line.md).
 enum ExitStatus : int { exit_done = 0, exit_missed = 1, exit_bad_input = 2, exit_system_failure = 3 };
-/// What a shell says of a program that a signal has ended.
+/// Returns the exit status that a shell reports for a program ended by a signal.
 [[nodiscard]] constexpr int exit_of_signal(int signal) { return 128 + signal; }
 
-/// What `flexura run` is told.
+/// Arguments of `flexura run`.
 struct RunArguments {
   std::string experiment;
-  std::string out;  ///< "" for the default.
+  std::string out;  ///< Results folder; "": default.
   std::vector<std::string> sets;
   std::optional<std::int64_t> seed;
   bool json = false;
-  std::optional<ViewerArguments> viewer;  ///< Watched meanwhile, and looked at afterwards.
+  std::optional<ViewerArguments> viewer;  ///< If set, a viewer shows the run and stays open afterwards.
 };
 
-/// What `flexura check` is told.
+/// Arguments of `flexura check`.
 struct CheckArguments {
   std::string experiment;
   std::vector<std::string> sets;
   bool json = false;
 };
 
-// Each command writes its result to `out` and what is for people's eyes to `err`, returns an exit status, and
-// throws InputError for bad input and other exceptions for failures of the system.
+// Each command writes its result to `out` and messages for people to `err`, and returns an exit status. It
+// throws InputError for bad input and other exceptions for system failures.
 
 int run_command(const RunArguments& arguments, std::ostream& out, std::ostream& err);
 int check_command(const CheckArguments& arguments, std::ostream& out, std::ostream& err);

@@ -27,11 +27,12 @@
 namespace flexura {
 namespace {
 
-// One picture: what it shows of the arm.
+// One picture's evidence for the estimation.
 struct Look {
   LookedAt told;
   Sighting sighting;
-  bool is_of_other_size = false;  // As far as the camera's description tells.
+  // Whether the picture seems to have another size than the camera is described for.
+  bool is_of_other_size = false;
 };
 
 Look look_at(const PictureFile& picture, const MeasuredCamera& camera, const EstimateConfig& config) {
@@ -47,7 +48,7 @@ Look look_at(const PictureFile& picture, const MeasuredCamera& camera, const Est
   const ArmSighting& found = finder.find(photograph);
   Look look{{name, camera.name, found.reason, found.notes}, sighting_of(found, view, photograph.bytes)};
   auto& notes = look.told.notes;
-  // A camera that says for which size it is described has been held to it.
+  // A camera with a given size has already been checked against the picture.
   auto hint = camera.size ? std::nullopt : hint_of_size(view.lens, view.width, view.height);
   look.is_of_other_size = hint.has_value();
   if (hint) notes.push_back(std::move(*hint));
@@ -58,7 +59,7 @@ Look look_at(const PictureFile& picture, const MeasuredCamera& camera, const Est
   return look;
 }
 
-// What is to be known of all pictures together.
+// Adds the notes that concern all pictures together.
 void add_notes(std::span<const PictureFile> pictures, std::span<const Sighting> sightings,
                const EstimateConfig& config, ShapeEstimate& found) {
   if (found.is_found && !config.prior.is_base_position_known)

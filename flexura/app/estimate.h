@@ -11,26 +11,26 @@
 
 namespace flexura {
 
-/// A picture's file.
+/// A picture file.
 struct PictureFile {
   std::string name;   ///< For messages.
-  std::string bytes;  ///< Of whatever kind (docs/vision.md, "Kinds of pictures").
+  std::string bytes;  ///< Contents, in any of the formats of docs/vision.md, "Kinds of pictures".
 };
 
-/// What the pictures show of the arm.
+/// The shape estimated from the pictures.
 struct ShapeAnswer {
   Node answer;  ///< docs/estimation.md, "flexura estimate".
   bool is_found = false;
 };
 
-/// The shape in as many pictures as there are cameras, in their order. InputError: not a picture that can be
-/// read.
+/// Estimates the arm's shape from one picture per camera, in the cameras' order. Throws InputError if a
+/// picture cannot be read or does not have its camera's size.
 [[nodiscard]] ShapeAnswer estimate_shape(std::span<const PictureFile> pictures,
                                          const std::vector<MeasuredCamera>& cameras,
                                          const EstimateConfig& config);
 
-/// Prints the shape of the arm that the pictures show, as one JSON document (docs/estimation.md). Returns
-/// exit_missed when no shape was found. InputError for bad input.
+/// Prints the estimated shape of the arm as one JSON document (docs/estimation.md). Returns exit_missed if no
+/// shape was found. Throws InputError for bad input.
 int estimate_command(const EstimateArguments& arguments, std::ostream& out);
 
 }  // namespace flexura

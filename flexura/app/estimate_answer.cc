@@ -33,7 +33,7 @@ Node image_node(const LookedAt& picture, const Sighting& sighting, const std::op
   return {std::move(entry), {}};
 }
 
-// The standard deviation at so many places evenly along the backbone, linear between where it is known.
+// Returns the standard deviation at `count` equally spaced places along the backbone, interpolated linearly.
 Node::Array sigmas_at(const ShapeEstimate& found, std::size_t count, double length) {
   Node::Array sigmas;
   std::size_t after = 1;
@@ -58,7 +58,7 @@ void add_angles(const std::vector<DirectionAngles>& angles, const std::string& b
   answer.push_back({before + "elevation", {}, {std::move(elevations), {}}});
 }
 
-// As two image planes show them, if the cameras stand for that: one looks along Z, the other one along X.
+// Adds the angles in the two image planes, if one camera looks along Z and the other one along X.
 void add_plane_angles(std::span<const Sighting> sightings, std::size_t count, Node::Table& answer) {
   if (sightings.size() != 2) return;
   const Pose &first = sightings[0].view.X_WC, &second = sightings[1].view.X_WC;

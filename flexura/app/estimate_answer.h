@@ -11,16 +11,16 @@
 
 namespace flexura {
 
-/// One picture, as the answer tells of it.
+/// One picture, as the answer reports it.
 struct LookedAt {
-  std::string image;   ///< Its file's name.
-  std::string camera;  ///< Its camera's.
-  std::string reason;  ///< Why it shows no arm; empty where it does.
+  std::string image;   ///< File name.
+  std::string camera;  ///< Camera name.
+  std::string reason;  ///< Why no arm was found; empty if one was.
   std::vector<std::string> notes;
 };
 
-/// What `flexura estimate` prints (docs/estimation.md, "flexura estimate"): `found` in `sightings`, one for
-/// each of `pictures`.
+/// Returns the answer that `flexura estimate` prints (docs/estimation.md, "flexura estimate"). `found` is the
+/// estimate from `sightings`, one for each of `pictures`.
 [[nodiscard]] Node estimate_node(const ShapeEstimate& found, std::span<const Sighting> sightings,
                                  std::span<const LookedAt> pictures, const EstimateConfig& config);
 

@@ -18,10 +18,10 @@
 namespace flexura {
 namespace {
 
-// What is beyond has no picture of which anything could be told.
+// Largest coordinate: pictures of anything beyond are useless.
 constexpr double farthest_place = 1e6;  // m
 
-// What a camera's table has at `key`, in whatever unit; null where it is left out.
+// Returns the value of `key` in a camera's table, in any unit; nullptr if it is omitted.
 const Node* written_at(const Node& camera, std::string_view key) {
   const auto& members = *camera.as<Node::Table>();
   const auto found = std::ranges::find_if(
@@ -36,7 +36,8 @@ bool stand_at_one_place(const std::vector<MeasuredCamera>& cameras) {
   });
 }
 
-// A lens alone is enough to measure a picture, but not for two to meet.
+// Requires a position and rotation for each camera. Measuring one picture needs only the lens, but
+// triangulation needs the poses.
 void check_poses(const Node& file, const std::vector<MeasuredCamera>& cameras) {
   std::vector<Problem> problems;
   const auto& tables = *file.find("camera")->as<Node::Array>();
@@ -65,7 +66,7 @@ std::optional<Eigen::Vector3d> base_of(const EstimateArguments& arguments) {
   return Eigen::Vector3d(arguments.base.data());
 }
 
-// Of an arm that may stretch, how long it is: its sections stretch alike, as far as all of them do.
+// Fixes the length of an arm that may stretch. All sections get the same stretch, within the limits of each.
 void hold_length(double length, ShapePrior& prior) {
   if (prior.is_length_known) throw input_error("--length", "--arm already gives the arm's length");
   double shortest = 0, longest = std::numeric_limits<double>::infinity();
@@ -73,7 +74,7 @@ void hold_length(double length, ShapePrior& prior) {
     shortest = std::max(shortest, section.stretch_limits[0] * prior.arm.length());
     longest = std::min(longest, section.stretch_limits[1] * prior.arm.length());
   }
-  constexpr double grace = 1e-9;  // Sums of the same in another order.
+  constexpr double grace = 1e-9;  // Rounding of sums taken in another order.
   if (length < (1 - grace) * shortest || length > (1 + grace) * longest)
     throw input_error(
         "--length",
@@ -93,7 +94,7 @@ ShapePrior arm_of(const EstimateArguments& arguments) {
   return prior;
 }
 
-// "0.25" m or "25%" of the arm's length, as m along the unstretched arm.
+// Returns the arc length, m, along the unstretched arm, for "0.25" (m) or "25%" (of the arm's length).
 double marker_place(const std::string& word, const ShapePrior& prior, bool is_described) {
   const bool is_share = word.ends_with('%');
   const std::string digits = word.substr(0, word.size() - (is_share ? 1 : 0));
@@ -139,7 +140,7 @@ EstimateConfig estimate_config(const EstimateArguments& arguments) {
   for (const std::string& word : arguments.markers)
     markers.push_back(marker_place(word, config.prior, is_described));
   std::ranges::sort(markers);
-  // Of one place in metres and in percent: but for rounding.
+  // Tolerance for one place given both in metres and in percent: rounding only.
   const double alike = 1e-9 * config.prior.arm.length();
   const auto is_alike = [&](double one, double next) { return next - one <= alike; };
   if (const auto twice = std::ranges::adjacent_find(markers, is_alike); twice != markers.end())

@@ -15,37 +15,37 @@
 
 namespace flexura {
 
-/// How a shape is looked for.
+/// Settings of the shape estimation.
 struct EstimateConfig {
-  ShapePrior prior;  ///< What is known of the arm.
+  ShapePrior prior;  ///< Prior knowledge about the arm.
   ThresholdConfig threshold;
   EstimatorConfig estimator;
-  std::size_t points = 101;  ///< Of the backbone, as it is told; at least 2.
-  bool has_bends = false;    ///< Whether the bends of the prior's sections are told: they are the arm's.
+  std::size_t points = 101;  ///< Number of backbone points in the answer; at least 2.
+  bool has_bends = false;    ///< Whether the answer has the bends of a described arm's sections.
 };
 
-/// What `flexura estimate` is told.
+/// Arguments of `flexura estimate`.
 struct EstimateArguments {
-  std::vector<std::string> images;  ///< One a camera, in the cameras' order.
-  std::string cameras;              ///< A file of measured cameras.
-  std::vector<double> base;         ///< p_WB, three numbers; none: not known.
-  std::optional<double> length;     ///< m.
-  std::string arm;                  ///< A file with the arm's sections; "" for none.
-  /// Where the arm's bands are: arc lengths, m ("0.25"), or shares of its length ("25%"); empty: not known.
+  std::vector<std::string> images;  ///< Picture files, one per camera, in the cameras' order.
+  std::string cameras;              ///< File of measured cameras.
+  std::vector<double> base;         ///< p_WB, m: three numbers; empty: unknown.
+  std::optional<double> length;     ///< Length of the arm, m.
+  std::string arm;                  ///< File that describes the arm; "": no file.
+  /// Positions of the arm's bands: arc lengths, m ("0.25"), or shares of the length ("25%"). Empty: unknown.
   std::vector<std::string> markers;
   ThresholdArguments threshold;
-  std::int64_t points = 101;  ///< Of the backbone, as it is printed.
+  std::int64_t points = 101;  ///< Number of backbone points to print.
 };
 
-/// InputError for what is wrong whatever the files say.
+/// Throws InputError for arguments that are wrong whatever the files contain.
 void check_arguments(const EstimateArguments& arguments);
 
-/// The same, as it is looked for. InputError naming the argument that is wrong, or the place in the arm's
-/// file.
+/// Returns the settings for the arguments. Throws InputError naming the wrong argument, or the place in the
+/// arm's file.
 [[nodiscard]] EstimateConfig estimate_config(const EstimateArguments& arguments);
 
-/// The cameras of a file, checked for two to meet. InputError: a camera without a
-/// place, all of them at one, other than `count` of them.
+/// Returns the cameras of a file, checked for use in triangulation. Throws InputError for a camera without
+/// position or rotation, for cameras that are all at one position, and unless there are `count` of them.
 [[nodiscard]] std::vector<MeasuredCamera> standing_cameras(const Node& file, std::size_t count);
 
 }  // namespace flexura

@@ -1,6 +1,6 @@
-// A file of cameras, then behind a zero byte how the arm is looked for, and the pictures' files, each behind
-// the mark below; pictures that are left out are of a bent tube. A problem in words, or one document of JSON
-// without holes where a shape was found, and the same one when asked again.
+// Fuzzes the estimation. The input is a file of cameras, a zero byte, the search settings, and the picture
+// files, each after the mark below. Missing pictures default to a bent tube. Required: an error, or one JSON
+// document without null if a shape was found, and the same result when run again.
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
@@ -24,7 +24,8 @@ namespace {
 
 constexpr std::string_view mark = "\n--\n";
 
-// A PGM file of 48 x 40 px: a dark arc 6 px wide that the lower border cuts and that ends in the picture.
+// Returns a PGM file of 48 x 40 px: a dark arc 6 px wide that is cut by the lower border and ends within the
+// picture.
 std::string bent_tube() {
   constexpr int width = 48, height = 40;
   std::string file = "P5\n48 40\n255\n";
@@ -38,7 +39,7 @@ std::string bent_tube() {
   return file;
 }
 
-// What stands before `end`, or all; it and the end are taken.
+// Returns the text before `end`, or all of it, and removes both from `text`.
 std::string_view take(std::string_view& text, std::string_view end) {
   const std::size_t at = text.find(end);
   const std::string_view piece = text.substr(0, at);
@@ -52,10 +53,10 @@ struct Asked {
   flexura::EstimateConfig config;
 };
 
-// Bits of `ways`: a known base, a known length, known sections, thresholds by block, markers, few sections,
-// as thorough as the program. Of few sections the last one is bent in all ways where pictures are not
-// explained, and a thorough search goes on where nothing is to be found: both take most of the time, and are
-// left to a few cases.
+// Bits of `ways`: known base, known length, known sections, thresholds by block, markers, few sections, as
+// thorough as the program. The last two take most of the time and are used in few cases. With few sections
+// the last one is tried with many bends if no shape explains the pictures. A thorough search goes on if
+// nothing is found.
 flexura::EstimateConfig config_of(unsigned ways) {
   flexura::EstimateConfig config;
   std::optional<Eigen::Vector3d> base;

@@ -1,4 +1,4 @@
-// What `flexura estimate` makes of pictures that are not taken, or not turned, as it takes them to be.
+// Tests `flexura estimate` with pictures of an unexpected exposure, gamma, size or orientation.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -25,7 +25,7 @@ using testing::Not;
 
 class EstimateHints : public EstimateBench {
  protected:
-  // The same pictures by cameras with a gamma.
+  // Takes the same pictures by cameras with a gamma.
   void photograph_with_gamma() {
     std::string text = photographed_arm;
     for (std::size_t at = 0; (at = text.find("psf =", at)) != std::string::npos; at += 30)
@@ -107,7 +107,7 @@ TEST_F(EstimateHints, RefusesPicturesOfAnotherSizeThanTheCamerasAreSaidToBeOf) {
   EXPECT_THROW(estimate_command(with_size("[640]"), out), InputError);
 }
 
-// A principal point far from the middle is no sign of another size where the file says the size.
+// A principal point far from the middle does not suggest another size if the file gives the size.
 TEST_F(EstimateHints, DoNotGuessASizeThatIsSaid) {
   const std::string aside = replaced(two_measured_cameras, "cx = 319.5", "cx = 180");
   const auto answer_by = [&](const char* name, const std::string& cameras) {
@@ -123,7 +123,7 @@ TEST_F(EstimateHints, DoNotGuessASizeThatIsSaid) {
               Not(HasSubstr("of another size")));
 }
 
-// Upside down the base is where nothing is, and the answer says so.
+// Upside down, nothing is where the base should be, and the answer reports it.
 TEST_F(EstimateHints, TellWhereTheBaseIsLookedFor) {
   arguments_.arm = (folder_.path() / "arm.toml").string();
   for (const std::string& name : arguments_.images) {

@@ -1,4 +1,4 @@
-// What `flexura estimate` refuses before it looks at any picture.
+// Tests the input that `flexura estimate` rejects before it looks at any picture.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -25,7 +25,7 @@ class EstimateInput : public testing::Test {
     arguments_.images = {"front.png", "side.png"};
     write_new_file(arguments_.cameras, two_measured_cameras);
   }
-  // What is said of a file of cameras, after its folder.
+  // Returns the error for a file of cameras, without its folder.
   std::string refusal(const std::string& from, const std::string& to) {
     replace_file(arguments_.cameras, replaced(two_measured_cameras, from, to));
     std::ostringstream out;

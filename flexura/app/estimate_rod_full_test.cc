@@ -14,11 +14,11 @@
 namespace flexura {
 namespace {
 
-// An arm of three steel wires that sag, in front of measured cameras; what is believed of it are arcs.
+// An arm of three sagging steel wires in front of measured cameras; the arm model consists of arcs.
 class EstimateOfARod : public EstimateBench {
  protected:
-  // Bent so. Believed to be three arcs a section, which keep their lengths as the rod does, or, as it does
-  // not under its tendons, may stretch a little.
+  // Writes a rod with these bends, modelled as three arcs a section. The arcs keep their lengths, as the rod
+  // does. If `stretches`, they may stretch a little, which the rod does not do under its tendons.
   void write_rod(const std::string& name, const std::vector<Eigen::Vector2d>& bends, bool stretches) {
     std::string text = replaced(photographed_arm, "[[0.6, 0.4], [-1.0, 0.7], [0.9, -0.8]]",
                                 fmt::format("[[{}, {}], [{}, {}], [{}, {}]]", bends[0].x(), bends[0].y(),
@@ -38,7 +38,7 @@ class EstimateOfARod : public EstimateBench {
                           120 * (i % 3) + 40 * (i / 3));
     write_new_file(folder_.path() / (name + ".toml"), text);
   }
-  // The printed backbone's distance from the rod, root mean square, m.
+  // Returns the rms distance of the printed backbone from the rod, m.
   double rms_error(const Node& answer, const std::string& name) const {
     const RigConfig rig = load_experiment(folder_.path() / (name + ".toml")).true_rig();
     const ArmSetup setup(rig);
@@ -56,8 +56,8 @@ class EstimateOfARod : public EstimateBench {
   }
 };
 
-// Three arcs a section are enough for its shape: what is left is what the pictures do not tell, as the stated
-// standard deviation has it.
+// Three arcs a section suffice for its shape. The remaining error comes from the pictures and is within the
+// stated standard deviation.
 TEST_F(EstimateOfARod, IsWithinItsStatedSigma) {
   for (const bool stretches : {false, true}) {
     double square = 0, largest = 0;
@@ -73,7 +73,7 @@ TEST_F(EstimateOfARod, IsWithinItsStatedSigma) {
       (void)estimate_command(arguments_, text);
       const Node answer = parse_json(text.str(), "answer");
       ++cases;
-      // Some shapes hide too much of themselves.
+      // Some shapes hide too much of the arm.
       if (!*answer.find("found")->as<bool>()) return;
       ++found;
       const double ratio = rms_error(answer, name) / *answer.find("sigma")->as<double>();

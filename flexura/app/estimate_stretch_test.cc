@@ -1,4 +1,4 @@
-// What `flexura estimate` makes of arms whose lengths are not known from their files.
+// Tests `flexura estimate` for arms whose lengths are not known from their files.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -15,7 +15,7 @@ namespace {
 
 class EstimateStretch : public EstimateBench {};
 
-// Shorter by a tenth than its sections are.
+// The arm is a tenth shorter than its unstretched sections.
 TEST_F(EstimateStretch, OfAnArmThatStretchesFindsTheLengthUnlessItIsSaid) {
   std::string text = replaced(photographed_arm, "-0.8]] }", "-0.8]], stretches = [0.9, 0.9, 0.9] }");
   for (std::size_t at = 0; (at = text.find("radius =", at)) != std::string::npos; at += 40)
@@ -27,11 +27,11 @@ TEST_F(EstimateStretch, OfAnArmThatStretchesFindsTheLengthUnlessItIsSaid) {
   EXPECT_NEAR(*found.find("length")->as<double>(), 0.9, 1e-3);
   EXPECT_LT(error(found, "stretched"), 1e-3);
   EXPECT_EQ(found.find("bends")->as<Node::Array>()->size(), 3U);
-  // Metres are along the unstretched arm, and how long that is is known.
+  // Metres refer to the unstretched arm, whose length is known.
   arguments_.markers = {"0.5"};
   EXPECT_NEAR(*answer(exit_done).find("length")->as<double>(), 0.9, 1e-3);
   arguments_.markers.clear();
-  // As it was taken before: for one that is as long as its sections.
+  // A length equal to that of the unstretched sections is wrong.
   arguments_.length = 1;
   EXPECT_FALSE(*answer(exit_missed).find("found")->as<bool>());
   arguments_.length = 0.9;
@@ -40,7 +40,7 @@ TEST_F(EstimateStretch, OfAnArmThatStretchesFindsTheLengthUnlessItIsSaid) {
   EXPECT_LT(error(held, "stretched"), 5e-4);
   arguments_.length = 1.3;
   EXPECT_THROW((void)answer(exit_done), InputError);
-  // One that does not stretch has its length.
+  // For an arm that does not stretch, the file gives the length.
   arguments_.arm = (folder_.path() / "arm.toml").string(), arguments_.length = 1;
   EXPECT_THROW((void)answer(exit_done), InputError);
 }

@@ -37,7 +37,7 @@ TEST_F(Estimate, OfAKnownArmIsRightToATenthOfAMillimetreOrTwo) {
   EXPECT_EQ(found.find("bends")->as<Node::Array>()->size(), 3u);
 }
 
-// Sections that bend more near their bases, as no model of one arc a section does.
+// The sections bend more near their bases than any model of one arc a section can.
 TEST_F(Estimate, OfAnUnevenArmIsRightWithTheModelOfItsArcs) {
   std::string uneven = photographed_arm;
   for (std::size_t at = 0; (at = uneven.find("radius = 0.018\n", at)) != std::string::npos; at += 30)
@@ -48,7 +48,7 @@ TEST_F(Estimate, OfAnUnevenArmIsRightWithTheModelOfItsArcs) {
   const Node found = answer(exit_done);
   EXPECT_LT(error(found, "uneven"), 1e-3);
   EXPECT_EQ(found.find("bends")->as<Node::Array>()->size(), 9U) << "one an arc";
-  // Of one arc a section it is told that no shape explains what is seen.
+  // With one arc a section, the answer reports that no shape explains the images.
   arguments_.arm = (folder_.path() / "arm.toml").string();
   const Node refused = answer(exit_missed);
   EXPECT_THAT(*refused.find("reason")->as<std::string>(), HasSubstr("no shape explains the images"));
@@ -82,7 +82,7 @@ TEST_F(Estimate, UsesBandsOfWhichBothPicturesShowTheSame) {
   EXPECT_LT(error(found), 4e-3);
   arguments_.markers = {"15%", "0.3", "0.45", "60%", "0.75", "0.9"};
   EXPECT_LT(error(answer(exit_done)), 4e-3);
-  // One is hidden from the second camera, which sees another where none is.
+  // One marker is hidden from the second camera, which sees another at a place without one.
   write_banded("false", {"0.15", "0.3", "0.45", "0.67", "0.75", "0.9"});
   arguments_.images[1] = photographed("false", "side");
   const Node doubtful = answer(exit_done);
@@ -92,7 +92,7 @@ TEST_F(Estimate, UsesBandsOfWhichBothPicturesShowTheSame) {
   EXPECT_LT(error(answer(exit_done)), 5e-3);
 }
 
-// The second camera is turned by half a degree and believed not to be.
+// The second camera is turned by half a degree; its nominal orientation is not.
 TEST_F(Estimate, FindsWhatIsWrongWithACameraThatIsDoubted) {
   arguments_.arm = (folder_.path() / "arm.toml").string();
   const std::string turned =
@@ -121,7 +121,7 @@ std::string replaced_everywhere(std::string text, const std::string& from, const
   return text;
 }
 
-// Through lenses that shift the arm's ends by some pixels.
+// The lens distortion shifts the arm's ends by some pixels.
 TEST_F(Estimate, UndoesTheLensesDistortionWhereTheFileTellsIt) {
   const std::string distortion = "distortion = [-0.4, 0.15, 0.003, -0.002, 0.0]";
   write_new_file(
@@ -138,14 +138,15 @@ TEST_F(Estimate, UndoesTheLensesDistortionWhereTheFileTellsIt) {
     arguments_.cameras = told;
     EXPECT_LT(error(answer(exit_done)), most);
   };
-  // A known arm, then one of unknown make.
+  // A known arm, then one without a kinematic model.
   arguments_.arm = (folder_.path() / "arm.toml").string();
   expect_right_where_told(5e-4);
   arguments_.arm.clear(), arguments_.base = {0, 0, 0}, arguments_.length = 1;
   expect_right_where_told(4e-3);
 }
 
-// A lens whose distortion folds back within the picture shows no arm beyond: the answer says so.
+// A lens whose distortion folds back within the picture has no rays for the arm beyond. The answer reports
+// it.
 TEST_F(Estimate, SaysWhereADistortionHasNoRays) {
   const auto notes_by = [&](const std::string& k1) {
     arguments_.cameras = (folder_.path() / (k1 + ".toml")).string();
@@ -161,7 +162,7 @@ TEST_F(Estimate, SaysWhereADistortionHasNoRays) {
   EXPECT_THAT(notes_by("-0.1"), Not(HasSubstr(said)));
 }
 
-// What `node` holds at `key`, as finite numbers; of rows one after the other.
+// Returns the values of `node` at `key`, which must be finite numbers; rows are concatenated.
 std::vector<double> numbers_in(const Node& node, const char* key) {
   std::vector<double> numbers;
   const Node* values = node.find(key);
@@ -180,7 +181,7 @@ std::vector<double> numbers_in(const Node& node, const char* key) {
   return numbers;
 }
 
-// The table of docs/estimation.md, of an arm that is known before cameras that look along Z and X.
+// The table of docs/estimation.md, for a known arm and cameras that look along Z and X.
 TEST_F(Estimate, HasEveryKeyThatIsDocumentedInItsShape) {
   constexpr std::size_t points = 33;
   write_banded("banded", {"0.2", "0.5", "0.8"});
@@ -235,7 +236,7 @@ TEST_F(Estimate, HasEveryKeyThatIsDocumentedInItsShape) {
   EXPECT_EQ(numbers_in(*off, "focal").size(), 1U);
 }
 
-// The angles are those of the printed backbone: (sin a cos e, cos a cos e, sin e) is its direction.
+// The angles are those of the printed backbone, whose direction is (sin a cos e, cos a cos e, sin e).
 TEST_F(Estimate, TellsTheAnglesOfItsBackbone) {
   arguments_.arm = (folder_.path() / "arm.toml").string();
   arguments_.points = 201;
@@ -255,7 +256,7 @@ TEST_F(Estimate, SaysWhetherItsAnswerIsToBeTrusted) {
   const Node right = answer(exit_done);
   EXPECT_TRUE(*right.find("trusted")->as<bool>()) << write_json(right);
   EXPECT_EQ(right.find("notes"), nullptr);
-  // Of an arm of unknown make less is known, and which end is its base is a guess.
+  // Without a kinematic model the result is less certain, and the choice of the base end is a guess.
   arguments_.arm.clear();
   const Node guessed = answer(exit_done);
   EXPECT_FALSE(*guessed.find("trusted")->as<bool>());
@@ -273,7 +274,7 @@ TEST_F(Estimate, SaysWhyThereIsNone) {
   EXPECT_EQ(found.find("backbone"), nullptr);
 }
 
-// A hair over one picture, and a second arm, smaller, in the other.
+// There is a hair in front of one picture, and a second, smaller arm in the other.
 TEST_F(Estimate, IsNotMisledByAHairOrASecondArm) {
   arguments_.arm = (folder_.path() / "arm.toml").string();
   const auto changed = [&](std::size_t i, const std::string& name, const auto& change) {
@@ -298,7 +299,7 @@ TEST_F(Estimate, IsNotMisledByAHairOrASecondArm) {
   EXPECT_LT(error(answer(exit_done)), 1e-3);
 }
 
-// Pictures of half the size, which the cameras' file does not tell.
+// The pictures have half the size, and the cameras' file gives no size.
 TEST_F(Estimate, SaysThatCamerasAreForPicturesOfAnotherSize) {
   arguments_.arm = (folder_.path() / "arm.toml").string();
   EXPECT_EQ(write_json(answer(exit_done)).find("another size"), std::string::npos);

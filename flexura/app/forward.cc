@@ -19,13 +19,13 @@ namespace flexura {
 
 namespace {
 
-/// A line of input. The shape's fields stand beside `at`, not in a table of their own.
+/// A line of input. The shape's fields are beside `at`, not in a nested table.
 struct ForwardRequest {
   std::optional<std::vector<double>> cord_angles;
   std::optional<std::vector<double>> archings;
   std::optional<std::vector<std::array<double, 2>>> bends;
   std::optional<std::vector<double>> stretches;
-  std::optional<std::vector<double>> at;  ///< Arc lengths along the backbone as it stands, m.
+  std::optional<std::vector<double>> at;  ///< Arc lengths along the current, possibly stretched, backbone, m.
 
   [[nodiscard]] ShapeConfig shape() const { return {cord_angles, archings, bends, stretches}; }
 };
@@ -83,7 +83,7 @@ ForwardRequest read_forward_request(const ArmModel& model, std::string_view line
     if (!has_shape) reader.problem("the arm comes to no rest");
     const double length = has_shape && request.at ? model.backbone_of_shape(shape).length() : 0;
     for (std::size_t i = 0; has_shape && request.at && i < request.at->size(); ++i) {
-      if ((*request.at)[i] <= length * (1 + 1e-12)) continue;  // as Backbone::pose
+      if ((*request.at)[i] <= length * (1 + 1e-12)) continue;  // The tolerance of Backbone::pose().
       reader.problem_at(fmt::format("at[{}]", i),
                         fmt::format("{} is beyond the tip: expected at most {} m", (*request.at)[i], length));
     }

@@ -8,14 +8,14 @@
 
 namespace flexura {
 
-/// Answers one line of `flexura fk`: a JSON object {"cord_angles":[...]}, {"archings":[...]} (planar) or
-/// {"bends":[[bx,by],...],"stretches":[...]} with an optional "at":[s,...], angles in rad and lengths in m.
-/// The answer is one line of JSON without its line end:
-/// {"tip":{"position":[x,y,z],"rotation":[w,x,y,z]},"bases":[[x,y,z],...],"at":[...]} in world axes, `bases`
-/// holding each section's base point and, last, the tip; or {"error":"..."} for a line that cannot be
-/// answered. Never throws on account of the line.
+/// Answers one line of `flexura fk`. The line is a JSON object {"cord_angles":[...]}, {"archings":[...]}
+/// (planar) or {"bends":[[bx,by],...],"stretches":[...]} with an optional "at":[s,...]; angles in rad,
+/// lengths in m. The answer is one line of JSON without its line end:
+/// {"tip":{"position":[x,y,z],"rotation":[w,x,y,z]},"bases":[[x,y,z],...],"at":[...]} in world axes. `bases`
+/// holds each section's base point and, last, the tip. A line that cannot be answered gives {"error":"..."}.
+/// Never throws because of the line's contents.
 [[nodiscard]] std::string answer_forward(const ArmModel& arm, std::string_view line);
-/// The same of an arm of arcs.
+/// Answers one line of `flexura fk` for an arm of arcs.
 [[nodiscard]] inline std::string answer_forward(const Arm& arm, std::string_view line) {
   return answer_forward(ArmModel(arm), line);
 }

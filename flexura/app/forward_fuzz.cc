@@ -1,5 +1,5 @@
-// Any bytes as the input of `flexura fk`, on a planar and a spatial arm: for each line, one line of JSON
-// without NaN.
+// Fuzzes the input of `flexura fk` with any bytes, on a planar and a spatial arm. Each line must give one
+// line of JSON without NaN.
 #include <cstdint>
 #include <cstdlib>
 #include <sstream>
@@ -12,7 +12,7 @@
 
 namespace {
 
-// Short enough for inputs that are longer.
+// Short enough that inputs can exceed it.
 constexpr std::size_t longest = 1000;
 
 flexura::Arm arm_of(flexura::ArmKind kind) {
@@ -30,7 +30,7 @@ void check_answer(std::string_view answer, std::string_view line) {
   if (line.size() > longest && error == nullptr) std::abort();
 }
 
-// What stands before the next line end, which is taken, too.
+// Returns the text before the next line end and removes both from `text`.
 std::string_view take_line(std::string_view& text) {
   const std::size_t end = text.find('\n');
   const std::string_view line = text.substr(0, end);

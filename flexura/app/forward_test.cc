@@ -92,7 +92,7 @@ TEST(AnswerForward, AnswersAlongTheArmOnlyWhenAsked) {
 }
 
 TEST(AnswerForward, BendsTowardsTheBasesOwnAxes) {
-  // A quarter turn towards x_B, which is +X: from along +Y to along +X, at (r, r) with r = 1/(pi/2).
+  // A quarter turn towards x_B, which is +X: from direction +Y to +X, ending at (r, r) with r = 1/(pi/2).
   const Node answer =
       parse_json(answer_forward(spatial_arm(), R"({"bends":[[1.5707963267948966,0],[0,0]]})"), "answer");
   const auto base = numbers(answer.find("bases")->as<Node::Array>()->at(1));

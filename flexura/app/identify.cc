@@ -28,15 +28,17 @@ namespace {
 using Eigen::Index;
 using Kind = RodParameter::Kind;
 
-// A window covers a swing, but fits several times into the record, and has samples enough.
+// Limits of the default window. It covers one oscillation, but fits several times into the record and holds
+// enough samples.
 constexpr double least_windows = 4, least_samples_in_window = 12;
-// What is left of the equations is then five times what noise explains.
+// Misfit above which a note is printed: the residual is five times what noise explains.
 constexpr double odd_misfit = 25;
 
-// Uniform in (0, 1), of a counter.
+// Returns a uniform number in (0, 1) from random bits.
 double uniform_of(std::uint64_t bits) { return (static_cast<double>(bits >> 11) + 0.5) * 0x1p-53; }
 
-// A log's places as somebody measures them: with errors of that standard deviation (G. Box, M. Muller).
+// Adds Gaussian measurement noise of the given standard deviation, m, to logged positions (G. Box, M.
+// Muller).
 void add_errors(MeasuredMotion& motion, double noise, std::int64_t seed) {
   const auto first = static_cast<std::uint64_t>(seed);
   for (std::size_t k = 0; k < motion.samples.size(); ++k)
@@ -48,7 +50,7 @@ void add_errors(MeasuredMotion& motion, double noise, std::int64_t seed) {
       }
 }
 
-// s: of the slowest swing of the arm at rest; 0: it has none.
+// Returns the period of the slowest vibration mode of the arm at rest, s; 0: no such mode.
 double slowest_period(const Rod& rod, const RodLoads& loads) {
   RodStatics statics(rod);
   const Equilibrium rest = statics.solve({}, loads);
@@ -58,7 +60,7 @@ double slowest_period(const Rod& rod, const RodLoads& loads) {
   return modes.frequencies.empty() || !(modes.frequencies[0] > 0) ? 0 : 1 / modes.frequencies[0];
 }
 
-// s
+// Returns the default length of motion in one equation, s.
 double window_for(const Rod& rod, const RodLoads& loads, const std::vector<RodPlaceSample>& samples) {
   const double length = samples.back().time - samples.front().time,
                step = length / static_cast<double>(samples.size() - 1);
@@ -77,10 +79,11 @@ std::vector<RodParameter> parameters_of(const Rod& rod, const IdentifySettings& 
   return parameters;
 }
 
-// Damping and stiffness as found: damping time, s, with its standard deviation. Both must be told.
+// Returns the damping time, s, with its standard deviation, from the identified stiffness and damping. Both
+// must be observable.
 IdentifiedValue damping_of(const Identification& found, Index stiffness, Index damping, double spread) {
   const double f = found.values[stiffness], c = found.values[damping];
-  // c is counted in stiffnesses of the file.
+  // c is relative to the file's stiffness.
   const Eigen::Vector2d slope(-c / (f * f), 1 / f);
   Eigen::Matrix2d covariance;
   covariance << found.covariance(stiffness, stiffness), found.covariance(stiffness, damping),
@@ -92,7 +95,7 @@ IdentifiedValue damping_of(const Identification& found, Index stiffness, Index d
           .sigma = spread * std::sqrt(std::max(0.0, slope.dot(covariance * slope)))};
 }
 
-// The rod with what was found; what was not stays.
+// Returns the rod with the identified values; the other values stay nominal.
 Rod identified_rod(Rod rod, const IdentifiedArm& found) {
   for (const IdentifiedValue& value : found.values) {
     if (!value.is_told || !(value.value > 0)) continue;
@@ -205,7 +208,7 @@ IdentifiedArm identify_arm(const ArmConfig& arm, const Rod& rod, const MeasuredM
                        .misfit = found.misfit,
                        .noise = record.noise,
                        .rms = record.rms};
-  // What the rod's description leaves counts as noise does.
+  // Model error counts like noise.
   const double spread = std::sqrt(std::max(1.0, found.misfit));
   const auto count = static_cast<Index>(settings.alike ? 1 : rod.sections.size());
   const auto is_told = [&](Index g) { return found.is_observable[static_cast<std::size_t>(g)] != 0; };

@@ -11,58 +11,60 @@
 
 namespace flexura {
 
-/// What `flexura identify` is told.
+/// Arguments of `flexura identify`.
 struct IdentifyArguments {
   std::string experiment = {};
-  std::string motion = {};  ///< A results folder, a log or a table of places.
+  std::string motion = {};  ///< Results folder, log, or table of places.
   std::vector<std::string> sets = {};
-  std::optional<double> from = {}, to = {};  ///< s
-  std::optional<double> noise_mm = {};       ///< Of measured places; a log's places get it.
-  std::optional<double> window = {};         ///< s
-  std::optional<std::int64_t> seed = {};     ///< Of the errors that a log's places get.
-  bool mass = false;                         ///< Look for a factor on the mass too.
-  bool alike = false;                        ///< All sections are of one material.
+  std::optional<double> from = {}, to = {};  ///< Part of the motion to use, s.
+  std::optional<double> noise_mm = {};       ///< Standard deviation of places; noise for a log's places.
+  std::optional<double> window = {};         ///< Length of motion in one equation, s.
+  std::optional<std::int64_t> seed = {};     ///< Seed of the noise added to a log's places.
+  bool mass = false;                         ///< Also identify a mass factor.
+  bool alike = false;                        ///< Whether all sections are of one material.
   bool json = false;
 };
 
-/// A number of an arm that a motion tells.
+/// One value identified from a motion.
 struct IdentifiedValue {
   std::string name;  ///< "youngs_modulus", "stiffness_factor", "damping_time" or "mass_factor".
   std::string unit;  ///< "Pa", "s" or "".
-  std::optional<std::size_t> section = {};  ///< From 1; none: all of the arm.
-  bool is_told = false;                     ///< Else value and sigma say nothing.
+  std::optional<std::size_t> section = {};  ///< From 1; empty: the whole arm.
+  bool is_told = false;                     ///< If false, the motion does not determine value and sigma.
   double value = 0;
-  double sigma = 0;    ///< Its standard deviation.
-  double nominal = 0;  ///< In the file.
+  double sigma = 0;    ///< Standard deviation of the value.
+  double nominal = 0;  ///< Value in the file.
 };
 
-/// What a motion tells of an arm.
+/// The result of the identification.
 struct IdentifiedArm {
   std::vector<IdentifiedValue> values;
   std::size_t samples = 0, places = 0;
   int equations = 0;
-  double misfit = 0;       ///< As Identification's; where it is above 1, all sigmas are larger by its root.
-  double noise = 0;        ///< Of a place's coordinates, m.
-  double rms = 0;          ///< What the strain modes leave of these, root mean square, m.
-  double missed_file = 0;  ///< places_missed, m: of the arm of the file, and of the arm as identified;
-  double missed = 0;       ///< infinite where its motion cannot be computed.
+  double misfit = 0;  ///< Identification::misfit. If above 1, all sigmas are scaled by its square root.
+  double noise = 0;   ///< Standard deviation of a place's coordinates, m.
+  double rms = 0;     ///< Rms residual of the coordinates after fitting the strain modes, m.
+  /// Rms distance from the places (places_missed) of the arm in the file, m. Infinite if the motion cannot be
+  /// computed.
+  double missed_file = 0;
+  double missed = 0;  ///< The same distance for the identified arm, m.
 };
 
-/// What of an arm is looked for, and how.
+/// What to identify, and how.
 struct IdentifySettings {
-  double noise = 0;   ///< m; 0: not known.
-  double window = 0;  ///< s; 0: as the period of the arm's slowest swing, if it has one.
+  double noise = 0;   ///< Standard deviation of measured places, m; 0: unknown.
+  double window = 0;  ///< Length of motion in one equation, s; 0: the period of the slowest mode, if any.
   bool mass = false;
   bool alike = false;
 };
 
-/// The stiffness of each section and its damping time by a motion of the arm. The rod is that of `arm`, as
-/// believed. std::invalid_argument: as record_of_places() and identify().
+/// Identifies the stiffness and damping time of each section from a motion of the arm. `rod` is the nominal
+/// rod of `arm`. Throws std::invalid_argument as record_of_places() and identify() do.
 [[nodiscard]] IdentifiedArm identify_arm(const ArmConfig& arm, const Rod& rod, const MeasuredMotion& motion,
                                          const IdentifySettings& settings);
 
-/// Prints what a motion tells of an arm's material, for people or as JSON lines. exit_missed: nothing.
-/// InputError for bad input.
+/// Prints the identified material of an arm, for people or as JSON lines. Returns exit_missed if nothing was
+/// identified. Throws InputError for bad input.
 int identify_command(const IdentifyArguments& arguments, std::ostream& out, std::ostream& err);
 
 }  // namespace flexura

@@ -24,7 +24,7 @@ namespace flexura {
 namespace {
 
 constexpr std::size_t most_table_bytes = std::size_t{1} << 28;
-// Of the arm's length: nearer to its base than that the log's arm stands where the file's does.
+// Tolerance between the base positions of the log's arm and the file's arm, relative to the arm's length.
 constexpr double same_base = 1e-6;
 
 Eigen::Vector3d position_of(const PoseMessage& pose) {
@@ -33,8 +33,8 @@ Eigen::Vector3d position_of(const PoseMessage& pose) {
 
 struct Logged {
   std::vector<std::pair<double, PosesMessage>> truth;
-  std::map<std::uint64_t, std::vector<double>> tensions;  // By the log's time.
-  std::vector<std::uint64_t> times;                       // Of `truth`.
+  std::map<std::uint64_t, std::vector<double>> tensions;  // Keyed by the log's time.
+  std::vector<std::uint64_t> times;                       // Times of `truth`.
 };
 
 Logged read_messages(const McapReader& log, const std::string& name, const TimeSpan& span) {
@@ -78,7 +78,7 @@ MeasuredMotion motion_of(const Logged& logged, const std::string& name, const Ex
                                     truth.poses.size() - std::min<std::size_t>(1, truth.poses.size()), time,
                                     poses - 1, rod.sections.size()));
     const auto pulls = logged.tensions.find(logged.times[k]);
-    // Where a log is cut, what belongs to its last state may be missing.
+    // A log that was cut short may lack the tensions of its last state.
     if (pulls == logged.tensions.end() && is_cut && k + 1 == logged.truth.size()) break;
     if (pulls == logged.tensions.end() && !rod.tendons.empty())
       throw input_error(name, fmt::format("has no tensions (/arm/tensions) at {} s", time));
@@ -87,7 +87,7 @@ MeasuredMotion motion_of(const Logged& logged, const std::string& name, const Ex
     if (sample.tensions.size() != rod.tendons.size())
       throw input_error(name, fmt::format("has {} tendons at {} s: expected {}, as the experiment's arm has",
                                           sample.tensions.size(), time, rod.tendons.size()));
-    // Every second arc begins at a place of the rod.
+    // Each segment of the rod is logged as two arcs; every second arc starts at one of its places.
     for (std::size_t i = 0; i < poses; i += 2) sample.positions.push_back(X_BW * position_of(truth.poses[i]));
     if (!(sample.positions[0].norm() <= same_base * rod.length()))
       throw input_error(name,
@@ -95,13 +95,13 @@ MeasuredMotion motion_of(const Logged& logged, const std::string& name, const Ex
                                     sample.positions[0].norm()));
     motion.samples.push_back(std::move(sample));
   }
-  // The base stands where it stands.
+  // The base does not move.
   motion.places.erase(motion.places.begin());
   for (RodPlaceSample& sample : motion.samples) sample.positions.erase(sample.positions.begin());
   return motion;
 }
 
-// "x@0.25": a coordinate of the place at so many metres of arc length at rest.
+// Parses a column name such as "x@0.25": a coordinate of the place at an arc length at rest, m.
 std::optional<double> place_in(std::string_view column, char axis) {
   if (!column.starts_with(axis) || column.substr(1, 1) != "@") return {};
   double s = 0;

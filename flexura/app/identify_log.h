@@ -11,26 +11,26 @@
 
 namespace flexura {
 
-/// Which of a motion is read, s; none: from its start, to its end.
+/// Part of a motion to read, s; empty: from its start, to its end.
 struct TimeSpan {
   std::optional<double> from = {}, to = {};
 
-  /// Whether it has the time.
+  /// Returns whether the time is in the part.
   [[nodiscard]] bool has(double time) const { return (!from || time >= *from) && (!to || time <= *to); }
 };
 
-/// Places of an arm over time, in the frame of its base, as they were measured or logged.
+/// Measured or logged positions along an arm over time, in the frame of its base.
 struct MeasuredMotion {
   std::vector<RodPlace> places;
   std::vector<RodPlaceSample> samples;
-  bool is_logged = false;  ///< By a run, exactly.
-  bool is_cut = false;     ///< The log ends where its run was cut short.
+  bool is_logged = false;  ///< Whether a run logged them, which makes them exact.
+  bool is_cut = false;     ///< Whether the log ends where its run was cut short.
 };
 
-/// The motion in `file`, of the arm of `experiment`, whose rod is `rod`: a results folder or a log of a run
-/// (the true arm's places and tensions), or a table of measured places, FILE.csv (docs/command-line.md,
-/// "identify"). InputError: there is no such file, it is damaged, has no such motion or that of another arm,
-/// or the arm touches something.
+/// Reads the motion of the arm of `experiment`, whose rod is `rod`, from `file`. The file is a results folder
+/// or a log of a run (positions and tensions of the true arm), or a table of measured places, FILE.csv
+/// (docs/command-line.md, "identify"). Throws InputError if the file is missing or damaged, has no such
+/// motion or that of another arm, or if the arm touches something.
 [[nodiscard]] MeasuredMotion read_motion(const std::filesystem::path& file, const Experiment& experiment,
                                          const Rod& rod, const TimeSpan& span);
 

@@ -53,7 +53,7 @@ class Identify : public Runs, public testing::Test {
       return error.what();
     }
   }
-  // One swing of the example, run once.
+  // Returns the results of one oscillation of the example, which is run once.
   static std::string results() {
     static TemporaryFolder folder;
     static std::optional<std::string> made;
@@ -92,7 +92,7 @@ void expect_the_truth(const std::vector<Node>& lines) {
     EXPECT_EQ(number_in(lines[i], "nominal"), known[i].nominal);
     const double sigma = number_in(lines[i], "sigma");
     EXPECT_NEAR(number_in(lines[i], "value"), known[i].value, 3 * sigma) << i;
-    // The file is farther off than the answer can be.
+    // The nominal value is farther from the true one than the estimate's error.
     EXPECT_LT(3 * sigma, std::abs(known[i].value - known[i].nominal)) << i;
   }
   EXPECT_LT(number_in(lines[4], "residual_rms"), 0.2 * number_in(lines[4], "nominal_residual_rms"));
@@ -103,7 +103,7 @@ TEST_F(Identify, FindsTheTrueMaterialByTheLogOfARun) {
   const Said json = said({.experiment = step_response, .motion = results(), .noise_mm = 0.2, .json = true});
   EXPECT_EQ(json.status, exit_done);
   expect_the_truth(json_lines(json.out));
-  // The log itself says the same, and the table as well.
+  // The log file gives the same answer as the results folder; the table output agrees, too.
   EXPECT_EQ(
       said({.experiment = step_response, .motion = results() + "/log.mcap", .noise_mm = 0.2, .json = true})
           .out,
@@ -113,7 +113,7 @@ TEST_F(Identify, FindsTheTrueMaterialByTheLogOfARun) {
   EXPECT_THAT(table.out, HasSubstr("in the file"));
 }
 
-// A laboratory has places in a table: every second one of the log's, without its errors being known.
+// Laboratories provide tables of places. This one has every second place of the log, with unknown noise.
 TEST_F(Identify, FindsItByATableOfPlaces) {
   const Experiment experiment = load_experiment(step_response);
   const Rod rod = rod_of(experiment.arm, experiment.drive);
@@ -144,7 +144,7 @@ TEST_F(Identify, FindsItByATableOfPlaces) {
 }
 
 TEST_F(Identify, SaysWhatAMotionDoesNotTell) {
-  // Nothing moves before the step.
+  // The arm does not move before the step.
   const Said found = said({.experiment = step_response,
                            .motion = results(),
                            .to = 0.19,
@@ -173,7 +173,7 @@ TEST_F(Identify, RefusesWhatIsNoMotionOfTheArm) {
               HasSubstr("has no states of a true arm (/arm/truth)"));
   EXPECT_THAT(refused({.experiment = step_response, .motion = results(), .to = 0.05}),
               HasSubstr("samples of a motion: expected at least"));
-  // A log of another arm.
+  // The log is of another arm.
   EXPECT_THAT(
       refused({.experiment = checkout_file("examples/13_grasp/experiment.toml"), .motion = results()}),
       HasSubstr("has a true arm of 48 arcs at 0 s: expected 24"));

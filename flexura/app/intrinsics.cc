@@ -29,7 +29,7 @@ void check_file(const std::string& option, const std::string& file) {
                     fmt::format("{}: expected a file name that ends in .toml", text_node(file).brief()));
 }
 
-// Before minutes of work rather than after them.
+// Throws InputError if the folder of an output file is missing: checked before minutes of work, not after.
 void check_folder(const std::string& option, const std::string& file) {
   const auto folder = std::filesystem::path(file).parent_path();
   std::error_code error;
@@ -71,7 +71,7 @@ void check(const IntrinsicsArguments& arguments) {
   check_folder("--out", arguments.out), check_folder("--rig", arguments.rig);
 }
 
-// One camera, or two that stand still to each other.
+// Calibrates one camera, or two with a fixed pose relative to each other.
 int cameras_command(const IntrinsicsArguments& arguments, const BoardTarget& board, std::ostream& out) {
   const bool is_pair = arguments.images.empty();
   const auto names = names_of_cameras(

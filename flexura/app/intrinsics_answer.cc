@@ -74,7 +74,7 @@ void add_numbers(const CameraFit& fit, Eigen::Index estimated, bool is_alone, No
   entry.push_back({"covariance", {}, rows_of(fit.covariance.topLeftCorner(estimated, estimated))});
 }
 
-// The pictures that a camera's lens explains much worse than the others.
+// Adds a note on pictures that fit much worse than the others.
 void add_doubts(const BoardPictures& pictures, const CameraFit& fit, std::vector<std::string>& notes) {
   std::vector<double> known;
   for (const auto& rms : fit.view_rms)
@@ -110,7 +110,7 @@ Node camera_node(const std::string& name, const BoardPictures& pictures, const I
        {},
        {Node::Array{{std::int64_t{pictures.size[0]}, {}}, {std::int64_t{pictures.size[1]}, {}}}, {}}},
       {"views_used", {}, whole(used)}};
-  // A fit that broke off has no numbers.
+  // A fit that failed early has no parameters.
   if (fit.noise > 0 || fit.is_found)
     add_numbers(fit.cameras[camera], 4 + distortion, fit.cameras.size() == 1, entry);
   entry.push_back({"views", {}, views_node(pictures, fit, camera)});
@@ -135,7 +135,7 @@ std::vector<std::string> notes_of(const std::vector<BoardPictures>& cameras, con
   std::vector<std::string> notes;
   for (std::size_t i = 0; i < fit.cameras.size() && i < cameras.size(); ++i) {
     add_doubts(cameras[i], fit.cameras[i], notes);
-    // As far as they are still taken for a pair (IntrinsicsFit::reason).
+    // Fits with a larger misfit are rejected as a pair (IntrinsicsFit::reason).
     constexpr double much_worse = 2, visible = 0.3;  // px
     const double alone = fit.cameras[i].rms_alone, together = fit.cameras[i].rms;
     if (fit.cameras.size() > 1 && together > std::max(visible, much_worse * alone))

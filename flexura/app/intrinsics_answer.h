@@ -11,22 +11,22 @@
 
 namespace flexura {
 
-// What `flexura intrinsics` prints (docs/intrinsics.md), part by part.
+// The parts of the answer that `flexura intrinsics` prints (docs/intrinsics.md).
 
 [[nodiscard]] Node board_node(const BoardTarget& board);
 
-/// One camera: its numbers with standard deviations and covariance, and each of its pictures.
+/// Returns one camera's parameters with standard deviations and covariance, and its pictures.
 [[nodiscard]] Node camera_node(const std::string& name, const BoardPictures& pictures,
                                const IntrinsicsFit& fit, std::size_t camera, int distortion);
 
-/// Where the second camera stands in the first.
+/// Returns the pose of the second camera relative to the first.
 [[nodiscard]] Node pair_node(const IntrinsicsFit& fit);
 
-/// What else there is to know: pictures that fit badly, numbers that the pictures do not tell.
+/// Returns notes on pictures that fit badly and parameters that the pictures do not determine.
 [[nodiscard]] std::vector<std::string> notes_of(const std::vector<BoardPictures>& cameras,
                                                 const IntrinsicsFit& fit);
 
-/// Adds what became of held-out views, if there are any.
+/// Adds the results of held-out views, if there are any.
 void add_held_out(const IntrinsicsFit& fit, Node::Table& answer);
 
 }  // namespace flexura

@@ -45,8 +45,9 @@ LensConfig lens_config(const Intrinsics& lens) {
 }
 
 ViewDoubt doubt_of(const IntrinsicsFit& fit, std::size_t camera) {
-  constexpr double together = 3;  // Corners of one picture err together: docs/intrinsics.md.
-  constexpr double most = 0.3;    // More no file may say.
+  // Scale of the sigmas: errors of one picture's corners are correlated (docs/intrinsics.md).
+  constexpr double together = 3;
+  constexpr double most = 0.3;  // Maximum that a file may give.
   const CameraFit& own = fit.cameras[camera];
   const auto [fx, fy] = std::pair(own.lens.fx, own.lens.fy);
   const double focal = std::max(own.sigma(0) / fx, own.sigma(1) / fy),
@@ -105,7 +106,7 @@ std::filesystem::path write_beside(const std::filesystem::path& wanted, std::str
     if (number > 1)
       file.replace_filename(
           fmt::format("{}-{}{}", wanted.stem().string(), number, wanted.extension().string()));
-    // What cannot be looked at is left to the system to refuse.
+    // If the path cannot be checked, writing it fails with the system's error.
     const auto type = std::filesystem::symlink_status(file, error).type();
     if (!error && type != std::filesystem::file_type::not_found) continue;
     write_new_file(file, text);
@@ -127,7 +128,7 @@ std::vector<std::string> names_of_cameras(const IntrinsicsArguments& arguments,
   if (arguments.names.size() != usual.size())
     throw input_error("--name", fmt::format("{} name{}: expected {}", arguments.names.size(),
                                             arguments.names.size() == 1 ? "" : "s", usual.size()));
-  // Names end up in files that others include.
+  // Names are written to files that others include.
   for (std::size_t i = 0; i < usual.size(); ++i) {
     const bool is_plain = std::ranges::all_of(arguments.names[i], [](char c) {
       return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-' ||
@@ -147,7 +148,7 @@ void write_files(const IntrinsicsArguments& arguments, const std::vector<Calibra
       "Measured by flexura intrinsics: rms {:.4g} px over {} points of a board.", fit.rms, fit.points);
   std::string details = "\n# The estimates, as JSON:\n";
   for (const Node& one : fit.of_each) details += fmt::format("# {}\n", write_json(one));
-  // All of it is made before any of it is written.
+  // Build both texts before writing either file.
   const std::string measured = arguments.out.empty() ? "" : measured_cameras_toml(cameras, remark) + details,
                     rig =
                         arguments.rig.empty() ? "" : rig_toml(cameras, arguments.rig_from, remark) + details;
@@ -160,7 +161,7 @@ void write_files(const IntrinsicsArguments& arguments, const std::vector<Calibra
   try {
     answer.push_back({"rig", {}, {write_beside(arguments.rig, rig).string(), {}}});
   } catch (...) {
-    // Both or none: who runs the command again finds no file of the time that it failed.
+    // Both files or neither: a failed run leaves nothing behind for the next one.
     std::error_code ignored;
     if (!file.empty()) std::filesystem::remove(file, ignored);
     throw;

@@ -19,60 +19,60 @@
 
 namespace flexura {
 
-/// A camera as it was measured, on its way to a file.
+/// A calibrated camera to be written to a file.
 struct CalibratedCamera {
   std::string name;
   Pose pose;        ///< X_WC
-  LensConfig lens;  ///< At ratio 1, with the zoom's rows where it was measured at several.
+  LensConfig lens;  ///< Lens at zoom ratio 1, with the zoom's rows if it was measured at several ratios.
   std::array<int, 2> size = {640, 480};
   ViewDoubt doubt;
 };
 
-/// What experiments include of a rig: its cameras.
+/// The part of a rig that experiments include: its cameras.
 struct RigFile {
   std::vector<CameraConfig> camera;
 };
 const Table<RigFile>& fields_of(const RigFile*);
 
-/// A lens as a file has it, without zoom.
+/// Returns the file representation of a lens without zoom.
 [[nodiscard]] LensConfig lens_config(const Intrinsics& lens);
 
-/// How wrong a camera of a fit may be: three times what the fit's covariance says, which takes each corner
-/// for an observation of its own, of its focal length, and of where it looks by its principal point and by
-/// how it is turned to the first camera.
+/// Returns the prior standard deviations for a camera of a fit. They are three times those of the fit's
+/// covariance, which assumes independent errors of all corners. The focal one comes from the focal lengths.
+/// The rotation one comes from the principal point and from the orientation relative to the first camera.
 [[nodiscard]] ViewDoubt doubt_of(const IntrinsicsFit& fit, std::size_t camera);
 
-/// A file of measured cameras (camera/measured_camera.h).
+/// Returns the text of a file of measured cameras (camera/measured_camera.h).
 [[nodiscard]] std::string measured_cameras_toml(const std::vector<CalibratedCamera>& cameras,
                                                 const std::string& remark);
 
-/// A file of `[[camera]]` that experiments include: of these cameras where they stand; or, with the
-/// experiment `from`, of all its cameras, these lenses and image sizes put into those of the same names. What
-/// it says is read back first: InputError for what an experiment could not include, and for names that `from`
-/// lacks.
+/// Returns the text of a file of `[[camera]]` tables for experiments to include. Without `from`, it has these
+/// cameras at their poses. With the experiment `from`, it has all of that experiment's cameras; those with
+/// the names of `cameras` get their lenses and image sizes. The text is read back first. Throws InputError if
+/// an experiment could not include it, or if `from` lacks one of the names.
 [[nodiscard]] std::string rig_toml(const std::vector<CalibratedCamera>& cameras, const std::string& from,
                                    const std::string& remark);
 
-/// Writes a new file of this name, or NAME-2, NAME-3, ... when it is there already: earlier ones are kept.
-/// Returns which. std::runtime_error with the path when the system refuses.
+/// Writes a new file of this name, or NAME-2, NAME-3, ... if it already exists: earlier files are kept.
+/// Returns the path. Throws std::runtime_error with the path if the system refuses.
 [[nodiscard]] std::filesystem::path write_beside(const std::filesystem::path& wanted, std::string_view text);
 
-/// X_WC of the first camera, as the command is told.
+/// Returns X_WC of the first camera, as given in the arguments.
 [[nodiscard]] Pose first_pose(const IntrinsicsArguments& arguments);
 
-/// The cameras' names: as told, or as usual. InputError for names that others could not include.
+/// Returns the cameras' names: as given in the arguments, or `usual`. Throws InputError for names that are
+/// not unique or not plain enough to be included by other files.
 [[nodiscard]] std::vector<std::string> names_of_cameras(const IntrinsicsArguments& arguments,
                                                         std::vector<std::string> usual);
 
-/// What remarks in the files tell of the fit.
+/// What the comments in the written files report about the fit.
 struct FitRemarks {
-  double rms = 0;              ///< px
-  std::size_t points = 0;      ///< That it is over.
-  const Node::Array& of_each;  ///< What the command prints of each camera, or of each position of a zoom.
+  double rms = 0;              ///< Rms residual, px.
+  std::size_t points = 0;      ///< Number of points that `rms` is computed over.
+  const Node::Array& of_each;  ///< The answer's entries, one per camera or zoom position.
 };
-/// Writes the files that were asked for, all or none, and adds to `answer` which. rms and points go into
-/// their first line; below the cameras the rest is kept, residuals and covariances with it, a line of JSON
-/// for each.
+/// Writes the requested files, all or none, and adds their paths to `answer`. Their first line holds rms and
+/// points. Below the cameras, comments keep `of_each`, one line of JSON each, with residuals and covariances.
 void write_files(const IntrinsicsArguments& arguments, const std::vector<CalibratedCamera>& cameras,
                  const FitRemarks& fit, Node::Table& answer);
 

@@ -23,7 +23,7 @@
 namespace flexura {
 namespace {
 
-// The whole text as a number, or nothing.
+// Parses the whole text as a number; std::nullopt if that fails.
 template <typename Number>
 std::optional<Number> number_in(std::string_view text) {
   Number value{};
@@ -62,7 +62,7 @@ ZoomGroup zoom_group(const std::string& text) {
   return group;
 }
 
-// The views of cameras whose pictures belong together one by one.
+// Returns the views of cameras whose pictures correspond one to one.
 std::vector<BoardView> views_of(const std::vector<BoardPictures>& cameras) {
   std::vector<BoardView> views(cameras.front().sightings.size());
   for (std::size_t view = 0; view < views.size(); ++view)
@@ -70,7 +70,7 @@ std::vector<BoardView> views_of(const std::vector<BoardPictures>& cameras) {
   return views;
 }
 
-// Refuses a count that is less than the board's: the points would be a part of it, another one in each
+// Rejects a point count smaller than the board's: the detected points would be a different part of it in each
 // picture.
 void refuse_larger(const BoardPictures& pictures, const BoardTarget& board) {
   const auto found = std::ranges::count_if(pictures.sightings, &BoardSighting::is_found),
@@ -85,8 +85,8 @@ void refuse_larger(const BoardPictures& pictures, const BoardTarget& board) {
                   pictures.names[static_cast<std::size_t>(first - pictures.sightings.begin())]));
 }
 
-// Refuses pictures that are given twice, which would count as two observations. They have the same corners to
-// the last bit, whatever their files are called; noise keeps those of two pictures of one board apart.
+// Rejects pictures given twice, which would count as two observations. Copies have bitwise equal corners,
+// whatever their names; noise makes two pictures of one board differ.
 void refuse_twice(const std::vector<BoardPictures>& cameras) {
   std::vector<std::pair<const std::string*, const BoardSighting*>> once;
   std::vector<std::pair<std::string, std::string>> twice;
@@ -175,7 +175,7 @@ std::vector<ZoomGroup> zoom_groups(const std::vector<std::string>& zooms) {
 }
 
 std::vector<std::string> pictures_in(const std::string& folder) {
-  // With kinds that are not read: rather an error that names them than a fit of the others alone.
+  // Includes kinds that cannot be read: an error that names them is better than a fit of the others alone.
   static const std::vector<std::string> kinds = {".png",  ".jpg",  ".jpeg", ".jp2", ".j2k", ".tif",
                                                  ".tiff", ".webp", ".bmp",  ".dib", ".pbm", ".pgm",
                                                  ".ppm",  ".pnm",  ".pam",  ".ras", ".sr"};

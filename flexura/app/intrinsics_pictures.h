@@ -16,7 +16,7 @@ namespace flexura {
 struct BoardPictures {
   std::vector<std::string> names;
   std::vector<BoardSighting> sightings;
-  std::array<int, 2> size = {0, 0};  ///< px
+  std::array<int, 2> size = {0, 0};  ///< Width and height, px.
 };
 
 /// Pictures at one position of a zoom.
@@ -25,22 +25,23 @@ struct ZoomGroup {
   std::string folder;
 };
 
-/// The board that the command is told. InputError for none that can be found.
+/// Returns the board given in the arguments. Throws InputError for a board that cannot be detected.
 [[nodiscard]] BoardTarget board_of(const IntrinsicsArguments& arguments);
 
-/// Reads pictures and looks for the board in each. InputError: fewer than two, one that cannot be read, sizes
-/// that differ, more parts of a larger board than boards of this size.
+/// Reads pictures and looks for the board in each. Throws InputError for fewer than two pictures, unreadable
+/// ones, and differing sizes. Also throws it if more pictures show parts of a larger board than boards of
+/// this size.
 [[nodiscard]] BoardPictures look_for_board(const std::vector<std::string>& files, const BoardTarget& board,
                                            const std::string& option);
 
-/// What `--zoom` says, in the order given. InputError for what is none, and for groups of which some have
-/// ratios (or counts) and others not.
+/// Parses the values of `--zoom`, in the order given. Throws InputError for malformed values, and if only
+/// some of the groups have ratios (or counts).
 [[nodiscard]] std::vector<ZoomGroup> zoom_groups(const std::vector<std::string>& zooms);
 
-/// The picture files in a folder, by name. InputError when it is none.
+/// Returns the picture files in a folder, sorted by name. Throws InputError if it is not a folder.
 [[nodiscard]] std::vector<std::string> pictures_in(const std::string& folder);
 
-/// Calibrates cameras whose pictures belong together one by one. InputError: a picture given twice.
+/// Calibrates cameras whose pictures correspond one to one. Throws InputError for a picture given twice.
 [[nodiscard]] IntrinsicsFit fit_pictures(const IntrinsicsArguments& arguments, const BoardTarget& board,
                                          const std::vector<BoardPictures>& pictures);
 

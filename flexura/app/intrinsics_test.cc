@@ -44,7 +44,7 @@ const BoardTarget board{.columns = 6, .rows = 5, .square = 0.03};
 
 Intrinsics lens_of(double focal) { return {.fx = focal, .fy = focal, .cx = 119.5, .cy = 89.5}; }
 
-// Pictures of a board by cameras without distortion, as a laboratory has them.
+// Pictures of a board, taken by cameras without distortion, as in a laboratory.
 class IntrinsicsCommand : public testing::Test {
  protected:
   void SetUp() override {
@@ -57,7 +57,7 @@ class IntrinsicsCommand : public testing::Test {
     write_new_file(folder_.path() / name, png(picture));
     return path(name);
   }
-  // Boards in view of the camera X_1C, the same ones for every camera.
+  // Takes pictures of boards by the camera at X_1C; the boards are the same for every camera.
   std::vector<std::string> photograph(const std::string& name, double focal, const Pose& X_1C = {},
                                       int count = 5) {
     std::vector<std::string> files;
@@ -127,7 +127,7 @@ TEST_F(IntrinsicsCommand, MeasuresACameraAndKeepsEarlierFiles) {
   const Node kept = parse_json(first.substr(at + head.size()), "the remark");
   EXPECT_EQ(write_json(*kept.find("covariance")), write_json(*camera.find("covariance")));
   EXPECT_EQ(kept.find("views")->as<Node::Array>()->size(), 6U);
-  // Once more, of fewer pictures.
+  // Calibrate again from fewer pictures.
   arguments_.images.pop_back(), arguments_.images.pop_back();
   EXPECT_EQ(*answer(exit_done).find("file")->as<std::string>(), path("cameras-2.toml"));
   EXPECT_EQ(read_text_file(path("cameras.toml"), 1 << 20), first);
@@ -150,7 +150,7 @@ TEST_F(IntrinsicsCommand, MeasuresWhereTheSecondCameraOfAPairStands) {
     EXPECT_GE(written.at(1).prior.rotation_std, 2.999 * *sigma.as<double>());
   EXPECT_EQ(*found.find("held_out")->find("views")->as<std::int64_t>(), 1);
   EXPECT_NE(entry(found, "cameras", 1).find("rms_alone_px"), nullptr);
-  // An experiment includes it.
+  // An experiment can include the rig file.
   write_new_file(folder_.path() / "experiment.toml", "include = ['rig.toml']\n[[arm.section]]\nlength = 1\n");
   const auto cameras = load_experiment(path("experiment.toml")).cameras();
   ASSERT_EQ(cameras.size(), 2U);
@@ -180,7 +180,7 @@ TEST_F(IntrinsicsCommand, MeasuresAZoom) {
   const ZoomTable table(camera.lens, width, height);
   EXPECT_NEAR(table.at(600).fx, 360, 4);
   EXPECT_EQ(found.find("notes"), nullptr);
-  // Ratios that the focal lengths contradict are told.
+  // Notes report ratios that contradict the focal lengths.
   {
     const auto zooms =
         std::exchange(arguments_.zooms, {"1=" + path("zoom1"), "1.5=" + path("zoom2"), "5=" + path("zoom3")});
@@ -192,7 +192,7 @@ TEST_F(IntrinsicsCommand, MeasuresAZoom) {
     EXPECT_NE(notes[0].as<std::string>()->find("zoom3: its ratio is said to be 5 times"), std::string::npos);
     arguments_.zooms = zooms, arguments_.rig = rig;
   }
-  // The lens put into cameras that are there already.
+  // The lens replaces that of an existing camera.
   write_new_file(
       folder_.path() / "before.toml",
       "[[arm.section]]\nlength = 1\n[[camera]]\nname = 'front'\nmount = { position = [0, 0, 5], look_at = "
@@ -283,7 +283,7 @@ TEST_F(IntrinsicsCommand, WritesBothFilesOrNone) {
   arguments_.out = path("cameras.toml"), arguments_.rig = path("nowhere/rig.toml");
   EXPECT_THAT(refusal(), HasSubstr("--rig"));
   EXPECT_FALSE(std::filesystem::exists(path("cameras.toml")));
-  // A name that no file system takes is refused only when it is written.
+  // A file name that is too long for the file system fails only when it is written.
   arguments_.rig = path(std::string(300, 'r') + ".toml");
   std::ostringstream out;
   EXPECT_THROW((void)intrinsics_command(arguments_, out), std::runtime_error);

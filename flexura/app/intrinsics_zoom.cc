@@ -21,7 +21,7 @@
 namespace flexura {
 namespace {
 
-// One position of a zoom, measured.
+// One calibrated position of a zoom.
 struct MeasuredZoom {
   ZoomGroup group;
   BoardPictures pictures;
@@ -32,8 +32,8 @@ struct MeasuredZoom {
   }
 };
 
-// The lens of all positions, by rising focal length. Ratios that were not told are those of the focal
-// lengths.
+// Returns the lens with all positions, by increasing focal length. Missing ratios are set to those of the
+// focal lengths.
 LensConfig zoom_lens(std::vector<MeasuredZoom>& zooms) {
   std::ranges::sort(zooms, {}, &MeasuredZoom::focal_length);
   const double shortest = zooms.front().focal_length();
@@ -44,7 +44,7 @@ LensConfig zoom_lens(std::vector<MeasuredZoom>& zooms) {
     lens.zoom.push_back(
         {*zoom.group.ratio, zoom.group.count, own.fx, own.fy, own.cx, own.cy, own.distortion});
   }
-  // The lens at ratio 1: the row nearest to it, by its own ratio.
+  // The lens at ratio 1 comes from the row nearest to it, divided by that row's ratio.
   const ZoomRow& one = *std::ranges::min_element(
       lens.zoom, {}, [](const ZoomRow& row) { return std::abs(std::log(row.ratio)); });
   lens.fx = *one.fx / one.ratio, lens.fy = *one.fy / one.ratio;
@@ -52,9 +52,9 @@ LensConfig zoom_lens(std::vector<MeasuredZoom>& zooms) {
   return lens;
 }
 
-// Ratios that were given and that the focal lengths contradict.
+// Returns notes on given ratios that contradict the focal lengths.
 std::vector<std::string> notes_on_ratios(const std::vector<MeasuredZoom>& zooms) {
-  constexpr double far = 0.05;  // Share.
+  constexpr double far = 0.05;  // Relative difference.
   std::vector<std::string> notes;
   const auto has_ratio = [](const MeasuredZoom& zoom) { return zoom.group.ratio && zoom.fit.is_found; };
   const auto given = std::ranges::find_if(zooms, has_ratio);
@@ -106,7 +106,7 @@ int zoom_command(const IntrinsicsArguments& arguments, const BoardTarget& board,
     if (!zoom.fit.is_found && reason.empty()) reason = group.folder + ": " + zoom.fit.reason;
   }
   CalibratedCamera camera{name, first_pose(arguments), {}, zooms.front().pictures.size, {}};
-  const std::vector<std::string> notes = notes_on_ratios(zooms);  // Before those that were not given are.
+  const std::vector<std::string> notes = notes_on_ratios(zooms);  // Before missing ratios are filled in.
   if (reason.empty()) {
     camera.lens = zoom_lens(zooms);
     if (const auto fault = ZoomTable::fault(camera.lens))

@@ -7,7 +7,8 @@
 
 namespace flexura {
 
-/// `flexura intrinsics --zoom ...`: a lens at several positions of its zoom. As intrinsics_command.
+/// Runs `flexura intrinsics --zoom ...`, which calibrates a lens at several zoom positions. Return value and
+/// errors as for intrinsics_command().
 int zoom_command(const IntrinsicsArguments& arguments, const BoardTarget& board, std::ostream& out);
 
 }  // namespace flexura

@@ -17,7 +17,7 @@
 
 namespace flexura {
 
-// Beside InverseWish, where the tables of fields look for it.
+// In InverseWish's namespace, for the argument-dependent lookup of the field tables.
 static const std::vector<std::string>& names_of(const InverseWish*) {
   static const std::vector<std::string> names{"none", "least_bending", "mid_range"};
   return names;
@@ -29,18 +29,18 @@ using Triple = std::array<double, 3>;
 
 /// A line of input.
 struct InverseRequest {
-  std::optional<Triple> position;  ///< m.
+  std::optional<Triple> position;  ///< m
   std::optional<Triple> direction;
-  std::optional<std::array<double, 4>> rotation;  ///< (w, x, y, z).
-  std::optional<std::vector<Triple>> curve;       ///< m.
-  std::optional<double> tolerance;                ///< m, of a curve.
+  std::optional<std::array<double, 4>> rotation;  ///< (w, x, y, z)
+  std::optional<std::vector<Triple>> curve;       ///< m
+  std::optional<double> tolerance;                ///< For a curve, m.
   InverseWish wish = InverseWish::none;
   bool all = false;
   std::optional<ShapeConfig> start;
 };
 
 const Table<InverseRequest>& fields_of(const InverseRequest*) {
-  // Wider than the largest arm; keeps sums of squares finite.
+  // Larger than any arm, and small enough to keep sums of squares finite.
   constexpr double farthest = 1e10;
   static const auto table =
       Table<InverseRequest>("ik request", "Target of the tip or of the whole arm.")
@@ -119,7 +119,7 @@ bool stretches(const Arm& arm) {
       arm.sections, [](const Section& section) { return section.stretch_limits != std::array{1.0, 1.0}; });
 }
 
-// The state and its errors, as members of a solution or of the whole answer.
+// Adds the state and its errors as members of a solution or of the whole answer.
 void add_state(const Arm& arm, const InverseRequest& request, const InverseResult& result,
                Node::Table& members) {
   Node::Array bends;

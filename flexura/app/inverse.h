@@ -16,13 +16,13 @@ namespace flexura {
 /// "solutions" when all are asked for; {"error":"..."} for a line that cannot be answered. Never throws on
 /// account of the line.
 [[nodiscard]] std::string answer_inverse(const ArmModel& arm, std::string_view line);
-/// The same of an arm of arcs.
+/// Answers one line of `flexura ik` for an arm of arcs.
 [[nodiscard]] inline std::string answer_inverse(const Arm& arm, std::string_view line) {
   return answer_inverse(ArmModel(arm), line);
 }
 
-/// What is wrong with a line of `flexura ik`, "" for one that can be answered. Never throws on account of the
-/// line.
+/// Returns what is wrong with a line of `flexura ik`, or "" if it can be answered. Never throws because of
+/// the line's contents.
 [[nodiscard]] std::string inverse_problem(const Arm& arm, std::string_view line);
 
 }  // namespace flexura

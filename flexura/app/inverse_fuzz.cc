@@ -1,6 +1,6 @@
-// Any bytes as a line of `flexura ik`, on a planar and a spatial arm: a problem in words or none; and for one
-// input in fifty, as its bytes decide (solving takes a thousand times as long as reading), one line of JSON
-// without NaN, and a solution within the limits.
+// Fuzzes a line of `flexura ik` with any bytes, on a planar and a spatial arm. Each must give an error or no
+// error. One input in fifty, chosen by its bytes, is also solved, as solving takes a thousand times as long
+// as reading. It must give one line of JSON without NaN, and a solution within the limits.
 #include <cstdint>
 #include <cstdlib>
 #include <functional>

@@ -115,7 +115,7 @@ TEST(AnswerInverse, LaysTheArmAlongACurve) {
 }
 
 TEST(AnswerInverse, OfACurveGivenByAFewPointsAllowsForWhatLiesBetweenThemOrForWhatIsAsked) {
-  // A sixth of a circle of the arm's length, by five points.
+  // A sixth of a circle of the arm's length, given by five points.
   const std::string points =
       R"("curve":[[0.0,0.0,0],[0.02936,0.22242,0],[0.11544,0.42961,0],[0.25233,0.60736,0],[0.43065,0.74351,0]])";
   const Node plain = parsed(answer_inverse(limited_arm(), "{" + points + "}"));
@@ -135,7 +135,7 @@ TEST(AnswerInverse, OfACurveGivenByAFewPointsAllowsForWhatLiesBetweenThemOrForWh
 }
 
 TEST(AnswerInverse, OfACoarseCurveThatTheArmMissesSaysSo) {
-  // Four points on an arc of a full turn, of which each section bends by its limit of 90 degrees at most.
+  // Four points on an arc of a full turn; each section can bend by at most 90 degrees.
   const Node missed = parsed(
       answer_inverse(limited_arm(), R"({"curve":[[0,0,0],[0.15,0.25,0],[0.42,0.25,0],[0.6,0.02,0]]})"));
   EXPECT_FALSE(flag(missed, "converged"));
@@ -230,7 +230,7 @@ TEST(InverseCommand, AnswersEveryLineInOrder) {
   EXPECT_THAT(answers[2], HasSubstr("\"not_reachable\""));
 }
 
-// Two wires of 2 mm radius that carry so much a metre, and three tendons to the end of each.
+// Returns an arm of two wires of 2 mm radius with this mass per length and three tendons to the end of each.
 ArmModel elastic_arm(const std::string& mass, const std::string& load = "") {
   std::string text = "[arm]\nkind='spatial'\nmodel='static'\ngravity=[0,-9.81,0]\n";
   for (int section = 1; section <= 2; ++section) {
@@ -254,7 +254,7 @@ TEST(AnswerInverse, OfAnElasticArmIsUndoneByForwardKinematicsUnderItsWeight) {
   };
   const Eigen::Vector3d wanted(0.3, 0.45, 0.1);
   EXPECT_LE((tip_of(answer_forward(arm, write_json(shape))) - wanted).norm(), 1e-8);
-  // Arcs of these bends are elsewhere: the arm sags.
+  // Arcs with these bends have their tip elsewhere: the arm sags.
   EXPECT_GE((tip_of(answer_forward(arm.driven(), write_json(shape))) - wanted).norm(), 0.01);
   EXPECT_THAT(answer_forward(arm, R"({"bends":[[0,0],[0,0]],"at":[0,0.7]})"), Not(HasSubstr("error")));
 }

@@ -9,7 +9,8 @@
 namespace flexura {
 namespace {
 
-// A line of input without its end; what is longer than the bound is dropped, and `too_long` says so.
+// Reads a line of input without its end. Characters beyond `longest` are dropped and set `too_long`. Returns
+// false at the end of the input.
 bool read_line(std::streambuf& in, std::size_t longest, std::string& line, bool& too_long) {
   line.clear();
   too_long = false;
@@ -41,7 +42,8 @@ void answer_lines(const LineAnswer& answer, std::istream& in, std::ostream& out,
     out << (too_long ? fmt::format(R"({{"error":"the line is longer than {}"}})", bytes_text(longest))
                      : answer(line))
         << '\n';
-    // Whoever sends a line and waits for its answer gets it at once; a file is read without a flush a line.
+    // Flush only when no input waits: an interactive user gets each answer at once, and a file is not flushed
+    // per line.
     if (in.rdbuf()->in_avail() <= 0) out.flush();
   }
 }

@@ -8,14 +8,14 @@
 
 namespace flexura {
 
-/// No line of input is longer, bytes.
+/// Maximum length of an input line, bytes.
 inline constexpr std::size_t longest_line = std::size_t{1} << 24;
 
-/// One line of output for one line of input (without its end), whatever that holds.
+/// Returns the output line for an input line, both without line end; has to accept any contents.
 using LineAnswer = std::function<std::string(std::string_view line)>;
 
-/// Answers every line of `in` by one line of `out`, in their order, each as soon as it is there. A line ends
-/// with "\n" ("\r\n" too) or with the input; one that is longer than `longest` is answered by an error.
+/// Writes one line to `out` for every line of `in`, in order, each as soon as it is available. A line ends
+/// with "\n" (or "\r\n") or with the input. A line longer than `longest` gets an error as its answer.
 void answer_lines(const LineAnswer& answer, std::istream& in, std::ostream& out,
                   std::size_t longest = longest_line);
 

@@ -60,7 +60,8 @@ Node eigenvalues_node(const Eigen::VectorXcd& values) {
   return {std::move(entries), {}};
 }
 
-// "q.1.curvature_x.0": the constant part of the first section's curvature about x; "v..." its rate.
+// Returns the names of the states. "q.1.curvature_x.0" is the constant part of the first section's curvature
+// about x; "v..." is its rate.
 Node state_names(const RodChain& chain) {
   constexpr std::array strains = {"shear_x", "shear_y", "stretch", "curvature_x", "curvature_y", "twist"};
   std::vector<std::string> modes(static_cast<std::size_t>(chain.size()));
@@ -120,7 +121,7 @@ std::string LineariseAnswers::answer(std::string_view line) {
     const RodState state = dynamics_.rest(found);
     const RodLinear linear = dynamics_.linearize(state, tendons, loads);
     const RodModes modes = rod_modes(dynamics_.slopes(state, tendons, loads));
-    // Numbers beyond what doubles hold are as far from an answer.
+    // Values that overflow double count as not converged.
     if (!linear.A_rest.allFinite() || !linear.B_rest.allFinite() || !modes.eigenvalues.allFinite())
       return write_json({not_linearised("out_of_steps"), {}});
     Eigen::MatrixXd C = Eigen::MatrixXd::Zero(6, linear.A_rest.rows());
@@ -143,7 +144,7 @@ std::string LineariseAnswers::answer(std::string_view line) {
   } catch (const InputError& error) {
     return write_json(linearise_refusal(joined(error.problems())));
   } catch (const std::invalid_argument&) {
-    // An equilibrium that RodDynamics does not take.
+    // RodDynamics rejects the equilibrium.
     return write_json({not_linearised("out_of_steps"), {}});
   }
 }

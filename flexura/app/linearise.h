@@ -14,17 +14,18 @@ namespace flexura {
 
 /// Answers lines of `flexura linearise` about one arm: JSON objects {"tensions":[...]} or
 /// {"displacements":[...]}, or neither, with optional "tip_force", "tip_moment" and "gravity"
-/// (docs/command-line.md), all in the frame of the arm's base. An answer depends on its line alone.
+/// (docs/command-line.md). All are in the frame of the arm's base. An answer depends only on its line.
 class LineariseAnswers {
  public:
-  /// std::invalid_argument: the arm has no rod that can be computed (rod_of, rod_problems), or one that
-  /// cannot move (RodDynamics): it has no mass; or tendons with friction, which has no linear model.
+  /// Throws std::invalid_argument if the arm has no computable rod (rod_of, rod_problems) or one without
+  /// mass, which cannot move (RodDynamics). Also throws it for tendons with friction, which have no linear
+  /// model.
   LineariseAnswers(const ArmConfig& arm, const std::optional<DriveConfig>& drive);
 
-  /// One line of JSON without its line end: {"converged":..,"reason":..} and, of an equilibrium that was
-  /// found, "stable":..,"tip":.., the names of "states", "inputs" and "outputs", the matrices "A", "B" and
-  /// "C" by rows, "eigenvalues":[[real,imaginary],..], "frequencies_hz" and "damping_ratios"; {"error":"..."}
-  /// for a line that cannot be answered. Never throws on account of the line.
+  /// Returns one line of JSON without its line end: {"converged":..,"reason":..}. If an equilibrium was
+  /// found, it also has "stable":..,"tip":.., the names of "states", "inputs" and "outputs", the matrices
+  /// "A", "B" and "C" by rows, "eigenvalues":[[real,imaginary],..], "frequencies_hz" and "damping_ratios". A
+  /// line that cannot be answered gives {"error":"..."}. Never throws because of the line's contents.
   [[nodiscard]] std::string answer(std::string_view line);
 
  private:

@@ -23,7 +23,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-// Spring steel, clamped, without gravity; its modes of bending are those of Euler's and Bernoulli's rod.
+// Spring steel, clamped, without gravity; its bending modes are those of the Euler-Bernoulli beam.
 const std::string steel_cantilever = R"([arm]
 kind = "spatial"
 [[arm.section]]
@@ -104,7 +104,7 @@ TEST(Linearise, GivesTheFrequenciesOfACantilever) {
                             ratios = read_list(answer, "damping_ratios");
   ASSERT_EQ(found.size(), ratios.size());
   ASSERT_GE(found.size(), 6U);
-  // Two of each, for the rod is round.
+  // Each occurs twice, as the rod is round.
   const std::vector<double> known = {5.595912, 35.068983, 98.194166};
   for (std::size_t i = 0; i < 6; ++i) {
     EXPECT_NEAR(found[i], known[i / 2], 1e-3 * known[i / 2]);
@@ -170,11 +170,11 @@ TEST(Linearise, NamesStatesInputsAndOutputs) {
   EXPECT_GT(read_matrix(pulled, "B").col(0).norm(), 0);
   const Node free = parse_json(answers.answer("{}"), "answer");
   EXPECT_THAT(read_names(free, "inputs"), ::testing::ElementsAre("tension.1", "tension.2"));
-  // Tendons that are held are stiff: they raise the slowest frequencies.
+  // Tendons held at their displacements are stiff and raise the lowest frequencies.
   EXPECT_GT(read_list(pulled, "frequencies_hz").back(), read_list(free, "frequencies_hz").back());
 }
 
-// What stands on its base falls slower under its weight, and what hangs swings faster.
+// Its weight lowers the frequency of a standing arm and raises that of a hanging one.
 TEST(Linearise, TakesGravityOfTheLine) {
   LineariseAnswers answers = linearise_answers(steel_cantilever);
   const auto lowest = [&](const char* line) {

@@ -9,8 +9,8 @@
 namespace flexura {
 namespace {
 
-// Text as roff prints it: a backslash and a leading dot or quote mean something to it, a hyphen may be
-// broken.
+// Escapes text for roff: backslashes, leading dots and quotes have a meaning there, and lines may break at a
+// plain hyphen.
 std::string roff(const std::string& text) {
   std::string escaped;
   for (const char c : text) {
@@ -26,7 +26,7 @@ std::string roff(const std::string& text) {
   return escaped;
 }
 
-// Lines of a meaning stay lines.
+// Escapes text and keeps its line breaks.
 std::string roff_lines(const std::string& text) {
   std::string lines;
   for (const char c : roff(text)) lines += c == '\n' ? std::string("\n.br\n") : std::string(1, c);

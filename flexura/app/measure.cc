@@ -36,7 +36,7 @@ MeasureConfig config_of(const MeasureArguments& arguments) {
   config.what = named<MeasureTarget>("--what", arguments.what);
   config.finder.threshold = threshold_config(arguments.threshold);
   if (arguments.base.size() == 2) {
-    constexpr double most = 1e5;  // px; beyond every picture.
+    constexpr double most = 1e5;  // px, beyond every picture.
     const auto is_place = [](double x) { return std::abs(x) <= most; };
     if (!is_place(arguments.base[0]) || !is_place(arguments.base[1]))
       throw input_error("--base", fmt::format("expected two numbers u,v within {:g} px", most));
@@ -65,7 +65,7 @@ MeasureConfig config_of(const MeasureArguments& arguments) {
   return config;
 }
 
-// How each picture is measured: with the camera that took it, where there is a file of cameras.
+// Returns the settings for each picture, with the camera that took it if there is a file of cameras.
 std::vector<MeasureConfig> configs_of(const MeasureArguments& arguments) {
   std::vector<MeasureConfig> configs(arguments.images.size(), config_of(arguments));
   if (arguments.camera.empty()) {

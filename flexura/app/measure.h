@@ -16,48 +16,49 @@
 
 namespace flexura {
 
-/// What `flexura measure` looks for.
+/// The objects that `flexura measure` can look for.
 enum class MeasureTarget { arm, etalon, circle, markers };
 const std::vector<std::string>& names_of(const MeasureTarget*);
 
-/// How one picture is measured.
+/// Settings for measuring one picture.
 struct MeasureConfig {
   MeasureTarget what = MeasureTarget::arm;
   ArmFinderConfig finder;
-  /// That took it, when it is known; where it stands counts for nothing.
+  /// The camera that took the picture, if known; its pose is not used.
   std::optional<MeasuredCamera> camera;
-  std::optional<double> radius;  ///< Of the arm, m, when it is known.
-  double gamma = 1;              ///< The picture's values are light to the power 1/gamma; not the camera's.
+  std::optional<double> radius;  ///< Radius of the arm, m, if known.
+  double gamma = 1;  ///< Pixel values are light to the power 1/gamma; replaces the camera's gamma.
 };
 
-/// What is found in one picture.
+/// The result of measuring one picture.
 struct Measurement {
   Node answer;            ///< docs/vision.md, "flexura measure".
-  bool is_found = false;  ///< What was looked for.
-  /// The picture with what was found drawn over it, when that was asked for: red, green, blue.
+  bool is_found = false;  ///< Whether the object was found.
+  /// RGB picture with the findings drawn over it, if requested.
   Image<std::uint8_t> overlay;
 };
 
-/// Measures a picture file's bytes. InputError: not a picture that can be read, or
-/// one of another size than its camera is described for.
+/// Measures a picture file, given its bytes. Throws InputError if the picture cannot be read, or has another
+/// size than its camera's description.
 [[nodiscard]] Measurement measure_picture(std::span<const std::uint8_t> file, const std::string& name,
                                           const MeasureConfig& config, bool with_overlay = false);
 
-/// What `flexura measure` is told.
+/// Arguments of `flexura measure`.
 struct MeasureArguments {
   std::vector<std::string> images;
   std::string what = "arm";
-  std::string camera;  ///< A file of measured cameras; "" for none.
+  std::string camera;  ///< File of measured cameras; "": no file.
   std::optional<double> radius;
-  std::optional<double> gamma;  ///< What the file of cameras says, or 1, where there is none.
+  std::optional<double> gamma;  ///< Default: the gamma in the file of cameras; without a file, 1.
   ThresholdArguments threshold;
-  std::vector<double> base;  ///< Two numbers, or none.
-  std::string overlay;       ///< A file to write; "" for none.
+  std::vector<double> base;  ///< Pixel of the arm's base, (u, v), px; empty: unknown.
+  std::string overlay;       ///< Picture file to write; "": no file.
 };
 
-/// Prints what is found: one document for one picture, a line of JSON for each of several. Returns
-/// exit_missed when something was not found, exit_bad_input when one of several files is no picture (its line
-/// says so). InputError for bad input; std::runtime_error when the system refuses a file.
+/// Prints the findings: one document for one picture, one line of JSON per picture for several. Returns
+/// exit_missed if something was not found. Returns exit_bad_input if one of several files is not a picture;
+/// its line then reports the error. Throws InputError for bad input, and std::runtime_error if the system
+/// refuses a file.
 int measure_command(const MeasureArguments& arguments, std::ostream& out);
 
 }  // namespace flexura

@@ -44,12 +44,15 @@ Node marker_node(const MarkerSighting& marker) {
       .take();
 }
 
-// A median axis: where the backbone is seen, as far as there is a lens that tells; else the tube's middle.
+// The centerline of the arm in a picture. With a lens it is the image of the backbone, elsewhere the middle
+// of the tube.
 struct MeasuredAxis {
-  std::vector<AxisSample> shown, fitted;  // Circles and ellipses go by the backbone alone where it is known.
-  std::vector<bool> is_backbone;          // Empty: nowhere.
+  // `fitted`: the samples for circles and ellipses; only the backbone's image if it is known.
+  std::vector<AxisSample> shown, fitted;
+  std::vector<bool> is_backbone;  // Whether a sample is the backbone's image; empty: none is.
 
-  // What is between samples that are seen is a guess of unknown error, and so is the backbone without rays.
+  // Returns whether a sample has a known error. Bridged samples between visible ones do not, nor do those
+  // where the lens has no rays.
   [[nodiscard]] bool is_known(std::size_t i) const {
     return shown[i].is_seen && (is_backbone.empty() || is_backbone[i]);
   }
@@ -119,7 +122,7 @@ bool measure_arm(const Job& job) {
   if (!is_found) job.answer.add("reason", text_node(arm.is_found() ? "the arm has no markers" : arm.reason));
   if (!job.photograph.is_mask)
     if (auto note = hint_of_exposure(job.gray)) notes.push_back(std::move(*note));
-  // A camera that says for which size it is described has been held to it.
+  // A camera with a given size has already been checked against the picture.
   if (lens && !job.config.camera->size)
     if (auto note = hint_of_size(*lens, job.gray.width(), job.gray.height()))
       notes.push_back(std::move(*note));

@@ -16,16 +16,16 @@ namespace {
 
 using Eigen::Vector2d;
 
-// Whether most of a figure's border lies near the circle or the ellipse.
+// Returns whether much of a figure's border lies near the circle or the ellipse.
 bool is_round(const std::optional<CircleFit>& circle, const std::optional<EllipseFit>& ellipse,
               const std::vector<Vector2d>& used, const FigureBorder& figure) {
-  // Through a few points there is always one.
+  // A few points always fit some circle.
   constexpr std::size_t fewest = 12;
   if (used.size() < fewest) return false;
   constexpr double least_share = 0.4, roughest = 0.03;
   if (static_cast<double>(used.size()) < least_share * static_cast<double>(figure.points.size()))
     return false;
-  // Along a third of it at least: straight sides fit some long one.
+  // The points must cover a third of it: straight sides fit some long ellipse.
   constexpr double least_around = 1.0 / 3;
   return (circle && circle->rms < roughest * circle->radius &&
           circle->arc > least_around * 2 * std::numbers::pi) ||

@@ -1,5 +1,6 @@
-// Any bytes as a picture file, or as the pixels of a small picture, measured in one of the ways: a problem
-// in words or one document of JSON that can be read back, and the same one when asked again.
+// Fuzzes the measurement of pictures. The bytes are a picture file, or the pixels of a small picture, with
+// any settings. Required: an error, or one JSON document that can be read back, and the same result when run
+// again.
 #include <algorithm>
 #include <array>
 #include <cstddef>
@@ -14,7 +15,7 @@
 
 namespace {
 
-// A PGM or PPM file of the bytes after the first three.
+// Returns a PGM or PPM file of the bytes after the first three.
 std::string small_picture(std::span<const std::uint8_t> data) {
   const int channels = data[0] % 2 == 0 ? 1 : 3, width = 1 + data[1] % 48;
   const auto pixels = data.subspan(3);
@@ -22,7 +23,7 @@ std::string small_picture(std::span<const std::uint8_t> data) {
   std::string file =
       (channels == 1 ? "P5\n" : "P6\n") + std::to_string(width) + " " + std::to_string(height) + "\n255\n";
   for (int i = 0; i < width * height * channels; ++i) {
-    // A byte draws so many pixels, so that figures come about.
+    // Each byte sets several pixels, which makes figures likely.
     const std::size_t from = static_cast<std::size_t>(i) / (1 + data[2] % 6);
     file += static_cast<char>(from < pixels.size() ? pixels[from] : 200);
   }

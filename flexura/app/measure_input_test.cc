@@ -1,4 +1,4 @@
-// What `measure` is given: files, options, several pictures.
+// Tests the input of `measure`: files, options, several pictures.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -14,26 +14,27 @@
 #include "flexura/vision/picture_file.h"
 #include "flexura/vision/threshold.h"
 
-// Measuring one picture for one thing: each adds to the answer and says whether it was found.
+// Functions that measure one kind of object in a picture. Each adds to the answer and returns whether it was
+// found.
 namespace flexura {
 
 inline constexpr PenColor axis_color = {255, 40, 40}, border_color = {40, 200, 60},
                           marker_color = {60, 120, 255}, fit_color = {255, 170, 0};
 
-/// To a whole number of so many parts of one: files stay short.
+/// Returns the value rounded to a multiple of 1 / parts, which keeps files short.
 [[nodiscard]] double rounded(double value, double parts);
-/// To 1e-4 px.
+/// Returns the value rounded to 1e-4 px.
 [[nodiscard]] double px(double value);
 
-/// [u, v], px.
+/// Returns [u, v], px, each rounded.
 [[nodiscard]] Node pixel_pair(const Eigen::Vector2d& value);
-/// Whether points lie on an ellipse by and large: within 3 % of its shorter semi-axis, root mean square.
+/// Returns whether points lie roughly on an ellipse: rms distance within 3 % of its shorter semi-axis.
 [[nodiscard]] bool is_on_ellipse(const std::optional<EllipseFit>& fit);
-/// As docs/vision.md has them; null where there is none.
+/// Returns the fields of docs/vision.md; null without a fit.
 [[nodiscard]] Node circle_node(const std::optional<CircleFit>& fit);
 [[nodiscard]] Node ellipse_node(const std::optional<EllipseFit>& fit);
 
-/// Members in the order in which they are added.
+/// Builds a table whose members keep the order in which they are added.
 class TableMaker {
  public:
   TableMaker& add(const std::string& key, Node node) {
@@ -49,13 +50,13 @@ class TableMaker {
 /// Adds `threshold`, `method` and `figure`.
 void add_threshold(const Threshold& threshold, TableMaker& answer);
 
-/// A picture on its way to being measured.
+/// A picture to be measured, its settings and its outputs.
 struct Job {
   const Photograph& photograph;
   const Image<std::uint8_t>& gray;
   const MeasureConfig& config;
   TableMaker& answer;
-  Canvas* canvas;  ///< Null: nothing is drawn.
+  Canvas* canvas;  ///< Drawing of the findings; null: draw nothing.
 };
 
 bool measure_arm(const Job& job);

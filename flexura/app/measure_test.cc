@@ -45,11 +45,11 @@ TEST(Measure, TellsAxisMarkersAndTheCircleOfAnArm) {
   EXPECT_EQ(found.answer.find("axis")->as<Node::Array>()->size(),
             found.answer.find("width")->as<Node::Array>()->size());
   EXPECT_EQ(found.overlay.width(), 320);
-  // A line over the picture.
+  // Lines are drawn over the picture.
   EXPECT_NE(found.overlay, tube());
 }
 
-// Each pixel the mean of those within `reach` of it each way, as far as the picture goes.
+// Returns the picture with each pixel replaced by the mean of those within `reach` in u and v.
 Image<std::uint8_t> box_blurred(const Image<std::uint8_t>& picture, int reach) {
   Image<std::uint8_t> result(picture.width(), picture.height());
   for (int v = 0; v < picture.height(); ++v) {
@@ -82,7 +82,7 @@ TEST(Measure, VerifiesNoCircleForAnAxisThatIsNoArc) {
   EXPECT_NEAR(number_at(found.answer, "circle", "radius"), 200, 0.5);
   EXPECT_TRUE(*found.answer.find("circle")->find("verified")->as<bool>());
   EXPECT_LT(number_at(found.answer, "ellipse", "rms"), 0.1);
-  // A straight one has none.
+  // A straight arm has no circle.
   const auto line = [](double u) { return 100 + 0.1 * u; };
   EXPECT_TRUE(measured(png(gray_arm(line, 12, random))).answer.find("circle")->empty());
 }
@@ -126,7 +126,7 @@ TEST(Measure, TellsTheCircleOfADisc) {
   EXPECT_TRUE(*found.answer.find("circle")->find("verified")->as<bool>());
 }
 
-// A polygon's border leaves the circle through it by as much as noise might, but not as noise does.
+// A polygon's border deviates from the circle through it by as much as noise could, but systematically.
 TEST(Measure, VerifiesNoPolygonForACircle) {
   for (const int corners : {12, 16, 20}) {
     SCOPED_TRACE(corners);
@@ -146,7 +146,7 @@ TEST(Measure, VerifiesNoPolygonForACircle) {
   }
 }
 
-// With the camera and the radius the axis is the image of the backbone, and depths are known.
+// With the camera and the radius, the axis is the image of the backbone, and depths are known.
 TEST(Measure, ACameraAndARadiusTellTheBackbonesImage) {
   const TemporaryFolder folder;
   const std::string picture = (folder.path() / "tube.png").string(),
@@ -171,7 +171,7 @@ TEST(Measure, ACameraAndARadiusTellTheBackbonesImage) {
   EXPECT_EQ(depths.size(), backbone.find("axis")->as<Node::Array>()->size());
 }
 
-// Of what a lens has no rays for nothing can be said; the rest of the axis is the backbone's all the same.
+// Where the lens has no rays, the backbone's image is unknown; the rest of the axis is still the backbone's.
 TEST(Measure, IsTheTubesMiddleOnlyWhereTheLensHasNoRays) {
   const std::string file = png(tube());
   const auto answer_with = [&](double cx, double distortion) {
@@ -207,11 +207,11 @@ TEST(Measure, IsTheTubesMiddleOnlyWhereTheLensHasNoRays) {
   EXPECT_GT(with, axis.size() / 10);
   EXPECT_GT(without, axis.size() / 10);
   EXPECT_GT(moved, with / 2);
-  // The circle goes by the backbone alone: it is not that of the whole tube's middle.
+  // The circle is fitted to the backbone's image alone, so it differs from that of the whole tube's middle.
   EXPECT_LT(number_at(odd, "circle", "arc_deg"), 0.9 * number_at(middle, "circle", "arc_deg"));
   EXPECT_THAT(write_json(*plain.find("notes")), Not(HasSubstr("middle")));
   EXPECT_FALSE(std::ranges::any_of(column(plain, "depth"), is_null));
-  // Without any ray it is as without a camera.
+  // Without any rays the result is as without a camera.
   const Node none = answer_with(2000, -3);
   EXPECT_EQ(*none.find("axis_kind")->as<std::string>(), "middle");
   EXPECT_EQ(none.find("depth"), nullptr);
@@ -230,7 +230,7 @@ TEST(Measure, RefusesAPictureOfAnotherSizeThanItsCameraIsSaidToBeOf) {
   EXPECT_THROW((void)measure_picture(bytes_of(file), "tube.png", config), InputError);
 }
 
-// What may be wrong is told where nothing is found above all.
+// Notes on possible errors matter most if nothing is found.
 TEST(Measure, HasNotesWhereNothingIsFound) {
   MeasureConfig config;
   config.camera = MeasuredCamera{};
@@ -241,7 +241,7 @@ TEST(Measure, HasNotesWhereNothingIsFound) {
   EXPECT_THAT(write_json(*none.answer.find("notes")), HasSubstr("of another size"));
 }
 
-// 16 bits that become two values in 8 are no mask.
+// A 16-bit picture that has two values in 8 bits is not a mask.
 TEST(Measure, TakesAFaintPictureOf16BitsForWhatItIs) {
   Image<std::uint16_t> faint(160, 120, 1, 65000);
   for (int v = 40; v < 80; ++v)
@@ -301,7 +301,7 @@ TEST(Measure, SaysWhyThereIsNothing) {
   EXPECT_THAT(*found.answer.find("reason")->as<std::string>(), HasSubstr("blank"));
 }
 
-// What is wrong with the picture is said, where that is why nothing is found: exposure, or focus.
+// If exposure or focus is why nothing is found, the answer reports it.
 TEST(Measure, SaysThatAPictureIsTooDarkOrBlurred) {
   TestRandom random(5);
   const auto wave = [](double u) { return 120 + 20 * std::sin(u * std::numbers::pi / 320); };
@@ -327,7 +327,7 @@ TEST(Measure, SaysThatAPictureIsTooDarkOrBlurred) {
   Image<std::uint8_t> blurred = clear;
   for (int round = 0; round < 2; ++round) blurred = box_blurred(blurred, 7);
   EXPECT_THAT(reason_of(blurred), HasSubstr("blurred by"));
-  // Neither is said of a sharp figure that is no tube.
+  // A sharp figure that is not a tube gets neither reason.
   Image<std::uint8_t> star(320, 240, 1, 220);
   for (int v = 0; v < 240; ++v)
     for (int u = 0; u < 320; ++u)
@@ -336,15 +336,15 @@ TEST(Measure, SaysThatAPictureIsTooDarkOrBlurred) {
   EXPECT_THAT(reason_of(star), testing::Not(testing::AnyOf(HasSubstr("blurred"), HasSubstr("faint"))));
 }
 
-// Two parallel sides lie on a long ellipse.
+// Two parallel sides lie on a long ellipse, which must be rejected.
 TEST(Measure, TakesNoStraightSidesForAnEllipse) {
   for_random_cases(15, [](TestRandom& random) {
     const double width = random.uniform(30, 120), height = random.uniform(30, 120);
-    // Its corners, or its ends, may be round: of a capsule the two sides remain.
+    // Its corners or its ends may be round; a capsule keeps two straight sides.
     const double corner = (random.integer(0, 2) == 0 ? 0.5 : 0.15) * std::min(width, height);
     const double turn = random.uniform(0, 3);
     const bool is_capsule = corner > 0.4 * std::min(width, height);
-    // A short one is much like an ellipse.
+    // A short capsule is close to an ellipse.
     if (is_capsule && std::max(width, height) < 2.5 * std::min(width, height)) return;
     Image<std::uint8_t> picture(240, 200, 1, 210);
     for (int v = 0; v < 200; ++v) {

@@ -23,7 +23,7 @@
 namespace flexura {
 namespace {
 
-// `flexura measure` of a picture, thresholded in some way.
+// Runs `flexura measure` on a picture with given threshold arguments.
 class MeasureBy : public testing::Test {
  protected:
   Node measured_by(const Image<std::uint8_t>& picture, const ThresholdArguments& threshold,
@@ -36,7 +36,7 @@ class MeasureBy : public testing::Test {
     EXPECT_EQ(measure_command(arguments, out), expected_status) << out.str();
     return parse_json(out.str(), "answer");
   }
-  // How far the axis is off v = middle(u) at most, px, and how much of u it reaches over.
+  // Returns the axis' largest distance from v = middle(u), px, and the length in u that it covers, px.
   template <typename Middle>
   static std::pair<double, double> off_and_reach(const Node& answer, const Middle& middle) {
     if (answer.find("axis") == nullptr) return {1e9, 0};
@@ -74,7 +74,7 @@ TEST_F(MeasureBy, EachThresholdFindsTheSameAxisAndNamesItself) {
       EXPECT_EQ(word(answer, "method"), how.level ? "fixed" : how.method.value_or("otsu"));
       EXPECT_EQ(word(answer, "figure"), "dark");
       const double told = *answer.find("threshold")->as<double>();
-      // Between the arm's 30 and the ground's 220, with their noise.
+      // Between the arm's value 30 and the background's 220, with their noise.
       EXPECT_GT(told, 33);
       EXPECT_LT(told, 217);
       EXPECT_EQ(told == level, how.level.has_value());
@@ -85,7 +85,7 @@ TEST_F(MeasureBy, EachThresholdFindsTheSameAxisAndNamesItself) {
   });
 }
 
-// From left to right the screen grows so much brighter that it begins darker than the arm ends.
+// The screen gets so much brighter from left to right that its dark side is darker than the arm's bright end.
 TEST_F(MeasureBy, OnlyBlocksFollowAnUnevenScreen) {
   const auto line = [](double u) { return 110 + 0.05 * u; };
   Image<std::uint8_t> picture(320, 240);
@@ -97,7 +97,7 @@ TEST_F(MeasureBy, OnlyBlocksFollowAnUnevenScreen) {
   const Node by_block = measured_by(picture, {.method = "by_block"});
   const auto [most, reach] = off_and_reach(by_block, line);
   EXPECT_LT(most, 0.3);
-  // But for its dim end, whose contrast is a third of the bright one's.
+  // All but the dim end, where the contrast is a third of that at the bright end.
   EXPECT_GT(reach, 220);
   for (const ThresholdMethod method : {ThresholdMethod::otsu, ThresholdMethod::two_mode}) {
     MeasureConfig config;
@@ -115,7 +115,7 @@ TEST_F(MeasureBy, AFixedLevelAndTheFigureAreHeeded) {
   Image<std::uint8_t> picture = gray_arm(line, 12, random);
   const Node dark = measured_by(picture, {.level = 200});
   EXPECT_EQ(*dark.find("threshold")->as<double>(), 200);
-  // Below the arm, and above the ground, nothing is parted from anything.
+  // Levels below the arm's value or above the background's separate nothing.
   for (const auto& [level, why] :
        {std::pair(5.0, "the fixed level 5 is darker than nearly all of the picture: "),
         std::pair(250.0, "the fixed level 250 is brighter than nearly all of the picture: ")}) {

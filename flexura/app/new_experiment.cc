@@ -20,7 +20,7 @@
 namespace flexura {
 namespace {
 
-// A file's name as a shell takes it.
+// Quotes a file name for a shell.
 std::string shell_word(const std::string& text) {
   const auto is_plain = [](unsigned char c) {
     return (std::isalnum(c) != 0) ||
@@ -32,7 +32,7 @@ std::string shell_word(const std::string& text) {
   return quoted + "'";
 }
 
-// The comments of a template show commands: they name this file.
+// Puts the file's name into the commands in a template's comments.
 std::string for_file(std::string text, const std::string& file) {
   constexpr std::string_view placeholder = "FILE";
   const std::string name = file.find('\n') == std::string::npos ? shell_word(file) : std::string(placeholder);

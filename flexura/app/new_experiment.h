@@ -7,23 +7,23 @@
 
 namespace flexura {
 
-/// A commented experiment file to begin with.
+/// A commented experiment file as a starting point.
 struct ExperimentTemplate {
-  std::string_view kind;     ///< As `flexura new` calls it.
+  std::string_view kind;     ///< Name of the kind for `flexura new`.
   std::string_view meaning;  ///< One line for the help.
-  std::string_view text;     ///< The file; FILE in its comments stands for its name.
+  std::string_view text;     ///< Contents; FILE in the comments is a placeholder for the file's name.
 };
 
-/// Every template, the simplest first.
+/// Returns all templates, the simplest first.
 [[nodiscard]] const std::vector<ExperimentTemplate>& experiment_templates();
 
 /// The arguments of `flexura new`.
 struct NewArguments {
   std::string kind = "arm";
-  std::string file;  ///< "" for the kind's name with ".toml" in the working folder.
+  std::string file;  ///< File to write; "": the kind's name with ".toml" in the working folder.
 };
 
-/// Writes the template and prints what can be done with it. An existing file is kept: InputError.
+/// Writes the template and prints commands to try on it. Throws InputError if the file exists.
 int new_command(const NewArguments& arguments, std::ostream& out);
 
 }  // namespace flexura

@@ -5,7 +5,7 @@
 
 namespace flexura {
 
-/// What an option or an argument takes.
+/// The kinds of values of options and arguments.
 enum class Takes {
   nothing,     ///< A flag.
   text,        ///< A number, a name.
@@ -17,11 +17,11 @@ enum class Takes {
 
 /// One option or positional argument of a command, as its help shows it.
 struct OptionHelp {
-  std::vector<std::string> names;  ///< "-h", "--help"; of a positional argument only its name, "EXPERIMENT".
-  std::string value;               ///< What stands for the value: "DIR"; "" for a flag.
+  std::vector<std::string> names;  ///< "-h", "--help"; for a positional argument only its name, "EXPERIMENT".
+  std::string value;               ///< Placeholder of the value: "DIR"; "" for a flag.
   std::string meaning;             ///< One sentence.
-  Takes takes = Takes::text;       ///< What the value is.
-  std::vector<std::string> choices;  ///< The words that it may be, for Takes::choice.
+  Takes takes = Takes::text;       ///< Kind of the value.
+  std::vector<std::string> choices;  ///< Allowed words, for Takes::choice.
 };
 
 /// One command, as its help shows it.
@@ -42,12 +42,12 @@ struct ProgramHelp {
   std::vector<CommandHelp> commands;  ///< In the order of the help.
 };
 
-/// The completion script of a shell. The script needs nothing but the shell and `bash-completion` is not
-/// needed.
+/// Returns the completion script of a shell. The script needs only the shell, not the package
+/// bash-completion.
 [[nodiscard]] std::string bash_completion(const ProgramHelp& help);
 [[nodiscard]] std::string zsh_completion(const ProgramHelp& help);
 
-/// The manual page of section 1 in the man(7) macros of roff.
+/// Returns the manual page, section 1, in the man(7) macros of roff.
 [[nodiscard]] std::string manual_page(const ProgramHelp& help);
 
 }  // namespace flexura

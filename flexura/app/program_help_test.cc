@@ -1,4 +1,4 @@
-// What helps at the command line: new experiment files, completion, the manual page, the time left.
+// Tests what helps at the command line: new experiment files, completion, manual page, remaining time.
 #include "flexura/app/program_help.h"
 
 #include <fmt/format.h>

@@ -1,4 +1,4 @@
-// The program as a user starts it: exit statuses, what goes to stdout and what to stderr, and being killed.
+// Tests the program as a user starts it: exit statuses, what goes to stdout and to stderr, being killed.
 #include "tests/support/program.h"
 
 #include <fcntl.h>
@@ -166,14 +166,14 @@ TEST_F(Program, EndsWithTwoOnBadInputAndMakesNoResults) {
   EXPECT_THAT(run("measure x.png --level ''").err, HasSubstr("--level: expected no empty text"));
   EXPECT_THAT(run("measure x.png --threshold otsu --level 100").err,
               HasSubstr("goes with --threshold fixed: \"otsu\" finds its own level"));
-  // What stands behind an option's numbers is none of them.
+  // The arguments after an option's numbers are not read as numbers.
   for (const char* before : {"estimate --base 0,0,0", "estimate --markers 0.2,0.4 --length 1"})
     EXPECT_THAT(run(std::string(before) + " a.png b.png --cameras c.toml").err, StartsWith("c.toml: "));
   EXPECT_EQ(run("run " + paper_file + " --set arm.section.0.length=nan").status, 2);
   EXPECT_FALSE(std::filesystem::exists(path("results")));
 }
 
-// A viewer that cannot tell its address, and a limit of the size of files, end like a full disk.
+// A viewer that cannot print its address, and a file size limit, end the program like a full disk.
 TEST_F(Program, WhatCannotBeWrittenEndsItWithAReason) {
   EXPECT_EQ(run("--version").status, 0);
   const Ended deaf = wait(start("view --no-browser --port 0", "/dev/full"));
@@ -185,13 +185,13 @@ TEST_F(Program, WhatCannotBeWrittenEndsItWithAReason) {
   EXPECT_THAT(limited.err, HasSubstr("cannot write"));
 }
 
-// A terminal that a program can be started at, and what appeared on it.
+// A pseudo-terminal at which a program can be started, and what appeared on it.
 class Terminal {
  public:
   Terminal() : screen_(posix_openpt(O_RDWR | O_NOCTTY | O_NONBLOCK)) {
     if (screen_ < 0 || grantpt(screen_) != 0 || unlockpt(screen_) != 0) return;
     name_ = ptsname(screen_);
-    end_ = open(name_.c_str(), O_RDWR | O_NOCTTY);  // Held open: what was written stays to be read.
+    end_ = open(name_.c_str(), O_RDWR | O_NOCTTY);  // Held open, so that written text stays readable.
   }
   ~Terminal() {
     if (end_ >= 0) close(end_);
@@ -202,7 +202,7 @@ class Terminal {
 
   [[nodiscard]] bool is_there() const { return end_ >= 0; }
   [[nodiscard]] const std::string& name() const { return name_; }
-  // Until the process has ended.
+  // Returns what is shown until the process has ended.
   [[nodiscard]] std::string shown_by(pid_t process) const {
     std::string text;
     for (bool has_ended = false;;) {
@@ -225,7 +225,7 @@ TEST_F(Program, ShowsAPersonAtATerminalHowFarItIsAndNobodyElse) {
   const Terminal terminal;
   ASSERT_TRUE(terminal.is_there());
   const std::string shown = terminal.shown_by(start("run " + paper_file, path("out"), terminal.name()));
-  // Each line is put in the place of the one before, and the last is taken away.
+  // Each progress line overwrites the one before, and the last one is removed.
   const std::string cleared = "\r\x1b[K";
   EXPECT_THAT(shown, StartsWith(cleared + "  0 % [.............................."));
   EXPECT_THAT(shown, EndsWith(cleared));
@@ -246,7 +246,7 @@ TEST_F(Program, TellsItsVersionAndHelp) {
     EXPECT_EQ(ended.status, 0) << command;
     EXPECT_THAT(ended.out, HasSubstr("OPTIONS")) << command;
   }
-  // What is wrong behind a command leads to that command's help.
+  // An error after a command's name refers to that command's help.
   const Ended wrong = run("check --outt x " + paper_file);
   EXPECT_EQ(wrong.status, 2);
   EXPECT_THAT(wrong.err, HasSubstr("--outt"));

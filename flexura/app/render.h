@@ -7,21 +7,21 @@
 
 namespace flexura {
 
-/// What `flexura render` is told.
+/// Arguments of `flexura render`.
 struct RenderArguments {
   std::string experiment;
   std::string camera;
-  double time = 0;  ///< When the exposure begins, s.
+  double time = 0;  ///< Start of the exposure, s.
   std::string out;
-  bool model = false;  ///< Of the rig as tasks believe it to be, whatever [truth] says.
-  bool truth = false;  ///< Write beside the image what it shows, from the geometry.
+  bool model = false;  ///< Render the rig's model and ignore [truth].
+  bool truth = false;  ///< Also write exact depth, labels and curves.
   std::vector<std::string> sets;
 };
 
-/// Writes the image that a camera exposes from a time of the experiment's run on, as the run films it; with
-/// `truth` also what is true in the middle of that exposure: depth (NAME_depth.tiff, m), labels
-/// (NAME_labels.png, 16 bits) and curves (NAME_truth.json). Prints the files'
-/// names. InputError for bad input; std::runtime_error when the system refuses a file.
+/// Writes the image that a camera exposes from the given time of the experiment's run on, as the run films
+/// it. With `truth`, also writes exact data for the middle of that exposure: depth (NAME_depth.tiff, m),
+/// labels (NAME_labels.png, 16 bits) and curves (NAME_truth.json). Prints the files' names. Throws InputError
+/// for bad input, and std::runtime_error if the system refuses a file.
 int render_command(const RenderArguments& arguments, std::ostream& out);
 
 }  // namespace flexura

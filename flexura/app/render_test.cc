@@ -56,7 +56,7 @@ to = { bends = [[0.5, 0.5]] }
     return arguments;
   }
   std::string file(const char* name) { return read_text_file(folder_.path() / name, 1 << 24); }
-  // What an error says.
+  // Returns the error's text.
   static std::string error_of(const RenderArguments& arguments) {
     std::ostringstream out;
     try {
@@ -103,7 +103,7 @@ TEST_F(Render, WritesWhatIsTrueBesideIt) {
   EXPECT_EQ(truth.find("axis")->as<Node::Array>()->size(), 201U);
   EXPECT_EQ(truth.find("markers")->as<Node::Array>()->size(), 2U);
   EXPECT_GE(truth.find("outlines")->as<Node::Array>()->size(), 3U);
-  // The base stands where [truth] has it: 0.2 m to the right at a depth of 3 m.
+  // The base is where [truth] has it: 0.2 m to the right at a depth of 3 m.
   const Node& base = truth.find("axis")->as<Node::Array>()->front();
   const auto& pixel = *base.find("pixel")->as<Node::Array>();
   EXPECT_NEAR(*pixel[0].as<double>(), 39.5 + 100 * 0.2 / 3, 1e-9);
@@ -111,7 +111,7 @@ TEST_F(Render, WritesWhatIsTrueBesideIt) {
   EXPECT_NEAR(*base.find("depth")->as<double>(), 3, 1e-12);
 }
 
-// The frames of an experiment's run, as image files.
+// Returns the frames of an experiment's run as image files.
 std::vector<std::string> filmed(const std::filesystem::path& file) {
   const Experiment experiment = load_experiment(file);
   const Schedule schedule(experiment);

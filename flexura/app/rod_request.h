@@ -11,22 +11,22 @@
 
 namespace flexura {
 
-/// What pulls at an elastic arm, as a line of `flexura statics` or `flexura linearise` says it, in the frame
-/// of the arm's base.
+/// Loads on an elastic arm in a line of `flexura statics` or `flexura linearise`, in the frame of the arm's
+/// base.
 struct RodRequest {
   std::optional<std::vector<double>> tensions;       ///< N
   std::optional<std::vector<double>> displacements;  ///< m
   std::array<double, 3> tip_force = {0, 0, 0};       ///< N
   std::array<double, 3> tip_moment = {0, 0, 0};      ///< N m
-  std::optional<std::array<double, 3>> gravity;      ///< m/s^2; none: the arm's.
+  std::optional<std::array<double, 3>> gravity;      ///< m/s^2; missing: the arm's gravity.
 
-  /// What holds the tendons.
+  /// Returns the tendons' prescribed tensions or displacements.
   [[nodiscard]] TendonInput tendons() const;
-  /// The arm's loads, with the gravity and the tip's force and moment of this request.
+  /// Returns the arm's loads, with this request's gravity and the tip's force and moment.
   [[nodiscard]] RodLoads loads(const Rod& rod, RodLoads of_arm) const;
 };
 
-/// Adds its fields to the table of a request that has them.
+/// Adds the fields of RodRequest to the table of a derived request.
 template <typename Request>
 Table<Request>& add_rod_fields(Table<Request>& table) {
   constexpr NumberRange load_range = {.min = -1e9, .max = 1e9};
@@ -43,7 +43,7 @@ Table<Request>& add_rod_fields(Table<Request>& table) {
               .range = between(-1e6, 1e6)});
 }
 
-/// Reports what does not fit the rod: other numbers of tendons, tensions beside displacements.
+/// Reports numbers of tendons that do not match the rod, and tensions given together with displacements.
 void check_rod_request(const Rod& rod, const RodRequest& request, Reader& reader);
 
 }  // namespace flexura

@@ -25,7 +25,7 @@ std::vector<std::string> command_names(const ProgramHelp& help) {
   return names;
 }
 
-// The statement by which bash offers values. Names of files may hold spaces: each line is one name.
+// Returns the bash statement that offers values. File names may contain spaces, so each line is one name.
 std::string bash_reply(const OptionHelp& option) {
   switch (option.takes) {
     case Takes::choice:
@@ -43,7 +43,7 @@ std::string bash_reply(const OptionHelp& option) {
   return "";
 }
 
-// One word of zsh's _arguments, for a value.
+// Returns the part of an argument of zsh's _arguments that completes a value.
 std::string zsh_action(const OptionHelp& option) {
   switch (option.takes) {
     case Takes::choice:
@@ -62,7 +62,7 @@ std::string zsh_action(const OptionHelp& option) {
   return "";
 }
 
-// A text inside single quotes in zsh's _arguments, where brackets and colons mean something.
+// Escapes a text within single quotes in zsh's _arguments, where brackets and colons have a meaning.
 std::string zsh_text(const std::string& text) {
   std::string quoted;
   for (const char c : text) {

@@ -92,7 +92,7 @@ bool is_finite(const Equilibrium& found) {
 
 Node::Table answer_of(const Equilibrium& found) {
   if (found.end == StaticsEnd::no_equilibrium) return unknown("no_equilibrium");
-  // Numbers beyond what doubles hold are as far from an answer.
+  // Values that overflow double count as not converged.
   if (!found.converged() || !is_finite(found)) return unknown("out_of_steps");
   return {{"converged", {}, {true, {}}},
           {"reason", {}, {std::string("converged"), {}}},

@@ -19,17 +19,17 @@ namespace flexura {
 /// depends on its line alone.
 class StaticsAnswers {
  public:
-  /// std::invalid_argument: the arm has no rod that can be computed (rod_of, rod_problems).
+  /// Throws std::invalid_argument if the arm has no computable rod (rod_of, rod_problems).
   StaticsAnswers(const ArmConfig& arm, const std::optional<DriveConfig>& drive);
 
-  /// One line of JSON without its line end: {"converged":..,"reason":..} and, of what converged,
+  /// Returns one line of JSON without its line end: {"converged":..,"reason":..}. If converged, it also has
   /// "tip":{"position":[..],"rotation":[w,x,y,z]},"tensions":[..],"displacements":[..],"strain_energy":..,
   /// "stable":..,"snapped":..,"ambiguous":.. and "at":[poses] where asked for. Of a target the tensions are
   /// those of least effort that reach it, or come nearest, and there are "reached":.., "why_not":"..." if it
   /// is not, "residual":.. (m) and, where an orientation was asked for, "residual_angle":.. (rad).
   /// {"error":"..."} for a line that cannot be answered. Never throws on account of the line.
   [[nodiscard]] std::string answer(std::string_view line);
-  /// What keeps the line from being answered, in words; "": nothing does.
+  /// Returns why the line cannot be answered; "" if it can.
   [[nodiscard]] std::string problem(std::string_view line) const;
 
  private:

@@ -19,9 +19,9 @@ namespace {
 
 using namespace flexura;
 
-// Short enough for inputs that are longer.
+// Short enough that inputs can exceed it.
 constexpr std::size_t longest = 1000;
-// So many lines of an input are answered.
+// Number of lines of an input to answer.
 constexpr std::size_t most_lines = 8;
 
 ArmConfig arm_of(ModesConfig modes, double youngs_modulus) {
@@ -72,7 +72,7 @@ void check_statics(std::string_view text, std::string_view line) {
   if (residual != nullptr && !(*residual->as<double>() >= 0)) std::abort();
 }
 
-// What stands before the next line end, which is taken, too.
+// Returns the text before the next line end and removes both from `text`.
 std::string_view take_text_line(std::string_view& text) {
   const std::size_t end = text.find('\n');
   const std::string_view line = text.substr(0, end);

@@ -75,7 +75,7 @@ TEST(AnswerStatics, IsStraightWhenNothingPulls) {
 
 TEST(AnswerStatics, FindsTheTensionsOfDisplacements) {
   StaticsAnswers answers = wire_answers();
-  // All of them are taut: a slack one has another displacement than its own.
+  // All tendons are taut: the tension of a slack one does not determine its displacement.
   const Node pulls = answer_to(answers, R"({"tensions":[4,1,1,1,2,1]})");
   const std::vector<double> pulled_in = listed_numbers(pulls.find("displacements"));
   const Node back = answer_to(answers, fmt::format(R"({{"displacements":[{}]}})", fmt::join(pulled_in, ",")));
@@ -94,7 +94,7 @@ TEST(AnswerStatics, AddsAForceAtTheTip) {
 }
 
 TEST(AnswerStatics, TakesTheFilesGravityAndLoadsInTheWorldsFrame) {
-  // The base's z is the world's Y, its x the world's X and its y against the world's Z.
+  // The base's z is the world's Y, its x the world's X and its y the world's -Z.
   const std::string rod = R"(
 [[arm.section]]
 length = 0.5

@@ -1,4 +1,4 @@
-// A run that is told to stop while nobody looks at it.
+// Tests stopping a run that has no viewer.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -87,7 +87,7 @@ TEST_F(StoppedProgram, BringsAnArmThatIsSteeredToRest) {
   ASSERT_GT(steps.size(), 3u);
   EXPECT_NE(steps[0].sent.bends, steps[2].sent.bends);
   const double rate = 90 * degree;
-  // To rest along the limiter's way: no command leaps.
+  // The limiter brings the arm to rest: no command jumps.
   for (std::size_t k = 1; k < steps.size(); ++k)
     for (std::size_t i = 0; i < 3; ++i)
       EXPECT_LT((steps[k].sent.bends[i] - steps[k - 1].sent.bends[i]).norm(), rate / 30 + 1e-9);
@@ -109,7 +109,7 @@ TEST_F(StoppedProgram, MakesNoFilmBeforeItEnds) {
   EXPECT_FALSE(std::filesystem::exists(path("long/mp4")));
 }
 
-// The first is on its way while the run is held; the second does not wait for it.
+// The first signal is pending while the run is stopped; the second one does not wait for it.
 TEST_F(StoppedProgram, EndsAtOnceWhenItIsToldAgain) {
   const pid_t child = running(endless, 1'500'000);
   kill(child, SIGSTOP);

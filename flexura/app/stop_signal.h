@@ -7,19 +7,19 @@
 
 namespace flexura {
 
-/// Waits for SIGINT or SIGTERM on a thread of its own; this thread and those that it starts do not get them
-/// any more. One at a time.
+/// Waits for SIGINT or SIGTERM on its own thread. While it lives, the creating thread and the threads that it
+/// starts do not receive them. Only one may exist at a time.
 class StopSignal {
  public:
-  /// `on_stop` is called there, for every one that comes.
+  /// Calls `on_stop` on that thread for every signal received.
   explicit StopSignal(std::function<void()> on_stop = {});
   ~StopSignal();
   StopSignal(const StopSignal&) = delete;
   StopSignal& operator=(const StopSignal&) = delete;
 
-  /// The first that has come; 0: none.
+  /// Returns the first signal received; 0: none so far.
   [[nodiscard]] int come() const { return come_; }
-  /// Returns when one has come.
+  /// Blocks until a signal has been received.
   void wait() const;
 
  private:

@@ -19,7 +19,7 @@ std::optional<double> TimeLeft::at(double fraction, double elapsed) {
   last_fraction_ = fraction;
   const double done = fraction - begin_fraction_;
   const double took = elapsed - begin_elapsed_;
-  // Earlier the estimate would jump.
+  // Too early, the estimate would jump.
   if (done < 0.02 || took < 1) return std::nullopt;
   return took * (1 - fraction) / done;
 }

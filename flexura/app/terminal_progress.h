@@ -10,11 +10,12 @@
 
 namespace flexura {
 
-/// Estimates how long a job goes on, from how long its fraction took so far.
+/// Estimates the remaining time of a job from its progress so far.
 class TimeLeft {
  public:
-  /// The time left, s, when `fraction` in [0, 1] is done `elapsed` seconds after the start; missing while too
-  /// little is done to say. A fraction below the last one starts a new part of the job.
+  /// Returns the remaining time, s, given that `fraction` in [0, 1] is done `elapsed` seconds after the
+  /// start. Returns std::nullopt while too little is done for an estimate. A fraction below the last one
+  /// starts a new part of the job.
   std::optional<double> at(double fraction, double elapsed);
 
  private:
@@ -23,18 +24,18 @@ class TimeLeft {
   double last_fraction_ = 0;
 };
 
-/// "12 s", "3 min 20 s", "2 h 5 min".
+/// Returns a duration as text: "12 s", "3 min 20 s", "2 h 5 min".
 [[nodiscard]] std::string duration_text(double seconds);
 
-/// A progress line on a terminal with the time left, redrawn in place a few times a second. Where stderr is
-/// not a terminal it prints nothing.
+/// A progress line on a terminal with the remaining time, redrawn in place a few times a second. Prints
+/// nothing if stderr is not a terminal.
 class TerminalProgress : public Progress {
  public:
   explicit TerminalProgress(std::ostream& err);
   ~TerminalProgress() override;
 
   void update(double fraction, std::string_view what) override;
-  /// Takes the line off the screen.
+  /// Removes the line from the screen.
   void clear();
 
  private:

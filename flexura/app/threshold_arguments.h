@@ -7,14 +7,15 @@
 
 namespace flexura {
 
-/// How figure and ground are told apart, as the command line says it.
+/// Command-line arguments for separating foreground and background.
 struct ThresholdArguments {
-  std::optional<std::string> method = {};  ///< Left out: otsu.
-  std::optional<double> level = {};        ///< 0 to 255; with no method it is `fixed`.
-  std::string figure = {};                 ///< "dark" or "bright"; "": as the picture's border tells.
+  std::optional<std::string> method = {};  ///< Default: otsu.
+  std::optional<double> level = {};        ///< 0 to 255; without a method, it implies `fixed`.
+  std::string figure = {};                 ///< "dark" or "bright"; "": decided from the picture's border.
 };
 
-/// The same, checked. InputError: unknown words, a level outside its range or beside another method.
+/// Returns the checked settings for the arguments. Throws InputError for unknown words, and for a level out
+/// of range or given with another method than `fixed`.
 [[nodiscard]] ThresholdConfig threshold_config(const ThresholdArguments& arguments);
 
 }  // namespace flexura

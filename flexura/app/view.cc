@@ -34,13 +34,13 @@ namespace {
 
 constexpr std::uint16_t usual_port = 8421;
 
-// Another for each start of the program: no secret, and no result depends on it.
+// Returns a name that differs for each start of the program. It is not secret, and no result depends on it.
 std::string session_name() {
   std::random_device device;
   return fmt::format("{:08x}{:08x}", device(), device());
 }
 
-// Every example, by the title in its file.
+// Returns all examples, titled as in their files.
 std::vector<ViewExample> offered_examples() {
   std::vector<ViewExample> offered;
   for (const embedded::Example& one : embedded::examples) {
@@ -55,7 +55,7 @@ std::vector<ViewExample> offered_examples() {
 
 ViewStart start_of(const std::string& what) {
   ViewStart start;
-  std::error_code error;  // What cannot be looked at is said by whoever reads it.
+  std::error_code error;  // Errors are reported by whatever reads the path.
   if (std::filesystem::is_directory(what, error)) {
     start.recording = std::make_shared<const Recording>(what);
     start.results = std::filesystem::path("results") / "view";
@@ -73,7 +73,7 @@ ViewStart start_of(const std::string& what) {
   return start;
 }
 
-// What no browser could say would let nobody in, and nobody would know why.
+// Rejects names that no browser could send: they would silently block every request.
 void require_hosts(const std::vector<std::string>& names) {
   for (const std::string& name : names) {
     if (!is_host(name))
@@ -124,7 +124,7 @@ OpenViewer::OpenViewer(ViewStart start, const ViewerArguments& arguments, std::o
   if (assets.empty()) assets = {&parts_->no_page_asset, 1};
   parts_->server = serve(start, arguments, assets);
   out << "viewer: " << parts_->server->url() << '\n' << std::flush;
-  // Nobody could learn where it is.
+  // Without output nobody would know the address.
   if (!out) throw std::runtime_error("cannot write to the standard output");
   if (listens_everywhere(arguments.address))
     out << "it answers at every address of this machine, and at a host name given with --name\n"

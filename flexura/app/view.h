@@ -12,29 +12,29 @@
 
 namespace flexura {
 
-/// What is served where the program was built without the page.
+/// Response if the program was built without the viewer's page.
 inline constexpr std::string_view no_page_text =
     "This flexura was built without the viewer's page: build it with -DFLEXURA_VIEWER=ON, which needs Node "
     "and npm.\n";
 
-/// How a viewer is reached.
+/// Settings of how a viewer can be reached.
 struct ViewerArguments {
-  std::optional<std::uint16_t> port;  ///< Left out: 8421, or any that is free.
-  bool browser = true;                ///< Open it, where there is a screen.
-  std::string address = "127.0.0.1";  ///< Of the interface to listen on.
-  std::vector<std::string> names;     ///< Further hosts by which it may be called.
+  std::optional<std::uint16_t> port;  ///< Port; default: 8421, or any free one.
+  bool browser = true;                ///< Whether to open a browser if there is a display.
+  std::string address = "127.0.0.1";  ///< Address of the interface to listen on.
+  std::vector<std::string> names;     ///< Further host names that requests may use.
 };
 
-/// What `flexura view` is told.
+/// Arguments of `flexura view`.
 struct ViewArguments {
-  std::string what;  ///< An experiment file, or a results folder; "" for the paper's arm.
+  std::string what;  ///< An experiment file or a results folder; "": the paper's arm.
   ViewerArguments viewer;
 };
 
-/// Serves a viewer, prints its address to `out`, and ends well when it gets SIGINT or SIGTERM.
+/// Serves a viewer and prints its address to `out`. Returns normally on SIGINT or SIGTERM.
 int view_command(const ViewArguments& arguments, std::ostream& out, std::ostream& err);
 
-/// A viewer that begins with `start`, its address printed to `out` and opened in a browser.
+/// A viewer that starts with `start`. Prints its address to `out` and opens it in a browser.
 class OpenViewer {
  public:
   OpenViewer(ViewStart start, const ViewerArguments& arguments, std::ostream& out);

@@ -1,4 +1,4 @@
-// The viewer as a user starts it: what it opens, what it leaves, and when it ends.
+// Tests the viewer as a user starts it: what it opens, what it leaves behind, and when it ends.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -40,7 +40,7 @@ TEST_F(ViewerProgram, ServesAViewerUntilItIsTold) {
   }
 }
 
-// A variable of the environment, as long as this lives.
+// Sets an environment variable for its own lifetime.
 class Variable {
  public:
   Variable(const char* name, const std::string& value) : name_(name) {
@@ -62,7 +62,7 @@ class Variable {
   std::optional<std::string> before_;
 };
 
-// A stand-in for the desktop's opener writes what it is to open, and what is in that.
+// A stand-in for the desktop's opener writes the argument that it gets and the contents of that file.
 TEST_F(ViewerProgram, OpensTheBrowserUnlessItIsToldNotTo) {
   std::filesystem::create_directory(path("bin"));
   std::ofstream(path("bin/xdg-open")) << "#!/bin/sh\n{ echo \"$1\"; cat \"$1\"; } > " << path("opened")
@@ -76,7 +76,7 @@ TEST_F(ViewerProgram, OpensTheBrowserUnlessItIsToldNotTo) {
     const pid_t child = start("view --port 0 " + options, path("out"));
     const std::string printed = told_in(path("out"));
     const bool is_expected = options.empty();
-    // What is not to come is given a while in which it would.
+    // If no file is expected, wait for a while in which it would appear.
     for (int i = 0; i < (is_expected ? 3000 : 10) && !std::filesystem::exists(path("opened")); ++i)
       std::this_thread::sleep_for(std::chrono::milliseconds(10));
     kill(child, SIGTERM);
@@ -125,7 +125,7 @@ TEST_F(ViewerProgram, ServesWhatARunLeft) {
   EXPECT_EQ(wait(child).status, 0);
 }
 
-// The port in the address that a viewer prints.
+// Returns the port in the address that a viewer prints.
 std::string port_in(const std::string& printed) {
   const std::size_t at = printed.find("127.0.0.1:") + 10;
   return printed.substr(at, printed.find('/', at) - at);
@@ -147,7 +147,7 @@ TEST_F(ViewerProgram, ServesThePageOrSaysThatItHasNone) {
   EXPECT_EQ(wait(child).status, 0);
 }
 
-// A page as far as the program sees: it asks for both cameras' pictures and looks until the run is over.
+// Acts like the page: requests both cameras' pictures and watches until the run is over.
 struct Look {
   int running_states = 0;
   int pictures = 0;
@@ -181,7 +181,7 @@ Look look_at_run(const std::string& printed) {
   }
 }
 
-// The files of a run's results, but for the one of the wall clock.
+// Returns the files of a run's results, except that of wall-clock times.
 std::vector<std::filesystem::path> results_in(const std::filesystem::path& folder) {
   std::vector<std::filesystem::path> files;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {

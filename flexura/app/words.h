@@ -14,12 +14,13 @@
 
 namespace flexura {
 
-/// Prints "label: text" as one line, whatever names the text holds.
+/// Prints "label: text" as one line, even if names in the text hold line breaks.
 inline void tell(std::ostream& out, std::string_view label, std::string_view text) {
   out << label << ": " << one_line(text) << '\n';
 }
 
-/// The value of an enumeration that an option's word names. InputError, with all the words, for another.
+/// Returns the enumeration value named by an option's word. Throws InputError listing all words if it is
+/// unknown.
 template <typename E>
 E named(const std::string& option, const std::string& word) {
   const std::vector<std::string>& names = names_of(static_cast<const E*>(nullptr));

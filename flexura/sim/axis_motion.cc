@@ -59,7 +59,7 @@ void AxisMotion::go(double time, double target, double duration) {
   while (plans_.size() > 1 && plans_[1].start <= time - horizon_) plans_.pop_front();
 }
 
-// Returns the peak rate after speeding up or slowing down from `rate`, such that the axis rests `way` further
+// Returns the peak rate after speeding up or slowing down from `rate`. With it the axis rests `way` further
 // on after `duration`, or as soon as possible. `way` is at least the braking distance.
 double AxisMotion::peak_rate(double way, double rate, double duration) const {
   const double a = axis_.max_acceleration;

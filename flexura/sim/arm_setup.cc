@@ -19,7 +19,7 @@ std::vector<std::array<double, 2>> tube_radii(const Arm& arm) {
   return radii;
 }
 
-// What a rod in motion has beside its rod.
+// Sets the time step, contact, drag and payloads of an arm with inertia.
 void set_motion(const RigConfig& config, const Arm& arm, ArmRod& rod) {
   rod.time_step = config.arm.time_step;
   if (const auto& contact = config.arm.contact) {

@@ -14,31 +14,34 @@
 
 namespace flexura {
 
-/// The rod that an arm is, and what pulls at it beside its tendons.
+/// An arm as an elastic rod, with its loads and what affects its motion.
 struct ArmRod {
   Rod rod;
   RodLoads loads;
   std::vector<TendonBreak> breaks = {};
-  std::optional<double> time_step = {};  ///< Of its motion, s. None: it has no inertia, and none of the next.
+  /// Time step of the motion, s. Missing: the arm has no inertia, and the fields below are empty.
+  std::optional<double> time_step = {};
   std::optional<RodContactConfig> contact = {};
   std::optional<RodDragConfig> drag = {};
-  /// A mass that it carries for a time.
+  /// A mass that the arm carries for a time.
   struct Payload {
     RodPayload payload;
-    double from = 0, until = 0;  ///< s
+    double from = 0, until = 0;  ///< Start and end of carrying it, s.
   };
   std::vector<Payload> payloads = {};
 };
 
-/// What a simulation needs to know of an arm and what moves it.
+/// The arm, its drive and its start, as a simulation needs them.
 struct ArmSetup {
-  /// The arm, its drive and its start as `config` says. Errors as arm_state() says (kinematics/shape.h).
+  /// Builds the arm, its drive and its initial state from `config`. Errors as arm_state()
+  /// (kinematics/shape.h).
   explicit ArmSetup(const RigConfig& config);
 
   Arm arm;
-  ArmState initial;            ///< Where it starts, as the model or the truth has it.
-  std::optional<Drive> drive;  ///< None: bends are moved as their own rates allow.
-  std::optional<ArmRod> rod;   ///< Of an arm whose model is static or dynamic. None: its sections are arcs.
+  ArmState initial;            ///< Initial state, of the model or of the truth.
+  std::optional<Drive> drive;  ///< Missing: the sections bend at their own rates.
+  /// The rod if the arm's mechanics are static or dynamic. Missing: sections are arcs.
+  std::optional<ArmRod> rod;
 };
 
 }  // namespace flexura

@@ -20,7 +20,7 @@ AxisMotion::State AxisMotion::Plan::at(double time) const {
           piece.rate + t * piece.acceleration};
 }
 
-// Goes on from `end` with this rate and acceleration for a while; `target` is where that leads.
+// Appends a piece of this duration, rate and acceleration at `end`, and moves `end` and `target` to its end.
 void AxisMotion::Plan::add(double duration, double rate, double acceleration) {
   pieces[static_cast<std::size_t>(count++)] = {end, target, rate, acceleration};
   end += duration;
@@ -59,25 +59,26 @@ void AxisMotion::go(double time, double target, double duration) {
   while (plans_.size() > 1 && plans_[1].start <= time - horizon_) plans_.pop_front();
 }
 
-// The rate at which to go on after speeding up or slowing down from `rate`, in order to be at rest `way` on
-// after `duration`, or as soon as possible. The way is at least what the brake takes.
+// Returns the peak rate after speeding up or slowing down from `rate`. With it the axis rests `way` further
+// on after `duration`, or as soon as possible. `way` is at least the braking distance.
 double AxisMotion::peak_rate(double way, double rate, double duration) const {
   const double a = axis_.max_acceleration;
   const double peak = std::min(std::sqrt(std::max(a * way + 0.5 * rate * rate, 0.0)), axis_.max_rate);
-  if (!(peak > 0)) return 0;  // the brake leads just there
+  if (!(peak > 0)) return 0;  // Braking now ends exactly at the target.
   const double reach =
-      std::max(way + rate * rate / (2 * a), 0.0);  // from where it started at rest, or will turn
+      // From the point where it started at rest, or will reverse.
+      std::max(way + rate * rate / (2 * a), 0.0);
   const double shortest = (peak - rate) / a + reach / peak;
   if (!(duration > shortest)) return peak;
-  // Slowing down first: it takes rate/a for the brake, the rest at the even rate.
+  // Slowing down first: braking takes rate/a, and the remaining time passes at constant rate.
   const double slowed = (way - rate * rate / (2 * a)) / (duration - rate / a);
   if (rate > 0 && slowed <= rate) return std::max(slowed, 0.0);
-  // Speeding up first: duration = (peak - rate)/a + reach/peak, of whose roots the lesser.
+  // Speeding up first: the smaller root of duration = (peak - rate)/a + reach/peak.
   const double half = 0.5 * (duration + rate / a);
   return std::min(reach / (half + std::sqrt(std::max(half * half - reach / a, 0.0))), peak);
 }
 
-// From a position and rate to rest at `target`: full acceleration to the peak rate, on at that rate, full
+// Plans from a position and rate to rest at `target`: full acceleration to the peak rate, constant rate, full
 // deceleration.
 void AxisMotion::fill(Plan& plan, const State& from, double target, double duration) const {
   const double a = axis_.max_acceleration;
@@ -88,18 +89,18 @@ void AxisMotion::fill(Plan& plan, const State& from, double target, double durat
     plan.target = target;
     return;
   }
-  // Seen in the direction in which the brake, applied now, would leave some way to go.
+  // Signs are relative to the direction in which distance remains if the axis braked now.
   const double left = target - (from.position + from.rate * std::abs(from.rate) / (2 * a));
   const double sense = std::copysign(1.0, left);
   const double way = sense * (target - from.position), rate = sense * from.rate;
   const double peak = peak_rate(way, rate, duration);
-  const double faster = peak < rate ? -1 : 1;  // or slower first
+  const double faster = peak < rate ? -1 : 1;  // -1: slow down first.
   const double cruise = way - (faster * (peak * peak - rate * rate) + peak * peak) / (2 * a);
   plan.add(faster * (peak - rate) / a, sense * rate, faster * sense * a);
   if (peak > 0 && cruise > 0) plan.add(cruise / peak, sense * peak, 0);
   plan.add(peak / a, sense * peak, -sense * a);
   if (rate < 0) plan.turn = plan.start - rate / a;
-  plan.target = target;  // to the bit
+  plan.target = target;  // Exact to the bit.
 }
 
 const AxisMotion::Plan& AxisMotion::plan_at(double time) const {

@@ -7,50 +7,51 @@
 
 namespace flexura {
 
-/// One motor-driven axis over time: what it carries, in the units of its position. It goes to each target as
-/// fast as its rate and acceleration allow, from whatever motion it is in, and stands there.
+/// Motion of one motor-driven axis and its load over time, in the units of its position. The axis moves to
+/// each target as fast as its rate and acceleration allow, from any current motion, and stops there.
 ///
-/// It is a function of time and of the commands up to then: asking changes nothing, so that it is the same to
-/// the bit however often and when it is asked.
+/// The motion is a function of time and of the commands up to that time. Queries change nothing, so results
+/// are bit-identical however often and whenever they are made.
 class AxisMotion {
  public:
-  /// What is carried lies within motor + [low, high]: it stays while the motor moves through the play.
+  /// Backlash: the load lies within motor + [low, high], and stays while the motor moves through that range.
   struct Play {
     double low = 0, high = 0;  ///< low <= 0 <= high
   };
 
-  /// At rest at `start` (motor and what it carries). A command takes effect `delay` s after it was given. The
-  /// axis can be asked for times back to `horizon` s before the last command.
+  /// Creates an axis whose motor and load rest at `start`. A command takes effect `delay` s after it was
+  /// given. Queries are allowed back to `horizon` s before the last command.
   AxisMotion(const AxisConfig& axis, const Play& play, double start, double delay, double horizon);
 
-  /// To the nearest position that can be commanded, from `time` + delay on; never before the last command,
-  /// else std::invalid_argument. It takes `duration` s, or as long as it must.
+  /// Moves to the commandable position nearest to `target`, from `time` + delay on. The motion takes
+  /// `duration` s, or longer if limits require it. Throws std::invalid_argument if `time` is before the last
+  /// command.
   void command(double time, double target, double duration = 0);
   /// Stops at `time` + delay, as fast as the acceleration allows.
   void halt(double time);
 
-  /// Where the motor is.
+  /// Returns the position of the motor.
   [[nodiscard]] double motor(double time) const { return plan_at(time).at(time).position; }
-  /// How fast it moves.
+  /// Returns the rate of the motor.
   [[nodiscard]] double rate(double time) const { return plan_at(time).at(time).rate; }
-  /// Where what it carries is.
+  /// Returns the position of the load, behind the backlash.
   [[nodiscard]] double position(double time) const { return carried(plan_at(time), time); }
-  /// Whether a commanded motion is under way or still to come.
+  /// Returns whether a commanded motion is under way or still to come.
   [[nodiscard]] bool is_moving(double time) const { return plans_.back().end > time; }
 
  private:
   struct State {
     double position, rate;
   };
-  struct Piece {  // of even acceleration
+  struct Piece {  // Motion with constant acceleration.
     double start, position, rate, acceleration;
   };
   struct Plan {
     double start = 0, end = 0, target = 0;
-    double carried = 0;             // at the start
-    double turn = 0;                // when the motor reverses on the way; the start when it does not
-    int count = 0;                  // of pieces
-    std::array<Piece, 3> pieces{};  // from the start to the end
+    double carried = 0;             // Position of the load at the start.
+    double turn = 0;                // Time at which the motor reverses; the start if it does not.
+    int count = 0;                  // Number of pieces.
+    std::array<Piece, 3> pieces{};  // From the start to the end.
     [[nodiscard]] State at(double time) const;
     void add(double duration, double rate, double acceleration);
   };
@@ -64,7 +65,7 @@ class AxisMotion {
   AxisConfig axis_;
   Play play_;
   double delay_, horizon_;
-  std::deque<Plan> plans_;  // by their start; never empty
+  std::deque<Plan> plans_;  // Ordered by start; never empty.
 };
 
 }  // namespace flexura

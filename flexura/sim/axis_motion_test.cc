@@ -122,7 +122,7 @@ TEST(AxisMotion, DoesNotKnowACommandBeforeItsDelay) {
   });
 }
 
-// The play operator, followed in small steps.
+// The backlash (play operator), followed in small steps.
 TEST(AxisMotion, CarriesThroughItsPlay) {
   for_random_cases(60, [](TestRandom& random) {
     RandomCase one(random);
@@ -130,7 +130,7 @@ TEST(AxisMotion, CarriesThroughItsPlay) {
     const AxisMotion motion = one.commanded();
     double carried = one.start;
     constexpr double step = 2e-4;
-    // A step may miss where the motor turned by so much.
+    // Bound on how far sampling in steps can miss the motor's reversal point.
     const double missed = std::min(one.axis.max_acceleration * step * step, one.axis.max_rate * step) + 1e-12;
     for (double t = 0; t < one.end(); t += step) {
       const double motor = motion.motor(t);
@@ -143,14 +143,14 @@ TEST(AxisMotion, CarriesThroughItsPlay) {
 TEST(AxisMotion, TakesNoLongerThanItMust) {
   const AxisConfig axis{.limits = {-10, 10}, .max_rate = 2, .max_acceleration = 4};
   AxisMotion motion(axis, {}, 0, 0.1, forever);
-  motion.command(1, 5);  // half a second to 2/s, over 0.5; cruise over 4; the same down
+  motion.command(1, 5);  // 0.5 s to reach 2/s over a distance of 0.5; constant rate over 4; braking over 0.5.
   EXPECT_EQ(motion.motor(1.1), 0);
   EXPECT_NEAR(motion.motor(1.6), 0.5, 1e-14);
   EXPECT_NEAR(motion.rate(2), 2, 1e-14);
   EXPECT_TRUE(motion.is_moving(4.09));
   EXPECT_FALSE(motion.is_moving(4.11));
   EXPECT_EQ(motion.motor(4.11), 5);
-  // Turned back at full rate: it brakes over 0.5, and returns.
+  // Reversed at full rate: it brakes over 0.5 s, and returns.
   AxisMotion turned(axis, {}, 0, 0, forever);
   turned.command(0, 9);
   turned.command(1, 0);
@@ -171,11 +171,11 @@ TEST(AxisMotion, TakesTheTimeItIsGivenOrTheShortest) {
     one.commands.back().duration = random.uniform(0, 3);
     const AxisMotion slow = one.commanded();
     const double target = commandable(one.axis, one.commands.back().target);
-    // It may be there, or come to rest there by itself on its way to the same place.
+    // The axis may already be there, or come to rest there on its current motion.
     const double rate = fast.rate(start);
     const double stop = fast.motor(start) + rate * std::abs(rate) / (2 * one.axis.max_acceleration);
     if (std::abs(stop - target) < 1e-9) return;
-    // When it comes to rest, by bisection.
+    // Finds the time at which it comes to rest, by bisection.
     const auto end = [&](const AxisMotion& motion) {
       double low = start, high = start + 1e4;
       while (high - low > 1e-9) (motion.is_moving(0.5 * (low + high)) ? low : high) = 0.5 * (low + high);
@@ -183,7 +183,7 @@ TEST(AxisMotion, TakesTheTimeItIsGivenOrTheShortest) {
     };
     ++timed;
     EXPECT_NEAR(end(slow), std::max(end(fast), one.commands.back().duration), 1e-6);
-    // Without a jump: what is left before the end is what the brake takes.
+    // The motion ends without a jump: the distance left just before the end is the braking distance.
     if (!std::isfinite(one.axis.max_acceleration)) return;
     ++braked;
     const double before = start + end(slow) - 1e-6;
@@ -209,7 +209,7 @@ TEST(AxisMotion, HaltsAtItsFullAcceleration) {
   motion.command(0, 9);
   motion.halt(2);
   EXPECT_NEAR(motion.rate(2.25), 1, 1e-14);
-  EXPECT_NEAR(motion.motor(3), 4, 1e-14);  // 3.5 at 2 s, and 0.5 of braking
+  EXPECT_NEAR(motion.motor(3), 4, 1e-14);  // 3.5 at 2 s, plus 0.5 of braking distance.
   EXPECT_FALSE(motion.is_moving(2.5001));
 }
 

@@ -41,7 +41,7 @@ void Crew::run(std::size_t count, const Job& job) {
 }
 
 void Crew::help(std::size_t place) {
-  std::uint64_t done = 0;  // the last round
+  std::uint64_t done = 0;  // Last round done.
   for (;;) {
     {
       std::unique_lock lock(mutex_);

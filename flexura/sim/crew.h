@@ -11,23 +11,24 @@
 
 namespace flexura {
 
-/// Threads that do jobs together and sleep in between: a camera's each, where frames are drawn.
+/// A pool of threads that run jobs together and sleep in between. Used to render frames, one thread per
+/// camera.
 class Crew {
  public:
-  using Job = std::function<void(std::size_t)>;  ///< Takes the job's number.
+  using Job = std::function<void(std::size_t)>;  ///< Takes the number of the job.
 
-  /// `threads` of them, the caller's among them; at least that one.
+  /// Creates a crew of `threads` threads including the caller's; at least one.
   explicit Crew(std::size_t threads);
   ~Crew();
   Crew(const Crew&) = delete;
   Crew& operator=(const Crew&) = delete;
 
-  /// Calls job(0) ... job(count - 1), and returns when all are done. Which thread does which is fixed: job i
-  /// and job i + threads() are one thread's, one after the other. A thread's jobs end where one throws; of
-  /// what the threads threw, the first's is thrown here. Not to be called from two threads at once.
+  /// Calls job(0) ... job(count - 1) and returns when all are done. The assignment is fixed: job i and job i
+  /// + threads() run on the same thread, in that order. A thread stops at its first exception; the exception
+  /// of the lowest-numbered thread is rethrown here. Not to be called from two threads at once.
   void run(std::size_t count, const Job& job);
 
-  /// The caller's among them.
+  /// Returns the number of threads including the caller's.
   [[nodiscard]] std::size_t threads() const { return helpers_.size() + 1; }
 
  private:
@@ -36,13 +37,14 @@ class Crew {
 
   std::mutex mutex_;
   std::condition_variable begun_, ended_;
-  // Guarded by the mutex, but for what a round's own jobs are: nobody changes them while any helper is busy.
+  // Guarded by the mutex, except job_ and count_ while a round runs: they do not change while a helper is
+  // busy.
   const Job* job_ = nullptr;
   std::size_t count_ = 0;
   std::uint64_t round_ = 0;
-  std::size_t busy_ = 0;  // helpers
+  std::size_t busy_ = 0;  // Number of helpers still working.
   bool is_over_ = false;
-  std::vector<std::exception_ptr> thrown_;  // one a thread
+  std::vector<std::exception_ptr> thrown_;  // One per thread.
   std::vector<std::jthread> helpers_;
 };
 

@@ -75,7 +75,7 @@ TEST(Crew, ThrowsWhatTheFirstThreadThrewAndGoesOnAfterwards) {
 TEST(Crew, SleepsWhileThereIsNothingToDo) {
   Crew crew(4);
   crew.run(4, [](std::size_t) {});
-  const std::clock_t before = std::clock();  // of all threads
+  const std::clock_t before = std::clock();  // CPU time of all threads.
   std::this_thread::sleep_for(std::chrono::milliseconds(100));
   EXPECT_LT(static_cast<double>(std::clock() - before) / CLOCKS_PER_SEC, 0.03);
 }

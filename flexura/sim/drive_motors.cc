@@ -6,7 +6,7 @@
 namespace flexura {
 namespace {
 
-// A motor as an axis in microsteps.
+// Returns a motor as an axis in microsteps.
 AxisConfig axis_config(const StepperMotor& motor) {
   const double microsteps_a_radian = motor.resolution() / (2 * std::numbers::pi);
   AxisConfig axis;
@@ -23,7 +23,7 @@ DriveMotors::DriveMotors(const Drive& drive, const Drive& real, const std::vecto
   for (std::size_t i = 0; i < drive.axes.size(); ++i) {
     const Axis& axis = drive.axes[i];
     senses_.push_back(axis.reversed ? -1 : 1);
-    // Play is taken up for pulling in at the start.
+    // The backlash is taken up for pulling in at the start.
     motions_.emplace_back(axis_config(real.axes.at(i).motor), AxisMotion::Play{0, axis.play()},
                           senses_[i] * static_cast<double>(start.at(i)), 0.0, horizon);
   }

@@ -10,33 +10,33 @@
 
 namespace flexura {
 
-/// The motors of a drive over time, with the play behind each. Positions are microsteps, each in its motor's
-/// own sense. A function of time and of the commands up to then, as AxisMotion is.
+/// Motion of a drive's motors over time, with the backlash behind each. Positions are in microsteps, in each
+/// motor's own sense. A function of time and of the commands up to that time, like AxisMotion.
 class DriveMotors {
  public:
-  /// At rest at `start`, with the play taken up for pulling in. Play and senses are those of `drive`; limits,
-  /// rates and accelerations are those of the motors of `real`. Known back to `horizon` s before the last
-  /// command. All three have as many axes.
+  /// Starts at rest at `start`, with the backlash taken up for pulling in. Backlash and senses are taken from
+  /// `drive`; limits, rates and accelerations from the motors of `real`. Queries are allowed back to
+  /// `horizon` s before the last command. `drive`, `real` and `start` have the same number of axes.
   DriveMotors(const Drive& drive, const Drive& real, const std::vector<std::int64_t>& start, double horizon);
 
-  /// From `time` on to `positions`, one an axis, within `duration` s or as long as each motor must.
+  /// Moves from `time` on to `positions`, one per axis, within `duration` s or longer as each motor needs.
   void command(double time, std::span<const double> positions, double duration);
-  /// The motors brake as fast as they can.
+  /// Stops the motors as fast as they can.
   void halt(double time);
 
   [[nodiscard]] std::size_t axes() const { return motions_.size(); }
-  /// Where the motors are at `time` s.
+  /// Returns the motor positions at `time` s, microsteps.
   [[nodiscard]] std::vector<double> positions(double time) const;
-  /// How fast they turn then, microsteps/s.
+  /// Returns the motor rates at `time` s, microsteps/s.
   [[nodiscard]] std::vector<double> rates(double time) const;
-  /// And what is behind their play.
+  /// Returns the positions behind the backlash at `time` s, microsteps.
   [[nodiscard]] std::vector<double> carried(double time) const;
-  /// Whether a commanded motion of any is under way or still to come.
+  /// Returns whether a commanded motion of any motor is under way or still to come.
   [[nodiscard]] bool is_moving(double time) const;
 
  private:
-  std::vector<double> senses_;       // 1, or -1 of a motor whose positive microsteps let cable out
-  std::vector<AxisMotion> motions_;  // in microsteps pulled in
+  std::vector<double> senses_;       // 1, or -1 for a motor whose positive microsteps let cable out.
+  std::vector<AxisMotion> motions_;  // In microsteps pulled in.
 };
 
 }  // namespace flexura

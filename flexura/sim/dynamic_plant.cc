@@ -14,15 +14,15 @@ namespace flexura {
 namespace {
 
 constexpr RodDynamicsConfig plant_config{};
-// Of a step in which motors may lose some of theirs, s: a fifth of what rotors take.
+// Longest step while motors may lose microsteps, s: a fifth of the rotor time.
 constexpr double rotor_step = rotor_time / 5;
-// Before a time at which it is asked how fast sections become longer, s.
+// Interval of the backward difference for the rates of section lengths, s.
 constexpr double shortly = 1e-5;
-// Of a step, what counts as none.
+// Fraction of a step below which a duration counts as zero.
 constexpr double no_time = 1e-9;
-// Nearer to each other two places of a section are one (RodDynamics).
+// Parts of a section: places nearer to each other than this are the same (RodDynamics).
 constexpr double one_place = 1e-9;
-// Of strains times a section's length: more is no arm any more, but a motion that blew up.
+// Limit on strain times section length: beyond it the motion has diverged.
 constexpr double greatest_strain = 1e4;
 
 const ArmRod& moving_rod(const PlantSetup& setup) {
@@ -31,7 +31,7 @@ const ArmRod& moving_rod(const PlantSetup& setup) {
   return *setup.truth.rod;
 }
 
-// That are nodes: what carries.
+// Returns the places that must be nodes: those of the payloads.
 std::vector<RodPlace> places_of(const ArmRod& rod) {
   std::vector<RodPlace> places;
   places.reserve(rod.payloads.size());
@@ -73,7 +73,7 @@ DynamicPlant::DynamicPlant(const PlantSetup& setup)
 
 DynamicPlant::~DynamicPlant() = default;
 
-// What is around the rod, at the nodes that it has.
+// Builds contact, drag and spring on the current nodes of the rod.
 void DynamicPlant::surround() const {
   std::vector<const RodSurroundings*> around;
   if (rod_.contact) around.push_back(&contact_.emplace(dynamics_.chain(), *rod_.contact));
@@ -82,8 +82,8 @@ void DynamicPlant::surround() const {
   dynamics_.set_surroundings(around.empty() ? nullptr : &surroundings_.emplace(around));
 }
 
-// The point that is pushed becomes a node. States stay what they are: nodes beside those that integrals are
-// taken at change nothing of the rod.
+// Makes the pushed point a node. States remain valid: nodes in addition to the integration points do not
+// change the rod.
 void DynamicPlant::grab(const std::optional<RodPlace>& place) const {
   if (place == grabbed_) return;
   std::vector<RodPlace> places = places_of(rod_);
@@ -136,7 +136,7 @@ std::vector<double> DynamicPlant::events(double from, double to) const {
   return times;
 }
 
-// From one event to the next.
+// Advances from one event to the next.
 void DynamicPlant::go_on(Snapshot& at, double from, double to) const {
   grab(grabbed_at(from));
   carry(at.carried);
@@ -148,7 +148,7 @@ void DynamicPlant::go_on(Snapshot& at, double from, double to) const {
   turn(at, from, to);
 }
 
-// In short steps where motors may lose some of theirs.
+// Advances in short steps while motors may lose microsteps.
 void DynamicPlant::turn(Snapshot& at, double from, double to) const {
   if (!may_lose_steps_) {
     move(at, from, to - from);
@@ -181,7 +181,7 @@ void DynamicPlant::move(Snapshot& at, double from, double h) const {
     for (std::size_t i = 0; i < rates.size(); ++i) rates[i] = (rates[i] - before[i]) / h;
     dynamics_.stretch_rest(inputs().rest_stretches(middle), rates);
   }
-  // One that is pushed elsewhere meanwhile is so from the next step on.
+  // A push that moves to another place during this step takes effect from the next step on.
   if (grabbed_) spring_->set(grabbed_at(middle) == grabbed_ ? inputs().spring(middle) : std::nullopt);
   const RodStep step = dynamics_.step(at.state, input, inputs().loads(middle), h);
   if (!step.converged())
@@ -194,7 +194,7 @@ void DynamicPlant::move(Snapshot& at, double from, double h) const {
         step_));
 }
 
-// As they are then.
+// Sets the sections' lengths and their rates at a time.
 void DynamicPlant::set_lengths(double time) const {
   if (!can_stretch_) return;
   const std::vector<double> now = inputs().rest_stretches(time),
@@ -253,7 +253,7 @@ std::vector<char> DynamicPlant::carried_at(double time) const {
   return carried;
 }
 
-// The rod gets the masses of these payloads, whatever its state.
+// Attaches the masses of these payloads to the rod, regardless of its state.
 void DynamicPlant::carry(const std::vector<char>& wanted) const {
   if (carried_ == wanted) return;
   const RodState any = dynamics_.rest();
@@ -264,7 +264,7 @@ void DynamicPlant::carry(const std::vector<char>& wanted) const {
   carried_ = wanted;
 }
 
-// Payloads are picked up and dropped: a state of what was carried becomes one of what is from now on.
+// Picks up and drops payloads: converts a state with the previous payloads into one with those from now on.
 void DynamicPlant::hand_over(Snapshot& at, double time) const {
   const std::vector<char> wanted = carried_at(time);
   if (at.carried == wanted) return;
@@ -276,7 +276,7 @@ void DynamicPlant::hand_over(Snapshot& at, double time) const {
     const RodPlace& place = rod_.payloads[i].payload.place;
     if (left[i] == 0 || wanted[i] != 0) continue;
     at.state = dynamics_.drop(at.state, place, input, loads);
-    // All that was carried there is dropped.
+    // Everything carried at this place is dropped.
     for (std::size_t k = 0; k < left.size(); ++k) {
       const RodPlace& other = rod_.payloads[k].payload.place;
       if (other.section == place.section && std::abs(other.at - place.at) <= one_place) left[k] = 0;
@@ -286,7 +286,7 @@ void DynamicPlant::hand_over(Snapshot& at, double time) const {
     if (wanted[i] == 0 || left[i] != 0) continue;
     RodPayload payload = rod_.payloads[i].payload;
     if (at.carried[i] != 0) {
-      // It is held on, and moves as its place does.
+      // The payload stays attached, and moves with its place.
       const NodeMotion motion = dynamics_.motion(at.state, payload.place);
       const Eigen::Vector3d p = motion.pose * payload.offset;
       payload.velocity = motion.twist.head<3>() + motion.twist.tail<3>().cross(p);
@@ -296,7 +296,7 @@ void DynamicPlant::hand_over(Snapshot& at, double time) const {
   at.carried = carried_ = wanted;
 }
 
-// A time is asked for twice, for what is recorded and for the warning: they are searched once.
+// Contacts at a time are queried twice, for the record and for the warning; they are computed once.
 std::vector<PlantContact> DynamicPlant::contacts(double time) const {
   if (!contact_) return {};
   const Snapshot then = at(time);

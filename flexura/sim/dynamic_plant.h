@@ -19,15 +19,17 @@
 
 namespace flexura {
 
-/// An arm that is an elastic rod in motion (docs/mechanics.md, "In time"): its tendons are pulled in, weight
-/// and loads pull at it, and it swings. It begins at rest, and is computed in steps of ArmRod::time_step from
-/// time 0 on, with commands as they are in each step; between two steps by a shorter one. So what it answers
-/// depends on time and commands alone. It touches obstacles and moves in a fluid as its ArmRod says. Where it
-/// picks a payload up or drops it, a tendon breaks or the weight is switched inside a step, the step is cut
-/// there. Motors lose steps as RotorState says. SimulationError: a step does not converge, however short.
+/// A plant whose arm is an elastic rod with inertia (docs/mechanics.md, "In time"). Tendons are pulled in,
+/// weight and loads act on it, and it swings. It touches obstacles and moves in a fluid as its ArmRod states.
+///
+/// The arm starts at rest and is computed in steps of ArmRod::time_step from time 0 on. Each step uses the
+/// commands given for it; times between two steps use a shorter step. So answers depend on time and commands
+/// alone. A step is cut where a payload is picked up or dropped, a tendon breaks, or the weight is switched.
+/// Motors lose steps as described for RotorState. Throws SimulationError if a step does not converge, however
+/// short.
 class DynamicPlant : public RodPlant {
  public:
-  /// Errors as RodInputs and RodDynamics. std::invalid_argument: the arm comes to no rest to begin with.
+  /// Errors as RodInputs and RodDynamics. Throws std::invalid_argument if no initial equilibrium is found.
   explicit DynamicPlant(const PlantSetup& setup);
   ~DynamicPlant() override;
 
@@ -46,15 +48,15 @@ class DynamicPlant : public RodPlant {
 
  private:
   struct Snapshot {
-    long index = 0;  // Of steps.
+    long index = 0;  // Step number.
     RodState state;
     RotorState rotors;
-    std::vector<char> carried;  // Which of the payloads.
+    std::vector<char> carried;  // For each payload, whether it is carried.
   };
-  // The last one at or before a time.
+  // Returns the last snapshot at or before a time.
   [[nodiscard]] const Snapshot& snapshot(double time) const;
   [[nodiscard]] double time_of(long index) const { return static_cast<double>(index) * step_; }
-  // With mutex_ held.
+  // These functions require that mutex_ is held.
   void go_on(Snapshot& at, double from, double to) const;
   void turn(Snapshot& at, double from, double to) const;
   void move(Snapshot& at, double from, double h) const;
@@ -67,27 +69,27 @@ class DynamicPlant : public RodPlant {
   [[nodiscard]] std::optional<RodPlace> grabbed_at(double time) const;
   [[nodiscard]] std::vector<char> carried_at(double time) const;
   [[nodiscard]] std::vector<PlantContact> found(const std::vector<ContactForce>& contacts) const;
-  // How the rod moves at a time, and what it carries.
+  // Returns the motion of the rod and the carried payloads at a time.
   [[nodiscard]] Snapshot at(double time) const;
 
   ArmRod rod_;
   Pose X_WB_;
-  std::vector<std::string> names_;  // of the obstacles
-  std::vector<double> bases_;       // of the sections, m
+  std::vector<std::string> names_;  // Names of the obstacles.
+  std::vector<double> bases_;       // Arc lengths of the sections' bases, m.
   double step_, horizon_;
   bool may_lose_steps_ = false, can_stretch_ = false;
-  std::vector<Snapshot> snapshots_;  // back to the horizon
-  // Asked by several threads; what they get depends on none of what was computed before.
+  std::vector<Snapshot> snapshots_;  // Back to the horizon.
+  // Queried by several threads; answers do not depend on what was computed before.
   mutable std::mutex mutex_;
   struct Answer {
     double time = 0;
     Snapshot at;
-    std::optional<std::vector<PlantContact>> contacts = {};  // once somebody asked
+    std::optional<std::vector<PlantContact>> contacts = {};  // Filled on the first query.
   };
-  mutable std::optional<Answer> answer_;  // the last one; none after a change
+  mutable std::optional<Answer> answer_;  // The last answer; empty after a change.
   mutable RodDynamics dynamics_;
-  mutable std::vector<char> carried_;  // by dynamics_
-  // Of the nodes of dynamics_; the point that is pushed is one.
+  mutable std::vector<char> carried_;  // Payloads that dynamics_ carries.
+  // Built on the nodes of dynamics_, which include the pushed point.
   mutable std::optional<RodContact> contact_;
   mutable std::optional<RodDrag> drag_;
   mutable std::optional<RodSpring> spring_;

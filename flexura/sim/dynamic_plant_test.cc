@@ -48,7 +48,7 @@ TEST(DynamicPlant, SwingsAndSettlesWhereTheArmIsAtRest) {
   EXPECT_EQ(moving_plant(rig).tensions(12).size(), 6U);
 }
 
-// Without damping it swings on after the weight is taken away, with all of its energy.
+// Without damping, the arm keeps swinging after the weight is removed, and keeps all of its energy.
 TEST(DynamicPlant, KeepsItsEnergyWhereNothingTakesIt) {
   RigConfig config = moving_rig(9.81, 0);
   config.arm.time_step = 0.001;
@@ -66,7 +66,7 @@ TEST(DynamicPlant, KeepsItsEnergyWhereNothingTakesIt) {
   EXPECT_GT(greatest, 0);
 }
 
-// What it answers does not depend on who asked before, nor on how the rig's time passed.
+// Answers do not depend on earlier queries, nor on how the rig's time advanced.
 TEST(DynamicPlant, AnswersTheSameHoweverItIsAsked) {
   const RigConfig config = moving_rig(9.81);
   SimulatedRig slow(config, config, numbers_renderer, 1), quick(config, config, numbers_renderer, 1);
@@ -91,7 +91,7 @@ TEST(DynamicPlant, AnswersTheSameHoweverItIsAsked) {
   for (const Eigen::Vector3d& same : asked) EXPECT_EQ(same, there);
 }
 
-// Half the step, a quarter of the error.
+// Half the step gives a quarter of the error.
 TEST(DynamicPlant, ConvergesWithItsStep) {
   const auto tip = [](double step) {
     RigConfig config = moving_rig(9.81);
@@ -107,13 +107,13 @@ TEST(DynamicPlant, ConvergesWithItsStep) {
   EXPECT_LE(half, 1e-3);
 }
 
-// It falls on a floor below it: what it touches carries its weight, with the drive's tendons.
+// The arm falls on an obstacle below it; obstacle and tendons carry its weight.
 TEST(DynamicPlant, RestsOnWhatItTouches) {
   RigConfig config = moving_rig(9.81, 0.05);
   SimulatedRig free(config, config, numbers_renderer, 1);
   const Eigen::Vector3d hanging = moving_tip(free, 0);
   config.arm.contact = ContactConfig{.stiffness = 1e4, .spacing = 0.02};
-  // Just above where the tip would hang; its world's weight pulls along +X.
+  // Just above where the tip would hang; gravity acts along +X.
   config.obstacles = {
       PlaneConfig{.name = "wall", .point = {hanging.x() + 0.018, 0, 0}, .normal = {-1, 0, 0}}};
   SimulatedRig rig(config, config, numbers_renderer, 1);
@@ -141,7 +141,7 @@ TEST(DynamicPlant, CarriesAPayloadForATime) {
   EXPECT_GT(loaded, before + 1e-3);
   rig.clock().wait_until(6);
   EXPECT_NEAR(moving_tip(rig, 6).x(), before, 2e-4);
-  // Another rig that is asked at other times says the same.
+  // Another rig that is queried at other times gives the same answers.
   SimulatedRig other(config, config, numbers_renderer, 1);
   other.clock().wait_until(3.3);
   (void)moving_tip(other, 2.5);
@@ -167,7 +167,7 @@ TEST(DynamicPlant, IsLetGoByATendonThatBreaks) {
   for (const double tension : moving_plant(rig).tensions(12)) EXPECT_EQ(tension, 0);
 }
 
-// What happens inside a step happens then: the step is cut there.
+// Events inside a step happen at their own times: the step is cut there.
 TEST(DynamicPlant, PicksUpAndBreaksInsideAStep) {
   RigConfig config = moving_rig(9.81, 0.05);
   config.arm.time_step = 0.008;
@@ -187,13 +187,13 @@ TEST(DynamicPlant, PicksUpAndBreaksInsideAStep) {
   const double weight = mass * 9.81 * std::abs(moving_tip(rig, after).x());
   ASSERT_GT(weight, 1e-4);
   EXPECT_NEAR(std::abs(plant.energy(after)->gravity - plant.energy(before)->gravity), weight, 0.3 * weight);
-  // Steps later it is where one is that was asked at the ends of steps alone.
+  // Several steps later it agrees with a rig that was queried at the ends of steps only.
   rig.clock().wait_until(0.4);
   quick.clock().wait_until(0.4);
   EXPECT_EQ(moving_tip(rig, 0.4), moving_tip(quick, 0.4));
 }
 
-// A motor that cannot hold its tendon falls back as its rotor does, whatever the steps are.
+// A motor that cannot hold its tendon loses steps as its rotor model predicts, whatever the steps are.
 TEST(DynamicPlant, LosesAsManyStepsHoweverTimeIsCut) {
   const auto lost = [](double step) {
     RigConfig config = moving_rig(9.81, 0.05), weak = config;
@@ -224,8 +224,8 @@ RigConfig rubbing_rig(RigConfig config, double friction) {
   return config;
 }
 
-// Pulled in slowly it comes to rest where the static arm does, whose tendons have been pulled in, and it
-// differs from one without friction.
+// With friction, an arm pulled in slowly rests where the static arm with pulled-in tendons does. It differs
+// from an arm without friction.
 TEST(DynamicPlant, RubsAsTheArmAtRestDoes) {
   const auto tip = [](const RigConfig& config) {
     SimulatedRig rig(config, config, numbers_renderer, 1);
@@ -243,7 +243,7 @@ TEST(DynamicPlant, RubsAsTheArmAtRestDoes) {
   for (std::size_t i = 0; i < pulls.size(); ++i) EXPECT_NEAR(pulls[i], tensions[i], 0.1 * most) << i;
 }
 
-// Sections that commands drive longer.
+// Sections that commands lengthen.
 TEST(DynamicPlant, IsDrivenLonger) {
   const auto rig_of = [](const RigConfig& config) {
     RigConfig free = rubbing_rig(config, 0);

@@ -17,29 +17,29 @@
 
 namespace flexura {
 
-/// How a hand pushes an arm: at a point of its middle line, by a spring to a place and by a constant force
-/// (PointSpring).
+/// How a hand pushes an arm at a point of its middle line: by a spring towards a place and by a constant
+/// force (PointSpring).
 struct PlantPush {
-  double s_rest = 0;                                ///< The point: arc length from the arm's base at rest, m.
-  Eigen::Vector3d to = Eigen::Vector3d::Zero();     ///< The spring's other end, in the world, m.
-  double stiffness = 0;                             ///< Of the spring, N/m; 0: there is none.
-  double most = 1;                                  ///< It pulls no more than this, N; > 0.
-  Eigen::Vector3d force = Eigen::Vector3d::Zero();  ///< The constant force, in the world, N.
+  double s_rest = 0;                             ///< Pushed point: arc length from the arm's base at rest, m.
+  Eigen::Vector3d to = Eigen::Vector3d::Zero();  ///< The spring's other end, in the world frame, m.
+  double stiffness = 0;                          ///< Stiffness of the spring, N/m; 0: no spring.
+  double most = 1;                               ///< Upper limit of the spring force, N; > 0.
+  Eigen::Vector3d force = Eigen::Vector3d::Zero();  ///< Constant force, in the world frame, N.
 
   bool operator==(const PlantPush&) const = default;
 };
-/// What a push does at an instant, in the world.
+/// The effect of a push at an instant, in the world frame.
 struct PlantPushForce {
-  double s_rest = 0;                                ///< As PlantPush's, m.
-  Eigen::Vector3d point = Eigen::Vector3d::Zero();  ///< Where that point is, m.
-  Eigen::Vector3d force = Eigen::Vector3d::Zero();  ///< On the arm, N.
+  double s_rest = 0;                                ///< Pushed point, as in PlantPush, m.
+  Eigen::Vector3d point = Eigen::Vector3d::Zero();  ///< Current position of that point, m.
+  Eigen::Vector3d force = Eigen::Vector3d::Zero();  ///< Force on the arm, N.
 };
 
-/// The arm of the simulated world, as it truly is: what commands make of it over time.
+/// The true arm of the simulated world: computes its response to commands over time.
 ///
-/// A command u has, for an arm behind a drive, a position for each motor (microsteps, in its own sense), else
-/// for each section its (bend_x, bend_y, stretch). What a plant makes of it is its own affair: it is no port
-/// and tells the truth, which is not for algorithms.
+/// A command u holds for an arm with a drive the position of each motor (microsteps, in its own sense).
+/// Without a drive it holds (bend_x, bend_y, stretch) of each section. A plant is not a port: it gives true
+/// values, which are not for algorithms.
 class Plant {
  public:
   virtual ~Plant() = default;
@@ -47,76 +47,78 @@ class Plant {
   Plant(const Plant&) = delete;
   Plant& operator=(const Plant&) = delete;
 
-  /// At `time` s, not before the last command: goes to u within `duration` s, or as soon after that as it
-  /// can.
+  /// Moves to u from `time` s on, within `duration` s or as soon after that as possible. `time` is not before
+  /// the last command.
   virtual void command(double time, const Eigen::VectorXd& u, double duration) = 0;
-  /// Stops as fast as it can. Times likewise.
+  /// Stops as fast as possible at `time` s, which is not before the last command.
   virtual void halt(double time) = 0;
-  /// The rig's time has come to `time` s: what follows from step to step goes on up to there. A plant that is
-  /// a function of time and its commands has nothing to do.
+  /// Advances the computation to the rig's time `time`, s, for plants that are integrated step by step. A
+  /// plant that is a function of time and its commands does nothing here.
   virtual void advance(double /*time*/) {}
-  /// How the arm stands, back to the horizon (PlantSetup) before the rig's time, and up to that time. Asking
-  /// changes nothing. Several threads may ask at once, while nobody commands or advances.
+  /// Returns the backbone at `time` s, between the horizon (PlantSetup) before the rig's time and the rig's
+  /// time. Queries change nothing. Several threads may query at once while nobody commands or advances.
   [[nodiscard]] virtual Backbone backbone(double time) const = 0;
-  /// What its sections are bent to, as the drives see it. None: it has no sections that drives bend. Times as
-  /// backbone(), and what is to come as far as commanded.
+  /// Returns the section state that the drives impose, as the drives see it. Returns std::nullopt if drives
+  /// do not bend sections. Times as for backbone(), and future times as far as commanded.
   [[nodiscard]] virtual std::optional<ArmState> commanded(double /*time*/) const { return std::nullopt; }
-  /// At `time` s, not before the last command: each tendon goes to be pulled in so far, m, as command() says,
-  /// whatever bends were commanded; the next command takes over again. It gives the bends to which arcs would
-  /// come nearest to that. None: it has no tendons that are pulled one by one beside commands, and does
-  /// nothing. std::invalid_argument: not one finite number a tendon.
+  /// Pulls each tendon in to `displacements`, m, at `time` s, not before the last command. Timing is as for
+  /// command(). This overrides commanded bends until the next command. Returns the bends of the nearest arcs.
+  /// Returns std::nullopt and does nothing if tendons cannot be pulled individually. Throws
+  /// std::invalid_argument unless there is one finite number per tendon.
   virtual std::optional<ArmState> pull(double /*time*/, const std::vector<double>& /*displacements*/,
                                        double /*duration*/) {
     return std::nullopt;
   }
-  /// From `time` s on, not before the last such call: with or without the weight and the loads that it was
-  /// given. false: it has none, and does nothing.
+  /// Switches the configured weight and loads on or off from `time` s on, not before the last such call.
+  /// Returns false and does nothing if the plant has no such loads.
   virtual bool weigh(double /*time*/, bool /*on*/) { return false; }
-  /// Whether these pull then.
+  /// Returns whether weight and loads act at that time.
   [[nodiscard]] virtual bool is_weighed(double /*time*/) const { return true; }
-  /// From `time` s on, not before the last such call: something pushes the arm so; none: nothing does any
-  /// more. false: it is no arm that yields to forces, and does nothing. std::invalid_argument: a push whose
-  /// numbers are not finite or out of bounds, or at no point of the arm.
+  /// Applies a push from `time` s on, not before the last such call; std::nullopt ends the push. Returns
+  /// false and does nothing if the arm does not yield to forces. Throws std::invalid_argument for a push with
+  /// values that are not finite or out of bounds, or with a point off the arm.
   virtual bool push(double /*time*/, const std::optional<PlantPush>& /*push*/) { return false; }
-  /// That push then. Times as backbone().
+  /// Returns the push at that time. Times as for backbone().
   [[nodiscard]] virtual std::optional<PlantPush> pushed(double /*time*/) const { return std::nullopt; }
-  /// What it does then. Times as backbone().
+  /// Returns the effect of the push at that time. Times as for backbone().
   [[nodiscard]] virtual std::optional<PlantPushForce> push_force(double /*time*/) const {
     return std::nullopt;
   }
-  /// How far its drives have each tendon pulled in, m, from the straight arm on (a pretension and lost steps
-  /// are not in that). Empty: it has no tendons that are known one by one. Times as backbone().
+  /// Returns how far the drives have pulled each tendon in from the straight arm, m, without pretension and
+  /// lost steps. Returns an empty vector if individual tendons are not known. Times as for backbone().
   [[nodiscard]] virtual std::vector<double> pulled(double /*time*/) const { return {}; }
-  /// What is out of the ordinary in how it rests, one line; "": nothing. Times as backbone().
+  /// Returns a one-line warning about an unusual state of the arm; "" if there is none. Times as for
+  /// backbone().
   [[nodiscard]] virtual std::string warning(double /*time*/) const { return {}; }
-  /// By which each tendon pulls at the arm's base, N. Empty: nobody knows. Times as backbone().
+  /// Returns the tension of each tendon at the arm's base, N; empty if unknown. Times as for backbone().
   [[nodiscard]] virtual std::vector<double> tensions(double /*time*/) const { return {}; }
-  /// Kinetic, of its strains, and of its weight and loads. None: it has no inertia. Times as backbone().
+  /// Returns kinetic energy, strain energy and potential energy of weight and loads. Returns std::nullopt for
+  /// an arm without inertia. Times as for backbone().
   [[nodiscard]] virtual std::optional<RodEnergy> energy(double /*time*/) const { return std::nullopt; }
-  /// Where it touches obstacles and itself. Times as backbone().
+  /// Returns the contacts with obstacles and with the arm itself. Times as for backbone().
   [[nodiscard]] virtual std::vector<PlantContact> contacts(double /*time*/) const { return {}; }
-  /// How many microsteps each motor has lost up to then, of which its controller knows nothing. Empty: none
-  /// ever.
+  /// Returns the microsteps that each motor has lost up to that time, unknown to its controller. Returns an
+  /// empty vector if steps are never lost.
   [[nodiscard]] virtual std::vector<double> lost_steps(double /*time*/) const { return {}; }
 };
 
-/// What a plant begins with.
+/// Initial conditions of a plant.
 struct PlantSetup {
-  const ArmSetup& truth;  ///< The arm as it truly is, which stands in `initial`,
-  Eigen::VectorXd start;  ///< at this u.
-  double horizon = 0;     ///< How far back it is asked for, s.
+  const ArmSetup& truth;  ///< The true arm, which starts in `initial`.
+  Eigen::VectorXd start;  ///< The initial command u.
+  double horizon = 0;     ///< How far back queries are allowed, s.
 };
 
-/// Makes the arm of a simulated world.
+/// Creates the arm of a simulated world.
 using MakePlant = std::function<std::unique_ptr<Plant>(const PlantSetup&)>;
 
-/// An arm that is a chain of arcs: what drives bend, it follows without inertia or gravity.
+/// A plant whose arm is a chain of arcs and follows the imposed bends without inertia or gravity.
 class ArcPlant : public Plant {
  public:
-  /// The arm as its drives see it. Errors as Actuation's.
+  /// Takes the arm as its drives see it. Errors as Actuation's.
   explicit ArcPlant(const Arm& driven) : arm_(driven) {}
 
-  /// What its sections are bent to, as the drives see it; known in what is to come too, as far as commanded.
+  /// Returns the state that the drives impose on the sections; also for future times as far as commanded.
   [[nodiscard]] virtual ArmState state(double time) const = 0;
   [[nodiscard]] Backbone backbone(double time) const override { return arm_.backbone(state(time)); }
   [[nodiscard]] std::optional<ArmState> commanded(double time) const override { return state(time); }
@@ -125,10 +127,10 @@ class ArcPlant : public Plant {
   ArmModel arm_;
 };
 
-/// Such an arm behind true motors, spools, play and tendons.
+/// A chain of arcs behind true motors, spools, backlash and tendons.
 class DrivenPlant : public ArcPlant {
  public:
-  /// The truth has a drive.
+  /// Requires that the truth has a drive.
   explicit DrivenPlant(const PlantSetup& setup);
 
   void command(double time, const Eigen::VectorXd& u, double duration) override;
@@ -139,13 +141,13 @@ class DrivenPlant : public ArcPlant {
   Arm arm_;
   Drive drive_;
   DriveMotors motors_;
-  std::vector<double> zero_;  // displacements where the motors are at 0, m
+  std::vector<double> zero_;  // Tendon displacements at motor position 0, m.
 };
 
-/// Such an arm whose sections bend by themselves, as their rates allow.
+/// A chain of arcs whose sections bend by themselves, at their own rates.
 class BendPlant : public ArcPlant {
  public:
-  /// Its sections obey the limits and rates of the truth's.
+  /// Uses the limits and rates of the true sections.
   explicit BendPlant(const PlantSetup& setup)
       : ArcPlant(setup.truth.arm), bends_(setup.truth.arm, setup.truth.initial, setup.horizon) {}
 
@@ -157,12 +159,12 @@ class BendPlant : public ArcPlant {
   BendMotion bends_;
 };
 
-/// The one of the two that the setup's truth is.
+/// Returns a DrivenPlant if the setup's truth has a drive, otherwise a BendPlant.
 [[nodiscard]] std::unique_ptr<Plant> arc_plant(const PlantSetup& setup);
 
-/// (bend_x, bend_y, stretch) of each section.
+/// Returns (bend_x, bend_y, stretch) of each section.
 [[nodiscard]] Eigen::VectorXd plant_command(const ArmState& state);
-/// The state of such a command.
+/// Returns the state given by a command of (bend_x, bend_y, stretch) of each section.
 [[nodiscard]] ArmState commanded_state(const Eigen::VectorXd& u);
 
 }  // namespace flexura

@@ -5,16 +5,16 @@
 
 namespace flexura {
 
-/// Where an arm touches something.
+/// A contact of the arm with an obstacle or with itself.
 struct PlantContact {
   double s_rest = 0;  ///< Place on the arm: arc length from its base at rest, m.
-  std::string with;   ///< The obstacle's name, or "the arm".
-  Eigen::Vector3d point = Eigen::Vector3d::Zero();  ///< In the world, m.
-  Eigen::Vector3d force = Eigen::Vector3d::Zero();  ///< On the arm there, N.
-  double depth = 0;                                 ///< m
-  double normal_force = 0;                          ///< Across the surface, N.
-  bool sticks = false;                              ///< It does not slide along the other.
-  bool is_deep = false;  ///< The arm's middle is inside: the force may push anywhere.
+  std::string with;   ///< Name of the obstacle, or "the arm".
+  Eigen::Vector3d point = Eigen::Vector3d::Zero();  ///< Contact point in the world frame, m.
+  Eigen::Vector3d force = Eigen::Vector3d::Zero();  ///< Force on the arm at the contact point, N.
+  double depth = 0;                                 ///< Penetration depth, m.
+  double normal_force = 0;                          ///< Force normal to the surface, N.
+  bool sticks = false;                              ///< Whether the contact sticks (does not slide).
+  bool is_deep = false;  ///< Whether the arm's middle line is inside: the force may point in any direction.
 };
 
 }  // namespace flexura

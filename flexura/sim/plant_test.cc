@@ -16,8 +16,8 @@
 namespace flexura {
 namespace {
 
-// A thin rod that a weight bends: its curve, no chain of few arcs, swings to where u has it, a step of the
-// clock after the other.
+// A thin rod bent by a weight: its curve is not a chain of a few arcs. It swings to the commanded u, one step
+// of the clock after another.
 class SwingingRod : public Plant {
  public:
   explicit SwingingRod(const PlantSetup& setup) : started(setup.start), u_(setup.start) {}
@@ -36,7 +36,7 @@ class SwingingRod : public Plant {
   }
   [[nodiscard]] Backbone backbone(double /*time*/) const override { return Backbone::through(samples()); }
 
-  // A cubic curve, which bends the more the nearer to the tip.
+  // A cubic curve, whose curvature increases towards the tip.
   [[nodiscard]] static Eigen::Vector3d point(double t, double aside) {
     return {aside * t * t * t, 0.5 * t, 0.3 * aside * t * t};
   }
@@ -105,7 +105,7 @@ TEST(Plant, ARigTakesAnotherOneAndItsCamerasSeeIt) {
   EXPECT_THROW((void)rod.rig.arm().truth(2), std::logic_error);
 }
 
-// By the motors' positions and whatever the plant makes of them, the controller counts what it sent.
+// The plant receives the motor positions. Whatever it makes of them, the controller counts what it commanded.
 TEST(Plant, IsSentTheMotorsPositionsOfWhichTheControllerTells) {
   RodRig rod(two_section_rig());
   const RigPorts ports = rod.rig.ports();
@@ -148,7 +148,7 @@ TEST(Plant, OfWhichALostLinkKeepsCommandsAway) {
   }
 }
 
-// Below the arm's port stands a controller that knows of no arm.
+// Below the arm's port is a controller without an arm model.
 TEST(SimulatedDrive, RefusesWhatAreNoTargetsOfItsAxes) {
   RodRig rod(two_section_rig());
   SimulatedDrive& drive = *rod.rig.arm().drive();
@@ -163,7 +163,7 @@ TEST(SimulatedDrive, RefusesWhatAreNoTargetsOfItsAxes) {
   EXPECT_EQ(reading.values, std::vector<double>(6, 100));
   EXPECT_EQ(reading.time, 10);
   EXPECT_FALSE(reading.moving);
-  // A reversed motor has let cable out, and turned through its play before.
+  // A reversed motor has let cable out, after turning through its backlash.
   const double play = ArmSetup(two_section_rig()).drive->axes[1].play();
   EXPECT_EQ(reading.carried[0], 100);
   EXPECT_NEAR(reading.carried[1], 100 - play, 1e-9);

@@ -15,7 +15,7 @@ void PullMotion::command(double time, std::vector<double> target, double end) {
 }
 
 void PullMotion::back(double time, double end) {
-  // Most arms are never pulled so, and are commanded a thousand times a second.
+  // Shortcut: most arms are never pulled this way, and are commanded a thousand times a second.
   const auto is_zero = [](double pulled) { return pulled == 0; };
   if (plans_.empty() || (std::ranges::all_of(plans_.back().to, is_zero) && plans_.back().end <= time)) return;
   command(time, std::vector<double>(tendons_, 0.0), end);

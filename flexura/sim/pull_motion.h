@@ -6,21 +6,21 @@
 
 namespace flexura {
 
-/// How far tendons are pulled in beside what bends pull in: each goes straight to its target, and all arrive
-/// together. A function of time and of the commands up to then, as BendMotion is.
+/// Tendon displacements in addition to those of the bends. Each tendon moves straight to its target, and all
+/// arrive together. A function of time and of the commands up to that time, like BendMotion.
 class PullMotion {
  public:
-  /// So many, at 0; asked for times back to `horizon` s before the last command.
+  /// Starts with `tendons` tendons at 0. Queries are allowed back to `horizon` s before the last command.
   PullMotion(std::size_t tendons, double horizon);
 
-  /// From `time` s, not before the last command, to `target`, m, which is reached at `end` s, or at once
-  /// where that is over.
+  /// Moves from `time` s, not before the last command, to `target`, m. The target is reached at `end` s, or
+  /// at once if `end` has passed.
   void command(double time, std::vector<double> target, double end);
-  /// Likewise to 0.
+  /// Moves all tendons back to 0, with times as for command().
   void back(double time, double end);
   void halt(double time);
 
-  /// Adds where each is, m.
+  /// Adds the displacement of each tendon, m.
   void add_to(std::vector<double>& pulled, double time) const;
 
  private:
@@ -30,7 +30,7 @@ class PullMotion {
   };
   std::size_t tendons_;
   double horizon_;
-  std::deque<Plan> plans_;  // by their start; before the first one all are at 0
+  std::deque<Plan> plans_;  // Ordered by start; before the first plan all tendons are at 0.
 };
 
 }  // namespace flexura

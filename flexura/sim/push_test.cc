@@ -1,4 +1,4 @@
-// Arms that somebody pushes.
+// Arms that are pushed.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -32,7 +32,7 @@ struct PushedRig {
   SimulatedRig rig;
 };
 
-// Aside, at a point within the second section.
+// A push sideways, at a point within the second section.
 PlantPush aside(const Eigen::Vector3d& tip) {
   return {.s_rest = 0.4, .to = tip + Eigen::Vector3d(0.02, 0, 0.2), .stiffness = 1, .most = 2};
 }
@@ -50,7 +50,7 @@ TEST(Push, BringsAnArmAtRestElsewhereUntilItIsReleased) {
   EXPECT_EQ(force.s_rest, 0.4);
   EXPECT_GT(force.force.z(), 0.03);
   EXPECT_LE(force.force.norm(), 2);
-  // The same force without a spring holds it there.
+  // The same force without a spring holds the arm there.
   arm.plant().push(0.1, PlantPush{.s_rest = 0.4, .force = force.force});
   arm.go_to(0.2);
   EXPECT_LE((arm.plant().push_force(0.2).value().point - force.point).norm(), 1e-4);
@@ -81,7 +81,7 @@ TEST(Push, LetsAnArmInMotionSwingAndSettleAndSwingBack) {
   EXPECT_LE((arm.tip(16) - rest).norm(), 2e-4);
 }
 
-// What it answers does not depend on who asked before.
+// Answers do not depend on earlier queries.
 TEST(Push, IsTheSameHoweverItIsAsked) {
   for (const ArmMechanics mechanics : {ArmMechanics::statics, ArmMechanics::dynamics}) {
     PushedRig slow(mechanics), quick(mechanics);

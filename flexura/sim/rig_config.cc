@@ -42,7 +42,7 @@ void lay_by_name(Node::Array& below, Node entry, const std::string& path) {
   lay(*found, std::move(entry), path);
 }
 
-// Whether the array was laid entry by entry.
+// Merges the arrays entry by entry if possible; returns whether it did.
 bool lay_entries(Node& under, Node& over, const std::string& path) {
   auto* below = under.as<Node::Array>();
   auto* above = over.as<Node::Array>();
@@ -67,8 +67,9 @@ bool lay_entries(Node& under, Node& over, const std::string& path) {
   return true;
 }
 
-// Keys that say one thing in different ways: a mount how it is turned (camera/mount.h), a rod how stiff and
-// how heavy it is (model/material.h). What lies above chooses the way.
+// Returns whether two keys are alternative descriptions of the same thing. Examples are the rotation of a
+// mount (camera/mount.h), and the stiffness and weight of a rod (model/material.h). The upper document
+// chooses the alternative.
 bool is_other_way(std::string_view above, std::string_view below) {
   constexpr std::pair<std::string_view, std::string_view> ways[] = {
       {"look_at", "rotation"},         {"rotation", "look_at"},        {"rotation", "roll"},

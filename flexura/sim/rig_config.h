@@ -12,23 +12,23 @@
 
 namespace flexura {
 
-/// A rig as tables of a file describe it: what the tasks believe, or what is true.
+/// A rig as described by the tables of a file: the model that tasks use, or the truth.
 struct RigConfig {
   ArmConfig arm;
-  std::optional<DriveConfig> drive;   ///< None: bends follow commands as their own rates allow.
-  std::vector<CameraConfig> cameras;  ///< In the order in which tasks count them.
+  std::optional<DriveConfig> drive;   ///< Missing: the sections bend at their own rates.
+  std::vector<CameraConfig> cameras;  ///< In the order in which tasks number them.
   std::vector<ObstacleConfig> obstacles = {};
 };
 
-/// The document with its table [truth] laid upon the rest: the simulated world as the file describes it, to
-/// be read by the same tables. Tables are merged key by key, whatever the unit in which a value is written;
-/// arrays of tables entry by entry, those with a `name` by that name and others by their place (an array of
-/// another length replaces the one below); anything else is replaced. Without [truth], the document itself.
-/// InputError: [truth] is no table, or names an entry that there is not.
+/// Returns the document with its table [truth] merged over the rest: the simulated world, to be read with the
+/// same tables. Tables are merged key by key, whatever unit a value is written in. Arrays of tables are
+/// merged entry by entry: by `name` if entries have one, otherwise by position. An unnamed array of another
+/// length replaces the one below; everything else is replaced. Without [truth], returns the document itself.
+/// Throws InputError if [truth] is not a table, or names a missing entry.
 [[nodiscard]] Node truth_of(Node document);
 
-/// What keeps `truth` from being a world in which `model` can be believed, "" when nothing does: another kind
-/// of arm, another number of sections, drives or axes, other cameras, or images of another size or kind.
+/// Returns why `truth` and `model` do not match, or "" if they do. They must have the same kind of arm,
+/// numbers of sections, drives and axes, cameras, and image sizes and kinds.
 [[nodiscard]] std::string truth_problem(const RigConfig& model, const RigConfig& truth);
 
 }  // namespace flexura

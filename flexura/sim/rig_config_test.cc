@@ -85,7 +85,7 @@ TEST(Truth, ChoosesHowAMountSaysItsTurn) {
   EXPECT_EQ(looking.find("rotation"), nullptr);
   EXPECT_EQ(number(looking.find("look_at_mm")), 1.0);
   EXPECT_EQ(number(looking.find("roll")), 0.1);
-  // Both from above are both kept, so that the reader can tell.
+  // Two alternatives that are both in the upper document are both kept, so that the reader can report it.
   const Node both = mount_of({}, {member("rotation", 4.0), member("look_at", 1.0)});
   EXPECT_NE(both.find("rotation"), nullptr);
   EXPECT_NE(both.find("look_at"), nullptr);

@@ -79,7 +79,7 @@ std::optional<ArmState> RodInputs::pull(double time, const std::vector<double>& 
   if (!bends_) return std::nullopt;
   ArmState nearest = nearest_arcs(rod_, arm_, displacements);
   bends_->command(time, nearest, duration);
-  // Drawn to the limits of its sections, arcs may end elsewhere.
+  // Arcs clamped to the sections' limits may end elsewhere.
   const ArmState end = bends_->at(std::numeric_limits<double>::max());
   std::vector<double> beside = displacements;
   const std::vector<double> by_arcs = arc_displacements(rod_, end).pulled;
@@ -108,13 +108,13 @@ bool RodInputs::is_weighed_anew(double start, double end) const {
 void RodInputs::push(double time, const std::optional<PlantPush>& push) {
   std::optional<PointSpring> spring;
   if (push) spring = spring_of(*push);
-  // A hand is asked for more often than the arm moves on.
+  // A push is updated more often than the arm is advanced: replace an entry of the same or a later time.
   if (!pushings_.empty() && pushings_.back().time >= time) pushings_.pop_back();
   pushings_.push_back({time, push, spring});
 }
 
 PointSpring RodInputs::spring_of(const PlantPush& push) const {
-  constexpr double rounding = 1e-9;  // of the arm's length
+  constexpr double rounding = 1e-9;  // Part of the arm's length.
   const double length = rod_.length();
   const bool is_on_arm = push.s_rest >= -rounding * length && push.s_rest <= (1 + rounding) * length;
   if (!is_on_arm)
@@ -154,7 +154,7 @@ bool RodInputs::is_pushed_anew(double start, double end) const {
 }
 
 void RodInputs::forget_before(double time) {
-  // The last one before it counts.
+  // The last entry before `time` still applies.
   while (pushings_.size() > 1 && pushings_[1].time < time) pushings_.erase(pushings_.begin());
   while (weighings_.size() > 1 && weighings_[1].time < time) weighings_.erase(weighings_.begin());
 }

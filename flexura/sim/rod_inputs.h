@@ -15,70 +15,70 @@
 
 namespace flexura {
 
-/// What moves a rod and what pulls at it, over time: its motors, or the bends that are commanded; its weight
-/// and loads, which may be switched off. A function of time and of the commands up to then.
+/// The inputs of a rod over time: its motors or commanded bends, and its weight and loads, which can be
+/// switched off. A function of time and of the commands up to that time.
 ///
-/// Behind a drive its spools pull the tendons in, from the pretension on; a motor that would have to turn
-/// against more than its pull-out torque loses steps, a turn of its field at a time. Without a drive, what
-/// commands call bends pulls each tendon in as far as arcs of these bends would, pull() lets each differ from
-/// that, and what commands call stretches are factors on the sections' own lengths.
+/// With a drive, its spools pull the tendons in, starting from the pretension. A motor whose load exceeds its
+/// pull-out torque loses steps, one turn of its field at a time. Without a drive, commanded bends pull each
+/// tendon in as far as arcs with these bends would, and pull() adds differences to that. Commanded stretches
+/// are factors on the sections' own lengths.
 class RodInputs {
  public:
-  /// The truth has a rod, with a tendon for each axis of its drive if it has one. std::invalid_argument: not
-  /// so, or no rest under the pretension.
+  /// Requires that the truth has a rod, with a tendon for each axis of its drive if it has one. Throws
+  /// std::invalid_argument otherwise, or if there is no equilibrium under the pretension.
   explicit RodInputs(const PlantSetup& setup);
 
-  /// As Plant's.
+  /// As Plant::command().
   void command(double time, const Eigen::VectorXd& u, double duration);
-  /// As Plant's, as all up to pulled().
+  /// As Plant::halt(). All functions up to pulled() are as those of Plant.
   void halt(double time);
-  /// Tendons one by one.
+  /// Pulls the tendons individually.
   std::optional<ArmState> pull(double time, const std::vector<double>& displacements, double duration);
-  /// Weight and loads, on or off.
+  /// Switches weight and loads on or off.
   bool weigh(double time, bool on);
-  /// Whether they are on.
+  /// Returns whether weight and loads are on.
   [[nodiscard]] bool is_weighed(double time) const;
-  /// What pushes the arm. std::invalid_argument: as Plant::push.
+  /// Sets what pushes the arm. Throws std::invalid_argument as Plant::push().
   void push(double time, const std::optional<PlantPush>& push);
   /// Returns what pushes the arm at a time; std::nullopt if nothing does.
   [[nodiscard]] std::optional<PlantPush> pushed(double time) const;
-  /// The same as a spring of the rod, in the frame of its base.
+  /// Returns the push as a spring of the rod, in the frame of its base.
   [[nodiscard]] std::optional<PointSpring> spring(double time) const;
-  /// Whether that changed after `start` and up to `end`, s.
+  /// Returns whether the push changed after `start` and up to `end`, s.
   [[nodiscard]] bool is_pushed_anew(double start, double end) const;
-  /// The bends and stretches that are commanded.
+  /// Returns the commanded bends and stretches.
   [[nodiscard]] std::optional<ArmState> commanded(double time) const;
-  /// How far each tendon is pulled in, m.
+  /// Returns how far each tendon is pulled in, m.
   [[nodiscard]] std::vector<double> pulled(double time) const;
-  /// What was so before `time` is asked for no more.
+  /// Discards records before `time`, which are not queried any more.
   void forget_before(double time);
 
   [[nodiscard]] const Rod& rod() const { return rod_; }
-  /// What its axes have lost when nothing has moved yet, microsteps; none without a drive.
+  /// Returns zero lost microsteps for each axis; empty without a drive.
   [[nodiscard]] std::vector<double> nothing_lost() const;
-  /// How far each tendon is pulled in, m, from the rod at rest on: with the pretension, and less what its
-  /// motor has lost, microsteps.
+  /// Returns how far each tendon is pulled in from the rod at rest, m. This includes the pretension, and
+  /// excludes the microsteps lost by its motor.
   [[nodiscard]] std::vector<double> displacements(double time, const std::vector<double>& lost) const;
-  /// How long its sections are by themselves: factors on their lengths.
+  /// Returns the sections' unloaded lengths as factors on their nominal lengths.
   [[nodiscard]] std::vector<double> rest_stretches(double time) const;
-  /// Whether commands may drive sections longer or shorter.
+  /// Returns whether commands can change the lengths of sections.
   [[nodiscard]] bool can_stretch() const;
-  /// When tendons break and the weight is switched, after `start` and before `end`, s.
+  /// Returns the times after `start` and before `end`, s, at which tendons break or the weight is switched.
   [[nodiscard]] std::vector<double> events(double start, double end) const;
-  /// What pulls at it beside its tendons.
+  /// Returns the loads in addition to the tendons.
   [[nodiscard]] const RodLoads& loads(double time) const;
-  /// Whether the weight was switched after `start` and up to `end`, s.
+  /// Returns whether the weight was switched after `start` and up to `end`, s.
   [[nodiscard]] bool is_weighed_anew(double start, double end) const;
-  /// Whether any motor may lose steps at all.
+  /// Returns whether any motor can lose steps.
   [[nodiscard]] bool may_lose_steps() const;
-  /// Of each axis, whether its motor would have to turn against more than this part of its pull-out torque,
-  /// as fast as it turns then, under these tensions, N. Empty: without a drive.
+  /// Returns for each axis whether its load exceeds `part` of the motor's pull-out torque at its current
+  /// rate, under these tensions, N. Empty without a drive.
   [[nodiscard]] std::vector<char> overloaded(double time, const std::vector<double>& tensions,
                                              double part = 1) const;
-  /// Microsteps of a turn of an axis's field.
+  /// Returns the microsteps per turn of an axis's field.
   [[nodiscard]] double field_turn(std::size_t axis) const;
-  /// Adds a turn of the field to what each motor has lost that would have to turn against more than it can,
-  /// under these tensions, N. Whether any has.
+  /// Adds a turn of the field to the lost microsteps of each motor that is overloaded under these tensions,
+  /// N. Returns whether any motor was overloaded.
   [[nodiscard]] bool lose_steps(double time, const std::vector<double>& tensions,
                                 std::vector<double>& lost) const;
 
@@ -86,29 +86,29 @@ class RodInputs {
   Arm arm_;
   Rod rod_;
   RodLoads loads_;
-  // What moves it: one of the two.
+  // What moves the rod: motors or bends.
   std::optional<DriveMotors> motors_;
   std::optional<Drive> drive_;
-  std::vector<double> zero_;   // displacements where the motors are at 0, m, of an arm of arcs,
-  std::vector<double> tight_;  // and what the pretension adds to them
+  std::vector<double> zero_;   // Tendon displacements of an arm of arcs at motor position 0, m.
+  std::vector<double> tight_;  // Displacements that the pretension adds, m.
   std::optional<BendMotion> bends_;
-  std::optional<PullMotion> beside_;  // beside what the bends pull in
+  std::optional<PullMotion> beside_;  // Added to the displacements of the bends.
   std::vector<TendonBreak> breaks_;
 
   struct Weighing {
-    double time = 0;  // from which on
+    double time = 0;  // Start, s.
     bool on = true;
   };
-  std::vector<Weighing> weighings_;  // by time; before the first one: on
+  std::vector<Weighing> weighings_;  // Ordered by time; before the first entry the weight is on.
 
   struct Pushing {
-    double time = 0;  // from which on
+    double time = 0;  // Start, s.
     std::optional<PlantPush> push;
     std::optional<PointSpring> spring;
   };
   [[nodiscard]] PointSpring spring_of(const PlantPush& push) const;
   [[nodiscard]] const Pushing* pushing(double time) const;
-  std::vector<Pushing> pushings_;  // by time; before the first one: none
+  std::vector<Pushing> pushings_;  // Ordered by time; before the first entry there is no push.
 };
 
 }  // namespace flexura

@@ -7,7 +7,7 @@
 namespace flexura {
 namespace {
 
-// By its arc length at rest.
+// Returns the point of the backbone with this arc length at rest.
 Eigen::Vector3d point_at_rest(const Backbone& backbone, double s_rest) {
   const auto after = std::ranges::upper_bound(backbone.arcs(), s_rest, {}, &Arc::s_rest);
   const Arc& arc = after == backbone.arcs().begin() ? *after : *(after - 1);

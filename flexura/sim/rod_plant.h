@@ -10,12 +10,12 @@
 
 namespace flexura {
 
-/// An arm that is an elastic rod, moved by RodInputs; how it follows is for those who derive to say.
+/// A plant whose arm is an elastic rod moved by RodInputs; derived classes define its response.
 class RodPlant : public Plant {
  public:
   void command(double time, const Eigen::VectorXd& u, double duration) override;
   void halt(double time) override;
-  /// Without a drive: behind one the motors take commands, and this does nothing.
+  /// Works without a drive only: with a drive, the motors take the commands and this function does nothing.
   std::optional<ArmState> pull(double time, const std::vector<double>& displacements,
                                double duration) override;
   bool weigh(double time, bool on) override;
@@ -33,7 +33,7 @@ class RodPlant : public Plant {
   explicit RodPlant(const PlantSetup& setup)
       : inputs_(setup), tube_(setup.truth.arm, inputs_.rod()), X_WB_(setup.truth.arm.X_WB) {}
 
-  /// Something was commanded: what was found for times from then on is so no more.
+  /// Called after a command: discards results for times after it.
   virtual void forget() = 0;
   [[nodiscard]] const RodInputs& inputs() const { return inputs_; }
   [[nodiscard]] RodInputs& inputs() { return inputs_; }

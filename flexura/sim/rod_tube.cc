@@ -5,7 +5,7 @@
 namespace flexura {
 namespace {
 
-// Of the backbone, for each section.
+// Number of backbone samples per section.
 constexpr std::size_t samples_a_section = 12;
 
 double part_of(std::size_t sample) {

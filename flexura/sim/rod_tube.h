@@ -11,24 +11,24 @@
 
 namespace flexura {
 
-/// The backbone of an arm that is a rod, with its tube, from the rod's strain modes. Several threads may ask.
+/// Computes the backbone and tube of an arm from the strain modes of its rod. Thread-safe.
 class RodTube {
  public:
-  /// The tube of the arm around the rod. Errors as RodChain.
+  /// Uses the tube of `arm` around `rod`. Errors as RodChain.
   RodTube(const Arm& arm, const Rod& rod);
 
-  /// In the world. `rest_stretches`: factors on the sections' own lengths.
+  /// Returns the backbone in the world frame. `rest_stretches` are factors on the sections' own lengths.
   [[nodiscard]] Backbone backbone(const Eigen::VectorXd& q, const std::vector<double>& rest_stretches) const;
 
  private:
   Arm arm_;
   mutable std::mutex mutex_;
   mutable RodChain chain_;
-  std::vector<std::vector<std::size_t>> nodes_;  // of each section
+  std::vector<std::vector<std::size_t>> nodes_;  // For each section.
 };
 
-/// Where on the rod such a backbone goes through its poses, base first and the tip last, by equal parts of
-/// each section. From one to the next there are two arcs.
+/// Returns the places on the rod of the poses of such a backbone, from base to tip. They divide each section
+/// into equal parts. Between two consecutive places there are two arcs.
 [[nodiscard]] std::vector<RodPlace> tube_places(const Rod& rod);
 
 }  // namespace flexura

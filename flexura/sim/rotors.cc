@@ -7,7 +7,7 @@
 namespace flexura {
 namespace {
 
-// Of the pull-out torque: below it no step is lost soon.
+// Fraction of the pull-out torque below which no step is lost soon.
 constexpr double careless = 0.5;
 
 bool any(const std::vector<char>& flags) {

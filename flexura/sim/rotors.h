@@ -6,28 +6,28 @@
 
 namespace flexura {
 
-/// How long a load must last until a rotor yields to it, about, and how long it takes to fall back by a turn
-/// of its field, s: half a period of a rotor that swings in its field at some 100 Hz.
+/// Approximate time that a load must last until a rotor yields to it, and time to fall back by a turn of its
+/// field, s. Both are half a period of a rotor that swings in its field at about 100 Hz.
 inline constexpr double rotor_time = 5e-3, fall_time = 5e-3;
 
-/// How the rotors of a drive's motors stand against their fields. What a rotor feels follows the tension
-/// within rotor_time. Where that is more than its pull-out torque it falls back by a turn of its field,
-/// evenly within fall_time; if it is too much still, by another one. So what is lost does not depend on how
-/// time is cut into steps, where these are shorter.
+/// State of the rotors of a drive's motors relative to their fields. The tension felt by a rotor follows the
+/// actual tension within rotor_time. If the load exceeds its pull-out torque, the rotor falls back by a turn
+/// of its field, at constant rate within fall_time. If the load is still too large, it falls back by another
+/// turn. So lost steps do not depend on the time steps, provided these are shorter.
 struct RotorState {
-  std::vector<double> felt;    ///< Tensions at the axes as rotors feel them, N.
-  std::vector<double> behind;  ///< By how much each is behind, microsteps.
-  std::vector<double> lost;    ///< By how much it will be, when it has fallen back: whole turns of its field.
+  std::vector<double> felt;    ///< Tensions at the axes as the rotors feel them, N.
+  std::vector<double> behind;  ///< Current lag of each rotor, microsteps.
+  std::vector<double> lost;    ///< Lag after the fall-back is complete, microsteps: whole turns of the field.
 };
 
-/// Of motors at rest under these tensions, N; empty without a drive.
+/// Returns the state of motors at rest under these tensions, N; empty without a drive.
 [[nodiscard]] RotorState rotors_at_rest(const RodInputs& inputs, const std::vector<double>& tensions);
 
-/// Goes on by `h` s up to `time`, with the tensions of that time, N.
+/// Advances by `h` s up to `time`, with the tensions at that time, N.
 void turn_rotors(RotorState& rotors, const RodInputs& inputs, const std::vector<double>& tensions,
                  double time, double h);
 
-/// Whether any falls back, or may soon under these tensions, N.
+/// Returns whether any rotor falls back, or may soon under these tensions, N.
 [[nodiscard]] bool are_strained(const RotorState& rotors, const RodInputs& inputs,
                                 const std::vector<double>& tensions, double time);
 

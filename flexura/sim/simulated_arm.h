@@ -16,36 +16,37 @@
 
 namespace flexura {
 
-/// An arm without drives, which sends its sections to shapes and says how they stand by their rates alone.
+/// An arm without drives that moves its sections to commanded shapes. Its readings follow from the section
+/// rates alone.
 class SimulatedBends : public ArmPort {
  public:
-  /// As SimulatedArm says. The plant outlives it.
+  /// Arguments as for SimulatedArm. The plant must outlive this object.
   SimulatedBends(const ArmSetup& model, const ArmSetup& truth, Plant& plant, const ClockPort& clock,
                  double horizon);
 
   CommandOutcome command(const ArmState& state, double duration) override;
   CommandOutcome halt() override;
   Outcome<ArmReading> read() override;
-  /// As SimulatedArm's.
+  /// As SimulatedArm::pull().
   CommandOutcome pull(const std::vector<double>& displacements, double duration);
-  /// What connects it: it can be lost for a time.
+  /// Returns the link to the arm, which can be interrupted for a time.
   [[nodiscard]] SimulatedLink& link() { return link_; }
 
  private:
   SimulatedLink link_;
   Arm arm_;
   BendMotion bends_;
-  ArmWay offset_;  // true bends and stretches less believed ones
+  ArmWay offset_;  // True bends and stretches minus those of the model.
   Plant& plant_;
 };
 
-/// The arm of a simulated world with what moves it: a drive's controller with what is believed of it
-/// (DrivenArm), or, where there is no drive, its sections' own rates.
+/// The arm of a simulated world with what moves it. This is a drive's controller that uses the model
+/// (DrivenArm), or, without a drive, the sections' own rates.
 class SimulatedArm : public ArmPort {
  public:
-  /// Both arms stand in their initial shapes when the motors are where the model puts its own. The truth is
-  /// known back to `horizon` s before the last command. std::invalid_argument when the truth is another arm
-  /// (truth_problem).
+  /// Model and truth stand in their initial shapes when the motors are at the model's initial positions. The
+  /// truth can be queried back to `horizon` s before the last command. Throws std::invalid_argument if the
+  /// truth is another kind of arm (truth_problem).
   SimulatedArm(const ArmSetup& model, const ArmSetup& truth, const ClockPort& clock, double horizon,
                const MakePlant& make_plant = true_plant);
 
@@ -53,21 +54,21 @@ class SimulatedArm : public ArmPort {
   CommandOutcome halt() override;
   Outcome<ArmReading> read() override;
 
-  /// Sends each tendon to be pulled in so far, m: behind a drive by its axes, else of a plant that takes that
-  /// (Plant::pull). `duration` as command() says. Refused: of another arm, or not one finite displacement a
-  /// tendon.
+  /// Pulls each tendon in to the given displacement, m: by the axes of a drive, or by Plant::pull() without
+  /// one. `duration` as for command(). Refused for an arm without such tendons, or unless there is one finite
+  /// displacement per tendon.
   CommandOutcome pull(const std::vector<double>& displacements, double duration);
 
-  /// What the true arm is commanded to by its drives as they are, from `horizon` s before the last command
-  /// on: not for algorithms. std::logic_error: the plant has none (Plant::commanded).
+  /// Returns the true state that the drives impose, from `horizon` s before the last command on; not for
+  /// algorithms. Throws std::logic_error if the plant has no such state (Plant::commanded).
   [[nodiscard]] ArmState truth(double time) const;
-  /// The true arm's; not for algorithms.
+  /// Returns the backbone of the true arm; not for algorithms.
   [[nodiscard]] Backbone backbone(double time) const { return plant_->backbone(time); }
-  /// The arm as it truly is: likewise.
+  /// Returns the true arm; not for algorithms.
   [[nodiscard]] Plant& plant() { return *plant_; }
-  /// What connects the arm: it can be lost for a time.
+  /// Returns the link to the arm, which can be interrupted for a time.
   [[nodiscard]] SimulatedLink& link() { return drive_ ? drive_->link() : bends_->link(); }
-  /// The controller of its drive, below its port; null without a drive.
+  /// Returns the controller of the drive, below its port; null without a drive.
   [[nodiscard]] SimulatedDrive* drive() { return drive_ ? &*drive_ : nullptr; }
 
  private:
@@ -75,7 +76,7 @@ class SimulatedArm : public ArmPort {
   std::optional<SimulatedDrive> drive_;
   std::optional<DrivenArm> driven_;
   std::optional<SimulatedBends> bends_;
-  ArmPort* port_ = nullptr;  // one of the two
+  ArmPort* port_ = nullptr;  // Points to driven_ or bends_.
 };
 
 }  // namespace flexura

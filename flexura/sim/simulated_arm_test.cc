@@ -36,7 +36,7 @@ RigConfig without_drive() {
   return rig;
 }
 
-// The largest bend that half a microstep of every tendon makes.
+// Returns the largest bend caused by half a microstep of every tendon.
 double rounding(const RigConfig& rig) {
   const Drive drive = rig.drive->drive();
   double largest = 0;
@@ -122,14 +122,14 @@ TEST(SimulatedArm, TruePlayThatTheModelDoesNotKnowKeepsItAway) {
   clock.wait_until(20);
   ASSERT_TRUE(arm.command(ArmState::straight(2), 0));
   clock.wait_until(40);
-  // 0.1 rad of a spool of 10 mm are 1 mm of cable at 15 mm from the backbone.
+  // 0.1 rad of a spool of 10 mm radius are 1 mm of cable, at 15 mm from the backbone.
   EXPECT_GT(difference(arm.truth(40), ArmState::straight(2)), 0.02);
   EXPECT_LE(difference(arm.read().value().state, ArmState::straight(2)), rounding(model));
 }
 
 TEST(SimulatedArm, TrueTendonsBendItOtherwise) {
   RigConfig model = two_section_rig(), truth = model;
-  truth.drive->radius = 0.0165;  // a tenth wider: a tenth less of bend
+  truth.drive->radius = 0.0165;  // A tenth wider: a tenth less bend.
   SimulatedClock clock;
   SimulatedArm arm(ArmSetup{model}, ArmSetup{truth}, clock, forever);
   ArmState bent = ArmState::straight(2);
@@ -176,7 +176,7 @@ TEST(SimulatedArm, WithoutDrivesKeepsToTheLimitsOfItsSections) {
   EXPECT_FALSE(arm.read().value().moving);
 }
 
-// Commands that each last until the next one: the arm is where the motion is, between the commands too.
+// Each command lasts until the next one: the arm follows the motion, also between the commands.
 TEST(SimulatedArm, FollowsAMotionCommandByCommand) {
   const auto follow = [](const RigConfig& rig, double start, double tolerance) {
     const auto motion = [](double time) {
@@ -198,7 +198,7 @@ TEST(SimulatedArm, FollowsAMotionCommandByCommand) {
   RigConfig driven = two_section_rig();
   driven.drive->motor.max_acceleration = std::numeric_limits<double>::infinity();
   follow(driven, 0.2, 2 * rounding(driven));
-  // A finite acceleration leaves it behind: by the way of the brake.
+  // With finite acceleration the arm lags by the braking distance.
   driven.drive->motor.max_acceleration = 100;
   follow(driven, 0.2, 0.003);
 }

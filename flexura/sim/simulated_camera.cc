@@ -30,7 +30,7 @@ bool SimulatedCamera::is_lost(std::int64_t frame) const {
   return static_cast<double>(number >> 11) * 0x1p-53 < sensor_.drop;
 }
 
-// The last frame received at `time` or before, lost ones counted; -1 before the first.
+// Returns the last frame received at `time` or before, counting lost ones; -1 before the first.
 std::int64_t SimulatedCamera::last_received(double time) const {
   const double count = std::floor((time - frame_times(sensor_, 0).received) * sensor_.frame_rate);
   auto frame = static_cast<std::int64_t>(std::max(count - 1, -1.0));

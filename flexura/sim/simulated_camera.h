@@ -14,49 +14,49 @@
 
 namespace flexura {
 
-/// What a frame shows: all that a take_picture needs to know of it.
+/// Everything that a TakePicture function needs to render a frame.
 struct Shot {
-  std::size_t camera = 0;                    ///< Its place in the rig.
-  std::int64_t frame = 0;                    ///< With the seed and the camera: the key of its noise.
-  std::uint64_t seed = 0;                    ///< Of the run.
-  double start = 0;                          ///< When the exposure of the first row starts, s.
-  const SensorConfig* sensor = nullptr;      ///< How long it lasts, and how the rows follow. Never null.
-  std::function<View(double)> view;          ///< From start on: what the camera sees at a time,
-  std::function<Backbone(double)> backbone;  ///< and where the arm is.
-  bool is_covered = false;                   ///< Something stands before the lens: there is no light.
+  std::size_t camera = 0;                ///< Index of the camera in the rig.
+  std::int64_t frame = 0;                ///< Number of the frame; with seed and camera, the key of its noise.
+  std::uint64_t seed = 0;                ///< Seed of the run.
+  double start = 0;                      ///< Start of the exposure of the first row, s.
+  const SensorConfig* sensor = nullptr;  ///< Exposure time and row timing. Never null.
+  std::function<View(double)> view;      ///< Returns the camera's view at a time from `start` on.
+  std::function<Backbone(double)> backbone;  ///< Returns the arm's backbone at a time from `start` on.
+  bool is_covered = false;                   ///< Whether the lens is covered: there is no light.
 };
 
-/// Makes the image of a shot, of the sensor's size, channels and bits. The same image for the same shot.
+/// Renders the image of a shot with the sensor's size, channels and bits. The same shot gives the same image.
 using TakePicture = std::function<Picture(const Shot&)>;
 
-/// The newest frames that `SimulatedCamera::newest` looks at: where more than these were lost in a row, it
-/// has none.
+/// Number of newest frames that `SimulatedCamera::newest` examines. If more frames in a row were lost, it
+/// returns no frame.
 inline constexpr int frames_kept = 16;
 
-/// How long after the start of its exposure a frame can still be asked for, s: how far back views and
-/// backbones must be known.
+/// Returns how long after the start of its exposure a frame can be requested, s. Views and backbones must be
+/// known back to then.
 [[nodiscard]] double frame_horizon(const SensorConfig& sensor);
 
-/// A camera that exposes frames at its rate from time 0 on, delays and loses them. Nothing is rendered but
-/// what is asked for. Several cameras of a rig can be asked at once, each by a thread of its own, while
-/// nobody waits for the clock or commands: their takers of pictures must bear that.
+/// A camera that exposes frames at its frame rate from time 0 on, delays them and loses some. Only requested
+/// frames are rendered. Several cameras of a rig can be queried at once, each from its own thread, while
+/// nobody waits for the clock or commands. Their TakePicture functions must be thread-safe for that.
 class SimulatedCamera : public CameraPort {
  public:
-  /// `shot` says what its frames show; its frame, its start and whether it is covered are filled in for each.
+  /// `shot` describes the content of its frames; frame number, start and cover are filled in for each frame.
   SimulatedCamera(const Camera& camera, Shot shot, TakePicture take_picture, ClockPort& clock);
 
   Outcome<std::optional<Frame>> newest() override;
   Outcome<std::optional<Frame>> wait(double timeout) override;
 
-  /// Every frame that can be had now and was neither given nor passed over, from the oldest on, whatever the
-  /// link does: for who films, not for algorithms.
+  /// Returns all available frames that were neither returned nor skipped, oldest first, regardless of the
+  /// link. For recording, not for algorithms.
   [[nodiscard]] std::vector<Frame> all_new();
-  /// Whether there is one.
+  /// Returns whether all_new() would return a frame.
   [[nodiscard]] bool has_new() const;
-  /// None of those is given any more.
+  /// Skips all frames available now.
   void skip_to_now() { next_ = last_received(clock_->now()) + 1; }
 
-  /// What connects the camera: it can be lost for a time.
+  /// Returns the link to the camera, which can be interrupted for a time.
   [[nodiscard]] SimulatedLink& link() { return link_; }
 
  private:
@@ -69,7 +69,7 @@ class SimulatedCamera : public CameraPort {
   Shot shot_;
   TakePicture take_picture_;
   ClockPort* clock_;
-  std::int64_t next_ = 0;  // the first frame that was not passed over
+  std::int64_t next_ = 0;  // The first frame that was not skipped.
 };
 
 }  // namespace flexura

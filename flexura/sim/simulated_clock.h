@@ -10,7 +10,7 @@
 
 namespace flexura {
 
-/// Time, from 0 s on, that passes when somebody waits, and takes none.
+/// A clock of simulated time, from 0 s on. Waiting advances it without taking real time.
 class SimulatedClock : public ClockPort {
  public:
   [[nodiscard]] double now() const override { return now_; }
@@ -21,7 +21,8 @@ class SimulatedClock : public ClockPort {
     now_ = time;
     if (passed_) passed_(now_);
   }
-  /// Calls `passed` with the time whenever some has passed: for the world that goes on with it.
+  /// Registers a function that is called with the time whenever time has passed, to advance the simulated
+  /// world.
   void when_passed(std::function<void(double)> passed) { passed_ = std::move(passed); }
 
  private:

@@ -13,11 +13,12 @@
 
 namespace flexura {
 
-/// The controller of a simulated drive: it counts the microsteps of motors, and sends the true ones, which
-/// are the plant's, to the same positions. What is behind their play it says by the play that it believes in.
+/// The controller of a simulated drive. It counts the microsteps of its motors, and commands the plant's true
+/// motors to the same positions. It reports positions behind the backlash by the model's backlash.
 class SimulatedDrive : public DrivePort {
  public:
-  /// At rest at `start`, microsteps. Its motors obey the limits of `real`'s. The plant outlives it.
+  /// Starts at rest at `start`, microsteps. Motors obey the limits of `real`. The plant must outlive this
+  /// object.
   SimulatedDrive(const Drive& believed, const Drive& real, const std::vector<std::int64_t>& start,
                  Plant& plant, const ClockPort& clock, double horizon);
 
@@ -27,7 +28,7 @@ class SimulatedDrive : public DrivePort {
   CommandOutcome halt() override;
   Outcome<DriveReading> read() override;
 
-  /// What connects it: it can be lost for a time.
+  /// Returns the link to the drive, which can be interrupted for a time.
   [[nodiscard]] SimulatedLink& link() { return link_; }
 
  private:

@@ -67,7 +67,7 @@ Outcome<HeadReading> SimulatedHead::read() {
 
 HeadState SimulatedHead::truth(double time) const {
   HeadState state = head_state(axes_.positions(time));
-  // Rounding, or an offset, leads past the lens's ends.
+  // Rounding or an offset can lead beyond the limits of the lens.
   state.zoom = std::clamp(state.zoom, zoom_limits_[0], zoom_limits_[1]);
   return state;
 }

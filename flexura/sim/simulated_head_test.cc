@@ -20,7 +20,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-// A head in which nothing is ideal.
+// A head with all imperfections.
 CameraConfig real_camera(TestRandom& random) {
   CameraConfig camera = random_camera(random);
   HeadConfig& head = camera.head;
@@ -54,7 +54,7 @@ TEST(SimulatedHead, ObeysItsLimitsAndRatesWithItsStageWhateverTheyAreTold) {
     }
     EXPECT_FALSE(stage.command({{0, 0, std::nan("")}}));
     constexpr double step = 1e-3;
-    // Of what is carried: its speed is the motor's or 0, so its acceleration has no bound.
+    // For the load: its speed is the motor's or 0, so its acceleration is unbounded.
     const auto expect_rates = [](const Eigen::Vector3d& last, const Eigen::Vector3d& now,
                                  const std::array<AxisConfig, 3>& axes) {
       for (int i = 0; i < 3; ++i) {
@@ -93,7 +93,7 @@ TEST(SimulatedHead, ReadsItsMotorsInStepsOfTheirResolution) {
         const AxisConfig& config = camera.head_axes()[static_cast<std::size_t>(axis)];
         EXPECT_GE(read[axis], config.limits[0]);
         EXPECT_LE(read[axis], config.limits[1]);
-        // The last step within a limit may be farther off than the next one beyond.
+        // Near a limit, the last step inside it may be farther away than the next one outside.
         const bool is_at_limit = read[axis] - config.limits[0] < config.resolution ||
                                  config.limits[1] - read[axis] < config.resolution;
         EXPECT_LE(std::abs(read[axis] - truth[axis]),
@@ -107,7 +107,8 @@ TEST(SimulatedHead, ReadsItsMotorsInStepsOfTheirResolution) {
   });
 }
 
-// From below what is carried hangs half the play behind its motor, from above half of it before.
+// Approached from below, the load lags half the backlash behind its motor; from above, it leads by half of
+// it.
 void expect_play(const Eigen::Vector3d& carried, const Eigen::Vector3d& motors,
                  const std::array<AxisConfig, 3>& axes, double side) {
   for (int i = 0; i < 3; ++i)
@@ -215,7 +216,7 @@ TEST(SimulatedHead, HaltsOnItsWay) {
   const AxisConfig& pan = camera.head_axes()[0];
   clock.wait_until(1 + pan.max_rate / pan.max_acceleration + 1e-9);
   EXPECT_FALSE(head.read().value().moving);
-  // 50 deg/s for a second, less half of the time to speed up, and half of that to stop.
+  // 50 deg/s for a second: half of the speed-up time is lost, and half of the braking time is gained.
   EXPECT_NEAR(head.truth(clock.now()).pan, pan.max_rate * 1.0, 1e-9);
 }
 

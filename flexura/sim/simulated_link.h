@@ -12,16 +12,16 @@
 
 namespace flexura {
 
-/// What connects a simulated device: its name, the rig's clock, and when it cannot be reached. Motion that
-/// was commanded before goes on.
+/// The link to a simulated device: its name, the rig's clock, and its outages. Motion commanded before an
+/// outage continues.
 class SimulatedLink {
  public:
   SimulatedLink(std::string name, const ClockPort& clock) : name_(std::move(name)), clock_(&clock) {}
 
   [[nodiscard]] double now() const { return clock_->now(); }
-  /// The link is lost in [from, to), s.
+  /// Interrupts the link in [from, to), s.
   void lose(double from, double to) { outages_.emplace_back(from, to); }
-  /// The fault now, if there is one.
+  /// Returns the fault at the current time, if there is one.
   [[nodiscard]] std::optional<PortFault> fault() const {
     for (const auto& [from, to] : outages_) {
       if (now() >= from && now() < to)

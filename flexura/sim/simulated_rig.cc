@@ -16,7 +16,7 @@ ArmSetup true_arm(const RigConfig& model, const RigConfig& truth) {
   return ArmSetup(truth);
 }
 
-// How far back the slowest camera may look.
+// Returns the longest frame horizon of the cameras.
 double horizon_of(const std::vector<CameraConfig>& cameras) {
   double horizon = 0;
   for (const CameraConfig& camera : cameras) horizon = std::max(horizon, frame_horizon(camera.sensor));

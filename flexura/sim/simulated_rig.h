@@ -16,24 +16,26 @@
 
 namespace flexura {
 
-/// A camera of the simulated world with what moves it.
+/// A camera of the simulated world with its head and stage.
 class SimulatedView {
  public:
-  /// The camera as it is `believed` to be, whose start its head and stage count, and as it truly is. `shot`
-  /// and `take_picture` as SimulatedCamera takes them; the shot's view is filled in.
+  /// `believed` is the camera model, whose initial state its head and stage count; `config` is the true
+  /// camera. `shot` and `take_picture` as for SimulatedCamera; the shot's view is filled in.
   SimulatedView(const CameraConfig& believed, const CameraConfig& config, Shot shot,
                 const TakePicture& take_picture, SimulatedClock& clock, double horizon);
 
-  /// The camera as it truly is.
+  /// Returns the true camera.
   [[nodiscard]] const Camera& description() const { return description_; }
-  /// How it truly stands at `time` s: not for algorithms.
+  /// Returns the true axis positions at `time` s; not for algorithms.
   [[nodiscard]] CameraStance stance(double time) const { return {head_.truth(time), stage_.truth(time)}; }
-  /// What it truly sees then: not for algorithms.
+  /// Returns the true view at `time` s; not for algorithms.
   [[nodiscard]] View view(double time) const { return description_.view(stance(time)); }
-  [[nodiscard]] SimulatedHead& head() { return head_; }        ///< Behind ports(), with its truth.
-  [[nodiscard]] SimulatedStage& stage() { return stage_; }     ///< Likewise.
-  [[nodiscard]] SimulatedCamera& camera() { return camera_; }  ///< Likewise.
-  /// They stay its own: valid as long as this.
+  [[nodiscard]] SimulatedHead& head() { return head_; }  ///< The head behind ports(), with its true state.
+  /// The stage behind ports(), with its true state.
+  [[nodiscard]] SimulatedStage& stage() { return stage_; }
+  /// The camera behind ports(), including the frames for recording.
+  [[nodiscard]] SimulatedCamera& camera() { return camera_; }
+  /// Returns ports that this object owns: valid as long as it exists.
   [[nodiscard]] CameraPorts ports() { return {description_.config().name, &camera_, &head_, &stage_}; }
 
  private:
@@ -43,24 +45,25 @@ class SimulatedView {
   SimulatedCamera camera_;
 };
 
-/// A rig in simulated time: an arm, its drives and cameras as they truly are, behind ports that tasks use
-/// with what they believe. The same configuration, pictures, seed and calls give the same readings and
-/// frames, bit for bit, and asking does not change what happens.
+/// A rig in simulated time: the true arm, drives and cameras, behind ports that tasks use with their model.
+/// The same configuration, pictures, seed and calls give bit-identical readings and frames. Queries do not
+/// change what happens.
 class SimulatedRig {
  public:
-  /// `truth` is the simulated world; of `model` arm and drive are used, to turn commanded shapes into
-  /// motor positions, and where the cameras stand at the start, which their heads and stages count.
-  /// `make_plant` makes the arm as it truly is, which goes on with the rig's clock.
-  /// std::invalid_argument: truth_problem's text, or what is no arm or camera.
+  /// `truth` is the simulated world. Of `model`, arm and drive are used to convert commanded shapes into
+  /// motor positions. Its initial camera positions are those that heads and stages count. `make_plant`
+  /// creates the true arm, which advances with the rig's clock. Throws std::invalid_argument with the text of
+  /// truth_problem, or if an arm or camera is invalid.
   SimulatedRig(const RigConfig& model, const RigConfig& truth, const TakePicture& take_picture,
                std::uint64_t seed, const MakePlant& make_plant = true_plant);
 
-  /// Valid as long as the rig.
+  /// Returns ports that are valid as long as the rig.
   [[nodiscard]] RigPorts ports();
 
-  /// What stands behind ports(), with its truth: for who plays the rig, not for algorithms.
+  /// The clock behind ports(); for the code that runs the simulation, not for algorithms.
   [[nodiscard]] SimulatedClock& clock() { return clock_; }
-  [[nodiscard]] SimulatedArm& arm() { return arm_; }  ///< Likewise.
+  /// The arm behind ports(), with its true state; not for algorithms.
+  [[nodiscard]] SimulatedArm& arm() { return arm_; }
   /// In the order of the truth's cameras.
   [[nodiscard]] SimulatedView& camera(std::size_t index) { return *cameras_.at(index); }
 

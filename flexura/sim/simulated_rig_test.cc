@@ -25,7 +25,7 @@ void expect_same(const Frame& a, const Frame& b) {
   EXPECT_TRUE(*a.picture == *b.picture);
 }
 
-// Commands at fixed times, and frames asked for at whatever times besides.
+// Gives commands at fixed times, and requests frames at additional random times.
 Taken run(const RigConfig& model, const RigConfig& truth, std::uint64_t seed, TestRandom* asks) {
   SimulatedRig rig(model, truth, numbers_renderer, seed);
   const RigPorts ports = rig.ports();
@@ -94,14 +94,14 @@ TEST(SimulatedRig, AnotherSeedLosesOtherFrames) {
 TEST(SimulatedRig, ShowsTheTrueWorldAndNotTheModel) {
   const RigConfig model = two_section_rig();
   RigConfig truth = model;
-  truth.cameras[0].lens.fx = 88;  // a tenth longer
+  truth.cameras[0].lens.fx = 88;  // A tenth longer.
   truth.cameras[0].mount.position[0] += 0.1;
   truth.cameras[0].mount.look_at = {{0.1, 0, 0}};
   SimulatedRig believed(model, model, numbers_renderer, 1), real(model, truth, numbers_renderer, 1);
   const auto a = numbers_of(*believed.ports().cameras[0].camera->newest().value());
   const auto b = numbers_of(*real.ports().cameras[0].camera->newest().value());
   const double distance = model.cameras[0].mount.position[2];
-  EXPECT_NEAR(b[8], 31.5 - 88 * 0.1 / distance, 1e-9);  // the tip
+  EXPECT_NEAR(b[8], 31.5 - 88 * 0.1 / distance, 1e-9);  // The tip.
   EXPECT_NEAR(23.5 - b[9], 1.1 * (23.5 - a[9]), 1e-9);
 }
 
@@ -150,7 +150,7 @@ TEST(SimulatedRig, ShowsTheSameToThreadsThatAskItsCamerasAtOnce) {
   }
 }
 
-// Follows an arm's command with the newest frames, and knows nothing of who answers.
+// Follows a commanded arm with the newest frames through the ports only.
 class SimulatedCameraTest : public testing::Test {
  protected:
   void start(double rate, double exposure, double delay, double drop) {
@@ -235,10 +235,10 @@ TEST_F(SimulatedCameraTest, FilmsWhatIsNotLostHoweverManyAreLostInARow) {
     EXPECT_FALSE(film.has_new());
   }
   EXPECT_GT(longest, frames_kept);
-  EXPECT_NEAR(static_cast<double>(count) / 1000, 0.05, 0.021);  // three standard deviations
+  EXPECT_NEAR(static_cast<double>(count) / 1000, 0.05, 0.021);  // Three standard deviations.
 }
 
-// Of the frames that come after one, so many may be lost, and no more, for it to be the newest.
+// newest() finds a frame up to the documented number of lost frames after it, and no further.
 TEST_F(SimulatedCameraTest, LooksBackAsFarAsItSaysAndNoFarther) {
   start(100, 0, 0, 0.95);
   clock().wait_until(60);
@@ -258,7 +258,7 @@ TEST_F(SimulatedCameraTest, LooksBackAsFarAsItSaysAndNoFarther) {
   EXPECT_GT(count, 10);
 }
 
-// The arm's way is remembered as far back as that, however often it was sent elsewhere meanwhile.
+// The arm's motion is kept back to the frame horizon, however often it was commanded elsewhere meanwhile.
 TEST_F(SimulatedCameraTest, ShowsAFrameAsLateAsItCanBeHadAsItWasAtOnce) {
   RigConfig config = two_section_rig();
   config.drive.reset();

@@ -4,7 +4,8 @@
 
 namespace flexura {
 
-/// What a simulated arm does cannot be computed from here on: it comes to no rest, or its motion blows up.
+/// Thrown if the motion of a simulated arm cannot be computed any further: it has no equilibrium, or its
+/// motion diverges.
 class SimulationError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

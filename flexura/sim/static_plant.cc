@@ -14,7 +14,7 @@
 namespace flexura {
 namespace {
 
-// Of fields in one step: then it goes on losing in the next.
+// Maximum number of field turns lost in one step; the loss continues in the next step.
 constexpr int most_turns = 50;
 
 }  // namespace
@@ -45,12 +45,12 @@ void StaticPlant::advance(double time) {
   forget();
 }
 
-// What becomes of a snapshot by a later step.
+// Returns the snapshot that follows from `from` at a later step.
 StaticPlant::Snapshot StaticPlant::settled(long index, Snapshot from) const {
   const double then = static_cast<double>(index) * step;
   from.index = index;
   from.at = solved(then, from.at, from.lost);
-  // Each turn of its field that a motor loses lets its tendon out, and others take over what it held.
+  // Each lost turn of a motor's field lets its tendon out, and other tendons take over its load.
   for (int turn = 0; turn < most_turns && inputs().lose_steps(then, from.at.tensions, from.lost); ++turn)
     from.at = solved(then, from.at, from.lost);
   return from;
@@ -74,9 +74,10 @@ Equilibrium StaticPlant::equilibrium(double time) const {
   return at;
 }
 
-// Its tip goes much farther than what its tendons do in that time can bend it.
+// Returns whether the tip moved much farther than the tendon displacements in that time can explain.
 bool StaticPlant::is_jump(const Snapshot& from, const Snapshot& to) const {
-  constexpr double least = 0.1, many = 2;  // of its length; of an arm's way whose bend is even
+  // Fraction of the arm's length; multiple of the tip motion of an evenly bent arm.
+  constexpr double least = 0.1, many = 2;
   const double length = inputs().rod().length();
   const double way = (to.at.tip.position - from.at.tip.position).norm();
   if (way < least * length) return false;
@@ -103,7 +104,7 @@ std::string StaticPlant::warning(double time) const {
   return {};
 }
 
-// Nodes beside those that integrals are taken at change nothing else.
+// Nodes in addition to the integration points change nothing else.
 void StaticPlant::grab(const std::optional<RodPlace>& place) const {
   if (place == grabbed_) return;
   statics_ = place ? RodStatics(inputs().rod(), std::array{*place}) : RodStatics(inputs().rod());

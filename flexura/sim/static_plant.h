@@ -12,9 +12,10 @@
 
 namespace flexura {
 
-/// An arm that is an elastic rod: its tendons are pulled in, weight and loads pull at it, and it follows
-/// without inertia from equilibrium to equilibrium (docs/mechanics.md). Of several it takes the one that its
-/// way leads to, at steps of `step` s from time 0 on. SimulationError: the arm has no equilibrium.
+/// A plant whose arm is an elastic rod without inertia (docs/mechanics.md). Tendons are pulled in, weight and
+/// loads act on it, and it moves from equilibrium to equilibrium. Among several equilibria it takes the one
+/// reached along its path, in steps of `step` s from time 0 on. Throws SimulationError if the arm has no
+/// equilibrium.
 class StaticPlant : public RodPlant {
  public:
   static constexpr double step = 0.02;
@@ -32,7 +33,7 @@ class StaticPlant : public RodPlant {
   }
   [[nodiscard]] std::vector<double> lost_steps(double time) const override { return snapshot(time).lost; }
 
-  /// How the rod stands in its frame, with its tendons' tensions. Times as backbone().
+  /// Returns the equilibrium of the rod in its frame, with the tendon tensions. Times as for backbone().
   [[nodiscard]] Equilibrium equilibrium(double time) const;
 
  protected:
@@ -40,12 +41,12 @@ class StaticPlant : public RodPlant {
 
  private:
   struct Snapshot {
-    long index = 0;  // Of steps.
+    long index = 0;  // Step number.
     Equilibrium at;
-    std::vector<double> lost;  // Microsteps of each axis, since the start.
-    bool has_jumped = false;   // From where the one before was.
+    std::vector<double> lost;  // Microsteps lost by each axis since the start.
+    bool has_jumped = false;   // Relative to the previous snapshot.
   };
-  // The last one at or before a time.
+  // Returns the last snapshot at or before a time.
   [[nodiscard]] const Snapshot& snapshot(double time) const;
   [[nodiscard]] Equilibrium solved(double time, const Equilibrium& near,
                                    const std::vector<double>& lost) const;
@@ -53,16 +54,16 @@ class StaticPlant : public RodPlant {
   [[nodiscard]] Snapshot settled(long index, Snapshot from) const;
 
   double horizon_;
-  std::vector<Snapshot> snapshots_;  // back to the horizon
-  // Asked by several threads; what they get depends on none of what was solved before.
+  std::vector<Snapshot> snapshots_;  // Back to the horizon.
+  // Queried by several threads; answers do not depend on what was solved before.
   mutable std::mutex mutex_;
-  // What was asked last, for it is asked about in several ways; none after a change.
+  // The last answer, cached because several functions query the same time; empty after a change.
   struct Answer {
     double time = 0;
     Equilibrium at;
   };
   mutable std::optional<Answer> answer_;
-  // With the point that is pushed among its nodes.
+  // Makes the pushed point a node of statics_.
   void grab(const std::optional<RodPlace>& place) const;
   mutable std::optional<RodPlace> grabbed_;
   mutable RodStatics statics_;

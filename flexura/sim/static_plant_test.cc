@@ -22,8 +22,8 @@ namespace {
 
 StaticPlant& plant_of(SimulatedRig& rig) { return dynamic_cast<StaticPlant&>(rig.arm().plant()); }
 
-// Without weight and play the rod is the arcs that the tendons make, but for what it shortens under them,
-// some 0.03 mm of 0.5 m, which ten times the arm of a tendon shows as 0.5 mm.
+// Without weight and backlash, the rod matches the arcs of the tendons except for its shortening under them,
+// about 0.03 mm of 0.5 m. A lever ten times that of a tendon makes this 0.5 mm.
 TEST(StaticPlant, WithoutWeightIsTheArcsThatAreBelieved) {
   RigConfig config = elastic_rig();
   config.drive->spool.backlash = 0;
@@ -50,7 +50,7 @@ TEST(StaticPlant, SagsUnderItsWeightWhereThePortSaysThatItDoesNot) {
   for (const double tension : at.tensions) EXPECT_GE(tension, 0);
 }
 
-// What it answers does not depend on who asked before, nor on how the rig's time passed.
+// Answers do not depend on earlier queries, nor on how the rig's time advanced.
 TEST(StaticPlant, AnswersTheSameHoweverItIsAsked) {
   const RigConfig config = elastic_rig(9.81);
   SimulatedRig slow(config, config, numbers_renderer, 1), quick(config, config, numbers_renderer, 1);
@@ -90,7 +90,7 @@ TEST(StaticPlant, WithoutADriveIsPulledAsArcsWouldBe) {
   EXPECT_LE((believed.tip().position - truth.tip().position).norm(), 1e-3);
 }
 
-// At rest and straight each tendon pulls by the pretension, and bending by little leaves none slack.
+// At rest and straight, each tendon has the pretension, and a small bend leaves no tendon slack.
 TEST(StaticPlant, BeginsWithItsPretension) {
   RigConfig config = elastic_rig();
   config.drive->pretension = 3;
@@ -103,8 +103,8 @@ TEST(StaticPlant, BeginsWithItsPretension) {
   for (const double tension : plant_of(rig).tensions(3)) EXPECT_GT(tension, 0.5);
 }
 
-// A motor that cannot hold what its tendon pulls turns back by whole turns of its field until it can; its
-// controller goes on counting, and it stays behind for good.
+// A motor that cannot hold its tendon turns back by whole turns of its field until it can. Its controller
+// keeps counting, and the motor stays behind for good.
 TEST(StaticPlant, LosesStepsUnderMoreThanThePullOutTorque) {
   RigConfig config = elastic_rig(), weak = elastic_rig();
   const double most = 1.5;  // N
@@ -128,13 +128,13 @@ TEST(StaticPlant, LosesStepsUnderMoreThanThePullOutTorque) {
   EXPECT_GT(all, 0);
   EXPECT_EQ(rig.ports().arm->read().value().positions, strong.ports().arm->read().value().positions);
   EXPECT_EQ(plant_of(strong).lost_steps(8), std::vector<double>(6, 0.0));
-  // What is lost stays lost.
+  // Lost steps stay lost.
   ASSERT_TRUE(rig.ports().arm->command(ArmState::straight(2), 0));
   rig.clock().wait_until(16);
   for (std::size_t i = 0; i < 6; ++i) EXPECT_GE(plant_of(rig).lost_steps(16)[i], lost[i]);
 }
 
-// Six tendons of the arm's own, and nothing that drives them.
+// An arm with six tendons and no drive.
 RigConfig free_rig(double gravity = 0) {
   RigConfig config = elastic_rig(gravity);
   for (int i = 0; i < 6; ++i)
@@ -165,7 +165,7 @@ TEST(StaticPlant, PullsTendonsWhateverBendsWereCommanded) {
   const Equilibrium at = plant_of(rig).equilibrium(4);
   for (std::size_t i = 0; i < wanted.size(); ++i)
     EXPECT_TRUE(at.tensions[i] == 0 || std::abs(at.displacements[i] - wanted[i]) < 1e-9) << i;
-  // What is believed are the nearest arcs, and bends take over again.
+  // The model's reading is the nearest arcs, and commanded bends take over again.
   const ArmState nearest = nearest_arcs(ArmSetup(config).rod->rod, config.arm.arm(), wanted);
   EXPECT_LT((rig.ports().arm->read().value().state.bends[0] - nearest.bends[0]).norm(), 1e-9);
   ASSERT_TRUE(rig.ports().arm->command(bent_state(), 0));
@@ -177,7 +177,7 @@ TEST(StaticPlant, PullsTendonsWhateverBendsWereCommanded) {
 TEST(StaticPlant, StopsATendonOnItsWay) {
   RigConfig config = free_rig();
   SimulatedRig rig(config, config, numbers_renderer, 1);
-  // All of a section against each other: no bend, so that it takes the time it is given.
+  // All tendons of a section pull equally: no bend results, so the motion takes the given time.
   ASSERT_TRUE(rig.arm().pull({2e-6, 2e-6, 2e-6, 0, 0, 0}, 1));
   rig.clock().wait_until(0.5);
   ASSERT_TRUE(rig.ports().arm->halt());

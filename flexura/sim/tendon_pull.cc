@@ -14,7 +14,7 @@
 namespace flexura {
 namespace {
 
-// What of an arm's state arcs may vary: bends, and stretches that have a range.
+// Variables of an arm's state: bends, and stretches whose limits allow a range.
 class Variables {
  public:
   explicit Variables(const Arm& arm) {
@@ -34,7 +34,7 @@ class Variables {
     const Place& place = places_[static_cast<std::size_t>(k)];
     return place.part < 2 ? state.bends[place.section][place.part] : state.stretches[place.section];
   }
-  // Of each, so that tendons are pulled in about as far by one unit of any.
+  // Returns the unit of each variable, such that one unit of any pulls tendons in by about the same length.
   [[nodiscard]] Eigen::VectorXd units(const Rod& rod, const Arm& arm) const {
     double radius = 0;
     for (const TendonRoute& tendon : rod.tendons) radius = std::max(radius, tendon.at(0).value.norm());
@@ -60,7 +60,7 @@ Eigen::VectorXd pulled_by(const Rod& rod, const ArmState& state) {
   return Eigen::Map<const Eigen::VectorXd>(pulled.data(), static_cast<Eigen::Index>(pulled.size()));
 }
 
-// A row for each tendon, m/rad and m.
+// Returns the Jacobian with a row for each tendon, m/rad and m.
 Eigen::MatrixXd slopes(const Rod& rod, const ArmState& state, const Variables& variables) {
   constexpr double step = 1e-5;
   Eigen::MatrixXd J(static_cast<Eigen::Index>(rod.tendons.size()), variables.count());
@@ -72,7 +72,7 @@ Eigen::MatrixXd slopes(const Rod& rod, const ArmState& state, const Variables& v
   return J;
 }
 
-// Of a tendon's offset over a section, m.
+// Returns the largest offset of a tendon over a section, m.
 double largest_offset(const TendonRoute& tendon, double from, double to) {
   constexpr int pieces = 32;
   double most = 0;
@@ -108,7 +108,7 @@ std::vector<std::array<double, 3>> route_of(const TendonRoute& tendon, const Rod
   return route;
 }
 
-// The least step that meets `wanted` best, but for ways of which it says next to nothing.
+// Returns the minimum-norm least-squares step towards `wanted`, ignoring directions that J hardly determines.
 Eigen::VectorXd least_step(const Eigen::MatrixXd& J, const Eigen::VectorXd& wanted) {
   constexpr double next_to_nothing = 0.01;
   const SymmetricEigen normal = symmetric_eigen(J.transpose() * J);
@@ -123,7 +123,7 @@ Eigen::VectorXd least_step(const Eigen::MatrixXd& J, const Eigen::VectorXd& want
 
 ArmState nearest_arcs(const Rod& rod, const Arm& arm, const std::vector<double>& displacements) {
   constexpr int most_steps = 20;
-  constexpr double rounding = 1e-10;  // rad, and of a length
+  constexpr double rounding = 1e-10;  // In rad, and as a fraction of a length.
   if (displacements.size() != rod.tendons.size() ||
       !std::ranges::all_of(displacements, [](double each) { return std::isfinite(each); }))
     throw std::invalid_argument(
@@ -160,7 +160,8 @@ std::vector<PulledTendon> pulled_tendons(const ArmSetup& setup) {
     Eigen::VectorXd way = J.row(static_cast<Eigen::Index>(i));
     for (Eigen::Index k = 0; k < way.size(); ++k)
       if (!variables.is_bend_of(k, tendon.section)) way[k] = 0;
-    constexpr double least = 1e-6;  // m/rad: it hardly bends anything, and goes alone
+    // In m/rad. Below it the tendon hardly bends anything, and is pulled alone.
+    constexpr double least = 1e-6;
     const Eigen::VectorXd others =
         way.norm() > least ? Eigen::VectorXd(J * way / way.squaredNorm()) : Eigen::VectorXd::Zero(J.rows());
     for (std::size_t j = 0; j < tendon.together.size(); ++j)

@@ -48,7 +48,8 @@ TEST(NearestArcs, AreThoseThatMadeTheDisplacements) {
   }
 }
 
-// One tendon pulled alone: a third of it is common to all three, which no bend makes.
+// One tendon pulled alone: a third of its displacement is common to all three tendons, which no bend
+// produces.
 TEST(NearestArcs, OfDisplacementsThatNoArcsMakeAreTheNearest) {
   const ArmSetup setup(config_of());
   const ArmState found = nearest_arcs(setup.rod->rod, setup.arm, {0.003, 0, 0, 0, 0, 0});
@@ -76,7 +77,7 @@ TEST(NearestArcs, StayStraightWhereTendonsDoNotSay) {
   EXPECT_LT(found.bends[1].norm(), 1e-9);
 }
 
-// Half around the arm a tendon says next to nothing of bends across its middle.
+// A tendon that winds half around the arm hardly determines bends perpendicular to its mean direction.
 TEST(NearestArcs, OfAHelicalTendonStayInItsPlane) {
   RigConfig config = config_of();
   config.arm.section.resize(1);
@@ -136,7 +137,8 @@ TEST(PulledTendons, GoNoFartherThanTheirMotors) {
   }
 }
 
-// Three around a section: the others go half as far the other way, and those that run on through it along.
+// With three tendons around a section, the others move half as far in the opposite direction. Those that run
+// through to the next section move along.
 TEST(PulledTendons, GoTogetherSoThatNonePullsAgainstAnother) {
   const ArmSetup setup(config_of());
   const auto tendons = pulled_tendons(setup);
@@ -152,7 +154,7 @@ TEST(PulledTendons, GoTogetherSoThatNonePullsAgainstAnother) {
   for (std::size_t i = 0; i < 6; ++i) EXPECT_NEAR(arcs[i], pulled[i], 1e-8) << i;
 }
 
-// Across the plane it moves nothing, and goes alone.
+// A tendon offset perpendicular to the plane bends nothing, and is pulled alone.
 TEST(PulledTendons, OfAPlaneGoAlongInIt) {
   RigConfig config = config_of(ArmKind::planar);
   config.arm.tendon = {{.section = 2, .radius = radius, .angle = 0},

@@ -6,7 +6,7 @@
 
 namespace flexura {
 
-/// The plant that the setup's truth is: a rod or a chain of arcs. Errors as theirs.
+/// Creates the plant of the setup's truth: a rod or a chain of arcs. Errors as theirs.
 [[nodiscard]] std::unique_ptr<Plant> true_plant(const PlantSetup& setup);
 
 }  // namespace flexura

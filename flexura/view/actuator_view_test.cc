@@ -1,4 +1,4 @@
-// Sessions with tendons that are pulled in one by one, and with weight that is switched off.
+// Sessions with tendons that are pulled individually, and with weight that can be switched off.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -56,7 +56,7 @@ TEST_F(PulledRod, SaysWhatCanBePulledAndSwitched) {
   EXPECT_EQ(*list[4].find("section")->as<std::int64_t>(), 1);
   EXPECT_FALSE(*list[4].find("motor")->as<bool>());
   EXPECT_EQ(list[4].find("together")->as<Node::Array>()->size(), 6U);
-  // Both sections bend by 2 at most.
+  // Both sections bend by at most 2 rad.
   EXPECT_NEAR(*(*list[4].find("range")->as<Node::Array>())[1].as<double>(), 0.015 * 4, 1e-9);
 }
 
@@ -68,7 +68,7 @@ TEST_F(PulledRod, GoesWhereItsTendonsArePulled) {
   expect_near(values(state), wanted, 1e-7);
   EXPECT_GT((tip(state) - tip(before)).norm(), 0.05);
   EXPECT_GT(state.actuators[0].force, 1);
-  // Bends that are moved afterwards take over again.
+  // Bends commanded afterwards take over again.
   EXPECT_EQ(ask(bends({{-0.6, 0}, {-0.6, 0}}, 1)).error, "");
   const StateMessage bent = pass(3);
   EXPECT_LT((tip(bent) - LiveRig(rig_, 0).at_rest({{{-0.6, 0}, {-0.6, 0}}, {1, 1}}).tip().position).norm(),
@@ -76,7 +76,7 @@ TEST_F(PulledRod, GoesWhereItsTendonsArePulled) {
   EXPECT_NEAR(bent.actuators[0].value, -0.6 * 0.015, 1e-6);
 }
 
-// The same bends, and other tensions.
+// The bends stay equal, and the tensions change.
 TEST_F(PulledRod, PullsTendonsAgainstEachOther) {
   const StateMessage before = pass(0.1);
   EXPECT_EQ(ask(tendons({1e-5, 1e-5, 1e-5, 0, 0, 0})).error, "");
@@ -159,7 +159,7 @@ TEST_F(LightArm, HasNothingToPullOrToSwitchOff) {
   EXPECT_TRUE(pass(0.1).actuators.empty());
 }
 
-// A column under more than its own weight allows, which one tendon keeps from falling to one side.
+// A column that would buckle under its weight; one tendon keeps it from falling to one side.
 class TallColumn : public PulledRod {
  protected:
   TallColumn()
@@ -200,7 +200,7 @@ TEST_F(TallColumn, SaysThatItSnapsWhenItIsPulledOver) {
   EXPECT_EQ(messenger_.texts[me].size(), told) << "it is told once, and no switch is a snap";
 }
 
-// With motors, spools and their play, on a rod.
+// A rod with motors, spools and their backlash.
 class DrivenRod : public PulledRod {
  protected:
   DrivenRod() : PulledRod(text()) {}
@@ -227,12 +227,12 @@ TEST_F(DrivenRod, PullsItsTendonsByTheirMotors) {
   EXPECT_FALSE(state.is_moving);
   expect_near(values(state), wanted, 2e-5);
   EXPECT_GT(state.arm.bends[0].norm(), 0.05) << "its bends follow";
-  // What its bends ask shows in its tendons, too.
+  // Commanded bends also change its tendon displacements.
   EXPECT_EQ(ask(bends({{0, 0}, {0, 0}, {0, 0}})).error, "");
   expect_near(values(pass(5)), std::vector<double>(9, 0.0), 2e-5);
 }
 
-// A run tells how its rod lies.
+// A run reports the backbone of its rod.
 TEST(WatchedRod, LiesAsTheRunSaysThatItTrulyDoes) {
   const std::string text = viewed_rod();
   const ViewedRigPtr rig = viewed_rig(text);

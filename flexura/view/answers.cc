@@ -28,7 +28,7 @@ Node bends_answer(const ArmState& state) {
 
 Node point_answer(const Backbone& backbone, double s) {
   const double length = backbone.rest_length();
-  // A page that knows the arm in single precision means its end.
+  // Tolerance for a page that knows the arm in single precision and requests its end.
   const bool is_on_arm = s >= -1e-6 * length && s <= (1 + 1e-6) * length;
   if (!is_on_arm) throw ViewRefusal(fmt::format("s = {}: expected 0 to {:.6g} m", s, length));
   s = std::clamp(s, 0.0, length);

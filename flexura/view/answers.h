@@ -6,18 +6,19 @@
 #include "flexura/kinematics/inverse.h"
 #include "flexura/model/backbone.h"
 
-// What replies hold (docs/viewer-protocol.md).
+// Contents of replies (docs/viewer-protocol.md).
 namespace flexura {
 
-/// {}.
+/// Returns an empty table, {}.
 [[nodiscard]] Node nothing();
-/// The answer to `point`: the backbone at `s` m along the unstretched arm; a ViewRefusal beyond its ends.
+/// Returns the answer to `point`: the backbone at `s` m along the unstretched arm. Throws ViewRefusal beyond
+/// its ends.
 [[nodiscard]] Node point_answer(const Backbone& backbone, double s);
-/// The answer to `backbone`.
+/// Returns the answer to `backbone`.
 [[nodiscard]] Node backbone_answer(const Backbone& backbone);
-/// The answer to `tip`: what was found, and why the arm does not go there, "" when it does.
+/// Returns the answer to `tip`: the solution, and the reason why the arm does not go there ("" if it does).
 [[nodiscard]] Node tip_answer(const InverseResult& found, const std::string& danger);
-/// [[bend_x, bend_y], ...], without negative zeros.
+/// Returns [[bend_x, bend_y], ...] without negative zeros.
 [[nodiscard]] Node bends_answer(const ArmState& state);
 
 }  // namespace flexura

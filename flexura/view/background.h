@@ -5,15 +5,15 @@
 
 namespace flexura {
 
-/// What is done beside a session's thread, each kind one thing after another.
+/// Lanes of background work beside a session's thread. Jobs of one lane run one after another.
 enum class Lane : std::uint8_t { pictures, measures, checks, tasks };
 inline constexpr std::size_t lane_count = 4;
 
-/// Work away from a session's thread.
+/// Runs work away from a session's thread.
 class Background {
  public:
   using After = std::function<void()>;  ///< Called on the session's thread; may be empty.
-  using Job = std::function<After()>;   ///< What it throws, its After throws.
+  using Job = std::function<After()>;   ///< An exception of the job is rethrown by its After.
 
   virtual ~Background() = default;
   Background() = default;

@@ -9,21 +9,21 @@
 
 namespace flexura {
 
-/// What a calibration measured in one picture, as the log has it.
+/// Measurement of a calibration in one picture, as logged.
 struct CalibrationPicture {
   CalibrationSightingMessage sighting;
   std::optional<std::int64_t> number =
-      {};  ///< Of the picture for clients; none: of no picture that they get.
+      {};  ///< Picture number for clients; missing if clients do not get the picture.
 };
 
-/// A calibration at one time: the last that it decided, and the last picture of each camera.
+/// State of a calibration at one time: its last decision, and the last picture of each camera.
 struct ShownCalibration {
   std::optional<CalibrationDecisionMessage> decision;
   std::vector<CalibrationPicture> pictures;
 };
 
-/// What is drawn of a calibration: upon each picture what was measured in it, and in words what follows from
-/// that.
+/// Returns the extras of a calibration: the measurements as layers on each picture, and a text about the
+/// resulting estimate.
 [[nodiscard]] Extras calibration_extras(const ShownCalibration& calibration);
 
 }  // namespace flexura

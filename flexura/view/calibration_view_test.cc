@@ -31,7 +31,7 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::SizeIs;
 
-// Lets a session look at what a calibration tells, on the run's own thread.
+// Lets a session look at the messages of a calibration, on the run's own thread.
 class SeenCalibration : public RunLink {
  public:
   std::function<void()> look = [] {};
@@ -43,7 +43,7 @@ class SeenCalibration : public RunLink {
   }
 };
 
-// A loop before the cylinder, with pictures of half the size, and a rest.
+// A calibration loop in front of the cylinder with pictures of half the size, followed by a rest.
 std::string calibration_and_rest() {
   TestRandom random(7);
   LoopRig rig;
@@ -52,7 +52,7 @@ std::string calibration_and_rest() {
          "[[task]]\nkind = \"hold\"\nduration = 1\n[record]\nreport = false\n";
 }
 
-// One run for all: watched, and with its recording.
+// One watched run with its recording, shared by all tests.
 class CalibrationView : public ::testing::Test {
  protected:
   static void SetUpTestSuite() { seen = watched_view<SeenCalibration>(calibration_and_rest()); }
@@ -67,7 +67,7 @@ class CalibrationView : public ::testing::Test {
     for (const Node& layer : *overlay.find("layers")->as<Node::Array>()) ids.insert(text_in(layer, "label"));
     return ids;
   }
-  // Those of the recording at a time.
+  // Returns the extras of the recording at a time.
   static Node extras_at(RecordingSession& session, FakeMessenger& messenger, double time) {
     session.take(me, AtRequest{time}, [](const ViewAnswer&) {});
     return extras_in(*messenger.posts[{me, extras_stream}].back());
@@ -111,7 +111,7 @@ TEST_F(CalibrationView, IsInTheRecordingUponThePicturesThatItMeasured) {
   int compared = 0;
   for (const McapMessage& message : log.messages()) {
     const double time = time_of(message);
-    // The rig's clock stands while the last picture is judged.
+    // The rig's clock stands still while the last picture is evaluated.
     if (message.channel->topic == calibration_sightings_topic && time < *ended) {
       const Node sighting = parse_json(message.text(), "sighting");
       const Node extras = extras_at(session, messenger, time);

@@ -1,4 +1,4 @@
-// Where cameras stand that slide, and start elsewhere than they are believed to.
+// Positions of cameras with a stage that start elsewhere than in the model.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -18,7 +18,7 @@
 namespace flexura {
 namespace {
 
-// The second camera slides, and starts elsewhere than it is believed to.
+// The second camera has a stage, and starts elsewhere than in the model.
 const std::string sliding_text =
     replaced(viewed_text, "mount = { position = [-2, 0.5, 0], look_at = [0, 0.5, 0] }",
              "mount = { position = [-2, 0.5, 0], look_at = [0, 0.5, 0], stage = { y = { limits = [-0.3, 0.3] "
@@ -38,7 +38,7 @@ TEST_F(SlidingCamera, MovesAlongTheAxesThatItHas) {
   EXPECT_NEAR(pass(5).cameras[1].stage.y(), 0.2, 1e-6);
 }
 
-// What a run reads from its cameras is where the page sees them, and through them.
+// The page shows the cameras at the positions that correspond to a run's readings.
 TEST_F(SlidingCamera, StandsWhereAWatchedRunReadsIt) {
   auto run = std::make_shared<RunLink>();
   LiveSession watched(rig_, messenger_, background_, {.start = 100, .results = {}, .run = run});
@@ -66,7 +66,7 @@ TEST_F(SlidingCamera, StandsWhereAWatchedRunReadsIt) {
   EXPECT_NEAR(shown.fx, 1.5 * start.cameras[1].fx, 1e-3);
 }
 
-// By the run's clock: everything stands still, and the page's own time is another.
+// Covers follow the run's clock: everything is at rest, and the page's own time differs.
 class CoveredCamera : public LiveSessionTest {
  protected:
   CoveredCamera()
@@ -90,7 +90,7 @@ TEST_F(CoveredCamera, IsDarkWhileTheRunSaysSo) {
   EXPECT_NE(within, before);
   EXPECT_LT(within.size(), before.size() / 2) << "of one colour";
   EXPECT_EQ(after, before);
-  // Nor is the rig dark that no run moves, whatever its clock says.
+  // A rig without a run is not dark either, whatever its clock shows.
   HttpAnswer still;
   session_.advance(clock_ = 1.5);
   session_.take(ImageAsk{"side", {}}, [&](const HttpAnswer& answer) { still = answer; });
@@ -106,11 +106,11 @@ TEST_F(SlidingCamera, IsKnownByItsReadingsAlone) {
   EXPECT_NEAR((again.stage.offset - read.stage.offset).norm(), 0, 1e-12);
   EXPECT_FALSE(rig_->believed_view(1, read).X_WC.rotation.isApprox(
       rig_->cameras[1].view({rig_->stance(1, read).head, read.stage}).X_WC.rotation));
-  // Whoever wrote the log.
+  // Readings are clamped to the axis limits, whatever a log contains.
   EXPECT_LE(std::abs(rig_->stance(1, {{1e300, 0, 1e9}, {{0, -1e300, 0}}}).stage.offset.y()), 0.3);
 }
 
-// Pixels that are not square, and a lens beside the middle.
+// Pixels that are not square, and a principal point off the centre.
 TEST(CameraSample, HasTheNumbersOfItsLensEachInItsPlace) {
   const ViewedRigPtr rig =
       viewed_rig(replaced(viewed_text, "lens = { fx = 80, fy = 80, cx = 31.5, cy = 23.5 }",

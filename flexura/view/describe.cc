@@ -107,7 +107,7 @@ Node etalon_node(const Scene& stand) {
           {}};
 }
 
-// As in the experiment's file, each with the name by which messages call it.
+// Returns the obstacles as in the experiment's file, each with the name used in messages.
 Node obstacle_nodes(const ViewedRig& rig) {
   Node::Array list;
   for (std::size_t i = 0; i < rig.obstacles.size(); ++i) {
@@ -136,7 +136,7 @@ std::array<double, 2> tendon_range(const Arm& arm, const Tendon& tendon) {
   std::array<double, 2> range{};
   for (std::size_t i = 0; i <= tendon.section; ++i) {
     const Section& section = arm.sections[i];
-    // In a plane only what of the offset lies in it counts.
+    // For a planar arm only the offset within the plane counts.
     const double offset =
         arm.kind == ArmKind::planar ? std::abs(tendon.offset().x()) : tendon.offset().norm();
     const double bend = offset * std::min(section.max_bend, a_turn);
@@ -173,7 +173,7 @@ Node actuator_nodes(const ViewedRig& rig) {
   return {std::move(list), {}};
 }
 
-// The limits of a camera's three axes under their names.
+// Returns the limits of a camera's three axes under their names.
 Node axes_node(const Camera& camera, const std::array<AxisConfig, 3>& axes,
                const std::array<const char*, 3>& names) {
   Node::Table table{{"camera", {}, text_node(camera.config().name)}};

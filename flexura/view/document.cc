@@ -27,7 +27,7 @@ std::vector<std::string_view> split(std::string_view text, char at) {
   return parts;
 }
 
-// What stands behind the question mark: each key once, and none but `known`.
+// Returns the query of the address: each key once, and only keys in `known`.
 std::map<std::string, std::string> query_of(const RequestTarget& target,
                                             const std::vector<std::string>& known) {
   std::map<std::string, std::string> query;

@@ -6,8 +6,8 @@
 
 namespace flexura {
 
-/// The document that an address asks for: "/image/CAMERA.png[?time=T]", "/series?names=a,b&points=N",
-/// "/report". A ViewRefusal for any other. Never throws anything else on account of the address.
+/// Returns the document requested by an address: "/image/CAMERA.png[?time=T]", "/series?names=a,b&points=N",
+/// or "/report". Throws ViewRefusal for any other address, and nothing else that depends on the address.
 [[nodiscard]] Document read_document(std::string_view text);
 
 }  // namespace flexura

@@ -46,7 +46,7 @@ Node along_node(const Extras& extras) {
           {}};
 }
 
-// [[u, v], ...]
+// Returns [[u, v], ...].
 Node pixels_node(const std::vector<Eigen::Vector2d>& pixels) {
   const auto shown = [](double pixel) { return Node{std::round(100 * pixel) / 100, {}}; };
   Node::Array list;

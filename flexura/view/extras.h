@@ -10,35 +10,34 @@
 #include "flexura/base/node.h"
 #include "flexura/view/state_message.h"
 
-// What is drawn beside the arm and upon its pictures, of one instant (docs/viewer-protocol.md, "Extras").
-// Whoever knows something to draw makes an Extras of it, as servo_extras.h does: there is one message for all
-// of them.
+// Drawings beside the arm and on its pictures at one instant (docs/viewer-protocol.md, "Extras"). Each source
+// of drawings creates an Extras (for example servo_extras.h); one message serves all of them.
 namespace flexura {
 
 /// Another arm in the 3D view.
 struct GhostArm {
   std::string id, label;
   std::string color;               ///< "#rrggbb"
-  std::vector<ArmSample> samples;  ///< Of its backbone, as arm_samples gives them.
+  std::vector<ArmSample> samples;  ///< Samples of its backbone, as returned by arm_samples().
 };
 
-/// What lies upon a camera's picture.
+/// Layers on a camera's picture.
 struct PictureLayers {
   std::string camera;
-  /// Of the picture that it belongs to, as image messages number them; none: to any.
+  /// Number of the picture, as in image messages; missing: any picture.
   std::optional<std::int64_t> number;
-  std::string reason;  ///< Why nothing was found in it; "": something was.
+  std::string reason;  ///< Why nothing was found in the picture; "" if something was found.
   Node::Array layers;  ///< LAYER
 };
 
-/// A number at equal shares of the arm's length, from base to tip.
+/// Values at equally spaced points along the arm, from base to tip.
 struct AlongCurve {
   std::string id, label;
   std::string color;  ///< "#rrggbb"
   std::vector<double> values;
 };
 
-/// A thing that is shown in more than one place has one name and one colour there.
+/// Name and colour of an item that is shown in several places.
 struct ExtraName {
   const char *id, *label;
   const char* color;  ///< "#rrggbb"
@@ -48,33 +47,34 @@ inline constexpr ExtraName true_arm{"truth", "True", "#51cf66"};
 
 struct Extras {
   double time = 0;          ///< s
-  std::string title, text;  ///< What this is of, and how that stands, a line each.
+  std::string title, text;  ///< What this shows, and its status, one line each.
   std::vector<GhostArm> ghosts;
   std::vector<PictureLayers> overlays;
-  std::string along_label, along_unit;  ///< Of all curves.
-  double length = 0;                    ///< Of the arm along which they lie, m.
+  std::string along_label, along_unit;  ///< Label and unit of all curves.
+  double length = 0;                    ///< Length of the arm along which the curves run, m.
   std::vector<AlongCurve> along;
-  std::vector<std::pair<std::string, double>> values;  ///< Quantities by name, as series have them.
+  std::vector<std::pair<std::string, double>> values;  ///< Quantities by the names used in series.
 };
 
-/// A line upon a picture, to a hundredth of a pixel. `id` and `color` as a ghost's of the same thing.
+/// Returns a line on a picture, rounded to a hundredth of a pixel. `id` and `color` match those of the ghost
+/// that shows the same item.
 [[nodiscard]] Node line_layer(const std::string& id, const std::string& color,
                               const std::vector<Eigen::Vector2d>& points, bool is_dashed = false);
 
-/// What layers that belong to a thing with an eye of its own have in common.
+/// Common properties of layers that have their own visibility button.
 struct LayerMark {
   std::string id, label;
   std::string color;  ///< "#rrggbb"
-  std::string of;     ///< The ghost whose eye hides it, too; "": none.
+  std::string of;     ///< The ghost whose visibility button also hides it; "": no ghost.
 };
-/// Crosses upon a picture, or lines that do not hang together, to a hundredth of a pixel.
+/// Returns crosses, or separate lines, on a picture, rounded to a hundredth of a pixel.
 [[nodiscard]] Node points_layer(const LayerMark& mark, const std::vector<Eigen::Vector2d>& points);
 [[nodiscard]] Node lines_layer(const LayerMark& mark, const std::vector<std::vector<Eigen::Vector2d>>& lines,
                                bool is_dashed = false);
 
-/// The stream of these messages to a client.
+/// Stream number of these messages to a client.
 inline constexpr std::uint32_t extras_stream = 0xffffffff;
-/// The binary message. Extras that hold nothing take away what was drawn before.
+/// Returns the binary message. Empty extras remove the previous drawings.
 [[nodiscard]] std::string extras_message(const Extras& extras);
 
 }  // namespace flexura

@@ -64,7 +64,8 @@ void FrontDoor::said(ClientId client, std::string text) {
     return;
   }
   ++*waiting;
-  // Whoever is to answer holds it; where nobody does any more the request has its answer, or gets none.
+  // Held by the code that is to answer. It is released when the request has its answer, or can get none any
+  // more.
   std::shared_ptr<const void> debt(waiting.get(), [waiting](const void*) { --*waiting; });
   items_.push_back({[client, text = std::move(text), debt = std::move(debt)](Viewer& viewer) {
                       viewer.said(client, text, debt);
@@ -103,10 +104,11 @@ std::deque<FrontDoor::Item> FrontDoor::wait_for_items(bool is_watched, double ne
   return is_over_ ? std::deque<Item>{} : std::exchange(items_, {});
 }
 
-// Does what is asked, and returns what must wait: requests of those who do not read so fast as they ask.
+// Executes the items, and returns those that must wait: requests of clients that read more slowly than they
+// ask.
 std::deque<FrontDoor::Item> FrontDoor::act_on(std::deque<Item> items, Viewer& viewer, Messenger& messenger) {
   std::deque<Item> waiting;
-  std::set<ClientId> slow;  // whose requests keep their order
+  std::set<ClientId> slow;  // Clients whose requests must wait in order.
   for (Item& item : items) {
     if (item.is_request && (slow.contains(*item.client) || !messenger.has_room(*item.client))) {
       slow.insert(*item.client);
@@ -123,7 +125,7 @@ std::deque<FrontDoor::Item> FrontDoor::act_on(std::deque<Item> items, Viewer& vi
 }
 
 void FrontDoor::work(ViewStart start, Messenger& messenger, std::promise<void> made) {
-  // First the workers go, and then the viewer whose jobs they do.
+  // The workers are destroyed before the viewer whose jobs they run.
   std::unique_ptr<Viewer> viewer;
   Workers workers(
       [this](Background::After after) { push({[after = std::move(after)](Viewer&) { after(); }}); });
@@ -139,7 +141,7 @@ void FrontDoor::work(ViewStart start, Messenger& messenger, std::promise<void> m
 }
 
 void FrontDoor::serve(Viewer& viewer, Messenger& messenger) {
-  constexpr double soon = 0.001;  // s, till a slow client is looked at again
+  constexpr double soon = 0.001;  // Interval until a slow client is checked again, s.
   std::deque<Item> items;
   double next = config_.clock();
   for (;;) {
@@ -158,7 +160,7 @@ void FrontDoor::serve(Viewer& viewer, Messenger& messenger) {
     } catch (const std::exception& error) {
       viewer.failed({}, error.what());
     }
-    // A tick that was missed is not made up for.
+    // A missed tick is not repeated.
     next = std::max(next + config_.interval, now);
   }
 }

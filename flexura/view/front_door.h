@@ -20,25 +20,25 @@
 
 namespace flexura {
 
-/// Stands between a server and a viewer: takes what the server's thread brings, never waits, and hands it to
-/// the viewer on a thread of its own, which lets its time go on 60 times a second while someone looks. What
-/// fails there is told to those whom it concerns, and ends nothing.
+/// Connects a server and a viewer. Takes events from the server's thread without blocking, and passes them to
+/// the viewer on its own thread. That thread advances the viewer 60 times a second while a client is
+/// connected. Errors there are reported to the affected clients, and do not stop the thread.
 class FrontDoor : public Host {
  public:
   struct Config {
-    std::function<double()> clock;          ///< s, never falls; from any thread.
-    double interval = 1.0 / 60;             ///< Of the viewer's time, s.
-    std::size_t waiting_of_a_client = 256;  ///< Requests without an answer; more are refused.
+    std::function<double()> clock;          ///< Time in s, never decreasing; callable from any thread.
+    double interval = 1.0 / 60;             ///< Interval between advances of the viewer, s.
+    std::size_t waiting_of_a_client = 256;  ///< Limit of unanswered requests per client; more are refused.
     std::size_t waiting_documents = 64;
   };
 
   explicit FrontDoor(Config config);
   ~FrontDoor() override;
 
-  /// Opens: once, before or after the server brings the first client. `messenger` must stay until stop().
-  /// Throws what keeps the viewer from being made.
+  /// Starts the viewer; call once, before or after the first client connects. `messenger` must exist until
+  /// stop(). Rethrows exceptions of the viewer's construction.
   void start(ViewStart start, Messenger& messenger);
-  /// Closes: from then on nothing goes to the messenger. Waits for the jobs under way; a run is cancelled.
+  /// Stops the viewer: the messenger is not used afterwards. Waits for jobs under way; cancels a run.
   void stop();
 
   void opened(ClientId client) override;
@@ -49,8 +49,8 @@ class FrontDoor : public Host {
  private:
   struct Item {
     std::function<void(Viewer&)> act;
-    std::optional<ClientId> client = {};  // who is told when it fails; none: all
-    bool is_request = false;              // its answer needs room with the client
+    std::optional<ClientId> client = {};  // Client to inform about a failure; missing: all clients.
+    bool is_request = false;              // Its answer needs room in the client's queue.
   };
   using Counter = std::shared_ptr<std::atomic<std::size_t>>;
 
@@ -64,8 +64,8 @@ class FrontDoor : public Host {
   std::mutex mutex_;
   std::condition_variable filled_;
   std::deque<Item> items_;
-  std::map<ClientId, Counter> waiting_;  // requests without an answer, by client
-  std::size_t documents_ = 0;            // in `items_`
+  std::map<ClientId, Counter> waiting_;  // Unanswered requests by client.
+  std::size_t documents_ = 0;            // Number of documents in `items_`.
   bool is_over_ = false;
   Messenger* messenger_ = nullptr;
   std::thread thread_;

@@ -1,4 +1,4 @@
-// Threads: what is said and asked from several at once, while time goes on.
+// Concurrency: messages and documents from several threads at once, while time advances.
 #include "flexura/view/front_door.h"
 
 #include <gmock/gmock.h>
@@ -25,7 +25,7 @@ double wall_clock() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-// Counts what comes, from whatever thread.
+// Counts messages from any thread.
 class CountingMessenger : public Messenger {
  public:
   void send(ClientId client, std::string text) override {
@@ -40,7 +40,7 @@ class CountingMessenger : public Messenger {
     ++posts_[{client, stream}];
   }
   [[nodiscard]] bool has_room(ClientId client) const override { return client != slow; }
-  // How many texts have this in them.
+  // Returns the number of texts that contain `part`.
   [[nodiscard]] std::ptrdiff_t count(const std::string& part) const {
     const std::lock_guard lock(mutex_);
     return std::ranges::count_if(
@@ -75,7 +75,7 @@ class CountingMessenger : public Messenger {
   std::string last_;
 };
 
-// Waits for something that comes soon on any machine that is not stuck.
+// Waits for a condition that becomes true soon on any machine that works.
 template <class Done>
 bool soon(Done&& done) {
   for (int i = 0; i < 3000; ++i) {
@@ -133,7 +133,7 @@ TEST_F(FrontDoorTest, TakesEverythingAtOnceFromSeveralThreads) {
 TEST_F(FrontDoorTest, RefusesWhatOneClientHeapsUp) {
   FrontDoor door({.clock = wall_clock, .waiting_of_a_client = 2, .waiting_documents = 2});
   int refused = 0;
-  // Nobody works yet.
+  // The viewer is not started yet.
   for (int i = 0; i < 5; ++i) {
     door.said(1, R"({"id":1,"do":"ping"})");
     door.asked("/report", [&](const HttpAnswer& answer) { refused += answer.status == 503 ? 1 : 0; });
@@ -159,7 +159,7 @@ TEST_F(FrontDoorTest, TellsAClientWhichOfItsRequestsAreTooMany) {
   EXPECT_EQ(messenger_.count(R"("id":1,)"), 0) << "whoever does not read is asked for nothing more";
   messenger_.slow = 0;
   EXPECT_TRUE(soon([&] { return messenger_.count(R"("id":1,"result")") == 2; }));
-  // What has its answer waits no more.
+  // Requests with an answer do not count as waiting.
   EXPECT_TRUE(soon([&] {
     door.said(1, R"({"id":3,"do":"ping"})");
     return messenger_.count(R"("id":3,"result")") > 10;
@@ -180,14 +180,14 @@ TEST_F(FrontDoorTest, KeepsTheOrderOfWhatASlowClientAsks) {
   EXPECT_TRUE(std::is_sorted(all.begin() + 1, all.end())) << "but for hello";
 }
 
-// A request that is being done waits for its answer as one that was not begun.
+// A request being processed counts as waiting until it has its answer, like one not begun.
 TEST_F(FrontDoorTest, CountsRequestsUntilTheyAreAnswered) {
   FrontDoor door({.clock = wall_clock, .waiting_of_a_client = 1});
   start(door);
   door.opened(1);
   door.opened(2);
   std::promise<void> go;
-  // Who takes this picture and then answers for the pixel is kept from it.
+  // The thread that renders this picture and then answers for the pixel is blocked.
   door.asked("/image/front.png", [gone = go.get_future().share()](const HttpAnswer&) { gone.wait(); });
   door.said(1, R"({"id":2,"do":"pixel","camera":"front","u":3,"v":4})");
   door.said(2, R"({"id":9,"do":"ping"})");

@@ -9,7 +9,7 @@ void ImageStreams::set(const Key& key, double rate, int quality) {
     streams_.erase(key);
     return;
   }
-  // From the start: whoever asks again may have lost what was on its way.
+  // Resets the stream: a client that asks again may have lost the images in transit.
   streams_[key] = {.interval = 1 / rate, .quality = quality, .last = {}};
 }
 
@@ -26,7 +26,8 @@ bool ImageStreams::is_due(const Key& key, std::int64_t number, double now) const
   const auto found = streams_.find(key);
   if (found == streams_.end()) return false;
   const Stream& stream = found->second;
-  // Half a tick of a 60 Hz session early is not early: rates come out as asked, not at the next lower step.
+  // Half a tick of a 60 Hz session counts as on time, so that rates are as requested and not the next lower
+  // step.
   constexpr double half_a_tick = 0.5 / 60;
   return stream.is_acknowledged && stream.last != number && now + half_a_tick >= stream.due;
 }

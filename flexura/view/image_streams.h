@@ -11,8 +11,8 @@
 
 namespace flexura {
 
-/// Which client gets images of which camera when: at its rate, and the next one only after the client has
-/// said that the last has come.
+/// Decides which client gets images of which camera, and when. Each stream has its own rate, and the next
+/// image is due only after the client has acknowledged the last one.
 class ImageStreams {
  public:
   struct Key {
@@ -21,20 +21,21 @@ class ImageStreams {
     auto operator<=>(const Key&) const = default;
   };
 
-  /// `rate` a second; 0 ends the stream.
+  /// Sets the rate in images/s; 0 ends the stream.
   void set(const Key& key, double rate, int quality);
   void ack(const Key& key, std::int64_t number);
   void close(ClientId client);
 
-  /// Whether image `number` of the camera is due at `now` s: another than the last one sent.
+  /// Returns whether image `number` of the camera is due at `now` s, which requires that it differs from the
+  /// last one sent.
   [[nodiscard]] bool is_due(const Key& key, std::int64_t number, double now) const;
-  /// The streams of a camera to which its image `number` is due.
+  /// Returns the streams of a camera for which its image `number` is due.
   [[nodiscard]] std::vector<Key> due(std::size_t camera, std::int64_t number, double now) const;
-  /// Of a stream that there is.
+  /// Returns the quality of an existing stream.
   [[nodiscard]] int quality(const Key& key) const { return streams_.at(key).quality; }
-  /// The image is on its way.
+  /// Records that the image is being sent.
   void sent(const Key& key, std::int64_t number, double now);
-  /// It is not, after all.
+  /// Records that sending failed.
   void failed(const Key& key);
   [[nodiscard]] bool contains(const Key& key) const { return streams_.contains(key); }
 
@@ -44,7 +45,7 @@ class ImageStreams {
     int quality = 80;
     std::optional<std::int64_t> last;
     bool is_acknowledged = true;
-    double due = 0;  // s
+    double due = 0;  // Time of the next image, s.
   };
   std::map<Key, Stream> streams_;
 };

@@ -13,24 +13,24 @@
 
 namespace flexura {
 
-/// Questions of which only the newest counts: of each kind of a client's one is being answered and one waits.
-/// One thread uses it; the answers are found on another.
+/// Questions of which only the newest counts. For each client and kind, one question is being answered and
+/// one waits. To be used from one thread; the answers are computed on another.
 class LatestJobs {
  public:
-  /// Whose question, and which of its questions.
+  /// The client and the kind of its question.
   struct Key {
     ClientId client = 0;
     std::size_t kind = 0;
     auto operator<=>(const Key&) const = default;
   };
-  /// Finds the answer, on the lane's thread; what it throws is the reason why there is none.
+  /// Computes the answer, on the lane's thread. An exception becomes the reason for the refusal.
   using Job = std::function<Node()>;
 
   LatestJobs(Background& background, Lane lane) : background_(background), lane_(lane) {}
 
-  /// One that waited is refused.
+  /// Adds a question. A waiting question of the same key is refused.
   void ask(const Key& key, Job job, Reply reply);
-  /// Drops what waits of a client's.
+  /// Drops the waiting questions of a client.
   void close(ClientId client);
 
  private:
@@ -43,7 +43,8 @@ class LatestJobs {
 
   Background& background_;
   Lane lane_;
-  std::map<Key, std::optional<Question>> waiting_;  // of those whose question is being answered
+  // Waiting questions of the keys whose question is being answered.
+  std::map<Key, std::optional<Question>> waiting_;
   std::shared_ptr<const bool> alive_ = std::make_shared<const bool>(true);
 };
 

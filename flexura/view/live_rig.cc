@@ -19,17 +19,17 @@
 namespace flexura {
 namespace {
 
-// How often a picture of a rod knows how it lies, s: motion in between is as good as straight.
+// Interval at which a picture of a rod has computed backbones, s: motion in between is nearly straight.
 constexpr double rod_interval = 0.0049;
 
-// The rig's own cameras are never asked for frames: pictures are made of value_shot elsewhere.
+// The rig's own cameras are never asked for frames: pictures are rendered from value_shot elsewhere.
 Picture no_picture(const Shot& /*shot*/) {
   throw std::logic_error("the live rig's pictures are taken elsewhere");
 }
 
-// But for what a client's numbers are rounded to.
+// Compares up to the rounding of a client's numbers.
 bool are_alike(const ArmState& a, const ArmState& b) {
-  constexpr double rounding = 1e-6;  // rad, and of a length
+  constexpr double rounding = 1e-6;  // In rad, and as a fraction of a length.
   const ArmWay way = minus(a, b);
   return std::ranges::all_of(way.bends, [](const auto& bend) { return bend.norm() <= rounding; }) &&
          std::ranges::all_of(way.stretches, [](double stretch) { return std::abs(stretch) <= rounding; });
@@ -45,7 +45,8 @@ std::vector<ActuatorSample> actuator_samples(const std::vector<double>& pulled,
   return samples;
 }
 
-// Of a push of all of its strength along all of its length: less kinetic energy is rest.
+// Kinetic energy below which the arm is at rest, as a fraction of the work of the largest push force along
+// the arm's length.
 constexpr double still = 1e-9;
 
 int obstacle_of(const ViewedRig& rig, const std::string& name) {
@@ -85,9 +86,9 @@ void LiveRig::restart(double now) {
 }
 
 void LiveRig::skip_to(double next) {
-  // One that swings is shown in short steps also where these take long.
+  // An arm that swings is shown in short steps, even if these take long to compute.
   const double most = rig_->has_inertia ? 0.05 : 0.1;  // s
-  constexpr double newest = 0.2;                       // Of what pace_ remembers.
+  constexpr double newest = 0.2;                       // Weight of the newest value in pace_.
   if (!rig_->is_rod) return;
   const double passed = next - now();
   behind_ = passed > most ? behind_ + 1 : 0;
@@ -95,24 +96,24 @@ void LiveRig::skip_to(double next) {
   start_ += std::max(0.0, passed - most);
 }
 
-// A pause of everything is not slow.
+// A single pause of the whole program does not count as slow.
 std::optional<double> LiveRig::pace() const {
   constexpr int few = 5;
   return behind_ >= few ? std::optional(pace_) : std::nullopt;
 }
 
-// The simulated rig has no links that are lost: a fault here is a fault of the program.
+// The simulated rig's links are never interrupted: a fault here is a program error.
 ArmState LiveRig::believed() { return simulated_->arm().read().value().state; }
 bool LiveRig::is_arm_moving() { return simulated_->arm().read().value().moving; }
 
-// How a rod lies may depend on how it came there.
+// The equilibrium of a rod may depend on its path.
 Backbone LiveRig::at_rest(const ArmState& state) {
   if (!rig_->is_rod) return rig_->truth.backbone(state);
   if (are_alike(state, truth(now()))) return backbone(now());
   ArmSetup setup(rig_->experiment.true_rig());
   setup.initial = state;
   if (setup.rod && !simulated_->arm().plant().is_weighed(rig_time(now()))) setup.rod->loads = {};
-  // Where motors count from is all the same.
+  // The initial motor counts do not matter.
   const Eigen::VectorXd start =
       setup.drive ? Eigen::VectorXd::Zero(static_cast<Eigen::Index>(setup.drive->axes.size()))
                   : plant_command(state);
@@ -167,11 +168,11 @@ bool LiveRig::is_yielding() {
   return energy && rig_->push && energy->kinetic > still * rig_->push->most * rig_->push->length;
 }
 
-// Whether what moves an arm says that it lies the same at two times.
+// Returns whether the arm's inputs are equal at two times, so that the arm lies the same.
 bool LiveRig::lie_alike(double time, double other) {
   const Plant& plant = simulated_->arm().plant();
   const double at = rig_time(time), then = rig_time(other);
-  // What swings does so by itself.
+  // An arm with inertia may swing without input changes.
   if (rig_->has_inertia) return false;
   return truth(time) == truth(other) && plant.pushed(at) == plant.pushed(then) &&
          plant.is_weighed(at) == plant.is_weighed(then) && plant.pulled(at) == plant.pulled(then);
@@ -226,12 +227,12 @@ ValueShot LiveRig::shot(std::size_t camera, std::int64_t frame) {
   std::vector<Instant> instants;
   const std::vector<double> times = times_of_instants(rig_->sensors[camera], start);
   for (const double time : times) {
-    // To find how a rod lies takes a while.
+    // Computing the backbone of a rod takes a while.
     if (rig_->is_rod && time != times.back() && !instants.empty() &&
         time - instants.back().time < rod_interval)
       continue;
     Instant instant{time, truth(time), view.stance(rig_time(time))};
-    // If its drives rest it does so, too.
+    // If its inputs are unchanged, so is the rod.
     if (rig_->is_rod && !instants.empty() && lie_alike(instants.back().time, time)) {
       instant.shape = instants.back().shape;
     } else if (rig_->is_rod) {

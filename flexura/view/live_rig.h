@@ -18,60 +18,61 @@
 
 namespace flexura {
 
-/// A simulated rig that goes with a clock of others. Commands go through its ports; what is shown is the
-/// truth of the simulated world.
+/// A simulated rig that follows an external clock. Commands go through its ports; the display shows the
+/// simulated truth.
 class LiveRig {
  public:
-  /// Everything stands as the experiment starts, at `now` s.
+  /// Starts in the initial state of the experiment, at `now` s.
   LiveRig(ViewedRigPtr rig, double now);
 
-  /// Puts everything back to how the experiment starts.
+  /// Restores the initial state of the experiment.
   void restart(double now);
 
   [[nodiscard]] RigPorts ports() { return simulated_->ports(); }
   [[nodiscard]] double now() { return start_ + simulated_->clock().now(); }
-  /// Goes on to a time, not before the last one.
+  /// Advances to a time, not before the last one.
   void go_to(double now) { simulated_->clock().wait_until(rig_time(now)); }
-  /// Before it goes on to a time: a rod is followed step by step, and has no time to make up for what nobody
-  /// saw. All but the last 0.1 s up to then pass without it.
+  /// To be called before advancing to a time. A rod is computed step by step, and cannot catch up on time
+  /// without viewers. All but the last 0.1 s before `next` is skipped without computing it.
   void skip_to(double next);
-  /// How fast its time goes of late, of real time, where its steps take longer than they last; else none.
+  /// Returns the recent speed of the rig's time relative to real time, if its steps take longer than real
+  /// time. Otherwise returns std::nullopt.
   [[nodiscard]] std::optional<double> pace() const;
 
-  /// The shape that the arm is believed to be in.
+  /// Returns the shape of the arm according to the model.
   [[nodiscard]] ArmState believed();
-  /// What its drives truly bend it to, and how it lies: now, or in what is to come as far as it was
-  /// commanded, s.
+  /// Returns the state that the drives truly impose, and the true backbone, at `time` s. Future times are
+  /// possible as far as commanded.
   [[nodiscard]] ArmState truth(double time) { return simulated_->arm().truth(rig_time(time)); }
   [[nodiscard]] Backbone backbone(double time) { return simulated_->arm().backbone(rig_time(time)); }
-  /// How it would lie at rest, bent to this: where it is bent so now, as it lies. std::runtime_error: a rod
-  /// finds no rest there.
+  /// Returns the backbone at rest for these bends; the current backbone if the arm has these bends now.
+  /// Throws std::runtime_error if a rod has no equilibrium there.
   [[nodiscard]] Backbone at_rest(const ArmState& state);
-  /// The same of a rod, for pictures; null where the arm is none, or finds no rest.
+  /// Returns the rest backbone of a rod for pictures; null if the arm is not a rod or has no equilibrium.
   [[nodiscard]] std::shared_ptr<const Backbone> rod_at_rest(const ArmState& state);
   [[nodiscard]] bool is_arm_moving();
 
-  /// Sends each tendon to be pulled in so far, m (SimulatedArm::pull).
+  /// Pulls each tendon in to the given displacement, m (SimulatedArm::pull).
   CommandOutcome pull(const TendonPull& pull, double duration) {
     return simulated_->arm().pull(pull.displacements, duration);
   }
-  /// From now on the arm is with or without its weight and loads, until a restart. std::runtime_error: then
-  /// it would find no rest; all stays as it was.
+  /// Switches the arm's weight and loads on or off until a restart. Throws std::runtime_error, and changes
+  /// nothing, if the arm would have no equilibrium.
   void weigh(bool on);
-  /// From now on something pushes the arm so, until a restart; none: nothing does. std::runtime_error: then
-  /// it would find no rest; all stays as it was. std::invalid_argument: a push that cannot be.
+  /// Applies a push until a restart; std::nullopt ends it. Throws std::runtime_error, and changes nothing, if
+  /// the arm would have no equilibrium. Throws std::invalid_argument for an invalid push.
   void push(const std::optional<PlantPush>& push);
   [[nodiscard]] bool is_pushed() { return simulated_->arm().plant().pushed(rig_time(now())).has_value(); }
-  /// Whether it is pushed, or swings: then it may come anywhere.
+  /// Returns whether the arm is pushed or swings, so that it may move anywhere.
   [[nodiscard]] bool is_yielding();
-  /// What is out of the ordinary in how the arm rests now, one line; "": nothing.
+  /// Returns a one-line warning about an unusual state of the arm now; "" if there is none.
   [[nodiscard]] std::string warning() { return simulated_->arm().plant().warning(rig_time(now())); }
 
-  /// All that moves, as it stands now; its flags but for the arm's motion, and its sequence, are others' to
-  /// fill.
+  /// Returns the current state of everything that moves. The sequence number, and all flags except the arm's
+  /// motion, are left for the caller to set.
   [[nodiscard]] StateMessage state();
 
-  /// The newest frame of a camera whose exposure is over now, and its number.
+  /// Returns the number of a camera's newest frame whose exposure is over, and the shot of a frame.
   [[nodiscard]] std::int64_t newest_frame(std::size_t camera);
   [[nodiscard]] ValueShot shot(std::size_t camera, std::int64_t frame);
 
@@ -80,22 +81,22 @@ class LiveRig {
   [[nodiscard]] bool lie_alike(double time, double other);
 
   ViewedRigPtr rig_;
-  double start_ = 0;  // when the simulated rig's time is 0, s
+  double start_ = 0;  // Time at which the simulated rig's time is 0, s.
   std::unique_ptr<SimulatedRig> simulated_;
-  int behind_ = 0;  // How many times in a row it did not make up for all of the time.
+  int behind_ = 0;  // Number of consecutive advances that did not catch up completely.
   double pace_ = 1;
 };
 
-/// The shape of arcs that comes nearest to tendons that are pulled in so. std::logic_error: the rig has none
-/// that are pulled one by one.
+/// Returns the arcs nearest to these tendon displacements. Throws std::logic_error if tendons of the rig
+/// cannot be pulled individually.
 [[nodiscard]] ArmState nearest_arcs(const ViewedRig& rig, const TendonPull& pull);
 
-/// Contacts of a log or of a run, as state messages have them.
+/// Converts contacts of a log or of a run into those of state messages.
 [[nodiscard]] std::vector<ContactSample> contact_samples(const ViewedRig& rig,
                                                          const std::vector<ContactMessage>& contacts);
 
-/// The state message of the arm as tasks command it: in `state` at `time` s, with the cameras at their
-/// `stances`; lying as `truth` says, where that is not null.
+/// Returns the state message of the arm commanded to `state` at `time` s, with the cameras at `stances`. The
+/// arm lies as in `truth`, if that is not null.
 [[nodiscard]] StateMessage still_state(const ViewedRig& rig, double time, const ArmState& state,
                                        const std::vector<CameraStance>& stances,
                                        const TrueArm* truth = nullptr);

@@ -27,7 +27,7 @@ Node::Table event_table(double time, const std::string& level, const std::string
 
 }  // namespace
 
-// What is done with each request.
+// Handles each request.
 struct LiveSession::Taker : PictureSession::Taker {
   LiveSession& session;
   using PictureSession::Taker::operator();
@@ -151,7 +151,7 @@ void LiveSession::opened(ClientId client) {
 
 void LiveSession::closed(ClientId client) {
   clients_.erase(client);
-  // Nobody holds the arm any more.
+  // Ends the push of a client that has left.
   if (hand_ == client) release();
   PictureSession::closed(client);
 }
@@ -205,9 +205,9 @@ void LiveSession::follow_run() {
   const bool was_shown = news_.time.has_value();
   if (viewed()->is_rod) run_->want_truth();
   news_ = run_->news();
-  // From the rig to the run's start, and from its end to the rig.
+  // The display jumps from the rig to the run's start, and from its end back to the rig.
   if (news_.time && (!was_shown || news_.end)) ++leaps_;
-  // A page's time goes on, that of a watched run is its own: as that of states.
+  // The page's time goes on. For a watched run, events carry the run's own time, like its states.
   const std::optional<double> now = is_watched_run() ? std::nullopt : std::optional(rig_.now());
   teller_.tell(*run_, news_, clock_, now, clients_);
   if (!news_.end) return;
@@ -232,10 +232,10 @@ Backbone LiveSession::shown_backbone() {
   return run_truth() != nullptr ? run_truth()->backbone : viewed()->truth.backbone(news_.state);
 }
 
-// How the arm of a run lies; null: as it is commanded, as far as anybody has said.
+// Returns the true arm of a run; null if the arm lies as commanded, as far as reported.
 const TrueArm* LiveSession::run_truth() const { return news_.truth.get(); }
 
-// Where the run's cameras stand, as far as it says so.
+// Returns the cameras' axis positions in the run, as far as reported.
 std::vector<CameraStance> LiveSession::run_stances() const {
   std::vector<CameraStance> stances;
   stances.reserve(viewed()->cameras.size());
@@ -251,7 +251,7 @@ void LiveSession::send_states() {
                            ? still_state(*viewed(), *news_.time, news_.state, run_stances(), run_truth())
                            : rig_.state();
   if (is_running) state.pace.reset();
-  // A page's time goes on; that of a run which it watches from the start to the end is the run's.
+  // The page's time goes on; a run that is watched from start to end has its own time.
   if (!is_watched_run()) state.time = rig_.now();
   state.is_running = is_running;
   state.is_moving = state.is_moving || is_running;
@@ -267,8 +267,8 @@ ValueShot LiveSession::newest_shot(std::size_t camera) {
   if (!is_run_shown()) return rig_.shot(camera, number);
   const CameraStance stance = run_stances().at(camera);
   const SensorConfig& sensor = viewed()->sensors[camera];
-  // As the states: the time is the page's own, or that of a run which it watches from the start to the end.
-  // So a picture's exposure has its middle at the time of the state that it shows.
+  // As for states, the time is the page's own, or that of a run watched from start to end. So mid-exposure of
+  // a picture is the time of the state that it shows.
   const double start = is_watched_run() ? *news_.time - times_of_frame_at(sensor, 0).middle
                                         : frame_times(sensor, number).start;
   Instant shown{start, news_.state, stance, {}};
@@ -291,7 +291,7 @@ void LiveSession::event(const char* level, const std::string& name, const std::s
   tell_all({event_table(rig_.now(), level, name, text), {}});
 }
 
-// Nobody asked for what it tells of, and so it is shown at once.
+// Sends an event that was not requested, to be shown at once.
 void LiveSession::notice(const char* level, const std::string& name, const std::string& text) {
   Node::Table table = event_table(rig_.now(), level, name, text);
   table.push_back({"notice", {}, {true, {}}});

@@ -21,19 +21,19 @@
 
 namespace flexura {
 
-/// A simulated rig that clients move and see. It shows the newest state of a run while one goes on.
+/// A simulated rig that clients move and see. During a run it shows the run's newest state.
 class LiveSession : public PictureSession {
  public:
   struct Config {
-    double start = 0;               ///< Of its time, s by the clock of advance().
-    std::filesystem::path results;  ///< Where `run` puts its results, with -2, ... when that exists.
-    /// A run that somebody else has started: nobody can move anything meanwhile, or cancel or halt it.
+    double start = 0;               ///< Initial time, s by the clock of advance().
+    std::filesystem::path results;  ///< Folder for the results of `run`; -2, ... is appended if it exists.
+    /// A run started outside this session. Clients cannot move anything during it, nor cancel or halt it.
     std::shared_ptr<RunLink> run = {};
   };
 
   LiveSession(const ViewedRigPtr& rig, Messenger& messenger, Background& background, Config config);
 
-  /// Ends a run that it has started early, and waits for nothing.
+  /// Cancels a run that this session has started, without waiting.
   void cancel();
 
   [[nodiscard]] Hello hello() const override;
@@ -43,22 +43,22 @@ class LiveSession : public PictureSession {
   void take(const Document& document, std::function<void(HttpAnswer)> answer) override;
   void advance(double now) override;
 
-  /// The results of the last run that has ended and left some.
+  /// Returns the results of the last finished run that left any.
   [[nodiscard]] const std::optional<std::filesystem::path>& results() const { return results_; }
-  /// Whether tasks are running, whoever started them.
+  /// Returns whether tasks are running, whoever started them.
   [[nodiscard]] bool is_running() const { return run_ != nullptr; }
-  /// Whether a run that somebody else started has ended.
+  /// Returns whether a run started outside this session has ended.
   [[nodiscard]] bool is_over() const { return is_watched_run() && run_ == nullptr; }
 
  private:
   struct Taker;
-  // A wish that is being looked at, or waits for that.
+  // A requested move that is being checked, or waits for the check.
   struct Move {
     std::variant<ArmState, TipRequest, TendonPull> target;
     double duration = 0;
     Reply reply;
   };
-  // What came of it.
+  // The result of the check.
   struct Judged {
     ArmState state;
     std::optional<InverseResult> found;
@@ -97,23 +97,23 @@ class LiveSession : public PictureSession {
   void tell_all(const Node& message);
 
   Config config_;
-  double clock_ = 0;  // of advance(), s
+  double clock_ = 0;  // Time of advance(), s.
   LiveRig rig_;
-  std::vector<HeadState> head_targets_;  // what they were told last, by camera
+  std::vector<HeadState> head_targets_;  // Last commanded targets, by camera.
   std::vector<StageState> stage_targets_;
   std::uint32_t sequence_ = 0;
   std::uint16_t leaps_ = 0;
   std::set<ClientId> clients_;
   bool is_looking_ = false;
   std::optional<Move> waiting_;
-  std::uint64_t generation_ = 0;  // Moves of an older one are forgotten.
+  std::uint64_t generation_ = 0;  // Moves of an older generation are discarded.
   bool is_touching_ = false;
-  std::optional<ClientId> hand_;  // Whose push it is.
+  std::optional<ClientId> hand_;  // The client that pushes the arm.
   bool is_slow_ = false;
   double warned_ = -1;   // s
-  std::string warning_;  // of the arm's rest, as told
+  std::string warning_;  // Last warning about the arm's state, as sent.
   std::shared_ptr<RunLink> run_;
-  RunLink::News news_;  // of the run
+  RunLink::News news_;  // News of the run.
   RunTeller teller_;
   std::optional<std::filesystem::path> results_;
 };

@@ -1,4 +1,4 @@
-// What clients move in a live session, and what keeps that safe.
+// Moves of clients in a live session, and their safety checks.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -13,7 +13,7 @@
 
 namespace flexura {
 
-// Looks at one wish at a time; of those that come meanwhile the newest counts.
+// Checks one move at a time; of those arriving meanwhile the newest counts.
 void LiveSession::move(Move move) {
   if (!is_looking_) {
     look_at(std::move(move));
@@ -73,7 +73,7 @@ void LiveSession::finish(const Move& move, const Judged& judged) {
   }
   double duration = move.duration;
   if (judged.found) {
-    // Follows a hand at once, and swings over where it has to go far.
+    // Follows a hand at once, and moves at a limited rate over long distances.
     constexpr double shortest = 0.05, rate = 4;  // s, rad/s
     const ArmState from = rig_.believed();
     duration = shortest;
@@ -87,7 +87,7 @@ void LiveSession::finish(const Move& move, const Judged& judged) {
   move.reply({judged.found ? tip_answer(*judged.found, "") : nothing(), fault ? text(*fault) : ""});
 }
 
-// A hand that drags against something is told twice a second at most.
+// Warns at most twice a second while a hand drags against an obstacle.
 void LiveSession::warn(const std::string& text) {
   constexpr double between = 0.5;  // s
   if (rig_.now() - warned_ < between) return;
@@ -101,7 +101,7 @@ void LiveSession::halt() {
   ++generation_;
   if (waiting_) std::exchange(waiting_, std::nullopt)->reply({nothing(), "something else has stopped it"});
   const RigPorts ports = rig_.ports();
-  // The simulated rig has no links that are lost: a fault here is a fault of the program.
+  // The simulated rig's links are never interrupted: a fault here is a program error.
   (void)ports.arm->halt().value();
   for (std::size_t i = 0; i < ports.cameras.size(); ++i) {
     (void)halt_camera(ports.cameras[i]).value();
@@ -126,7 +126,7 @@ void LiveSession::reset() {
   is_touching_ = !touched(rig_.backbone(rig_.now()), viewed()->forbidden).empty();
 }
 
-// With or without weight and loads: at once, for they have no inertia either.
+// Switches weight and loads on or off. They change at once, since they have no inertia.
 void LiveSession::weigh(bool on) {
   if (!viewed()->has_weight)
     throw ViewRefusal("weight: nothing pulls at this arm that could be switched off");
@@ -144,7 +144,7 @@ void LiveSession::push(ClientId client, const PushRequest& request) {
   const std::optional<PushScale>& scale = viewed()->push;
   if (!scale)
     throw ViewRefusal("push: this arm yields to no force: expected [arm] model = \"static\" or \"dynamic\"");
-  constexpr double rounding = 1e-6;  // A page has places of states, in single precision.
+  constexpr double rounding = 1e-6;  // A page has positions from states in single precision.
   if (request.s > (1 + rounding) * scale->length)
     throw ViewRefusal(fmt::format("s = {:.6g}: expected 0 to {:.6g} m", request.s, scale->length));
   PlantPush push{.s_rest = std::min(request.s, scale->length), .most = scale->most};
@@ -154,7 +154,7 @@ void LiveSession::push(ClientId client, const PushRequest& request) {
       throw ViewRefusal(
           fmt::format("force: {:.4g} N: expected {:.4g} N at most", push.force.norm(), scale->most));
   } else {
-    constexpr double stiffest = 100;  // of the controls'
+    constexpr double stiffest = 100;  // Multiple of the default stiffness.
     push.to = vector(*request.to);
     push.stiffness = request.stiffness.value_or(scale->stiffness);
     if (push.stiffness > stiffest * scale->stiffness)
@@ -180,7 +180,7 @@ void LiveSession::release() {
   }
 }
 
-// What is pushed, or swings, comes where no drive has it: it is said what it touches there.
+// An arm that is pushed or swings moves without drive motion: reports what it touches.
 void LiveSession::watch_yielding() {
   if (rig_.is_arm_moving() || !rig_.is_yielding()) return;
   const std::string text = touched(rig_.backbone(rig_.now()), viewed()->forbidden);
@@ -188,7 +188,7 @@ void LiveSession::watch_yielding() {
   if (!text.empty() && !was_touching) notice("warning", "safety", text);
 }
 
-// Once, when it becomes so.
+// Reports once when the rig becomes slow.
 void LiveSession::tell_pace() {
   const std::optional<double> pace = rig_.pace();
   if (pace && !is_slow_)
@@ -197,7 +197,7 @@ void LiveSession::tell_pace() {
   is_slow_ = pace.has_value();
 }
 
-// Once, when it becomes so.
+// Reports a new warning once.
 void LiveSession::tell_warning() {
   if (!viewed()->is_rod) return;
   std::string warning = rig_.warning();
@@ -205,7 +205,7 @@ void LiveSession::tell_warning() {
   warning_ = std::move(warning);
 }
 
-// Stops the arm before a step that would bring it to touch something.
+// Stops the arm before a step in which it would touch an obstacle.
 void LiveSession::keep_clear(double next) {
   if (!rig_.is_arm_moving()) return;
   const std::string text = touched(rig_.backbone(next), viewed()->forbidden);
@@ -217,7 +217,7 @@ void LiveSession::keep_clear(double next) {
   event("error", "safety", "stopped before " + text);
 }
 
-// A rod may come to where it finds no rest.
+// A rod may reach a state without equilibrium.
 void LiveSession::move_on(double next) {
   rig_.skip_to(next);
   try {

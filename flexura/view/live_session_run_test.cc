@@ -18,7 +18,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-// What an image's message says of itself.
+// Returns the time in an image's message.
 double image_time(const std::string& message) {
   double time = 0;
   std::memcpy(&time, message.data() + 8, sizeof(time));
@@ -102,7 +102,7 @@ TEST_F(LiveSessionTest, ShowsARunThatSomebodyElseStarted) {
   EXPECT_EQ(*messenger_.last(other, "progress").find("text")->as<std::string>(), "section 1: bend");
 }
 
-// A run may be many times as fast as the clock, or slower: a picture's time says of which state it is.
+// A run may be much faster or slower than the clock: a picture's time identifies the state that it shows.
 TEST_F(LiveSessionTest, GivesPicturesOfAWatchedRunTheTimeOfTheStateTheyShow) {
   auto run = std::make_shared<RunLink>();
   LiveSession watched(rig_, messenger_, background_, {.start = 100, .results = {}, .run = run});
@@ -122,11 +122,11 @@ TEST_F(LiveSessionTest, GivesPicturesOfAWatchedRunTheTimeOfTheStateTheyShow) {
   }
 }
 
-// What the page starts goes by the page's time, which goes on: its pictures too.
+// A run started by the page uses the page's time, which goes on; so do its pictures.
 TEST_F(LiveSessionTest, GivesPicturesTheTimeOfTheStatesOfAFreeRig) {
   ask(ImagesRequest{"front", 30, 80});
   for (int i = 0; i < 5; ++i) {
-    const StateMessage state = pass(0.4);  // The first of these ticks took it.
+    const StateMessage state = pass(0.4);  // The picture was taken at the first of these ticks.
     const std::string image = last_image(me, 1);
     EXPECT_LE(image_time(image), state.time);
     EXPECT_GT(image_time(image), state.time - 0.45);

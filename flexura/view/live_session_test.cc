@@ -42,7 +42,7 @@ TEST_F(LiveSessionTest, MovesTheArmAsAskedWithinItsLimits) {
   const StateMessage there = pass(0.6);
   EXPECT_FALSE(there.is_moving);
   EXPECT_NEAR(there.arm.bends[0].x(), 0.5, 1e-6);
-  // Drawn to the limit of 2 rad; the second section takes its time.
+  // Clamped to the limit of 2 rad; the second section needs its time.
   EXPECT_EQ(ask(bends({{-3, 0}, {1, 0}})).error, "");
   const StateMessage limited = pass(0.5);
   EXPECT_NEAR(limited.arm.bends[0].x(), -2, 1e-6);
@@ -195,7 +195,7 @@ TEST_F(LiveSessionTest, TakesOnePictureForAllWhoLook) {
   EXPECT_EQ(messenger_.count(other, 0), 6) << "no states for one who has left";
 }
 
-// The first camera has no noise: what stands still looks the same.
+// The first camera has no noise: a scene at rest gives the same picture.
 TEST_F(LiveSessionTest, SendsWhatStandsStillAgainUnderItsNewNumber) {
   ask(ImagesRequest{"front", 30, 80});
   pass(0.1);
@@ -260,7 +260,7 @@ TEST_F(LiveSessionTest, GivesTheNewestPictureAsAFile) {
   EXPECT_THROW(session_.take(ReportAsk{}, [](const HttpAnswer&) {}), ViewRefusal);
 }
 
-// The arm is believed to stand where its way is free.
+// The model's arm stands where its path is free.
 class MisplacedArm : public LiveSessionTest {
  protected:
   MisplacedArm() : LiveSessionTest(viewed_text + "[truth.arm.base]\nposition = [0.3, 0, 0]\n") {}
@@ -278,7 +278,7 @@ TEST_F(MisplacedArm, StopsBeforeItTouches) {
   EXPECT_EQ(pass(0.1).arm.bends[0].norm(), 0);
 }
 
-// A rig of one camera, and one of three.
+// Returns a rig with one camera, or with three.
 std::string of_cameras(int count) {
   const std::size_t side = viewed_text.find("[[camera]]\nname = \"side\""),
                     task = viewed_text.find("[[task]]");

@@ -8,7 +8,7 @@
 
 namespace flexura {
 
-/// Where messages to clients go: a server, or what stands for one in a test. Its methods can be called from
+/// Destination of messages to clients: a server, or its replacement in a test. Its methods can be called from
 /// any thread.
 class Messenger {
  public:

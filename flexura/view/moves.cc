@@ -25,10 +25,10 @@
 namespace flexura {
 namespace {
 
-// How much deeper than at the start something may get, m or rad: none of it is to be seen.
+// Tolerance for a violation deeper than at the start, m or rad: too small to be visible.
 constexpr double no_worse = 1e-5;
 
-// Whether it was so at the start, and is nowhere much worse.
+// Returns whether the violation existed at the start, and is nowhere much worse.
 bool was_there(const Violation& violation, const std::vector<Violation>& at_start) {
   return std::ranges::any_of(at_start, [&](const Violation& before) {
     return before.hazard == violation.hazard && before.section == violation.section &&
@@ -43,8 +43,8 @@ SafetyReport check_way(const ArmModel& arm, const std::vector<Obstacle>& obstacl
   return check_motions(arm, obstacles, from, {{motion, 0, ""}}, step);
 }
 
-// An arm that lies as a backbone does, with a section for each of its arcs. Its sections have no twist: what
-// twists before an arc turns the arc's bend instead.
+// An arm equal to a backbone, with a section for each of its arcs. Its sections have no twist: twist before
+// an arc rotates the arc's bend direction instead.
 struct ArcArm {
   explicit ArcArm(const Backbone& backbone) {
     arm.kind = ArmKind::spatial;
@@ -117,7 +117,7 @@ ArmState shape_wanted(const Arm& arm, const std::optional<Drive>& drive, const A
 TendonPull pull_wanted(const std::vector<PulledTendon>& actuators, const std::vector<double>& displacements) {
   if (displacements.size() != actuators.size())
     throw ViewRefusal(fmt::format("tendons: expected {} displacements", actuators.size()));
-  // A page's numbers are rounded.
+  // Tolerance for the rounded numbers of a page.
   constexpr double rounding = 1e-7;  // m
   TendonPull pull{displacements};
   for (std::size_t i = 0; i < actuators.size(); ++i) {
@@ -137,7 +137,8 @@ InverseResult shape_for_tip(const ArmModel& arm, const ArmState& from, const Tip
   if (request.direction) target.direction = vector(*request.direction);
   InverseConfig config;
   config.start = within_limits(arm.driven(), from);
-  // From where it is, for a hand that drags wants no leaps; from elsewhere only where that does not do.
+  // Searches from the current state first, since a dragging hand must not cause jumps. Searches from other
+  // states only if that fails.
   config.max_starts = 1;
   InverseResult near = solve_inverse(arm, target, config);
   if (near.converged() || near.is_proven) return near;
@@ -153,10 +154,10 @@ std::string danger_on_way(const ArmModel& arm, const std::vector<Obstacle>& obst
   if (way.is_safe()) return {};
   const SafetyReport start = check_way(arm, obstacles, from, hold_motion(from, 0));
   for (const Violation& violation : way.violations) {
-    // How fast it goes is the rig's own affair.
+    // The rig itself limits its speed.
     constexpr std::array speeds = {Hazard::bend_rate, Hazard::stretch_rate, Hazard::jump};
     if (std::ranges::find(speeds, violation.hazard) != speeds.end()) continue;
-    // Where a rod finds no rest is for the simulated arm to say, which comes by its own way.
+    // Whether a rod has an equilibrium is decided by the simulated arm, which takes its own path.
     if (violation.hazard == Hazard::not_finite && !arm.actuation().is_linear()) continue;
     if (!was_there(violation, start.violations)) return violation.what();
   }

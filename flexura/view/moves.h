@@ -12,40 +12,40 @@
 #include "flexura/sim/tendon_pull.h"
 #include "flexura/view/request.h"
 
-// What becomes of wishes where the arm shall go: pure functions, which other threads call.
+// Checks and conversions of requested arm moves: pure functions, callable from other threads.
 namespace flexura {
 
-/// The shape that a client asks for, drawn to the arm's limits. Throws a ViewRefusal when it is none of this
-/// arm, with the reason.
+/// Returns the shape that a client requests, clamped to the arm's limits. Throws ViewRefusal with the reason
+/// if it does not fit this arm.
 [[nodiscard]] ArmState shape_wanted(const Arm& arm, const std::optional<Drive>& drive,
                                     const ArmRequest& request);
 [[nodiscard]] ArmState shape_wanted(const Arm& arm, const ShapeConfig& shape);
 
-/// Tendons that are pulled in one by one.
+/// Displacements of tendons that are pulled individually.
 struct TendonPull {
   std::vector<double> displacements;  ///< m
 };
-/// What a client asks of a rig's actuators; a ViewRefusal where these are not as many, or one is beyond its
-/// range.
+/// Returns the displacements that a client requests for a rig's actuators. Throws ViewRefusal if their number
+/// is wrong, or if one is out of range.
 [[nodiscard]] TendonPull pull_wanted(const std::vector<PulledTendon>& actuators,
                                      const std::vector<double>& displacements);
 
-/// A ViewRefusal where the camera has no stage, or one that does not move along what is asked for.
+/// Throws ViewRefusal if the camera has no stage, or if the stage cannot move along a requested axis.
 void require_travel(const Camera& camera, const StageRequest& request);
 
-/// The shape nearest to `state` within the sections' limits.
+/// Returns the shape nearest to `state` within the sections' limits.
 [[nodiscard]] ArmState within_limits(const Arm& arm, ArmState state);
 
-/// A command for the tip, near the one from which it is sought: quick enough to follow a hand.
+/// Returns a command that reaches the tip request, searched from `from`. Fast enough to follow a hand.
 [[nodiscard]] InverseResult shape_for_tip(const ArmModel& arm, const ArmState& from,
                                           const TipRequest& request);
 
-/// Why the arm must not go straight from one command to another, one line; "" when nothing is in the way.
-/// What is wrong already at the start, and gets no worse, is no reason to stay.
+/// Returns in one line why the arm must not move straight from one command to another; "" if the path is
+/// free. Violations that already exist at the start and do not worsen are ignored.
 [[nodiscard]] std::string danger_on_way(const ArmModel& arm, const std::vector<Obstacle>& obstacles,
                                         const ArmState& from, const ArmState& to);
 
-/// What an arm touches that lies so, one line; "" when nothing.
+/// Returns in one line what an arm with this backbone touches; "" if nothing.
 [[nodiscard]] std::string touched(const Backbone& backbone, const std::vector<Obstacle>& obstacles);
 
 }  // namespace flexura

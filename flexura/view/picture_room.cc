@@ -18,7 +18,7 @@ constexpr int most_waiting = 32;
 
 }  // namespace
 
-// What is used on the pictures' lane alone.
+// Data used on the lane of pictures only.
 struct PictureRoom::Tools {
   explicit Tools(const ViewedRigPtr& rig) : photographer(rig->experiment), eye(rig) {}
 
@@ -28,7 +28,7 @@ struct PictureRoom::Tools {
     std::shared_ptr<const Picture> picture;
     std::map<int, std::string> files;
   };
-  // The picture of a shot: new, or the last one again.
+  // Returns the picture of a shot: rendered, or the last one again.
   Taken& take(const ValueShot& shot) {
     Taken& last = taken[shot.shot.camera];
     if (last.picture == nullptr || !show_the_same(last.shot, shot)) {
@@ -50,20 +50,20 @@ struct PictureRoom::Tools {
     const auto answer = [&](const std::optional<SeenPixel>& seen) {
       return pixel_node(*picture, shot.sensor->bits, u, v, shot.frame, seen);
     };
-    (void)answer(std::nullopt);  // Refuses what is outside of the picture.
+    (void)answer(std::nullopt);  // Throws for a pixel outside the picture.
     return {answer(eye.look(shot, u, v)), ""};
   }
 
   Photographer photographer;
   PixelEye eye;
-  std::map<std::size_t, Taken> taken;  // by camera
+  std::map<std::size_t, Taken> taken;  // By camera.
 };
 
 struct PictureRoom::Sent {
   Shown shown;
   std::vector<ImageStreams::Key> to;
-  std::vector<int> qualities;                                  // of `to`
-  std::map<int, std::shared_ptr<const std::string>> messages;  // by quality; none: it could not be taken
+  std::vector<int> qualities;                                  // For each of `to`.
+  std::map<int, std::shared_ptr<const std::string>> messages;  // By quality; missing: could not be rendered.
 
   void make_messages(Tools& tools) {
     const Shot& shot = shown.shot.shot;

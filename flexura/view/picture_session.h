@@ -16,7 +16,7 @@
 
 namespace flexura {
 
-/// What rigs and recordings have in common: cameras, whose pictures go to the clients.
+/// Common base of sessions with live rigs and recordings: cameras whose pictures are sent to the clients.
 class PictureSession : public Session {
  public:
   void closed(ClientId client) override;
@@ -24,7 +24,7 @@ class PictureSession : public Session {
  protected:
   PictureSession(const ViewedRigPtr& rig, Messenger& messenger, Background& background);
 
-  /// What is done with the requests that both take alike. The takers of both are made of it.
+  /// Handles the requests that are common to both sessions. Their own takers derive from it.
   struct Taker {
     PictureSession& pictures;
     ClientId client;
@@ -38,11 +38,11 @@ class PictureSession : public Session {
     void operator()(const PingRequest& ping) const;
   };
 
-  /// Gets a picture, on the lane of measures; throws where it cannot be had.
+  /// Gets a picture, on the lane of measures; throws if it is not available.
   using Look = std::function<SeenPicture()>;
-  /// At the picture that a client sees; a ViewRefusal where it sees none.
+  /// Returns a Look at the picture that a client sees. Throws ViewRefusal if it sees none.
   [[nodiscard]] virtual Look look(const ImageStreams::Key& key) = 0;
-  /// At the one that the room sent last.
+  /// Returns a Look at the picture that the room sent last.
   [[nodiscard]] Look look_at_sent(const ImageStreams::Key& key);
 
   [[nodiscard]] const ViewedRigPtr& viewed() const { return viewed_; }
@@ -50,9 +50,9 @@ class PictureSession : public Session {
   [[nodiscard]] Background& background() { return background_; }
   [[nodiscard]] ImageStreams& streams() { return streams_; }
   [[nodiscard]] PictureRoom& room() { return room_; }
-  /// Expires with this session: for jobs that come back later.
+  /// Expires with this session; for jobs that finish later.
   [[nodiscard]] std::weak_ptr<const bool> alive() const { return alive_; }
-  /// The place of the camera of this name; a ViewRefusal where there is none.
+  /// Returns the index of the camera with this name. Throws ViewRefusal if there is none.
   [[nodiscard]] std::size_t place_of(const std::string& camera) const;
 
  private:

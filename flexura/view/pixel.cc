@@ -35,7 +35,7 @@ SeenPixel PixelEye::look(const Shot& shot, int u, int v) {
   return seen;
 }
 
-// Things are counted from 1, as people count them.
+// Items are counted from 1 in labels.
 std::string PixelEye::label(const SurfaceLabel& label) const {
   const int number = label.index + 1;
   switch (label.kind) {

@@ -14,19 +14,19 @@
 
 namespace flexura {
 
-/// What a pixel shows, by the geometry.
+/// What a pixel shows, according to the geometry.
 struct SeenPixel {
-  std::string label;            ///< "section 2", "marker 1", "background", an obstacle's name.
-  std::optional<double> depth;  ///< Along the optical axis, m; none where nothing is.
-  std::optional<double> s;      ///< On the arm: along the unstretched arm, m.
+  std::string label;            ///< "section 2", "marker 1", "background", or an obstacle's name.
+  std::optional<double> depth;  ///< Along the optical axis, m; missing where there is no surface.
+  std::optional<double> s;      ///< For the arm: arc length along the unstretched arm, m.
 };
 
-/// Looks through a camera's pixels. One thread at a time uses it.
+/// Determines what a camera's pixels show. To be used by one thread at a time.
 class PixelEye {
  public:
   explicit PixelEye(ViewedRigPtr rig);
 
-  /// What is seen in the middle of a pixel, which is in the image, in the middle of a frame's exposure.
+  /// Returns what is seen in the centre of a pixel of the image, at mid-exposure of the frame.
   [[nodiscard]] SeenPixel look(const Shot& shot, int u, int v);
 
  private:
@@ -37,8 +37,8 @@ class PixelEye {
   Renderer renderer_;
 };
 
-/// The answer to `pixel`: the picture's own values, of so many bits, and what is known of them.
-/// std::out_of_range for a pixel outside the picture.
+/// Returns the answer to `pixel`: the picture's own values, of `bits` bits, and what is known about them.
+/// Throws std::out_of_range for a pixel outside the picture.
 [[nodiscard]] Node pixel_node(const Picture& picture, std::int64_t bits, int u, int v, std::int64_t number,
                               const std::optional<SeenPixel>& seen);
 

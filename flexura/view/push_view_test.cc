@@ -1,4 +1,4 @@
-// Sessions whose arm a client pushes.
+// Sessions in which a client pushes the arm.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -31,7 +31,7 @@ class PushView : public LiveSessionTest {
     push.to = {to.x(), to.y(), to.z()};
     return push;
   }
-  // Until nothing moves any more; how far the tip was from `from`, at most.
+  // Waits until nothing moves any more; returns the largest distance of the tip from `from`.
   double settle(const Eigen::Vector3d& from, double most = 30) {
     double farthest = 0;
     for (double passed = 0; passed < most; passed += 0.1) {
@@ -103,11 +103,11 @@ TEST_F(StaticPushView, IsReleasedByAResetByHaltAndWhenTheHandIsGone) {
   EXPECT_TRUE(pass(0.05).push) << "another's hand";
 }
 
-// However far away the hand is.
+// The distance of the hand does not matter.
 TEST_F(StaticPushView, StaysAnArmUnderTheStrongestPush) {
   for (const Eigen::Vector3d& to : {Eigen::Vector3d(100, 0, 0), Eigen::Vector3d(0, -100, 0),
                                     Eigen::Vector3d(0, 0, -3), Eigen::Vector3d(0, 100, 0)}) {
-    (void)ask(towards(1, to));  // It may be refused, where the arm finds no rest.
+    (void)ask(towards(1, to));  // May be refused if the arm has no equilibrium.
     const StateMessage state = pass(0.1);
     EXPECT_TRUE(tip(state).allFinite());
     EXPECT_LT(tip(state).norm(), 1.1);
@@ -178,7 +178,7 @@ TEST_F(DynamicPushView, SwingsWhilePushedAndAfterwardsUntilItIsDamped) {
   EXPECT_GT(tip(pushed).z(), rest.z() + 0.01);
   (void)pass(1);
   EXPECT_EQ(ask(ReleaseRequest{}).error, "");
-  // It swings to the other side, too.
+  // The rod swings to the other side, too.
   double least = 0;
   for (int i = 0; i < 60; ++i) least = std::min(least, tip(pass(1.0 / 60)).z() - rest.z());
   EXPECT_LT(least, -5e-3);
@@ -216,7 +216,7 @@ TEST_F(DynamicPushView, SaysThatItIsSlowWhereTheTimeRunsAwayFromIt) {
   EXPECT_FALSE(pass(0.1).pace);
 }
 
-// The same requests at the same times make the same states.
+// The same requests at the same times give the same states.
 TEST(PushTwice, IsTheSame) {
   const auto states = [] {
     FakeMessenger messenger;

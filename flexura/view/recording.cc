@@ -22,7 +22,7 @@
 namespace flexura {
 namespace {
 
-// A summary is a list of what was found; more is no summary.
+// Upper limit for a summary file, which is a list of findings.
 constexpr std::size_t largest_summary = std::size_t{64} << 20;
 
 template <class M>
@@ -30,7 +30,7 @@ M message_of(const McapMessage& message) {
   return read_as<M>(parse_json(message.text(), "the log's " + message.channel->topic));
 }
 
-// Whose picture a sighting is of; none of a damaged one.
+// Returns the camera of an observation; std::nullopt for a damaged one.
 template <class Sighting>
 std::optional<std::size_t> camera_of(const ViewedRig& rig, const McapMessage& message) {
   try {
@@ -56,7 +56,7 @@ Recording::Recording(const std::filesystem::path& folder)
     : folder_(folder), rig_(rig_of(folder)), log_(open_log(folder)) {
   index();
   if (states_.empty()) throw input_error(folder.string(), "its log holds no state of the arm");
-  // None is met for the first time when somebody looks at it.
+  // Checks all states now, so that no damaged one is found during viewing.
   for (std::size_t place = 0; place < states_.size(); ++place) (void)state(place);
   read_marks();
 }
@@ -116,8 +116,8 @@ void Recording::read_marks() {
     marks_.push_back({duration(), duration(), "warning", "log", "the run was cut short: its log ends here"});
 }
 
-// The log says when something begins to be unsafe, the summary how long it lasts. One that is damaged (a disk
-// was full, say) keeps nobody from looking at the log.
+// The log gives the start of each violation, the summary its duration. A damaged summary (for example after a
+// full disk) does not prevent viewing of the log.
 void Recording::mark_violations() {
   if (is_missing(folder_ / summary_file_name)) return;
   const auto file = file_of_results(folder_, summary_file_name);
@@ -145,7 +145,7 @@ void Recording::mark_violations() {
 double Recording::seconds(std::uint64_t nanoseconds) { return static_cast<double>(nanoseconds) / 1e9; }
 
 std::size_t Recording::place_at(const Entries& entries, double time) {
-  constexpr double latest = 1e9;  // s; what is asked for may be anything
+  constexpr double latest = 1e9;  // In s; requested times may have any value.
   const std::uint64_t wanted = nanoseconds(std::clamp(time, 0.0, latest));
   const auto after = std::ranges::upper_bound(entries, wanted, {}, &Entry::time);
   return after == entries.begin() ? 0 : static_cast<std::size_t>(after - entries.begin()) - 1;
@@ -165,7 +165,7 @@ ArmState Recording::state(std::size_t place) const {
   ArmState state;
   for (const auto& bend : message.bends) state.bends.emplace_back(bend[0], bend[1]);
   state.stretches = message.stretches;
-  constexpr double largest = 1e6;  // more is no arm's, whoever wrote the log
+  constexpr double largest = 1e6;  // Plausibility limit for any log content.
   const std::size_t sections = rig_->model.driven().sections.size();
   const auto is_shape = [](const Eigen::Vector2d& bend) { return bend.norm() < largest; };
   const auto is_stretch = [](double stretch) { return stretch > 1 / largest && stretch < largest; };
@@ -197,14 +197,14 @@ Recording::LoggedImage Recording::image(std::size_t camera, std::size_t place) c
 std::optional<ServoStep> Recording::servo_step(double time) const {
   if (servo_steps_.empty()) return std::nullopt;
   const Entry& entry = servo_steps_[place_at(servo_steps_, time)];
-  // A servo sends at equal intervals: after a few of them without a command it is over.
+  // A servo commands at equal intervals: after a few of them without a command it has ended.
   constexpr double few = 3, least = 0.1;  // s
   const double sent = seconds(entry.time);
   if (time < sent || time > sent + std::max(least, few * servo_interval_)) return std::nullopt;
   return message_of<ServoStep>(*entry.message);
 }
 
-// Of the picture that is shown then.
+// Returns the observation for the picture that is shown at that time.
 std::optional<Recording::PictureEntry> Recording::sighting_at(const Entries& sightings, std::size_t camera,
                                                               double time) const {
   if (sightings.empty()) return std::nullopt;
@@ -213,7 +213,7 @@ std::optional<Recording::PictureEntry> Recording::sighting_at(const Entries& sig
     if (seconds(entry.time) > time) return std::nullopt;
     return PictureEntry{entry.message, {}};
   }
-  // Both stand in the log at the time when the picture came.
+  // Both are logged at the time when the picture arrived.
   const std::size_t place = image_at(camera, time);
   const auto [first, last] =
       std::ranges::equal_range(sightings, images_[camera][place].time, {}, &Entry::time);
@@ -236,7 +236,7 @@ std::optional<ShownCalibration> Recording::calibration(double time) const {
   ShownCalibration shown;
   const auto has_begun = [&](const Entry& entry) { return seconds(entry.time) <= time; };
   const Entry& last = decisions_[place_at(decisions_, time)];
-  std::uint64_t begun = 0;  // ns: what belongs to one before that is over.
+  std::uint64_t begun = 0;  // In ns. Observations before this belong to a calibration that has ended.
   if (has_begun(last)) {
     auto decision = message_of<CalibrationDecisionMessage>(*last.message);
     if (decision.ended.value_or(false)) {
@@ -255,7 +255,7 @@ std::optional<ShownCalibration> Recording::calibration(double time) const {
   return shown;
 }
 
-// The rig's time has steps of its own while a task waits for it: between two of them what lies between.
+// The rig's time has additional steps while a task waits: interpolates between logged times.
 std::optional<std::vector<ArmSample>> Recording::truth(double time) const {
   constexpr double rounding = 1e-6, longest = 0.5, late = 0.1;  // s
   if (truths_.empty() || seconds(truths_.front().time) > time + rounding) return std::nullopt;
@@ -273,7 +273,7 @@ std::optional<std::vector<ArmSample>> Recording::truth(double time) const {
   return samples_of(arm);
 }
 
-// The message at or just before a time; none where that is long ago, or damaged.
+// Returns the message at or just before a time; std::nullopt if that is too old, or damaged.
 template <class M>
 std::optional<M> Recording::newest(const Entries& entries, double time) {
   constexpr double rounding = 1e-6, late = 0.1;  // s

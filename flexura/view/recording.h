@@ -18,67 +18,74 @@
 
 namespace flexura {
 
-/// A run's results, ready to be looked at: its log by time. A value that does not change; threads share it.
-/// Of a run that was killed, what its log holds up to the last complete chunk.
+/// Results of a run, ready for viewing: its log by time. Immutable and shared by threads. For a run that was
+/// killed, it holds the log up to the last complete chunk.
 class Recording {
  public:
-  /// Of a folder made by `flexura run`. InputError when it is none, or its log is damaged or without a
-  /// state.
+  /// Opens a folder created by `flexura run`. Throws InputError if it is not one, or if its log is damaged or
+  /// has no state.
   explicit Recording(const std::filesystem::path& folder);
 
   [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }
   [[nodiscard]] const ViewedRigPtr& rig() const { return rig_; }
   [[nodiscard]] const std::vector<Mark>& marks() const { return marks_; }
   [[nodiscard]] double duration() const { return seconds(states_.back().time); }  ///< s
-  /// The median time from one state to the next, s; 0 where there is one alone.
+  /// Returns the median time between consecutive states, s; 0 if there is only one.
   [[nodiscard]] double interval() const { return interval_of(states_); }
 
-  /// How many states there are, never 0; the place of the one at or just before `time` s, or the first.
+  /// Returns the number of states, never 0, and the index of the state at or just before `time` s, or the
+  /// first.
   [[nodiscard]] std::size_t states() const { return states_.size(); }
   [[nodiscard]] std::size_t state_at(double time) const;
-  /// When it was, s; and the arm's shape. InputError where the log holds none that fits the arm.
+  /// Returns the time of a state, s, and the arm's shape. Throws InputError if the log has no shape that fits
+  /// the arm.
   [[nodiscard]] double time_of_state(std::size_t place) const { return seconds(states_.at(place).time); }
   [[nodiscard]] ArmState state(std::size_t place) const;
-  /// Whether a limit was broken at a time, s.
+  /// Returns whether a limit was violated at a time, s.
   [[nodiscard]] bool is_unsafe(double time) const;
 
-  /// How many images the log has of a camera; the place of the one at or just before `time` s, or the first.
+  /// Returns the number of a camera's logged images, and the index of the image at or just before `time` s,
+  /// or the first.
   [[nodiscard]] std::size_t images(std::size_t camera) const { return images_.at(camera).size(); }
   [[nodiscard]] std::size_t image_at(std::size_t camera, double time) const;
   struct LoggedImage {
     double time = 0;  ///< Middle of its exposure, s.
     std::string png;
   };
-  /// InputError where the log holds none.
+  /// Throws InputError if the log has no such image.
   [[nodiscard]] LoggedImage image(std::size_t camera, std::size_t place) const;
-  /// Whether the log has a servo; and its last command at a time, s, while one steers the arm. InputError
-  /// where the log holds none that can be read.
+  /// Returns whether the log has a servo, and its last command at a time, s, while a servo controls the arm.
+  /// Throws InputError if the log has no readable command.
   [[nodiscard]] bool has_servo() const { return !servo_steps_.empty(); }
   [[nodiscard]] std::optional<ServoStep> servo_step(double time) const;
-  /// With what it sees in the pictures that are shown then.
+  /// Returns the servo's command, with its observations in the pictures shown at that time.
   [[nodiscard]] std::optional<ShownServo> servo(double time) const;
-  /// Whether the log has a calibration; and what it had decided at a time, s, and measured in the pictures
-  /// that are shown then, while one goes on. InputError likewise.
+  /// Returns whether the log has a calibration, and its state at a time, s, while a calibration is active:
+  /// the last decision, and the measurements in the pictures shown at that time. Throws InputError if the log
+  /// is not readable there.
   [[nodiscard]] bool has_calibration() const { return !decisions_.empty(); }
   [[nodiscard]] std::optional<ShownCalibration> calibration(double time) const;
-  /// Whether the log has how the arm truly lay; and how at a time, s, its base first and its tip last: none
-  /// where the log has it of no time near that. InputError where it is no arm.
+  /// Returns whether the log has the true arm, and its samples at a time, s, from base to tip. Returns
+  /// std::nullopt if the log has none near that time. Throws InputError if the logged arm is invalid.
   [[nodiscard]] bool has_truth() const { return !truths_.empty(); }
   [[nodiscard]] std::optional<std::vector<ArmSample>> truth(double time) const;
-  /// Forces of an arm that is an elastic rod, as the log has them at or just before a time.
+  /// Forces of an elastic-rod arm, as logged at or just before a time.
   struct LoggedForces {
-    std::optional<EnergyMessage> energy;   ///< None: not known then.
-    std::vector<double> tensions;          ///< N; empty: not known then.
-    std::vector<double> lost_steps;        ///< Likewise.
-    std::vector<ContactMessage> contacts;  ///< Empty: none.
+    std::optional<EnergyMessage> energy;   ///< Missing: unknown at that time.
+    std::vector<double> tensions;          ///< N; empty: unknown at that time.
+    std::vector<double> lost_steps;        ///< Microsteps of each motor; empty: unknown at that time.
+    std::vector<ContactMessage> contacts;  ///< Empty: no contacts.
   };
-  /// At a time, s. What cannot be read is not known.
+  /// Returns the forces at a time, s. Messages that cannot be read count as unknown.
   [[nodiscard]] LoggedForces forces(double time) const;
-  [[nodiscard]] bool has_energy() const { return !energies_.empty(); }    ///< Whether the log has it at all.
-  [[nodiscard]] bool has_contacts() const { return !contacts_.empty(); }  ///< Likewise.
-  [[nodiscard]] bool has_tensions() const { return !tensions_.empty(); }  ///< Likewise.
-  /// How a camera stood at a time, s, as the log has it, or else (a damaged message, too) as the experiment
-  /// starts.
+  /// Whether the log has energies at all.
+  [[nodiscard]] bool has_energy() const { return !energies_.empty(); }
+  /// Whether the log has contacts at all.
+  [[nodiscard]] bool has_contacts() const { return !contacts_.empty(); }
+  /// Whether the log has tensions at all.
+  [[nodiscard]] bool has_tensions() const { return !tensions_.empty(); }
+  /// Returns the camera axis positions logged at a time, s. Without a message, or with a damaged one, returns
+  /// the positions at the start of the experiment.
   [[nodiscard]] CameraStance stance(std::size_t camera, double time) const;
 
  private:
@@ -86,14 +93,14 @@ class Recording {
     std::uint64_t time = 0;  // ns
     const McapMessage* message = nullptr;
   };
-  using Entries = std::vector<Entry>;  // by time
+  using Entries = std::vector<Entry>;  // Ordered by time.
   [[nodiscard]] static double seconds(std::uint64_t nanoseconds);
   [[nodiscard]] static std::size_t place_at(const Entries& entries, double time);
   void index();
   [[nodiscard]] static double interval_of(const Entries& entries);
   struct PictureEntry {
     const McapMessage* message = nullptr;
-    std::optional<std::int64_t> number;  // of the picture
+    std::optional<std::int64_t> number;  // Number of the picture.
   };
   [[nodiscard]] std::optional<PictureEntry> sighting_at(const Entries& sightings, std::size_t camera,
                                                         double time) const;
@@ -104,14 +111,14 @@ class Recording {
   ViewedRigPtr rig_;
   McapReader log_;
   Entries states_;
-  std::vector<Entries> images_, heads_, stages_;  // by camera
+  std::vector<Entries> images_, heads_, stages_;  // By camera.
   template <class M>
   [[nodiscard]] static std::optional<M> newest(const Entries& entries, double time);
   Entries truths_, energies_, tensions_, contacts_;
   Entries servo_steps_;
-  std::vector<Entries> servo_sightings_, calibration_sightings_;  // by camera
-  Entries decisions_;                                             // of calibrations
-  double servo_interval_ = 0;  // from one command of a servo to the next, s
+  std::vector<Entries> servo_sightings_, calibration_sightings_;  // By camera.
+  Entries decisions_;                                             // Decisions of calibrations.
+  double servo_interval_ = 0;                                     // Interval between commands of a servo, s.
   std::vector<Mark> marks_;
 };
 

@@ -25,8 +25,8 @@ namespace {
 
 constexpr std::size_t largest_report = std::size_t{256} << 20;
 
-// A report is a page of its own, which may be another's: it runs its script, and is a stranger to this
-// server.
+// A report is a separate page, possibly from another source. It may run its script, but without access to
+// this server.
 constexpr const char* report_policy =
     "sandbox allow-scripts; default-src 'none'; img-src data:; script-src 'unsafe-inline'; style-src "
     "'unsafe-inline'; base-uri 'none'; form-action 'none'";
@@ -35,7 +35,7 @@ HttpAnswer failure(int status, const std::string& why) {
   return {status, "application/json", write_json({Node::Table{{"error", {}, {why, {}}}}, {}}), ""};
 }
 
-// A link that leads out of the folder is none of the results.
+// A link that leads out of the folder is not part of the results.
 std::filesystem::path report_of(const Recording& recording) {
   return file_inside(recording.folder(), report_file_name);
 }
@@ -48,7 +48,7 @@ bool has_report(const Recording& recording) {
   }
 }
 
-// Of an arm that is a rod. How far tendons are pulled in the log does not say.
+// Adds the logged forces of a rod. The log does not contain the tendon displacements.
 void add_forces(const ViewedRig& rig, const Recording::LoggedForces& forces, StateMessage& state) {
   if (const auto& energy = forces.energy)
     state.energy = RodEnergy{energy->kinetic, energy->strain, energy->gravity};
@@ -142,7 +142,7 @@ void RecordingSession::take(const Document& document, std::function<void(HttpAns
   }
 }
 
-// Before the state, so that it has come when that is drawn.
+// Sent before the state, so that it has arrived when the state is drawn.
 void RecordingSession::send_extras(ClientId client) {
   if (!recording_->has_servo() && !recording_->has_calibration() && !recording_->has_truth()) return;
   const double time = times_.at(client);
@@ -155,20 +155,20 @@ void RecordingSession::send_extras(ClientId client) {
       extras = calibration_extras(*calibration);
     }
   } catch (const InputError&) {
-    extras = {};  // What is damaged is not drawn.
+    extras = {};  // Damaged messages are not drawn.
   }
   add_truth(time, extras);
   messenger().post(client, extras_stream, std::make_shared<const std::string>(extras_message(extras)));
 }
 
-// As it was when the arm was commanded as the state has it.
+// Adds the true arm at the time of the shown state's command.
 void RecordingSession::add_truth(double time, Extras& extras) const {
   const std::size_t place = recording_->state_at(time);
   try {
     if (const auto truth = recording_->truth(recording_->time_of_state(place)))
       add_true_arm(*truth, viewed()->model.backbone(recording_->state(place)), extras);
   } catch (const InputError&) {
-    return;  // Nor is this.
+    return;  // Damaged messages are not drawn.
   }
 }
 
@@ -216,16 +216,16 @@ void RecordingSession::advance(double now) {
   }
 }
 
-// Where the run was not filmed, its cameras show the arm as it was commanded.
+// Without logged images, the cameras show the arm as commanded.
 void RecordingSession::show_state(const ImageStreams::Key& key, std::int64_t place) {
   try {
     room().show(shot(key.camera, place), {key}, clock_);
   } catch (const InputError&) {
-    streams().sent(key, place, clock_);  // a damaged state is not looked at again and again
+    streams().sent(key, place, clock_);  // Prevents repeated attempts at a damaged state.
   }
 }
 
-// A logged image goes as it is.
+// Sends a logged image unchanged.
 void RecordingSession::send_image(const ImageStreams::Key& key, std::int64_t place) {
   streams().sent(key, place, clock_);
   background().run(Lane::pictures,
@@ -238,7 +238,7 @@ void RecordingSession::send_image(const ImageStreams::Key& key, std::int64_t pla
                            image_message(static_cast<std::uint8_t>(key.camera), ImageFormat::png,
                                          static_cast<std::uint32_t>(place), image.time, image.png));
                      } catch (const std::exception&) {
-                       return {};  // It stays unacknowledged: a damaged image is not sent again and again.
+                       return {};  // It stays unacknowledged, so that a damaged image is not sent repeatedly.
                      }
                      return [this, key, message, alive] {
                        if (!alive.expired() && streams().contains(key))
@@ -271,7 +271,7 @@ void RecordingSession::tell_pixel(const ImageStreams::Key& key, int u, int v, Re
                    });
 }
 
-// Of a run that was filmed, the log's picture of the time at which the client is.
+// With logged images, looks at the log's picture at the client's current time.
 PictureSession::Look RecordingSession::look(const ImageStreams::Key& key) {
   if (!is_filmed(key.camera)) return look_at_sent(key);
   const std::int64_t place = image_place(key.camera, times_.at(key.client));

@@ -15,7 +15,7 @@
 
 namespace flexura {
 
-/// A run that is over. Every client goes through it at times of its own.
+/// A finished run. Each client moves through it independently.
 class RecordingSession : public PictureSession {
  public:
   RecordingSession(RecordingPtr recording, Messenger& messenger, Background& background);
@@ -29,7 +29,7 @@ class RecordingSession : public PictureSession {
 
  private:
   struct Taker;
-  struct Table;  // of series; used on the lane of checks alone
+  struct Table;  // Table of the series; used on the lane of checks only.
 
   [[nodiscard]] Look look(const ImageStreams::Key& key) override;
   void send_extras(ClientId client);
@@ -38,8 +38,8 @@ class RecordingSession : public PictureSession {
   void show_state(const ImageStreams::Key& key, std::int64_t place);
   void send_image(const ImageStreams::Key& key, std::int64_t place);
   void tell_pixel(const ImageStreams::Key& key, int u, int v, Reply reply);
-  /// The place of the image to be shown at a time, s: among the logged ones, or where there are none of this
-  /// camera among the states.
+  /// Returns the index of the image to be shown at a time, s: among the camera's logged images, or among the
+  /// states if it has none.
   [[nodiscard]] std::int64_t image_place(std::size_t camera, double time) const;
   [[nodiscard]] bool is_filmed(std::size_t camera) const { return recording_->images(camera) > 0; }
   [[nodiscard]] ValueShot shot(std::size_t camera, std::int64_t number) const;
@@ -49,9 +49,9 @@ class RecordingSession : public PictureSession {
 
   RecordingPtr recording_;
   std::shared_ptr<Table> table_;
-  std::map<ClientId, double> times_;  // at which clients are, s
+  std::map<ClientId, double> times_;  // Current time of each client, s.
   std::uint32_t sequence_ = 0;
-  double clock_ = 0;  // of advance(), s
+  double clock_ = 0;  // Time of advance(), s.
 };
 
 }  // namespace flexura

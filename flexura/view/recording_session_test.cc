@@ -29,7 +29,7 @@ class Quiet : public Progress {
   void update(double, std::string_view) override {}
 };
 
-// Runs an experiment and looks at what it left.
+// Runs an experiment and opens its results.
 class RecordingSessionTest : public ::testing::Test {
  protected:
   void record(const std::string& text = viewed_text) {
@@ -151,7 +151,7 @@ TEST_F(RecordingSessionTest, ShowsTheCommandedArmWhereNothingWasFilmed) {
   EXPECT_EQ(get(ImageAsk{"front", 0.2}).body.substr(1, 3), "PNG");
 }
 
-// As a calibration logs it, in which heads and stages move.
+// Head and stage messages as logged by a calibration, in which heads and stages move.
 TEST_F(RecordingSessionTest, ShowsCamerasWhereTheLogHasThem) {
   const std::string text =
       replaced(viewed_text, "position = [0, 0.5, 2], look_at = [0, 0.5, 0] }",
@@ -283,7 +283,7 @@ TEST_F(RecordingSessionTest, OpensNoFileThatALinkLeadsOutTo) {
     } catch (const InputError& refusal) {
       EXPECT_THAT(refusal.what(), HasSubstr(std::string(name) + "\" lies outside"));
     }
-    // A link to a file that is in the folder is one of it.
+    // A link to a file inside the folder counts as part of the folder.
     std::filesystem::remove(folder_.path() / name);
     std::filesystem::rename(elsewhere.path() / name, folder_.path() / "moved");
     std::filesystem::create_symlink("moved", folder_.path() / name);
@@ -293,7 +293,7 @@ TEST_F(RecordingSessionTest, OpensNoFileThatALinkLeadsOutTo) {
   }
 }
 
-// The system says of such a link neither that something is there nor that nothing is.
+// For such a link the system reports neither existence nor absence.
 TEST_F(RecordingSessionTest, SaysInOneLineThatAFileIsALinkToItself) {
   record();
   for (const char* name : {log_file_name, experiment_file_name, summary_file_name}) {
@@ -320,7 +320,7 @@ TEST_F(RecordingSessionTest, HasNoReportWhereItIsALinkToItself) {
   EXPECT_EQ(get(ReportAsk{}).status, 404);
 }
 
-// Whose time is that of the first, so that it stands where clients start.
+// The invalid state has the time of the first, so that clients would start there.
 TEST_F(RecordingSessionTest, OpensNoLogWithAStateThatIsNoShape) {
   write_new_file(folder_.path() / experiment_file_name, viewed_text);
   const Arm arm = parse_experiment(viewed_text, "x.toml").arm.arm();
@@ -354,7 +354,7 @@ TEST_F(RecordingSessionTest, OpensTheLogOfAKilledRun) {
   EXPECT_EQ(*ask(AtRequest{1e9}).result.find("time")->as<double>(), hello.duration);
 }
 
-// A disk that was full cut it short, or somebody edited it.
+// The summary was cut short by a full disk, or edited.
 TEST_F(RecordingSessionTest, OpensTheLogBesideADamagedSummary) {
   record();
   const auto summary = folder_.path() / summary_file_name;

@@ -14,7 +14,7 @@
 namespace flexura {
 namespace {
 
-// Wider than the largest arm and the longest run; keeps sums of squares finite.
+// Larger than any arm and any run, in m and s; keeps sums of squares finite.
 constexpr double farthest = 1e9;
 constexpr std::size_t most_sections = 10000;
 const NumberRange any_place = between(-farthest, farthest);
@@ -34,7 +34,7 @@ Table<S> with_shape(const char* name, const char* meaning) {
               .count = {0, most_sections}});
 }
 
-// A request without fields.
+// Returns the table of a request without fields.
 template <class S>
 const Table<S>& bare(const char* name) {
   static const Table<S> table(name, "");
@@ -47,7 +47,7 @@ void check_camera(const std::string& camera, Reader& reader) {
   if (!is_text(camera, 1000)) reader.problem_at("camera", "expected a camera's name");
 }
 
-// Fills `request.ask` when its `do` is S's name.
+// Fills `request.ask` if its `do` is the name of S.
 template <class S>
 bool read_if(std::string_view name, const Node& document, Reader& reader, Ask& ask) {
   const Table<S>& table = fields_of(static_cast<const S*>(nullptr));
@@ -68,7 +68,7 @@ std::vector<std::string> all_names(const std::variant<S...>*) {
   return {fields_of(static_cast<const S*>(nullptr)).info().name...};
 }
 
-// Takes a member out of a table.
+// Removes a member from a table and returns it.
 Node taken(Node::Table& table, std::string_view key) {
   const auto found = std::ranges::find(table, key, &Node::Member::key);
   if (found == table.end()) return {};

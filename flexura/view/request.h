@@ -11,11 +11,11 @@
 #include "flexura/base/fields.h"
 #include "flexura/model/arm_config.h"
 
-// What clients ask (docs/viewer-protocol.md, "From the page").
+// Requests of clients (docs/viewer-protocol.md, "From the page").
 namespace flexura {
 
-/// Arms go to shapes by their bends, or by their tendons' displacements; of an arm with actuators these go
-/// there one by one, whatever shape that makes.
+/// Moves the arm to a shape given by bends or by tendon displacements. With actuators, tendon displacements
+/// are applied individually, whatever the resulting shape.
 struct ArmRequest : ShapeConfig {
   std::optional<std::vector<double>> tendons;  ///< m
   double duration = 0;                         ///< s
@@ -37,20 +37,20 @@ struct ResetRequest {};
 struct WeightRequest {
   bool on = true;
 };
-/// Something pushes the simulated arm at a point of its middle line: a spring to a place, or a force.
+/// Pushes the simulated arm at a point of its middle line, by a spring to a place or by a force.
 struct PushRequest {
-  double s = 0;                                ///< Along the unstretched arm, m.
-  std::optional<std::array<double, 3>> to;     ///< The spring's other end, m; one of the two.
-  std::optional<std::array<double, 3>> force;  ///< N
-  std::optional<double> stiffness;             ///< Of the spring, N/m; the controls' where it is left out.
+  double s = 0;                                ///< Arc length along the unstretched arm, m.
+  std::optional<std::array<double, 3>> to;     ///< The spring's other end, m; excludes `force`.
+  std::optional<std::array<double, 3>> force;  ///< Constant force, N; excludes `to`.
+  std::optional<double> stiffness;  ///< Stiffness of the spring, N/m; default: that of the controls.
 };
 struct ReleaseRequest {};
 struct RunRequest {
-  std::optional<std::int64_t> task;  ///< Its place, from 0; all of them where it is left out.
+  std::optional<std::int64_t> task;  ///< Index of the task, from 0; default: all tasks.
 };
 struct CancelRequest {};
 struct OpenRequest {
-  std::optional<std::string> example;  ///< Its name; the recording of the last run where it is left out.
+  std::optional<std::string> example;  ///< Name of the example; default: the recording of the last run.
 };
 struct LiveRequest {};
 struct AtRequest {
@@ -58,7 +58,7 @@ struct AtRequest {
 };
 struct ImagesRequest {
   std::string camera;
-  double rate = 0;  ///< 1/s; 0 ends it.
+  double rate = 0;  ///< 1/s; 0 ends the stream.
   std::int64_t quality = 80;
 };
 struct AckRequest {
@@ -71,11 +71,11 @@ struct PixelRequest {
 };
 struct MeasureRequest {
   std::string camera;
-  std::optional<std::vector<std::string>> layers;  ///< All of them where it is left out.
+  std::optional<std::vector<std::string>> layers;  ///< Default: all layers.
 };
 struct ShapeRequest {};
 struct PointRequest {
-  double s = 0;  ///< Along the unstretched arm, m.
+  double s = 0;  ///< Arc length along the unstretched arm, m.
 };
 struct BackboneRequest : ShapeConfig {};
 struct PingRequest {};
@@ -108,14 +108,14 @@ using Ask = std::variant<ArmRequest, TipRequest, HeadRequest, StageRequest, Halt
                          LiveRequest, AtRequest, ImagesRequest, AckRequest, PixelRequest, MeasureRequest,
                          ShapeRequest, PointRequest, BackboneRequest, PingRequest>;
 
-/// What one message asks, or why it asks nothing.
+/// The request of one message, or why it is invalid.
 struct Request {
-  std::optional<std::int64_t> id;  ///< What its reply shall bear; only `ack` may have none.
+  std::optional<std::int64_t> id;  ///< Echoed in the reply; may be missing only for `ack`.
   Ask ask = PingRequest{};
-  std::string error;  ///< One line; "" when `ask` is good.
+  std::string error;  ///< One line; "" if `ask` is valid.
 };
 
-/// Reads a message. Never throws on its account; whether it fits a rig is the session's to say.
+/// Parses a message. Throws nothing that depends on its content. The session checks whether it fits the rig.
 [[nodiscard]] Request read_request(std::string_view text);
 
 }  // namespace flexura

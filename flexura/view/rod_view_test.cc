@@ -1,5 +1,4 @@
-// Sessions with an arm that truly is an elastic rod: what is seen is the rod, which sags, and no chain of
-// arcs.
+// Sessions whose true arm is an elastic rod: the display shows the sagging rod, not a chain of arcs.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -85,7 +84,7 @@ TEST_F(RodView, SendsPicturesWhileItMovesAndAfterAReset) {
               HasSubstr("section"));
 }
 
-// Nobody looks while the program's own time goes on.
+// The program's time advances while no client watches.
 TEST_F(RodView, MakesUpForNoTimeThatNobodySaw) {
   EXPECT_EQ(lean().error, "");
   const StateMessage before = pass(0.5);
@@ -96,7 +95,7 @@ TEST_F(RodView, MakesUpForNoTimeThatNobodySaw) {
   EXPECT_FALSE(pass(2).is_moving);
 }
 
-// A run tells what it commands: its pictures show how the rod would lie then, and its states the command.
+// A run reports its commands: its pictures show the rod at rest for them, and its states the command.
 TEST(RodShot, ShowsTheRodWhileARunGoesOn) {
   const auto shown_in = [](const std::string& text) {
     FakeMessenger messenger;
@@ -146,13 +145,13 @@ TEST(RodShot, IsTheSamePictureOfARodAtRestAlone) {
   const ValueShot moving = shot_at(0.5), later = shot_at(0.6), rest = shot_at(3), still = shot_at(4);
   EXPECT_FALSE(show_the_same(moving, later));
   EXPECT_TRUE(show_the_same(rest, still));
-  // The same command, and another shape: it may lie otherwise that came another way.
+  // The same command with another shape: the rod may have come along another path.
   Instant other = rest.instants->front();
   other.shape = std::make_shared<const Backbone>(live.at_rest({{{-0.6, 0}, {-0.601, 0}}, {1, 1}}));
   EXPECT_FALSE(show_the_same(rest, value_shot(rig, 0, 0, 0, {other})));
 }
 
-// A ball below the place to which arcs lead the tip: the rod comes lower.
+// A ball below the tip position of the arcs: the rod hangs lower.
 class RodAboveABall : public RodView {
  protected:
   static constexpr double mass = 2;  // kg/m
@@ -180,7 +179,7 @@ TEST_F(RodAboveABall, StopsBeforeTheRodTouches) {
   EXPECT_GT(state.arm.bends[0].x(), -0.599);
 }
 
-// With motors, spools and their play.
+// A rod with motors, spools and their backlash.
 class LaboratoryRod : public RodView {
  protected:
   LaboratoryRod() : RodView(text()) {}
@@ -202,12 +201,11 @@ TEST_F(LaboratoryRod, IsPulledByItsDrive) {
   EXPECT_EQ(state.samples.size(), 73U);
   EXPECT_EQ(state.displacements.size(), 9U);
   EXPECT_GT((tip(state) - arcs_tip(state.arm)).norm(), 2e-3);
-  // Asked without its play, and so not where it stands.
+  // Computed without its backlash, and so not exactly at its position.
   EXPECT_LT((tip(state) - LiveRig(rig_, 0).at_rest(state.arm).tip().position).norm(), 1e-3);
 }
 
-// Far too heavy for its wire: bent so far it finds no rest.
-// Far more friction than a rest is found with (docs/mechanics.md).
+// Far more friction than the solver can handle (docs/mechanics.md): with large bends it finds no equilibrium.
 class RustyRod : public RodView {
  protected:
   RustyRod() : RodView(viewed_rod(0.5, 10)) {}

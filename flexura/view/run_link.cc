@@ -11,7 +11,7 @@
 namespace flexura {
 namespace {
 
-// In the place of what the same camera saw before.
+// Keeps an observation, replacing the previous one of the same camera.
 template <class Picture, class Sighting>
 void keep(std::vector<Picture>& pictures, const Sighting& sighting) {
   const auto same = std::ranges::find_if(

@@ -20,36 +20,36 @@
 
 namespace flexura {
 
-/// What connects a run on its own thread with those who watch: the run tells, they ask when they have time,
-/// and neither waits for the other. All methods can be called from any thread.
+/// Connects a run on its own thread with its viewers. The run reports, viewers query when they have time, and
+/// neither waits for the other. All methods can be called from any thread.
 class RunLink : public Progress, public RunWatcher {
  public:
   /// How a run ended.
   struct End {
-    std::string outcome;           ///< "done", "unsafe", "cancelled", "failed"
-    std::string text;              ///< Why, one line; may be "".
-    std::filesystem::path folder;  ///< With its results; "" where it left none.
+    std::string outcome;           ///< "done", "unsafe", "cancelled" or "failed".
+    std::string text;              ///< Reason, one line; may be "".
+    std::filesystem::path folder;  ///< Folder with its results; "" if it left none.
   };
-  /// What happened, as the log has it.
+  /// An event, as logged.
   struct Event {
     double time = 0;  ///< s
     std::string level, name, text;
   };
-  /// The newest of everything.
+  /// The newest state of everything.
   struct News {
     double fraction = 0;
     std::string what;
-    std::optional<double> time;  ///< Of `state`, s; none before the first one.
+    std::optional<double> time;  ///< Time of `state`, s; missing before the first one.
     ArmState state;
-    std::shared_ptr<const TrueArm> truth;  ///< The newest that was told since truth was wanted; or null.
-    std::vector<CameraReading> cameras;  ///< As read then, by camera; empty where they stand as at the start.
-    std::optional<ShownServo> servo;     ///< While one steers the arm.
-    std::optional<ShownCalibration> calibration;  ///< While one goes on.
-    std::uint64_t changes = 0;                    ///< Counts what came of both.
+    std::shared_ptr<const TrueArm> truth;  ///< The newest true arm reported since the last request; or null.
+    std::vector<CameraReading> cameras;    ///< Readings at that time, by camera; empty: as at the start.
+    std::optional<ShownServo> servo;       ///< Present while a servo controls the arm.
+    std::optional<ShownCalibration> calibration;  ///< Present while a calibration is active.
+    std::uint64_t changes = 0;                    ///< Counts the changes of servo and calibration.
     std::optional<End> end;
   };
 
-  /// `also` is told of the progress, too; may be null.
+  /// `also` receives the progress too; may be null.
   explicit RunLink(Progress* also = nullptr) : also_(also) {}
 
   void update(double fraction, std::string_view what) override;
@@ -64,11 +64,11 @@ class RunLink : public Progress, public RunWatcher {
   void task_ended() override;
 
   void cancel() { cancelled_ = true; }
-  /// The next news is to have how the arm truly stands: once, for each call.
+  /// Requests the true arm with the next news: one report for each call.
   void want_truth() { is_truth_wanted_ = true; }
   void finish(End end);
   [[nodiscard]] News news() const;
-  /// The oldest events that nobody took yet, so many at most. Of a great many the last are kept.
+  /// Returns and removes the oldest events, at most `most`. If there are very many, only the last are kept.
   [[nodiscard]] std::vector<Event> take_events(std::size_t most);
 
  private:
@@ -78,11 +78,11 @@ class RunLink : public Progress, public RunWatcher {
   std::atomic<bool> cancelled_ = false, is_truth_wanted_ = false;
   mutable std::mutex mutex_;
   News news_;
-  std::vector<ServoPicture> pictures_;  // of a servo, the newest of each camera
+  std::vector<ServoPicture> pictures_;  // Newest picture of each camera of a servo.
   std::deque<Event> events_;
 };
 
-/// Runs an experiment into a folder that exists and is empty, and tells `link` how it ends. Never throws.
+/// Runs an experiment into an existing empty folder, and reports to `link` how it ends. Never throws.
 void run_linked(const Experiment& experiment, const std::filesystem::path& folder, RunLink& link);
 
 }  // namespace flexura

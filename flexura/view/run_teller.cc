@@ -19,7 +19,8 @@ void RunTeller::begin() {
 
 void RunTeller::tell(RunLink& run, const RunLink::News& news, double clock, std::optional<double> now,
                      const std::set<ClientId>& clients) {
-  // What a run tells at once is told over some ticks: a client that reads slowly is not cut off for it.
+  // Spreads simultaneous events of a run over several ticks, so that a client that reads slowly is not
+  // disconnected.
   constexpr std::size_t at_once = 8, all = 1000;
   for (const RunLink::Event& event : run.take_events(news.end ? all : at_once)) {
     send({Node::Table{{"type", {}, text_node("event")},
@@ -45,7 +46,7 @@ void RunTeller::tell(RunLink& run, const RunLink::News& news, double clock, std:
 }
 
 void RunTeller::tell_progress(const RunLink::News& news, double clock, const std::set<ClientId>& clients) {
-  constexpr double to_be_seen = 0.002, between = 0.25;  // of the whole; s, between two words
+  constexpr double to_be_seen = 0.002, between = 0.25;  // Fraction of the whole; s between two texts.
   const bool has_moved = std::abs(news.fraction - told_fraction_) >= to_be_seen;
   const bool says_more = news.what != told_what_ && clock - told_at_ >= between;
   if (!has_moved && !says_more) return;
@@ -59,9 +60,9 @@ void RunTeller::tell_progress(const RunLink::News& news, double clock, const std
 
 void RunTeller::tell_extras(const RunLink::News& news, double clock, std::optional<double> now,
                             const std::set<ClientId>& clients) {
-  constexpr double between = 0.04;  // s; more often nobody sees
+  constexpr double between = 0.04;  // In s; faster changes are not visible.
   const bool is_something = news.servo || news.calibration;
-  // With the run its last servo or calibration is over, however it ended.
+  // The end of a run also ends its servo or calibration, whatever its outcome.
   const bool is_over = news.end || !is_something;
   const bool is_new = news.changes != changes_ || (!are_extras_known_ && !is_over);
   if (!is_new && !(news.end && is_something)) return;
@@ -72,7 +73,7 @@ void RunTeller::tell_extras(const RunLink::News& news, double clock, std::option
     if (!is_over)
       extras = news.servo ? servo_extras(*rig_, *news.servo) : calibration_extras(*news.calibration);
   } catch (const InputError&) {
-    extras = {};  // Of an arm that cannot be drawn nothing is.
+    extras = {};  // An arm that cannot be drawn is omitted.
   }
   if (now) extras.time = *now;
   const auto message = std::make_shared<const std::string>(extras_message(extras));

@@ -13,18 +13,17 @@
 
 namespace flexura {
 
-/// Tells clients how a run of tasks goes: how far it is, what happens, what a calibration or a servo sees,
-/// how it ends.
+/// Reports a run of tasks to clients: its progress, events, observations of a calibration or servo, and its
+/// end.
 class RunTeller {
  public:
   RunTeller(ViewedRigPtr rig, Messenger& messenger) : rig_(std::move(rig)), messenger_(messenger) {}
 
-  /// Another run begins: nothing was told of it.
+  /// Resets the reported state for a new run.
   void begin();
-  /// Somebody has come who knows nothing yet.
+  /// Makes extras be sent again, for a new client.
   void repeat() { are_extras_known_ = false; }
-  /// Tells the clients what is new at `clock` s. Events bear the time `now`, s, or where there is none their
-  /// own.
+  /// Reports news to the clients at `clock` s. Events carry the time `now`, s, if given; otherwise their own.
   void tell(RunLink& run, const RunLink::News& news, double clock, std::optional<double> now,
             const std::set<ClientId>& clients);
 

@@ -35,7 +35,7 @@ using Points = std::vector<Vector2d>;
 
 constexpr std::array<std::string_view, 5> names = {"mask", "silhouette", "axis", "markers", "circle"};
 
-// A picture in 8 bits, in which markers are looked for, and what was found of the arm.
+// A picture in 8 bits, in which markers are searched, and the detected arm.
 struct FoundArm {
   Image<std::uint8_t> bytes;
   View view;
@@ -52,7 +52,7 @@ FoundArm find_arm(const ViewedRig& rig, const SeenPicture& seen) {
   return found;
 }
 
-// To a hundredth of a pixel: a picture on a screen shows no more.
+// Rounds to a hundredth of a pixel: a picture on a screen shows no more.
 Node shown(double pixels) { return {std::round(100 * pixels) / 100, {}}; }
 Node shown(const Vector2d& pixel) { return {Node::Array{shown(pixel.x()), shown(pixel.y())}, {}}; }
 
@@ -68,7 +68,7 @@ Node line(const char* id, const Points& points) {
   return layer(id, "polyline", {{"points", {}, {std::move(list), {}}}, {"closed", {}, {false, {}}}});
 }
 
-// The component that most of the axis lies in.
+// Returns the component that contains most of the centerline.
 std::optional<std::uint32_t> component_of(const Components& components, const ArmSighting& arm) {
   std::vector<std::size_t> votes(components.list.size());
   for (const AxisSample& sample : arm.axis) {
@@ -96,7 +96,7 @@ void add_mask(const FoundArm& found, Node::Array& layers) {
   layers.push_back(layer("mask", "runs", {{"rows", {}, {std::move(rows), {}}}}));
 }
 
-// Both borders, as far as they are seen without a gap.
+// Adds both borders, where they are visible without a gap.
 void add_silhouette(const ArmSighting& arm, Node::Array& layers) {
   for (const double side : {0.5, -0.5}) {
     Points points;
@@ -125,9 +125,9 @@ void add_markers(const FoundArm& found, const std::vector<AxisSample>& axis, Nod
   layers.push_back(layer("markers", "points", {{"points", {}, {std::move(points), {}}}}));
 }
 
-// The circle through the axis; one so large that the picture shows a straight line is left out.
+// Adds the circle through the centerline, unless it is so large that it looks like a straight line.
 void add_circle(const FoundArm& found, const BackboneAxis& axis, Node::Array& layers) {
-  constexpr double largest = 20;  // of the picture's width
+  constexpr double largest = 20;  // Multiple of the picture's width.
   const std::vector<AxisSample> known = axis.known();
   const AxisPoints points = independent_points(known.empty() ? axis.samples : known);
   const std::optional<CircleFit> circle = fit_circle(points.pixels, points.sigma);
@@ -144,7 +144,7 @@ Node::Table outcome(bool is_found, const std::string& reason, const std::vector<
   return {{"found", {}, {is_found, {}}}, {"reason", {}, text_node(reason)}, {"notes", {}, texts_node(notes)}};
 }
 
-// What the rig's file says of the arm.
+// Returns the shape prior from the rig's file.
 ShapePrior prior_of(const ViewedRig& rig) {
   ShapePrior prior = described_arm(rig.model.shaped());
   for (const Marker& marker : rig.experiment.arm.look.markers(rig.model.driven()))

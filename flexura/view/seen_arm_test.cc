@@ -29,7 +29,7 @@ TEST_F(LiveSessionTest, MeasuresThePictureThatWasSent) {
   EXPECT_THAT(ask(ShapeRequest{}).error, HasSubstr("was sent yet"));
 }
 
-// An arm large enough to be measured, with bands, before cameras that see it well.
+// An arm large enough to be measured, with bands, in front of cameras that see it well.
 const std::string measured_text = R"(
 [arm]
 kind = "spatial"
@@ -76,7 +76,7 @@ class MeasuredArm : public LiveSessionTest {
   }
 };
 
-// Held against where the arm truly is, through the camera that truly took the picture.
+// Compared with the true arm through the true camera.
 TEST_F(MeasuredArm, LiesUnderItsLayers) {
   for (const char* camera : {"front", "side"}) {
     const ViewAnswer answer = ask(MeasureRequest{camera, {}});
@@ -123,7 +123,7 @@ TEST_F(MeasuredArm, LiesUnderItsLayers) {
   EXPECT_EQ(few.result.find("layers")->as<Node::Array>()->size(), 1);
 }
 
-// Bent in a plane that the front camera sees from straight before it.
+// Bent in a plane parallel to the front camera's image.
 TEST_F(MeasuredArm, LiesOnTheCircleThatItsArcIs) {
   ask(bends({{-0.8, 0}, {-0.8, 0}}));
   pass(0.5);
@@ -142,7 +142,7 @@ TEST_F(MeasuredArm, LiesOnTheCircleThatItsArcIs) {
   EXPECT_NEAR(*seen[0].as<double>(), center.x(), 0.5);
   EXPECT_NEAR(*seen[1].as<double>(), center.y(), 0.5);
   EXPECT_TRUE(*circle->find("verified")->as<bool>());
-  // One that is straight lies on no circle.
+  // A straight arm has no circle.
   ask(bends({{0, 0}, {0, 0}}));
   pass(0.5);
   ask(AckRequest{"front", static_cast<unsigned char>(last_image(me, 1)[4])});
@@ -196,7 +196,7 @@ class ThickerArm : public MeasuredArm {
                     "[[truth.arm.section]]\nradius = 0.026\n[[truth.arm.section]]\nradius = 0.026\n") {}
 };
 
-// The front camera's lens is believed to fold its picture back within it.
+// The distortion of the front camera's model folds back within the picture.
 class FoldedPicture : public MeasuredArm {
  protected:
   FoldedPicture()

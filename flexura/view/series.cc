@@ -19,7 +19,7 @@
 namespace flexura {
 namespace {
 
-// The names of one kind of quantity, sections counted from 1.
+// Adds the names of one kind of quantity, with sections counted from 1.
 void add_names(const char* stem, const char* unit, std::size_t count, std::vector<Quantity>& list) {
   for (std::size_t i = 1; i <= count; ++i) list.push_back({fmt::format("{}_{}", stem, i), unit});
 }
@@ -29,7 +29,7 @@ bool can_stretch(const Arm& arm) {
       arm.sections, [](const Section& section) { return section.stretch_limits != std::array{1.0, 1.0}; });
 }
 
-// One state's values, in the order of the quantities.
+// Returns one state's values, in the order of the quantities.
 std::vector<double> values_of(const ArmModel& model, const ArmState& state) {
   const Arm& arm = model.driven();
   std::vector<double> values;
@@ -49,7 +49,7 @@ std::vector<double> values_of(const ArmModel& model, const ArmState& state) {
   return values;
 }
 
-// A servo's errors at a time; none is as good as one that cannot be read.
+// Appends a servo's errors at a time; an unreadable command counts as missing.
 void append_servo(const Recording& recording, double time, std::vector<double>& values) {
   std::vector<std::optional<double>> errors(servo_quantities().size());
   try {
@@ -60,7 +60,7 @@ void append_servo(const Recording& recording, double time, std::vector<double>& 
   for (const auto& error : errors) values.push_back(error.value_or(std::numeric_limits<double>::quiet_NaN()));
 }
 
-// Of an arm that is a rod.
+// Quantities of a rod.
 struct ForceQuantities {
   explicit ForceQuantities(const Recording& recording)
       : tensions(recording.has_tensions() ? recording.rig()->actuators.size() : 0),
@@ -94,7 +94,7 @@ struct ForceQuantities {
   bool has_energy, has_contacts;
 };
 
-// The places in [first, last) where a curve is least and greatest, and where it begins and ends.
+// Adds the indices in [first, last) of a curve's minimum and maximum, and of its borders of gaps.
 void add_extremes(const std::vector<double>& curve, std::size_t first, std::size_t last,
                   std::vector<std::size_t>& kept) {
   std::optional<std::size_t> least, greatest;

@@ -11,27 +11,27 @@
 
 namespace flexura {
 
-/// Which of so many values to draw when there shall be no more than `points`: the first and the last, and in
-/// stretches of equal length between the places where any of the curves is least and greatest. Beside these
-/// the borders of gaps (NaN). Ascending. All of them where they are few; never fewer than the ends. The
-/// curves are of one length.
+/// Returns the indices, in ascending order, of the values to draw with at most `points` points. These are the
+/// first and the last, and for each interval of equal length the minima and maxima of all curves. Borders of
+/// gaps (NaN) are added. Returns all indices if there are few, and never fewer than both ends. All curves
+/// have the same length.
 [[nodiscard]] std::vector<std::size_t> thinned(std::span<const std::vector<double>> curves,
                                                std::size_t points);
 
-/// What a recording's arm does over time: bends, cord angles and archings, stretches, the tip; and a servo's
-/// errors, which are null where none steers the arm.
+/// Quantities of a recording over time: bends, cord angles and archings, stretches, and the tip. Also a
+/// servo's errors, which are null while no servo controls the arm.
 class SeriesTable {
  public:
   explicit SeriesTable(const Recording& recording);
 
-  /// The quantities of a recording, in the order shown.
+  /// Returns the quantities of a recording, in display order.
   [[nodiscard]] static std::vector<Quantity> quantities(const Recording& recording);
-  /// The answer to /series; a ViewRefusal for a name that there is not.
+  /// Returns the answer to /series. Throws ViewRefusal for an unknown name.
   [[nodiscard]] Node answer(const std::vector<std::string>& names, std::size_t points) const;
 
  private:
   std::vector<double> times_;                          // s
-  std::map<std::string, std::vector<double>> curves_;  // by name
+  std::map<std::string, std::vector<double>> curves_;  // By name.
 };
 
 }  // namespace flexura

@@ -25,14 +25,15 @@ struct Shape {
   ArmState state;
 };
 
-// A shape of the log's; `lengths` are those of the sections without stretch. A log may say anything.
+// Returns a shape from the log; `lengths` are those of the sections without stretch. Logged values are
+// validated.
 Shape shape_of(const Arm& base, const std::vector<double>& lengths, const ArmState& state) {
   Shape shape{base, state};
   const std::size_t count = base.sections.size();
   constexpr double largest = 1e6;
   const auto is_size = [](double size) { return size > 1 / largest && size < largest; };
   const auto is_bend = [](const Eigen::Vector2d& bend) { return std::hypot(bend.x(), bend.y()) < largest; };
-  // Logs that do not say how long the arm is mean the file's.
+  // In logs without lengths, those of the file apply.
   const bool fits = (lengths.empty() || lengths.size() == count) && state.bends.size() == count &&
                     state.stretches.size() == count && std::ranges::all_of(lengths, is_size) &&
                     std::ranges::all_of(state.stretches, is_size) &&
@@ -50,8 +51,8 @@ struct Shapes {
 Shapes shapes_of(const ViewedRig& rig, const ServoStep& step) {
   Shapes shapes{shape_of(rig.model.shaped(), step.lengths, step.desired), {}, {}};
   if (step.seen) shapes.seen = shape_of(rig.model.shaped(), step.lengths, *step.seen);
-  // A rod has as many arcs as its plant places it by, of which the rig's arm knows nothing: it is drawn by
-  // who has its poses.
+  // A rod has as many arcs as its plant uses, which the rig's arm does not know. It is drawn by the code that
+  // has its poses.
   if (step.truth && step.truth->bends.size() == rig.truth.shaped().sections.size())
     shapes.truth = shape_of(rig.truth.shaped(), step.truth->lengths,
                             {step.truth->bends, std::vector<double>(rig.truth.shaped().sections.size(), 1)});
@@ -62,7 +63,7 @@ GhostArm ghost_of(const ExtraName& mark, const Shape& shape) {
   return {mark.id, mark.label, mark.color, arm_samples(Backbone(shape.arm, shape.state))};
 }
 
-// Between points of equal shares of both lengths, mm.
+// Returns the distances between points at equal fractions of both lengths, mm.
 AlongCurve distances(const ExtraName& mark, const Shape& shape, const Shape& desired) {
   AlongCurve curve{mark.id, mark.label, mark.color, {}};
   for (const double off :
@@ -73,7 +74,8 @@ AlongCurve distances(const ExtraName& mark, const Shape& shape, const Shape& des
 
 using Pixels = std::vector<Eigen::Vector2d>;
 
-// What the law compares, as one of both sides has it: pixels as crosses, lines as such.
+// Adds the features that the control law compares, for one side (measured or target): pixels as crosses, and
+// lines.
 void add_marks(const ExtraName& side, bool is_dashed, const Pixels& crosses, const std::vector<Pixels>& lines,
                Node::Array& layers) {
   const LayerMark mark{features.id, features.label, side.color, side.id};
@@ -81,7 +83,7 @@ void add_marks(const ExtraName& side, bool is_dashed, const Pixels& crosses, con
   if (!lines.empty()) layers.push_back(lines_layer(mark, lines, is_dashed));
 }
 
-// With a line from each pixel to where it is wanted.
+// Adds the features with a line from each pixel to its target.
 void add_features(const std::vector<FeatureMarkMessage>& marks, Node::Array& layers) {
   const auto pixels_of = [](const std::vector<std::array<double, 2>>& list) {
     Pixels pixels;
@@ -112,7 +114,7 @@ PictureLayers layers_of(const ServoPicture& picture) {
   for (const AxisPointMessage& point : sighting.points) line.emplace_back(point.u, point.v);
   if (!line.empty()) overlay.layers.push_back(line_layer(seen.id, seen.color, line));
   line.clear();
-  // Upon that, dashed: both are seen where they are one.
+  // Dashed and on top: both stay visible where they coincide.
   for (const auto& pixel : sighting.wanted) line.emplace_back(pixel[0], pixel[1]);
   if (!line.empty()) overlay.layers.push_back(line_layer(wanted.id, wanted.color, line, true));
   if (sighting.features) add_features(*sighting.features, overlay.layers);

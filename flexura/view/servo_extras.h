@@ -14,25 +14,25 @@
 
 namespace flexura {
 
-/// What a servo sees in one picture, as the log has it.
+/// Observation of a servo in one picture, as logged.
 struct ServoPicture {
   ServoSightingMessage sighting;
   std::optional<std::int64_t> number =
-      {};  ///< Of the picture for clients; none: of no picture that they get.
+      {};  ///< Picture number for clients; missing if clients do not get the picture.
 };
 
-/// What a servo does at one time: its last command, and the pictures that go with that.
+/// State of a servo at one time: its last command, and the pictures used for it.
 struct ShownServo {
   ServoStep step;
   std::vector<ServoPicture> pictures;
 };
 
-/// What is drawn of a servo: the wanted shape, the one that is seen and the simulated truth as ghosts, the
-/// measured axes and the wanted shape's images, the distances along the arm. Of a truth that has other arcs
-/// than the rig's arm (a rod) there is no shape. InputError where its shapes do not fit the rig's arm.
+/// Returns the extras of a servo. They hold target shape, observed shape and simulated truth as ghosts,
+/// measured centerlines, images of the target shape, and distances along the arm. The truth is omitted if it
+/// has other arcs than the rig's arm (a rod). Throws InputError if the shapes do not fit the rig's arm.
 [[nodiscard]] Extras servo_extras(const ViewedRig& rig, const ShownServo& servo);
 
-/// A servo's errors over time, in percent of the arm's length, and those at one command.
+/// Returns a servo's errors over time, in percent of the arm's length, and their values at one command.
 [[nodiscard]] std::vector<Quantity> servo_quantities();
 [[nodiscard]] std::vector<std::optional<double>> servo_values(const ServoStep& step);
 

@@ -36,7 +36,7 @@ using ::testing::Contains;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
-// A servo on an arm that is truly a little longer, which is filmed, and a rest.
+// A servo with logged images on a true arm that is slightly longer than the model, followed by a rest.
 std::string filmed_servo() {
   ServoSetup setup;
   setup.rest =
@@ -58,7 +58,7 @@ std::vector<std::string> ids_of(const Node::Array& list) {
   return ids;
 }
 
-// The root mean square of a curve along the arm, mm.
+// Returns the root mean square of a curve along the arm, mm.
 double rms_of(const Node& curve) {
   const Node::Array& values = list_in(curve, "values");
   double squares = 0;
@@ -71,7 +71,7 @@ Eigen::Vector3d tip_of(const Node& ghost) {
   return {*pose[0].as<double>(), *pose[1].as<double>(), *pose[2].as<double>()};
 }
 
-// Lets a session look at a run as it goes on, on the run's own thread.
+// Lets a session look at a run in progress, on the run's own thread.
 class SeenRun : public RunLink {
  public:
   std::function<void()> look = [] {};
@@ -81,7 +81,7 @@ class SeenRun : public RunLink {
   }
 };
 
-// One run for all: watched, and with its recording.
+// One watched run with its recording, shared by all tests.
 class ServoView : public ::testing::Test {
  protected:
   static void SetUpTestSuite() { seen = watched_view<SeenRun>(filmed_servo()); }
@@ -92,7 +92,7 @@ class ServoView : public ::testing::Test {
     for (const auto& message : seen->live.posts[{me, extras_stream}]) list.push_back(extras_in(*message));
     return list;
   }
-  // Those of the recording at a time.
+  // Returns the extras of the recording at a time.
   static Node extras_at(RecordingSession& session, FakeMessenger& messenger, double time) {
     session.take(me, AtRequest{time}, [](const ViewAnswer&) {});
     return extras_in(*messenger.posts[{me, extras_stream}].back());
@@ -121,14 +121,14 @@ TEST_F(ServoView, ShowsWantedSeenAndTrueShapesWhileARunGoesOn) {
   EXPECT_TRUE(list_in(all.back(), "ghosts").empty()) << "with the servo its shapes are gone";
 }
 
-// The servo has its errors from the shapes themselves, this from what the log tells of them.
+// The servo computes its errors from the shapes; the extras compute them from the log.
 TEST_F(ServoView, TellsErrorsAlongTheArmAsTheServoKnowsThem) {
   double first = 0, last = 0;
   int compared = 0;
   for (const Node& extras : live_extras()) {
     const Node* along = extras.find("along");
     if (along == nullptr) continue;
-    const double millimetres = 10 * seen->rig->model.driven().length();  // of a percent
+    const double millimetres = 10 * seen->rig->model.driven().length();  // Of a percent of the length.
     const Node::Array& curves = list_in(*along, "curves");
     ASSERT_THAT(ids_of(curves), ElementsAre("seen", "truth"));
     last = rms_of(curves[0]);
@@ -219,7 +219,7 @@ TEST_F(ServoView, WritesTheSameBytesWhenItIsWatched) {
         << name;
 }
 
-// A servo that ends early leaves its reason, and a recording to look at.
+// A servo that ends early leaves its reason, and a recording to view.
 class HurriedServo : public LiveSessionTest {
  protected:
   HurriedServo()

@@ -12,34 +12,34 @@
 
 namespace flexura {
 
-/// Why a request is not done, in one line. Sessions throw it.
+/// Thrown by sessions: why a request is refused, in one line.
 class ViewRefusal : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// What comes of a request: a result, or where `error` is not "" the reason why there is none.
+/// The outcome of a request: a result, or the reason for a refusal if `error` is not "".
 struct ViewAnswer {
   Node result = {Node::Table{}, {}};
   std::string error;
 };
 using Reply = std::function<void(ViewAnswer)>;
 
-/// What `hello` says of a session.
+/// Content of the message `hello` about a session.
 struct Hello {
-  std::string mode;  ///< "live" or "recording"
+  std::string mode;  ///< "live" or "recording".
   std::string title;
   Node scene;
   Node controls;
   double duration = 0;  ///< s
-  double interval = 0;  ///< Between two states of a recording, mostly, s.
+  double interval = 0;  ///< Typical interval between two states of a recording, s.
   std::vector<Mark> marks;
   std::vector<Quantity> quantities;
   bool report = false;
   bool readonly = false;
 };
 
-/// A picture that was asked for by its address.
+/// A request for a picture by its address.
 struct ImageAsk {
   std::string camera;
   std::optional<double> time;  ///< s
@@ -51,7 +51,7 @@ struct SeriesAsk {
 struct ReportAsk {};
 using Document = std::variant<ImageAsk, SeriesAsk, ReportAsk>;
 
-/// What is looked at: a rig or a recording. One thread uses it.
+/// A live rig or a recording that clients view. To be used by one thread.
 class Session {
  public:
   virtual ~Session() = default;
@@ -62,11 +62,11 @@ class Session {
   [[nodiscard]] virtual Hello hello() const = 0;
   virtual void opened(ClientId client) = 0;
   virtual void closed(ClientId client) = 0;
-  /// Does what a client asks and calls `reply` once, now or later on this thread; or throws a ViewRefusal.
+  /// Handles a client's request, and calls `reply` once, now or later on this thread. Or throws ViewRefusal.
   virtual void take(ClientId client, const Ask& ask, Reply reply) = 0;
-  /// Answers once, now or later on any thread; or throws a ViewRefusal.
+  /// Calls `answer` once, now or later on any thread. Or throws ViewRefusal.
   virtual void take(const Document& document, std::function<void(HttpAnswer)> answer) = 0;
-  /// Goes on to `now`, s by a clock that never falls, and sends what is due to the clients.
+  /// Advances to `now`, s by a clock that never decreases, and sends due messages to the clients.
   virtual void advance(double now) = 0;
 };
 

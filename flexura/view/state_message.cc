@@ -17,7 +17,7 @@ constexpr std::uint8_t state_kind = 1, image_kind = 2;
 constexpr std::uint8_t moving_flag = 1, running_flag = 2, recording_flag = 4, unsafe_flag = 8,
                        weightless_flag = 16, energy_flag = 32, push_flag = 64, pace_flag = 128;
 
-// Little-endian numbers into a text.
+// Writes little-endian numbers to a string.
 class Writer {
  public:
   template <std::unsigned_integral T>
@@ -45,7 +45,7 @@ class Writer {
   std::string text_;
 };
 
-// And out of one whose length was compared before.
+// Reads little-endian numbers from a string whose length was checked before.
 class BytesReader {
  public:
   explicit BytesReader(std::string_view bytes) : rest_(bytes) {}
@@ -107,7 +107,7 @@ std::size_t body_size(std::size_t sections, std::size_t samples, std::size_t cam
   return 4 * (3 * sections + 8 * samples + 18 * cameras + tendons + 3 * actuators);
 }
 
-// What follows that.
+// Returns the size of the fields announced by `flags`.
 std::size_t forces_size(std::uint8_t flags, std::size_t contacts) {
   const auto if_flag = [flags](std::uint8_t flag, std::size_t numbers) {
     return (flags & flag) != 0 ? numbers : 0;

@@ -19,11 +19,11 @@ namespace flexura {
 
 /// A point of the backbone.
 struct ArmSample {
-  double s = 0;  ///< Along the unstretched arm, m.
+  double s = 0;  ///< Arc length along the unstretched arm, m.
   Pose X_WS;
 };
 
-/// How a camera stands.
+/// Pose, axis positions and intrinsics of a camera.
 struct CameraSample {
   Pose X_WC;
   HeadState head;
@@ -31,70 +31,70 @@ struct CameraSample {
   double fx = 0, fy = 0, cx = 0, cy = 0;            ///< px
 };
 
-/// Something that a client can move by itself, as it is: a tendon that is pulled in.
+/// State of an actuator that clients can move individually: a tendon that is pulled in.
 struct ActuatorSample {
-  double value = 0;  ///< How far it is, as commanded, m.
-  double force = 0;  ///< By which it pulls, N; 0: it hangs slack.
-  double lost = 0;   ///< Steps that its motor has lost.
+  double value = 0;  ///< Commanded displacement, m.
+  double force = 0;  ///< Tension, N; 0: slack.
+  double lost = 0;   ///< Microsteps lost by its motor.
 };
 
-/// What pushes the arm at one of its points.
+/// A push at a point of the arm.
 struct PushSample {
-  double s = 0;  ///< The point: along the unstretched arm, m.
-  /// Where the spring draws it; without a spring the point itself, m.
+  double s = 0;  ///< Pushed point: arc length along the unstretched arm, m.
+  /// The spring's other end, or without a spring the pushed point, m.
   Eigen::Vector3d to = Eigen::Vector3d::Zero();
-  Eigen::Vector3d force = Eigen::Vector3d::Zero();  ///< On the arm, N.
+  Eigen::Vector3d force = Eigen::Vector3d::Zero();  ///< Force on the arm, N.
 };
 
-/// Where the arm touches something.
+/// A contact of the arm.
 struct ContactSample {
-  /// What is known of how it touches there.
+  /// Whether the contact slides or sticks, if known.
   enum class Slip : std::uint8_t { unknown, slides, sticks };
-  int obstacle = -1;                                ///< Its place in the scene; -1: the arm itself.
-  double s = 0;                                     ///< Along the unstretched arm, m.
-  Eigen::Vector3d point = Eigen::Vector3d::Zero();  ///< m
-  Eigen::Vector3d force = Eigen::Vector3d::Zero();  ///< On the arm, N.
-  double normal_force = 0;                          ///< Across the surface, N.
+  int obstacle = -1;  ///< Index of the obstacle in the scene; -1: the arm itself.
+  double s = 0;       ///< Arc length along the unstretched arm, m.
+  Eigen::Vector3d point = Eigen::Vector3d::Zero();  ///< Contact point, m.
+  Eigen::Vector3d force = Eigen::Vector3d::Zero();  ///< Force on the arm, N.
+  double normal_force = 0;                          ///< Force normal to the surface, N.
   Slip slip = Slip::unknown;
 };
 
-/// What moves, at one time.
+/// Everything that moves, at one time.
 struct StateMessage {
   bool is_moving = false;
-  bool is_running = false;  ///< A run of tasks is going on.
+  bool is_running = false;  ///< A run of tasks is active.
   bool is_recording = false;
   bool is_unsafe = false;
   bool is_weightless = false;  ///< Weight and loads are switched off.
-  /// How often everything was put elsewhere, with no way between: counts up when it is, and wraps.
+  /// Number of discontinuous changes of everything's position; increments at each, and wraps around.
   std::uint16_t leaps = 0;
   std::uint32_t sequence = 0;
   double time = 0;  ///< s
   ArmState arm;
-  std::vector<ArmSample> samples;  ///< Base first, the tip last.
+  std::vector<ArmSample> samples;  ///< From base to tip.
   std::vector<CameraSample> cameras;
-  std::vector<double> displacements;  ///< m, of the tendons.
+  std::vector<double> displacements;  ///< Tendon displacements, m.
   std::vector<ActuatorSample> actuators;
-  std::optional<RodEnergy> energy;  ///< Of an arm in motion.
+  std::optional<RodEnergy> energy;  ///< For an arm with inertia.
   std::optional<PushSample> push;
-  std::optional<double> pace;  ///< Where it is slower than real time: of that.
+  std::optional<double> pace;  ///< Speed relative to real time, if slower.
   std::vector<ContactSample> contacts;
 };
 
-/// The samples of a state message: the ends of every arc, and so many points between that from one to the
-/// next the backbone is one arc that turns by a right angle at most.
+/// Returns the samples of a state message: the ends of every arc, and points between them. Each piece between
+/// two samples is one arc that turns by at most a right angle.
 [[nodiscard]] std::vector<ArmSample> arm_samples(const Backbone& backbone);
-/// The same of arcs that lead from the base to the tip's frame.
+/// Returns the samples of these arcs, which lead from the base to the tip's frame.
 [[nodiscard]] std::vector<ArmSample> arm_samples(std::span<const Arc> arcs, const Pose& tip);
 
-/// std::length_error for more than 65535 of anything.
+/// Returns the binary message. Throws std::length_error for more than 65535 items of any kind.
 [[nodiscard]] std::string state_message(const StateMessage& state);
-/// The message that these bytes are, in single precision; none when they are none.
+/// Parses a state message, in single precision. Returns std::nullopt if `bytes` is not a valid message.
 [[nodiscard]] std::optional<StateMessage> read_state_message(std::string_view bytes);
 
-/// The formats of images.
+/// Formats of images.
 enum class ImageFormat : std::uint16_t { jpeg = 0, png = 1 };
 
-/// An image for a client: the message's head and the file.
+/// Returns an image message for a client: the header and the file.
 [[nodiscard]] std::string image_message(std::uint8_t camera, ImageFormat format, std::uint32_t number,
                                         double time, std::string_view file);
 

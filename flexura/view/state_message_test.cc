@@ -163,8 +163,8 @@ TEST(StateMessage, IsNoneWhenAByteIsMissingOrTooMany) {
   EXPECT_FALSE(read_state_message("\x02" + bytes.substr(1)));
 }
 
-// What is between two samples is one arc, which its ends determine: through the first's tangent to the
-// second's place.
+// Between two samples there is one arc, which is determined by the tangent at the first and the position of
+// the second.
 TEST(StateMessage, HasOneArcBetweenTwoSamples) {
   for_random_cases(50, [](TestRandom& random) {
     const Arm arm = arm_of(3);

@@ -15,12 +15,12 @@
 namespace flexura {
 namespace {
 
-constexpr double smallest = 1e-4;  // that is shown, m
-constexpr double largest = 1e6;    // more is no arm's, m
+constexpr double smallest = 1e-4;  // Smallest difference that is shown, m.
+constexpr double largest = 1e6;    // Plausibility limit of a length, m.
 
 InputError no_arm() { return input_error("the log", "the poses of its true arm make no arm"); }
 
-// A log may say anything.
+// Logged values are validated.
 Pose pose_of(const PoseMessage& message) {
   constexpr double rounding = 1e-3;
   const Eigen::Vector3d position(message.position.x, message.position.y, message.position.z);
@@ -30,7 +30,7 @@ Pose pose_of(const PoseMessage& message) {
   return {quaternion.normalized().toRotationMatrix(), position};
 }
 
-// Tangent to z of one pose, to the place of another.
+// Returns the arc that is tangent to z of one pose and ends at the position of another.
 Arc arc_between(const Pose& X_WS, const Pose& X_WE) {
   const Eigen::Vector3d way = X_WS.inverse() * X_WE.position;
   const double across = way.head<2>().norm(), half = std::atan2(across, way.z());
@@ -38,7 +38,7 @@ Arc arc_between(const Pose& X_WS, const Pose& X_WE) {
   arc.X_WS = X_WS;
   arc.length = way.norm() / sinc(half);
   if (across > 0) arc.bend = way.head<2>() * (2 * half / across);
-  const bool is_arc = arc.length > 0 && arc.length < largest;  // Neither holds of what is no number.
+  const bool is_arc = arc.length > 0 && arc.length < largest;  // Both comparisons are false for NaN.
   if (!is_arc) throw no_arm();
   return arc;
 }

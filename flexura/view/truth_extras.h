@@ -8,22 +8,23 @@
 #include "flexura/view/extras.h"
 #include "flexura/view/state_message.h"
 
-// How an arm truly lay, as a run's log has it (/arm/truth).
+// The true arm in a run's log (/arm/truth).
 namespace flexura {
 
-/// The ends of an arm's arcs, base first and its tip last.
+/// The ends of an arm's arcs, from base to tip.
 using LoggedArm = std::vector<Pose>;
 
-/// InputError: fewer than two, or what is no pose.
+/// Converts a logged message. Throws InputError for fewer than two poses, or an invalid pose.
 [[nodiscard]] LoggedArm logged_arm(const PosesMessage& message);
-/// What lies `part` of the way from one to another; the nearer one where they have other arcs.
+/// Interpolates at fraction `part` between two arms; returns the nearer one if their numbers of arcs differ.
 [[nodiscard]] LoggedArm between(const LoggedArm& from, const LoggedArm& to, double part);
-/// One arc from each end to the next. InputError: these make no arm.
+/// Returns samples of the arm with one arc from each end to the next. Throws InputError if these do not form
+/// an arm.
 [[nodiscard]] std::vector<ArmSample> samples_of(const LoggedArm& arm);
 
-/// Adds the true arm as a ghost where it differs from the commanded one: where a sample, the tip among
-/// them, is more than 0.1 mm from the point at the same share of the commanded arm's length. Not where there
-/// is a ghost of the truth already.
+/// Adds the true arm as a ghost if it differs from the commanded one. That is if a sample, including the tip,
+/// is more than 0.1 mm from the point at the same fraction of the commanded arm's length. Adds nothing if
+/// there is a ghost of the truth already.
 void add_true_arm(const std::vector<ArmSample>& truth, const Backbone& commanded, Extras& extras);
 
 }  // namespace flexura

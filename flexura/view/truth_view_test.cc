@@ -1,4 +1,4 @@
-// The arm as it truly was, as recordings show it beside the commanded one.
+// The true arm, as recordings show it beside the commanded one.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -45,7 +45,7 @@ class TruthView : public ::testing::Test {
     session_.emplace(std::make_shared<const Recording>(folder_.path()), messenger_, background_);
     session_->opened(me);
   }
-  // What is drawn at a time.
+  // Returns the extras at a time.
   Node extras_at(double time) {
     session_->take(me, AtRequest{time}, [](const ViewAnswer& answer) { EXPECT_EQ(answer.error, ""); });
     return extras_in(*messenger_.posts[{me, extras_stream}].back());
@@ -87,7 +87,7 @@ TEST_F(TruthView, ShowsARodBesideTheCommandedArcs) {
   EXPECT_GT((tip_of_last(end) - shown_tip()).norm(), 3e-3);
 }
 
-// Slowly enough for its rates.
+// Slow enough for its rates.
 TEST_F(TruthView, ShowsNoTruthOfAnArmThatIsAsItIsBelievedToBe) {
   std::string text = viewed_text + filmed;
   text.replace(text.find("duration = 1"), 12, "duration = 3");
@@ -101,7 +101,7 @@ TEST_F(TruthView, SaysNothingOfARunThatKnowsNoTruth) {
   EXPECT_EQ(messenger_.count(me, extras_stream), 0U);
 }
 
-// Tensions, energies and contacts, as the run wrote them.
+// Tensions, energies and contacts, as logged by the run.
 TEST_F(TruthView, ShowsTheForcesOfAnArmInMotion) {
   record(R"(
 [arm]
@@ -168,7 +168,7 @@ report = false
   EXPECT_THROW(session_->take(me, PushRequest{}, [](const ViewAnswer&) {}), ViewRefusal);
 }
 
-// A log of states, each bent further by 0.1 rad, and of what comes with them.
+// A log of states, each bent further by 0.1 rad, and of additional messages.
 class WrittenTruth : public TruthView {
  protected:
   void write(const std::function<void(Recorder&)>& more) {
@@ -216,7 +216,7 @@ TEST_F(WrittenTruth, IsNotDrawnWhereItIsDamaged) {
   EXPECT_THAT(ghosts_in(extras_at(3)), ElementsAre("truth"));
 }
 
-// Whose truth has a bend for each arc of the rod.
+// The logged truth has a bend for each arc of the rod.
 TEST_F(WrittenTruth, StandsBesideWhatAServoDrawsOfARod) {
   ServoStep step;
   step.time = 1, step.desired = step.seen.emplace(turned(0.2)), step.lengths = {0.5, 0.5};
@@ -246,7 +246,7 @@ PosesMessage poses_of(const Backbone& backbone) {
   return message;
 }
 
-// Also of arcs that turn by more than half a turn.
+// Also for arcs of more than half a turn.
 TEST(TrueArm, LiesAsTheArcsBetweenItsPoses) {
   Arm arm;
   arm.sections.resize(3);

@@ -1,4 +1,4 @@
-// Sessions with an arm that no model of one arc a section fits: what is seen is the arm as it is.
+// Sessions with an arm that no model with one arc per section fits: the display shows the true arm.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -11,7 +11,7 @@
 namespace flexura {
 namespace {
 
-// Sections that truly bend more near their bases.
+// Sections whose true bend is larger near their bases.
 const std::string uneven_text = viewed_text +
                                 "[[truth.arm.section]]\nbend_profile = [1.4, 1, 0.6]\n"
                                 "[[truth.arm.section]]\nbend_profile = [1.4, 1, 0.6]\n";

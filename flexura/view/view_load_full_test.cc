@@ -1,4 +1,4 @@
-// A live rig behind its server, with clients that never read: nothing of theirs is anybody else's trouble.
+// A live rig behind its server, with clients that never read: they must not affect other clients.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -24,14 +24,14 @@ double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-// What of this process lies in memory, bytes.
+// Returns the resident memory of this process, bytes.
 std::size_t resident_bytes() {
   std::size_t pages = 0, resident = 0;
   std::ifstream("/proc/self/statm") >> pages >> resident;
   return resident * static_cast<std::size_t>(::sysconf(_SC_PAGESIZE));
 }
 
-// A client that has asked for both cameras' pictures.
+// Returns a client that has requested both cameras' pictures.
 RawClient watching(const ViewServer& server, int receive_buffer = 0) {
   RawClient client = connected(server, receive_buffer);
   for (const char* camera : {"front", "side"})
@@ -39,13 +39,13 @@ RawClient watching(const ViewServer& server, int receive_buffer = 0) {
   return client;
 }
 
-// A client that never reads, but says that every picture has come: so the server goes on sending until the
-// system takes no more of it.
+// A client that never reads, but acknowledges every picture. So the server keeps sending until the system
+// accepts no more data.
 class DeafClient {
  public:
   explicit DeafClient(const ViewServer& server) : client_(watching(server, 4096)) {}
 
-  // Its pictures are those of all others, but may be a little ahead of them or behind.
+  // Its picture numbers are those of the other clients, but may be slightly ahead or behind.
   void acknowledge_around(const char* camera, int number) const {
     for (int near = std::max(0, number - 2); near <= number + 1; ++near) client_.say(ack(camera, near));
   }
@@ -60,15 +60,15 @@ class DeafClient {
 
 struct Seen {
   int states = 0;
-  int made = 0;  // by the server meanwhile
+  int made = 0;  // Frames made by the server meanwhile.
   int images = 0;
-  double simulated = 0;          // s that the rig's time went on
+  double simulated = 0;          // Time by which the rig advanced, s.
   double wall = 0;               // s
-  std::size_t least_busy = 0;    // clients to whom something was being sent, at the least
-  std::size_t most_waiting = 0;  // bytes, for all clients
+  std::size_t least_busy = 0;    // Minimum number of clients with data being sent.
+  std::size_t most_waiting = 0;  // Maximum for all clients, bytes.
 };
 
-// What a client that reads and acknowledges everything sees in so many s, beside deaf ones.
+// Returns what a client that reads and acknowledges everything receives in `seconds` s, beside deaf ones.
 Seen watch(const ViewServer& server, RawClient& client, double seconds,
            const std::vector<DeafClient>& deaf = {}) {
   Seen seen;
@@ -98,7 +98,8 @@ Seen watch(const ViewServer& server, RawClient& client, double seconds,
   return seen;
 }
 
-// Four that do not read, and to all of whom the server cannot send any more; fewer where that takes too long.
+// Returns four clients that do not read, and to which the server cannot send any more; fewer if that takes
+// too long.
 std::vector<DeafClient> blocked_clients(const ViewServer& server, RawClient& good) {
   std::vector<DeafClient> deaf;
   deaf.reserve(4);
@@ -118,14 +119,14 @@ ViewedRigPtr rig_with_large_pictures() {
   return viewed_rig(text);
 }
 
-// Of so many numbers (an odd count).
+// Returns the median of an odd number of values.
 double median(std::vector<double> values) {
   std::ranges::sort(values);
   return values.at(values.size() / 2);
 }
 
-// Others may work on the machine too, and now more, now less: so times with and without the deaf clients take
-// turns, each is compared with the one beside it, and what counts is the median of many.
+// Other programs may load the machine to a varying degree. So measurements with and without the deaf clients
+// alternate, each is compared with its neighbour, and the median of many counts.
 TEST(ViewLoad, FourClientsThatNeverReadSlowNothingDownAndTakeNoMemory) {
   constexpr double seconds = 0.6;
   constexpr int rounds = 9;
@@ -135,11 +136,11 @@ TEST(ViewLoad, FourClientsThatNeverReadSlowNothingDownAndTakeNoMemory) {
   (void)watch(server, good, seconds);
   const std::size_t before = resident_bytes();
   std::size_t most = 0, most_waiting = 0;
-  std::vector<double> seen, states, images, pace;  // shares of what there was, or is without deaf ones
+  std::vector<double> seen, states, images, pace;  // Ratios of values with and without deaf clients.
   for (int round = 0; static_cast<int>(pace.size()) < rounds; ++round) {
     const Seen alone = watch(server, good, seconds);
-    // On a busy machine something may be on its way to the good client whenever it is looked: then who is
-    // blocked cannot be told, and another round is taken.
+    // On a busy machine, data for the good client may be in transit at every check. Then blocked clients
+    // cannot be identified, and another round is made.
     if (alone.least_busy > 0 && round < 3 * rounds) continue;
     const std::vector<DeafClient> deaf = blocked_clients(server, good);
     const Seen among = watch(server, good, seconds, deaf);
@@ -162,7 +163,7 @@ TEST(ViewLoad, FourClientsThatNeverReadSlowNothingDownAndTakeNoMemory) {
   EXPECT_GT(median(images), 0.8);
   EXPECT_GT(median(pace), 0.8);
   EXPECT_LT(most, before + (std::size_t{64} << 20));
-  // A state and two pictures wait for each client, and one more is being sent: none of them has 15 kB.
+  // A state and two pictures wait for each client, and one more is being sent: each is below 15 kB.
   EXPECT_LT(most_waiting, std::size_t{5} * 4 * 15'000);
 }
 

@@ -15,7 +15,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (request.error.find('\n') != std::string::npos) std::abort();
   const bool may_lack_id = std::holds_alternative<flexura::AckRequest>(request.ask);
   if (request.error.empty() && !request.id && !may_lack_id) std::abort();
-  // What stands in a reply must be JSON.
+  // The content of a reply must be valid JSON.
   const flexura::Node reply{flexura::Node::Table{{"error", {}, {request.error, {}}}}, {}};
   (void)flexura::parse_json(flexura::write_json(reply), "reply");
   try {

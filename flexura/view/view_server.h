@@ -13,10 +13,10 @@
 
 namespace flexura {
 
-/// A viewer behind a server, as long as this object lives.
+/// A viewer behind a server, running as long as this object exists.
 class ViewServer {
  public:
-  /// std::system_error when it cannot listen there.
+  /// Throws std::system_error if it cannot listen at the configured address.
   ViewServer(ViewStart start, ServerConfig config, std::span<const Asset> assets);
   ~ViewServer();
   ViewServer(const ViewServer&) = delete;
@@ -25,7 +25,7 @@ class ViewServer {
   [[nodiscard]] std::string url() const { return server_.url(); }
   [[nodiscard]] std::uint16_t port() const { return server_.port(); }
   [[nodiscard]] const std::string& token() const { return server_.token(); }
-  /// Both as of the server itself.
+  /// As the functions of Server.
   [[nodiscard]] std::size_t waiting_bytes() const { return server_.waiting_bytes(); }
   [[nodiscard]] std::size_t busy_clients() const { return server_.busy_clients(); }
 

@@ -21,7 +21,7 @@ struct Replies {
   int results = 0, refusals = 0;
 };
 
-// A client that asks and reads at once.
+// A client that asks and reads concurrently.
 class Talk {
  public:
   explicit Talk(RawClient client) : client_(std::move(client)) {}
@@ -30,7 +30,8 @@ class Talk {
     const std::lock_guard lock(sending_);
     client_.say(request);
   }
-  // The next frame but pings, which are answered; where a request is on its way, that is answer enough.
+  // Returns the next frame except pings, which are answered; while a request is being sent, that is
+  // sufficient.
   RawFrame read_frame() {
     for (;;) {
       RawFrame frame = client_.read_frame();
@@ -46,7 +47,7 @@ class Talk {
   std::mutex sending_;
 };
 
-// So many replies, or fewer where the client is cut off.
+// Returns `count` replies, or fewer if the client is disconnected.
 Replies answers_in(Talk& client, int count) {
   Replies replies;
   while (replies.results + replies.refusals < count) {
@@ -58,7 +59,7 @@ Replies answers_in(Talk& client, int count) {
   return replies;
 }
 
-// What comes of so many requests, all at once, to a client that reads.
+// Returns the replies to `count` simultaneous requests of a client that reads.
 Replies replies_to(const ViewServer& server, const std::string& request, int count) {
   Talk client(connected(server));
   std::thread asking([&] {
@@ -71,8 +72,7 @@ Replies replies_to(const ViewServer& server, const std::string& request, int cou
 
 constexpr int many = 400;
 
-// An arm of so many sections that what is said of all of it is 25 kB, of which 4 MB hold less than two
-// hundred.
+// An arm with so many sections that a message about all of it takes 25 kB; 4 MB hold fewer than two hundred.
 ViewedRigPtr long_rig() {
   std::string text = "[arm]\nkind = 'spatial'\n";
   for (int i = 0; i < many; ++i) text += "[[arm.section]]\nlength = 0.1\n";
@@ -98,7 +98,7 @@ TEST(ViewServer, AnswersEachRequestOfAClientThatReads) {
 TEST(ViewServer, HoldsLittleForAClientThatReadsLateAndAnswersAllTheSame) {
   const ViewServer server({.session = "1", .rig = long_rig()}, {}, {});
   Talk late(connected(server, 4096));
-  constexpr int count = 250;  // so that none is refused
+  constexpr int count = 250;  // Few enough that none is refused.
   std::thread asking([&] {
     for (int i = 0; i < count; ++i) late.say(long_request());
   });

@@ -19,13 +19,13 @@
 namespace flexura {
 namespace {
 
-// To two digits: what people read.
+// Rounds to two digits, for display.
 double rounded(double value) {
   const double digit = std::pow(10.0, std::floor(std::log10(value)) - 1);
   return std::round(value / digit) * digit;
 }
 
-// What a time lies between: `part` of the way from one instant to the next, or at one alone.
+// The instants before and after a time, at fraction `part` between them; or a single instant.
 struct Between {
   const Instant &from, &to;
   double part = 0;
@@ -33,8 +33,8 @@ struct Between {
   [[nodiscard]] bool is_one() const { return &from == &to; }
 };
 
-// What lies between two shapes of a rod, which are both placed by samples at the same places along it: two
-// arcs lead from each to the next.
+// Interpolates between two shapes of a rod. Both have samples at the same places along it, with two arcs
+// between consecutive samples.
 Backbone between_shapes(const Backbone& a, const Backbone& b, double part) {
   const std::span<const Arc> from = a.arcs(), to = b.arcs();
   if (from.size() != to.size() || from.size() % 2 != 0) return part < 0.5 ? a : b;
@@ -48,18 +48,18 @@ Backbone between_shapes(const Backbone& a, const Backbone& b, double part) {
   return Backbone::through(samples);
 }
 
-// `from` and the way from one state to another.
+// Returns `from` plus the difference between two states.
 HeadState plus_way(const HeadState& from, const HeadState& a, const HeadState& b) {
   return {from.pan + b.pan - a.pan, from.tilt + b.tilt - a.tilt, from.zoom + b.zoom - a.zoom};
 }
 
-// Rounding, or an offset, leads past the lens's ends.
+// Clamps a zoom to the lens, since rounding or an offset can lead beyond its limits.
 double on_lens(const Camera& camera, double zoom) {
   const auto [least, most] = camera.head_axes()[2].limits;
   return std::clamp(zoom, least, most);
 }
 
-// A log that somebody has written may say anything; no axis stands beyond its ends.
+// Clamps readings to the axis limits, since a log may contain any values.
 CameraReading within_ends(const Camera& camera, CameraReading reading) {
   const auto draw = [](const AxisConfig& axis, double& position) {
     position = std::clamp(position, axis.limits[0], axis.limits[1]);
@@ -71,7 +71,7 @@ CameraReading within_ends(const Camera& camera, CameraReading reading) {
   return reading;
 }
 
-// A rod comes to rest but for the last digits of its equilibrium, of which no picture shows anything.
+// Compares two rods. At rest they may differ in the last digits of the equilibrium, which no picture shows.
 bool lie_alike(const Instant& a, const Instant& b) {
   constexpr double unseen = 1e-7;  // m
   if (a.shape == b.shape) return true;
@@ -107,10 +107,10 @@ Backbone backbone_at(const ViewedRig& rig, const std::vector<Instant>& instants,
   return rig.truth.backbone(at.is_one() ? at.from.arm : interpolate(at.from.arm, at.to.arm, at.part));
 }
 
-// How far a newton across it moves the tip of the arm as it starts, m/N: with a force that makes tendons taut
-// which hang slack there. 0: not known.
+// Returns the tip's displacement per newton of transverse force in the initial state, m/N. The force is large
+// enough to tighten tendons that are slack there. Returns 0 if unknown.
 double compliance_of(const ArmSetup& setup) {
-  constexpr double little = 0.05;  // of the arm's length, of one without tendons
+  constexpr double little = 0.05;  // Fraction of the arm's length, for the arm without tendons.
   const Rod& rod = setup.rod->rod;
   RodStatics statics(rod);
   const TendonInput tendons{.displacements = arc_displacements(rod, setup.initial).pulled};

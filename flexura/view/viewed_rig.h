@@ -21,88 +21,90 @@
 
 namespace flexura {
 
-/// What lies `part` of the way from one pose to another.
+/// Returns the pose at fraction `part` of the way from one pose to another.
 [[nodiscard]] Pose interpolate(const Pose& from, const Pose& to, double part);
 
-/// What is seen at one instant.
+/// Arm and camera at one instant, as a picture shows them.
 struct Instant {
   double time = 0;  ///< s
-  ArmState arm;     ///< What its drives bend it to.
+  ArmState arm;     ///< State that the drives impose.
   CameraStance stance;
-  std::shared_ptr<const Backbone> shape = {};  ///< How a rod lies; null: the true arm's arcs, so bent.
+  /// Backbone of a rod; null: the arcs of the true arm in state `arm`.
+  std::shared_ptr<const Backbone> shape = {};
 };
 
-/// What a hand needs to push an arm: forces that move it visibly, and no more than it bears.
+/// Scales for pushing an arm: forces that move it visibly, within what it can bear.
 struct PushScale {
-  double length = 0;     ///< Of the arm at rest, m.
-  double stiffness = 0;  ///< Of a hand's spring, N/m: five times as stiff as the arm's tip at the start.
-  double most = 0;       ///< N: what would draw that tip as far away as the arm is long, were it linear.
+  double length = 0;  ///< Length of the arm at rest, m.
+  /// Stiffness of the push spring, N/m: five times that of the arm's tip at the start.
+  double stiffness = 0;
+  double most = 0;  ///< Force limit, N: it would move that tip by the arm's length if the arm were linear.
 };
 
-/// A rig as an experiment describes it, ready to be shown. A value that does not change: threads share it.
+/// A rig of an experiment, prepared for viewing. Immutable and shared by threads.
 class ViewedRig {
  public:
   explicit ViewedRig(Experiment read);
 
   Experiment experiment;
-  ArmModel model, truth;  ///< The arm as it is believed to be, and as it is.
-  ArmState initial;       ///< As it is.
-  bool is_rod;            ///< The arm as it is: it lies as its plant says, which `truth` does not know.
-  std::vector<PulledTendon> actuators;  ///< Tendons that can be pulled in one by one.
-  bool has_weight = false;              ///< Weight or loads pull at the arm as it is.
-  std::optional<PushScale> push = {};   ///< Of an arm that yields to forces.
-  bool touches = false;                 ///< The arm as it is meets obstacles, which push back.
-  bool has_inertia = false;             ///< The arm as it is moves by itself, and swings.
+  ArmModel model, truth;  ///< Model and truth of the arm.
+  ArmState initial;       ///< Initial state of the true arm.
+  bool is_rod;            ///< Whether the true arm is a rod, whose backbone its plant computes, not `truth`.
+  std::vector<PulledTendon> actuators;  ///< Tendons that can be pulled individually.
+  bool has_weight = false;              ///< Whether weight or loads act on the true arm.
+  std::optional<PushScale> push = {};   ///< Present for an arm that yields to forces.
+  bool touches = false;                 ///< Whether obstacles push back on the true arm.
+  bool has_inertia = false;             ///< Whether the true arm has inertia and can swing.
   std::vector<Obstacle> obstacles;
-  std::vector<Obstacle> forbidden;  ///< Those that the arm must not touch.
-  std::optional<Drive> drive;       ///< As it is believed to be.
-  std::vector<Camera> cameras;      ///< As they are.
-  std::vector<Camera> believed;     ///< As they are believed to be.
+  std::vector<Obstacle> forbidden;  ///< Obstacles that the arm must not touch.
+  std::optional<Drive> drive;       ///< Drive of the model.
+  std::vector<Camera> cameras;      ///< True cameras.
+  std::vector<Camera> believed;     ///< Camera models.
   std::vector<SensorConfig> sensors;
 
-  /// The place of the camera of this name; none when there is none.
+  /// Returns the index of the camera with this name; std::nullopt if there is none.
   [[nodiscard]] std::optional<std::size_t> camera(std::string_view name) const;
 
-  /// What a camera's head and stage say at the start, and where they stand then.
+  /// Returns the readings of a camera's head and stage at the start, and their true positions.
   [[nodiscard]] CameraReading first_reading(std::size_t camera) const;
   [[nodiscard]] CameraStance first_stance(std::size_t camera) const;
-  /// Where they stand when they say this, and what they say when they stand there, but for play and steps:
-  /// they count from where they are believed to start.
+  /// Convert between readings and true positions, except for backlash and quantisation. Readings count from
+  /// the model's start.
   [[nodiscard]] CameraStance stance(std::size_t camera, const CameraReading& reading) const;
   [[nodiscard]] CameraReading reading(std::size_t camera, const CameraStance& stance) const;
-  /// What the camera sees, as far as one knows who has its readings.
+  /// Returns the camera's view according to the model and its readings.
   [[nodiscard]] View believed_view(std::size_t camera, const CameraReading& reading) const;
 };
 
 using ViewedRigPtr = std::shared_ptr<const ViewedRig>;
 
-/// How a camera of the rig stands.
+/// Returns the sample of a camera at these axis positions.
 [[nodiscard]] CameraSample camera_sample(const Camera& camera, const CameraStance& stance);
 
-/// A frame that can be taken without anything else that stays.
+/// A frame that can be rendered without references to changing data.
 struct ValueShot {
   Shot shot;
-  std::shared_ptr<const std::vector<Instant>> instants;  ///< What it shows.
+  std::shared_ptr<const std::vector<Instant>> instants;  ///< What the frame shows.
 };
 
-/// The frame that shows `instants` (one or more, by rising time), and between two of them what lies between.
-/// It starts at `start` s.
+/// Returns the frame that shows `instants` (one or more, in ascending order), interpolated between them. Its
+/// exposure starts at `start` s.
 [[nodiscard]] ValueShot value_shot(const ViewedRigPtr& rig, std::size_t camera, std::int64_t frame,
                                    double start, std::vector<Instant> instants);
 
-/// The same with the lens covered where the sensor is at `time`, s since a run's start. (The page's own time
-/// covers none.)
+/// Returns the shot with the lens covered if the sensor configuration covers it at `time`, s since a run's
+/// start. (The page's own time has no covers.)
 [[nodiscard]] ValueShot with_covers(ValueShot shot, double time);
 
-/// How the camera stands in the middle of the frame's exposure.
+/// Returns the camera axis positions at mid-exposure of the frame.
 [[nodiscard]] CameraStance stance_in(const ValueShot& shot);
 
-/// Whether two frames are sure to be the same picture: everything stands still, in the same way, and no noise
-/// tells them apart.
+/// Returns whether two frames are certain to be the same picture: everything is at rest, in the same place,
+/// and no noise differs.
 [[nodiscard]] bool show_the_same(const ValueShot& a, const ValueShot& b);
 
-/// When `value_shot` should know of a frame that starts at `start` s: once, where it is exposed in an
-/// instant, else so often that motion in between is as good as straight.
+/// Returns the times, s, of the instants that `value_shot` needs for a frame that starts at `start` s. This
+/// is one time for an instantaneous exposure, otherwise enough that motion in between is nearly straight.
 [[nodiscard]] std::vector<double> times_of_instants(const SensorConfig& sensor, double start);
 
 }  // namespace flexura

@@ -12,7 +12,7 @@
 namespace flexura {
 namespace {
 
-// The arm truly stands a little higher than it is believed to; the second camera exposes for 10 ms.
+// The true arm stands slightly higher than the model; the second camera exposes for 10 ms.
 const std::string lifted_text = viewed_text + "[truth.arm.base]\nposition = [0, 0.1, 0]\n";
 
 std::vector<Instant> swing(double start, double end) {
@@ -37,7 +37,7 @@ TEST(ViewedRig, IsShownBetweenTwoInstantsInBetween) {
             1e-12);
   const View view = shot.shot.view(3.0025), there = rig->cameras[1].view({{0.05, -0.025, 1}, {}});
   EXPECT_LT((view.X_WC.rotation - there.X_WC.rotation).norm(), 1e-12);
-  // Whoever asks how the camera stands is told of the exposure's middle.
+  // The reported axis positions are those at mid-exposure.
   EXPECT_NEAR(stance_in(shot).head.pan, 0.1, 1e-12);
   EXPECT_NEAR(stance_in(shot).head.tilt, -0.05, 1e-12);
 }

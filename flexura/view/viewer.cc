@@ -97,7 +97,7 @@ void Viewer::said(ClientId client, const std::string& said_text, const std::shar
   } catch (const std::exception& refusal) {
     error = refusal.what();
   }
-  // An `ack` has no reply, but when it is wrong.
+  // An `ack` has a reply only if it is invalid.
   if (!error.empty()) messenger_.send(client, reply_text(request.id, {{}, error}));
 }
 
@@ -145,11 +145,11 @@ void Viewer::open_example(const std::string& name, const Reply& reply) {
                                                          LiveSession::Config{clock_, start_.results, {}}));
   reply({nothing(), ""});
   show(*live_);
-  // Nobody is in the old sessions any more.
+  // No client is in the old sessions any more.
   recording_.reset();
 }
 
-// A long log takes its time to be read.
+// Opens a recording in the background, since a long log takes time to read.
 void Viewer::open(const std::filesystem::path& folder, Reply reply) {
   if (is_opening_) throw ViewRefusal("a recording is being opened");
   is_opening_ = true;
@@ -168,7 +168,7 @@ void Viewer::open(const std::filesystem::path& folder, Reply reply) {
           is_opening_ = false;
           reply({nothing(), error});
           if (recording == nullptr) return;
-          // The one before goes when nobody is in it any more.
+          // The previous one is destroyed once no client uses it.
           const auto before = std::exchange(
               recording_, std::make_unique<RecordingSession>(recording, messenger_, background_));
           show(*recording_);
@@ -197,7 +197,7 @@ void Viewer::show(Session& session) {
     try {
       greet(client);
     } catch (const std::exception& error) {
-      failed(client, error.what());  // The others come in all the same.
+      failed(client, error.what());  // The other clients are still admitted.
     }
   }
 }

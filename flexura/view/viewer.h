@@ -19,43 +19,43 @@ namespace flexura {
 
 /// An experiment that a viewer offers to open.
 struct ViewExample {
-  std::string name;                    ///< By which clients ask for it.
-  std::string title;                   ///< For people.
-  std::function<ViewedRigPtr()> load;  ///< Its rig; never null.
-  std::filesystem::path results;       ///< Where runs of its tasks put their results.
+  std::string name;                    ///< Name that clients use to request it.
+  std::string title;                   ///< Title for users.
+  std::function<ViewedRigPtr()> load;  ///< Loads its rig; never returns null.
+  std::filesystem::path results;       ///< Folder for the results of its tasks' runs.
 };
 
-/// What a viewer begins with: a recording, or else a rig.
+/// Initial content of a viewer: a recording, or else a rig.
 struct ViewStart {
-  std::string session;                     ///< Another for each start of the program.
-  ViewedRigPtr rig = {};                   ///< Never null where there is no recording.
+  std::string session;                     ///< Differs for each start of the program.
+  ViewedRigPtr rig = {};                   ///< Never null without a recording.
   RecordingPtr recording = {};             ///< May be null.
-  std::filesystem::path results = {};      ///< Where runs of tasks put their results.
-  std::shared_ptr<RunLink> run = {};       ///< A run that is going on, whose recording is opened at its end.
-  std::vector<ViewExample> examples = {};  ///< What else can be opened; empty where a file was given.
+  std::filesystem::path results = {};      ///< Folder for the results of task runs.
+  std::shared_ptr<RunLink> run = {};       ///< An active run, whose recording is opened at its end.
+  std::vector<ViewExample> examples = {};  ///< Other experiments to open; empty if a file was given.
 };
 
-/// What the viewer says and does: reads what clients say, answers, and leads them from rig to recording and
-/// back. One thread uses it.
+/// Parses the requests of clients, answers them, and switches between rig and recording. To be used by one
+/// thread.
 class Viewer {
  public:
-  /// `now`: s by the clock of advance().
+  /// `now` is in s by the clock of advance().
   Viewer(ViewStart start, Messenger& messenger, Background& background, double now);
 
   void opened(ClientId client);
   void closed(ClientId client);
-  /// `debt`: is let go of when the client has its answer, or none can come any more.
+  /// `debt` is released when the client has its answer, or can get none any more.
   void said(ClientId client, const std::string& text, const std::shared_ptr<const void>& debt = nullptr);
   void asked(const std::string& target, const std::function<void(HttpAnswer)>& answer);
   void advance(double now);
 
-  /// Tells a client, or all of them, what failed on the way to them; what fails again and again, once.
+  /// Reports to a client, or to all, what failed while sending to them; a repeated failure is reported once.
   void failed(std::optional<ClientId> client, std::string why);
 
-  /// Ends a run of tasks early.
+  /// Cancels a run of tasks.
   void cancel();
 
-  /// Whether time must go on for anybody.
+  /// Returns whether any client is connected, so that advance() is needed.
   [[nodiscard]] bool is_watched() const { return !clients_.empty(); }
 
  private:
@@ -66,7 +66,7 @@ class Viewer {
   void open_example(const std::string& name, const Reply& reply);
   void open(const std::filesystem::path& folder, Reply reply);
   void go_live(const Reply& reply);
-  /// Whether there is a rig to go to: none where the run that was watched is over.
+  /// Returns whether there is a live rig; false if the watched run is over.
   [[nodiscard]] bool has_rig() const;
   [[nodiscard]] bool has_recording() const;
   void show(Session& session);
@@ -74,12 +74,12 @@ class Viewer {
   ViewStart start_;
   Messenger& messenger_;
   Background& background_;
-  double clock_ = 0;  // of advance(), s
+  double clock_ = 0;  // Time of advance(), s.
   std::set<ClientId> clients_;
-  std::map<ClientId, std::string> failures_;     // the last that a client was told of
-  std::unique_ptr<LiveSession> live_;            // may be null where a recording was opened first
-  std::unique_ptr<RecordingSession> recording_;  // the last one opened; may be null
-  Session* shown_ = nullptr;                     // one of these
+  std::map<ClientId, std::string> failures_;     // Last failure reported to each client.
+  std::unique_ptr<LiveSession> live_;            // May be null if a recording was opened first.
+  std::unique_ptr<RecordingSession> recording_;  // The last one opened; may be null.
+  Session* shown_ = nullptr;                     // Points to *live_ or *recording_.
   bool is_opening_ = false;
   std::shared_ptr<const bool> alive_ = std::make_shared<const bool>(true);
 };

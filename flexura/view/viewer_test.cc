@@ -21,7 +21,7 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::StrEq;
 
-// In what the zoom of a rig's last camera is said.
+// Returns the zoom unit of a rig's last camera.
 std::string zoom_unit(const std::string& rig) {
   const Node controls = controls_node(*viewed_rig(rig));
   return *controls.find("heads")->as<Node::Array>()->back().find("zoom_unit")->as<std::string>();
@@ -34,13 +34,13 @@ class ViewerTest : public ::testing::Test {
                 background_, 0) {
     viewer_.opened(me);
   }
-  // The reply to a message.
+  // Returns the reply to a message.
   Node say(const std::string& text) {
     viewer_.said(me, text);
     return messenger_.last(me, "reply");
   }
   [[nodiscard]] std::string mode() { return *messenger_.last(me, "hello").find("mode")->as<std::string>(); }
-  // Whether the last hello says so.
+  // Returns this flag of the last hello.
   [[nodiscard]] bool says(const char* key) { return *messenger_.last(me, "hello").find(key)->as<bool>(); }
   static std::string error_of(const Node& reply) {
     const Node* error = reply.find("error");
@@ -151,7 +151,7 @@ TEST_F(ViewerTest, SaysWhetherThereIsARecordingToOpen) {
   EXPECT_TRUE(says("rig"));
 }
 
-// To whom nothing can be posted.
+// A messenger whose post() fails.
 class BrokenMessenger : public FakeMessenger {
  public:
   void post(ClientId client, std::uint32_t stream, std::shared_ptr<const std::string> message) override {

@@ -40,7 +40,7 @@ void Workers::work(Queue& queue) {
     try {
       after = job();
     } catch (const std::exception& error) {
-      // Told where all else that fails is told.
+      // Rethrown on the session's thread, where other failures are reported.
       after = [why = std::string(error.what())] { throw std::runtime_error(why); };
     }
     if (after) back_(std::move(after));

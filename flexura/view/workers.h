@@ -11,12 +11,12 @@
 
 namespace flexura {
 
-/// A thread for each lane.
+/// Background work with a thread for each lane.
 class Workers : public Background {
  public:
-  /// `back` gets what is to be called on the session's thread; from any thread.
+  /// `back` gets the functions to be called on the session's thread; it is called from any thread.
   explicit Workers(std::function<void(After)> back);
-  /// Ends the jobs under way, and drops those that wait.
+  /// Finishes the jobs under way, and drops those that wait.
   ~Workers() override;
 
   void run(Lane lane, Job job) override;

@@ -19,8 +19,8 @@ namespace {
 constexpr std::int64_t image_limit = 1000;
 constexpr double longest = 1e4;  // s
 
-// Bends of the arm's lower, middle and upper third, rad: mild ones first, of which rough guesses recognise
-// the markers; then such as bend every part to every side.
+// Bends of the arm's lower, middle and upper third, rad. Mild bends come first: there rough priors suffice to
+// recognise the markers. The following ones bend every part in every direction.
 constexpr std::array<std::array<double, 6>, 6> patterns = {{{0.5, 0, 0.5, 0, 0.5, 0},
                                                             {0, 0.5, 0, 0.5, 0, 0.5},
                                                             {-0.6, 0.3, 0.7, 0.1, 0.5, -0.8},
@@ -28,7 +28,7 @@ constexpr std::array<std::array<double, 6>, 6> patterns = {{{0.5, 0, 0.5, 0, 0.5
                                                             {1, 0.2, 0.8, -0.3, -1, 0.4},
                                                             {-0.3, 1, 0.2, -1, -0.4, 1}}};
 
-// The bends of a pattern, shared out among the sections of each third by their lengths.
+// Returns the bends of a pattern, distributed among the sections of each third by their lengths.
 ArmState patterned(const Arm& arm, const std::array<double, 6>& pattern) {
   std::vector<std::size_t> third_of;
   std::array<double, 3> lengths = {0, 0, 0};
@@ -45,7 +45,7 @@ ArmState patterned(const Arm& arm, const std::array<double, 6>& pattern) {
     Eigen::Vector2d& bend = state.bends[i];
     bend = share * Eigen::Vector2d(pattern[2 * third], pattern[2 * third + 1]);
     if (arm.kind == ArmKind::planar) bend = {bend.x() + 0.5 * bend.y(), 0};
-    constexpr double within = 0.9;  // Of what the section takes.
+    constexpr double within = 0.9;  // Fraction of the section's bend limit.
     const double most = within * arm.sections[i].max_bend;
     if (bend.norm() > most) bend *= most / bend.norm();
     const auto& [least, longest_stretch] = arm.sections[i].stretch_limits;
@@ -54,7 +54,7 @@ ArmState patterned(const Arm& arm, const std::array<double, 6>& pattern) {
   return state;
 }
 
-// As the file has them, from the base on.
+// Returns the markers of the file, from the base on.
 std::vector<KnownMarker> known_markers(const ArmConfig& arm) {
   std::vector<KnownMarker> markers;
   for (const Marker& marker : arm.look.markers(arm.arm()))
@@ -241,7 +241,7 @@ std::vector<ArmState> calibration_poses(const CalibrateTask& task, const Arm& ar
   std::vector<ArmState> poses;
   if (is_before_etalon(task)) return poses;
   if (is_loop(task)) {
-    // To which sides, depends on where the cameras stand.
+    // The sign of the bends depends on where the cameras stand.
     for (const double side : {1.0, -1.0})
       for (const Eigen::Vector3d& axis : {Eigen::Vector3d::UnitX().eval(), Eigen::Vector3d::UnitZ().eval()})
         if (auto arc = arc_state(arm, arc_bend(task), side * axis)) poses.push_back(std::move(*arc));
@@ -272,7 +272,8 @@ RigSessionConfig session_config(const CalibrateTask& task, const ArmConfig& arm,
     config.etalon = stand.etalon.value_or(EtalonConfig{});
     config.screens = stand.screen.value_or(default_screens(arm.arm().length(), arm.base.position));
     config.poses = {arm_state(arm.arm(), arm.initial)};
-    // Once from where the heads stand, for nothing there moves; a red line is seen at two places.
+    // One picture from the initial head positions is enough, since nothing there moves; a red line is seen at
+    // two places.
     config.first = 1, config.fewest = 2;
   }
   config.wanted = {task.required_std.angle,
@@ -314,7 +315,7 @@ RigPrior session_prior(const CalibrateTask& task, const RigModel& believed, cons
   std::optional<Eigen::Vector3d> seen;
   if (is_before_etalon(task)) seen = EtalonFigure(stand.etalon.value_or(EtalonConfig{})).middle();
   RigPrior prior = rough_prior(believed, task.camera_prior.position_std, seen);
-  // The cylinder tells nothing of the arm.
+  // Pictures of the cylinder contain no information about the arm.
   if (is_before_etalon(task)) prior.arm = {.length = 0, .bend_gain = 0, .bend_share = 0, .bend = 0};
   for (CameraPrior& camera : prior.cameras) {
     if (camera.pan_zero > 0) camera.pan_zero = task.stages ? task.camera_prior.zero_std : 0;

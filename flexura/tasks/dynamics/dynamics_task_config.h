@@ -20,50 +20,51 @@
 
 namespace flexura {
 
-/// The shape that the law leads to: bends, or the two angles of the arm's direction.
+/// Target shape of the law: bends, or the two angles of the arm's direction.
 struct DynamicsTargetConfig : ShapeConfig {
-  std::optional<std::vector<double>> azimuths, elevations;  ///< theta and q at equal shares, rad.
+  /// Angles theta and q at equal fractions of the length, rad.
+  std::optional<std::vector<double>> azimuths, elevations;
 };
 
-/// Numbers of the artificial potential (PotentialGains); those that violate a condition of the theory are
-/// taken too, to show what happens then.
+/// Gains of the artificial potential (PotentialGains). Values that violate a condition of the theory are
+/// accepted too, to show their effect.
 struct PotentialConfig {
-  std::array<double, 2> stiffness = {20, 20};                         ///< k of theta and q.
-  std::array<std::array<double, 2>, 2> damping = {{{4, 0}, {0, 4}}};  ///< K
+  std::array<double, 2> stiffness = {20, 20};                         ///< Stiffnesses k of theta and q.
+  std::array<std::array<double, 2>, 2> damping = {{{4, 0}, {0, 4}}};  ///< Damping matrix K.
   double length_stiffness = 200;                                      ///< N/m
   double length_damping = 40;                                         ///< N s/m
-  double gravity_compensation = 1;                                    ///< Share of dV_g/dx.
+  double gravity_compensation = 1;                                    ///< Compensated fraction of dV_g/dx.
   ElasticityRule elasticity = ElasticityRule::cancelled;
   DriveKind drives = DriveKind::everywhere;
-  std::int64_t sign = 1;  ///< Of the potential's force: 1, or -1 to lead away from the target.
+  std::int64_t sign = 1;  ///< Sign of the potential's force: 1, or -1 to lead away from the target.
 };
 
-/// How the law gets to know the angles, when it does not have them exactly (AngleMeasurement).
+/// Measurement of the angles by the law, if they are not exact (AngleMeasurement).
 struct MeasurementConfig {
   AngleReading reading = AngleReading::angles;
   double delay = 0;            ///< s
   double noise = 0;            ///< rad
-  std::optional<double> step;  ///< s; the clock's.
+  std::optional<double> step;  ///< Interval between measurements, s; default: the clock's step.
 };
 
-/// `kind = "dynamics"`: the arm as a continuum with mass, weight and elasticity (DistributedArm) moves from
-/// where it is, at rest, by the forces of the paper's law.
+/// `kind = "dynamics"`: the arm is a continuum with mass, weight and elasticity (DistributedArm). It starts
+/// at rest in its current shape, and moves by the forces of the paper's law.
 struct DynamicsTask {
   std::string name;
   double duration = 5;  ///< s
   DynamicsTargetConfig target;
-  double density = 1;                             ///< kg/m
-  std::array<double, 3> gravity = {0, -9.81, 0};  ///< m/s^2, W
-  double bending_stiffness = 0;                   ///< EI, N m^2
-  double axial_stiffness = 0;                     ///< EA, N
-  double damping = 0;                             ///< c, N s
+  double density = 1;                             ///< Mass per length, kg/m.
+  std::array<double, 3> gravity = {0, -9.81, 0};  ///< In the world frame, m/s^2.
+  double bending_stiffness = 0;                   ///< Bending stiffness EI, N m^2.
+  double axial_stiffness = 0;                     ///< Axial stiffness EA, N.
+  double damping = 0;                             ///< Damping coefficient c, N s.
   double length_damping = 0;                      ///< N s/m
-  bool variable_lengths = false;                  ///< The sections' lengths change by the law too.
-  AngleBasis basis = AngleBasis::sections;        ///< Of both angles.
-  std::int64_t nodes = 6;                         ///< Numbers of each angle (polynomial basis).
+  bool variable_lengths = false;                  ///< Whether the law also changes the sections' lengths.
+  AngleBasis basis = AngleBasis::sections;        ///< Basis of both angles.
+  std::int64_t nodes = 6;                         ///< Number of nodes for each angle (polynomial basis).
   PotentialConfig law;
-  std::optional<MeasurementConfig> measurement;  ///< None: the law has the angles exactly.
-  double tolerance = 1e-3;                       ///< Share of W at the start.
+  std::optional<MeasurementConfig> measurement;  ///< Missing: the angles are exact.
+  double tolerance = 1e-3;  ///< Tolerance for success, as a fraction of the initial Lyapunov function W.
 };
 
 const std::vector<std::string>& names_of(const ElasticityRule*);
@@ -75,12 +76,12 @@ const Table<PotentialConfig>& fields_of(const PotentialConfig*);
 const Table<MeasurementConfig>& fields_of(const MeasurementConfig*);
 const Table<DynamicsTask>& fields_of(const DynamicsTask*);
 
-/// Reports what keeps the task at `path` ("task[2]") from being tried with this setup.
+/// Reports why the task at `path` ("task[2]") is not possible with this setup.
 void check_keys(const DynamicsTask& task, const Setup& setup, const std::string& path, Reader& reader);
-/// What does such a task. Both outlive it.
+/// Returns the runner of such a task. `task` and `setup` must outlive it.
 [[nodiscard]] std::unique_ptr<TaskRunner> runner_of(const DynamicsTask& task, const Setup& setup,
                                                     TaskLabel label);
-/// dynamics.csv: energies and errors, a row a sample.
+/// Returns the table dynamics.csv: energies and errors, one row per sample.
 [[nodiscard]] LogTables log_tables(const DynamicsTask*);
 
 }  // namespace flexura

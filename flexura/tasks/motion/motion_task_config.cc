@@ -6,7 +6,7 @@
 namespace flexura {
 namespace {
 
-constexpr double min_duration = 1e-9;  // s; of less no rates are numbers.
+constexpr double min_duration = 1e-9;  // In s; shorter durations give no finite rates.
 constexpr double max_duration = 1e6;   // s
 constexpr std::size_t max_rows = 1'000'000;
 

@@ -24,7 +24,7 @@ constexpr double longest_time = 1e4;                       // s
 constexpr double shortest_step = 1e-4, longest_step = 10;  // s
 constexpr std::size_t most_targets = 10000, most_points = 10000;
 
-// The curve lies along the whole arm: its length is about the arm's.
+// Checks that the curve covers the whole arm: its length is close to the arm's.
 void check_curve(const std::vector<std::array<double, 3>>& curve, const ArmConfig& arm,
                  const std::string& path, Reader& reader) {
   const double length = curve_length(curve);
@@ -43,7 +43,7 @@ void check_curve(const std::vector<std::array<double, 3>>& curve, const ArmConfi
                                                : fmt::format("{:.4g} m", most)));
 }
 
-// A setting as a member of the task.
+// Returns a setting as a member of the task.
 template <class M>
 M ServoTask::* of_task(M ServoSettings::* setting) {
   return setting;
@@ -187,17 +187,17 @@ ServoSettings servo_settings(const ServoTask& task, const std::vector<CameraConf
 
 namespace {
 
-// The paper's law reads one picture as the plane XOY and the other one as ZOY.
+// Checks the camera planes: the paper's law reads one picture as the plane XOY and the other as ZOY.
 void check_planes(const ServoTask& task, const std::vector<CameraConfig>& cameras, const std::string& path,
                   Reader& reader) {
   if (task.law != ServoLawKind::potential || cameras.size() < 2) return;
   const auto [front, side] = servo_cameras(task, cameras);
-  if (front >= cameras.size() || side >= cameras.size()) return;  // Told already.
+  if (front >= cameras.size() || side >= cameras.size()) return;  // Already reported.
   try {
     const Camera one(cameras[front]), other(cameras[side]);
     if (stand_for_planes(one.pose(one.initial_stance()), other.pose(other.initial_stance()))) return;
   } catch (const std::exception&) {
-    return;  // A camera that is none is told where it stands.
+    return;  // An invalid camera is reported elsewhere.
   }
   reader.problem_at(
       path + ".law",
@@ -206,12 +206,12 @@ void check_planes(const ServoTask& task, const std::vector<CameraConfig>& camera
                   cameras[front].name, cameras[side].name));
 }
 
-// Steps that follow the cameras, and pictures that come before the servo is given up.
+// Checks that steps follow the cameras, and that pictures arrive before the servo gives up.
 void check_frames(const ServoTask& task, const std::vector<CameraConfig>& cameras, const std::string& path,
                   Reader& reader) {
   if (cameras.size() < 2) return;
   const auto [front, side] = servo_cameras(task, cameras);
-  if (front >= cameras.size() || side >= cameras.size()) return;  // Told already.
+  if (front >= cameras.size() || side >= cameras.size()) return;  // Already reported.
   const double frame = 1 / slower_frame_rate(cameras, {front, side});
   if (!task.step && (frame < shortest_step || frame > longest_step))
     reader.problem_at(path + ".step",
@@ -255,7 +255,7 @@ void check_target(const ServoTargetConfig& target, const ArmConfig& arm, const s
   if (target.curve) check_curve(*target.curve, arm, path + ".curve", reader);
 }
 
-// All that needs no shape of the arm.
+// Performs all checks that need no shape of the arm.
 void check_servo(const ServoTask& task, const ArmConfig& arm, const std::vector<CameraConfig>& cameras,
                  const std::string& path, Reader& reader) {
   check_two_cameras(task.cameras, cameras, path, reader);
@@ -285,7 +285,7 @@ void check_servo(const ServoTask& task, const ArmConfig& arm, const std::vector<
 void check_keys(const ServoTask& task, const Setup& setup, const std::string& path, Reader& reader) {
   const std::size_t before = reader.problems().size();
   check_servo(task, setup.arm, setup.cameras(), path, reader);
-  if (reader.problems().size() > before) return;  // Shapes fit the arm from here on.
+  if (reader.problems().size() > before) return;  // The code below requires that shapes fit the arm.
   const Arm arm = setup.arm.arm();
   for (std::size_t i = 0; i < task.target.size(); ++i)
     check_bends(arm, task.target[i], fmt::format("{}.target[{}]", path, i), reader);

@@ -20,43 +20,47 @@
 
 namespace flexura {
 
-/// A shape that a servo is to reach, said in one of several ways.
+/// A target shape of a servo, given in one of several ways.
 struct ServoTargetConfig : ShapeConfig {
-  double time = 0;                                          ///< s from the task's start.
-  std::optional<std::array<double, 3>> position;            ///< p_WT, m; the shape by inverse kinematics.
-  std::optional<std::vector<std::array<double, 3>>> curve;  ///< Points of the whole backbone, W, m.
-  std::optional<std::vector<double>> azimuths, elevations;  ///< Of its direction at equal shares, rad.
-  std::vector<std::string> pictures;  ///< Two files, of the task's cameras in this order.
+  double time = 0;  ///< Time from the task's start, s.
+  /// Tip position p_WT, m; the shape follows by inverse kinematics.
+  std::optional<std::array<double, 3>> position;
+  /// Points of the whole backbone in the world frame, m.
+  std::optional<std::vector<std::array<double, 3>>> curve;
+  /// Direction angles of the arm at equal fractions of its length, rad.
+  std::optional<std::vector<double>> azimuths, elevations;
+  std::vector<std::string> pictures;  ///< Two picture files, in the order of the task's cameras.
 };
 
-/// `kind = "servo"`: the arm is steered by two cameras until its shape is the wanted one. Beside the settings
-/// there is what needs the arm, the cameras and the file's folder to be understood.
+/// `kind = "servo"`: two cameras control the arm until it reaches the target shape. The fields added to the
+/// settings need the arm, the cameras and the file's folder for interpretation.
 struct ServoTask : ServoSettings {
   std::string name;
-  std::vector<std::string> cameras;       ///< Two names; empty: the first two.
-  std::vector<ServoTargetConfig> target;  ///< At least one.
-  std::optional<double> step;             ///< s; a frame of the slower camera.
+  std::vector<std::string> cameras;       ///< Two names; empty: the first two cameras.
+  std::vector<ServoTargetConfig> target;  ///< At least one target.
+  std::optional<double> step;  ///< Time between commands, s; default: one frame of the slower camera.
 };
 
 const Table<ServoTargetConfig>& fields_of(const ServoTargetConfig*);
 const Table<ServoTask>& fields_of(const ServoTask*);
 
-/// The two cameras of a task that was checked: places among `cameras`.
+/// Returns the indices among `cameras` of the two cameras of a checked task.
 [[nodiscard]] std::array<std::size_t, 2> servo_cameras(const ServoTask& task,
                                                        const std::vector<CameraConfig>& cameras);
 
-/// Those of a task that names two of these cameras: between two pictures of a slow one nobody is blind.
+/// Returns the settings of a task with these cameras. `hold_after` and `give_up_after` are raised if needed,
+/// so that the interval between two pictures of a slow camera does not stop the servo.
 [[nodiscard]] ServoSettings servo_settings(const ServoTask& task, const std::vector<CameraConfig>& cameras);
 
-/// Reports what keeps the servo at `path` ("task[2]") from being tried with this setup.
+/// Reports why the servo at `path` ("task[2]") is not possible with this setup.
 void check_keys(const ServoTask& task, const Setup& setup, const std::string& path, Reader& reader);
-/// Looks at its targets' pictures, which are read again when they are wanted.
+/// Checks the picture files of the targets; they are read again when needed.
 void read_files(ServoTask& task, const Setup& setup, const Node& written, const std::string& path,
                 std::vector<Problem>& problems);
-/// What does such a task. Both outlive it.
+/// Returns the runner of such a task. `task` and `setup` must outlive it.
 [[nodiscard]] std::unique_ptr<TaskRunner> runner_of(const ServoTask& task, const Setup& setup,
                                                     TaskLabel label);
-/// servo.csv: how far the arm was from what is wanted, a row a command.
+/// Returns the table servo.csv: distances of the arm from the target, one row per command.
 [[nodiscard]] LogTables log_tables(const ServoTask*);
 
 }  // namespace flexura

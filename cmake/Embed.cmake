@@ -1,7 +1,6 @@
-# flexura_embed(TARGET FILE...) makes each file's text available to TARGET as a string_view:
-# FILE "report.css" is declared in the generated header "embedded/report_css.h" as flexura::embedded::report_css,
-# and beside it report_css_sha256, the text's hash in hexadecimal.
-# The target "embedded" makes all these headers and nothing else, for tools that only read the sources.
+# flexura_embed(TARGET FILE...) makes the text of each file available to TARGET as a string_view. For FILE "report.css"
+# the generated header "embedded/report_css.h" declares flexura::embedded::report_css, and report_css_sha256 with the
+# text's hash in hexadecimal. The target "embedded" only generates these headers, for tools that read the sources.
 add_custom_target(embedded)
 
 function(flexura_embed target)
@@ -23,8 +22,8 @@ function(flexura_embed target)
   target_include_directories(${target} PRIVATE ${CMAKE_CURRENT_BINARY_DIR})
 endfunction()
 
-# flexura_embed_examples(TARGET) makes every examples/*/experiment.toml available to TARGET: "embedded/examples.h"
-# declares flexura::embedded::examples, an array of {name, text} in the order of the folders' names.
+# flexura_embed_examples(TARGET) makes every examples/*/experiment.toml available to TARGET. The header
+# "embedded/examples.h" declares flexura::embedded::examples, an array of {name, text} sorted by folder name.
 function(flexura_embed_examples target)
   file(GLOB files CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/examples/*/experiment.toml)
   list(SORT files)

@@ -1,4 +1,4 @@
-# Writes the texts of INPUTS, files examples/NAME/experiment.toml, into the header OUTPUT (script mode).
+# Writes the contents of INPUTS, files examples/NAME/experiment.toml, to the header OUTPUT (script mode).
 set(entries "")
 foreach(input ${INPUTS})
   file(READ ${input} text)

@@ -1,5 +1,5 @@
-# Writes the text of INPUT into the header OUTPUT as the string_view flexura::embedded::SYMBOL, and the text's
-# SHA-256 (hexadecimal) as flexura::embedded::SYMBOL_sha256 (script mode).
+# Writes the text of INPUT to the header OUTPUT as the string_view flexura::embedded::SYMBOL, and its SHA-256
+# (hexadecimal) as flexura::embedded::SYMBOL_sha256 (script mode).
 file(READ ${INPUT} text)
 file(SHA256 ${INPUT} sha256)
 file(WRITE ${OUTPUT} "#pragma once

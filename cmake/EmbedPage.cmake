@@ -1,5 +1,6 @@
-# Compresses each file of FOLDER (always to the same bytes) and writes the source OUTPUT that takes them in with .incbin
-# (a source of numbers takes seconds to compile). A name with what is in it: no cache mistakes it for an older one.
+# Compresses each file of FOLDER reproducibly and writes the source OUTPUT, which includes them with .incbin (a source
+# with numbers takes seconds to compile). The names contain a hash of the content, so that caches do not confuse
+# versions.
 cmake_minimum_required(VERSION 3.25)
 set(type_html "text/html; charset=utf-8")
 set(type_js "text/javascript; charset=utf-8")

@@ -1,17 +1,16 @@
 # flexura_folder(NAME [THREADS] [LIGHT] [BUSY_TESTS] [LIGHT_TESTS] [SHARDS n] [LINKS targets...] [PRIVATE_LINKS targets...])
 #
-# Makes the library flexura::NAME from the current folder: every *.cc and *.h in it and in its rooms (the folders in it),
-# but for
+# Creates the library flexura::NAME from the current folder: every *.cc and *.h in it and in its subfolders, except
 #   *_test.cc       quick tests    -> executable NAME_test,       ctest NAME,      label quick
 #   *_full_test.cc  longer tests   -> executable NAME_full_test,  ctest NAME.full, label full
 #   *_fuzz.cc       fuzz targets   -> executable each (see flexura_fuzz_target)
-# THREADS says that its code or its tests start threads: ThreadSanitizer has something to look for in its tests alone.
-# LIGHT says that its code does no long arithmetic: it is compiled with -O1, its tests with -O0, which takes less time
-# than -O3. Not for folders that compile kernels of Eigen: the linker may take theirs for the whole program.
-# BUSY_TESTS says that its tests compute much themselves (they draw boards, for one): -O1 for them all the same.
-# LIGHT_TESTS says that its tests compute little themselves, though its code does: -O0 for them.
-# SHARDS: each test executable runs as so many ctests, NAME.1 and so on, so that one folder does not keep the rest waiting.
-# LINKS is the law of the architecture: what is not listed there cannot be included.
+# THREADS: its code or its tests start threads. Only these tests run with ThreadSanitizer.
+# LIGHT: its code does little arithmetic. It is compiled with -O1 and its tests with -O0, which is faster than -O3. Not
+# for folders that instantiate Eigen kernels: the linker may use these for the whole program.
+# BUSY_TESTS: its tests compute much themselves (for example, render boards) and are compiled with -O1.
+# LIGHT_TESTS: its tests compute little themselves and are compiled with -O0, although the code is not LIGHT.
+# SHARDS: each test executable is split into n ctests, NAME.1 and so on, so that one folder does not delay the rest.
+# LINKS: the folders that may be included. This enforces the architecture.
 function(flexura_folder name)
   cmake_parse_arguments(PARSE_ARGV 1 arg "THREADS;LIGHT;BUSY_TESTS;LIGHT_TESTS" "SHARDS" "LINKS;PRIVATE_LINKS")
   file(GLOB sources CONFIGURE_DEPENDS *.cc *.h */*.cc */*.h)
@@ -54,7 +53,7 @@ function(flexura_folder name)
       flexura_test(${name}_full_test ${name}.full full ${name} ${full_tests} SHARDS ${arg_SHARDS} ${light})
     endif()
   endif()
-  # A reader of bytes starts no threads: nothing for ThreadSanitizer to find.
+  # Fuzz targets start no threads, so ThreadSanitizer is not needed.
   if(FLEXURA_SANITIZE STREQUAL thread)
     set(fuzzers "")
   endif()
@@ -65,15 +64,16 @@ function(flexura_folder name)
 endfunction()
 
 set(FLEXURA_LIGHT_OPTIONS $<$<CONFIG:Release>:-O1>)
-# The code under test is optimized as always; the tests' own code compiles a fifth faster with less of it.
+# Tests are compiled with less optimisation, which is 20 % faster; the code under test keeps its optimisation.
 set(FLEXURA_TEST_OPTIONS $<$<CONFIG:Release>:-O1>)
 set(FLEXURA_LIGHT_TEST_OPTIONS $<$<CONFIG:Release>:-O0>)
 
 # flexura_use_pch(TARGET NAME HEADERS headers... [LINKS targets...] [OPTIONS options...])
 #
-# Precompiled headers, made once under NAME and shared by every TARGET that asks for them with the same arguments: they
-# cost as much as they save in four sources. GCC optimizes all that is compiled with them as they were themselves, whatever
-# a TARGET says: OPTIONS have the TARGET's -O. The lint preset compiles without, so each source still includes what it uses.
+# Makes TARGET use precompiled headers. They are built once under NAME and shared by every TARGET that uses the same
+# arguments. Building them pays off from four sources on. GCC compiles sources with the optimisation level of the
+# precompiled header, whatever TARGET sets, so OPTIONS must contain the TARGET's -O. The lint preset does not use them,
+# which checks that each source includes what it uses.
 function(flexura_use_pch target name)
   cmake_parse_arguments(PARSE_ARGV 2 arg "" "" "HEADERS;LINKS;OPTIONS")
   if(NOT FLEXURA_PCH)
@@ -93,7 +93,7 @@ function(flexura_use_pch target name)
   endif()
   target_include_directories(${target} SYSTEM PRIVATE
     $<BUILD_INTERFACE:$<TARGET_PROPERTY:Eigen3::Eigen,INTERFACE_INCLUDE_DIRECTORIES>>)
-  # Headers compiled with other definitions than their user's are refused.
+  # GCC rejects precompiled headers that were compiled with other definitions.
   target_compile_definitions(${target} PRIVATE
     $<BUILD_INTERFACE:$<TARGET_PROPERTY:fmt::fmt,INTERFACE_COMPILE_DEFINITIONS>>)
   target_precompile_headers(${target} REUSE_FROM ${name})
@@ -105,7 +105,7 @@ set(FLEXURA_PCH_HEADERS
 
 # flexura_test(EXECUTABLE CTEST_NAME LABEL FOLDER sources... [SHARDS n] [LIGHT])
 #
-# One test executable for a folder and a size; nothing when there are no sources.
+# Adds one test executable for a folder and a size. Does nothing if there are no sources.
 function(flexura_test executable ctest_name label folder)
   cmake_parse_arguments(PARSE_ARGV 4 arg "LIGHT" "SHARDS" "")
   if(NOT arg_UNPARSED_ARGUMENTS)
@@ -145,15 +145,15 @@ function(flexura_test executable ctest_name label folder)
     endif()
     add_test(NAME ${test} COMMAND ${executable})
     math(EXPR index "${shard} - 1")
-    # What is cut into pieces is long: it goes first.
+    # Sharded tests take long, so they start first.
     set_tests_properties(${test} PROPERTIES LABELS ${label} TIMEOUT ${timeout} COST ${shards}
       ENVIRONMENT "GTEST_TOTAL_SHARDS=${shards};GTEST_SHARD_INDEX=${index}")
   endforeach()
 endfunction()
 
-# A file with LLVMFuzzerTestOneInput becomes two programs' worth of use: with FLEXURA_FUZZ it is a libFuzzer
-# executable; otherwise it is linked with tests/fuzz_driver.cc, which replays the committed corpus
-# (tests/corpus/STEM) and seeded mutations of it, and runs as a quick test.
+# Adds a fuzz target, a source with LLVMFuzzerTestOneInput. With FLEXURA_FUZZ it is a libFuzzer executable. Otherwise it
+# is linked with tests/fuzz_driver.cc, which replays the committed corpus (tests/corpus/STEM) and seeded mutations of
+# it, and runs as a quick test.
 function(flexura_fuzz_target stem folder source)
   if(NOT FLEXURA_FUZZ AND NOT FLEXURA_TESTS)
     return()
@@ -173,7 +173,7 @@ function(flexura_fuzz_target stem folder source)
     target_compile_options(${stem} PRIVATE ${FLEXURA_LIGHT_OPTIONS})
     flexura_use_pch(${stem} flexura_light_pch OPTIONS ${FLEXURA_LIGHT_OPTIONS} HEADERS ${FLEXURA_PCH_HEADERS})
     set(cases 3000)
-    if(FLEXURA_SANITIZE)  # A scene takes ten times as long there.
+    if(FLEXURA_SANITIZE)  # Rendering a scene takes ten times as long with a sanitizer.
       set(cases 1000)
     endif()
     add_test(NAME ${stem}

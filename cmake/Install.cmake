@@ -2,7 +2,7 @@
 include(CMakePackageConfigHelpers)
 get_property(folders GLOBAL PROPERTY FLEXURA_FOLDERS)
 
-# flexura::flexura is every folder at once.
+# flexura::flexura links every folder.
 add_library(flexura_all INTERFACE)
 add_library(flexura::flexura ALIAS flexura_all)
 set_target_properties(flexura_all PROPERTIES EXPORT_NAME flexura)
@@ -11,7 +11,7 @@ target_link_libraries(flexura_all INTERFACE ${targets})
 
 install(TARGETS flexura_all ${targets} EXPORT flexuraTargets)
 install(TARGETS flexura DESTINATION ${CMAKE_INSTALL_BINDIR})
-# The program writes its own manual page and completion scripts.
+# The program generates its own manual page and completion scripts.
 set(manual ${PROJECT_BINARY_DIR}/flexura.1)
 set(bash_completion ${PROJECT_BINARY_DIR}/flexura.bash)
 set(zsh_completion ${PROJECT_BINARY_DIR}/_flexura)

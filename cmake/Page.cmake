@@ -1,9 +1,9 @@
-# The viewer's page, in the program itself: no files to find when it runs.
+# Embeds the viewer's page into the program, so that it needs no files at run time.
 option(FLEXURA_VIEWER "Build the viewer's page into the program (needs Node)" ON)
 
-# flexura_embed_page(TARGET FOLDER [MADE_BY command...] [DEPENDS files...]) compresses the files of FOLDER, which the
-# command makes when one of `files` has changed, into TARGET. Its sources find them through the generated header
-# "embedded/page.h" as flexura::embedded::page(), a table of Asset (flexura/serve/server.h).
+# flexura_embed_page(TARGET FOLDER [MADE_BY command...] [DEPENDS files...]) compresses the files of FOLDER into TARGET.
+# The command generates them when one of `files` has changed. The sources of TARGET access them through the generated
+# header "embedded/page.h" as flexura::embedded::page(), a table of Asset (flexura/serve/server.h).
 function(flexura_embed_page target folder)
   cmake_parse_arguments(PARSE_ARGV 2 arg "" "" "MADE_BY;DEPENDS")
   find_program(GZIP gzip REQUIRED)
@@ -18,12 +18,12 @@ function(flexura_embed_page target folder)
     COMMAND ${CMAKE_COMMAND} -DFOLDER=${folder} -DOUTPUT=${source} -DGZIP=${GZIP} -P ${script}
     DEPENDS ${arg_DEPENDS} ${script} COMMENT "Embedding the page of ${target}" VERBATIM)
   flexura_page_source(${target} ${source})
-  # A target of its own, that it need not wait for the libraries of the other.
+  # A separate target, so that the page need not wait for the libraries of TARGET.
   add_custom_target(${target}_page DEPENDS ${source})
   add_dependencies(${target} ${target}_page)
 endfunction()
 
-# flexura_viewer_page(TARGET): the page of viewer/, or with FLEXURA_VIEWER=OFF an empty table.
+# flexura_viewer_page(TARGET) embeds the page of viewer/, or an empty table with FLEXURA_VIEWER=OFF.
 function(flexura_viewer_page target)
   if(NOT FLEXURA_VIEWER)
     set(source ${CMAKE_CURRENT_BINARY_DIR}/embedded/no_page.cc)
@@ -55,7 +55,7 @@ namespace flexura::embedded {
 std::span<const Asset> page();
 }  // namespace flexura::embedded\n")
   target_sources(${target} PRIVATE ${source})
-  # By itself, so that the others are compiled once, with the page or without.
+  # Compiled separately, so that the other sources are the same with and without the page.
   set_source_files_properties(${source} PROPERTIES SKIP_PRECOMPILE_HEADERS ON SKIP_UNITY_BUILD_INCLUSION ON)
   target_include_directories(${target} PRIVATE ${CMAKE_CURRENT_BINARY_DIR})
 endfunction()

@@ -11,8 +11,8 @@ endif()
 
 find_program(CCACHE ccache)
 if(CCACHE)
-  # ccache sees through precompiled headers only with the first two relaxations; by the others what one checkout has compiled
-  # serves all.
+  # ccache needs pch_defines and time_macros for precompiled headers. The other settings let several checkouts share the
+  # cache.
   set(CMAKE_CXX_COMPILER_LAUNCHER
       ${CMAKE_COMMAND} -E env CCACHE_SLOPPINESS=pch_defines,time_macros,locale CCACHE_BASEDIR=${PROJECT_SOURCE_DIR}
       CCACHE_NOHASHDIR=true ${CCACHE})
@@ -21,27 +21,28 @@ endif()
 add_library(flexura_settings INTERFACE)
 target_compile_options(flexura_settings INTERFACE
   -Wall -Wextra -Wpedantic -Wconversion -Wnon-virtual-dtor -Werror
-  # In a unity build a source may use a name that another one has for itself; the lint preset looks at each alone.
+  # In a unity build a source may shadow a global name of another source; the lint preset checks each source alone.
   -Wshadow$<$<BOOL:${CMAKE_UNITY_BUILD}>:=local>
-  # The same bits from every code path: no fused multiply-add behind the code's back.
+  # Identical results from every code path: no implicit fused multiply-add.
   -ffp-contract=off
-  # At -O3 GCC 12 sees overlaps, overruns and unset members in std::string and std::shared_ptr that are not there
-  # (GCC bugs 105651, 105329, 105562); AddressSanitizer looks for the real ones.
+  # At -O3 GCC 12 reports false overlaps, overruns and uninitialised members in std::string and std::shared_ptr (GCC
+  # bugs 105651, 105329, 105562). AddressSanitizer detects real ones.
   "$<$<CXX_COMPILER_ID:GNU>:-Wno-restrict;-Wno-array-bounds;-Wno-stringop-overflow;-Wno-maybe-uninitialized>"
-  # Less garbage is collected than GCC does by default: some 5 % less time, for a fifth more memory.
+  # Fewer garbage collections in GCC than by default: about 5 % less time for a fifth more memory.
   $<$<CXX_COMPILER_ID:GNU>:--param=ggc-min-heapsize=1048576>
-  # Joined sources leave it to the other presets, lint's among them, to check format texts: a twentieth of the time.
+  # Unity builds skip the compile-time check of format strings, which saves 5 % of the time. Other presets, such as
+  # lint, check them.
   $<$<AND:$<BOOL:${CMAKE_UNITY_BUILD}>,$<CXX_COMPILER_ID:GNU>>:-DFMT_CONSTEVAL=>
-  # The stable_sort of libstdc++ 12 uses what it calls deprecated itself.
+  # The stable_sort of libstdc++ 12 uses a function that it declares deprecated itself.
   $<$<CXX_COMPILER_ID:Clang>:-Wno-deprecated-declarations>
-  # Tests name their files by the path within the project, wherever it lies: ccache knows them again.
+  # Paths in tests are relative to the project, so that ccache hits do not depend on the location of the checkout.
   -fmacro-prefix-map=${PROJECT_SOURCE_DIR}/=
   $<$<BOOL:${CCACHE}>:$<$<CXX_COMPILER_ID:GNU>:-fpch-preprocess>>)
 if(FLEXURA_SANITIZE)
   target_compile_options(flexura_settings INTERFACE
     -fsanitize=${FLEXURA_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
-  # A third of the time to compile goes into these two; AddressSanitizer sees the null pointers, and the fuzz preset, where
-  # bytes are read, looks for both.
+  # These two checks take a third of the compile time. AddressSanitizer detects null pointers, and the fuzz preset,
+  # where bytes are parsed, enables both checks.
   target_compile_options(flexura_settings INTERFACE
     $<$<CXX_COMPILER_ID:GNU>:-fno-sanitize=null$<COMMA>alignment>)
   target_link_options(flexura_settings INTERFACE -fsanitize=${FLEXURA_SANITIZE})

@@ -1,7 +1,8 @@
 # flexura_link_visp_peer(TARGET)
 #
-# Gives a test or a benchmark ViSP's answers as plain numbers (tests/support/visp_peer.h). ViSP is under the GPL: it is
-# never linked into the library or the program. Its Debian packages have no CMake files, its headers are no C++20.
+# Makes ViSP's results available to a test or a benchmark as plain numbers (tests/support/visp_peer.h). ViSP is under
+# the GPL: it is never linked into the library or the program. Its Debian packages contain no CMake files, and its
+# headers are not valid C++20.
 function(flexura_link_visp_peer target)
   if(NOT TARGET visp_peer)
     find_path(VISP_INCLUDE_DIR visp3/vs/vpServo.h REQUIRED)

@@ -1,6 +1,6 @@
 #!/bin/sh
-# Runs a compiler that makes precompiled headers, without those that it made before: ccache would take them for used, and
-# what it makes then, and all that is compiled with it, would be known to no other build.
+# Runs a compiler for precompiled headers and deletes the previous ones first. Otherwise ccache would treat them as
+# inputs, and no other build could reuse the cached results that depend on them.
 for argument; do
   case $argument in
     *.gch) rm -f "$argument" ;;

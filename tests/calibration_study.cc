@@ -1,5 +1,5 @@
-// Calibrates random rigs from rough guesses, by pictures that are chosen one after another, and prints how
-// well: calibration_study [TRIALS] [SEED]. docs/studies/calibration.md
+// Calibrates random rigs from rough guesses with adaptively planned pictures and prints the accuracy:
+// calibration_study [TRIALS] [SEED]. See docs/studies/calibration.md.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -32,9 +32,9 @@ struct Outcome {
   int starts = 0;
   double rms = 0;
   RigFigures figures;
-  double off_square = 0;  // How far from 90 degrees the axes truly are at the end.
-  double zoom_off = 0;    // And the zoom ratio from 1.
-  double turned = 0;      // By how much the head that turned less did, in pan or in tilt.
+  double off_square = 0;  // True deviation of the final angle between the axes from 90 degrees, rad.
+  double zoom_off = 0;    // True deviation of the final zoom ratio from 1.
+  double turned = 0;      // Range of pan or tilt of the head that turned less, rad.
 };
 
 std::vector<ArmState> poses() {
@@ -50,8 +50,8 @@ std::vector<ArmState> poses() {
   return poses;
 }
 
-// A true rig that is wrong, evenly within the standard deviations that calibrations count with, in all that
-// they estimate of cameras.
+// Returns a true rig whose estimated camera parameters deviate from the model, uniformly within the prior
+// standard deviations of the calibration.
 RigModel wrong_rig(const RigModel& believed, const RigTrialConfig& config, TestRandom& random) {
   RigModel rig = true_rig(believed, config, random);
   const CameraPrior prior;
@@ -68,8 +68,8 @@ RigModel wrong_rig(const RigModel& believed, const RigTrialConfig& config, TestR
   return rig;
 }
 
-// The session as a task would run it: three looks at what is guessed, eight that are chosen, the move, and a
-// last look that verifies it.
+// Runs the session as a task would: three pictures aimed with the initial guess, eight planned ones, the
+// final move and a last picture that verifies it.
 class Session {
  public:
   Session(const RigTrialConfig& config, std::uint64_t seed)
@@ -106,7 +106,7 @@ class Session {
   }
 
  private:
-  // The range over which a camera's head was turned.
+  // Returns the range over which a camera's head was turned, rad.
   double turned(std::size_t camera) const {
     double most = 0;
     for (const RigStance& a : trial_.seen().stances)
@@ -229,7 +229,8 @@ void print_aims(const std::string& kind, bool are_heads_exact, const std::vector
       [](const Outcome& one) { return one.off_square; });
 }
 
-// How rough guesses may be: a fixed plan of pictures, of which each shows what happens to be inside.
+// Tests how rough the guesses may be, with a fixed plan of pictures; each picture shows whatever part of the
+// arm is inside it.
 void print_range(std::size_t trials, std::uint64_t seed) {
   fmt::print(
       "## How rough guesses may be\n\nA fixed plan of {} pictures a camera, aimed by the guess alone; wrong "
@@ -240,7 +241,7 @@ void print_range(std::size_t trials, std::uint64_t seed) {
   for (const double times : {1.0, 1.5, 2.0, 3.0}) {
     RigTrialConfig config;
     config.turn *= times, config.focal *= times, config.principal_point *= times;
-    constexpr double fifth_of_distance = 0.29;  // in each of three directions, m
+    constexpr double fifth_of_distance = 0.29;  // In each of three directions, m.
     config.shift = fifth_of_distance * times;
     int found = 0, first = 0, wrong = 0;
     for (std::size_t i = 0; i < trials; ++i) {
@@ -259,7 +260,7 @@ void print_range(std::size_t trials, std::uint64_t seed) {
   fmt::print("\n");
 }
 
-// However well a rig is known, its heads stand where they stand.
+// The quantisation of the heads limits the accuracy, however well the rig is known.
 void print_heads(std::uint64_t seed) {
   constexpr double half = 0.0375 * degree;
   constexpr int draws = 1000000;

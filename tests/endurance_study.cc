@@ -1,5 +1,5 @@
-// Servos one simulated arm for days by wanted shapes that repeat, and prints what each hour of it left and
-// took: endurance_study [HOURS] [SEED]. docs/studies/endurance.md
+// Servos one simulated arm for days between two repeated target shapes and prints errors and memory use for
+// each hour: endurance_study [HOURS] [SEED]. See docs/studies/endurance.md.
 #include <fmt/format.h>
 #include <malloc.h>
 #include <unistd.h>
@@ -21,11 +21,12 @@
 namespace flexura {
 namespace {
 
-constexpr int slices = 24;  // Rows a part: hours, when it goes on for a day.
-// Of the shapes that repeat, s: at rest in one for 3 s, 2 s on the way to the other one, and back.
+constexpr int slices = 24;  // Number of rows of the table; one hour each in a run of a day.
+// Period of the repeated targets and rest time in each, s: 3 s at rest, 2 s of motion to the other shape, and
+// back.
 constexpr double period = 10, rest = 3;
 
-// In use of the heap, and of the machine's memory by the process, bytes.
+// Heap in use (heap_in_use) and resident memory of the process (resident), bytes.
 double heap_in_use() {
   const auto info = mallinfo2();
   return static_cast<double>(info.uordblks + info.hblkhd);
@@ -37,10 +38,10 @@ double resident() {
   return pages * static_cast<double>(sysconf(_SC_PAGESIZE));
 }
 
-// What an hour came to; errors are the simulated truth's, shares of the length.
+// Results of one hour. Errors are those of the simulated truth, as shares of the arm's length.
 struct Hour {
   double rest_squares = 0, rest_most = 0, way_squares = 0, way_most = 0;
-  double rests = 0, ways = 0;  // Of these errors.
+  double rests = 0, ways = 0;  // Numbers of these errors.
   long steps = 0, fresh = 0, limited = 0, told = 0;
   double heap = 0, resident = 0;
 
@@ -48,7 +49,7 @@ struct Hour {
   [[nodiscard]] double way_rms() const { return std::sqrt(way_squares / std::max(1.0, ways)); }
 };
 
-// Counts as the servo goes on, and keeps a row an hour, made before it begins.
+// Collects statistics while the servo runs, one row per hour. The rows are allocated before the start.
 class Logbook : public ServoSessionWatcher {
  public:
   Logbook(SimulatedRig& rig, const Arm& arm, double hour) : rig_(rig), arm_(arm), hour_(hour) {
@@ -68,7 +69,7 @@ class Logbook : public ServoSessionWatcher {
     ++hour.fresh;
     const double off = servo_error(arm_, rig_.arm().truth(*step.seen_at), step.desired).rms;
     const double phase = std::fmod(*step.seen_at - start_, 0.5 * period);
-    // At rest, and come to it: the last second of it.
+    // The last second of a rest, when the arm has settled.
     if (phase > rest - 1.01 && phase <= rest) {
       hour.rest_squares += off * off, hour.rest_most = std::max(hour.rest_most, off), ++hour.rests;
     } else if (phase > rest) {
@@ -99,8 +100,8 @@ std::vector<ServoGoal> repeated(const ArmState& one, const ArmState& other, doub
   return goals;
 }
 
-// The slope of a line through what the hours have, by hour, from the second one on: the first one has the
-// way to the first shape, and buffers that fill.
+// Returns the slope per row of a line fitted to the rows from the second on. The first row is excluded
+// because it contains the motion to the first shape and the filling of buffers.
 template <class Of>
 double slope(const std::vector<Hour>& hours, Of of) {
   double n = 0, x = 0, y = 0, xx = 0, xy = 0;
@@ -111,7 +112,7 @@ double slope(const std::vector<Hour>& hours, Of of) {
   return (n * xy - x * y) / (n * xx - x * x);
 }
 
-// The mean of a quarter of the rows: the first one without the first row, or the last.
+// Returns the mean over a quarter of the rows: the last quarter, or the first one without its first row.
 template <class Of>
 double quarter(const std::vector<Hour>& hours, bool is_last, Of of) {
   const std::size_t count = slices / 4, first = is_last ? slices - count : 1, end = is_last ? slices : count;
@@ -120,7 +121,7 @@ double quarter(const std::vector<Hour>& hours, bool is_last, Of of) {
   return sum / static_cast<double>(end - first);
 }
 
-// No errors of the last quarter are more than a tenth above the first one's.
+// Returns whether the error of the last quarter exceeds that of the first one by at most 10 %.
 template <class Of>
 bool is_error_level(const char* what, const std::vector<Hour>& hours, Of of) {
   constexpr double tenth = 1.1;
@@ -131,11 +132,12 @@ bool is_error_level(const char* what, const std::vector<Hour>& hours, Of of) {
   return is_level;
 }
 
-// A number that is kept of each step takes 8 bytes, a block of the heap 32 at least. Half of the first is
-// more than tables take that are filled as they are first asked for, once most of them are.
+// Returns whether the memory grew by at most 4 bytes a step. A number kept for each step takes 8 bytes, a
+// block of the heap at least 32. Half a number a step leaves room for tables that are still being filled on
+// first use.
 template <class Of>
 bool is_memory_level(const char* what, const std::vector<Hour>& hours, double slack, Of of) {
-  constexpr double most = 4;  // Bytes a step.
+  constexpr double most = 4;  // Bytes per step.
   const std::size_t from = slices - slices / 4 - 1;
   double steps = 0;
   for (std::size_t i = from + 1; i < slices; ++i) steps += static_cast<double>(hours[i].steps);
@@ -169,7 +171,8 @@ void print_hours(const std::vector<Hour>& hours, double seconds) {
   fmt::print("\n");
 }
 
-// One servo of `seconds`, a step each `step` s; whether nothing drifted, grew or went wrong.
+// Runs one servo for `seconds` with a step of `step` s. Returns whether errors and memory stayed level and
+// nothing failed.
 bool endure(double seconds, double step, std::uint64_t seed) {
   ServoBench bench(servo_file(servo_target));
   TestRandom random(seed);

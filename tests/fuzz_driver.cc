@@ -1,14 +1,14 @@
-// Runs a fuzz target without libFuzzer: on the files of a corpus, then on seeded mutations of them, or on
-// bytes that are random throughout.
+// Runs a fuzz target without libFuzzer: on the files of a corpus, then on seeded mutations of them or on
+// random bytes.
 //
 //   TARGET --corpus DIR [--cases N] [--seed S] [--fresh SHARE]
-//       corpus, then N more inputs; SHARE of them (0 to 1, else none) random bytes, the others mutated, with
+//       corpus, then N more inputs; SHARE of them (0 to 1, default 0) random bytes, the others mutated, with
 //       tokens from DIR.dict if it exists
 //   TARGET FILE...
-//       these inputs only, to see a failure again
+//       these inputs only, to reproduce a failure
 //
-// When the target dies, its input is written to fuzz-failure.bin and the exit status is not 0. Letting an
-// exception out is dying; so is taking more than half a minute of processor time for one input.
+// When the target crashes, its input is written to fuzz-failure.bin and the exit status is not 0. An escaping
+// exception counts as a crash, as does more than half a minute of processor time for one input.
 
 #include <fcntl.h>
 #include <sys/time.h>
@@ -34,7 +34,7 @@
 // NOLINTBEGIN(readability-identifier-naming,bugprone-reserved-identifier): others' names.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);
 
-// A sanitizer that has found something then raises SIGABRT, which is caught below.
+// Makes a sanitizer raise SIGABRT when it finds an error; the signal is caught below.
 extern "C" const char* __asan_default_options() { return "abort_on_error=1"; }
 extern "C" const char* __ubsan_default_options() { return "abort_on_error=1:print_stacktrace=1"; }
 extern "C" const char* __tsan_default_options() { return "abort_on_error=1:halt_on_error=1"; }
@@ -45,7 +45,7 @@ namespace {
 using flexura::Input;
 using flexura::Mutator;
 
-// What the signal handler needs; a handler has no other way to reach it.
+// State for the signal handler, which can only reach globals.
 const std::uint8_t* volatile current_data = nullptr;
 volatile std::size_t current_size = 0;
 volatile std::sig_atomic_t current_case = 0;
@@ -85,7 +85,7 @@ void on_tick(int) {
 void handle(int signal, void (*handler)(int)) {
   struct sigaction before{};
   ::sigaction(signal, nullptr, &before);
-  if (before.sa_handler != SIG_DFL) return;  // A sanitizer's: it reports better, then aborts.
+  if (before.sa_handler != SIG_DFL) return;  // Installed by a sanitizer: it reports better, then aborts.
   struct sigaction action{};
   action.sa_handler = handler;
   action.sa_flags = SA_RESTART | SA_ONSTACK;
@@ -93,7 +93,7 @@ void handle(int signal, void (*handler)(int)) {
 }
 
 void watch_for_death() {
-  static std::array<std::uint8_t, 65536> stack;  // The usual one may be what overflowed.
+  static std::array<std::uint8_t, 65536> stack;  // Separate stack: the normal one may have overflowed.
   stack_t other{};
   other.ss_sp = stack.data();
   other.ss_size = stack.size();
@@ -106,7 +106,8 @@ void watch_for_death() {
   ::setitimer(ITIMER_VIRTUAL, &every_half_minute, nullptr);
 }
 
-/// Calls the target with the input in a block of its own size, so that a read past its end is seen.
+/// Calls the target with the input in a heap block of exactly its size, so that sanitizers detect reads past
+/// its end.
 void run(const Input& input) {
   const std::unique_ptr<std::uint8_t[]> exact(new std::uint8_t[input.size()]);
   std::ranges::copy(input, exact.get());
@@ -152,7 +153,7 @@ Options parse(int count, char** arguments) {
   return options;
 }
 
-/// The files to run: those named, or the corpus in the order of its names.
+/// Returns the files to run: the named ones, or the corpus sorted by name.
 std::vector<Input> read_inputs(const Options& options) {
   std::vector<std::filesystem::path> files = options.files;
   if (files.empty()) {
@@ -193,7 +194,7 @@ int main(int count, char** arguments) {
     return EXIT_FAILURE;
   }
   std::printf("%zu files, seed %llu\n", inputs.size(), static_cast<unsigned long long>(options.seed));
-  std::fflush(stdout);  // A death would lose it.
+  std::fflush(stdout);  // A crash would lose buffered output.
   watch_for_death();
   for (const Input& input : inputs) run(input);
   if (options.files.empty()) {

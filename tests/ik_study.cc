@@ -1,4 +1,4 @@
-// The numbers of docs/studies/ik.md: ik_study TARGETS UNREACHABLE SEED prints its tables.
+// Prints the tables of docs/studies/ik.md: ik_study TARGETS UNREACHABLE SEED.
 #include <algorithm>
 #include <cstdint>
 #include <cstdio>
@@ -18,9 +18,9 @@ struct Tally {
   long at_first_start = 0;
   long wrongly_proven = 0;
   long outside_limits = 0;
-  long wrong = 0;  // Converged, but not by the model's own forward kinematics.
+  long wrong = 0;  // Reported as converged, but the forward kinematics of the model disagree.
   long iterations = 0;
-  double worst_position = 0.0;  // Of the arm's length.
+  double worst_position = 0.0;  // Share of the arm's length.
   double worst_angle = 0.0;     // rad.
 };
 
@@ -44,7 +44,7 @@ void ask(Tally& tally, const Arm& arm, const Pose& X_WT, TargetKind kind) {
   tally.worst_angle = std::max(tally.worst_angle, angle);
 }
 
-// `max_bend` 0: a limit of its own for each arm, from 60 degrees to a half turn.
+// `max_bend` 0 keeps the random limit of each arm, from 60 degrees to a half turn.
 Tally reachable(TargetKind kind, double max_bend, long count, std::uint64_t seed) {
   Tally tally;
   TestRandom random(seed);
@@ -59,7 +59,7 @@ Tally reachable(TargetKind kind, double max_bend, long count, std::uint64_t seed
   return tally;
 }
 
-// `least_rate`: of the targets, that must be found.
+// `least_rate`: required success rate.
 bool print_reachable(const char* name, TargetKind kind, double max_bend, double least_rate, long count,
                      std::uint64_t seed) {
   const Tally t = reachable(kind, max_bend, count, seed);
@@ -73,9 +73,9 @@ bool print_reachable(const char* name, TargetKind kind, double max_bend, double 
   return is_found && t.wrong == 0 && t.outside_limits == 0 && t.wrongly_proven == 0;
 }
 
-// How much nearer something comes that knows no derivatives, and nothing of the search, in parts of the
-// answer's own distance: a thousand random poses, and descents from the pose found and from the best of these
-// on.
+// Returns how much nearer to the target a derivative-free search gets, as a share of the answer's own
+// distance. It is independent of the solver: a thousand random poses, then random descents from the solver's
+// pose and from the best random poses.
 double beaten_by(TestRandom& random, const Arm& arm, const TipTarget& target, const InverseResult& result) {
   constexpr int poses = 1000;
   constexpr int descents = 6;
@@ -138,7 +138,8 @@ int main(int count, char** arguments) {
       "position / length | worst angle, rad | iterations |");
   std::puts("| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |");
   bool is_good = true;
-  // Bent by more than half a turn each, three sections have many valleys, and one target in hundreds is lost.
+  // With bends of more than half a turn per section, three sections have many local minima, and one
+  // target in several hundred is missed.
   constexpr double nearly_all = 0.999, most = 0.99;
   is_good &= flexura::print_reachable("position", TargetKind::position, 0, nearly_all, targets, seed);
   is_good &=

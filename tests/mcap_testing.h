@@ -16,7 +16,7 @@
 
 namespace flexura {
 
-/// A folder of the running test's own, gone with it.
+/// A temporary folder of the running test, removed at its end.
 class TestFolder {
  public:
   TestFolder() {
@@ -41,7 +41,7 @@ inline std::string file_bytes(const std::filesystem::path& path) {
 
 inline std::span<const std::byte> as_log(const std::string& text) { return std::as_bytes(std::span(text)); }
 
-/// A log's messages in a form that compares and prints well.
+/// Returns a log's messages in a form that can be compared and printed.
 inline std::vector<std::string> told(const McapReader& log) {
   std::vector<std::string> lines;
   for (const McapMessage& message : log.messages()) {
@@ -55,7 +55,7 @@ inline McapChannel json_channel(const std::string& topic) {
   return {topic, "json", {"flexura" + topic, "jsonschema", R"({"type":"object"})"}, {}};
 }
 
-/// Two channels and seven messages in chunks of two, two, two and one.
+/// Returns a log of two channels and seven messages, in chunks of two, two, two and one.
 inline void write_small_log(const std::filesystem::path& path) {
   McapWriter log(path);
   const auto arm = log.add_channel(json_channel("/arm"));

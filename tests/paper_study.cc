@@ -1,9 +1,10 @@
-// Calibrates random simulated rigs by each method, pictures and all, and prints how well: paper_study TRIALS
-// SEED PRINTED BUNDLES FOLDER [PICTURE]: so many trials of the paper's methods as corrected, PRINTED ones of
-// these as printed, BUNDLES of the bundles. Trials are kept in FOLDER as they end; those that are there
-// already are not run again. Draws where the printed ones fail into PICTURE. docs/studies/calibration.md
-// paper_study --method METHOD SEED FOLDER FIRST[-LAST]...: these trials of one method, each in a line with
-// its reason as told; then the method's row, by them.
+// Calibrates random simulated rigs by each method, including rendering and image processing, and prints the
+// accuracy: paper_study TRIALS SEED PRINTED BUNDLES FOLDER [PICTURE] runs TRIALS trials of the paper's
+// methods as corrected, PRINTED trials of them as printed in the paper, and BUNDLES trials of the bundles.
+// Finished trials are stored in FOLDER and are not run again. PICTURE receives a plot of where the methods as
+// printed fail. See docs/studies/calibration.md.
+// paper_study --method METHOD SEED FOLDER FIRST[-LAST]... runs these trials of one method. It prints a line
+// with the reported reason for each, then the method's row.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -72,7 +73,7 @@ void print_row(const std::string& method, const std::vector<CalibrationTrial>& t
     fmt::print(" - | - | - | - | - | - | - | - |\n");
     return;
   }
-  constexpr double wanted = 0.1;  // deg
+  constexpr double wanted = 0.1;  // Maximum angle error of a good trial, deg.
   const auto good =
       std::ranges::count_if(angle, [](double one) { return std::abs(one) * in_degrees <= wanted; });
   fmt::print(" {} | {:.1f} | {:.3f} | {:.3f} | {:.3f} | {:.1f} | {:.1f} | {:.2f} |\n", good,
@@ -101,7 +102,7 @@ void print_head() {
 
 using Number = std::function<double(const CalibrationTrial&)>;
 
-// Of the trials that ended done.
+// Returns the values of the trials that ended with success.
 std::vector<double> of_done(const std::vector<CalibrationTrial>& trials, const Number& number) {
   std::vector<double> values;
   for (const CalibrationTrial& one : trials)
@@ -135,7 +136,7 @@ void print_bundle(const std::string& method, const std::vector<CalibrationTrial>
   fmt::print("\n");
 }
 
-// What the methods are to reach; of the paper's as printed nothing is asked.
+// Prints whether a method reaches its accuracy goals. There are none for the paper's methods as printed.
 void print_aims(const std::string& method, const std::vector<CalibrationTrial>& trials) {
   const auto row = [&](Aim aim, const Number& number) {
     aim.values = of_done(trials, number);
@@ -167,7 +168,7 @@ void print_known(const MethodTrials& all) {
   fmt::print("\n");
 }
 
-// FIRST or FIRST-LAST.
+// Parses FIRST or FIRST-LAST.
 void add_indices(const std::string& range, std::vector<std::size_t>& indices) {
   const std::size_t dash = range.find('-');
   const std::size_t first = std::stoul(range.substr(0, dash));

@@ -1,4 +1,4 @@
-// The numbers of docs/studies/safety.md: safety_study MOTIONS SAMPLES SEED prints its table.
+// Prints the table of docs/studies/safety.md: safety_study MOTIONS SAMPLES SEED.
 #include <cstdint>
 #include <cstdio>
 #include <string>

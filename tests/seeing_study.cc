@@ -1,4 +1,4 @@
-// The numbers of docs/studies/seeing.md: seeing_study CASES SEED prints its tables.
+// Prints the tables of docs/studies/seeing.md: seeing_study CASES SEED.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -19,7 +19,7 @@
 namespace flexura {
 namespace {
 
-// Of the median axis, where it is aimed at: at noise 2 and a PSF of 0.7 px. px, root mean square.
+// Required rms error of the centerline at noise 2 and a PSF of 0.7 px, px.
 constexpr double aimed_rms = 0.02;
 
 struct Errors {
@@ -44,7 +44,7 @@ double side(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::Vec
   return (b - a).x() * (c - a).y() - (b - a).y() * (c - a).x();
 }
 
-// Whether the backbone's image crosses itself, as chords of a hundredth of it tell.
+// Returns whether the backbone's image crosses itself, tested on chords of a hundredth of its points.
 bool crosses_itself(const std::vector<AxisPoint>& curve) {
   std::vector<Eigen::Vector2d> points;
   for (std::size_t i = 0; i < curve.size(); i += std::max<std::size_t>(1, curve.size() / 100))
@@ -121,7 +121,7 @@ void print_row(const std::string& name, const Tally& tally, bool has_aim) {
   std::fflush(stdout);
 }
 
-// The row of so many random arms; with a gamma, once it is undone as `undone` says.
+// Computes the row for `cases` random arms. Pictures with a gamma are linearised with the gamma `undone`.
 Tally study_row(const std::string& name, const SeenArmConfig& options, double undone, bool has_aim, int cases,
                 std::uint64_t seed) {
   ArmFinder finder;

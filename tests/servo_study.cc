@@ -1,6 +1,6 @@
-// Steers a simulated arm to random shapes by each law, pictures and all, and prints how well: servo_study
-// [TARGETS] [SEED] [THREADS] [PART] [WAY], of all parts calibrated, wrong, recorded, turned, sagging and
-// exact, and of all ways of steering: the names of its rows. docs/studies/servo.md
+// Servos a simulated arm to random shapes by each law, including rendering and image processing, and prints
+// the accuracy: servo_study [TARGETS] [SEED] [THREADS] [PART] [WAY]. PART: calibrated, wrong, recorded,
+// turned, sagging or exact. WAY: a servo method, by the name of its row. See docs/studies/servo.md.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -32,19 +32,20 @@ namespace flexura {
 namespace {
 
 constexpr std::size_t targets_a_rig = 4;
-// Of what the paper's methods are to start from: with all of it many an arm is too large for its pictures.
+// Size of the initial camera errors, as a share of those that the paper's methods start from. At the full
+// size many arms do not fit into the pictures.
 constexpr double rough = 0.3;
 
 enum class Cameras { calibrated, wrong, recorded };
 
-// A way of steering under study.
+// A servo method under study.
 struct Method {
   std::string name;
   ServoLawKind law = ServoLawKind::shape;
   ServoJacobian jacobian = ServoJacobian::model;
   bool has_bands = false;  // Colour pictures of an arm with bands.
-  bool is_near = false;    // From within 0.15 rad a bend.
-  bool is_turned = false;  // Drives mounted a quarter turn round, which bend the arm 1.3 times as far.
+  bool is_near = false;    // Start within 0.15 rad of each target bend.
+  bool is_turned = false;  // Drives mounted a quarter turn round, with 1.3 times the bend.
 };
 
 std::vector<Method> laws() {
@@ -66,7 +67,7 @@ std::vector<Method> all_methods() {
   return methods;
 }
 
-// By the model, and learned.
+// Returns the methods for the turned arm, with the model Jacobian and with learned ones.
 std::vector<Method> methods_of_turned_arm() {
   std::vector<Method> methods;
   for (const ServoLawKind law : {ServoLawKind::shape, ServoLawKind::points, ServoLawKind::potential}) {
@@ -101,7 +102,7 @@ ArmState start_for(const Method& method, const ArmState& target, TestRandom& ran
   return start;
 }
 
-// 0.5 degrees about each axis and 1 % of focal length, either way.
+// Returns errors of 0.5 degrees about each axis, of random sign.
 std::array<WrongStart, 2> half_a_degree(TestRandom& random) {
   std::array<WrongStart, 2> wrong;
   constexpr double half = 0.5 * degree;
@@ -110,8 +111,9 @@ std::array<WrongStart, 2> half_a_degree(TestRandom& random) {
   return wrong;
 }
 
-// Where the arm stands when exact images of it by the true cameras are taken, by those who believe otherwise,
-// as far as `doubt` goes, for the wanted shape: what cameras that are wrong leave at best.
+// Returns the servo error that wrong cameras leave at best. The arm is moved until an estimator with the
+// camera models `believed` and the camera prior `doubt` measures the target shape. It gets exact images by
+// the true cameras.
 double floor_of(const Arm& arm, const ArmState& wanted, const std::array<View, 2>& truth,
                 const std::array<View, 2>& believed, const ViewDoubt& doubt) {
   ShapePrior prior;
@@ -143,7 +145,7 @@ double floor_of(const Arm& arm, const ArmState& wanted, const std::array<View, 2
   return servo_error(arm, state, wanted).rms;
 }
 
-// How near to its limits the arm was sent, share of them.
+// Returns the smallest margin of the commanded bends to their limits, as a share of the limit.
 double nearest_limit(const Arm& arm, const ServoResult& result) {
   double nearest = 1;
   for (const ServoStep& step : result.steps)
@@ -152,7 +154,7 @@ double nearest_limit(const Arm& arm, const ServoResult& result) {
   return nearest;
 }
 
-// The rig of one group of targets, calibrated where that is asked for: with its colours, and without them.
+// The rig of one group of targets, calibrated if required, both with coloured bands and in gray.
 class StudyRig {
  public:
   StudyRig(Cameras cameras, const ServoWorld& world, std::uint64_t seed)
@@ -163,7 +165,7 @@ class StudyRig {
         gray_(servo_world_file(file_, false, world)) {
     believed_ = rig_model(gray_.experiment().arm_model(), gray_.experiment().cameras());
     if (cameras == Cameras::wrong || cameras == Cameras::recorded) {
-      // And 1 % of focal length, believed.
+      // In addition, the model's focal lengths are wrong by 1 %.
       for (CameraConfig& camera : believed_.cameras)
         camera.lens.fx *= random_.uniform(-1, 1) < 0 ? 0.99 : 1.01;
       return;
@@ -181,7 +183,7 @@ class StudyRig {
     gray_.rig().clock().wait_until(gray_.rig().clock().now() + patience);
   }
 
-  // Why there is no rig to steer with; "" where there is.
+  // Returns why there is no rig to servo; empty if there is one.
   [[nodiscard]] const std::string& why_not() const { return why_not_; }
 
   Arrival go(const Method& method, const ArmState& target, TestRandom& random) {
@@ -191,7 +193,7 @@ class StudyRig {
     config.step = 1.0 / 30, config.tolerance = 0.002, config.settle = 1, config.timeout = 8;
     const Arm arm = bench.experiment().arm.arm();
     config.markers = band_places(bench.experiment(), believed_.arm);
-    // Of arcs, whatever is believed of what makes them.
+    // The target is a shape made of arcs, whatever actuation the model assumes.
     config.goals = {{0, Actuation(believed_.driven.sections.empty() ? arm : believed_.driven).shape(target)}};
     if (cameras_ == Cameras::recorded) config.goals = {{0, pictures_of(bench, target)}};
     rest_at(bench, start_for(method, target, random));
@@ -296,7 +298,8 @@ void study(Cameras cameras, const ServoWorld& world, std::vector<Method> methods
   fmt::print("\n");
 }
 
-// The same targets without pictures, by the derivatives of the whole way and by those where the arm stands.
+// Servos to the same targets without pictures, with secant derivatives over the whole way and with local
+// ones.
 void study_exact(const std::string& way, std::size_t targets, std::uint64_t seed) {
   RigBench bench(servo_world_file(study_rig({}), false));
   ExactLoop loop{.arm = bench.experiment().arm.arm(),

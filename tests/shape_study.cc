@@ -1,4 +1,4 @@
-// The second table of docs/studies/seeing.md: shape_study CASES SEED prints it.
+// Prints the second table of docs/studies/seeing.md: shape_study CASES SEED.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -20,10 +20,10 @@
 namespace flexura {
 namespace {
 
-// The pictures' noise is drawn from 0 to 4 of 255: in steps of 1.
+// The noise of the pictures is drawn from 0 to 4 of 255; it is tabulated in steps of 1.
 constexpr std::size_t noise_steps = 4;
 
-// Errors of bends against the covariance that came with them.
+// Errors of the bends, compared with the estimated covariance.
 struct Consistency {
   std::vector<double> shares;       // expected_share()
   double squares = 0, freedom = 0;  // Sums of error_square() and of its degrees of freedom.
@@ -32,7 +32,8 @@ struct Consistency {
     shares.push_back(expected_share(found, truth));
     squares += error_square(found, truth), freedom += static_cast<double>(2 * truth.bends.size());
   }
-  // 1 where the covariance is right, give or take as much as one in a thousand exceeds by chance.
+  // mean_square() is 1 if the covariance is right; deviations of more than chance() occur once in a thousand
+  // by chance.
   [[nodiscard]] double mean_square() const { return freedom > 0 ? squares / freedom : NAN; }
   [[nodiscard]] double chance() const { return 3.29 * std::sqrt(2 / freedom); }
 };
@@ -58,7 +59,7 @@ struct Tally {
   }
 };
 
-// "" where there is none.
+// Formats a number; empty if it is NaN.
 std::string number(double value, int digits) {
   return std::isnan(value) ? "" : fmt::format("{:.{}f}", value, digits);
 }
@@ -68,7 +69,7 @@ std::vector<double> joined(std::vector<double> values, const std::vector<double>
   return values;
 }
 
-// How often the truth lies in the region that the covariance expects so often, %.
+// Returns how often the true value lies in the region of probability `share` of the covariance, %.
 std::string within(const std::vector<double>& shares, double share) {
   if (shares.empty()) return "";
   const auto count = std::ranges::count_if(shares, [&](double value) { return value < share; });
@@ -86,8 +87,8 @@ void print(const Tally& tally, int cases) {
              within(tally.all.shares, 0.95));
 }
 
-// What is aimed at: errors as shares of the length; squares that are as large on average as the covariance
-// has them, and regions that are even (chi^2 that one in a thousand exceeds by chance).
+// Goals: rms and largest error as shares of the length, and chi^2 for the uniformity of the regions (exceeded
+// once in a thousand by chance). The mean squared error must agree with the covariance.
 constexpr double aimed_rms = 2e-4, aimed_most = 5e-4, rare_unevenness = 27.88;
 
 void print_verdicts(const Tally& tally) {
@@ -108,8 +109,8 @@ void print_verdicts(const Tally& tally) {
              told(uneven, rare_unevenness, 1, 0));
 }
 
-// What is not known of the model of a border does not fall with the noise, and counts for most where there is
-// little.
+// Prints the consistency by noise level. Errors of the border model do not decrease with the noise, so they
+// dominate where there is little noise.
 void print_by_noise(const Tally& tally) {
   fmt::print(
       "\n| noise, of 255 | trusted | squares over expected | within 50 %, % | within 95 %, % | chi^2 of the "
@@ -143,7 +144,7 @@ int study(int cases, std::uint64_t seed) {
     std::vector<Sighting> sightings;
     for (std::size_t j = 0; j < 2; ++j) {
       ArmFinderConfig config;
-      // Which end is the base is told: an unknown arm may lie with it upwards.
+      // The base end is given, because an unknown arm may appear upside down.
       config.base = one.views[j].project(base);
       ArmFinder finder(config);
       sightings.push_back(sighting_of(finder.find(one.pictures[j]), one.views[j]));

@@ -1,4 +1,4 @@
-# Installs the build in BINARY_DIR to PREFIX and builds and runs the project beside this file against it (script
+# Installs the build in BINARY_DIR to PREFIX, then builds and runs the project beside this file against it (script
 # mode). WORK_DIR is for its build.
 foreach(folder ${PREFIX} ${WORK_DIR})
   file(REMOVE_RECURSE ${folder})

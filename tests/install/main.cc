@@ -1,4 +1,4 @@
-// A project of its own that uses an installed Flexura: where does the paper's arm end?
+// A separate project that uses an installed Flexura: prints the tip position of the paper's arm.
 #include <cstddef>
 #include <cstdio>
 #include <numbers>

@@ -1,12 +1,12 @@
-// Reads a log with @mcap/core, as other programs would, and prints what is in it as JSON:
+// Reads a log with @mcap/core, as other programs would, and prints its content as JSON:
 //
 //   node read_mcap.mjs FILE
 //
 //   { library, indexed: SUMMARY, streamed: SUMMARY }
 //   SUMMARY = { channels: [{ topic, encoding, schema, schemaEncoding, count }], start, end, first, last }
 //
-// "indexed" comes by the summary and the indexes, in the order of time; "streamed" by reading from start to end, in
-// the order of the file. Times are nanoseconds as text, messages are text. A wrong CRC ends with status 1.
+// "indexed" is read through the summary and the indexes, in time order; "streamed" is read from start to end, in file
+// order. Times are nanoseconds as text; messages are text. A wrong CRC gives exit status 1.
 import { open, readFile } from "node:fs/promises";
 
 import { crc32 } from "@foxglove/crc";
@@ -75,7 +75,7 @@ async function readIndexed(file) {
   return { library: reader.header.library, summary: told };
 }
 
-// The log's own statistics must agree with what is in it.
+// Checks the log's statistics against its content.
 function checkStatistics({ statistics, chunkIndexes, channelsById, schemasById }, told) {
   const expected = {
     messageCount: BigInt(told.channels.reduce((sum, channel) => sum + channel.count, 0)),
@@ -108,7 +108,7 @@ function readStreamed(bytes) {
   return summary.told();
 }
 
-// @mcap/core leaves this CRC alone: it covers everything before the DataEnd record.
+// @mcap/core does not check this CRC: it covers everything before the DataEnd record.
 function checkDataSection(bytes, expected) {
   const view = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
   const footer = bytes.length - 8 - 29;

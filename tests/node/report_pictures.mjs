@@ -1,5 +1,5 @@
-// usage: report_pictures.mjs RESULTS FOLDER: what the report in RESULTS looks like, as FOLDER/report.png (its head, the
-// player at the motion's end) and FOLDER/report-page.png (all of it).
+// usage: report_pictures.mjs RESULTS FOLDER: writes screenshots of the report in RESULTS: FOLDER/report.png (the top,
+// with the player at the end of the motion) and FOLDER/report-page.png (the whole page).
 import { resolve } from "node:path";
 import { chromium } from "playwright-core";
 

@@ -1,7 +1,7 @@
-// Opens a run's report.html in Chromium and uses it as a person would.
+// Opens a run's report.html in Chromium and tests it through its user interface.
 //   node report_test.mjs REPORT.html [--screenshots DIR]
-// Exit status 0: all is well; 1: something is not; with "skipped:" on stdout where playwright-core or the browser is
-// not installed (with FLEXURA_REQUIRE_NODE set, that is a failure).
+// Exit status 0: success; 1: failure. Prints "skipped:" on stdout if playwright-core or the browser is not installed (a
+// failure if FLEXURA_REQUIRE_NODE is set).
 import assert from "node:assert/strict";
 import { existsSync, mkdirSync } from "node:fs";
 import { join, resolve } from "node:path";
@@ -135,7 +135,7 @@ const checks = {
     await scrubTo(page, last);
     const atEnd = await values();
     assert.ok(Math.abs(atEnd[0] - last) < 1e-3 * (1 + last), `${atEnd[0]} is not ${last}`);
-    // The table beside the player shows the same numbers.
+    // The table beside the player must show the same numbers.
     const cells = (await page.locator("#values tbody tr td:nth-child(2)").allTextContents()).map(Number);
     near([atEnd.slice(1)], [cells], 0.05, "chart against table");
     const plot = chart.locator(".u-over");

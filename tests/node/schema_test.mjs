@@ -1,8 +1,9 @@
-// Has taplo, which TOML editors ask, judge experiment files by the schema that the program prints: those of the
-// examples and of a results folder, and one that includes its arm, are good; and of bad ones it says where.
+// Validates experiment files with taplo, the validator of TOML editors, against the schema that the program prints.
+// Those of the examples, of a results folder, and one that includes its arm must be valid. Errors of invalid files must
+// be located correctly.
 //   node schema_test.mjs FLEXURA EXAMPLES WORK_DIR
-// Exit status 0: all is well; 1: something is not; with "skipped:" on stdout where taplo is not installed (with
-// FLEXURA_REQUIRE_NODE set, that is a failure).
+// Exit status 0: success; 1: failure. Prints "skipped:" on stdout if taplo is not installed (a failure if
+// FLEXURA_REQUIRE_NODE is set).
 import assert from "node:assert/strict";
 import { execFileSync, spawnSync } from "node:child_process";
 import { existsSync, mkdirSync, readFileSync, readdirSync, rmSync, writeFileSync } from "node:fs";

@@ -1,4 +1,4 @@
-// usage: servo_picture.mjs RESULTS FILE: the last servo of the report in RESULTS, as a picture.
+// usage: servo_picture.mjs RESULTS FILE: writes a picture of the last servo in the report of RESULTS.
 import { resolve } from "node:path";
 import { chromium } from "playwright-core";
 

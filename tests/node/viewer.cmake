@@ -1,5 +1,5 @@
-# Runs the npm scripts SCRIPTS of the folder VIEWER; where its packages or a browser that is needed (BROWSER) are not
-# installed, says "skipped: needs ...", or fails with FLEXURA_REQUIRE_NODE set. PAGE and PROGRAM are those of the build.
+# Runs the npm scripts SCRIPTS of the folder VIEWER. If its packages or a required browser (BROWSER) are not installed,
+# prints "skipped: needs ...", or fails with FLEXURA_REQUIRE_NODE set. PAGE and PROGRAM belong to the build.
 set(lacking)
 if(NOT EXISTS ${VIEWER}/node_modules/vitest/package.json)
   list(APPEND lacking "`npm ci` in viewer/")

@@ -11,7 +11,7 @@
 
 namespace flexura {
 
-/// The paper's arm (section 3.2) with its lengths, at rest along +Y.
+/// Returns the paper's arm (section 3.2) with its section lengths, straight along +Y.
 inline Arm paper_arm() {
   Arm arm;
   for (const double length : {2.0, 3.0, 1.0, 2.0, 4.0, 2.0, 1.0, 1.0}) {
@@ -21,14 +21,14 @@ inline Arm paper_arm() {
   return arm;
 }
 
-/// Its final cord angles from +X, rad.
+/// Returns the final cord angles of the paper's arm, measured from +X, rad.
 inline std::array<double, 8> paper_cord_angles() {
   std::array<double, 8> angles = {.55, .65, .8, 1., 1.15, .9, .8, .65};
   for (double& angle : angles) angle *= std::numbers::pi;
   return angles;
 }
 
-/// Its final state: archings / pi .05 .05 .1 .1 .05 -.3 .2 -.35.
+/// Returns the final state of the paper's arm: archings .05 .05 .1 .1 .05 -.3 .2 -.35, in units of pi.
 inline ArmState paper_state() {
   ArmState state = ArmState::straight(8);
   const std::array<double, 8> archings = {.05, .05, .1, .1, .05, -.3, .2, -.35};
@@ -36,7 +36,7 @@ inline ArmState paper_state() {
   return state;
 }
 
-/// One to six spatial sections on a base anywhere.
+/// Returns an arm of one to six spatial sections with a random base pose.
 inline Arm random_arm(TestRandom& random) {
   Arm arm;
   arm.kind = ArmKind::spatial;
@@ -49,7 +49,8 @@ inline Arm random_arm(TestRandom& random) {
   return arm;
 }
 
-/// Bends of every size: straight, 1e-12, up to 0.1, up to a turn and a half; stretches from 0.7 to 1.4.
+/// Returns a random state. Bends are 0, 1e-12, up to 0.1 rad or up to one and a half turns; stretches 0.7 to
+/// 1.4.
 inline ArmState random_state(TestRandom& random, const Arm& arm) {
   ArmState state = ArmState::straight(arm.sections.size());
   for (Eigen::Vector2d& bend : state.bends) {
@@ -61,7 +62,7 @@ inline ArmState random_state(TestRandom& random, const Arm& arm) {
   return state;
 }
 
-/// A state as one vector, three numbers a section: bend_x, bend_y, stretch.
+/// Packs a state into one vector with three numbers per section: bend_x, bend_y, stretch.
 inline Eigen::VectorXd packed(const ArmState& state) {
   Eigen::VectorXd q(3 * static_cast<Eigen::Index>(state.bends.size()));
   for (std::size_t i = 0; i < state.bends.size(); ++i) {
@@ -70,7 +71,7 @@ inline Eigen::VectorXd packed(const ArmState& state) {
   return q;
 }
 
-/// The state of such a vector.
+/// Unpacks a vector made by packed().
 inline ArmState unpacked(const Eigen::VectorXd& q) {
   ArmState state = ArmState::straight(static_cast<std::size_t>(q.size() / 3));
   for (std::size_t i = 0; i < state.bends.size(); ++i) {

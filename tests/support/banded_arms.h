@@ -9,11 +9,11 @@
 
 namespace flexura {
 
-/// Red, green, blue.
+/// RGB colours of the bands.
 inline const std::vector<Eigen::Vector3d> band_colors = {
     {0.85, 0.1, 0.1}, {0.1, 0.6, 0.15}, {0.1, 0.2, 0.85}};
 
-/// A dozen bands of three colours in turn, evenly along an arm of 1 m.
+/// Returns a dozen bands at equal spacing along an arm of 1 m, in three alternating colours.
 inline std::vector<KnownMarker> bands() {
   constexpr std::size_t count = 12;
   std::vector<KnownMarker> markers(count);
@@ -22,7 +22,7 @@ inline std::vector<KnownMarker> bands() {
   return markers;
 }
 
-/// Of three sections: mild bends, and such as bend every part to every side.
+/// Returns poses of a three-section arm: mild bends, and bends that turn every part to every side.
 inline std::vector<ArmState> some_poses() {
   std::vector<ArmState> poses(3, ArmState::straight(3));
   poses[0].bends = {{0.5, 0}, {0.5, 0}, {0.5, 0}};
@@ -31,7 +31,7 @@ inline std::vector<ArmState> some_poses() {
   return poses;
 }
 
-/// Of rough guesses: 10 degrees, 20 % of the distance, 10 % of the focal length.
+/// Camera prior for rough guesses: 10 degrees of rotation, 20 % of the distance, 10 % of the focal length.
 inline constexpr SightDoubt rough = {.sideways = 0.26, .roll = 0.17, .scale = 0.22};
 
 }  // namespace flexura

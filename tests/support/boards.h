@@ -18,11 +18,12 @@
 
 namespace flexura {
 
-/// Of one camera, and of two, in pixels.
+/// Image sizes of one camera and of two, pixels.
 inline const std::vector<std::array<int, 2>> one_size = {{640, 480}}, two_sizes = {{640, 480}, {640, 480}};
 
-/// A board before a camera that looks along z: `distance` m off, tilted by up to `tilt` rad and turned by up
-/// to a quarter of a turn, its middle up to `aside` of the distance off the axis.
+/// Returns a board pose in front of a camera that looks along z. The board is `distance` m away, tilted by up
+/// to `tilt` rad and rotated by up to a quarter turn. Its centre is up to `aside` times the distance off the
+/// axis.
 inline Pose random_board(TestRandom& random, const BoardTarget& board, double distance, double tilt = 0.6,
                          double aside = 0.2) {
   const double direction = random.uniform(0, 2 * std::numbers::pi), angle = random.uniform(0.3, 1) * tilt;
@@ -37,7 +38,7 @@ inline Pose random_board(TestRandom& random, const BoardTarget& board, double di
   return X_CB;
 }
 
-/// What the bundle's cameras see of the board, with normal noise of `sigma` px.
+/// Returns what the bundle's cameras see of the board, with normal noise of `sigma` px.
 inline std::vector<BoardView> seen_boards(const BoardBundle& truth,
                                           const std::vector<Eigen::Vector2d>& points, double sigma,
                                           TestRandom& random) {
@@ -58,7 +59,7 @@ inline std::vector<BoardView> seen_boards(const BoardBundle& truth,
   return views;
 }
 
-/// Whether the board is dark at a place in its plane, in units of `square`.
+/// Returns whether the board is dark at a point of its plane, given in units of `square`.
 inline bool is_dark(const BoardTarget& board, const Eigen::Vector2d& at) {
   if (board.pattern == BoardPattern::chessboard) {
     const bool is_on = at.x() > -1 && at.y() > -1 && at.x() < board.columns && at.y() < board.rows;
@@ -73,7 +74,7 @@ inline bool is_dark(const BoardTarget& board, const Eigen::Vector2d& at) {
   return (at - Eigen::Vector2d(step * column + shift, row)).norm() < radius * (is_shifted ? 1.4 : 1);
 }
 
-/// A picture of the board on bright ground, sixteen samples a pixel.
+/// Renders the board on a bright background, with sixteen samples per pixel.
 inline Image<std::uint8_t> board_picture(const BoardTarget& board, const Lens& lens, const Pose& X_CB,
                                          int width, int height) {
   Image<std::uint8_t> picture(width, height);

@@ -25,7 +25,7 @@ class NobodyWatches : public RigSessionWatcher {
   void known(const RigStep&) override {}
 };
 
-/// A calibration at the ports alone, with nothing of a run around it: the file's first task.
+/// Runs a calibration, the first task of a file, directly at the ports, without the rest of a run.
 class CalibrationBench : public RigBench {
  public:
   using RigBench::RigBench;
@@ -54,11 +54,11 @@ class CalibrationBench : public RigBench {
   [[nodiscard]] RigModel believed() const {
     return rig_model(experiment().arm.arm(), experiment().cameras());
   }
-  /// Of a bundle.
+  /// Returns the prior of a bundle calibration.
   [[nodiscard]] RigPrior prior() const {
     return session_prior(std::get<CalibrateTask>(experiment().task.front()), believed(), experiment().stand);
   }
-  /// What truly remains where the cameras stand.
+  /// Returns the true remaining errors at the present camera positions.
   RigRemainder truth(const LoopResult& result) { return truth(result.target); }
   RigRemainder truth(const Eigen::Vector3d& target) {
     return remainder(true_model(), true_stances(), target);
@@ -67,7 +67,7 @@ class CalibrationBench : public RigBench {
     const RigConfig truth = experiment().true_rig();
     return rig_model(truth.arm.arm(), truth.cameras);
   }
-  /// How the cameras truly stand now.
+  /// Returns the true present axis positions of the cameras.
   std::array<RigStance, 2> true_stances() {
     const double now = rig().clock().now();
     std::array<RigStance, 2> stances;
@@ -75,7 +75,7 @@ class CalibrationBench : public RigBench {
       stances[i] = {i, rig().camera(i).head().truth(now), rig().camera(i).stage().truth(now)};
     return stances;
   }
-  /// Whether heads, zooms, stages and the arm, straight, say that they are where the file starts them.
+  /// Checks that heads, zooms, stages and the straight arm report their initial positions of the file.
   void expect_back() {
     expect_back(ports());
     for (std::size_t i = 0; i < ports().cameras.size(); ++i)
@@ -95,7 +95,8 @@ class CalibrationBench : public RigBench {
   }
 };
 
-/// An arm whose sections bend by other shares of what they are sent, and do not know it.
+/// An arm whose sections bend by `gains` times the commanded bends, while its readings show the commanded
+/// ones.
 class WrongArm : public OddArm {
  public:
   WrongArm(ArmPort& arm, const std::vector<double>& gains)
@@ -111,7 +112,7 @@ class WrongArm : public OddArm {
             }) {}
 };
 
-/// A head whose pan motor takes commands and does not turn.
+/// A head whose pan motor accepts commands and does not turn.
 class StuckPan : public OddHead {
  public:
   explicit StuckPan(HeadPort& head)
@@ -123,8 +124,8 @@ class StuckPan : public OddHead {
             }) {}
 };
 
-/// A head that says it stands where it was sent, and stands elsewhere: from its first turn on, or from when
-/// it is pushed.
+/// A head that reports the commanded pan angle but stands `slip` rad beside it: from its first turn on, or
+/// from a call of push() on.
 class SlippedPan : public HeadPort {
  public:
   enum class Since { first_turn, push };

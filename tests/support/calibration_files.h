@@ -4,8 +4,8 @@
 
 namespace flexura {
 
-/// An arm of three sections with bands of three colours before two cameras of 320 x 240 px, whose task
-/// calibrates them. `truth` stands below.
+/// Returns a file with a three-section arm with bands in three colours, two cameras of 320 x 240 px, and a
+/// task that calibrates them. `truth` is inserted after the cameras.
 inline std::string small_calibration(const std::string& task, const std::string& truth,
                                      const std::string& sensor = "") {
   const std::string images =
@@ -41,7 +41,7 @@ mount = { position = [-2.5, 0.5, 0], look_at = [0, 0.5, 0])" +
          stage + images + rest + truth + "\n[[task]]\nkind = \"calibrate\"\n" + task;
 }
 
-/// Cameras that are wrong in every way that a guess may be.
+/// Simulated truth in which the cameras differ from the model in every parameter that a guess may get wrong.
 inline const char* const wrong_cameras = R"(
 [[truth.camera]]
 name = "front"

@@ -22,27 +22,28 @@
 
 namespace flexura {
 
-/// What a bundle says of the rig at its end, beside what is true of it.
+/// Final estimates of a bundle: their errors and standard deviations.
 struct BundleFigures {
-  RigFigure angle;                          ///< Between the axes, rad.
-  std::array<RigFigure, 2> focal;           ///< Shares.
-  double rms = 0;                           ///< Of residuals, in units of what each is taken to be off.
-  std::array<double, 2> pictures = {0, 0};  ///< By camera.
+  RigFigure angle;                 ///< Angle between the optical axes, rad.
+  std::array<RigFigure, 2> focal;  ///< Focal lengths, relative errors.
+  double rms = 0;  ///< Root mean square of the residuals, in units of their assumed standard deviations.
+  std::array<double, 2> pictures = {0, 0};  ///< Number of pictures, by camera.
 };
 
-/// One start of a calibration, and what came of it.
+/// One start of a calibration and its outcome.
 struct CalibrationTrial {
   std::size_t index = 0;
-  double turn = 0;   ///< Of the camera that started farther off: rad in pan and tilt together,
-  double shift = 0;  ///< and m.
+  double turn = 0;   ///< Rotation error of the camera that started farther off, pan and tilt together, rad.
+  double shift = 0;  ///< Position error of the camera that started farther off, m.
   bool is_done = false;
-  std::string reason = "done";          ///< In few words; see kind_of.
-  double pictures = 0;                  ///< A camera.
-  double angle = 0, aim = 0, zoom = 0;  ///< What remains if it is done: rad from 90 degrees, m, share.
-  BundleFigures bundle = {};            ///< Of a bundle that is done.
+  std::string reason = "done";  ///< Short reason; see kind_of.
+  double pictures = 0;          ///< Pictures per camera.
+  double angle = 0, aim = 0,
+         zoom = 0;            ///< Remaining errors if done: angle from 90 degrees, rad; aim, m; zoom, share.
+  BundleFigures bundle = {};  ///< Only of a bundle that is done.
 };
 
-/// A reason without its numbers and names, to be counted.
+/// Strips numbers and names from a reason, so that equal reasons can be counted.
 inline std::string kind_of(const std::string& reason) {
   static const std::vector<std::string> kinds = {"back and forth",
                                                  "runs away",
@@ -65,12 +66,12 @@ inline std::string kind_of(const std::string& reason) {
   return reason.substr(0, reason.find(';'));
 }
 
-/// Of a session that is done.
+/// Returns the figures of a session that is done.
 inline BundleFigures bundle_figures(CalibrationBench& bench, const RigSessionResult& result) {
   const RigCalibration& found = result.found;
   const std::array<RigStance, 2> stands = bench.true_stances();
   const RigModel truth = bench.true_model();
-  // The session's variables, counted from how it found that arm and heads stood.
+  // The session's variables, built from the arm pose and camera axis positions that it found.
   const RigVariables variables(bench.believed(), bench.prior(), {found.poses, found.stances, {}});
   Eigen::VectorXd x = found.x;
   x.tail(x.size() - variables.globals()).setZero();
@@ -92,12 +93,12 @@ inline BundleFigures bundle_figures(CalibrationBench& bench, const RigSessionRes
   return figures;
 }
 
-/// Calibrates the random rig number `index` of a seed by a method, pictures and all.
+/// Calibrates random rig number `index` of a seed by a method, including rendering and image processing.
 inline CalibrationTrial run_trial(const std::string& method, std::uint64_t seed, std::size_t index) {
   TestRandom random(seed * 1000003 + index);
   WrongRig wrong = wrong_rig(random);
-  // Both bundles learn the principal point to any size, and what else is wrong with a camera, as far as they
-  // expect it.
+  // Both bundles estimate a principal point error of any size, and the other camera errors within their
+  // priors.
   constexpr double rougher = 10, zero = degree, axis = 0.003, k1 = 0.02;  // px; rad; m
   const bool is_bundle = method.starts_with("bundle");
   if (is_bundle) {
@@ -142,8 +143,7 @@ inline CalibrationTrial run_trial(const std::string& method, std::uint64_t seed,
   return trial;
 }
 
-/// Trials kept in a text file, a line each as they end, so that a study that was interrupted goes on where it
-/// was.
+/// Stores trials in a text file, one line per finished trial, so that an interrupted study can resume.
 class TrialFile {
  public:
   explicit TrialFile(const std::string& path) {
@@ -156,7 +156,7 @@ class TrialFile {
           trial.aim >> trial.zoom;
       for (double* number : numbers(trial.bundle)) words >> *number;
       std::getline(words >> std::ws, trial.reason);
-      if (words.fail()) continue;  // It was cut off there.
+      if (words.fail()) continue;  // The line is truncated.
       trial.is_done = done != 0;
       trials_[trial.index] = trial;
     }
@@ -177,7 +177,7 @@ class TrialFile {
                          trial.reason)
           << std::flush;
   }
-  /// These, all of which there are.
+  /// Returns the trials of these indices, all of which must be stored.
   [[nodiscard]] std::vector<CalibrationTrial> all(const std::vector<std::size_t>& indices) const {
     std::vector<CalibrationTrial> result;
     for (const std::size_t i : indices) result.push_back(trials_.at(i));
@@ -185,7 +185,7 @@ class TrialFile {
   }
 
  private:
-  // As a line has them. Lines of older programs have no such numbers, and are no trials.
+  // Fields of a line in order. Lines of older programs lack some of them and are ignored.
   static std::array<double*, 9> numbers(BundleFigures& of) {
     return {&of.angle.error,    &of.angle.sigma, &of.focal[0].error, &of.focal[0].sigma, &of.focal[1].error,
             &of.focal[1].sigma, &of.rms,         &of.pictures[0],    &of.pictures[1]};

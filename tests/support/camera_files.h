@@ -2,7 +2,7 @@
 
 namespace flexura {
 
-/// A file of measured cameras: one in front of the arm and one beside it.
+/// A file of two measured cameras: one in front of the arm and one at its side.
 inline constexpr const char* two_measured_cameras = R"([[camera]]
 name = "front"
 fx = 800.0

@@ -9,7 +9,7 @@
 
 namespace flexura {
 
-/// Ratios and motor counts of a zoom lens with 18x (a Sony block camera's, as its manual lists them).
+/// Returns zoom ratios and motor counts of an 18x zoom lens (Sony block camera, from its manual).
 inline std::vector<ZoomRow> sony_zoom() {
   constexpr std::array<int, 18> counts = {0x0000, 0x1606, 0x2151, 0x2860, 0x2CB5, 0x3060,
                                           0x32D3, 0x3545, 0x3727, 0x38A9, 0x3A42, 0x3B4B,
@@ -23,7 +23,8 @@ inline std::vector<ZoomRow> sony_zoom() {
   return rows;
 }
 
-/// A lens with a zoom table in which everything changes, by ratio or by rising or falling counts.
+/// Returns a random lens with a zoom table in which every parameter varies, given by ratio or by rising or
+/// falling counts.
 inline LensConfig random_lens(TestRandom& random) {
   LensConfig lens;
   lens.fx = random.uniform(300, 2000), lens.fy = lens.fx * random.uniform(0.95, 1.05);
@@ -42,7 +43,8 @@ inline LensConfig random_lens(TestRandom& random) {
   return lens;
 }
 
-/// A camera with offsets between its axes, a pupil that the zoom shifts, and travel in every axis.
+/// Returns a random camera with offsets between its axes, a pupil shifted by the zoom, and limited travel of
+/// each axis.
 inline CameraConfig random_camera(TestRandom& random) {
   CameraConfig camera;
   camera.name = "random";
@@ -58,7 +60,7 @@ inline CameraConfig random_camera(TestRandom& random) {
   return camera;
 }
 
-/// Positions within the limits of its axes.
+/// Returns random positions within the limits of the camera's axes.
 inline HeadState random_head(TestRandom& random, const Camera& camera) {
   const auto& [pan, tilt, zoom] = camera.head_axes();
   return {random.uniform(pan.limits[0], pan.limits[1]), random.uniform(tilt.limits[0], tilt.limits[1]),

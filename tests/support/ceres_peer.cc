@@ -24,11 +24,11 @@ using Matrix3 = Eigen::Matrix<T, 3, 3>;
 template <class T>
 Matrix3<T> turn(const Vector3<T>& by) {
   Matrix3<T> R;
-  ceres::AngleAxisToRotationMatrix(by.data(), R.data());  // Both by columns.
+  ceres::AngleAxisToRotationMatrix(by.data(), R.data());  // Both matrices are stored by columns.
   return R;
 }
 
-// What is known before: numbers in units of their standard deviations are what Ceres moves.
+// Known quantities of an observation. Ceres optimises corrections in units of their standard deviations.
 struct Known {
   const RigModel* guess = nullptr;
   std::size_t camera = 0;
@@ -40,7 +40,7 @@ struct Known {
   std::array<double, stance_numbers> stance_sigmas{};
 };
 
-// The camera's axes in W, and where its pupil is.
+// Returns the orientation of the camera and the position of its pupil in W.
 template <class T>
 std::pair<Matrix3<T>, Vector3<T>> camera_pose(const Known& known, const T* z, const T* stance) {
   const CameraConfig& camera = known.guess->cameras[known.camera];
@@ -60,7 +60,7 @@ std::pair<Matrix3<T>, Vector3<T>> camera_pose(const Known& known, const T* z, co
   return {R_WM * R_pan * R_tilt, p_WM + R_WM * p_MC};
 }
 
-// Where a point of the arm is in W: the share `fraction` of a section.
+// Returns the position in W of the point at the share `fraction` of a section.
 template <class T>
 Vector3<T> arm_point(const Known& known, const T* arm, const T* pose, int section, double fraction) {
   const Arm& guess = known.guess->arm;
@@ -82,7 +82,7 @@ Vector3<T> arm_point(const Known& known, const T* arm, const T* pose, int sectio
   return p;
 }
 
-// A point of the arm in a picture.
+// Projects a point of the arm into a picture.
 struct Shows {
   Known known;
   int section = 0;
@@ -123,7 +123,8 @@ struct MarkerOff {
   }
 };
 
-// Numbers in units of their standard deviations: the prior's residuals are they themselves.
+// A block of parameters in units of their standard deviations. The residuals of the prior are the parameters
+// themselves.
 struct Block {
   std::vector<double> z, sigmas;
 
@@ -159,7 +160,7 @@ class Own {
     }
   }
 
-  // From where it stands; `bound` 0: by squares.
+  // Optimises from the present values. `bound` 0: squared loss.
   ceres::Solver::Summary solve(double bound) {
     ceres::Problem problem;
     add_all(problem, bound);

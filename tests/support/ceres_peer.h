@@ -7,20 +7,21 @@
 #include "flexura/calibrate/rig_prior.h"
 #include "flexura/port/rig_model.h"
 
-// The bundle as Ceres finds it: residuals written anew, with Ceres' own derivatives and rotations.
+// An independent bundle adjustment with Ceres: residuals reimplemented, with Ceres' derivatives and
+// rotations.
 namespace flexura {
 
 struct CeresBundle {
   bool is_settled = false;
-  Eigen::VectorXd x;                  ///< In the order of RigVariables.
-  Eigen::MatrixXd covariance;         ///< Of x.
-  double cost = 0;                    ///< Prior included.
-  std::vector<Eigen::Vector3d> axes;  ///< Each stance's optical axis in W.
+  Eigen::VectorXd x;                  ///< Estimated variables in the order of RigVariables.
+  Eigen::MatrixXd covariance;         ///< Covariance of x.
+  double cost = 0;                    ///< Cost including the prior.
+  std::vector<Eigen::Vector3d> axes;  ///< Optical axis in W, by stance.
 };
 
-/// The least of the same sum over markers, from the same guess: by squares first, then with residuals that
-/// count linearly beyond `bound`. For cameras whose zoom is linear, arms of three sections and stances of
-/// which pan and tilt alone may be off.
+/// Minimises the same cost over markers from the same guess. It uses the squared loss first, then residuals
+/// that count linearly beyond `bound`. Supports cameras with a linear zoom, arms of three sections, and
+/// errors of the camera axes in pan and tilt only.
 CeresBundle ceres_bundle(const RigModel& guess, const RigPrior& prior, const RigObservations& seen,
                          double bound);
 

@@ -4,9 +4,9 @@
 
 namespace flexura {
 
-/// The path of a file of the checkout under test, by its path there.
+/// Returns the absolute path of a file of the checkout under test, given its path in the checkout.
 std::string checkout_file(const std::string& path);
-/// And of one that was built.
+/// Returns the absolute path of a built file.
 std::string built_file(const std::string& path);
 
 }  // namespace flexura

@@ -8,7 +8,7 @@
 
 namespace flexura {
 
-/// What drawn pixels are off by.
+/// Error statistics of the coverage of border pixels.
 struct CoverageErrors {
   double squares = 0, largest = 0;
   int count = 0;
@@ -20,7 +20,7 @@ struct CoverageErrors {
   }
   [[nodiscard]] double rms() const { return std::sqrt(squares / std::max(1, count)); }
 
-  /// Prints them, and holds them to what was asked for, px.
+  /// Prints the statistics and checks them against the required accuracy, px.
   void expect_small(const char* name) const {
     std::printf("%s: %d border pixels: rms %.5f, largest %.5f px\n", name, count, rms(), largest);
     EXPECT_GT(count, 200);
@@ -29,7 +29,7 @@ struct CoverageErrors {
   }
 };
 
-/// Of both ways to draw.
+/// Error statistics of the reference path and the fast path.
 struct BothCoverageErrors {
   CoverageErrors exact, quick;
 

@@ -11,8 +11,8 @@
 
 namespace flexura {
 
-/// One to three sections of any make under gravity in any direction, clamped or free, with or without
-/// variable lengths.
+/// Returns a random model of one to three sections of any kind, with gravity in any direction, clamped or
+/// free, with or without variable lengths.
 inline DistributedArmModel random_distributed_arm(TestRandom& random) {
   DistributedArmModel model;
   model.lengths.clear();
@@ -32,7 +32,7 @@ inline DistributedArmModel random_distributed_arm(TestRandom& random) {
   return model;
 }
 
-/// Angles up to `reach` rad that vary smoothly, lengths within a tenth.
+/// Returns random coordinates: smoothly varying angles up to `reach` rad, lengths within 10 %.
 inline Eigen::VectorXd random_coordinates(TestRandom& random, const DistributedArm& arm, double reach = 1) {
   const Eigen::Vector4d a = random.vector<4>(-0.5, 0.5) * reach;
   double length = 0;
@@ -46,14 +46,14 @@ inline Eigen::VectorXd random_coordinates(TestRandom& random, const DistributedA
   return x;
 }
 
-/// Numbers of any sign.
+/// Returns random rates of either sign, up to `reach`.
 inline Eigen::VectorXd random_rates(TestRandom& random, const DistributedArm& arm, double reach = 1) {
   Eigen::VectorXd v(arm.size());
   for (double& rate : v) rate = random.uniform(-reach, reach);
   return v;
 }
 
-/// What a run comes to that is looked at every `step` s until `until` s, or until it stops.
+/// Returns the Lyapunov verdict of a run that is sampled every `step` s until `until` s, or until it stops.
 inline LyapunovVerdict watched(PotentialRun& run, double until, double step = 0.02) {
   LyapunovMonitor monitor;
   monitor.add(run.sample());

@@ -9,10 +9,11 @@
 
 namespace flexura {
 
-/// The share of a pixel that lies within `distance` (a signed distance of its middle, px, positive outside).
+/// Returns the covered share of a pixel. `distance`: signed distance of its centre to the border, px,
+/// positive outside.
 inline double share(double distance) { return std::clamp(0.5 - distance, 0.0, 1.0); }
 
-/// A dark arm before a bright ground whose middle is at v = middle(u), `thickness` px across.
+/// Draws a dark arm on a bright background, with the centerline v = middle(u) and `thickness` px wide.
 template <typename Middle>
 Image<std::uint8_t> gray_arm(const Middle& middle, double thickness, TestRandom& random) {
   Image<std::uint8_t> picture(320, 240);

@@ -12,8 +12,8 @@
 
 namespace flexura {
 
-/// Three to five tendons a section that determine its bend and stretch: spread around the arm, but unevenly,
-/// at different radii (mm to cm), on axes of different gears and senses.
+/// Returns three to five tendons per section, which determine its bend and stretch. They are spread unevenly
+/// around the arm, at different radii (mm to cm), on axes with different gears and senses.
 inline Drive random_drive(TestRandom& random, const Arm& arm) {
   Drive drive;
   for (std::size_t section = 0; section < arm.sections.size(); ++section) {
@@ -32,7 +32,7 @@ inline Drive random_drive(TestRandom& random, const Arm& arm) {
   return drive;
 }
 
-/// Two tendons a section, which determine its bend and nothing else.
+/// Returns two tendons per section, which determine its bend only.
 inline Drive random_scanty_drive(TestRandom& random, const Arm& arm) {
   Drive drive = random_drive(random, arm);
   Drive scanty = drive;
@@ -45,8 +45,8 @@ inline Drive random_scanty_drive(TestRandom& random, const Arm& arm) {
   return scanty;
 }
 
-/// What the mechanism makes of commands: each spool follows its motor within the play, and stays where it is
-/// while the motor turns through it. At first the play is taken up for pulling in.
+/// Model of backlash: each spool follows its motor within the backlash, and stays in place while the motor
+/// turns through it. Initially the backlash is taken up in the pulling direction.
 class PlayModel {
  public:
   PlayModel(const Drive& drive, const std::vector<std::int64_t>& positions) : axes_(drive.axes) {
@@ -69,7 +69,7 @@ class PlayModel {
   }
 
   std::vector<Axis> axes_;
-  std::vector<double> spools_;  // microsteps pulled in
+  std::vector<double> spools_;  // Pulled in, microsteps.
 };
 
 }  // namespace flexura

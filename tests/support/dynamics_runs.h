@@ -11,7 +11,7 @@
 
 namespace flexura {
 
-/// Runs of experiments with tasks of dynamics, and what is in their results.
+/// Runs experiments with dynamics tasks and reads their results.
 class Dynamics : public testing::Test, public Runs {
  protected:
   static const Node& dynamics(const RunResult& result, std::size_t i = 0) {

@@ -5,7 +5,8 @@
 
 namespace flexura {
 
-/// The rig of two sections as a thin steel rod, its world's -Y downwards; light: without weight.
+/// Returns a rig of two sections as a thin steel rod; gravity along the world's -Y. The default is
+/// weightless.
 inline RigConfig elastic_rig(double gravity = 0) {
   RigConfig rig = two_section_rig();
   for (Section& section : rig.arm.section) {
@@ -18,7 +19,7 @@ inline RigConfig elastic_rig(double gravity = 0) {
   return rig;
 }
 
-/// A shape for it.
+/// Returns a bent state for elastic_rig().
 inline ArmState bent_state() {
   ArmState state = ArmState::straight(2);
   state.bends = {{0.5, 0.2}, {-0.3, 0.4}};

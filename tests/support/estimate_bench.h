@@ -55,7 +55,7 @@ kind = "hold"
 duration = 1
 )";
 
-/// Pictures of the arm by both cameras, as a laboratory has them.
+/// Pictures of the arm by both cameras, as taken in a laboratory.
 class EstimateBench : public testing::Test {
  protected:
   void SetUp() override {
@@ -68,7 +68,7 @@ class EstimateBench : public testing::Test {
     const std::string file = read_text_file(name, most_picture_bytes);
     return decode_picture(bytes_of(file), name).bytes;
   }
-  /// A picture of what an experiment file shows; the same file is drawn once for all tests.
+  /// Renders a picture of an experiment file's scene. Each file is rendered once for all tests.
   std::string photographed(const std::string& experiment, const std::string& camera) {
     static std::map<std::string, std::string> drawn;
     const auto file = [&](const std::string& name) { return (folder_.path() / name).string(); };
@@ -87,7 +87,7 @@ class EstimateBench : public testing::Test {
     png = read_text_file(name, most_picture_bytes);
     return name;
   }
-  /// The same arm with bands at these places, in colour.
+  /// Writes the same arm with coloured bands at these places.
   void write_banded(const std::string& name, const std::vector<std::string>& places) {
     std::string text = replaced(photographed_arm, "[[arm.section]]", "[arm.look]\nmarker = [");
     for (const std::string& place : places)
@@ -97,13 +97,13 @@ class EstimateBench : public testing::Test {
       text.insert(at, "pixels = \"color\", ");
     write_new_file(folder_.path() / (name + ".toml"), text);
   }
-  /// What the command prints.
+  /// Returns the JSON output of the command.
   Node answer(int status) {
     std::ostringstream out;
     EXPECT_EQ(estimate_command(arguments_, out), status) << out.str();
     return parse_json(out.str(), "answer");
   }
-  /// The largest distance of the printed backbone from the arm's, at equal shares of their lengths, m.
+  /// Returns the largest distance between printed and true backbone at equal shares of their lengths, m.
   double error(const Node& answer, const std::string& experiment = "arm") {
     const RigConfig rig = load_experiment(folder_.path() / (experiment + ".toml")).model_rig();
     const Backbone truth = rig.arm.model().backbone(ArmSetup(rig).initial);

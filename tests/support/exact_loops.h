@@ -20,10 +20,10 @@
 #include "tests/support/random_cases.h"
 #include "tests/support/study_numbers.h"
 
-// The loops of the servo's study without pictures: what a law makes of what it is told exactly.
+// Servo loops without pictures: the behaviour of a law with exact measurements.
 namespace flexura {
 
-/// Features without what they know of the whole way: derivatives are those where the arm stands.
+/// Servo features without secants: derivatives are local, at the present state.
 class WithoutSecants : public ServoFeatures {
  public:
   explicit WithoutSecants(std::unique_ptr<ServoFeatures> features) : features_(std::move(features)) {}
@@ -45,19 +45,20 @@ class WithoutSecants : public ServoFeatures {
   std::unique_ptr<ServoFeatures> features_;
 };
 
-/// A law before an arm that does what it is sent, whose shape is known two frames of 1/30 s late.
+/// A law with an ideal arm whose shape is known two frames of 1/30 s late.
 struct ExactLoop {
   Arm arm;
   std::array<View, 2> views;
   bool has_secants = true;
-  double noise = 0;  ///< Of the axis as measured, px across itself: one number a place for the whole run.
+  double noise = 0;  ///< Noise of the measured centerline, px across it; one constant offset per place for
+                     ///< the whole run.
 
   struct End {
     bool is_done = false;
-    double settled = 0;  ///< To 2 % of the length for good, s.
+    double settled = 0;  ///< Time after which the error stays within 2 % of the length, s.
   };
 
-  /// Done when it is 0.2 % of the length off for 1 s, given up after 9 s.
+  /// Done when the error stays within 0.2 % of the length for 1 s; gives up after 9 s.
   [[nodiscard]] End go(ServoLawKind kind, const ArmState& start, const ArmState& target,
                        TestRandom& random) const {
     constexpr int steps = 270, late = 2;
@@ -96,7 +97,7 @@ struct ExactLoop {
   }
 
  private:
-  static constexpr int places = 120;  // Of an axis.
+  static constexpr int places = 120;  // Places along a centerline.
 
   [[nodiscard]] std::vector<double> noises(TestRandom& random) const {
     std::vector<double> slips(2 * (places + 1));
@@ -123,7 +124,7 @@ struct ExactLoop {
   }
 };
 
-/// A row: how many of the study's targets a law reaches, and how soon, with exact axes and with noisy ones.
+/// Returns a table row: how many targets a law reaches and how soon, with exact and with noisy centerlines.
 inline std::string exact_row(ExactLoop loop, ServoLawKind kind, const std::string& name,
                              const std::vector<std::pair<ArmState, ArmState>>& ways, double noise) {
   std::string row = "| " + name + " |";

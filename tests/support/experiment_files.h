@@ -9,7 +9,7 @@
 
 namespace flexura {
 
-/// What is said of an experiment file "x.toml" with this text; "no error" of a good one.
+/// Returns the error message for an experiment file "x.toml" with this text; "no error" if it is valid.
 inline std::string error_of_file(const std::string& text) {
   try {
     (void)parse_experiment(text, "x.toml");
@@ -19,14 +19,14 @@ inline std::string error_of_file(const std::string& text) {
   return "no error";
 }
 
-/// The text with its first `from` replaced; a failure where there is none.
+/// Returns the text with the first `from` replaced; a test failure if it does not occur.
 inline std::string replaced(std::string text, const std::string& from, const std::string& to) {
   const std::size_t at = text.find(from);
   EXPECT_NE(at, std::string::npos) << from;
   return text.replace(at, from.size(), to);
 }
 
-/// A text and what its error must say.
+/// An invalid file and the expected text of its error.
 struct BadFile {
   const char* what;
   std::string text;

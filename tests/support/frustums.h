@@ -12,26 +12,26 @@
 
 namespace flexura {
 
-/// A tube for tests to hold the renderer against: many frustums of cones between poses of the backbone, each
-/// met by a ray in closed form. It shares no equation with flexura/render.
+/// A reference tube for tests of the renderer: many conical frustums between poses of the backbone, each
+/// intersected with rays in closed form. It shares no equation with flexura/render.
 class FrustumTube {
  public:
   struct Frustum {
-    Eigen::Vector3d from, to;  ///< W.
+    Eigen::Vector3d from, to;  ///< End points in W.
     double radius_from, radius_to;
     double s_from, s_to;
-    bool is_first, is_last;  ///< Of the tube, or at a step of its radius: discs close it there.
-    /// How far it goes on beyond its ends, of its length: on the outside of a bend wedges would gape between
-    /// it and its neighbours.
+    bool is_first, is_last;  ///< At an end of the tube or at a step of its radius; closed there by a disc.
+    /// Extension beyond both ends, as a share of the length. It closes wedge-shaped gaps to the neighbours on
+    /// the outside of a bend.
     double overlap;
-    Eigen::Vector3d tangent_from, tangent_to;  ///< Of the backbone, W.
+    Eigen::Vector3d tangent_from, tangent_to;  ///< Tangents of the backbone in W.
   };
   struct Meeting {
     double depth = std::numeric_limits<double>::infinity();
     double s = -1;
   };
 
-  /// `count` frustums a section.
+  /// `count`: frustums per section.
   FrustumTube(const Arm& arm, const Backbone& backbone, int count) {
     for (std::size_t i = 0; i < arm.sections.size(); ++i) {
       const Arc& arc = backbone.arcs()[i];
@@ -53,7 +53,7 @@ class FrustumTube {
 
   [[nodiscard]] const std::vector<Frustum>& frustums() const { return frustums_; }
 
-  /// Those that rays from `eye` near `direction` may meet: at depth z no farther off than z * spread.
+  /// Returns the frustums that rays from `eye` near `direction` may meet: at depth z at most z * spread away.
   [[nodiscard]] std::vector<Frustum> near(const Eigen::Vector3d& eye, const Eigen::Vector3d& direction,
                                           double spread) const {
     std::vector<Frustum> result;
@@ -68,7 +68,7 @@ class FrustumTube {
     return result;
   }
 
-  /// Where eye + depth * direction, depth > 0, first meets one of the frustums from outside.
+  /// Returns where eye + depth * direction, depth > 0, first enters one of the frustums from outside.
   [[nodiscard]] static Meeting meet(const std::vector<Frustum>& frustums, const Eigen::Vector3d& eye,
                                     const Eigen::Vector3d& direction) {
     Meeting nearest;
@@ -88,7 +88,7 @@ class FrustumTube {
                         Meeting& nearest) {
     const Eigen::Vector3d axis = frustum.to - frustum.from, off = eye - frustum.from;
     const double square = axis.squaredNorm(), widening = frustum.radius_to - frustum.radius_from;
-    // The part of the axis at depth t is a + b t, the radius there radius_from + widening (a + b t).
+    // At depth t the axial share is a + b t and the radius is radius_from + widening (a + b t).
     const double a = off.dot(axis) / square, b = direction.dot(axis) / square;
     const Eigen::Vector3d across = off - a * axis, moving = direction - b * axis;
     const double radius = frustum.radius_from + widening * a, growing = widening * b;
@@ -107,7 +107,7 @@ class FrustumTube {
         nearest = {t, s_at(frustum, p)};
     }
   }
-  // By the distances from the planes across the backbone at the frustum's two ends.
+  // Interpolates s from the distances to the planes across the backbone at both ends of the frustum.
   static double s_at(const Frustum& frustum, const Eigen::Vector3d& p) {
     const double before = (p - frustum.from).dot(frustum.tangent_from);
     const double after = (frustum.to - p).dot(frustum.tangent_to);

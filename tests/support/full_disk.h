@@ -6,7 +6,7 @@
 
 namespace flexura {
 
-/// Lets files grow up to a size only, as a full disk would, while it lives.
+/// Limits the size of written files during its lifetime, as a full disk would.
 class FullDisk {
  public:
   explicit FullDisk(rlim_t bytes) : signal_(std::signal(SIGXFSZ, SIG_IGN)) {

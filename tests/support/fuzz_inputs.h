@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-// What fuzz_driver.cc makes its inputs of: a corpus, a dictionary, and seeded mutations.
+// Inputs of fuzz_driver.cc: a corpus, a dictionary, and seeded mutations.
 namespace flexura {
 
 /// The bytes of one input.
@@ -35,7 +35,7 @@ class Random {
     z = (z ^ z >> 27) * 0x94D049BB133111EBU;
     return z ^ z >> 31;
   }
-  /// From 0 to count - 1; 0 when there is nothing to choose from.
+  /// Returns a number from 0 to count - 1; 0 if count is 0.
   std::size_t below(std::size_t count) { return count == 0 ? 0 : static_cast<std::size_t>(next() % count); }
   template <typename List>
   const auto& of(const List& list) {
@@ -83,7 +83,8 @@ inline constexpr std::array<std::string_view, 16> number_texts = {"0",
                                                                   "0x7fffffff",
                                                                   "0.1e1e1"};
 
-/// The tokens of a dictionary in libFuzzer's form: lines [name=]"text" where text may hold \\, \" and \xNN.
+/// Reads the tokens of a dictionary in libFuzzer's format: lines [name=]"text" with the escapes \\, \" and
+/// \xNN.
 inline std::vector<Input> read_dictionary(const std::filesystem::path& path) {
   std::vector<Input> tokens;
   std::ifstream in(path, std::ios::binary);
@@ -118,7 +119,7 @@ class Mutator {
     }
   }
 
-  /// A corpus file after one to eight changes, or random bytes; valid until the next call.
+  /// Returns a corpus file with one to eight changes, or random bytes; valid until the next call.
   const Input& next() {
     if (fresh_share_ > 0 && static_cast<double>(random_.next() >> 11) * 0x1p-53 < fresh_share_) {
       ++fresh_;
@@ -130,11 +131,12 @@ class Mutator {
     return input_;
   }
 
-  /// How many inputs were random throughout.
+  /// Returns how many inputs were random bytes.
   [[nodiscard]] std::uint64_t fresh_count() const { return fresh_; }
 
  private:
-  // Twice as long as the longest file of the corpus: no target runs out of them on its way.
+  // Random bytes up to twice as long as the longest file of the corpus, so that targets rarely run out of
+  // input.
   const Input& fresh() {
     input_.resize(fresh_size_);
     for (std::uint8_t& byte : input_) byte = static_cast<std::uint8_t>(random_.next());
@@ -196,7 +198,7 @@ class Mutator {
     std::copy_n(what.begin(), std::min(what.size(), input_.size() - at),
                 input_.begin() + static_cast<std::ptrdiff_t>(at));
   }
-  /// Goes on with another corpus file from here, or puts a piece of it in.
+  /// Continues with another corpus file from here, or inserts a piece of it.
   void splice(std::size_t at) {
     const Input& other = random_.of(corpus_);
     const std::size_t from = random_.below(other.size() + 1);
@@ -204,7 +206,7 @@ class Mutator {
     if (to_its_end) input_.resize(at);
     insert(at, piece(other, from, to_its_end ? other.size() - from : random_.below(other.size() - from + 1)));
   }
-  /// A number that breaks things, give or take one, in 1, 2, 4 or 8 bytes of either order.
+  /// Returns a boundary value, give or take one, in 1, 2, 4 or 8 bytes of either byte order.
   Input number() {
     const std::uint64_t value = random_.of(numbers) + random_.below(3) - 1;
     Input bytes(std::size_t{1} << random_.below(4));

@@ -17,26 +17,26 @@
 
 namespace flexura {
 
-/// Bodies for tests to hold the renderer against: each is where some quadratic functions of space are all
-/// negative, and a ray meets it where the last of their intervals begins. It shares no equation with
+/// Reference bodies for tests of the renderer. A body is the set where several quadratic functions are all
+/// negative. A ray enters it where the last of their intervals begins. It shares no equation with
 /// flexura/render.
 class ImplicitBody {
  public:
-  /// Entry of a ray: none is infinite.
+  /// Depth of a ray that does not enter.
   static constexpr double nowhere = std::numeric_limits<double>::infinity();
 
-  /// Where |P (p - c)|^2 < 1: the rows of P are the directions that count, over their half widths.
+  /// Adds |P (p - c)|^2 < 1: the rows of P are the bounded directions, divided by their half widths.
   ImplicitBody& within(const Eigen::Vector3d& c, const Eigen::Matrix3d& P) {
     quadrics_.push_back({P, -P * c});
     return *this;
   }
-  /// Where n . (p - c) < 0.
+  /// Adds n . (p - c) < 0.
   ImplicitBody& below(const Eigen::Vector3d& c, const Eigen::Vector3d& n) {
     planes_.push_back({n, n.dot(c)});
     return *this;
   }
 
-  /// The depth, > 0, at which eye + depth * direction enters from outside.
+  /// Returns the depth > 0 at which eye + depth * direction enters from outside.
   [[nodiscard]] double entry(const Eigen::Vector3d& eye, const Eigen::Vector3d& direction) const {
     double from = -nowhere, to = nowhere;
     const auto cut = [&](double low, double high) { from = std::max(from, low), to = std::min(to, high); };
@@ -60,7 +60,7 @@ class ImplicitBody {
   static ImplicitBody sphere(const Eigen::Vector3d& center, double radius) {
     return ImplicitBody().within(center, Eigen::Matrix3d::Identity() / radius);
   }
-  /// Around the z of X_WS from its origin on.
+  /// Returns a cylinder around the z axis of X_WS, starting at its origin.
   static ImplicitBody cylinder(const Pose& X_WS, double length, double radius) {
     const Eigen::Vector3d z = X_WS.rotation.col(2);
     const Eigen::Matrix3d across = (Eigen::Matrix3d::Identity() - z * z.transpose()) / radius;
@@ -83,7 +83,7 @@ class ImplicitBody {
   std::vector<Plane> planes_;
 };
 
-/// The bodies of a configured obstacle, which is all of them together.
+/// Returns the bodies whose union is a configured obstacle.
 inline std::vector<ImplicitBody> implicit_bodies(const ObstacleConfig& obstacle) {
   const auto point = [](const std::array<double, 3>& p) { return Eigen::Vector3d(p[0], p[1], p[2]); };
   if (const auto* sphere = std::get_if<SphereConfig>(&obstacle))
@@ -114,19 +114,19 @@ inline ImplicitBody implicit_disk(const Pose& X_WS, const GuideDisk& disk) {
   return ImplicitBody::cylinder(bottom, disk.thickness, disk.radius);
 }
 
-/// The cylinder without its lines.
+/// Returns the calibration cylinder without its lines.
 inline ImplicitBody implicit_etalon(const Etalon& etalon) {
   const Eigen::Vector3d up = etalon.X_WE.rotation.col(1);
   const Pose bottom{rotation_from_z(up), etalon.X_WE.position - 0.5 * etalon.height * up};
   return ImplicitBody::cylinder(bottom, etalon.height, etalon.radius);
 }
 
-/// Whether a point of its surface is on one of its four lines: along the side, a quarter of a turn apart, the
+/// Returns whether a surface point is on one of the four lines along the side, a quarter turn apart, the
 /// first at +Z.
 inline bool is_on_etalon_line(const Etalon& etalon, const Eigen::Vector3d& p_W) {
   const Eigen::Vector3d p = etalon.X_WE.inverse() * p_W;
   const bool is_on_end = std::abs(p.y()) > 0.5 * etalon.height * (1 - 1e-9);
-  // The nearer of |x| and |z| is the distance from the nearest line's plane.
+  // The smaller of |x| and |z| is the distance from the nearest line's plane.
   const double off = std::asin(std::min(std::abs(p.x()), std::abs(p.z())) / etalon.radius) * etalon.radius;
   return !is_on_end && off < 0.5 * etalon.line_width;
 }

@@ -10,12 +10,12 @@
 #include "flexura/kinematics/spatial.h"
 #include "tests/support/random_cases.h"
 
-// Questions for inverse kinematics whose answers are known to exist, or known not to: for tests and studies.
+// Targets for inverse kinematics that are known to be reachable or unreachable, for tests and studies.
 namespace flexura {
 
 enum class TargetKind { position, direction, pose };
 
-/// Three spatial sections of 0.15 to 0.4 m with one limit on their bends from 60 degrees to a half turn.
+/// Returns three spatial sections of 0.15 to 0.4 m with a common bend limit from 60 degrees to a half turn.
 inline Arm random_three_sections(TestRandom& random) {
   Arm arm;
   arm.kind = ArmKind::spatial;
@@ -28,7 +28,7 @@ inline Arm random_three_sections(TestRandom& random) {
   return arm;
 }
 
-/// Evenly over the limits: disks of bends, ranges of stretches.
+/// Returns a state distributed uniformly over the limits: disks of bends, ranges of stretches.
 inline ArmState random_state_within(TestRandom& random, const Arm& arm) {
   ArmState state = ArmState::straight(arm.sections.size());
   for (std::size_t i = 0; i < arm.sections.size(); ++i) {
@@ -71,8 +71,8 @@ inline Eigen::Vector3d random_unit(TestRandom& random) {
   return v.normalized();
 }
 
-/// What a search for a target makes small: the position error over the arm's length and the angle error, in
-/// rad, together. What the nearest pose to a target out of reach is the nearest by.
+/// Returns the cost that the solver minimises: position error over the arm's length and angle error in rad,
+/// combined. It defines the nearest pose to an unreachable target.
 inline double miss_of(const Arm& arm, const TipTarget& target, const ArmState& state) {
   const Pose X_WT = tip_pose(arm, state);
   const double position = (X_WT.position - target.position).norm() / arm.length();
@@ -82,12 +82,12 @@ inline double miss_of(const Arm& arm, const TipTarget& target, const ArmState& s
   return std::hypot(position, std::atan2(z.cross(d).norm(), z.dot(d)));
 }
 
-/// What counts as nearer than the answer's pose, in parts of the answer's own distance: with a direction the
-/// valleys are long and flat, and the search ends a little before their bottom.
+/// Returns the tolerance for "nearer than the answer", as a share of the answer's own distance. It is larger
+/// for directions, because their minima are long and flat and the search stops slightly before the bottom.
 inline double nearer_by(const TipTarget& target) { return target.direction ? 1e-4 : 1e-6; }
 
-/// The least of `measure` that a descent by chance finds from `state` on, within the limits on bends: tries
-/// steps at random, shorter ones after failures and longer ones after successes. Knows no derivatives.
+/// Returns the minimum of `measure` found by random descent from `state` within the bend limits. Steps get
+/// shorter after failures and longer after successes; no derivatives are used.
 template <class Measure>
 double random_descent(TestRandom& random, const Arm& arm, ArmState state, int tries, const Measure& measure) {
   double best = measure(state);
@@ -106,11 +106,11 @@ double random_descent(TestRandom& random, const Arm& arm, ArmState state, int tr
   return best;
 }
 
-/// A target that no state of an arm of random_three_sections reaches, by construction, in one of four ways
-/// (`way` 0 to 3), none of which asks the code under test: beyond the arm's length; behind the base, where an
-/// arm that cannot turn by more than a quarter has no tip; so near to the base that the arm, bent as much as
-/// it can, has its tip further away; pointing further round than all its bends together. Sets the limits of
-/// `arm` as needed; `at_least` receives a lower bound on the position error, m (0 for the last way).
+/// Returns a target that an arm of random_three_sections provably cannot reach, without using the code under
+/// test. `way` 0: beyond the arm's length. 1: behind the base, where an arm that turns by at most a quarter
+/// has no tip. 2: so near to the base that even the fully bent arm has its tip farther away. 3: pointing
+/// further round than all bends together. Sets the limits of `arm` as needed. `at_least` receives a lower
+/// bound of the position error, m (0 for `way` 3).
 inline TipTarget unreachable_target(TestRandom& random, int way, Arm& arm, double& at_least) {
   using std::numbers::pi;
   TipTarget target;
@@ -124,7 +124,7 @@ inline TipTarget unreachable_target(TestRandom& random, int way, Arm& arm, doubl
     target.position = random.uniform(0.0, 0.5) * random_unit(random);
     target.position.y() = -at_least;
   } else if (way == 2) {
-    // A curve of length L that turns by less than b in all has a chord of more than L cos(b/2).
+    // A curve of length L with a total turn below b has a chord longer than L cos(b/2).
     double turn = 0.0;
     for (Section& section : arm.sections) turn += section.max_bend = random.uniform(0.1, 0.9 * pi / 3.0);
     const double hole = arm.length() * std::cos(0.5 * turn);

@@ -8,8 +8,8 @@
 
 namespace flexura {
 
-/// A robot of two sections and six tendons: L .2 + .2 m, E 54 GPa, nu 0.3, radius .7 mm, tendons 10 mm off
-/// axis at 90, -30 and 210 degrees that end at the first section, then the same of the second.
+/// Returns a robot of two sections of 0.2 m and six tendons: E 54 GPa, nu 0.3, radius 0.7 mm. Three tendons
+/// 10 mm off axis at 90, -30 and 210 degrees end at the first section, three more at the second.
 inline Rod two_section_robot() {
   RodSection section{
       .length = 0.2, .radius = {0.7e-3, 0.7e-3}, .youngs_modulus = 54e9, .shear_modulus = 54e9 / 2.6};
@@ -20,7 +20,7 @@ inline Rod two_section_robot() {
   return rod;
 }
 
-/// A spring steel rod of 0.5 m with one tendon at 0 degrees.
+/// Returns a spring steel rod of 0.5 m with one tendon at 0 degrees.
 inline Rod heavy_rod() {
   return {.sections = {RodSection{.length = 0.5,
                                   .radius = {1e-3, 1e-3},
@@ -30,8 +30,8 @@ inline Rod heavy_rod() {
           .tendons = {{.section = 0, .radius = 15.06e-3}}};
 }
 
-/// A soft tentacle of 0.6 m that its own viscosity slows, and its weight when it is clamped at the side: its
-/// z is level and its x points up.
+/// Returns a soft tentacle of 0.6 m with internal viscosity and weight, clamped at its side: its z is
+/// horizontal and its x points up.
 inline Rod soft_tentacle() {
   const double inertia = std::numbers::pi / 4 * std::pow(0.03, 4);
   RodSection section{.length = 0.6,
@@ -45,7 +45,7 @@ inline Rod soft_tentacle() {
 }
 inline RodLoads soft_tentacle_weight() { return {.gravity = {-9.81, 0, 0}}; }
 
-/// A soft arm of 0.3 m, 8 mm thick to each side; and the same with a tendon towards x.
+/// Returns a soft arm of 0.3 m with half thickness 8 mm; a second arm has a tendon towards x.
 inline Rod soft_arm(double youngs_modulus = 5e6, int bend = 4) {
   RodSection section{.length = 0.3,
                      .radius = {0.008, 0.008},
@@ -62,7 +62,7 @@ inline Rod soft_arm_with_tendon(double youngs_modulus) {
   return rod;
 }
 
-/// A rod of length 1 and EI = 1 that bends alone.
+/// Returns a rod of length 1 with EI = 1 that can only bend.
 inline Rod elastica(int modes) {
   RodSection section{.length = 1, .stiffness = Vector6d::Ones(), .mass_per_length = 1};
   section.modes = {.shear = 0, .stretch = 0, .bend = modes, .twist = 0};

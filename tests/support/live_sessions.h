@@ -15,7 +15,7 @@
 
 namespace flexura {
 
-/// A session with a client, whose clock the test moves on.
+/// A session with a client, whose clock the test advances.
 class LiveSessionTest : public ::testing::Test {
  protected:
   explicit LiveSessionTest(const std::string& text = viewed_text)
@@ -24,7 +24,7 @@ class LiveSessionTest : public ::testing::Test {
     session_.opened(me);
   }
 
-  // What comes of a request; its error, if there is one.
+  // Returns the answer to a request, which may be an error.
   ViewAnswer ask(const Ask& ask, ClientId client = me) {
     answer_.reset();
     try {
@@ -34,7 +34,7 @@ class LiveSessionTest : public ::testing::Test {
     }
     return answer_.value_or(ViewAnswer{{}, "no answer yet"});
   }
-  // Goes on by so many s, 60 times a second.
+  // Advances by `seconds` at 60 steps per second.
   StateMessage pass(double seconds) {
     for (const double end = clock_ + seconds; clock_ < end - 1e-9;) session_.advance(clock_ += 1.0 / 60);
     return messenger_.state(me);

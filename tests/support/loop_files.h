@@ -14,19 +14,20 @@
 
 namespace flexura {
 
-/// How a camera truly starts, beside where it is believed to be: angles in rad, the stage in m.
+/// Initial errors of a camera relative to its model: angles in rad, the stage in m.
 struct WrongStart {
   double pan = 0, tilt = 0, roll = 0, zoom = 1, cx = 0, cy = 0;
   std::array<double, 3> shift = {0, 0, 0};
   // Not drawn by wrong_start:
-  double pan_zero = 0, tilt_zero = 0;           ///< Of the head.
-  std::array<double, 3> tilt_axis = {0, 0, 0};  ///< A point of it, m.
-  double k1 = 0;                                ///< Of the lens,
-  double focal = 1;                             ///< and its focal length, as a factor.
+  double pan_zero = 0, tilt_zero = 0;           ///< Zero errors of the head, rad.
+  std::array<double, 3> tilt_axis = {0, 0, 0};  ///< Error of a point of the tilt axis, m.
+  double k1 = 0;                                ///< Distortion of the lens.
+  double focal = 1;                             ///< Factor on the focal length.
 };
 
-/// Evenly over what the paper's methods shall start from: pan and tilt 10 degrees off, roll 1, the stage 0.2
-/// m in each direction, zoom 1 to 2.5, the principal point 1 px; `size` is a share of all that.
+/// Returns errors distributed uniformly over the starting range of the paper's methods. Pan and tilt: 10
+/// degrees; roll: 1 degree; stage: 0.2 m in each direction; zoom: 1 to 2.5; principal point: 1 px. `size`
+/// scales all of them.
 inline WrongStart wrong_start(TestRandom& random, double size = 1) {
   WrongStart start;
   start.pan = size * random.uniform(-10, 10) * degree, start.tilt = size * random.uniform(-10, 10) * degree;
@@ -36,14 +37,14 @@ inline WrongStart wrong_start(TestRandom& random, double size = 1) {
   return start;
 }
 
-/// A rig that is wrong in all of that, and an arm whose lengths and bends are: shares.
+/// A rig with wrong cameras and an arm with relative errors of lengths and bends.
 struct WrongRig {
   WrongStart front, side;
   std::array<double, 3> longer = {};
   std::vector<double> gains = {1, 1, 1};
 };
 
-/// Evenly: lengths by half a per cent, bends by one.
+/// Returns uniformly distributed errors: lengths 0.5 %, bends 1 %.
 inline WrongRig wrong_rig(TestRandom& random) {
   WrongRig rig;
   rig.front = wrong_start(random), rig.side = wrong_start(random);
@@ -52,25 +53,25 @@ inline WrongRig wrong_rig(TestRandom& random) {
   return rig;
 }
 
-/// A rig for the paper's methods: two cameras at 640 x 480 px, or smaller.
+/// A rig for the paper's methods: two cameras of 640 x 480 px, or smaller.
 struct LoopRig {
-  std::array<WrongStart, 2> wrong = {};  ///< How they truly start.
+  std::array<WrongStart, 2> wrong = {};  ///< Initial errors of the cameras.
   std::array<std::array<double, 3>, 2> at = {
-      {{0, 0.5, 1.5}, {-1.5, 0.5, 0}}};  ///< Where they are believed to be, m.
-  double size = 1;                       ///< Of the pictures.
-  double travel = 0.6;                   ///< Of the stages, to both sides, m.
-  std::string sensor = {};               ///< More of it: ", drop = 1".
+      {{0, 0.5, 1.5}, {-1.5, 0.5, 0}}};  ///< Nominal camera positions, m.
+  double size = 1;                       ///< Scale of the picture size.
+  double travel = 0.6;                   ///< Travel of the stages to both sides, m.
+  std::string sensor = {};               ///< Additional sensor settings, for example ", drop = 1".
   double frame_rate = 20;                ///< 1/s
 };
 
-/// A camera of it, as believed or as it truly is: its head and stage count from there.
+/// Returns a camera of the rig, nominal or true; head and stage positions count from there.
 inline std::string loop_camera(const LoopRig& rig, bool is_side, bool is_truth) {
   const std::size_t i = is_side ? 1 : 0;
   const WrongStart wrong = is_truth ? rig.wrong[i] : WrongStart{};
   std::array<double, 3> at = rig.at[i];
   for (std::size_t j = 0; j < 3; ++j) at[j] += wrong.shift[j];
   const double heading =
-      (is_side ? 0 : std::numbers::pi / 2) + wrong.pan;  // Of the sight from +X, to the left.
+      (is_side ? 0 : std::numbers::pi / 2) + wrong.pan;  // Of the line of sight from +X, to the left.
   const std::array<double, 3> look = {at[0] + std::cos(wrong.tilt) * std::cos(heading),
                                       at[1] + std::sin(wrong.tilt),
                                       at[2] - std::cos(wrong.tilt) * std::sin(heading)};
@@ -104,15 +105,15 @@ inline std::string loop_rig(const LoopRig& rig, const std::string& task) {
   return text + "\n[[task]]\nkind = \"calibrate\"\n" + task;
 }
 
-/// Before the calibration cylinder.
+/// Returns a file of the rig in front of the calibration cylinder.
 inline std::string etalon_rig(const std::string& task, const LoopRig& rig, const std::string& etalon = "") {
   return "[arm]\nkind = \"spatial\"\n[[arm.section]]\nlength = 1\nradius = 0.03\n"
          "[stand]\narm = false\n[stand.etalon]\nposition = [0, 0.3, 0]\n" +
          etalon + loop_rig(rig, task);
 }
 
-/// Before an arm of three sections, with bands of three colours; it bends into arcs of 120 degrees. `truth`:
-/// of its lengths.
+/// Returns a file of the rig in front of a three-section arm with bands in three colours, which bends into
+/// arcs of 120 degrees. `truth`: the true arm lengths.
 inline std::string arcs_rig(const std::string& task, const LoopRig& rig,
                             const std::array<double, 3>& longer = {}) {
   std::string text = "[arm]\nkind = \"spatial\"\n", truth;
@@ -127,7 +128,8 @@ inline std::string arcs_rig(const std::string& task, const LoopRig& rig,
          truth + loop_rig(rig, task);
 }
 
-/// Where cameras look straight at the middle of both arcs, or at their circles' centres, 2.5 m away.
+/// Returns cameras 2.5 m away that look straight at the middle of both arcs, or at the centres of their
+/// circles.
 inline LoopRig arcs_cameras(const std::array<WrongStart, 2>& wrong, bool is_at_centers = false) {
   const double radius = 1 / (2 * std::numbers::pi / 3);
   const double aside = is_at_centers ? radius : 0.5 * radius,

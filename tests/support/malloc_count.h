@@ -3,8 +3,8 @@
 #include <atomic>
 #include <cstddef>
 
-/// Counts what a test program takes from the heap, Eigen's matrices too: this is its malloc. For one source
-/// of a program, and for none that is built with a sanitizer, which has an allocator of its own.
+/// Counts the heap allocations of a test program, including Eigen's matrices, by replacing malloc. Include it
+/// in one source of a program only, and never with a sanitizer, which replaces malloc itself.
 
 inline std::atomic<long> mallocs{0};
 

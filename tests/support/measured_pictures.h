@@ -10,7 +10,7 @@
 
 namespace flexura {
 
-/// A dark bent tube 12 px wide before a bright ground, with three red bands.
+/// Returns a picture of a dark bent tube 12 px wide on a bright background, with three red bands.
 inline Image<std::uint8_t> tube() {
   Image<std::uint8_t> picture(320, 240, 3);
   for (int v = 0; v < 240; ++v) {
@@ -27,7 +27,7 @@ inline Image<std::uint8_t> tube() {
   return picture;
 }
 
-/// What is measured in a picture's file.
+/// Returns the measurement of a picture file.
 inline Measurement measured(const std::string& file, MeasureTarget what = MeasureTarget::arm) {
   MeasureConfig config;
   config.what = what;

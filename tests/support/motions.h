@@ -15,10 +15,11 @@
 
 namespace flexura {
 
-/// A horizon that no motion of a test reaches, s.
+/// A horizon longer than any motion of a test, s.
 inline constexpr double forever = 1e9;
 
-/// Bends up to 3 rad in each direction (planar arms: in the plane), stretches from 0.8 to 1.2.
+/// Returns random bends up to 3 rad in each direction (planar arms: in the plane) and stretches from 0.8 to
+/// 1.2.
 inline ArmState random_keyframe(TestRandom& random, const Arm& arm) {
   ArmState state = ArmState::straight(arm.sections.size());
   for (Eigen::Vector2d& bend : state.bends) {
@@ -29,8 +30,8 @@ inline ArmState random_keyframe(TestRandom& random, const Arm& arm) {
   return state;
 }
 
-/// As a move in cord angles with a law for each section, and a swing of these: laws in which a section's bend
-/// follows all the cords before it. Planar arms.
+/// Returns a move in cord angles with a law for each section, and a swing of cord angles. In these laws the
+/// bend of a section depends on all cords before it. Planar arms only.
 inline std::vector<MotionPtr> random_cord_motions(TestRandom& random, const Arm& arm) {
   const double duration = random.uniform(0.2, 5);
   const ArmState from = random_keyframe(random, arm);
@@ -51,7 +52,7 @@ inline std::vector<MotionPtr> random_cord_motions(TestRandom& random, const Arm&
           cord_sine_motion(from, amplitudes, phases, random.uniform(0.2, 3), duration)};
 }
 
-/// The fastest trapezoid between two states that keeps to a rate and an acceleration of each section's own.
+/// Returns the fastest trapezoid between two states within a rate and an acceleration limit of each section.
 inline MotionPtr random_trapezoids(TestRandom& random, const Arm& arm) {
   const ArmState from = random_keyframe(random, arm);
   const ArmState to = random_keyframe(random, arm);
@@ -67,7 +68,7 @@ inline MotionPtr random_trapezoids(TestRandom& random, const Arm& arm) {
       from, to, std::vector<Profile>(arm.sections.size(), Profile::trapezoid(1, rate, acceleration)));
 }
 
-/// To a place for the tip, as a move to a position: with the state that inverse kinematics answers.
+/// Returns a move to a tip position, with the state found by inverse kinematics.
 inline MotionPtr random_move_of_tip(TestRandom& random, const Arm& arm) {
   const ArmState from = random_keyframe(random, arm);
   const Eigen::Vector3d place = tip_pose(arm, random_keyframe(random, arm)).position;
@@ -76,9 +77,9 @@ inline MotionPtr random_move_of_tip(TestRandom& random, const Arm& arm) {
   return point_to_point_motion(from, there.state, profiles);
 }
 
-/// One motion of every kind that knows its rates: hold, point to point (linear with minimum jerk, trapezoid),
-/// sine, keyframes linear and smooth, trapezoids by limits of each section, a move of the tip, and of a
-/// planar arm a move and a swing of its cords.
+/// Returns one motion of every kind with known rates: hold, point to point (linear with minimum jerk,
+/// trapezoid), sine, keyframes linear and smooth, trapezoids by limits of each section, and a move of the
+/// tip. A planar arm also gets a move and a swing of its cords.
 inline std::vector<MotionPtr> random_motions(TestRandom& random, const Arm& arm) {
   const std::size_t n = arm.sections.size();
   const auto state = [&] { return random_keyframe(random, arm); };

@@ -9,7 +9,7 @@
 
 namespace flexura {
 
-/// A device before another one: what it says, and what it is sent, is changed on the way.
+/// A device that modifies the readings and the commands of another device.
 template <class Port, class State, class Reading, class... Way>
 class OddDevice : public Port {
  public:
@@ -36,7 +36,7 @@ class OddDevice : public Port {
 using OddArm = OddDevice<ArmPort, ArmState, ArmReading, double>;
 using OddHead = OddDevice<HeadPort, HeadState, HeadReading>;
 
-/// A camera whose frames are changed on the way.
+/// A camera that modifies the frames of another camera.
 class OddCamera : public CameraPort {
  public:
   OddCamera(CameraPort& camera, std::function<Frame(Frame)> shown)

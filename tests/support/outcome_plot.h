@@ -16,11 +16,11 @@ namespace flexura {
 
 using MethodTrials = std::vector<std::pair<std::string, std::vector<CalibrationTrial>>>;
 
-/// Where the methods fail: their starts, coloured by what came of them; and what they reach: the share of the
-/// starts that ended within an angle.
+/// Plots the starts of the trials, coloured by outcome, and the share of the starts that ended within an
+/// angle.
 class OutcomePlot {
  public:
-  /// `shown`: those whose starts are drawn; `all`: those whose ends are.
+  /// `shown`: trials whose starts are drawn; `all`: trials whose final angles are drawn.
   static std::string draw(const MethodTrials& shown, const MethodTrials& all) {
     OutcomePlot plot;
     double left = margin;
@@ -51,7 +51,7 @@ class OutcomePlot {
     lowest_ = std::max(lowest_, corner.y() + draw_legend(svg_, "", entries, corner, frame.right() + 20));
   }
 
-  // "done, 0.5 deg" and the like.
+  // For example "done, 0.5 deg".
   static std::string outcome_of(const CalibrationTrial& trial) {
     if (!trial.is_done) return trial.reason;
     return trial.angle * in_degrees < 0.5 && trial.angle * in_degrees > -0.5 ? "done, within 0.5 deg"

@@ -11,10 +11,10 @@
 
 namespace flexura {
 
-/// A rig's devices, each of which goes by a clock of its own: one that began at another time and drifts.
+/// Wraps a rig's devices so that each has its own clock with an offset and a drift.
 class OwnClocks {
  public:
-  /// How far each clock is ahead of the one before, s, and by which share it goes faster.
+  /// `ahead`: offset of each clock to the one before, s; `drift`: relative rate error.
   OwnClocks(const RigPorts& rig, double ahead, double drift) : rig_(rig), own_(rig) {
     double offset = 0;
     const auto shown = [&offset, ahead, drift] {
@@ -32,9 +32,9 @@ class OwnClocks {
     }
   }
 
-  /// The devices as they are.
+  /// Returns the devices with their own clocks.
   [[nodiscard]] const RigPorts& own() const { return own_; }
-  /// The same with the rig's time; `sensors` are the cameras'.
+  /// Returns the devices mapped to the rig's time; `sensors` are those of the cameras.
   [[nodiscard]] RigPorts mapped(const std::vector<SensorConfig>& sensors) {
     RigPorts ports = own_;
     ports.arm = &mapped_arms_.emplace_back(*own_.arm, *rig_.clock, clocks_.emplace_back());

@@ -18,14 +18,14 @@
 
 namespace flexura {
 
-/// How two pictures of one scene differ.
+/// Difference between two pictures of one scene.
 struct Difference {
-  double worst = 0;         // Of light.
-  int count = 0, many = 0;  // Of values of light that differ by more than 1/500, of all.
-  double depth = 0;         // Relative; infinite where one of them shows nothing.
-  int bad_depths = 0;       // Of those that differ by more than 2e-6 of it.
+  double worst = 0;         // Largest difference of light.
+  int count = 0, many = 0;  // Number of light values that differ by more than 1/500; number of all values.
+  double depth = 0;  // Largest relative difference of depth; infinite where only one picture shows something.
+  int bad_depths = 0;  // Number of depths that differ by more than 2e-6, relative.
 
-  // What is not a number is infinitely off.
+  // NaN counts as an infinite difference.
   static void raise(double& largest, double off) {
     if (!(off <= largest)) largest = std::isnan(off) ? std::numeric_limits<double>::infinity() : off;
   }
@@ -54,7 +54,7 @@ inline Difference compare(const LightImage& exact, const LightImage& quick) {
   return result;
 }
 
-/// How a scene drawn the quick way differs from the same drawn exactly.
+/// Returns the difference between the fast path and the reference path for a scene.
 inline Difference compare_ways(const Scene& scene, const View& view, PixelKind pixels = PixelKind::gray) {
   Renderer renderer;
   LightImage exact, quick;
@@ -63,15 +63,15 @@ inline Difference compare_ways(const Scene& scene, const View& view, PixelKind p
   return compare(exact, quick);
 }
 
-/// A scene and who sees it.
+/// A scene and a view of it.
 struct Sight {
   Scene scene;
   View view;
   PixelKind pixels = PixelKind::gray;
 };
 
-/// How the two ways differ in `count` sights, as draw(random) makes them: in light by less than `most`, in
-/// depth by less than `deepest` of it.
+/// Checks fast path against reference path in `count` views made by draw(random): light within `most`, depth
+/// within the share `deepest`.
 template <typename Draw>
 Difference compare_ways_of(const char* name, int count, double most, Draw&& draw, double deepest = 1e-5) {
   Difference all;
@@ -96,7 +96,8 @@ inline void expect_same_on_every_path(const Sight& sight) {
   }
 }
 
-/// How many pixels of a gray picture the quick way leaves to the exact one; all if it draws nothing.
+/// Returns how many pixels of a gray picture the fast path leaves to the reference path; all if it draws
+/// nothing.
 inline std::size_t left_out_of(const Scene& scene, const View& view) {
   Renderer renderer;
   renderer.prepare(scene, view);

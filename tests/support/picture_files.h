@@ -13,13 +13,13 @@
 #include <cstring>
 #include <string>
 #include <vector>
-// jpeglib.h needs FILE and size_t before it.
+// jpeglib.h requires FILE and size_t to be declared before it.
 #include <jpeglib.h>
 
 #include "flexura/base/image.h"
 #include "tests/support/random_cases.h"
 
-// Picture files of every form that the readers are to read, made by the libraries themselves or by hand.
+// Picture files in every supported format, written by the libraries or byte by byte.
 namespace flexura {
 
 using Colors = std::vector<std::array<std::uint8_t, 3>>;
@@ -28,7 +28,7 @@ inline std::span<const std::uint8_t> file_bytes(const std::string& file) {
   return {reinterpret_cast<const std::uint8_t*>(file.data()), file.size()};
 }
 
-/// Values from 0 to `most`.
+/// Returns a picture of random values from 0 to `most`.
 template <typename T>
 Image<T> random_values(TestRandom& random, int width, int height, int channels, int most) {
   Image<T> image(width, height, channels);
@@ -36,7 +36,7 @@ Image<T> random_values(TestRandom& random, int width, int height, int channels, 
   return image;
 }
 
-/// Gray or colours that change slowly, so that a JPEG file keeps them nearly.
+/// Returns a smooth gray or colour picture, which JPEG compression nearly preserves.
 inline Image<std::uint8_t> smooth_picture(int width, int height, int channels) {
   Image<std::uint8_t> image(width, height, channels);
   for (int v = 0; v < height; ++v)
@@ -46,7 +46,7 @@ inline Image<std::uint8_t> smooth_picture(int width, int height, int channels) {
   return image;
 }
 
-/// A row's values of `bits` each, the first one highest; words with the lower byte first.
+/// Packs a row's values of `bits` each, most significant bit first; words are little-endian.
 template <typename T>
 std::string packed(std::span<const T> values, int bits) {
   std::string row((values.size() * static_cast<std::size_t>(bits) + 7) / 8, '\0');
@@ -70,7 +70,8 @@ struct PngForm {
   Colors palette = {};
 };
 
-/// Gray, gray and alpha, RGB or RGB and alpha by the channels; with a palette the values are its indices.
+/// Writes a PNG file: gray, gray and alpha, RGB, or RGB and alpha by the number of channels. With a palette
+/// the values are its indices.
 template <typename T>
 std::string png_file(const Image<T>& image, const PngForm& form) {
   constexpr std::array<int, 5> kinds = {0, PNG_COLOR_TYPE_GRAY, PNG_COLOR_TYPE_GRAY_ALPHA, PNG_COLOR_TYPE_RGB,
@@ -104,7 +105,7 @@ std::string png_file(const Image<T>& image, const PngForm& form) {
   return file;
 }
 
-/// One channel for gray, three for colours, four for inks (as brightness and colours if `is_luma`).
+/// Writes a JPEG file: one channel for gray, three for RGB, four for CMYK (YCCK if `is_luma`).
 inline std::string jpeg_file(const Image<std::uint8_t>& image, bool is_progressive, bool is_luma = false) {
   constexpr std::array<J_COLOR_SPACE, 5> spaces = {JCS_UNKNOWN, JCS_GRAYSCALE, JCS_UNKNOWN, JCS_RGB,
                                                    JCS_CMYK};
@@ -139,14 +140,14 @@ struct TiffForm {
   int bits = 8;
   int compression = COMPRESSION_NONE;
   int photometric = PHOTOMETRIC_MINISBLACK;
-  int tile = 0;  ///< Its side, px; 0 for strips of `rows`.
+  int tile = 0;  ///< Tile size, px; 0 for strips of `rows` rows.
   int rows = 5;
   bool is_separate = false;
   bool is_high_first = false;
   Colors palette = {};
 };
 
-/// A file in memory, as libtiff asks for one.
+/// An in-memory file for libtiff's I/O callbacks.
 struct TiffMemory {
   std::string bytes;
   std::size_t at = 0;
@@ -175,7 +176,8 @@ struct TiffMemory {
   static toff_t size(thandle_t handle) { return static_cast<TiffMemory*>(handle)->bytes.size(); }
 };
 
-/// The values of a block of the picture, filled up with zeros; of one channel where `plane` is not negative.
+/// Returns the values of a block of the picture, padded with zeros; of one channel if `plane` is not
+/// negative.
 template <typename T>
 std::string tiff_block(const Image<T>& image, int u0, int v0, int width, int height, int plane, int bits) {
   std::string block;
@@ -239,7 +241,7 @@ std::string tiff_file(const Image<T>& image, const TiffForm& form) {
   return file.bytes;
 }
 
-/// P2 or P3 for `is_plain`, else P5 or P6, with a comment.
+/// Writes P2 or P3 if `is_plain`, otherwise P5 or P6, with a comment.
 template <typename T>
 std::string pnm_file(const Image<T>& image, int most, bool is_plain) {
   std::string file = "P" + std::to_string((is_plain ? 2 : 5) + (image.channels() == 3 ? 1 : 0)) +
@@ -253,7 +255,7 @@ std::string pnm_file(const Image<T>& image, int most, bool is_plain) {
   return file;
 }
 
-/// P1 for `is_plain`, else P4, of values 0 (white) and 1.
+/// Writes P1 if `is_plain`, otherwise P4, from values 0 (white) and 1.
 inline std::string pbm_file(const Image<std::uint8_t>& image, bool is_plain) {
   std::string file = std::string(is_plain ? "P1" : "P4") + "\n# made\n" + std::to_string(image.width()) +
                      " " + std::to_string(image.height()) + "\n";

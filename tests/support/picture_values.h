@@ -10,7 +10,7 @@
 #include "tests/support/picture_files.h"
 #include "tests/support/random_cases.h"
 
-// What a test of the readers puts into a file, and what it then expects of it.
+// Values that a test of the readers writes to a file, and the values expected when reading it.
 namespace flexura {
 
 inline Picture read_made(const std::string& file) {
@@ -33,7 +33,7 @@ inline double mean_difference(const Image<std::uint8_t>& a, const Image<std::uin
 
 inline int side(TestRandom& random) { return random.integer(1, 40); }
 
-// Without the channels from the third (of two: from the second) on: alpha.
+// Returns the picture without alpha: one channel of two, three of four.
 template <typename T>
 Image<T> without_alpha(const Image<T>& image) {
   Image<T> rest(image.width(), image.height(), image.channels() < 3 ? 1 : 3);

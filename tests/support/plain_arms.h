@@ -9,7 +9,7 @@
 
 namespace flexura {
 
-/// A planar arm in view, 400 px long: everything of it is seen.
+/// Returns a picture of a planar arm 400 px long that is completely visible.
 inline SeenArm plain_arm(double bend, const SeenArmConfig& options = {}) {
   SeenArm seen;
   BentArm bent;
@@ -28,7 +28,7 @@ inline SeenArm plain_arm(double bend, const SeenArmConfig& options = {}) {
   return seen;
 }
 
-/// Of the samples that were seen from where the backbone truly is, root mean square, px.
+/// Returns the rms distance of the samples from the true backbone, px.
 inline double rms_error(const SeenArm& seen, const std::vector<AxisSample>& axis) {
   double squares = 0, count = 0;
   for (const AxisSample& sample : axis) {
@@ -39,7 +39,7 @@ inline double rms_error(const SeenArm& seen, const std::vector<AxisSample>& axis
   return std::sqrt(squares / count);
 }
 
-/// An arm of three sections of 0.3 m from in front.
+/// Returns an arm of three sections of 0.3 m seen from the front.
 inline SeenArm bent_arm_in_view(const std::vector<Eigen::Vector2d>& bends, double radius,
                                 const Eigen::Vector3d& from, const Eigen::Vector3d& to, double focal_length) {
   SeenArm seen;

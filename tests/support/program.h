@@ -19,18 +19,18 @@ namespace flexura {
 inline const std::string program = built_file("bin/flexura");
 inline const std::string paper_file = checkout_file("examples/01_paper_arm/experiment.toml");
 
-/// How a program ended, and what it said.
+/// Exit status and output of a program.
 struct Ended {
   int status = -1;
   std::string out;
   std::string err;
 };
 
-/// The program as a user starts it, in a folder of the test's own.
+/// Runs the program as a user would, in a temporary folder of the test.
 class Program : public ::testing::Test {
  protected:
-  // Starts the program in the test's folder; arguments are given as a person types them, without quoting.
-  // What it says to people goes to the file or terminal `err`.
+  // Starts the program in the test's folder. Arguments are separated by spaces, without quoting. Standard
+  // error goes to the file or terminal `err`.
   pid_t start(const std::string& arguments, const std::string& out) {
     return start(arguments, out, path("err"));
   }
@@ -54,10 +54,10 @@ class Program : public ::testing::Test {
   [[nodiscard]] std::string path(const std::string& name) const { return (folder_.path() / name).string(); }
 
   TemporaryFolder folder_;
-  std::string before_;  ///< What the shell does before it becomes the program: "ulimit -f 8 && ".
+  std::string before_;  ///< Shell commands before the program starts, for example "ulimit -f 8 && ".
 };
 
-/// What a file says once it says something.
+/// Waits until a file ends with a complete line and returns its content; "nothing" after half a minute.
 inline std::string told_in(const std::string& file) {
   for (int i = 0; i < 3000; ++i) {
     if (std::filesystem::exists(file)) {

@@ -6,7 +6,7 @@
 
 namespace flexura {
 
-/// Hears how far a job is, and says nothing.
+/// A progress listener that ignores all reports.
 class Quiet : public Progress {
  public:
   void update(double, std::string_view) override {}

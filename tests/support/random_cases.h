@@ -13,20 +13,20 @@
 
 namespace flexura {
 
-/// Random numbers for tests, the same on every platform (the distributions of <random> are not).
+/// Random numbers for tests, identical on every platform (the distributions of <random> are not).
 class TestRandom {
  public:
   explicit TestRandom(std::uint64_t seed) : engine_(seed) {}
 
-  /// In [low, high).
+  /// Returns a number in [low, high).
   double uniform(double low, double high) {
     return low + (high - low) * (static_cast<double>(engine_() >> 11) * 0x1p-53);
   }
-  /// In [low, high], both included.
+  /// Returns an integer in [low, high], both included.
   int integer(int low, int high) {
     return low + static_cast<int>(engine_() % static_cast<std::uint64_t>(high - low + 1));
   }
-  /// Each component in [low, high).
+  /// Returns a vector with each component in [low, high).
   template <int n>
   Eigen::Vector<double, n> vector(double low, double high) {
     Eigen::Vector<double, n> result;
@@ -38,13 +38,13 @@ class TestRandom {
   std::mt19937_64 engine_;
 };
 
-/// A normally distributed number (G. Box, M. Muller).
+/// Returns a normally distributed number (Box-Muller: G. Box, M. Muller).
 inline double normal_number(TestRandom& random) {
   const double radius = std::sqrt(-2 * std::log(1 - random.uniform(0, 1)));
   return radius * std::cos(2 * std::numbers::pi * random.uniform(0, 1));
 }
 
-/// The seed of a test's case: FNV-1a of the test's full name, plus the case's number.
+/// Returns the seed of a test's case: FNV-1a of the test's full name, plus the case number.
 inline std::uint64_t case_seed(int index) {
   const testing::TestInfo* test = testing::UnitTest::GetInstance()->current_test_info();
   std::uint64_t hash = 14695981039346656037u;
@@ -54,8 +54,8 @@ inline std::uint64_t case_seed(int index) {
   return hash + static_cast<std::uint64_t>(index);
 }
 
-// Sanitized builds run some thirty times slower, and look for faults that the first cases show as well as the
-// last; races between threads more so than wild memory.
+// Sanitized builds run about thirty times slower, and the first cases find memory errors and races as well as
+// later ones. The thread sanitizer needs even fewer cases.
 #if defined(__SANITIZE_THREAD__)
 inline constexpr int one_case_of = 12;
 #elif defined(__SANITIZE_ADDRESS__)
@@ -64,8 +64,9 @@ inline constexpr int one_case_of = 4;
 inline constexpr int one_case_of = 1;
 #endif
 
-/// Calls body(TestRandom&) for `count` cases (one of `one_case_of` in a sanitized build; FLEXURA_CASES=N in
-/// the environment makes it N times as many); stops at the first that fails, whose seed the failure shows.
+/// Calls body(TestRandom&) for `count` cases and stops at the first failing one, whose seed is shown. A
+/// sanitized build runs one of `one_case_of` cases. FLEXURA_CASES=N in the environment multiplies the number
+/// by N.
 template <typename Body>
 void for_random_cases(int count, Body&& body) {
   if (const char* times = std::getenv("FLEXURA_CASES")) count *= std::max(1, std::atoi(times));

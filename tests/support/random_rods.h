@@ -9,9 +9,9 @@
 
 namespace flexura {
 
-/// A rod of one to three sections with tapers, curved at rest, with straight, helical and converging tendons.
-/// It has the size of a laboratory's: sections of 0.1 to 0.3 m that tendons of some newtons bend by up to a
-/// turn.
+/// Returns a rod of one to three tapered sections, curved at rest, with straight, helical and converging
+/// tendons. Its size is typical of a laboratory: sections of 0.1 to 0.3 m that tendon tensions of a few
+/// newtons bend by up to a turn.
 inline Rod random_rod(TestRandom& random, double friction = 0) {
   Rod rod;
   const int sections = random.integer(1, 3);
@@ -50,7 +50,7 @@ inline Rod random_rod(TestRandom& random, double friction = 0) {
   return rod;
 }
 
-/// Of which most are slack, as in a robot that bends; N.
+/// Returns random tensions, N. Most are zero, as in a bending robot.
 inline std::vector<double> random_tensions(TestRandom& random, const Rod& rod, double most) {
   std::vector<double> tensions(rod.tendons.size(), 0.0);
   for (double& tension : tensions)

@@ -12,7 +12,7 @@
 
 namespace flexura {
 
-/// A camera at `from` that looks at `to`, `up` pointing up in its image.
+/// Returns the pose of a camera at `from` that looks at `to`, with `up` upwards in the image.
 inline Pose look_at(const Eigen::Vector3d& from, const Eigen::Vector3d& to,
                     const Eigen::Vector3d& up = {0, 1, 0}) {
   const Eigen::Vector3d z = (to - from).normalized(), x = z.cross(up).normalized();
@@ -22,7 +22,7 @@ inline Pose look_at(const Eigen::Vector3d& from, const Eigen::Vector3d& to,
   return X_WC;
 }
 
-/// Without distortion, the optical axis through the image's middle.
+/// Returns a view without distortion, with the optical axis through the image centre.
 inline View pinhole_view(const Pose& X_WC, int width, int height, double focal_length) {
   View view;
   view.lens =
@@ -33,7 +33,7 @@ inline View pinhole_view(const Pose& X_WC, int width, int height, double focal_l
   return view;
 }
 
-/// Nothing in it; what is put in shows its albedo as it is.
+/// Returns an empty scene in which objects appear with their albedo.
 inline Scene plain_scene() {
   Scene scene;
   scene.light.ambient = 1;
@@ -42,7 +42,7 @@ inline Scene plain_scene() {
   return scene;
 }
 
-/// A spatial arm of three sections, 1 m long, bent anyhow; each section thins by `taper`, and the next one
+/// A randomly bent spatial arm of three sections, 1 m long. Each section tapers by `taper`, and the next one
 /// starts up to `step` narrower or wider.
 struct BentArm {
   Arm arm;
@@ -66,8 +66,8 @@ inline BentArm random_bent_arm(TestRandom& random, double taper, double step = 0
   return bent;
 }
 
-/// Everything at once, in the way of each other, in shades of gray: the arm with markers and disks, a screen,
-/// the etalon, an obstacle of each kind.
+/// Returns a gray scene with many occlusions: the arm with markers and disks, a screen, the calibration
+/// cylinder, and an obstacle of each kind.
 inline Scene crowded_scene(TestRandom& random, const Backbone& backbone) {
   Scene scene = plain_scene();
   const auto gray = [](double value) { return Color(value, value, value); };
@@ -97,7 +97,7 @@ inline Scene crowded_scene(TestRandom& random, const Backbone& backbone) {
   return scene;
 }
 
-/// A camera that sees some of an arm of 1 m from any side, near or far.
+/// Returns a random camera, near or far, that sees part of an arm of 1 m from any side.
 inline View random_view_of(TestRandom& random, const Backbone& backbone) {
   const Eigen::Vector3d middle = backbone.pose(0.5 * backbone.length()).position;
   const Eigen::Vector3d direction = random.vector<3>(-1, 1).normalized();

@@ -8,7 +8,7 @@
 
 namespace flexura {
 
-/// A file's simulated rig with nothing of a run around it, for tasks at its ports.
+/// The simulated rig of a file without the rest of a run, for tasks at its ports.
 class RigBench {
  public:
   explicit RigBench(const std::string& text)

@@ -17,22 +17,22 @@
 
 namespace flexura {
 
-/// How a derived quantity was found to be, beside what is true.
+/// Error and standard deviation of an estimated quantity.
 struct RigFigure {
   double error = 0, sigma = 0;
 };
 
-/// What matters of a calibration, at the two last stances of the trial, one of each camera.
+/// Key results of a calibration, at the last axis positions of each camera in the trial.
 struct RigFigures {
-  RigFigure angle;                 ///< Between the optical axes, rad.
-  RigFigure zoom_ratio;            ///< Share.
-  std::array<RigFigure, 2> focal;  ///< Share.
-  double aim = 0;  ///< How far the axes' distances from the arm's middle are wrong, the larger, m.
+  RigFigure angle;                 ///< Angle between the optical axes, rad.
+  RigFigure zoom_ratio;            ///< Relative.
+  std::array<RigFigure, 2> focal;  ///< Relative.
+  double aim = 0;                  ///< Larger error of the axes' distances from the arm's middle, m.
 };
 
 inline RigFigures figures_of(const RigTrial& trial, const RigProblem& problem, const RigCalibration& found) {
   const RigVariables& variables = problem.variables();
-  // Markers are counted along the arm as it was believed to be, so that the pictures stay out.
+  // The markers lie on the nominal arm; the pictures are left out.
   const RigVariables truth(trial.truth(), problem.prior(), {trial.seen().poses, trial.seen().stances, {}});
   const Eigen::VectorXd none = Eigen::VectorXd::Zero(truth.count());
   const std::size_t last = trial.seen().stances.size() - 1;
@@ -58,7 +58,8 @@ inline RigFigures figures_of(const RigTrial& trial, const RigProblem& problem, c
   return figures;
 }
 
-/// The derivatives of one picture's rows at x, by the numbers that they depend on, as differences tell them.
+/// Returns the derivatives of one picture's rows at x with respect to its own variables, by finite
+/// differences.
 inline NumericalJacobian row_differences(RigProblem& problem, const Eigen::VectorXd& x, std::size_t image,
                                          double step) {
   EXPECT_TRUE(problem.linearise(x));

@@ -18,24 +18,25 @@
 
 namespace flexura {
 
-/// How far a rig is from what is believed of it: evenly within these bounds.
+/// Deviations of the true rig from the model, uniform within these bounds.
 struct RigTrialConfig {
-  double turn = 10 * degree;  ///< Of the mounts, in pan and in tilt.
+  double turn = 10 * degree;  ///< Rotation of the mounts in pan and in tilt, rad.
   double roll = degree;
-  double zero = degree;         ///< Of the heads' axes.
-  double shift = 0.2;           ///< Of the mounts, along each axis, m.
-  double focal = 0.1;           ///< Share.
+  double zero = degree;         ///< Zero errors of the heads' axes, rad.
+  double shift = 0.2;           ///< Position of the mounts along each axis, m.
+  double focal = 0.1;           ///< Focal length, share.
   double principal_point = 10;  ///< px
   double bend = 0.01, length = 0.005;
-  bool are_heads_exact = false;  ///< Otherwise evenly within half a step of what they say.
-  /// It is known that arms bend by the same shares in every pose, as they do here in truth.
+  bool are_heads_exact = false;  ///< If false, head positions are uniform within half a step of the readings.
+  /// The calibration knows that the relative bend errors are equal in every pose, as they are in the
+  /// simulated truth.
   bool are_bends_alike = false;
   double noise = 0.2;  ///< px
   std::size_t markers = 9, points = 40;
 };
 
-/// Two cameras, 2.5 m in front of and beside an arm of three sections and 1 m, with stages and heads that
-/// count in steps of 0.075 degrees.
+/// Returns the model of a rig: two cameras 2.5 m in front of and beside a three-section arm of 1 m. They have
+/// stages, and heads with steps of 0.075 degrees.
 inline RigModel believed_rig() {
   std::vector<CameraConfig> cameras = cameras_at({2.5, 2.5}, {0, 0.5, 0});
   for (CameraConfig& camera : cameras) {
@@ -46,7 +47,7 @@ inline RigModel believed_rig() {
   return rig_model(three_section_arm(), cameras);
 }
 
-/// A rig as it is while another is believed.
+/// Returns a true rig that deviates randomly from the model.
 inline RigModel true_rig(const RigModel& believed, const RigTrialConfig& config, TestRandom& random) {
   RigModel rig = believed;
   for (std::size_t i = 0; i < rig.arm.sections.size(); ++i) {
@@ -72,7 +73,7 @@ inline RigModel true_rig(const RigModel& believed, const RigTrialConfig& config,
   return rig;
 }
 
-/// The true rig at work: stances are taken and pictures are made of what is true of them.
+/// A simulated true rig: moves cameras and arm and generates observations from their true positions.
 class RigTrial {
  public:
   RigTrial(const RigModel& truth, const RigTrialConfig& config, TestRandom& random)
@@ -80,7 +81,7 @@ class RigTrial {
 
   const RigModel& truth() const { return truth_; }
   const RigObservations& seen() const { return seen_; }
-  /// How a camera truly stands in a stance, and the arm in a pose.
+  /// Returns the true axis positions of a camera (stance) by number.
   const RigStance& stance(std::size_t number) const { return stances_.at(number); }
   ArmState pose(std::size_t number) const { return truth_.bent(seen_.poses.at(number)); }
 
@@ -89,7 +90,7 @@ class RigTrial {
     return seen_.poses.size() - 1;
   }
 
-  /// Positions that are between those that can be commanded are drawn to one.
+  /// Adds camera axis positions (a stance), rounded to commandable head positions. Returns their number.
   std::size_t add_stance(RigStance stance) {
     const CameraConfig& camera = truth_.cameras[stance.camera];
     stance.head.pan = commandable(camera.head.pan, stance.head.pan);
@@ -107,7 +108,7 @@ class RigTrial {
     return seen_.stances.size() - 1;
   }
 
-  /// What is inside the picture of the arm. Returns how many markers are.
+  /// Adds an image with the arm points that are inside it. Returns the number of visible markers.
   std::size_t add_image(std::size_t stance, std::size_t pose) {
     const RigStance& where = stances_[stance];
     const View view = Camera(truth_.cameras[where.camera]).view(where.stance());
@@ -151,7 +152,7 @@ class RigTrial {
   std::vector<RigStance> stances_;
 };
 
-/// Twelve pictures a camera: six poses, two turns of the heads each, at two zooms.
+/// Takes twelve pictures per camera: six poses with two head orientations each, at two zooms.
 inline void take_plan(RigTrial& trial, std::size_t pictures = 12) {
   constexpr std::array<std::array<double, 6>, 6> bends = {{{0.5, 0, 0.5, 0, 0.5, 0},
                                                            {0, 0.5, 0, 0.5, 0, 0.5},

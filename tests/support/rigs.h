@@ -13,8 +13,8 @@
 
 namespace flexura {
 
-/// A spatial arm of two sections with three tendons each, which bend by motors with limits and play, before
-/// the paper's two cameras.
+/// Returns a rig with the paper's two cameras and a spatial arm of two sections with three tendons each. Its
+/// motors have limits and backlash.
 inline RigConfig two_section_rig() {
   RigConfig rig;
   rig.arm.kind = ArmKind::spatial;
@@ -35,8 +35,8 @@ inline RigConfig two_section_rig() {
   return rig;
 }
 
-/// Images that hold what they show as numbers: the pixels of points along the arm at the start of the
-/// exposure, and the frame's number, to the last bit.
+/// Renders images that store what they show as exact numbers: the pixels of points along the arm at the start
+/// of the exposure, and the frame number.
 inline Picture numbers_renderer(const Shot& shot) {
   Image<std::uint8_t> image(static_cast<int>(shot.sensor->width), static_cast<int>(shot.sensor->height),
                             shot.sensor->channels());
@@ -54,7 +54,7 @@ inline Picture numbers_renderer(const Shot& shot) {
   return image;
 }
 
-/// The numbers of such an image.
+/// Returns the numbers stored in such an image.
 inline std::array<double, 12> numbers_of(const Frame& frame) {
   std::array<double, 12> numbers{};
   std::memcpy(numbers.data(), std::get<Image<std::uint8_t>>(*frame.picture).values().data(), sizeof numbers);

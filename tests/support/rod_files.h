@@ -8,8 +8,8 @@
 
 namespace flexura {
 
-/// viewed_text with an arm that truly is a steel wire of 2 mm radius, which weighs so much, kg/m, and is
-/// pulled by three tendons to the end of each section, with friction.
+/// Returns viewed_text with a true arm that is a steel wire of 2 mm radius. `mass` is its mass per length,
+/// kg/m. Three tendons with friction end at each section.
 inline std::string viewed_rod(double mass = 0.5, double friction = 0) {
   std::string text = viewed_text + "[truth.arm]\nmodel = \"static\"\ngravity = [0, -9.81, 0]\n";
   for (int section = 0; section < 2; ++section)

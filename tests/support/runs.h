@@ -18,7 +18,7 @@
 
 namespace flexura {
 
-/// Runs experiments, each into a new folder below one that goes with it.
+/// Runs experiments, each in a new folder inside a temporary one.
 class Runs {
  public:
   RunResult run(const Experiment& experiment, RunWatcher* watcher = nullptr) {
@@ -33,7 +33,7 @@ class Runs {
   TemporaryFolder folder_;
 };
 
-/// The messages of one topic in a run's log, in their order.
+/// Returns the messages of one topic of a run's log, in order.
 template <class M>
 std::vector<M> logged(const RunResult& result, std::string_view topic) {
   std::vector<M> found;
@@ -43,7 +43,7 @@ std::vector<M> logged(const RunResult& result, std::string_view topic) {
   return found;
 }
 
-/// How many messages each topic of a run's log has.
+/// Returns the number of messages of each topic of a run's log.
 inline std::map<std::string, std::size_t> logged_counts(const RunResult& result) {
   std::map<std::string, std::size_t> counts;
   const McapReader log = open_log(result.folder);
@@ -51,12 +51,12 @@ inline std::map<std::string, std::size_t> logged_counts(const RunResult& result)
   return counts;
 }
 
-/// The text of a file of a run's results.
+/// Returns the content of a file of a run's results.
 inline std::string text_of(const RunResult& result, const std::filesystem::path& file) {
   return read_text_file(result.folder / file, std::size_t{1} << 30);
 }
 
-/// The texts of all files of a folder, by their names in it.
+/// Returns the contents of all files of a folder, by file name.
 inline std::map<std::string, std::string> files_in(const std::filesystem::path& folder) {
   std::map<std::string, std::string> files;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(folder))
@@ -65,7 +65,7 @@ inline std::map<std::string, std::string> files_in(const std::filesystem::path& 
   return files;
 }
 
-/// Entry i of a list of a run's summary: "servos", "calibrations".
+/// Returns entry i of a list of a run's summary, for example "servos" or "calibrations".
 inline const Node& entry_of(const RunResult& result, const char* list, std::size_t i = 0) {
   return result.summary.find(list)->as<Node::Array>()->at(i);
 }

@@ -7,7 +7,7 @@
 
 namespace flexura {
 
-/// Devices that say what they are told to, or fail, and a clock that stands.
+/// Devices that return preset readings or faults, and a clock that stands still.
 class SaidArm : public ArmPort {
  public:
   ArmReading says{1, {{{0.1, 0.2}, {0, 0}}, {1, 1}}, {}, false};

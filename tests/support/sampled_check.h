@@ -24,26 +24,29 @@
 
 namespace flexura {
 
-/// What a comparison of checks with dense samples came to. Contacts count by the section, or pair of
-/// sections, and what it touches.
+/// Result of comparing safety checks with dense samples. Contacts are counted per section, or pair of
+/// sections, and touched object.
 struct SampledComparison {
   std::size_t motions = 0;
-  std::size_t samples = 0;          ///< Of limits, of all motions together.
+  std::size_t samples = 0;          ///< Samples of limits, over all motions.
   std::size_t spans = 0;            ///< Violations that the check reported.
-  std::size_t contact_spans = 0;    ///< Of these, contacts.
-  std::size_t above = 0;            ///< Values above their limit in the samples.
-  std::size_t missed = 0;           ///< Of these, outside every reported span.
-  std::size_t contact_samples = 0;  ///< States whose clearances were computed.
-  std::size_t contacts = 0;         ///< Of these, in contact.
-  std::size_t contacts_missed = 0;  ///< Of these, outside every reported span.
-  std::size_t refuted = 0;          ///< Reported spans, longer than two samples, without one.
-  std::size_t understated = 0;      ///< Reported spans with a sample worse than their worst value,
-  std::size_t doubted = 0;          ///< and those of them of which the check says so itself.
-  double most_understated = 0;      ///< Of the others: of contacts, m; of limits, share of the value.
-  std::size_t overstated = 0;       ///< Reported spans whose worst value is not there at their worst time.
+  std::size_t contact_spans = 0;    ///< Reported violations that are contacts.
+  std::size_t above = 0;            ///< Samples above their limit.
+  std::size_t missed = 0;           ///< Samples above their limit and outside every reported span.
+  std::size_t contact_samples = 0;  ///< Number of states whose clearances were computed.
+  std::size_t contacts = 0;         ///< Samples in contact.
+  std::size_t contacts_missed = 0;  ///< Samples in contact and outside every reported span.
+  std::size_t refuted = 0;  ///< Reported spans longer than two samples that contain no violating sample.
+  std::size_t understated =
+      0;  ///< Reported spans with a sample worse than their worst value, without a caveat.
+  std::size_t doubted =
+      0;  ///< Reported spans with a sample worse than their worst value, with a caveat in the report.
+  double most_understated =
+      0;  ///< Largest excess of the spans without a caveat: contacts, m; limits, share of the value.
+  std::size_t overstated = 0;  ///< Reported spans whose worst value does not occur at the reported time.
 };
 
-/// Limits that a random motion sometimes breaks.
+/// Sets random limits that a random motion sometimes violates.
 inline void limit_randomly(TestRandom& random, Arm& arm) {
   for (Section& section : arm.sections) {
     section.max_bend = random.uniform(1.5, 4.5);
@@ -54,7 +57,7 @@ inline void limit_randomly(TestRandom& random, Arm& arm) {
   }
 }
 
-/// One obstacle of every kind, near the arm.
+/// Returns one obstacle of every kind, near the arm.
 inline std::vector<ObstacleConfig> random_obstacles(TestRandom& random, const Arm& arm) {
   const auto place = [&] {
     const Eigen::Vector3d p = arm.X_WB.position + arm.length() * random.vector<3>(-0.8, 0.8);
@@ -71,7 +74,7 @@ inline std::vector<ObstacleConfig> random_obstacles(TestRandom& random, const Ar
                     .rotation = {q.w(), q.x(), q.y(), q.z()}}};
 }
 
-/// Holds one check against samples of its motion, which starts at time 0.
+/// Compares one check with samples of its motion, which starts at time 0.
 class SampledCheck {
  public:
   SampledCheck(const Arm& arm, const std::vector<Obstacle>& obstacles, const Motion& motion,
@@ -112,7 +115,7 @@ class SampledCheck {
         above(Hazard::stretch, i, time, state.stretches[i], section.stretch_limits[0], -1);
         above(Hazard::folding, i, time, folding(state, i), 1);
         if (k == 0) continue;
-        // The mean rate from sample to sample, which some rate between them reaches; allow for its rounding.
+        // The mean rate between two samples is a lower bound of the largest rate; rounding is subtracted.
         const double rate = (state.bends[i] - before.bends[i]).norm() / h - 1e-14 / h;
         above(Hazard::bend_rate, i, time, rate, section.max_bend_rate, 1, h);
       }
@@ -128,8 +131,9 @@ class SampledCheck {
     }
   }
 
-  /// Clearances at every hundredth sample; and between two of these those that at one of them are less than
-  /// four times what any point of the arm moves in between, and are not reported as a contact there.
+  /// Computes clearances at every hundredth sample. Between two of these, finer samples are used for pairs
+  /// that are near: less than four times the largest motion of a point in between, and not reported as a
+  /// contact.
   void compare_contacts() {
     std::vector<Eigen::Vector3d> points;
     std::vector<std::size_t> all(places_.size());
@@ -150,7 +154,7 @@ class SampledCheck {
     for (const Place& place : places_) {
       for (const Reported& one : reported_[place.key]) {
         compare(place.key, one, 2 * coarse * step(), 1.05e-4);
-        // Between neighbours and others the samples are coarse.
+        // For self-contact the samples are coarse near the transition between neighbouring and other points.
         const double close = place.key.hazard == Hazard::self_contact ? 1e-2 * arm_.length() : 2e-6;
         const ArmState state = motion_.at(one.worst.time);
         if (is_possible(state))
@@ -170,7 +174,7 @@ class SampledCheck {
     double limit;
     auto operator<=>(const Key&) const = default;
   };
-  // A section before an obstacle, or a pair of sections.
+  // A section and an obstacle, or a pair of sections.
   struct Place {
     Key key;
     std::size_t obstacle;
@@ -179,7 +183,7 @@ class SampledCheck {
     Span span;
     WorstValue worst;
     bool confirmed = false;
-    double sampled_excess = -no_distance;  // over the reported worst value
+    double sampled_excess = -no_distance;  // Over the reported worst value.
   };
 
   static bool is_contact(const Key& key) {
@@ -201,7 +205,7 @@ class SampledCheck {
     return key.hazard == Hazard::stretch ? state.stretches[key.section] : folding(state, key.section);
   }
 
-  // What all samples said of a reported span.
+  // Compares all samples of a reported span with the report.
   void compare(const Key& key, const Reported& one, double long_span, double tolerance) {
     if (!one.confirmed && one.span.end - one.span.start > long_span) ++result_.refuted;
     const bool is_doubted = is_worse_by_its_own_words(key);
@@ -223,18 +227,18 @@ class SampledCheck {
     if (!(std::abs(there - one.worst.value) <= tolerance) && there != one.worst.value) ++result_.overstated;
   }
 
-  // Takes a value above (sign -1: below) its limit, which occurs somewhere in the time `within` before.
+  // Records a value above (sign -1: below) its limit that occurs within `within` s before `time`.
   void above(Hazard hazard, std::size_t section, double time, double value, double limit, double sign = 1,
              double within = 0) {
-    constexpr double doubtful = 1e-8;  // neither above nor below, by rounding
-    constexpr double slack = 1e-6;     // s; reported spans are right to 1e-7
+    constexpr double doubtful = 1e-8;  // Below this the sign is uncertain by rounding.
+    constexpr double slack = 1e-6;     // s; reported spans are accurate to 1e-7 s.
     const double excess = sign * (value - limit);
     if (!(excess > 0)) return;
     bool is_reported = false;
     for (Reported& one : reported_[{hazard, section, std::nullopt, {}, limit}]) {
       if (one.span.start > time + slack || time - within > one.span.end + slack) continue;
       is_reported = one.confirmed = true;
-      // By rounding the sample may lie just outside the span.
+      // Because of rounding the sample may lie just outside the span.
       one.sampled_excess = std::max(one.sampled_excess, sign * (value - one.worst.value));
     }
     if (excess <= doubtful) return;
@@ -248,13 +252,13 @@ class SampledCheck {
                                    : arm.clearance(i, obstacles_[place.obstacle], need);
   }
   [[nodiscard]] Reported* reported(const Place& place, double time) {
-    constexpr double slack = 1e-4;  // s, to which reported contacts are right
+    constexpr double slack = 1e-4;  // s; accuracy of reported contacts.
     for (Reported& one : reported_[place.key])
       if (one.span.start - slack <= time && time <= one.span.end + slack) return &one;
     return nullptr;
   }
 
-  // What is not reported and nearer than `need`.
+  // Returns the places that are nearer than `need` and not reported.
   [[nodiscard]] std::vector<std::size_t> near_contact(std::size_t k, double need) {
     const SampledArm arm(arm_, motion_.at(time_of(k)));
     std::vector<std::size_t> near;
@@ -265,7 +269,7 @@ class SampledCheck {
     return near;
   }
 
-  // An arm without length has no clearances.
+  // An arm with a section of no length has no clearances.
   void count_contacts(std::size_t k, const std::vector<std::size_t>& places) {
     const ArmState state = motion_.at(time_of(k));
     if (!is_possible(state)) return;
@@ -279,7 +283,7 @@ class SampledCheck {
         one->confirmed = true;
         one->sampled_excess = std::max(one->sampled_excess, depth - one->worst.value);
       }
-      if (depth <= 2e-6) continue;  // less counts as none
+      if (depth <= 2e-6) continue;  // Smaller depths do not count.
       ++result_.contacts;
       if (one == nullptr) ++result_.contacts_missed;
     }

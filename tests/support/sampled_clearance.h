@@ -13,8 +13,8 @@
 
 namespace flexura {
 
-/// The arm's tubes by points, to hold the checks of contact against: without bounds and without cleverness. A
-/// clearance found here is one that occurs, so that a contact found here is one.
+/// A brute-force reference for contact checks: the arm's tubes as points, without bounds or shortcuts. Every
+/// clearance found here occurs, so every contact found here is real.
 class SampledArm {
  public:
   SampledArm(const Arm& arm, const ArmState& state) : arm_(arm), backbone_(arm, state) {
@@ -31,8 +31,8 @@ class SampledArm {
 
   [[nodiscard]] const std::vector<Eigen::Vector3d>& points() const { return points_; }
 
-  /// Of section i to an obstacle, m: right to rounding where it is below `need`, and surely not below it
-  /// otherwise.
+  /// Returns the clearance of section i to an obstacle, m. It is exact to rounding if below `need`; otherwise
+  /// the true one is not below `need` either.
   [[nodiscard]] double clearance(std::size_t i, const Obstacle& obstacle, double need) const {
     const auto at = [&](double u) { return obstacle.distance(point(i, u)) - radius(i, u); };
     int best = 0;
@@ -45,7 +45,7 @@ class SampledArm {
     return descended([&](double u, double) { return at(u); }, fraction(best), 0, nearest);
   }
 
-  /// Of the arm to itself, all sections together.
+  /// Returns the clearance of the arm to itself over all sections, m.
   [[nodiscard]] double clearance(double need) const {
     double least = std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; i < turns_.size(); ++i) {
@@ -54,9 +54,9 @@ class SampledArm {
     return least;
   }
 
-  /// Of the sections i and j >= i to each other, between points that are no neighbours: between which the
-  /// backbone has half a turn or more, or, where something is thinner than they are, is longer than half a
-  /// circle of their mean radius; as above.
+  /// Returns the clearance between the sections i and j >= i, m, over points that are not neighbours;
+  /// accuracy as above. The backbone between such points has half a turn or more. If a section between them
+  /// is thinner, it is instead longer than half a circle of their mean radius.
   [[nodiscard]] double clearance(std::size_t i, std::size_t j, double need) const {
     if (turn(j, 1) - turns_[i] < half_turn && !is_thinner_between(i, j))
       return std::numeric_limits<double>::infinity();
@@ -84,7 +84,7 @@ class SampledArm {
 
   static double fraction(int k) { return static_cast<double>(k) / cuts; }
   static std::size_t index(std::size_t i, int k) { return i * (cuts + 1) + static_cast<std::size_t>(k); }
-  // On a circle; what is bent by less than rounding is straight.
+  // Point on a circular arc; bends below rounding count as straight.
   [[nodiscard]] Eigen::Vector3d point(std::size_t i, double u) const {
     const Arc& arc = backbone_.arcs()[i];
     const double turn = arc.bend.norm();
@@ -101,7 +101,7 @@ class SampledArm {
   [[nodiscard]] double turn(std::size_t i, double u) const {
     return turns_[i] + u * backbone_.arcs()[i].bend.norm();
   }
-  // Whether some section of these and between them is thinner than the two on average.
+  // Returns whether a section from i to j is thinner than the mean of i and j.
   [[nodiscard]] bool is_thinner_between(std::size_t i, std::size_t j) const {
     const auto thickness = [&](std::size_t k) {
       return std::max(arm_.sections[k].radius[0], arm_.sections[k].radius[1]);
@@ -117,13 +117,13 @@ class SampledArm {
         lengths_[j] + v * backbone_.arcs()[j].length - lengths_[i] - u * backbone_.arcs()[i].length;
     return length < half_turn * (radius(i, u) + radius(j, v)) / 2;
   }
-  // How much nearer something may be between two points.
+  // Returns how much nearer something may be between two sampled points, m.
   [[nodiscard]] double spacing(std::size_t i) const {
     const auto& r = arm_.sections[i].radius;
     return (backbone_.arcs()[i].length + std::abs(r[1] - r[0])) / cuts;
   }
 
-  // Goes down from (u, v), where the value is `best`, by ever smaller steps.
+  // Descends from (u, v), where the value is `best`, with decreasing steps.
   template <class Value>
   static double descended(const Value& value, double u, double v, double best) {
     constexpr std::array<std::pair<int, int>, 8> ways{
@@ -143,9 +143,9 @@ class SampledArm {
 
   const Arm& arm_;
   Backbone backbone_;
-  std::vector<double> turns_;            // from the base to each section's start, rad
-  std::vector<double> lengths_;          // to there, m
-  std::vector<Eigen::Vector3d> points_;  // cuts + 1 a section
+  std::vector<double> turns_;            // Turn from the base to each section's start, rad.
+  std::vector<double> lengths_;          // Length from the base to each section's start, m.
+  std::vector<Eigen::Vector3d> points_;  // cuts + 1 points per section.
 };
 
 }  // namespace flexura

@@ -15,27 +15,27 @@
 
 namespace flexura {
 
-/// How random arms are photographed.
+/// Imaging conditions for random arms.
 struct SeenArmConfig {
   double noise = 2;  ///< Standard deviation in values of an 8-bit image.
-  double psf = 0.7;  ///< px
-  double gamma = 1;  ///< Values are light to the power 1/gamma.
+  double psf = 0.7;  ///< Standard deviation of the point spread function, px.
+  double gamma = 1;  ///< Pixel values are light to the power 1/gamma.
   int width = 640, height = 480;
   bool color = false;
   bool bands = false;
-  double most_bend = 1.2;  ///< Of a section, rad.
+  double most_bend = 1.2;  ///< Bend limit of a section, rad.
 };
 
-/// A picture of an arm, and where its backbone is seen.
+/// A picture of an arm and the true image of its backbone.
 struct SeenArm {
   Scene scene;
   View view;
   Image<std::uint8_t> picture;
-  std::vector<AxisPoint> truth;  ///< Evenly along the arm.
+  std::vector<AxisPoint> truth;  ///< At equal spacing along the arm.
   double radius = 0;             ///< m
 };
 
-/// A picture of a scene as a sensor delivers it.
+/// Returns a picture of a scene as delivered by a sensor.
 inline Image<std::uint8_t> photograph(const Scene& scene, const View& view, const SeenArmConfig& options,
                                       std::uint64_t seed) {
   Renderer renderer;
@@ -52,7 +52,7 @@ inline Image<std::uint8_t> photograph(const Scene& scene, const View& view, cons
   return picture;
 }
 
-/// The exact image of the arm's backbone at `count` places.
+/// Returns the exact image of the backbone at `count` places.
 inline std::vector<AxisPoint> true_axis(const Scene& scene, const View& view, int count) {
   Renderer renderer;
   renderer.prepare(scene, view);
@@ -62,7 +62,7 @@ inline std::vector<AxisPoint> true_axis(const Scene& scene, const View& view, in
   return projected_axis(renderer, s);
 }
 
-/// A dark arm of one to four sections before a bright ground, bent anyhow.
+/// A randomly bent dark arm of one to four sections on a bright background.
 struct RandomArm {
   BentArm bent;
   double radius = 0;  ///< m
@@ -92,7 +92,7 @@ inline RandomArm random_arm(TestRandom& random, const SeenArmConfig& options) {
   return arm;
 }
 
-/// A random arm as it is seen from 1.2 to 3 m away, from any side.
+/// Returns a random arm seen from 1.2 to 3 m away, from any side.
 inline SeenArm random_seen_arm(TestRandom& random, const SeenArmConfig& options) {
   SeenArm seen;
   RandomArm arm = random_arm(random, options);
@@ -109,8 +109,7 @@ inline SeenArm random_seen_arm(TestRandom& random, const SeenArmConfig& options)
   return seen;
 }
 
-/// The distance of a pixel to the curve through points that are near to each other, px; its sign tells the
-/// side.
+/// Returns the signed distance of a pixel to a curve given by close points, px. The sign gives the side.
 inline double distance_to(const std::vector<AxisPoint>& curve, const Eigen::Vector2d& pixel) {
   double best = 1e9, sign = 1;
   for (std::size_t i = 0; i + 1 < curve.size(); ++i) {

@@ -14,12 +14,12 @@
 
 namespace flexura {
 
-/// An arm, and what two cameras at about a right angle to each other see of it.
+/// An arm and its pictures by two cameras at about a right angle.
 struct SeenShape {
   BentArm bent;
   std::array<View, 2> views;
   std::array<Image<std::uint8_t>, 2> pictures;
-  double noise = 0;  ///< Of the pictures, standard deviation in values of 8 bits.
+  double noise = 0;  ///< Standard deviation of the picture noise, in values of 8 bits.
 };
 
 inline SeenShape random_seen_shape(TestRandom& random) {
@@ -44,13 +44,13 @@ inline SeenShape random_seen_shape(TestRandom& random) {
   return result;
 }
 
-/// shape_error() as a share of the arm's length.
+/// Returns shape_error() as a share of the arm's length.
 inline double relative_shape_error(const Shape& shape, const Backbone& truth) {
   return shape_error(shape, truth) / truth.length();
 }
 
-/// The error of the bends, squared, by the covariance that came with them: where that is right, chi^2 of as
-/// many degrees of freedom as there are bends' components.
+/// Returns the squared error of the bends, weighted by their estimated covariance. If the covariance is
+/// right, it is chi^2 with as many degrees of freedom as bend components.
 inline double error_square(const ShapeEstimate& found, const ArmState& truth) {
   const auto count = static_cast<Eigen::Index>(2 * truth.bends.size());
   Eigen::VectorXd off(count);
@@ -59,8 +59,9 @@ inline double error_square(const ShapeEstimate& found, const ArmState& truth) {
   return mahalanobis_square(found.covariance.topLeftCorner(count, count), off);
 }
 
-/// Within which share of the errors that it expects the covariance of the bends has the true ones: evenly
-/// from 0 to 1 where it is right. By E. B. Wilson's and M. M. Hilferty's cube root of chi^2, good to 0.01.
+/// Returns the probability that the estimated covariance gives to errors smaller than the actual one. It is
+/// uniform from 0 to 1 if the covariance is right. Uses E. B. Wilson's and M. M. Hilferty's cube root
+/// approximation of chi^2, accurate to 0.01.
 inline double expected_share(const ShapeEstimate& found, const ArmState& truth) {
   const auto count = static_cast<double>(2 * truth.bends.size());
   const double spread = 2 / (9 * count);

@@ -16,7 +16,7 @@
 
 namespace flexura {
 
-/// Keeps what a servo tells.
+/// Records the events of a servo.
 class ServoNotes : public ServoSessionWatcher {
  public:
   std::vector<std::pair<double, std::string>> lines;
@@ -33,7 +33,7 @@ class ServoNotes : public ServoSessionWatcher {
   }
 };
 
-/// A servo at the ports alone: the file's first task.
+/// Runs a servo, the first task of a file, directly at the ports.
 class ServoBench : public RigBench {
  public:
   using RigBench::RigBench;
@@ -55,14 +55,14 @@ class ServoBench : public RigBench {
     const RigModel model = believed();
     return servo_in_session(ports, model, config(), notes);
   }
-  /// How far the arm truly is from a state now.
+  /// Returns the true present error of the arm from a target state.
   [[nodiscard]] ServoError truth(const ArmState& wanted) {
     const Arm arm = experiment().arm.arm();
     return servo_error(rig().arm().backbone(rig().clock().now()), Backbone(arm, wanted), arm.length());
   }
 };
 
-/// An arm that refuses commands, or says that it is nowhere, from a time on.
+/// An arm that rejects commands, or reports an invalid position, from a time on.
 class BrokenArm : public ArmPort {
  public:
   enum class Kind { refuses, nowhere, gone };
@@ -91,8 +91,8 @@ class BrokenArm : public ArmPort {
   double from_;
 };
 
-/// An arm whose drives are not mounted as the model has them: it bends into `share` of what it is told,
-/// turned by `angle` rad about its sections' axes. What it says of itself is what its drives know.
+/// An arm whose drives are mounted differently from the model: it bends by `share` times the commanded bends,
+/// rotated by `angle` rad about the section axes. Its readings are those of the drives.
 class TurnedArm : public OddArm {
  public:
   TurnedArm(ArmPort& arm, double angle, double share)

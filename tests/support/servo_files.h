@@ -6,7 +6,8 @@
 
 namespace flexura {
 
-/// Two small cameras before an arm of three sections. `sensor`: more of it; `rest`: more of the file.
+/// Two small cameras and an arm of three sections. `sensor`: additional sensor settings; `rest`: additional
+/// lines of the file.
 struct ServoSetup {
   std::string sensor = "read_noise = 1, delay = 0.06, exposure = 0.002";
   std::string arm = "max_bend_deg = 120\nmax_bend_rate_deg = 90";

@@ -12,7 +12,7 @@
 
 namespace flexura {
 
-/// Three sections of 0.2 m that bend up to 120 degrees.
+/// Returns an arm of three sections of 0.2 m with a bend limit of 120 degrees.
 inline Arm servo_arm() {
   Arm arm;
   arm.kind = ArmKind::spatial;
@@ -21,7 +21,7 @@ inline Arm servo_arm() {
   return arm;
 }
 
-/// Two cameras with distorted lenses 2 m off, on +Z and on -X.
+/// Returns two cameras with distorted lenses, 2 m away on +Z and on -X.
 inline std::array<View, 2> servo_views() {
   std::array<View, 2> views;
   const std::array<Eigen::Vector3d, 2> ways = {Eigen::Vector3d::UnitZ(), -Eigen::Vector3d::UnitX()};
@@ -34,7 +34,8 @@ inline std::array<View, 2> servo_views() {
   return views;
 }
 
-/// The same cameras as they are believed to be: turned by `angle` rad in any direction and zoomed by `share`.
+/// Returns wrong models of these cameras: rotated by `angle` rad in a random direction, with focal lengths
+/// changed by `share`.
 inline std::array<View, 2> wrong_views(TestRandom& random, std::array<View, 2> views, double angle,
                                        double share) {
   for (View& view : views) {
@@ -48,7 +49,7 @@ inline std::array<View, 2> wrong_views(TestRandom& random, std::array<View, 2> v
   return views;
 }
 
-/// Bends within `most` rad.
+/// Returns random bends within `most` rad.
 inline ArmState random_servo_state(TestRandom& random, const Arm& arm, double most) {
   ArmState state = ArmState::straight(arm.sections.size());
   for (Eigen::Vector2d& bend : state.bends) bend = most * random.vector<2>(-0.7, 0.7);

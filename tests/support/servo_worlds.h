@@ -9,23 +9,24 @@
 
 namespace flexura {
 
-/// The rig of the servo's study. Steps between sights are of a frame; sensors as real cameras have them:
-/// late, short exposures.
+/// Returns the rig of the servo study. Time steps are one frame; sensors have the latency and short exposure
+/// of real cameras.
 inline LoopRig study_rig(const std::array<WrongStart, 2>& wrong) {
   LoopRig rig = arcs_cameras(wrong);
   rig.sensor = ", delay = 0.06, exposure = 0.002", rig.frame_rate = 30;
   return rig;
 }
 
-/// What the arm is, and what is believed of it.
+/// The true arm and its model.
 struct ServoWorld {
-  int arcs = 1;        ///< A section, believed.
-  bool sags = false;   ///< Elastic rods under their tendons and their weight; else the arcs of one a section.
-  bool knows = false;  ///< That is believed too, of rods 20 % stiffer; else arcs.
+  int arcs = 1;  ///< Arcs per section in the model.
+  bool sags =
+      false;  ///< True arm of elastic rods under tendon forces and weight; otherwise one arc per section.
+  bool knows = false;  ///< The model has elastic rods too, 20 % stiffer; otherwise arcs.
 };
 
-/// A steel wire of 2 mm radius that carries 0.2 kg a metre, with three tendons to the end of each section: in
-/// the table `arm` or `truth.arm` of a file that has its sections.
+/// Turns the sections of the table `arm` or `truth.arm` of a file into a steel wire of 2 mm radius with 0.2
+/// kg/m, with three tendons to the end of each section.
 inline void let_sag(const std::string& table, double youngs_modulus, std::string& text) {
   const std::string section = fmt::format("\n[[{}.section]]\n", table);
   for (std::size_t at = text.find(section); at != std::string::npos; at = text.find(section, at + 1))
@@ -43,13 +44,13 @@ inline void let_sag(const std::string& table, double youngs_modulus, std::string
                         120 * (i % 3) + 40 * (i / 3));
 }
 
-/// The file of such a rig and world: in colour with bands, which the calibration goes by, or in gray without.
+/// Returns the file of such a rig: in colour with bands for the calibration, or in gray without bands.
 inline std::string servo_world_file(const LoopRig& rig, bool is_colored, const ServoWorld& world = {}) {
   std::string text = arcs_rig("method = \"bundle\"\n", rig);
   if (!is_colored) {
     const std::size_t look = text.find("[arm.look]");
     text.erase(look, text.find("\n[", look) + 1 - look);
-    // Nothing to calibrate by: what the file does instead is not played.
+    // There are no bands to calibrate with, so the calibration task is replaced.
     text = text.substr(0, text.find("[[task]]")) + "[[task]]\nkind = \"hold\"\nduration = 1\n";
     const std::string color = "\"color\"";
     for (std::size_t at = text.find(color); at != std::string::npos; at = text.find(color))

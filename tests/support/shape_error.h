@@ -7,7 +7,7 @@
 
 namespace flexura {
 
-/// Root mean square of the distances between points of equal shares of both lengths, m.
+/// Returns the rms distance between points at equal shares of both lengths, m.
 inline double shape_error(const Shape& shape, const Backbone& truth) {
   const Backbone backbone(shape.arm, shape.state);
   constexpr int count = 100;

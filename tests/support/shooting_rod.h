@@ -17,25 +17,25 @@
 
 namespace flexura {
 
-/// A rod found by shooting, to witness what mechanics finds by modes: the differential equations of a
-/// Cosserat rod with tendons (D. C. Rucker, R. J. Webster III, "Statics and dynamics of continuum robots with
-/// general tendon routing and external loading", 2011), integrated from the base with a guessed wrench of rod
-/// and tendons together, until that at the tip is what pulls there. It shares no mode, node or series with
-/// mechanics. Tendons run in channels.
+/// An independent reference solver for rods, by shooting. It integrates the differential equations of a
+/// Cosserat rod with tendons from the base with a guessed wrench of rod and tendons together. The guess is
+/// corrected until the wrench at the tip equals the load there. Source: D. C. Rucker, R. J. Webster III,
+/// "Statics and dynamics of continuum robots with general tendon routing and external loading", 2011. It
+/// shares no modes, nodes or series with flexura/mechanics. Tendons run in channels.
 class ShootingRod {
  public:
   struct Shot {
     bool hit = false;
     Pose tip;
-    std::vector<double> lengths;  // Of the tendons.
+    std::vector<double> lengths;  // Tendon lengths, m.
     Vector6d base_wrench = Vector6d::Zero();
-    double miss = 0;  // Force and moment times and by the length, N.
+    double miss = 0;  // Wrench error at the tip, N; moments are divided by the length.
   };
 
   ShootingRod(const Rod& rod, std::vector<double> tensions, RodLoads loads)
       : rod_(rod), tensions_(std::move(tensions)), loads_(std::move(loads)) {}
 
-  /// From a guess of the wrench at the base, about the origin.
+  /// Solves from a guess of the base wrench about the origin.
   Shot shoot(const Vector6d& guess, int most = 30) {
     Shot shot;
     Vector6d wrench = guess;
@@ -79,7 +79,7 @@ class ShootingRod {
     return result;
   }
 
-  // The wrench of the strained rod and its tendons on a cross-section, in its frame.
+  // Returns the wrench of the strained rod and its tendons on a cross-section, in its frame.
   Vector6d wrench_of(const RodSection& section, std::size_t index, double t, double s,
                      const Vector6d& strain) const {
     Vector6d wrench = section.stiffness_at(t).cwiseProduct(strain - section.rest_strain_at(t));
@@ -94,7 +94,7 @@ class ShootingRod {
     return wrench;
   }
 
-  // The strain at which that is what pulls.
+  // Returns the strain at which the section carries the given wrench.
   Vector6d strain_for(const RodSection& section, std::size_t index, double t, double s,
                       const Vector6d& wrench, Vector6d strain) const {
     const auto counts = section.modes.counts();
@@ -110,7 +110,7 @@ class ShootingRod {
             (wrench_of(section, index, t, s, plus) - wrench_of(section, index, t, s, minus)) / (2 * step);
       }
       for (int c = 0; c < 6; ++c) {
-        if (counts[static_cast<std::size_t>(c)] > 0) continue;  // A strain that stays.
+        if (counts[static_cast<std::size_t>(c)] > 0) continue;  // This strain is fixed.
         slope.row(c).setZero();
         slope(c, c) = 1;
         excess[c] = strain[c] - section.rest_strain_at(t)[c];
@@ -122,10 +122,10 @@ class ShootingRod {
     return strain;
   }
 
-  // Of rod and tendons from the base to the tip: what is left there of the wrench.
+  // Integrates from the base to the tip and returns the wrench error there.
   Vector6d fly(const Vector6d& wrench, Shot& shot) const {
     const auto count = static_cast<Eigen::Index>(tensions_.size());
-    Eigen::VectorXd y = Eigen::VectorXd::Zero(18 + count);  // p, R, N, M, lengths.
+    Eigen::VectorXd y = Eigen::VectorXd::Zero(18 + count);  // State vector: p, R, N, M, tendon lengths.
     Eigen::Map<Eigen::Matrix3d>(y.data() + 3).setIdentity();
     y.segment<6>(12) = wrench;
     double s_base = 0;
@@ -158,7 +158,7 @@ class ShootingRod {
       };
       DormandPrince solver(y.size(), tolerance);
       double s = s_base;
-      masses.emplace_back(1, PointMass{});  // The section's end.
+      masses.emplace_back(1, PointMass{});  // End of the section.
       for (const auto& [at, mass] : masses) {
         if (!solver.advance(slope, s, y, s_base + at * section.length).is_there)
           return Vector6d::Constant(std::nan(""));

@@ -6,7 +6,7 @@
 
 namespace flexura {
 
-/// What a servo sees on its way, with the arm's true shape at the time.
+/// Records the observations of a servo together with the true shape of the arm at the same time.
 class SightKeeper : public ServoSessionWatcher {
  public:
   explicit SightKeeper(ServoBench& bench) : bench_(bench) {}

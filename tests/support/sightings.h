@@ -14,7 +14,7 @@
 
 namespace flexura {
 
-/// An arm of three sections, a metre long, at the world's origin.
+/// Returns an arm of three sections, 1 m long, at the world's origin.
 inline Arm three_section_arm() {
   Arm arm;
   arm.kind = ArmKind::spatial;
@@ -28,7 +28,7 @@ inline ArmState random_bends(TestRandom& random, const Arm& arm, double most) {
   return state;
 }
 
-/// A camera at `eye` that looks at `at`, its image's v downwards in W.
+/// Returns a camera at `eye` that looks at `at`, with v downwards in W.
 inline View view_from(const Eigen::Vector3d& eye, const Eigen::Vector3d& at, double focal_length) {
   View view;
   view.lens = Lens({.fx = focal_length, .fy = focal_length});
@@ -38,14 +38,14 @@ inline View view_from(const Eigen::Vector3d& eye, const Eigen::Vector3d& at, dou
   return view;
 }
 
-/// The paper's two: one on +Z, one on -X.
+/// Returns the paper's two cameras, on +Z and on -X.
 inline std::array<View, 2> two_views(double distance = 2.5) {
   const Eigen::Vector3d middle(0, 0.4, 0);
   return {view_from(middle + Eigen::Vector3d(0, 0, distance), middle, 800),
           view_from(middle - Eigen::Vector3d(distance, 0, 0), middle, 800)};
 }
 
-/// What a camera sees of a backbone, between two shares of its length, with normal noise across.
+/// Returns the observation of a backbone between two shares of its length, with normal noise across it.
 inline Sighting sighting_of(const Backbone& backbone, const View& view, TestRandom& random, double sigma,
                             std::array<double, 2> shares = {0, 1}, std::size_t count = 120) {
   Sighting seen;
@@ -57,7 +57,7 @@ inline Sighting sighting_of(const Backbone& backbone, const View& view, TestRand
     const Eigen::Vector2d pixel = view.project(X_WS.position).value();
     const Eigen::Vector2d ahead = view.project(X_WS.position + 1e-4 * X_WS.rotation.col(2)).value() - pixel;
     const Eigen::Vector2d across = Eigen::Vector2d(-ahead.y(), ahead.x()).normalized();
-    double noise = 0;  // The sum of twelve is nearly normal.
+    double noise = 0;  // The sum of twelve uniform numbers is nearly normal.
     for (int k = 0; k < 12; ++k) noise += random.uniform(-0.5, 0.5);
     seen.points.push_back({pixel + sigma * noise * across, std::max(sigma, 0.01)});
   }
@@ -66,7 +66,7 @@ inline Sighting sighting_of(const Backbone& backbone, const View& view, TestRand
   return seen;
 }
 
-/// What both of the paper's cameras see of it.
+/// Returns the observations of both of the paper's cameras.
 inline std::vector<Sighting> sightings_of(const Backbone& backbone, TestRandom& random, double sigma) {
   std::vector<Sighting> seen;
   for (const View& view : two_views()) seen.push_back(sighting_of(backbone, view, random, sigma));

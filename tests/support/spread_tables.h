@@ -12,25 +12,25 @@
 
 #include "tests/support/study_numbers.h"
 
-// Tables of studies, line by line: what many values are, and whether they are what was aimed at.
+// Table rows of studies: the distribution of many values and the comparison with goals.
 namespace flexura {
 
 inline constexpr const char* spread_head = "| | rms | 95 % | worst |\n| --- | ---: | ---: | ---: |\n";
 
-/// Of the values' sizes.
+/// Returns a row with the distribution of the absolute values.
 inline std::string spread_row(const std::string& name, std::vector<double> values, double unit, int digits) {
   const std::vector<double> sizes = sizes_of(std::move(values));
   return fmt::format("| {} | {:.{}f} | {:.{}f} | {:.{}f} |\n", name, root_mean_square(sizes) / unit, digits,
                      quantile(sizes, 0.95) / unit, digits, quantile(sizes, 1) / unit, digits);
 }
 
-/// That a share of all trials keeps to a bound.
+/// A goal: a share of all trials must stay within a bound.
 struct Aim {
-  std::string name;            ///< With the bound: "focal length within 0.3 %".
-  double most = 0, unit = 1;   ///< The bound, and in what the table says the values.
-  std::vector<double> values;  ///< Of the trials that ended; the others do not keep to it.
-  double share = 1;            ///< Of the trials.
-  bool has_rms = true;         ///< Whether the values' root mean square is judged as well.
+  std::string name;            ///< Name with the bound: "focal length within 0.3 %".
+  double most = 0, unit = 1;   ///< Bound, and the unit of the table.
+  std::vector<double> values;  ///< Values of the completed trials; the others count as failed.
+  double share = 1;            ///< Required share of the trials.
+  bool has_rms = true;         ///< Whether the root mean square is judged as well.
 };
 
 inline constexpr const char* aim_head =

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-// What studies say of many values. Those that are no numbers are left out.
+// Statistics of many values. NaN values are ignored.
 namespace flexura {
 
 inline std::vector<double> numbers_of(std::vector<double> values) {
@@ -16,7 +16,8 @@ inline std::vector<double> numbers_of(std::vector<double> values) {
   return values;
 }
 
-/// By nearest rank: the least of the values that so large a share of them do not exceed. No number of none.
+/// Returns the quantile by nearest rank: the smallest value that at least this share of the values does not
+/// exceed. NaN if there are no values.
 inline double quantile(const std::vector<double>& values, double share) {
   std::vector<double> numbers = numbers_of(values);
   if (numbers.empty()) return std::numeric_limits<double>::quiet_NaN();
@@ -26,7 +27,7 @@ inline double quantile(const std::vector<double>& values, double share) {
   return *nth;
 }
 
-/// No number of none.
+/// Returns the root mean square; NaN if there are no values.
 inline double root_mean_square(const std::vector<double>& values) {
   const std::vector<double> numbers = numbers_of(values);
   double squares = 0;
@@ -39,13 +40,13 @@ inline std::vector<double> sizes_of(std::vector<double> values) {
   return values;
 }
 
-/// Whether a value keeps to the most that was aimed at; "nothing to judge" where there is none.
+/// Returns whether a value is within the goal `most`; "nothing to judge" if it is NaN.
 inline std::string verdict(double value, double most) {
   if (std::isnan(value)) return "nothing to judge";
   return value <= most ? "met" : "missed";
 }
 
-/// Chi^2 of shares that should lie evenly from 0 to 1, of ten equal parts: nine degrees of freedom.
+/// Returns chi^2 for the uniformity of shares between 0 and 1 in ten equal classes: nine degrees of freedom.
 inline double unevenness(const std::vector<double>& shares) {
   constexpr std::size_t parts = 10;
   std::array<double, parts> counts{};

@@ -17,7 +17,7 @@ constexpr double none = std::numeric_limits<double>::quiet_NaN();
 TEST(StudyNumbers, AQuantileIsTheNearestRank) {
   EXPECT_EQ(quantile({3, 1, 2, 4}, 0.5), 2);
   EXPECT_EQ(quantile({3, 1, 2, 4}, 0.51), 3);
-  // Of two values no more than the half lies below the larger one.
+  // Only half of the two values lie below the larger one.
   EXPECT_EQ(quantile({1, 2}, 0.999), 2);
   EXPECT_EQ(quantile({1, 2}, 0), 1);
   EXPECT_EQ(quantile({1, 2}, 1), 2);
@@ -53,7 +53,7 @@ TEST(StudyNumbers, EvenSharesAreToldFromUnevenOnes) {
   std::vector<double> even(2000), uneven(2000);
   for (double& share : even) share = random.uniform(0, 1);
   for (double& share : uneven) share = std::pow(random.uniform(0, 1), 1.2);
-  constexpr double rare = 27.88;  // One in a thousand, of nine degrees of freedom.
+  constexpr double rare = 27.88;  // Exceeded once in a thousand, with nine degrees of freedom.
   EXPECT_LT(unevenness(even), rare);
   EXPECT_GT(unevenness(uneven), rare);
 }

@@ -10,19 +10,20 @@
 
 #include "tests/support/study_numbers.h"
 
-// What the servo's study prints of its targets.
+// Output of the servo study.
 namespace flexura {
 
-// What one target's run came to; errors are the simulated truth's, shares of the length.
+// Results of one target's run; errors are those of the simulated truth, as shares of the length.
 struct Arrival {
   bool is_done = false;
   std::string reason;
   double settled = 0, overshoot = 0, rms = 0, most = 0, tip = 0, limit = 0;
-  // Of those who believe their cameras, and of those who doubt them as the servo does.
+  // Smallest possible errors with exact camera models assumed (believing), and with the camera prior of the
+  // servo (doubting).
   double believing = 0, doubting = 0;
 };
 
-// "-" where there is none.
+// Formats a number; "-" if it is NaN.
 inline std::string number(double value, int digits) {
   return std::isnan(value) ? "-" : fmt::format("{:.{}f}", value, digits);
 }
@@ -55,7 +56,7 @@ inline void print_row(const std::string& name, const std::vector<Arrival>& arriv
              pair(believing), pair(doubting));
 }
 
-// Its numbers left out: reasons that differ in these are one.
+// Strips the numbers from a reason, so that equal reasons can be counted.
 inline std::string kind_of(const std::string& reason) {
   std::string kind;
   for (const char c : reason) {

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <string>
 
-/// A fresh folder for a test's files, removed with it.
+/// A new temporary folder for a test's files, removed with the object.
 class TemporaryFolder {
  public:
   TemporaryFolder() {

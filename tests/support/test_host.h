@@ -13,7 +13,7 @@
 
 namespace flexura {
 
-/// A host that writes down what it is told, and answers what it is asked at once.
+/// A host that records its events and answers requests at once.
 class TestHost : public Host {
  public:
   void opened(ClientId client) override { note("opened " + std::to_string(client)); }
@@ -24,7 +24,7 @@ class TestHost : public Host {
     answer({.status = 200, .content_type = "text/plain", .body = target, .policy = {}});
   }
 
-  /// Waits until a line has been written; false when that takes more than half a minute.
+  /// Waits until a line has been recorded; returns false after half a minute.
   bool wait_for(const std::string& line) {
     std::unique_lock lock(mutex_);
     return changed_.wait_for(lock, std::chrono::seconds(30),

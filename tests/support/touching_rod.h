@@ -10,7 +10,7 @@
 
 namespace flexura {
 
-/// A rod in motion that touches what a config says, at places so far apart.
+/// A moving rod with contacts given by a config, at contact points `spacing` m apart.
 struct TouchingRod {
   Rod rod;
   RodDynamics dynamics;
@@ -24,7 +24,7 @@ struct TouchingRod {
     config.places = contact_places(rod, spacing);
     return config;
   }
-  /// So many steps of a motion that converge; look(state) after each.
+  /// Advances until `until` in steps of `h`, each of which must converge; calls look(state) after each.
   template <typename Look>
   void go(RodState& state, const TendonInput& tendons, const RodLoads& loads, double h, double until,
           Look&& look) {

@@ -9,7 +9,7 @@
 
 namespace flexura {
 
-/// A client whose socket the server has opened.
+/// Returns a client whose WebSocket the server has accepted.
 inline RawClient connected(const ViewServer& server, int receive_buffer = 0) {
   RawClient client(server.port(), receive_buffer);
   client.send("GET /socket HTTP/1.1\r\nHost: localhost:" + std::to_string(server.port()) +

@@ -23,7 +23,7 @@ namespace flexura {
 
 inline constexpr ClientId me = 1, other = 2;
 
-/// Keeps what clients would get.
+/// Records the messages for clients.
 class FakeMessenger : public Messenger {
  public:
   void send(ClientId client, std::string text) override { texts[client].push_back(std::move(text)); }
@@ -31,7 +31,7 @@ class FakeMessenger : public Messenger {
     posts[{client, stream}].push_back(std::move(message));
   }
 
-  /// The newest text of this type to a client; nothing when there is none.
+  /// Returns the newest text of this type for a client; empty if there is none.
   [[nodiscard]] Node last(ClientId client, std::string_view type) {
     Node found;
     for (const std::string& text : texts[client]) {
@@ -44,7 +44,7 @@ class FakeMessenger : public Messenger {
   [[nodiscard]] std::size_t count(ClientId client, std::uint32_t stream) {
     return posts[{client, stream}].size();
   }
-  /// The newest state sent to a client.
+  /// Returns the newest state sent to a client.
   [[nodiscard]] StateMessage state(ClientId client) {
     const auto& states = posts[{client, 0}];
     if (states.empty()) return ADD_FAILURE() << "no state", StateMessage{};
@@ -55,7 +55,7 @@ class FakeMessenger : public Messenger {
   std::map<std::pair<ClientId, std::uint32_t>, std::vector<std::shared_ptr<const std::string>>> posts;
 };
 
-/// Does jobs when it is told to.
+/// Runs jobs on request, or at once if is_prompt.
 class FakeBackground : public Background {
  public:
   void run(Lane lane, Job job) override {
@@ -72,13 +72,13 @@ class FakeBackground : public Background {
   }
 
   bool is_prompt = true;
-  std::map<Lane, int> jobs;  ///< That were given to it.
+  std::map<Lane, int> jobs;  ///< Number of jobs by lane.
 
  private:
   std::deque<Job> waiting_;
 };
 
-/// An arm of two sections before two small cameras, with a ball beside it.
+/// An arm of two sections, two small cameras, and a ball beside the arm.
 inline const std::string viewed_text = R"(
 title = "Two sections"
 [arm]

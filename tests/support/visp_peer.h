@@ -4,22 +4,23 @@
 #include <memory>
 #include <vector>
 
-// ViSP's own answers, as plain numbers: its headers are no C++20.
+// Results of ViSP as plain numbers, because its headers are not valid C++20.
 namespace flexura {
 
-/// A point's normalized coordinates and depth.
+/// Normalised coordinates and depth of a point.
 struct VispPoint {
   double x, y, Z;
 };
 
-/// A vpServo of a camera that moves freely, with the current interaction matrix, kept from step to step.
+/// A vpServo of a freely moving camera, with the current interaction matrix; it keeps its state between
+/// steps.
 class VispServo {
  public:
   VispServo(const std::vector<VispPoint>& wanted, double gain);
   ~VispServo();
   VispServo(const VispServo&) = delete;
   VispServo& operator=(const VispServo&) = delete;
-  /// The velocity [v; w] in C that it asks for where these, as many as are wanted, are seen.
+  /// Returns the commanded velocity [v; w] in C for the observed points, as many as there are targets.
   std::array<double, 6> velocity(const std::vector<VispPoint>& now);
 
  private:

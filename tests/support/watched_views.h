@@ -12,15 +12,15 @@
 
 namespace flexura {
 
-/// A run that a session looked at while it went on, with the folder of its recording.
+/// A run watched by a session, with the folder of its recording.
 struct WatchedView {
   TemporaryFolder folder;
   ViewedRigPtr rig;
   FakeMessenger live;
 };
 
-/// Runs an experiment's text to its end. `Run`: a RunLink whose member `look` is called when there is
-/// something to be seen, on the run's own thread.
+/// Runs an experiment's text to its end. `Run`: a RunLink whose member `look` is called on the run's thread
+/// when there is something new to see.
 template <class Run>
 std::unique_ptr<WatchedView> watched_view(const std::string& text) {
   auto seen = std::make_unique<WatchedView>();
@@ -36,7 +36,7 @@ std::unique_ptr<WatchedView> watched_view(const std::string& text) {
   return seen;
 }
 
-/// The content of a message of extras.
+/// Returns the content of an extras message.
 inline Node extras_in(const std::string& message) {
   if (message.empty() || message[0] != 3) return ADD_FAILURE() << "no extras", Node{};
   return parse_json(message.substr(1), "extras");

@@ -12,7 +12,7 @@
 
 namespace flexura {
 
-/// In cameras that may be so wrong.
+/// Camera prior of a degree and 2 % of focal length.
 constexpr ViewDoubt a_degree_and_two_percent = {.rotation_std = degree, .focal_std = 0.02};
 
 struct WrongCameras {
@@ -20,7 +20,8 @@ struct WrongCameras {
   std::vector<ViewError> errors;
 };
 
-/// What both cameras see, which are believed to be `most` of half a degree and 1 % otherwise.
+/// Returns the observations of both cameras, whose models are wrong by up to `most` times half a degree and 1
+/// % of focal length.
 inline WrongCameras wrong_cameras(const Backbone& truth, TestRandom& random, double noise, double most = 1) {
   WrongCameras cameras{sightings_of(truth, random, noise), {}};
   for (Sighting& one : cameras.seen) {

@@ -40,7 +40,7 @@ app.keys.add(...bindings_of(app));
 app.use_token = (text) => come_in(pasted_token(text));
 addEventListener('keydown', app.keys.handle);
 const route = (): void => {
-  // An address pasted into this very tab changes the hash only.
+  // An address pasted into this tab changes the hash only.
   come_in(take_token(location, history));
   app.route.value = location.hash === '#/teach' ? 'teach' : 'viewer';
 };
@@ -60,8 +60,8 @@ render(
   document.getElementById('app')!,
 );
 void viewer.link.open();
-// For tests from outside (test/e2e): pictures drawn, the state that is shown, where the free view looks from, where the
-// tip is on the screen. Nothing in the page reads it.
+// Values for external tests (test/e2e): drawn frames, the shown state, the viewpoint of the free view, the screen
+// position of the tip. The page itself does not use them.
 Object.assign(globalThis, {
   flexura: {
     drawn: () => app.view.value?.drawn ?? 0,

@@ -1,12 +1,15 @@
-// The token comes behind the address's #, which never leaves the browser; it is taken out of the address bar at once.
-// The program answers one that lets in with a cookie, which no script reads and which ends with the browser: so reloading works, and another tab comes in too.
+// The token is in the address's fragment (after #), which the browser never sends; it is removed from the address bar
+// at once. The program exchanges a valid token for a session cookie that scripts cannot read, so reloading works and
+// other tabs have access too.
 
-/** Tokens are 128 bits in hexadecimal digits. */
+/** Returns whether a text has the form of a token: 128 bits in hexadecimal digits. */
 export function is_token(text: string): boolean {
   return /^[0-9a-fA-F]{32}$/.test(text);
 }
 
-/** Takes `#token=...` out of the address, also what is no token; null when there is nothing of that. */
+/**
+ * Removes `#token=...` from the address, even if the value is no valid token, and returns it; null if there is none.
+ */
 export function take_token(location: Location, history: History): string | null {
   const token = /^#token=(.*)$/.exec(location.hash)?.[1];
   if (token === undefined) return null;
@@ -14,7 +17,7 @@ export function take_token(location: Location, history: History): string | null 
   return token;
 }
 
-/** The token in what someone pasted: the whole address or the digits alone. Null when there is none. */
+/** Extracts the token from a pasted text: a complete address or the digits alone. Null if there is none. */
 export function pasted_token(text: string): string | null {
   return /(?:^|token=)([0-9a-fA-F]{32})$/.exec(text.trim())?.[1] ?? null;
 }

@@ -1,4 +1,4 @@
-/** How long to wait before the next attempt: a quarter of a second at first, doubled each time up to five. */
+/** Delay before the next attempt: a quarter of a second at first, doubled each time up to five seconds. */
 export class Backoff {
   private attempts = 0;
 
@@ -8,7 +8,7 @@ export class Backoff {
     private readonly random: () => number = Math.random,
   ) {}
 
-  /** Milliseconds; a fifth of it by chance, so that several pages do not come at once. */
+  /** Returns the delay, ms; a fifth of it is random, so that several pages do not reconnect at once. */
   next(): number {
     const wait = Math.min(this.most, this.first * 2 ** this.attempts++);
     return wait * (0.9 + 0.2 * this.random());

@@ -1,26 +1,26 @@
-// Being let in: with a token that is new to the page, or the cookie that it has from before.
+// Authentication with the program: by a new token, or by the cookie of an earlier one.
 import { is_token } from './address';
 
 export interface Entry {
-  /** Where the program serves, with a slash at its end. */
+  /** Base address of the program, with a trailing slash. */
   base: string;
-  /** What the address brought or someone pasted, until it was tried. */
+  /** The token from the address or the clipboard, until it was tried. */
   token(): string | null;
-  /** It was tried: the program has answered it with its cookie, or it lets nobody in. */
+  /** The token was tried: the program has set its cookie, or has refused the token. */
   settle(token: string): void;
 }
 
 export type EntryOutcome = { kind: 'in' } | { kind: 'unreachable' } | { kind: 'refused'; why: string };
 
-/** The program has so long to answer, ms: a network that goes away without a word never does. */
+/** Authenticates. `answer_ms`: timeout of the answer, ms, needed if the network fails silently. */
 export async function enter(entry: Entry, answer_ms: number): Promise<EntryOutcome> {
   const token = entry.token();
   try {
     const { status } = await fetch(new URL('series', entry.base), {
       cache: 'no-store',
-      // An address that is wrong, or another's, ends no session that the cookie still lets in.
+      // The cookie is sent as well, so a wrong or foreign token does not end a valid session.
       credentials: 'same-origin',
-      // What is no token need not be sent, and in a header could not.
+      // An invalid token is not sent; some characters are not allowed in a header.
       headers: token !== null && is_token(token) ? { Authorization: `Bearer ${token}` } : {},
       signal: AbortSignal.timeout(answer_ms),
     });
@@ -31,7 +31,7 @@ export async function enter(entry: Entry, answer_ms: number): Promise<EntryOutco
     if (status === 403 || status === 421) {
       return { kind: 'refused', why: 'The program refuses pages under this address; use the one that it printed.' };
     }
-    // 503: full; whatever else it says, it is there, and the socket will show.
+    // 503: too many clients. With any other status the program is reachable, and the socket will report errors.
     return { kind: 'in' };
   } catch {
     return { kind: 'unreachable' };

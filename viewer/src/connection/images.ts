@@ -1,4 +1,4 @@
-// Camera pictures on their way to the screen. They stream in, the next one when the last was acknowledged.
+// Decoding of camera pictures. They are streamed: the next one is sent when the last was acknowledged.
 import type { ImageMessage } from '../protocol/state';
 
 export interface Picture {
@@ -12,12 +12,12 @@ export class Pictures {
 
   constructor(private readonly show: (camera: string, picture: Picture) => void) {}
 
-  /** What is being decoded now belongs to another run: it will not be shown. */
+  /** Pictures that are being decoded belong to another run and will not be shown. */
   reset(): void {
     ++this.generation;
   }
 
-  /** Decodes a picture and shows it; resolves when that is done, so that it can be acknowledged. */
+  /** Decodes a picture and shows it. Resolves afterwards, so that the picture can be acknowledged. */
   async take(camera: string, message: ImageMessage): Promise<void> {
     const generation = this.generation;
     const bitmap = await createImageBitmap(new Blob([message.file as BlobPart], { type: message.type }));

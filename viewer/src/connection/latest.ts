@@ -1,6 +1,6 @@
 /**
- * Sends the newest of what is asked and drops what came in between: one request is outstanding at a time, and the last
- * one asked is always sent. For sliders, the tip and the time of a recording.
+ * Sends the newest request and drops those in between: one request is outstanding at a time, and the last one is always
+ * sent. Used for sliders, the tip and the time of a recording.
  */
 export class Latest<Value, Result = unknown> {
   private waiting: { value: Value } | null = null;
@@ -23,7 +23,7 @@ export class Latest<Value, Result = unknown> {
     );
   }
 
-  /** Forgets what is waiting: for when it has become meaningless. */
+  /** Drops the waiting request because it is obsolete. */
   forget(): void {
     this.waiting = null;
   }

@@ -1,4 +1,4 @@
-// One WebSocket that comes back by itself. What the messages mean is somebody else's business (state/).
+// A WebSocket that reconnects by itself. The messages are interpreted in state/.
 import { signal } from '@preact/signals';
 import type { Reply, TextMessage } from '../protocol/types';
 import { Backoff } from './backoff';
@@ -7,16 +7,16 @@ import { enter, type Entry } from './entry';
 export type LinkStatus =
   | { kind: 'connecting' }
   | { kind: 'open' }
-  /** Lost or never there; `at` is when the next attempt comes (performance.now). */
+  /** Lost, or never connected; `at` is the time of the next attempt (performance.now). */
   | { kind: 'waiting'; at: number; why: string }
-  /** The server is there but does not let us in. */
+  /** The server is reachable but refuses access. */
   | { kind: 'refused'; why: string };
 
 export interface LinkListener {
   text(message: TextMessage): void;
   bytes(message: ArrayBuffer): void;
   closed(): void;
-  /** What failed, of no request. */
+  /** An error that belongs to no request. */
   failed(why: string): void;
 }
 
@@ -28,15 +28,15 @@ interface Waiting {
   timer: ReturnType<typeof setTimeout>;
 }
 
-/** How long the link waits, ms. */
+/** Timeouts of the link, ms. */
 export interface Patience {
-  /** No word for so long: ask for one. */
+  /** Without messages for this long, a ping is sent. */
   quiet: number;
-  /** Not even an answer for so long: what is shown is old. */
+  /** Without an answer for this long, the shown state is stale. */
   stale: number;
-  /** Then the connection is taken for dead, as when the network went away without a word. */
+  /** Without messages for this long, the connection counts as lost, for example if the network failed silently. */
   dead: number;
-  /** To be let in, and for the socket to open: a network that swallows everything answers neither. */
+  /** Timeout of the authentication and of opening the socket. */
   entry: number;
 }
 
@@ -45,9 +45,9 @@ const request_ms = 15000;
 
 export class Link {
   readonly status = signal<LinkStatus>({ kind: 'connecting' });
-  /** The server speaks: what is shown is of now. */
+  /** The server answers: the shown state is current. */
   readonly fresh = signal(false);
-  /** When the last word came (performance.now), 0 before the first. */
+  /** Time of the last message (performance.now), 0 before the first. */
   last_word = 0;
   private socket: WebSocket | null = null;
   private readonly waiting = new Map<number, Waiting>();
@@ -55,7 +55,7 @@ export class Link {
   private next_id = 1;
   private timer: ReturnType<typeof setTimeout> | undefined;
   private pinging = false;
-  /** Counts the attempts: what an earlier one waited for means nothing any more. */
+  /** Number of the connection attempt; results of earlier attempts are ignored. */
   private attempt = 0;
   private readonly watcher: ReturnType<typeof setInterval>;
 
@@ -67,7 +67,7 @@ export class Link {
     this.watcher = setInterval(() => this.watch(), 250);
   }
 
-  /** Connects now, whatever it was waiting for. */
+  /** Connects now, without waiting for the next attempt. */
   async open(): Promise<void> {
     const attempt = this.begin_anew();
     this.status.value = { kind: 'connecting' };
@@ -81,7 +81,7 @@ export class Link {
     this.dial();
   }
 
-  /** Ends it for good. */
+  /** Closes the connection for good. */
   stop(): void {
     clearInterval(this.watcher);
     this.begin_anew();
@@ -93,7 +93,10 @@ export class Link {
     return ++this.attempt;
   }
 
-  /** The result of what is asked; RequestError with the server's line when it refuses. */
+  /**
+   * Sends a request and resolves with its result. Rejects with a RequestError with the server's message if it is
+   * refused.
+   */
   request<Result = unknown>(what: string, values: Record<string, unknown> = {}): Promise<Result> {
     const socket = this.socket;
     if (!socket || socket.readyState !== WebSocket.OPEN) {
@@ -110,7 +113,7 @@ export class Link {
     });
   }
 
-  /** Says something that gets no reply. */
+  /** Sends a message without a reply. */
   tell(what: string, values: Record<string, unknown>): void {
     if (this.socket?.readyState === WebSocket.OPEN) {
       this.socket.send(JSON.stringify({ id: this.next_id++, do: what, ...values }));
@@ -169,7 +172,7 @@ export class Link {
     if (!this.fresh.value) this.fresh.value = true;
   }
 
-  /** Silence may mean that nothing moves: only an unanswered ping makes what is shown stale. */
+  /** Without messages the rig may just be at rest: only an unanswered ping makes the shown state stale. */
   private watch(): void {
     if (this.status.value.kind !== 'open') return;
     const silence = performance.now() - this.last_word;

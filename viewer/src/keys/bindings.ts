@@ -1,4 +1,4 @@
-// As in MuJoCo's simulate (Space, arrows, +/-, F1, Esc, Backspace, brackets) and Blender (the numpad).
+// Keys as in MuJoCo's simulate (Space, arrows, +/-, F1, Esc, Backspace, brackets) and Blender (numpad).
 import { total_length } from '../scene/rings';
 import { preferences, toggle_hidden, toggle_theme } from '../state/preferences';
 import type { App } from '../ui/app';
@@ -8,7 +8,9 @@ export function bindings_of(app: App): Binding[] {
   return [...time(app), ...view(app), ...rig(app), ...page(app)];
 }
 
-/** Whether a key does something on the page that is shown: elsewhere than on the viewer's, the rig is not in sight. */
+/**
+ * Returns whether a key is active on the shown page: rig keys only work on the viewer's page, where the rig is visible.
+ */
 export function is_in_sight({ group }: Binding, route: App['route']['value']): boolean {
   return route === 'viewer' || group === 'Page';
 }

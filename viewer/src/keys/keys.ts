@@ -1,27 +1,27 @@
-// Keys, what they do, and how the help lists them: one list (bindings.ts), so that no key can be missing from the help.
+// Key bindings and their descriptions for the help. There is one list (bindings.ts), so the help is always complete.
 
 export interface Binding {
-  /** As `event.code` or `event.key`, with "Shift+", "Alt+" before it. The help lists each of them. */
+  /** `event.code` or `event.key`, with the prefixes "Shift+" and "Alt+". The help lists each of them. */
   keys: string[];
   what: string;
   group: string;
   run(event: KeyboardEvent): void;
 }
 
-/** How the help writes what is not written on the key itself; on the numpad, and by their place. */
+/** Labels in the help for keys without a printed one, for the numpad, and for keys given by position. */
 const labels: Record<string, string> = {
   ArrowLeft: '←', ArrowRight: '→', ArrowUp: '↑', ArrowDown: '↓', PageUp: 'Page Up', PageDown: 'Page Down', Escape: 'Esc', '-': '−',
   NumpadAdd: 'Numpad +', NumpadSubtract: 'Numpad −', NumpadDecimal: 'Numpad .',
   BracketLeft: '1st right of P', BracketRight: '2nd right of P',
 };
 
-/** A key as the help writes it. */
+/** Returns the label of a key in the help. */
 export function label_of(key: string): string {
   const parts = key.length > 1 ? key.split(/\+(?=.)/) : [key];
   return parts.map((part) => labels[part] ?? part.replace(/^Numpad(\d)$/, 'Numpad $1').replace(/^[a-z]$/, (letter) => letter.toUpperCase())).join(' ');
 }
 
-/** What the help says of the bindings: groups, and in each what is done by which keys. */
+/** Returns the content of the help: groups with their actions and keys. */
 export function help_of(bindings: Binding[]): { group: string; rows: { keys: string[]; what: string }[] }[] {
   return [...new Set(bindings.map(({ group }) => group))].map((group) => ({
     group,
@@ -33,12 +33,12 @@ export interface KeyOptions {
   enabled(binding: Binding): boolean;
 }
 
-/** Names under which a pressed key may be bound. */
+/** Returns the names under which a pressed key may be bound. */
 export function names_of(event: Pick<KeyboardEvent, 'key' | 'code' | 'shiftKey' | 'altKey' | 'ctrlKey' | 'metaKey'>): string[] {
   if (event.ctrlKey || event.metaKey) return [];
   const alt = event.altKey ? 'Alt+' : '';
   const shift = event.shiftKey ? 'Shift+' : '';
-  // A sign that needs Shift on some keyboards ("+", "?") is found by what it writes.
+  // Characters that need Shift on some keyboards ("+", "?") are matched by the character.
   const plain = event.key.length === 1 ? alt + event.key.toLowerCase() : '';
   return [alt + shift + event.code, alt + shift + event.key, plain].filter(Boolean);
 }
@@ -68,12 +68,15 @@ export class KeyMap {
   };
 }
 
-/** What a slider does itself: all the others are the page's. */
+/** Keys handled by a focused slider; all others belong to the page. */
 const slid_by = ['ArrowLeft', 'ArrowRight', 'ArrowUp', 'ArrowDown', 'Home', 'End', 'PageUp', 'PageDown'];
 const typed_into = ['INPUT', 'SELECT', 'TEXTAREA'];
 const pressed = ['BUTTON', 'A', 'SUMMARY'];
 
-/** A focused field keeps the keys that it understands itself; else one could not type, nor press a button by Space. */
+/**
+ * Returns whether a focused control handles a key itself. Without this, typing and pressing buttons with Space would
+ * fail.
+ */
 export function taken_by_control(event: KeyboardEvent): boolean {
   const target = event.target;
   if (!(target instanceof HTMLElement) || event.key === 'F1' || event.key === 'Escape') return false;

@@ -1,4 +1,4 @@
-// What lies between two samples of the backbone is one arc, determined by the poses of its two ends.
+// The backbone between two samples is one arc, determined by the poses of both ends.
 import { sample_stride } from '../protocol/state';
 
 /** x, y, z, qw, qx, qy, qz. */
@@ -8,20 +8,22 @@ export function new_pose(): PoseBuffer {
   return new Float64Array(7);
 }
 
-/** The arc between two consecutive samples, ready to be asked for poses on it. Reused, so that frames allocate nothing. */
+/**
+ * The arc between two consecutive samples, with poses by fraction. Objects are reused, so that frames allocate nothing.
+ */
 export class Arc {
-  /** The angle through which it turns, rad. */
+  /** Turning angle, rad. */
   angle = 0;
-  /** Its length as the arm stands, m. */
+  /** Length including the present stretch, m. */
   length = 0;
-  /** Direction of its bend in the frame of its start: the bending plane's angle from x towards y, rad. */
+  /** Direction of the bend in the frame of the start: angle of the bending plane from x towards y, rad. */
   plane = 0;
   private start = new Float64Array(7);
   private chord = new Float64Array(3);
-  private axis = new Float64Array(3); // in the start's frame
-  private world = new Float64Array(3); // the same in the world
+  private axis = new Float64Array(3); // Rotation axis in the start's frame.
+  private world = new Float64Array(3); // Rotation axis in the world.
 
-  /** Takes the arc from sample i to sample i + 1 of rows as in a state. */
+  /** Sets the arc from sample i to sample i + 1 of a state's rows. */
   set(samples: ArrayLike<number>, i: number): this {
     const a = i * sample_stride + 1;
     const b = a + sample_stride;
@@ -35,10 +37,10 @@ export class Arc {
     return this;
   }
 
-  /** The pose at the fraction f of the arc's length. */
+  /** Computes the pose at the fraction f of the arc's length. */
   pose(f: number, out: PoseBuffer): PoseBuffer {
     const half = this.angle / 2;
-    // The chord to f has the chord's direction, turned back by half of what is still to come.
+    // The chord to f is the whole chord, turned back by half of the remaining angle.
     const scale = (f * sinc(f * half)) / sinc(half);
     const back = -(1 - f) * half;
     const c = Math.cos(back) * scale;
@@ -73,12 +75,12 @@ export class Arc {
   }
 }
 
-/** sin(x)/x, smooth at 0. */
+/** Returns sin(x)/x, smooth at 0. */
 export function sinc(x: number): number {
   return Math.abs(x) < 1e-4 ? 1 - (x * x) / 6 : Math.sin(x) / x;
 }
 
-/** A pose's rotation applied to a vector. */
+/** Rotates a vector by a pose's rotation. */
 export function rotate(pose: ArrayLike<number>, x: number, y: number, z: number, out: Float64Array): Float64Array {
   const w = pose[3], a = pose[4], b = pose[5], c = pose[6];
   const tx = 2 * (b * z - c * y);
@@ -98,12 +100,12 @@ function multiply(pose: ArrayLike<number>, w: number, x: number, y: number, z: n
   out[6] = pw * z + px * y - py * x + pz * w;
 }
 
-/** How many rows there are in an array of samples. */
+/** Returns the number of rows of an array of samples. */
 export function sample_count(samples: ArrayLike<number>): number {
   return samples.length / sample_stride;
 }
 
-/** The interval of the samples in which s lies, and how far in it. Beyond the ends: the end. */
+/** Returns the interval of the samples that contains s and the fraction in it; s is clamped to the ends. */
 export function locate(samples: ArrayLike<number>, s: number): { interval: number; fraction: number } {
   const last = sample_count(samples) - 2;
   let low = 0;
@@ -127,7 +129,7 @@ export interface BackbonePoint {
   plane: number;
 }
 
-/** What is true of the backbone at s (along the unstretched arm). */
+/** Returns position and geometry of the backbone at s (along the unstretched arm). */
 export function point_at(samples: ArrayLike<number>, s: number): BackbonePoint {
   const { interval, fraction } = locate(samples, s);
   const arc = new Arc().set(samples, interval);

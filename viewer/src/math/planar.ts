@@ -1,5 +1,5 @@
-// The paper's planar recurrence (section 3.1), with one sign for all angles: counter-clockwise is positive, and an
-// arching is half the bend. docs/kinematic-model.md derives it.
+// The paper's planar recurrence (section 3.1) with one sign convention for all angles: counter-clockwise is positive,
+// and an arching is half the bend. See docs/kinematic-model.md for the derivation.
 import { sinc } from './arc';
 
 export interface PlanarSection {
@@ -9,21 +9,21 @@ export interface PlanarSection {
 }
 
 export interface PlanarRow {
-  /** The tangent's angle where the section starts, from +X. */
+  /** Angle of the tangent at the section's start, from +X, rad. */
   tangent: number;
   arching: number;
-  /** The cord's angle, from +X. */
+  /** Angle of the cord from +X, rad. */
   cord_angle: number;
   cord: number;
-  /** The section's base point. */
+  /** Base point of the section. */
   x: number;
   y: number;
-  /** Its end: the next one's base point. */
+  /** End point of the section, the next one's base point. */
   end_x: number;
   end_y: number;
 }
 
-/** The recurrence, section by section, from the base point (0, 0) and the tangent `start`. */
+/** Computes the recurrence for all sections from the base point (0, 0) and the tangent angle `start`. */
 export function planar_rows(sections: PlanarSection[], start = Math.PI / 2): PlanarRow[] {
   let tangent = start;
   let x = 0;
@@ -43,7 +43,7 @@ export function planar_rows(sections: PlanarSection[], start = Math.PI / 2): Pla
   });
 }
 
-/** The archings behind cord angles: equation 5 read backwards. */
+/** Returns the archings for given cord angles: equation 5 solved for the archings. */
 export function archings_of(cord_angles: number[], start = Math.PI / 2): number[] {
   let tangent = start;
   return cord_angles.map((cord) => {
@@ -53,7 +53,7 @@ export function archings_of(cord_angles: number[], start = Math.PI / 2): number[
   });
 }
 
-/** Cord angles of archings: equation 5. */
+/** Returns the cord angles for given archings: equation 5. */
 export function cord_angles_of(archings: number[], start = Math.PI / 2): number[] {
   let tangent = start;
   return archings.map((arching) => {
@@ -63,11 +63,11 @@ export function cord_angles_of(archings: number[], start = Math.PI / 2): number[
   });
 }
 
-/** The paper's experiment: eight sections and the cord angles in which it ends (section 3.2). */
+/** The paper's experiment: section lengths, and the final cord angles (section 3.2). */
 export const paper_lengths = [2, 3, 1, 2, 4, 2, 1, 1];
 export const paper_cord_angles = [0.55, 0.65, 0.8, 1, 1.15, 0.9, 0.8, 0.65].map((a) => a * Math.PI);
 
-/** A point of an arc: the fraction f along a section of the recurrence. */
+/** Returns the point at the fraction f along a section of the recurrence. */
 export function planar_point(row: PlanarRow, length: number, f: number): [number, number] {
   const cord = f * length * sinc(f * row.arching);
   const angle = row.tangent + f * row.arching;

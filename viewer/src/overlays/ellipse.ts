@@ -1,6 +1,6 @@
 import type { Overlay } from './overlay';
 
-/** Fitted circles and ellipses; the angle is from u towards v. Dashed where what was seen is found to be none. */
+/** Fitted circles and ellipses; the angle is from u towards v. Rejected ones are dashed. */
 export const ellipse: Overlay = {
   kind: 'ellipse',
   color: '#4dabf7',

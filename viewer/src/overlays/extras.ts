@@ -1,29 +1,31 @@
-// What the program draws of its own: wanted and seen shapes, in the 3D view and upon the pictures. One eye for both.
+// Extras drawn by the program: target and observed shapes, in the 3D view and on the pictures. One eye toggles both.
 import type { ExtraOverlay, Extras, GhostMessage, Layer } from '../protocol/types';
 
-/** What the list of hidden things calls one. */
+/** Returns the id of an extra in the list of hidden things. */
 export function eye_of(id: string): string {
   return `extra ${id}`;
 }
 
-/** By a name of their own, so that none takes the place of a ghost that somebody else sent. */
+/** Returns the ghosts of the extras, with ids that cannot collide with those of ghost messages. */
 export function extra_ghosts(extras: Extras | null, hidden: string[]): Record<string, GhostMessage> {
   const shown = (extras?.ghosts ?? []).filter(({ id }) => !hidden.includes(eye_of(id)));
   return Object.fromEntries(shown.map(({ id, color, poses }) => [eye_of(id), { type: 'ghost', id: eye_of(id), color, poses }]));
 }
 
-/** What lies upon the camera's picture of this number. */
+/** Returns the overlay for the camera's picture of this number. */
 export function extra_overlay(extras: Extras | null, camera: string, number: number | undefined): ExtraOverlay | undefined {
   return extras?.overlays.find((overlay) => overlay.camera === camera && (overlay.number === undefined || overlay.number === number));
 }
 
-/** Without those whose own eye, or that of what they belong to, is shut. */
+/** Returns the layers whose own eye and parent's eye are open. */
 export function extra_layers(overlay: ExtraOverlay | undefined, hidden: string[]): Layer[] {
   const is_shown = (id: unknown): boolean => typeof id !== 'string' || !hidden.includes(eye_of(id));
   return (overlay?.layers ?? []).filter(({ id, of }) => is_shown(id) && is_shown(of));
 }
 
-/** What has an eye: ghosts, and what lies upon pictures alone, in the colour of its first layer. */
+/**
+ * Returns all things with an eye: ghosts, and layers that exist on pictures only, in the colour of their first layer.
+ */
 export function eyes_of(extras: Extras): { id: string; label: string; color: string }[] {
   const eyes = extras.ghosts.map(({ id, label, color }) => ({ id, label, color }));
   for (const { id, label, color } of extras.overlays.flatMap(({ layers }) => layers)) {

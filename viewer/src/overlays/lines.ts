@@ -1,6 +1,6 @@
 import type { Overlay, Points } from './overlay';
 
-/** Lines that do not hang together: what is compared, and the ways between. */
+/** Separate line segments: compared curves and the differences between them. */
 export const lines: Overlay = {
   kind: 'lines',
   color: '#da77f2',

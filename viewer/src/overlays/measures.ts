@@ -1,10 +1,10 @@
-// What the program looks for in the pictures: a new one is a line here. The page draws what comes by its layers' kinds.
+// Measures that the program finds in the pictures: one line each. Results are drawn by the kind of their layers.
 
 export interface Measure {
-  /** As `measure` calls the layer; `shape` is a request of its own. */
+  /** Id of the layer in `measure` results; `shape` is a separate request. */
   id: string;
   label: string;
-  /** For those who cannot see the label's place beside the pictures. */
+  /** Accessible description for screen readers. */
   title: string;
   color: string;
 }
@@ -17,7 +17,7 @@ export const measures: Measure[] = [
   { id: 'circle', label: 'Circle', title: 'The circle through the axis; dashed where the axis is no arc', color: '#4dabf7' },
 ];
 
-/** The arm's shape from the pictures of all cameras together, as a ghost in the 3D view. */
+/** The arm's shape estimated from the pictures of all cameras, shown as a ghost in the 3D view. */
 export const shape: Measure = {
   id: 'shape', label: 'Shape', title: 'The arm’s shape from the pictures of both cameras, in the 3D view', color: '#b197fc',
 };

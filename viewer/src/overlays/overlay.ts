@@ -1,13 +1,13 @@
 import type { Layer } from '../protocol/types';
 
-/** A kind of layer upon a camera's picture. */
+/** A kind of layer on a camera's picture. */
 export interface Overlay {
-  /** As in the message's `kind`. */
+  /** The message's `kind`. */
   kind: string;
   color: string;
   /**
-   * Draws in the picture's pixels: (0, 0) is the middle of the top-left one, and the context is set so. `scale` is how
-   * many of them make one pixel of the screen.
+   * Draws in the picture's pixel coordinates: (0, 0) is the centre of the top-left pixel, and the context is set
+   * accordingly. `scale` is the number of picture pixels per screen pixel.
    */
   draw(context: CanvasRenderingContext2D, layer: Layer, scale: number): void;
 }

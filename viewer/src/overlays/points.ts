@@ -1,6 +1,6 @@
 import type { Overlay, Points } from './overlay';
 
-/** Crosses: markers, features. */
+/** Markers and features, drawn as crosses. */
 export const points: Overlay = {
   kind: 'points',
   color: '#ff6b6b',

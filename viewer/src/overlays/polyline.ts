@@ -1,6 +1,6 @@
 import type { Overlay, Points } from './overlay';
 
-/** Lines from point to point: median axes, outlines. */
+/** Polylines: centerlines, outlines. */
 export const polyline: Overlay = {
   kind: 'polyline',
   color: '#ffd43b',

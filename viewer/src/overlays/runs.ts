@@ -1,6 +1,6 @@
 import type { Overlay } from './overlay';
 
-/** A mask, as runs of pixels in rows; both ends of a run belong to it. */
+/** A mask as runs of pixels in rows; both ends are included. */
 export const runs: Overlay = {
   kind: 'runs',
   color: '#36c5b4',

@@ -5,7 +5,7 @@ import { actuators_of, force_scale, force_text, moved, type ActuatorState } from
 import { use_draft } from './draft';
 import { Slider } from './Slider';
 
-/** A slider for each tendon, and by which it pulls. */
+/** A slider and the tension for each tendon. */
 export function ActuatorPanel({ actuators }: { actuators: ActuatorControl[] }) {
   const { viewer } = use_app();
   const draft = use_draft<number[]>();
@@ -50,7 +50,7 @@ export function ActuatorPanel({ actuators }: { actuators: ActuatorControl[] }) {
   );
 }
 
-/** By which a tendon pulls, as a bar whose end is `scale`, N. */
+/** A tendon's tension as a bar that ends at `scale`, N. */
 function Pull({ name, state: { force, slack, lost }, scale }: { name: string; state: ActuatorState; scale: number }) {
   const text = slack ? 'slack' : force_text(force);
   return (

@@ -41,7 +41,7 @@ export function ArmPanel() {
   const reach = (i: number): Range => mode === 'tendons'
     ? tendon_reach(kind, controls, { displacements: values, bends }, i)
     : reach_of(mode, kind, controls, values, i, start);
-  // What is not changed stays as it is now, and not as a view shows it that is held at an instant before.
+  // Unchanged values are taken from the current state, not from a held earlier one.
   const now = (): Shape => shape_in(viewer.newest ?? state);
   const change = (i: number, value: number): void => {
     const from = now();
@@ -54,7 +54,7 @@ export function ArmPanel() {
     send({ ...from, stretches: from.stretches.map((f, j) => (j === section ? value : f)) });
   };
   const slots = slots_of(mode, kind, controls);
-  // One slider a section needs no heading of its own.
+  // With one slider per section, no headings are needed.
   const plain = kind === 'planar' && mode !== 'tendons' && !stretchable;
   const set_mode = (next: ArmMode): void => {
     draft.set({ values: [], stretches: now().stretches, bends: Array.from((viewer.newest ?? state).bends) });

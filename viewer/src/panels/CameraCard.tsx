@@ -17,7 +17,7 @@ interface Props {
   pixel: Signal<Pixel | null>;
 }
 
-/** A live picture that newer states have followed for so long is not of now. */
+/** A live picture counts as old if newer states have been arriving for this long, s. */
 const late_s = 1;
 
 export function CameraCard({ camera, pixel }: Props) {
@@ -75,24 +75,24 @@ export function CameraCard({ camera, pixel }: Props) {
   );
 }
 
-/** What the program draws of its own upon the picture that is shown. */
+/** Returns the program's overlay for the shown picture. */
 function overlay_of(viewer: Viewer, camera: string): ExtraOverlay | undefined {
   return extra_overlay(viewer.extras.value, camera, viewer.picture_of.get(camera)?.number);
 }
 
-/** In the colours that stand beside their names. */
+/** Returns the layers of the measures, in the colours shown beside their names. */
 function measured_layers(viewer: Viewer, camera: string): Layer[] {
   const layers = viewer.measured.pictures.value[camera]?.value?.layers ?? [];
   return layers.map((layer) => ({ color: color_of(layer.id), ...layer }));
 }
 
-/** The picture that is shown, losslessly: a recording's at its time, the rig's newest. */
+/** Returns the address of the shown picture, lossless: at the recording's time, or the rig's newest. */
 function exact(name: string, viewer: Viewer): string {
   const time = viewer.playback.mode.value === 'recording' ? `?time=${viewer.playback.time.value}` : '';
   return `image/${encodeURIComponent(name)}.png${time}`;
 }
 
-/** Why a picture is not of now; null where it is, or where nobody says so. */
+/** Returns why a picture is not current; null if it is current or its time is unknown. */
 function age(freshness: string, time: number | undefined, history: History): string | null {
   if (time === undefined || freshness === 'recording') return null;
   if (freshness === 'lost' || freshness === 'stale') return `Old: of ${format_time(time)}`;
@@ -113,7 +113,7 @@ function paint(
   context.clearRect(0, 0, camera.width, camera.height);
   if (!bitmap) return;
   context.drawImage(bitmap, 0, 0, camera.width, camera.height);
-  // Line widths in pixels of the screen, whatever the picture's size.
+  // Line widths are in screen pixels, independent of the picture's size.
   const scale = camera.width / Math.max(1, canvas.clientWidth);
   draw_layers(context, layers, scale);
   if (!pixel) return;

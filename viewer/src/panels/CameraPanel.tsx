@@ -5,7 +5,7 @@ import { degree } from '../ui/format';
 import { use_draft } from './draft';
 import { Slider } from './Slider';
 
-/** Pan, tilt, zoom and stage of each camera that has them. */
+/** Pan, tilt, zoom and stage of each camera that has these axes. */
 export function CameraPanel() {
   const { viewer } = use_app();
   const hello = viewer.hello.value;
@@ -45,7 +45,7 @@ interface AxisProps {
   what: 'head' | 'stage';
   camera: string;
   axis: string;
-  /** Where the state says how it stands. */
+  /** Index of the value in a camera's row of the state. */
   place: number;
   range: Range;
   scale: number;
@@ -57,7 +57,7 @@ function Axis({ what, camera, axis, place, range, scale, unit }: AxisProps) {
   const draft = use_draft<number>();
   viewer.tick.value;
   const actual = viewer.shown?.cameras[place] ?? range[0];
-  // An axis without a way to go is no control.
+  // An axis without travel has no control.
   if (!(range[1] > range[0])) return null;
   return (
     <Slider

@@ -4,7 +4,7 @@ import type { Level } from '../protocol/types';
 
 const words: Record<Level, string> = { info: 'Note', warning: 'Warning', error: 'Error' };
 
-/** What happened, newest first; a click goes there. */
+/** List of events, newest first; a click seeks to the event. */
 export function EventPanel() {
   const { viewer } = use_app();
   const marks = viewer.hello.value?.marks ?? [];

@@ -7,7 +7,7 @@ import { fixed, length_places } from '../ui/format';
 import { force_text } from './actuators';
 import { NumberField } from './Slider';
 
-/** Whether forces are known of this arm. */
+/** Returns whether the program computes forces for this arm. */
 export function has_forces(hello: Hello | null): boolean {
   if (!hello) return false;
   const { controls, quantities } = hello;
@@ -15,7 +15,7 @@ export function has_forces(hello: Hello | null): boolean {
     || quantities.some(({ name }) => name.startsWith('energy_') || name === 'contact_force');
 }
 
-/** Forces on an elastic arm: a push by numbers, its energy, and what it touches. */
+/** Forces on an elastic arm: a push by numbers, energies, and contacts. */
 export function ForcePanel() {
   const { viewer } = use_app();
   viewer.tick.value;
@@ -33,7 +33,7 @@ export function ForcePanel() {
   );
 }
 
-/** What dragging the arm does, for those who use the keyboard, and with exact numbers. */
+/** Fields for pushing the arm: the keyboard equivalent of dragging, with exact numbers. */
 function PushFields({ control, state }: { control: PushControl; state: State }) {
   const { viewer } = use_app();
   const s = useSignal(control.length);
@@ -79,7 +79,7 @@ function PushFields({ control, state }: { control: PushControl; state: State }) 
   );
 }
 
-/** As many as a small part of the greatest force needs. */
+/** Returns the decimal places needed for small fractions of the largest force. */
 function force_places(most: number): number {
   return Math.min(5, Math.max(0, 2 - Math.floor(Math.log10(most))));
 }
@@ -104,7 +104,7 @@ function Energy({ energy }: { energy: Float32Array }) {
   );
 }
 
-/** With a unit in which it has digits. */
+/** Formats an energy with a unit prefix that suits its magnitude. */
 export function energy_text(joule: number): string {
   const size = Math.abs(joule);
   if (size >= 1) return `${fixed(joule, 2)} J`;

@@ -23,7 +23,7 @@ export function LeftPanel() {
             aria-controls="left-panel" tabIndex={id === tab.id ? 0 : -1}
             onClick={() => (open.value = id)}
             onKeyDown={(event) => {
-              // With Alt they turn the view.
+              // With Alt, arrow keys rotate the view.
               if (event.altKey) return;
               if (event.key === 'ArrowRight') move(1);
               if (event.key === 'ArrowLeft') move(-1);

@@ -3,7 +3,7 @@ import type { ShapeResult } from '../protocol/types';
 import { preferences, toggle_overlay } from '../state/preferences';
 import { use_app } from '../ui/app';
 
-/** What is to be drawn upon the pictures, and the shape that they tell together. */
+/** Selection of the measures drawn on the pictures, and the shape estimated from all of them. */
 export function MeasurePanel({ cameras }: { cameras: number }) {
   const { viewer } = use_app();
   const wanted = preferences.overlays.value;
@@ -23,7 +23,9 @@ export function MeasurePanel({ cameras }: { cameras: number }) {
   );
 }
 
-/** One line, that the pixel inspector stays in sight: doubts are told to those who point at it or hear it. */
+/**
+ * Limited to one line, so that the pixel inspector stays visible. Warnings are in the tooltip and for screen readers.
+ */
 function Shape({ found }: { found: ShapeResult | null }) {
   const doubts = found?.notes.join('; ') ?? '';
   return (

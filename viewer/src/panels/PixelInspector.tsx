@@ -6,10 +6,10 @@ import { use_app } from '../ui/app';
 import { fixed, length_places } from '../ui/format';
 import { follow_pixel, type Pixel } from './pixel_value';
 
-/** So many pixels around the inspected one, enlarged. */
+/** Size of the enlarged area: pixels on each side of the inspected one. */
 const around = 7;
 
-/** The exact value of a pixel, as the camera gave it: not read from the compressed picture on the screen. */
+/** Shows the exact pixel value of the camera, not that of the compressed picture on the screen. */
 export function PixelInspector({ pixel }: { pixel: Signal<Pixel | null> }) {
   const { viewer } = use_app();
   const canvas = useRef<HTMLCanvasElement>(null);
@@ -36,7 +36,7 @@ export function PixelInspector({ pixel }: { pixel: Signal<Pixel | null> }) {
   );
 }
 
-/** What is seen there, as far as it is known: of a picture that was filmed it is not. */
+/** Describes the object at the pixel, if known; it is unknown for pictures of real cameras. */
 function what_is(exact: PixelResult | null, places: number): string {
   if (!exact?.label) return '–';
   return exact.label + (exact.s === null ? '' : ` at s ${fixed(exact.s, places)} m`);

@@ -5,7 +5,7 @@ import { MeasurePanel } from './MeasurePanel';
 import { PixelInspector } from './PixelInspector';
 import type { Pixel } from './pixel_value';
 
-/** What the cameras see. */
+/** Camera pictures and measures. */
 export function RightPanel() {
   const { viewer } = use_app();
   const pixel = useSignal<Pixel | null>(null);

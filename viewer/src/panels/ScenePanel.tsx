@@ -2,7 +2,7 @@ import { preferences, toggle_hidden } from '../state/preferences';
 import { use_app } from '../ui/app';
 import { Icon } from '../ui/Icon';
 
-/** What is in the 3D view, each with an eye. */
+/** Visibility of the things in the 3D view. */
 export function ScenePanel() {
   const { parts } = use_app();
   const hidden = preferences.hidden.value;

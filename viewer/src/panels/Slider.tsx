@@ -1,4 +1,4 @@
-// A slider that shows its limits and what cannot be reached now, with a field for exact values beside it.
+// A slider with limits and the currently unreachable range, and a field for exact values.
 import type { Range } from '../protocol/types';
 import { useRef, useState } from 'preact/hooks';
 import { number_of } from '../ui/format';
@@ -6,15 +6,15 @@ import { number_of } from '../ui/format';
 export interface SliderProps {
   id: string;
   label: string;
-  /** For screen readers, where the label alone would not say of what. */
+  /** Accessible name for screen readers, if the label alone is ambiguous. */
   title?: string;
   value: number;
-  /** Where the thing really is, when that differs. */
+  /** Actual value, if it differs from the commanded one. */
   actual?: number;
   span: Range;
-  /** What can be reached now; beyond it is shaded. */
+  /** Currently reachable range; the rest is shaded. */
   reach: Range;
-  /** Factor to the display, e.g. degrees. */
+  /** Factor from value to display, for example to degrees. */
   scale: number;
   unit: string;
   places: number;
@@ -51,7 +51,7 @@ export function Slider(props: SliderProps) {
           aria-valuetext={`${(value * scale).toFixed(places)} ${unit}`}
           onInput={(event) => input(event.currentTarget.valueAsNumber)}
           onKeyDown={(event) => {
-            // One press is one per cent of the slider, with Shift a tenth of that.
+            // A key press moves by 1 % of the slider, with Shift by 0.1 %.
             const direction = { ArrowRight: 1, ArrowUp: 1, ArrowLeft: -1, ArrowDown: -1 }[event.key];
             if (!direction || event.altKey) return;
             event.preventDefault();
@@ -74,7 +74,7 @@ interface NumberFieldProps {
   change(value: number): void;
 }
 
-/** Shows a changing value and lets one type another: what is typed holds from Enter on. */
+/** A field that shows a changing value and accepts a new one with Enter. */
 export function NumberField({ label, value, places, disabled, change }: NumberFieldProps) {
   const [typed, set_typed] = useState<string | null>(null);
   const field = useRef<HTMLInputElement>(null);

@@ -6,7 +6,7 @@ import { use_app } from '../ui/app';
 import { length_places } from '../ui/format';
 import { NumberField } from './Slider';
 
-/** The tip's position, to read and to type: what dragging its handle does, for those who use the keyboard. */
+/** The tip's position: the keyboard equivalent of dragging its handle. */
 export function TipPanel() {
   const { viewer } = use_app();
   viewer.tick.value;
@@ -31,7 +31,7 @@ export function TipPanel() {
             <span aria-hidden="true">{axis}</span>
             <NumberField label={`Tip’s ${axis}, m`} value={tip[i]} places={places} disabled={still}
               change={(value) => {
-                // Also while the view is held at an instant before, the others stay as they are now.
+                // The other coordinates are taken from the current state, even while an earlier one is held.
                 const now = tip_of(viewer.newest?.samples ?? samples);
                 go(now.map((old, j) => (j === i ? value : old)) as Vector3);
               }} />

@@ -1,7 +1,7 @@
 import { flag_weightless } from '../protocol/state';
 import { use_app } from '../ui/app';
 
-/** Weight and loads of the simulated arm, on and off. */
+/** Switch for weight and loads of the simulated arm. */
 export function WeightSwitch() {
   const { viewer } = use_app();
   const off = (viewer.flags.value & flag_weightless) !== 0;
@@ -12,7 +12,7 @@ export function WeightSwitch() {
           onChange={(event) => {
             const box = event.currentTarget;
             const on = box.checked;
-            // The rig says what holds.
+            // The box shows the rig's state, not the click.
             box.checked = !off;
             void viewer.commander.weight(on);
           }} />

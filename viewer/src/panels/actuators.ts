@@ -1,21 +1,21 @@
-// Tendons that can be pulled in one by one: plain functions, tested without a page.
+// Individually driven tendons: plain functions, tested without a page.
 import { actuator_force, actuator_lost, actuator_stride, type State } from '../protocol/state';
 import type { ActuatorControl, Range } from '../protocol/types';
 
 export interface ActuatorState {
-  /** m */
+  /** Displacement, m. */
   value: number;
-  /** N */
+  /** Tension, N. */
   force: number;
   slack: boolean;
-  /** Of its motor. */
+  /** Lost steps of the motor. */
   lost: number;
 }
 
-/** Less than that no tendon pulls, N. */
+/** Smaller tensions count as zero, N. */
 const least_force = 1e-6;
 
-/** As they are in a state; none of one that does not tell of them. */
+/** Returns the actuators of a state; empty if the state has none. */
 export function actuators_of({ actuators }: State): ActuatorState[] {
   return Array.from({ length: actuators.length / actuator_stride }, (_, i) => {
     const [value, force, lost] = [0, actuator_force, actuator_lost].map((part) => actuators[actuator_stride * i + part]);
@@ -23,7 +23,7 @@ export function actuators_of({ actuators }: State): ActuatorState[] {
   });
 }
 
-/** All of them when the one at i goes to `value`: alone, or together with the others, as far as all of these can. */
+/** Returns all values when actuator i moves to `value`, alone or coupled with the others within all their limits. */
 export function moved(actuators: ActuatorControl[], values: number[], i: number, value: number, together: boolean): number[] {
   const clamp = ([low, high]: Range, wish: number): number => Math.min(high, Math.max(low, wish));
   const wish = clamp(actuators[i].range, value);
@@ -38,14 +38,14 @@ export function moved(actuators: ActuatorControl[], values: number[], i: number,
   return values.map((old, j) => clamp(actuators[j].range, old + share * way * actuators[i].together[j]));
 }
 
-/** The end of a scale on which the greatest of these can be read: 1, 2 or 5 times a power of ten, from 1 N on. */
+/** Returns the end of a scale for these forces: 1, 2 or 5 times a power of ten, at least 1 N. */
 export function force_scale(forces: number[]): number {
   const most = Math.max(1, ...forces);
   const power = 10 ** Math.floor(Math.log10(most));
   return [1, 2, 5, 10].map((step) => step * power).find((end) => end >= most * (1 - 1e-9)) ?? 10 * power;
 }
 
-/** A tension as one reads it: three digits, and no more than two places. */
+/** Formats a tension: three digits, at most two decimal places. */
 export function force_text(force: number): string {
   const places = force < 10 ? 2 : force < 100 ? 1 : 0;
   return `${force.toFixed(places)} N`;

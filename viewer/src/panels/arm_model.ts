@@ -1,4 +1,4 @@
-// What the arm's sliders stand for in each way of saying its shape: plain functions, tested without a page.
+// Meaning of the arm's sliders in each shape representation: plain functions, tested without a page.
 import { archings_of, cord_angles_of } from '../math/planar';
 import type { State } from '../protocol/state';
 import type { Controls, Range } from '../protocol/types';
@@ -6,10 +6,10 @@ import type { ArmMode } from '../state/preferences';
 import type { ArmCommand } from '../state/commander';
 
 export interface Shape {
-  /** One number a slider: as `modes_of` and `slots_of` say. */
+  /** One number per slider, see `modes_of` and `slots_of`. */
   values: number[];
   stretches: number[];
-  /** The bends that the tendons' values stand for, two a section. */
+  /** Bends that correspond to the tendon values, two per section, rad. */
   bends: number[];
 }
 
@@ -29,7 +29,7 @@ export function modes_of(kind: 'planar' | 'spatial', controls: Controls): ArmMod
   return controls.tendons || controls.actuators ? [...shapes, 'tendons'] : shapes;
 }
 
-/** The sliders of a mode, in the order of `Shape.values`. */
+/** Returns the sliders of a mode, in the order of `Shape.values`. */
 export function slots_of(mode: ArmMode, kind: 'planar' | 'spatial', controls: Controls): Slot[] {
   if (mode === 'tendons') {
     return (controls.tendons ?? []).map(({ section }, i) => ({ section, label: `Tendon ${i + 1}`, unit: 'mm' }));
@@ -46,24 +46,24 @@ export function slots_of(mode: ArmMode, kind: 'planar' | 'spatial', controls: Co
   });
 }
 
-/** The sliders' values in a state. `start` is the tangent's angle at a planar arm's base. */
+/** Returns the slider values of a state. `start` is the tangent angle at a planar arm's base, rad. */
 export function values_of(mode: ArmMode, kind: 'planar' | 'spatial', state: State, start = Math.PI / 2): number[] {
   if (mode === 'tendons') return Array.from(state.displacements);
   if (kind === 'spatial') return Array.from(state.bends);
   const towards_x = Array.from({ length: state.bends.length / 2 }, (_, i) => state.bends[2 * i]);
   if (mode === 'bends') return towards_x;
-  // Archings are counter-clockwise: the bend (-2b, 0).
+  // Archings are positive counter-clockwise: the bend is (-2b, 0).
   const archings = towards_x.map((bend) => -bend / 2);
   return mode === 'archings' ? archings : cord_angles_of(archings, start);
 }
 
-/** The request that makes the arm so. */
+/** Returns the request that commands this shape. */
 export function command_of(mode: ArmMode, kind: 'planar' | 'spatial', values: number[], stretches: number[] | null): ArmCommand {
   const shape: ArmCommand =
     mode === 'bends'
       ? { bends: kind === 'spatial' ? pairs(values) : values.map((bend) => [bend, 0]) }
       : { [mode]: values };
-  // Tendons say all of the shape: nothing may stand beside them.
+  // Tendons determine the complete shape, so stretches are omitted.
   return stretches && mode !== 'tendons' ? { ...shape, stretches } : shape;
 }
 
@@ -71,7 +71,7 @@ function pairs(values: number[]): [number, number][] {
   return Array.from({ length: values.length / 2 }, (_, i) => [values[2 * i], values[2 * i + 1]]);
 }
 
-/** Where the value i can be while the others stay; of tendons, those of the same shape: tendons.ts. */
+/** Returns the reachable range of value i with the others fixed. For tendons see tendons.ts. */
 export function reach_of(
   mode: Exclude<ArmMode, 'tendons'>, kind: 'planar' | 'spatial', controls: Controls, values: number[], i: number, start = Math.PI / 2,
 ): Range {
@@ -83,22 +83,24 @@ export function reach_of(
   }
   if (mode === 'bends') return [-limit, limit];
   if (mode === 'archings') return [-limit / 2, limit / 2];
-  // A section's cord may leave the tangent at its start by half the bend.
+  // A section's cord deviates from the tangent at its start by at most half the bend limit.
   const before = archings_of(values.slice(0, i), start);
   const tangent = before.reduce((sum, arching) => sum + 2 * arching, start);
   return [tangent - limit / 2, tangent + limit / 2];
 }
 
-/** More than that to a side of the base's tangent is no way to see what a slider does: rad. */
+/** Largest shown cord angle to either side of the base tangent, rad; a wider slider would be hard to read. */
 const widest_cord = 1.25 * Math.PI;
 
-/** How far the cord of the section i can lean from the base's tangent when all before lean that way too, rad. */
+/**
+ * Returns how far the cord of section i can turn from the base tangent if all sections before turn the same way, rad.
+ */
 function cord_reach({ sections }: Controls, i: number): number {
   const limit = (j: number): number => sections[j].bend ?? Infinity;
   return sections.slice(0, i).reduce((sum, _, j) => sum + limit(j), limit(i) / 2);
 }
 
-/** The ends of the slider i: the limits and a bit more, so that one sees them. */
+/** Returns the ends of slider i: slightly beyond the limits, so that the limits are visible. */
 export function span_of(mode: ArmMode, kind: 'planar' | 'spatial', controls: Controls, i: number, value: number, start = Math.PI / 2): Range {
   if (mode === 'tendons') {
     const [low, high] = controls.tendons?.[i].displacement ?? [-0.1, 0.1];
@@ -114,7 +116,10 @@ export function span_of(mode: ArmMode, kind: 'planar' | 'spatial', controls: Con
   return [Math.min(-most, value), Math.max(most, value)];
 }
 
-/** The values with the one at i changed, and what then no longer can be drawn to its reach. Of tendons: tendons.ts. */
+/**
+ * Returns the values with value i changed, and all values clamped to their reachable ranges. For tendons see
+ * tendons.ts.
+ */
 export function changed(
   mode: Exclude<ArmMode, 'tendons'>, kind: 'planar' | 'spatial', controls: Controls, values: number[], i: number, value: number, start = Math.PI / 2,
 ): number[] {
@@ -124,12 +129,12 @@ export function changed(
     next[j] = Math.min(high, Math.max(low, wish));
   };
   draw(i, value);
-  // Cord angles lean on those before them.
+  // Reachable cord angles depend on those before them.
   if (mode === 'cord_angles') for (let j = i + 1; j < next.length; ++j) draw(j, next[j]);
   return next;
 }
 
-/** The angle of a planar arm's base tangent from +X. */
+/** Returns the angle of a planar arm's base tangent from +X, rad. */
 export function start_tangent(base: ArrayLike<number>): number {
   const [, , , w, x, y, z] = Array.from(base);
   return Math.atan2(2 * (y * z - w * x), 2 * (x * z + w * y));

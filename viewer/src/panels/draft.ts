@@ -6,8 +6,8 @@ import { use_app } from '../ui/app';
 const settle_ms = 600;
 
 /**
- * What a person asked for, until the rig has come to rest: then null, and the sliders show the rig again. Without it a
- * slider would jump back under the hand while the arm is still on its way.
+ * The requested value until the rig is at rest; then null, and the sliders show the rig again. Without it a slider
+ * would jump back during the drag while the arm is still moving.
  */
 export function use_draft<T>(): { value: T | null; set(value: T): void } {
   const { viewer } = use_app();

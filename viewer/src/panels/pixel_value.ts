@@ -1,4 +1,4 @@
-// The exact value of the inspected pixel, always that of the picture that is shown.
+// The exact value of the inspected pixel, kept in step with the shown picture.
 import { effect, signal, type ReadonlySignal, type Signal } from '@preact/signals';
 import { Latest } from '../connection/latest';
 import type { PixelResult } from '../protocol/types';
@@ -9,7 +9,7 @@ export interface Pixel {
   v: number;
 }
 
-/** What of the `Viewer` is needed. */
+/** The part of `Viewer` that is needed. */
 export interface PictureHost {
   picture_tick: ReadonlySignal<number>;
   picture_of: ReadonlyMap<string, { number: number }>;
@@ -20,12 +20,12 @@ export interface PictureHost {
   };
 }
 
-/** A value stands for so long, ms, while that of the next picture is on its way: else it would flicker. */
+/** A value stays for this long, ms, until that of the next picture arrives. This avoids flicker. */
 export const grace_ms = 120;
-/** An answer of another picture than the shown one is asked for again after so long, ms. */
+/** If the answer belongs to another picture than the shown one, the request is repeated after this time, ms. */
 const again_ms = 300;
 
-/** A pixel of a picture of a run. */
+/** A requested pixel of a picture of a run. */
 interface Asked extends Pixel {
   number: number;
   epoch: number;
@@ -35,9 +35,9 @@ function is_same(a: Asked | null, b: Asked): boolean {
   return a !== null && a.camera === b.camera && a.u === b.u && a.v === b.v && a.number === b.number && a.epoch === b.epoch;
 }
 
-/** Keeps `value` that of `pixel` in the picture that is shown, null where it is not known; gives what ends this. */
+/** Keeps `value` equal to that of `pixel` in the shown picture, null if unknown. Returns a function that stops this. */
 export function follow_pixel(host: PictureHost, pixel: ReadonlySignal<Pixel | null>, value: Signal<PixelResult | null>): () => void {
-  /** The newest answer: it may be of a picture that is still to come. */
+  /** The newest answer; it may belong to a picture that has not arrived yet. */
   const answer = signal<{ of: Asked; result: PixelResult } | null>(null);
   const again = signal(0);
   let asked: Asked | null = null;
@@ -67,7 +67,7 @@ export function follow_pixel(host: PictureHost, pixel: ReadonlySignal<Pixel | nu
     if (answer.value && is_same(answer.value.of, wanted)) return say(answer.value.result);
     outdated ??= setTimeout(() => (value.value = null), grace_ms);
     if (is_same(asked, wanted)) {
-      // Answered, but for a picture that is not shown, and may never be.
+      // The answer belongs to a picture that is not shown and may never be.
       repeat ??= setTimeout(() => {
         repeat = undefined;
         asked = null;

@@ -10,11 +10,11 @@ export interface Tab {
   id: string;
   label: string;
   Panel: FunctionComponent;
-  /** Where there may be nothing to show: whether there is. */
+  /** For panels that may be empty: whether there is content. */
   shown?(hello: Hello | null): boolean;
 }
 
-/** The tabs on the left; a new panel is one line here and one file beside. */
+/** The tabs on the left. A new panel needs one line here and one file. */
 export const left_tabs: Tab[] = [
   { id: 'arm', label: 'Arm', Panel: ArmPanel },
   { id: 'forces', label: 'Forces', Panel: ForcePanel, shown: has_forces },

@@ -1,26 +1,26 @@
-// Tendons hang together: those that end with a section pull against each other, and those of later sections run through
-// it. A hand moves one, and the others go along, so that all of them stay lengths of one shape. Exact in a continuous
-// channel; between guide disks near enough for a hand, for the rig's own lengths come back a moment later.
+// Tendons are coupled: those that end at one section act against each other, and those of later sections run through
+// it. When the user moves one, the others follow, so that the lengths always belong to one shape. This is exact for
+// continuous channels and approximate for guide disks; the rig then reports its own lengths.
 import type { Controls, Range, TendonControl } from '../protocol/types';
 
 export interface Pulled {
-  /** m, positive pulled in: one a tendon. */
+  /** Pulled-in length of each tendon, m. */
   displacements: number[];
-  /** rad, two a section. */
+  /** Two per section, rad. */
   bends: number[];
 }
 
 type Kind = 'planar' | 'spatial';
 
-/** The change of its section's bend, rad a metre, that pulling the tendon makes with the least bending. */
+/** Returns the change of the section's bend per pulled-in length, rad/m, for the smallest change of bend. */
 function bending({ radius, angle }: TendonControl, kind: Kind): [number, number] {
   if (kind === 'spatial') return [Math.cos(angle) / radius, Math.sin(angle) / radius];
-  // In a plane only what of its place lies there pulls.
+  // In a planar arm only the in-plane offset has an effect.
   const x = radius * Math.cos(angle);
   return Math.abs(x) > 1e-6 * radius ? [1 / x, 0] : [0, 0];
 }
 
-/** Where the tendon i can be while the bends of all other sections stay. */
+/** Returns the range of tendon i with the bends of all other sections fixed. */
 export function tendon_reach(kind: Kind, controls: Controls, { displacements, bends }: Pulled, i: number): Range {
   const tendon = controls.tendons![i];
   const at = displacements[i];
@@ -29,7 +29,7 @@ export function tendon_reach(kind: Kind, controls: Controls, { displacements, be
   if (square === 0) return [at, at];
   const limit = controls.sections[tendon.section].bend ?? Infinity;
   if (!Number.isFinite(limit)) return tendon.displacement;
-  // The bend moves along a line, of which a piece lies in the disc of the limit.
+  // The bend moves along a line; the part inside the disc of the limit is reachable.
   const [x, y] = bends.slice(2 * tendon.section, 2 * tendon.section + 2);
   const along = x * ux + y * uy;
   const half = Math.sqrt(Math.max(0, along * along - square * (x * x + y * y - limit * limit))) / square;
@@ -37,7 +37,7 @@ export function tendon_reach(kind: Kind, controls: Controls, { displacements, be
   return [Math.min(at, middle - half), Math.max(at, middle + half)];
 }
 
-/** All tendons when the one at i goes to `value`, drawn to its reach. */
+/** Returns all tendons when tendon i moves to `value`, clamped to its range. */
 export function pull(kind: Kind, controls: Controls, pulled: Pulled, i: number, value: number): Pulled {
   const tendons = controls.tendons!;
   const [low, high] = tendon_reach(kind, controls, pulled, i);

@@ -14,7 +14,7 @@ interface Props {
   choose(id: string): void;
 }
 
-/** What is known along the arm at the instant that is shown: over arc length, in m. */
+/** Quantities along the arm at the shown time, over arc length in m. */
 export function AlongPlot({ place, options, choose }: Props) {
   const { viewer } = use_app();
   const at = useSignal<number | null>(null);
@@ -24,7 +24,7 @@ export function AlongPlot({ place, options, choose }: Props) {
   const colors = curves.map(({ color }) => color);
   const draw = (made: Parameters<typeof fill>[0] | null): void => {
     const now = viewer.shown_extras.peek()?.along;
-    // With other curves comes another chart.
+    // The chart is rebuilt when the curves change.
     if (made && now && made.series.length === now.curves.length + 1) fill(made, columns_of(now), [0, now.length]);
   };
   const latest = useRef(draw);
@@ -47,7 +47,7 @@ export function columns_of({ length, curves }: Along): Columns {
   return [Array.from({ length: count }, (_, i) => (length * i) / Math.max(1, count - 1)), ...curves.map(({ values }) => values)];
 }
 
-/** Where nobody points at a place, the largest counts. */
+/** Without a cursor position, the largest values are shown. */
 function largest(values: (number | null)[]): number {
   return Math.max(...values.map((value) => value ?? 0));
 }

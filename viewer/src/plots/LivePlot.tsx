@@ -9,7 +9,7 @@ import { live_sources, short_names } from './sources';
 import { use_chart } from './use_chart';
 
 const window_s = 20;
-/** A window at the start is not narrower than that. */
+/** Minimum width of the time window at the start, s. */
 const least_s = 2;
 
 interface Props {
@@ -21,7 +21,7 @@ interface Props {
   choose(id: string): void;
 }
 
-/** The last seconds of the rig, as a window that slides. */
+/** Plot of the last seconds of the rig in a sliding window. */
 export function LivePlot({ hello, scene, place, chosen, options, choose }: Props) {
   const { viewer, cursor } = use_app();
   const sources = live_sources(hello, scene);
@@ -34,7 +34,7 @@ export function LivePlot({ hello, scene, place, chosen, options, choose }: Props
     const { history } = viewer;
     const newest = history.newest?.time;
     if (newest === undefined || !chart.current) return;
-    // A held instant keeps its place; the window moves only to keep it in sight.
+    // A held time keeps its place; the window moves only to keep it visible.
     const held = viewer.playback.held.value;
     const end = held === null ? newest : Math.min(newest, Math.max(held + window_s / 2, history.oldest!.time + window_s));
     const start = Math.max(history.oldest!.time, end - window_s);

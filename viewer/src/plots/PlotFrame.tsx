@@ -7,17 +7,17 @@ interface Props {
   options: { id: string; label: string; unit: string }[];
   chosen: string;
   names: string[];
-  /** Of the series, where they have colours of their own. */
+  /** Colours of the series, if they have their own. */
   colors?: string[];
-  /** Says that it is not all. */
+  /** Note that only a part of the series is shown. */
   part: string | undefined;
-  /** At the cursor, or where playback stands. */
+  /** Values at the cursor or at the playback time. */
   values: (number | null | undefined)[];
   host: RefObject<HTMLDivElement>;
   choose(id: string): void;
 }
 
-/** A plot's head: what is drawn, and its values at the cursor. */
+/** Header of a plot: the quantity and its values at the cursor. */
 export function PlotFrame({ place, options, chosen, names, part, values, host, choose, colors }: Props) {
   const theme = theme_now();
   const size = Math.max(...values.map((value) => Math.abs(value ?? 0)));
@@ -42,7 +42,7 @@ export function PlotFrame({ place, options, chosen, names, part, values, host, c
   );
 }
 
-/** What is nothing beside the others is written as nothing. */
+/** Formats a value; "0" if it is negligible compared with the others. */
 function format(value: number | null | undefined, size: number): string {
   if (value === null || value === undefined) return '';
   return Math.abs(value) < 1e-4 * size ? '0' : `${+value.toPrecision(4)}`.replace('-', '−');

@@ -6,13 +6,13 @@ import { LivePlot } from './LivePlot';
 import { RecordingPlot } from './RecordingPlot';
 import { along_option, can_be_along, live_sources, shown_groups } from './sources';
 
-/** All that a plot can show. */
+/** Returns everything that a plot can show. */
 export function options_of(hello: Hello, scene: Scene): { id: string; label: string; unit: string }[] {
   const over_time = hello.mode === 'live' ? live_sources(hello, scene) : shown_groups(hello);
   return can_be_along(hello) ? [...over_time, along_option] : over_time;
 }
 
-/** Two plots side by side over one time. */
+/** Two plots side by side with a common time axis. */
 export function Plots() {
   const { viewer } = use_app();
   const hello = viewer.hello.value;

@@ -18,7 +18,7 @@ interface Props {
   choose(id: string): void;
 }
 
-/** A recording's quantities over all of its time. Angles are shown in degrees. */
+/** Plot of a recording's quantities over its whole time. Angles are in degrees. */
 export function RecordingPlot({ hello, place, chosen, options, choose }: Props) {
   const { viewer, cursor } = use_app();
   const columns = useSignal<Columns | null>(null);
@@ -56,7 +56,7 @@ export function RecordingPlot({ hello, place, chosen, options, choose }: Props) 
   );
 }
 
-/** The tip first, then a servo's errors, then what comes first besides. */
+/** Returns the default group of a plot: the tip first, then a servo's errors, then the others in order. */
 function standard<G extends { id: string }>(groups: G[], place: number): G | undefined {
   const rank = ({ id }: G): number => (id.startsWith('tip') ? 0 : id.startsWith('servo') ? 1 : 2);
   const order = [...groups].sort((a, b) => rank(a) - rank(b));

@@ -1,4 +1,4 @@
-// uPlot in the page's colours, with the shared cursor.
+// uPlot with the page's colours and the shared cursor.
 import uPlot from 'uplot';
 import type { Columns } from './data';
 
@@ -6,16 +6,16 @@ export interface ChartOptions {
   host: HTMLElement;
   names: string[];
   unit: string;
-  /** Times that are drawn as lines: where playback stands. */
+  /** Time of the playback line. */
   now(): number | null;
   hover(time: number | null): void;
   seek(time: number): void;
-  /** Over something else than the time that all others share. */
+  /** The x axis is not the time shared with the other plots. */
   is_alone?: boolean;
   colors?: string[];
 }
 
-/** Told apart on both grounds, also with a colour-blind eye as far as nine can be. */
+/** Distinguishable on both backgrounds, and with colour blindness as far as possible for nine colours. */
 const palettes = {
   dark: ['#4dabf7', '#ff922b', '#51cf66', '#f06595', '#ffd43b', '#22b8cf', '#b197fc', '#ff8787', '#94d82d'],
   light: ['#1971c2', '#d9480f', '#2b8a3e', '#a61e4d', '#a86a00', '#0b7285', '#6741d9', '#c92a2a', '#5c940d'],
@@ -62,7 +62,7 @@ export function make_chart({ host, names, unit, now, hover, seek, is_alone, colo
   return chart;
 }
 
-/** A break of a line is between two points that may be in one pixel: a pixel to both sides makes it a break that one sees. */
+/** Gaps between points that fall into one pixel are widened by a pixel on both sides to be visible. */
 const visible: uPlot.Series.GapsRefiner = (_, __, ___, ____, found) =>
   found.map(([from, to]): [number, number] => [from - devicePixelRatio, to + devicePixelRatio]);
 
@@ -71,7 +71,7 @@ export function series_color(i: number, theme: 'dark' | 'light'): string {
 }
 
 export function fill(chart: uPlot, columns: Columns, range: [number, number]): void {
-  // Other series were chosen, and the chart of these is yet to be made.
+  // Other series were selected, and their chart does not exist yet.
   if (columns.length !== chart.series.length) return;
   chart.batch(() => {
     chart.setData(columns as unknown as uPlot.AlignedData, false);
@@ -79,7 +79,7 @@ export function fill(chart: uPlot, columns: Columns, range: [number, number]): v
   });
 }
 
-/** A flat line stands in the middle; nothing touches the border. */
+/** Returns the y range: constant lines are centred, and there is a margin at the border. */
 function roomy(low: number | null, high: number | null): [number, number] {
   if (low === null || high === null || !Number.isFinite(low) || !Number.isFinite(high)) return [-1, 1];
   const size = Math.max(Math.abs(low), Math.abs(high));

@@ -1,16 +1,16 @@
-// The columns that a plot draws.
+// Data columns of a plot.
 import type { History } from '../state/history';
 import type { Source } from './sources';
 
-/** Times, and values by series; where there is none, a line is broken. */
+/** Times, and values by series; null values interrupt a line. */
 export type Columns = [number[], ...(number | null)[][]];
 
-/** Points of a live plot: no more than its pixels can tell apart. */
+/** Maximum number of points of a live plot; more cannot be resolved by the screen. */
 const most_points = 500;
 
 /**
- * The last seconds of a source, thinned so that points stay where they are from one picture to the next. Where everything
- * was put elsewhere (`leaps`) the lines are broken: no way led there.
+ * Returns the last seconds of a source, thinned so that points keep their places between frames. Lines are interrupted
+ * where the arm jumped to another position without motion (`leaps`).
  */
 export function window_of(history: History, source: Source, until: number, seconds: number): Columns {
   const times: number[] = [];
@@ -35,7 +35,7 @@ export function window_of(history: History, source: Source, until: number, secon
   return columns;
 }
 
-/** A recording's quantities from the program; throws with a line for the page. */
+/** Fetches a recording's quantities from the program. Throws with a message for the page. */
 export async function fetch_series(base: string, names: string[], points: number, factor: number): Promise<Columns> {
   const address = new URL('series', base);
   address.searchParams.set('names', names.join(','));
@@ -43,7 +43,7 @@ export async function fetch_series(base: string, names: string[], points: number
   const answer = await fetch(address, { credentials: 'same-origin' });
   if (!answer.ok) throw new Error(`The plot’s data did not come (${answer.status}).`);
   const series = (await answer.json()) as Record<string, (number | null)[]>;
-  // Where a quantity has no value, its line is broken.
+  // Missing values interrupt the line.
   const scaled = (values: (number | null)[] = []): (number | null)[] =>
     (factor === 1 ? values : values.map((value) => (value === null ? null : value * factor)));
   return [series.time as number[], ...names.map((name) => scaled(series[name]))];

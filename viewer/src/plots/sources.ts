@@ -1,4 +1,4 @@
-// What can be plotted of a live rig: taken from the states that the page remembers.
+// Plot sources of a live rig, from the states that the page remembers.
 import {
   actuator_force, actuator_stride, camera_pan, camera_stride, camera_tilt, contact_force, contact_stride, push_force, sample_stride, type State,
 } from '../protocol/state';
@@ -9,9 +9,9 @@ export interface Source {
   label: string;
   unit: string;
   names: string[];
-  /** Of one that shows a part of what belongs together: that it does. */
+  /** Note of a source that shows only a part of a group. */
   part?: string;
-  /** The value of the series i in a state, where it has one. */
+  /** Value of series i in a state; null if missing. */
   value(state: State, i: number): number | null;
 }
 
@@ -21,7 +21,7 @@ export function live_sources(hello: Hello, scene: Scene): Source[] {
   const sections = scene.arm.sections.length;
   const planar = scene.arm.kind === 'planar';
   const { actuators } = hello.controls;
-  // Where tendons pull at an arm that also yields to its weight, its bends are what it is told.
+  // If tendons pull an arm that also yields to its weight, the bends are commanded values.
   const bends = actuators ? 'Bends, commanded' : 'Bends';
   const sources: Source[] = [
     {
@@ -97,24 +97,24 @@ export function live_sources(hello: Hello, scene: Scene): Source[] {
   return sources.flatMap(in_parts);
 }
 
-/** Of the vector that begins there. */
+/** Returns the norm of the 3-vector that starts at `at`. */
 export function size_at(numbers: ArrayLike<number>, at: number): number {
   return Math.hypot(numbers[at], numbers[at + 1], numbers[at + 2]);
 }
 
-/** A servo's errors, of the arm's length: as recordings call them. */
+/** Group name of a servo's errors in recordings, as shares of the arm's length. */
 const servo_group = 'servo_error';
 const servo_names = ['servo_rms', 'servo_tip', 'servo_true_rms', 'servo_true_tip'];
 
-/** A plot that is over the arm's length and not over time. */
+/** A plot over the arm's length instead of time. */
 export const along_option = { id: 'along', label: 'Errors along the arm', unit: '' };
 
-/** Whether there can be such a plot. */
+/** Returns whether such a plot is available. */
 export function can_be_along({ mode, controls, quantities }: Hello): boolean {
   return mode === 'live' ? controls.tasks.some(({ kind }) => kind === 'servo') : quantities.some(({ group }) => group === servo_group);
 }
 
-/** As many of a source's series at a time as can be told apart. */
+/** Splits a source into groups of series that can be distinguished. */
 function in_parts(source: Source): Source[] {
   const { id, label, names, value } = source;
   const parts = Math.ceil(names.length / most_in_group);
@@ -154,17 +154,17 @@ export interface Group {
   part?: string;
 }
 
-/** Those of a recording, angles in degrees: with what its numbers are to be multiplied. */
+/** Returns the groups of a recording with display factors; angles are in degrees. */
 export function shown_groups({ quantities }: Hello): (Group & { factor: number })[] {
   return groups_of(quantities).map((group) =>
     group.unit === 'rad' ? { ...group, unit: '°', factor: 180 / Math.PI } : { ...group, factor: 1 },
   );
 }
 
-/** More are not told apart, by their colours or in the legend. */
+/** Maximum number of series that can be distinguished by colour and in the legend. */
 export const most_in_group = 9;
 
-/** A recording's quantities, put together by what their names have in common. */
+/** Groups a recording's quantities by their group, or by the common part of their names. */
 export function groups_of(quantities: Hello['quantities']): Group[] {
   const groups = new Map<string, Group>();
   for (const { name, unit, group: told } of quantities) {
@@ -184,13 +184,13 @@ export function groups_of(quantities: Hello['quantities']): Group[] {
   });
 }
 
-/** A quantity's name as people write it. */
+/** Returns a quantity's name in readable form. */
 export function readable(name: string): string {
   const words = name.replace(/_/g, ' ');
   return words.charAt(0).toUpperCase() + words.slice(1);
 }
 
-/** What tells the names of a group apart: of tip_x, tip_y and tip_z the last letters. */
+/** Returns the distinguishing parts of the names of a group, for example the last letters of tip_x, tip_y and tip_z. */
 export function short_names(names: string[]): string[] {
   if (names.length < 2) return names.map(readable);
   let common = 0;

@@ -4,13 +4,15 @@ import { theme_now } from '../state/preferences';
 import { use_app } from '../ui/app';
 import { make_chart } from './chart';
 
-/** Of a chart that is over something else than time. */
+/** Settings of a chart whose x axis is not time. */
 export interface Alone {
   colors: string[];
   hover(place: number | null): void;
 }
 
-/** A chart in a host of its own, made anew with other series or another theme, as large as its host. */
+/**
+ * Creates a chart in its host element and recreates it if the series or the theme change. It has the size of its host.
+ */
 export function use_chart(names: string[], unit: string, ready: (chart: uPlot) => void, alone?: Alone) {
   const app = use_app();
   const host = useRef<HTMLDivElement>(null);

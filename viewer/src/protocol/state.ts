@@ -1,4 +1,4 @@
-// The binary messages. Arrays are views into the message itself: nothing is copied on the way to the screen.
+// Decoding of binary messages. Arrays are views into the message; nothing is copied.
 import type { Extras } from './types';
 
 export const kind_state = 1;
@@ -24,19 +24,19 @@ export const actuator_stride = 3;
 export const actuator_force = 1;
 export const actuator_lost = 2;
 
-/** Numbers of a push: s, the place to which the point is drawn, the force. */
+/** Numbers of a push: s, the point to which the spring pulls, the force. */
 export const push_size = 7;
 export const push_to = 1;
 export const push_force = 4;
 
-/** Numbers in a row of `contacts`: obstacle, s, point, force, normal force, how it touches. */
+/** Numbers in a row of `contacts`: obstacle, s, point, force, normal force, slip state. */
 export const contact_stride = 10;
 export const contact_point = 2;
 export const contact_force = 5;
 export const contact_normal = 8;
 export const contact_slip = 9;
 
-/** Where what stands in a camera's row. */
+/** Column indices in a camera's row. */
 export const camera_pan = 7;
 export const camera_tilt = 8;
 export const camera_zoom = 9;
@@ -48,33 +48,33 @@ export const camera_cy = 16;
 
 export interface State {
   flags: number;
-  /** Counts how often everything was put elsewhere, with no way between. */
+  /** Number of jumps to another position without motion. */
   leaps: number;
   sequence: number;
   time: number;
-  /** Pairs x, y of each section. */
+  /** Bends x, y of each section, rad. */
   bends: Float32Array;
   stretches: Float32Array;
   samples: Float32Array;
   cameras: Float32Array;
   displacements: Float32Array;
-  /** Rows of what can be moved one by one: how far it is, m, by which it pulls, N, and the steps that its motor has lost. */
+  /** Rows of individually driven tendons: displacement, m; tension, N; lost motor steps. */
   actuators: Float32Array;
-  /** Kinetic, elastic and of gravity, J; of arms that move by themselves. */
+  /** Kinetic, elastic and gravitational energy, J, of arms with inertia. */
   energy?: Float32Array | null;
-  /** What pushes the arm; null where nothing does. */
+  /** The push on the arm; null if there is none. */
   push?: Float32Array | null;
-  /** Of real time, where the arm moves more slowly than that. */
+  /** Simulation speed relative to real time, if slower. */
   pace?: number | null;
-  /** Rows of where it touches something. */
+  /** Rows of contact points. */
   contacts?: Float32Array;
-  /** What was drawn beside it when it came. */
+  /** Extras that belong to this state. */
   extras?: Extras | null;
 }
 
 export interface ImageMessage {
   camera: number;
-  /** Of a format that this page does not know: one that nothing can decode. */
+  /** 'application/octet-stream': an unknown format that cannot be decoded. */
   type: 'image/jpeg' | 'image/png' | 'application/octet-stream';
   number: number;
   time: number;
@@ -85,12 +85,12 @@ const state_header = 28;
 const image_header = 16;
 const image_types = ['image/jpeg', 'image/png'] as const;
 
-/** The kind of a binary message, 0 for one without any byte. */
+/** Returns the kind of a binary message, 0 if it is empty. */
 export function kind_of(buffer: ArrayBuffer): number {
   return buffer.byteLength > 0 ? new DataView(buffer).getUint8(0) : 0;
 }
 
-/** The state in a message; throws where its length is not what its counts say. */
+/** Decodes a state; throws if its length does not match its counts. */
 export function decode_state(buffer: ArrayBuffer): State {
   if (buffer.byteLength < state_header) throw new Error('a state shorter than its header');
   const view = new DataView(buffer);
@@ -133,7 +133,7 @@ export function decode_state(buffer: ArrayBuffer): State {
   };
 }
 
-/** The image in a message; its file is a view into the message. */
+/** Decodes an image; its file is a view into the message. */
 export function decode_image(buffer: ArrayBuffer): ImageMessage {
   if (buffer.byteLength < image_header) throw new Error('an image shorter than its header');
   const view = new DataView(buffer);
@@ -146,7 +146,7 @@ export function decode_image(buffer: ArrayBuffer): ImageMessage {
   };
 }
 
-/** The extras in a message; null where they hold nothing. */
+/** Decodes extras; null if they are empty. */
 export function decode_extras(buffer: ArrayBuffer): Extras | null {
   const extras = JSON.parse(new TextDecoder().decode(new Uint8Array(buffer, 1))) as Partial<Extras>;
   const { time = 0, title = '', text = '', ghosts = [], overlays = [], along, values = {} } = extras;

@@ -1,4 +1,4 @@
-// What the page and the program say to each other: docs/viewer-protocol.md. SI units and radians throughout.
+// Messages between page and program: docs/viewer-protocol.md. SI units and radians throughout.
 
 export type Vector3 = [number, number, number];
 /** x, y, z, qw, qx, qy, qz in the world. */
@@ -34,9 +34,9 @@ export interface SceneArm {
   disks: SceneDisk[];
   disk_color: Vector3;
   base: Pose;
-  /** The way of each actuator: s, x and y of the cross-section. */
+  /** Path of each actuator: s, x and y of the cross-section, m. */
   tendons?: Vector3[][];
-  /** Forces bend it. */
+  /** The arm is elastic: forces bend it. */
   elastic?: boolean;
   visible: boolean;
 }
@@ -91,7 +91,7 @@ export interface HeadControl {
   pan: Range;
   tilt: Range;
   zoom: Range;
-  /** A ratio where it is not said. */
+  /** Default: ratio. */
   zoom_unit?: 'ratio' | 'count';
 }
 
@@ -102,7 +102,7 @@ export interface StageControl {
   z: Range;
 }
 
-/** A tendon that ends with a section: displacements in m, positive pulled in; where it lies around the backbone. */
+/** A tendon that ends at a section: displacements in m, positive pulled in, and its place around the backbone. */
 export interface TendonControl {
   section: number;
   displacement: Range;
@@ -110,14 +110,14 @@ export interface TendonControl {
   angle: number;
 }
 
-/** What can be moved by itself: a tendon that ends with a section, pulled in so far, m. */
+/** An individually driven tendon that ends at a section; values are pulled-in lengths, m. */
 export interface ActuatorControl {
   name: string;
   section: number;
   range: Range;
-  /** How far each of all goes for a metre of this one so that none pulls against it. */
+  /** Displacement of every actuator per metre of this one that avoids tendons pulling against each other. */
   together: number[];
-  /** Its motor may lose steps. */
+  /** The motor may lose steps. */
   motor: boolean;
 }
 
@@ -131,13 +131,13 @@ export interface Controls {
   sections: SectionControl[];
   tendons: null | TendonControl[];
   actuators?: ActuatorControl[];
-  /** Weight and loads pull at the arm, and can be switched off. */
+  /** Weight and loads act on the arm and can be switched off. */
   weight?: boolean;
-  /** The arm yields to a hand: up to where along it, m, how stiff its spring is by itself, N/m, and how much it pulls at most, N. */
+  /** The arm can be pushed: largest s, m; stiffness of the spring, N/m; largest force, N. */
   push?: PushControl;
-  /** It moves by itself, and has energies. */
+  /** The arm has inertia and energies. */
   inertia?: boolean;
-  /** It touches obstacles, which push back. */
+  /** The arm can touch obstacles, which exert forces on it. */
   contact?: boolean;
   heads: HeadControl[];
   stages: StageControl[];
@@ -155,7 +155,7 @@ export interface Mark {
 export interface Quantity {
   name: string;
   unit: string;
-  /** What it is shown together with. */
+  /** Group of quantities that are shown together. */
   group?: string;
 }
 
@@ -168,16 +168,16 @@ export interface Hello {
   scene: Scene;
   controls: Controls;
   duration: number;
-  /** Between two states of a recording, s; 0 live. */
+  /** Time between two states of a recording, s; 0 live. */
   interval: number;
   marks: Mark[];
   quantities: Quantity[];
   report: boolean;
-  /** There is a rig to go to. */
+  /** There is a rig to switch to. */
   rig: boolean;
   /** There is a recording to open. */
   recording: boolean;
-  /** What `open` can open; none from a program that was given a file. */
+  /** Experiments for `open`; empty if the program was started with a file. */
   examples?: { name: string; title: string }[];
   readonly: boolean;
 }
@@ -188,7 +188,7 @@ export interface EventMessage {
   level: Level;
   name: string;
   text: string;
-  /** To be shown at once. */
+  /** Show at once as a notice. */
   notice?: boolean;
 }
 
@@ -200,17 +200,17 @@ export interface ProgressMessage {
   fraction?: number;
   done?: boolean;
   outcome?: Outcome;
-  /** At its end: there is a recording of it. */
+  /** When done: there is a recording of the run. */
   recording?: boolean;
   text?: string;
 }
 
-/** Drawn upon a camera's picture; one file a kind in src/overlays. */
+/** A layer on a camera's picture; its kinds are in src/overlays. */
 export interface Layer {
   id: string;
   kind: string;
   color?: string;
-  /** Beside its eye, of what is no ghost as well. */
+  /** Label of its eye, also for layers without a ghost. */
   label?: string;
   [key: string]: unknown;
 }
@@ -228,7 +228,7 @@ export interface GhostMessage {
   poses?: Pose[];
 }
 
-/** What is drawn beside the arm and upon its pictures, of one instant: kind 3 of the binary messages. */
+/** Extras beside the arm and on its pictures at one time: kind 3 of the binary messages. */
 export interface Extras {
   time: number;
   title: string;
@@ -236,7 +236,7 @@ export interface Extras {
   ghosts: ExtraGhost[];
   overlays: ExtraOverlay[];
   along?: Along;
-  /** By the names that a recording's quantities have. */
+  /** By the names of a recording's quantities. */
   values: Record<string, number | null>;
 }
 
@@ -247,7 +247,7 @@ export interface ExtraGhost {
   poses: Pose[];
 }
 
-/** Upon the picture of this number; without one, upon any of the camera's. */
+/** Overlay of the picture with this number; without a number, of any picture of the camera. */
 export interface ExtraOverlay {
   camera: string;
   number?: number;
@@ -263,7 +263,7 @@ export interface Along {
   curves: { id: string; label: string; color: string; values: (number | null)[] }[];
 }
 
-/** Without an id it answers no request: something failed. */
+/** A reply without an id reports an error that belongs to no request. */
 export type Reply = { type: 'reply'; id: number | null; result?: unknown; error?: string };
 
 export type TextMessage =
@@ -280,13 +280,13 @@ export interface TipResult {
   reason: string;
   bends: [number, number][];
   position_error: number;
-  /** The arm goes there. */
+  /** The arm moves there. */
   moved?: boolean;
-  /** Why it does not, where that would harm it. */
+  /** Why the arm does not move there, if it would be unsafe. */
   danger?: string;
 }
 
-/** What the program found in a picture, or why nothing. */
+/** What the program found in a picture, or why it found nothing. */
 export interface MeasureResult {
   found: boolean;
   reason: string;
@@ -299,7 +299,7 @@ export interface ShapeResult {
   found: boolean;
   reason: string;
   notes: string[];
-  /** Of the pictures, by camera. */
+  /** Numbers of the pictures, by camera. */
   numbers: number[];
   poses?: Pose[];
   bends?: [number, number][];

@@ -1,4 +1,4 @@
-// Pushing the arm: the switch for it, what is to be done, and by how much the hand pulls.
+// Pushing the arm: switch, instructions, and the force of the pointer.
 import { useEffect, useRef } from 'preact/hooks';
 import { flag_push, push_force, push_to } from '../protocol/state';
 import { point_at } from '../math/arc';
@@ -7,7 +7,7 @@ import { force_text } from '../panels/actuators';
 import { use_app } from '../ui/app';
 import { Icon } from '../ui/Icon';
 
-/** With it on, the left button pushes the arm where it is dragged. */
+/** When switched on, the left button pushes the dragged point of the arm. */
 export function PushTool() {
   const { viewer, push_tool } = use_app();
   if (!viewer.hello.value?.controls.push || viewer.readonly) return null;
@@ -20,7 +20,7 @@ export function PushTool() {
   );
 }
 
-/** What the mode is for; and beside the hand's end of the spring its force. */
+/** Instructions of the push mode, and the force beside the pointer's end of the spring. */
 export function PushNote() {
   const { viewer, push_tool } = use_app();
   const pushed = (viewer.flags.value & flag_push) !== 0;
@@ -39,7 +39,7 @@ function PushLabel() {
   const app = use_app();
   const label = useRef<HTMLDivElement>(null);
   useEffect(() => {
-    // As often as the arm is drawn: a label that lags behind the hand disturbs.
+    // Updated with every drawn state, because a label that lags behind the pointer is distracting.
     const place = (): void => {
       const state = app.viewer.shown;
       const view = app.view.value;
@@ -64,18 +64,18 @@ function PushLabel() {
   return <div class="push-label" id="push-label" ref={label} />;
 }
 
-/** There is a spring, whose other end is elsewhere than the point. */
+/** Returns whether there is a spring, with its other end away from the pushed point. */
 export function is_drawn(push: Float32Array, samples: Float32Array): boolean {
   const { position } = point_at(samples, push[0]);
   return Math.hypot(...position.map((x, i) => x - push[push_to + i])) > 1e-6;
 }
 
-/** Where the arrow of a force without a spring ends. */
+/** Returns the end of the arrow for a force without a spring. */
 export function arrow_tip(push: Float32Array, samples: Float32Array, span: number): number[] {
   const { position } = point_at(samples, push[0]);
   const size = size_at(push, push_force) || 1;
   return position.map((x, i) => x + (arrow_share * span * push[push_force + i]) / size);
 }
 
-/** Of the arm's length. */
+/** Share of the arm's length. */
 const arrow_share = 0.18;

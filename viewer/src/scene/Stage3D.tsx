@@ -1,4 +1,4 @@
-// The 3D view in the page: joins what is known (state/) with what draws (SceneView).
+// The 3D view in the page: connects the state (state/) with the renderer (SceneView).
 import { useEffect, useRef } from 'preact/hooks';
 import { effect } from '@preact/signals';
 import { preferences, theme_now } from '../state/preferences';
@@ -75,7 +75,7 @@ function connect(canvas: HTMLCanvasElement, app: ReturnType<typeof use_app>): ()
     }),
   ];
   const on_state = (state: NonNullable<typeof viewer.shown>): void => view.draw_state(state, false);
-  // A view that is held stays of one instant: no newer pictures hang in it.
+  // A held view keeps the pictures of its time.
   const on_picture: Parameters<typeof viewer.picture_listeners.add>[0] = (camera, picture) => {
     if (viewer.playback.held.peek() === null) view.show_picture(camera, picture);
   };

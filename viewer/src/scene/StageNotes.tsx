@@ -1,4 +1,4 @@
-// What lies upon the 3D view: whose eyes, how old, and what is true of the picked point.
+// Overlays of the 3D view: current camera, age, and values of the picked point.
 import { angle, fixed, format_time, length_places, vector } from '../ui/format';
 import { obstruction } from '../state/commander';
 import { preferences, toggle_hidden } from '../state/preferences';
@@ -50,7 +50,7 @@ function Clock() {
   return <div class="stage-clock" id="clock">{format_time(viewer.shown.time)}</div>;
 }
 
-/** What the program draws beside the arm and upon the pictures, each with an eye. */
+/** Legend of the extras drawn by the program, each with an eye. */
 function ExtrasLegend() {
   const { viewer } = use_app();
   const extras = viewer.shown_extras.value;

@@ -3,13 +3,13 @@ import { camera_cx, camera_cy, camera_fx, camera_fy, camera_stride, type State }
 import type { Scene } from '../protocol/types';
 import { total_length } from './rings';
 
-/** Half a turn about x: from a camera that looks along z with y down to one that looks along -z with y up. */
+/** Half a turn about x: converts a camera that looks along z with y down to one that looks along -z with y up. */
 const flip = new Quaternion(1, 0, 0, 0);
 
-/** In lengths of the arm: nothing that one looks at is nearer to a camera. */
+/** Near clipping distance, in lengths of the arm. */
 const nearest = 1e-3;
 
-/** How far from the arm's base there is anything: the floor, what stands there, the cameras. */
+/** Returns the radius around the arm's base that contains everything: floor, objects and cameras. */
 export function reach_of({ arm, screens, etalon, obstacles }: Scene, cameras: ArrayLike<number>): number {
   const [x, y, z] = arm.base;
   const span = arm.sections.reduce((sum, { length, stretch }) => sum + length * Math.max(1, stretch[1]), 0);
@@ -29,7 +29,9 @@ export function reach_of({ arm, screens, etalon, obstacles }: Scene, cameras: Ar
   return reach;
 }
 
-/** Puts the view into a rig's camera, its whole picture in a view of that aspect; false when there is no such one. */
+/**
+ * Puts the view into a rig's camera, so that its whole picture is visible. Returns false if the camera does not exist.
+ */
 export function see_through(
   camera: PerspectiveCamera, scene: Scene, { cameras }: State, name: string, aspect: number,
 ): boolean {

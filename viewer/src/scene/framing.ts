@@ -1,25 +1,25 @@
-// From how far away the free view shows what.
+// Viewing distances of the free view.
 import { Quaternion, Vector3 } from 'three';
 import { camera_stride } from '../protocol/state';
 import type { Scene } from '../protocol/types';
 import { hang, type Hanging } from './parts/cameras';
 import { total_length } from './rings';
 
-/** Of the distance, in lengths of the arm: so large the arm is in the picture at first, and so small at least. */
+/** Initial viewing distance, in lengths of the arm: at least the first value, at most the second. */
 export const [nearest_look, farthest_look] = [2.9, 3.8];
-/** So much of the picture's half is left free at its borders. */
+/** Free margin at the borders, as a share of half the picture. */
 const margin = 0.05;
 
 export interface Look {
   target: Vector3;
   azimuth: number;
   elevation: number;
-  /** Of the picture's height, degrees. */
+  /** Vertical field of view, degrees. */
   fov: number;
   aspect: number;
 }
 
-/** The least distance from the target at which a point is in the picture. */
+/** Returns the smallest distance from the target at which a point is in the picture. */
 export function distance_for(point: Vector3, { target, azimuth, elevation, fov, aspect }: Look): number {
   const [sa, ca, se, ce] = [Math.sin(azimuth), Math.cos(azimuth), Math.sin(elevation), Math.cos(elevation)];
   const [x, y, z] = [point.x - target.x, point.y - target.y, point.z - target.z];
@@ -30,7 +30,7 @@ export function distance_for(point: Vector3, { target, azimuth, elevation, fov, 
   return near + Math.max(Math.abs(right) / (high * aspect), Math.abs(up) / high);
 }
 
-/** Where cameras are and their pictures hang: each one's pupil and four corners. */
+/** Returns the corners of the cameras' frusta: pupil and four picture corners of each camera. */
 export function frustum_points(scene: Scene, cameras: Float32Array): Vector3[] {
   const hanging: Hanging = { left: 0, right: 0, top: 0, bottom: 0, depth: 1 };
   const turn = new Quaternion();
@@ -45,13 +45,13 @@ export function frustum_points(scene: Scene, cameras: Float32Array): Vector3[] {
   });
 }
 
-/** The arm large, and of the cameras' frusta what is near enough that it stays so. */
+/** Returns the initial distance: the arm appears large, and nearby parts of the camera frusta are visible. */
 export function first_distance(frusta: Vector3[], look: Look, span: number): number {
   const near = frusta.map((point) => distance_for(point, look)).filter((distance) => distance <= farthest_look * span);
   return Math.max(nearest_look * span, ...near);
 }
 
-/** All of these, and the arm. */
+/** Returns the distance at which all points and the arm are visible. */
 export function distance_for_all(points: Vector3[], look: Look, span: number): number {
   return Math.max(nearest_look * span, ...points.map((point) => distance_for(point, look)));
 }

@@ -1,16 +1,16 @@
-// Where the free view looks from: a target, a distance and two angles, as in MuJoCo and Blender.
+// Viewpoint of the free view: a target, a distance and two angles, as in MuJoCo and Blender.
 import { Vector3, type PerspectiveCamera } from 'three';
 
-/** Of the distance, in lengths of the arm. */
+/** Limits of the distance, in lengths of the arm. */
 const [nearest, farthest] = [0.02, 30];
 const least_elevation = -Math.PI / 2 + 1e-3;
 
 export class Orbit {
   readonly target = new Vector3();
   distance = 1;
-  /** The arm's length: what distances are held against. */
+  /** Length of the arm, the reference for distances. */
   span = 1;
-  /** Around +Y from +Z towards +X. */
+  /** Angle around +Y from +Z towards +X, rad. */
   azimuth = 0.6;
   elevation = 0.34;
   private readonly side = new Vector3();
@@ -21,7 +21,7 @@ export class Orbit {
     this.elevation = Math.min(-least_elevation, Math.max(least_elevation, this.elevation + up));
   }
 
-  /** Moves what is seen in the image's plane, in parts of the view's height: the target the other way. */
+  /** Moves the scene in the image plane, as shares of the view's height; the target moves the opposite way. */
   pan(camera: PerspectiveCamera, right: number, down: number): void {
     const height = 2 * this.distance * Math.tan((camera.fov * Math.PI) / 360);
     this.side.setFromMatrixColumn(camera.matrix, 0);
@@ -29,7 +29,7 @@ export class Orbit {
     this.target.addScaledVector(this.side, -right * height).addScaledVector(this.up, down * height);
   }
 
-  /** Nearer or farther, but neither into a point nor out of sight of an arm of length `span`. */
+  /** Zooms. The distance stays within limits that depend on the arm's length `span`. */
   zoom(factor: number): void {
     this.distance = Math.min(farthest * this.span, Math.max(nearest * this.span, this.distance * factor));
   }

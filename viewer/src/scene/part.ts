@@ -7,16 +7,16 @@ export type Theme = 'dark' | 'light';
 
 export interface PartContext {
   scene: Scene;
-  /** The arm's length: what sizes in the view are taken from. */
+  /** Length of the arm, the reference for sizes in the view. */
   span: number;
-  /** The height of the floor. */
+  /** Height of the floor. */
   floor: number;
   theme: Theme;
 }
 
 /**
- * A thing in the 3D view. `id` is what the list of things hides it by; `draw` gets every state that is shown and must
- * not allocate; what a part does not need it leaves out.
+ * A thing in the 3D view. `id` identifies it in the list of hidden things. `draw` is called with every shown state and
+ * must not allocate. Optional methods may be omitted.
  */
 export interface Part {
   id: string;
@@ -25,16 +25,19 @@ export interface Part {
   draw?(state: State): void;
   picture?(camera: string, picture: Picture): void;
   ghosts?(ghosts: Record<string, GhostMessage>): void;
-  /** True while the view stands in this camera: its own frustum would hide everything. */
+  /** True while the view is inside this camera; its own frustum would hide everything. */
   inside?(camera: string | null): void;
-  /** Before each picture: where the eye is, and how many pixels a metre has one metre away. Must not allocate either. */
+  /**
+   * Called before each frame with the eye position and the pixels of one metre at a distance of one metre. Must not
+   * allocate.
+   */
   seen_from?(eye: Vector3, pixels: number): void;
   dispose(): void;
 }
 
 export type PartMaker = (context: PartContext) => Part[];
 
-/** Releases what an object and its children hold on the graphics card. */
+/** Releases the GPU resources of an object and its children. */
 export function dispose_tree(root: Object3D): void {
   root.traverse((object) => {
     const mesh = object as Object3D & {

@@ -1,17 +1,17 @@
-// Finding the point of the backbone under the pointer, in pixels: what one sees is what one hits.
+// Finds the point of the backbone under the pointer, in screen pixels.
 import { Vector3, type Camera } from 'three';
 import { Arc, new_pose, sample_count } from '../math/arc';
 import { sample_stride } from '../protocol/state';
 
 export interface Hit {
   s: number;
-  /** From the pointer, px. */
+  /** Distance from the pointer, px. */
   distance: number;
 }
 
 const steps = 6;
 
-/** The backbone's point nearest to the pixel (x, y) of a view of that size. */
+/** Returns the backbone's point nearest to the pixel (x, y) of a view of that size. */
 export function nearest_point(
   samples: ArrayLike<number>, camera: Camera, width: number, height: number, x: number, y: number,
 ): Hit {

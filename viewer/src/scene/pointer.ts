@@ -1,5 +1,6 @@
-// The hand in the 3D view: left orbits, right or middle pans, the wheel zooms; on the tip's handle the left button drags
-// the tip, and with Shift or the tool for it any point is pushed; a click picks a point of the backbone, a double click looks at what is there.
+// Pointer input of the 3D view. Left orbits, right or middle pans, the wheel zooms. Left on the tip's handle drags the
+// tip; with Shift or the push tool it pushes any point. A click picks a point of the backbone, a double click looks at
+// the point under the pointer.
 import { Plane, Raycaster, Vector2, Vector3 } from 'three';
 import { sample_stride } from '../protocol/state';
 import type { Vector3 as Triple } from '../protocol/types';
@@ -14,7 +15,7 @@ export interface PointerHost {
   drop_tip(): void;
   pick(s: number | null): void;
   leave_camera(): void;
-  /** The arm yields to a hand now; `anyway`: also without Shift. */
+  /** The arm can be pushed now; `anyway`: also without Shift. */
   can_push(): boolean;
   pushes_anyway(): boolean;
   push(s: number, to: Triple): void;
@@ -31,7 +32,7 @@ export class Pointer {
   private action: Action = null;
   private moved = 0;
   private last = new Vector2();
-  /** Of the point that is pushed. */
+  /** s of the pushed point, m. */
   private pushed = 0;
   private readonly plane = new Plane();
   private readonly grip = new Vector3();
@@ -74,7 +75,7 @@ export class Pointer {
     this.moved += Math.abs(dx) + Math.abs(dy);
     if (this.action === 'tip' || this.action === 'push') return this.drag(event);
     if (this.moved < click_px) return;
-    // Turning what a camera sees would show something that it does not: one leaves it.
+    // Rotating a camera's view would show what the camera does not see, so the view leaves the camera.
     this.host.leave_camera();
     if (this.action === 'orbit') view.orbit.turn((dx / view.height) * 4, (dy / view.height) * 4);
     else view.orbit.pan(view.camera, dx / view.height, dy / view.height);
@@ -114,7 +115,7 @@ export class Pointer {
     this.host.pick(this.point_under(event));
   }
 
-  /** The arc length of the arm's point that is under the pointer. */
+  /** Returns the arc length of the arm's point under the pointer. */
   private point_under(event: PointerEvent): number | null {
     const { view } = this;
     const { state, scene } = view;
@@ -158,7 +159,7 @@ export class Pointer {
     return Math.hypot(x - event.offsetX, y - event.offsetY) < reach;
   }
 
-  /** The tip moves in the plane through it that faces the viewer; a planar arm's in the arm's own plane. */
+  /** Starts dragging the tip in the plane through it that faces the viewer; for a planar arm, in the arm's plane. */
   private grab(event: PointerEvent): void {
     const tip = this.tip(new Vector3());
     if (!tip) return;
@@ -166,7 +167,7 @@ export class Pointer {
     this.hold(tip, event);
   }
 
-  /** The arm's point under the pointer is drawn likewise. */
+  /** Starts dragging the arm's point under the pointer in the same way, with a spring. */
   private grab_point(event: PointerEvent): boolean {
     const s = this.point_under(event);
     const { state } = this.view;

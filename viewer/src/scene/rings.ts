@@ -1,20 +1,19 @@
-// Where along the arm the tube has its rings, and what each looks like: fixed by the scene, while their places follow
-// every state.
+// Rings of the tube along the arm and their appearance: fixed by the scene, while their positions follow every state.
 import type { SceneArm, Vector3 } from '../protocol/types';
 
 export interface Ring {
   /** Along the unstretched arm, m. */
   s: number;
   radius: number;
-  /** Along the tangent from S(s): caps reach beyond the arm's end. */
+  /** Offset along the tangent at s: caps extend beyond the arm's end. */
   offset: number;
-  /** Parts of the normal: away from the backbone, and along it. */
+  /** Components of the normal: away from the backbone, and along it. */
   outward: number;
   along: number;
   color: Vector3;
 }
 
-/** How finely the arm is divided: so that its outline looks smooth on a projector, and no finer, for slow machines. */
+/** Subdivision of the arm: just fine enough for a smooth outline on a projector. */
 export interface Fineness {
   arm: number;
   section: number;
@@ -22,7 +21,7 @@ export interface Fineness {
 }
 
 const fine: Fineness = { arm: 120, section: 11, cap: 5 };
-/** From where the arm is seen thin: its outline is within a quarter of a pixel there, too, and less is laid. */
+/** For views in which the arm is thin: its outline is accurate to a quarter of a pixel, with fewer vertices. */
 export const medium: Fineness = { arm: 72, section: 11, cap: 5 };
 export const coarse: Fineness = { arm: 40, section: 6, cap: 2 };
 
@@ -30,7 +29,10 @@ export function total_length(arm: SceneArm): number {
   return arm.sections.reduce((sum, { length }) => sum + length, 0);
 }
 
-/** The arm's radius at s; where two sections meet, the one that starts there or, with `before`, the one that ends. */
+/**
+ * Returns the arm's radius at s. Where two sections meet, it is that of the next one or, with `before`, of the previous
+ * one.
+ */
 export function radius_at(arm: SceneArm, s: number, before = false): number {
   let start = 0;
   for (const section of arm.sections) {
@@ -44,7 +46,7 @@ export function radius_at(arm: SceneArm, s: number, before = false): number {
   return 0;
 }
 
-/** All rings, base first: cap, sections with doubled rings where colour or radius jump, tip. */
+/** Returns all rings, base first: cap, sections with doubled rings where colour or radius jump, tip. */
 export function plan_rings(
   arm: SceneArm, paint: (s: number) => Vector3 = painter(arm), fineness: Fineness = fine,
 ): Ring[] {
@@ -60,7 +62,7 @@ export function plan_rings(
     const stops = stops_of(start, end, count, edges);
     const tiny = 1e-9 * total;
     for (let i = 0; i + 1 < stops.length; ++i) {
-      // Coloured from just inside each interval, so that a marker's edge is an edge.
+      // The colour is taken inside each interval, so that marker edges are sharp.
       const color = paint((stops[i] + stops[i + 1]) / 2);
       for (const s of [stops[i], stops[i + 1]]) {
         const last = rings[rings.length - 1];

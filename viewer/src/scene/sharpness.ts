@@ -1,10 +1,10 @@
-// Smooth edges cost a software renderer more than all the rest. There, what moves is drawn without them, and what has
-// come to rest is drawn once more at twice the resolution.
+// Anti-aliasing is the most expensive part of software rendering. There, moving scenes are drawn without it, and a
+// scene at rest is drawn once more at twice the resolution.
 import type { WebGLRenderer } from 'three';
 
 const rest_ms = 250;
 
-/** Whether this browser draws WebGL without a graphics card. */
+/** Returns whether this browser renders WebGL without a graphics card. */
 export function draws_in_software(): boolean {
   const gl = document.createElement('canvas').getContext('webgl2');
   if (!gl) return false;
@@ -26,7 +26,7 @@ export class Sharpness {
     this.ratio = this.wanted = software ? 1 : Math.min(2, devicePixelRatio);
   }
 
-  /** Something moved. */
+  /** Something has moved. */
   moved(): void {
     if (!this.software) return;
     this.wanted = 1;
@@ -37,7 +37,7 @@ export class Sharpness {
     }, rest_ms);
   }
 
-  /** Before each picture. */
+  /** Called before each frame. */
   apply(renderer: WebGLRenderer, first = false): void {
     if (!first && this.ratio === this.wanted) return;
     this.ratio = this.wanted;

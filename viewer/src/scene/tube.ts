@@ -1,15 +1,15 @@
-// The arm's skin: rings swept along the arcs. Its buffers are made once for a scene and filled anew for each state.
+// The arm's skin: rings swept along the arcs. Its buffers are allocated once per scene and filled for each state.
 import { BufferAttribute, BufferGeometry, DynamicDrawUsage, Sphere, Vector3 } from 'three';
 import { Arc, new_pose, sample_count } from '../math/arc';
 import { sample_stride } from '../protocol/state';
 import type { Ring } from './rings';
 
-/** How many sides tubes have: as many as make their facets lie as near to the round tube as `most_off`. */
+/** Available numbers of sides; chosen so that facets deviate from the round tube by at most `most_off`. */
 export const sides = [16, 32, 64, 128];
-/** Of a facet's middle from the round tube, px. */
+/** Largest deviation of a facet's middle from the round tube, px. */
 const most_off = 0.25;
 
-/** The place in `sides` of those that a tube of so many pixels' radius needs. */
+/** Returns the index in `sides` for a tube of this radius in pixels. */
 export function fineness_of(radius: number): number {
   const enough = sides.findIndex((count) => radius * (1 - Math.cos(Math.PI / count)) < most_off);
   return enough < 0 ? sides.length - 1 : enough;
@@ -44,11 +44,11 @@ export class Tube {
     this.geometry.setAttribute('normal', normal);
     this.geometry.setAttribute('color', new BufferAttribute(colors, 3));
     this.geometry.setIndex(triangles(rings.length, around));
-    // Else three makes one of the first rings, all in one point, and no click hits the arm ever after.
+    // Otherwise three.js computes one from the first rings, which are all in one point, and no click would hit the arm.
     this.geometry.boundingSphere = new Sphere(new Vector3(), Infinity);
   }
 
-  /** Lays the rings along the arcs between the samples of a state. */
+  /** Places the rings along the arcs between the samples of a state. */
   lay(samples: ArrayLike<number>): void {
     const last = sample_count(samples) - 2;
     let interval = 0;

@@ -1,4 +1,4 @@
-// The 3D view: draws when something changed, and only then.
+// The 3D view; it draws only after changes.
 import {
   AmbientLight, Color, DirectionalLight, PerspectiveCamera, Raycaster, Scene as World, Vector2, Vector3, WebGLRenderer,
 } from 'three';
@@ -15,7 +15,7 @@ import { part_makers } from './parts/registry';
 import { total_length } from './rings';
 import { draws_in_software, Sharpness } from './sharpness';
 
-/** Between two updates of the pictures in the view. */
+/** Minimum time between two updates of the pictures in the view, ms. */
 const picture_ms = 200;
 const backgrounds = { dark: 0x131b23, light: 0xeef2f5 };
 
@@ -28,9 +28,9 @@ export class SceneView {
   scene: Scene | null = null;
   state: State | null = null;
   span = 1;
-  /** How many pictures were drawn: what the frame rate is measured by. */
+  /** Number of drawn frames, for measuring the frame rate. */
   drawn = 0;
-  /** The rig's camera through which one looks; null for the free view. */
+  /** The rig's camera whose view is shown; null for the free view. */
   through: string | null = null;
   private readonly world = new World();
   private readonly ambient = new AmbientLight(0xffffff, 1);
@@ -53,13 +53,13 @@ export class SceneView {
     this.world.add(this.ambient, this.sun, this.camera);
   }
 
-  /** What is behind everything, also before anything is there. */
+  /** Sets the background, also before there is a scene. */
   show_ground(theme: Theme): void {
     this.world.background = new Color(backgrounds[theme]);
     this.invalidate();
   }
 
-  /** Builds what stands there anew; the view stays where it was unless `frame_all`. */
+  /** Rebuilds the scene; the viewpoint stays unless `frame_all`. */
   build(scene: Scene, theme: Theme, frame_all: boolean): void {
     this.clear();
     this.scene = scene;
@@ -79,11 +79,11 @@ export class SceneView {
     this.invalidate();
   }
 
-  /** Draws a state; one in which nothing moved is not drawn again unless `anyway`. */
+  /** Draws a state. An unchanged state is not drawn again unless `anyway`. */
   draw_state(state: State, anyway = true): void {
     const before = this.state;
     this.state = state;
-    // Only with a state one knows where the cameras are.
+    // Camera positions are known only with a state.
     if (this.is_to_frame) this.frame_arm();
     this.is_to_frame = false;
     if (!anyway && before && same(before.samples, state.samples) && same(before.cameras, state.cameras)
@@ -92,13 +92,13 @@ export class SceneView {
     this.invalidate();
   }
 
-  /** The cameras' pictures hang in the view a few times a second: beside it they are shown in full. */
+  /** Updates a camera's picture in the view, a few times a second; the full rate is shown beside it. */
   show_picture(name: string, picture: Picture): void {
     this.pictures.set(name, picture);
     this.picture_timer ??= setTimeout(() => {
       this.picture_timer = undefined;
       for (const [camera, newest] of this.pictures) {
-        // One of another run was closed meanwhile.
+        // A picture of another run may have been closed meanwhile.
         if (newest.bitmap.width > 0) for (const part of this.parts) part.picture?.(camera, newest);
       }
       this.pictures.clear();
@@ -129,7 +129,7 @@ export class SceneView {
     this.invalidate();
   }
 
-  /** All of the arm's reach in view, and of the cameras what is near. */
+  /** Frames the arm's workspace and the cameras that are near. */
   frame_arm(): void {
     if (!this.scene) return;
     const look = this.look_at_reach(this.scene);
@@ -137,7 +137,7 @@ export class SceneView {
     this.invalidate();
   }
 
-  /** All of the cameras in view too. */
+  /** Frames all cameras as well. */
   frame_cameras(): void {
     if (!this.scene) return;
     const look = this.look_at_reach(this.scene);
@@ -153,7 +153,7 @@ export class SceneView {
     this.invalidate();
   }
 
-  /** Where the arm's point at s is, or its tip, in pixels of the window. */
+  /** Returns the position of the arm's point at s, or of its tip, in pixels of the window. */
   on_screen(s = Infinity): { x: number; y: number } | null {
     if (!this.state) return null;
     const point = new Vector3(...point_at(this.state.samples, s).position).project(this.camera);
@@ -161,14 +161,14 @@ export class SceneView {
     return { x: box.left + ((point.x + 1) / 2) * box.width, y: box.top + ((1 - point.y) / 2) * box.height };
   }
 
-  /** Where a point is in pixels of the canvas; null behind the eye. */
+  /** Returns the position of a point in pixels of the canvas; null if it is behind the eye. */
   pixel_of(x: number, y: number, z: number): { x: number; y: number } | null {
     const point = new Vector3(x, y, z).project(this.camera);
     if (Math.abs(point.z) > 1) return null;
     return { x: ((point.x + 1) / 2) * this.size.x, y: ((1 - point.y) / 2) * this.size.y };
   }
 
-  /** Something moved: there is a new picture to draw. */
+  /** Something has changed; a new frame is needed. */
   invalidate(): void {
     this.sharpness.moved();
     this.request();
@@ -188,7 +188,7 @@ export class SceneView {
     if (!this.frame) this.frame = requestAnimationFrame(this.render);
   }
 
-  /** What is under the pixel (x, y), if anything is. */
+  /** Returns the scene point under the pixel (x, y); null if there is none. */
   hit(x: number, y: number): Vector3 | null {
     const pointer = new Vector2((2 * x) / this.size.x - 1, 1 - (2 * y) / this.size.y);
     const ray = new Raycaster();
@@ -206,7 +206,7 @@ export class SceneView {
     return this.size.y;
   }
 
-  /** Turns to the middle of the arm's reach. */
+  /** Turns to the middle of the arm's workspace. */
   private look_at_reach(scene: Scene): Look {
     const { base, kind } = scene.arm;
     const up = kind === 'planar' ? 0.45 : 0.42;
@@ -224,7 +224,7 @@ export class SceneView {
     return 2 * (y * z - w * x) >= -1e-9 ? 1 : -1;
   }
 
-  /** Under an arm that stands, and under the reach of one that hangs. */
+  /** Returns the floor height: below a standing arm, or below the workspace of a hanging one. */
   private floor_height(scene: Scene): number {
     return scene.arm.base[1] - (this.up_of_base(scene) > 0 ? 0 : 1.05 * this.span);
   }

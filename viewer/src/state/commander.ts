@@ -1,4 +1,4 @@
-// What a person does to the rig, each kind with one request outstanding and only the newest waiting.
+// User commands to the rig. Each kind has one request outstanding, and only the newest one waits.
 import { signal } from '@preact/signals';
 import { Latest } from '../connection/latest';
 import type { Link } from '../connection/link';
@@ -11,7 +11,7 @@ export type ArmCommand = Record<string, unknown>;
 export type Push = { s: number; to: Vector3 } | { s: number; force: Vector3 };
 
 export class Commander {
-  /** What inverse kinematics said last, and for which goal; null when nobody drags. */
+  /** The last result of inverse kinematics and its target; null when the tip is not dragged. */
   readonly tip_result = signal<TipResult | null>(null);
   readonly tip_goal = signal<Vector3 | null>(null);
   private readonly arm_latest: Latest<ArmCommand>;
@@ -41,7 +41,7 @@ export class Commander {
     this.arm_latest.ask(values);
   }
 
-  /** The tip is to be there. */
+  /** Commands a tip position. */
   tip(position: Vector3): void {
     this.playback.go_live();
     this.is_tip_led = true;
@@ -49,12 +49,12 @@ export class Commander {
     this.tip_latest.ask(position);
   }
 
-  /** Nobody drags the tip any more. */
+  /** The user releases the tip. */
   release_tip(): void {
     this.tip_goal.value = null;
   }
 
-  /** The arm goes elsewhere: where its tip was to be is of no more concern, nor what is still to come of that. */
+  /** The arm gets another target: drops the tip target, including waiting requests. */
   forget_tip(): void {
     this.is_tip_led = false;
     this.tip_latest.forget();
@@ -62,19 +62,19 @@ export class Commander {
     this.tip_result.value = null;
   }
 
-  /** The simulated arm is with or without its weight and loads. True when it was taken. */
+  /** Switches weight and loads of the simulated arm. Resolves to whether the request was accepted. */
   weight(on: boolean): Promise<boolean> {
     this.playback.go_live();
     return this.ask('weight', { on });
   }
 
-  /** Something pushes the arm at s: a spring to a place, or a force. */
+  /** Pushes the arm at s: with a spring to a point, or with a force. */
   push(push: Push): void {
     this.playback.go_live();
     this.push_latest.ask(push);
   }
 
-  /** Nothing does any more: nor what still waits to be asked. */
+  /** Ends the push and drops waiting push requests. */
   release(): Promise<boolean> {
     this.push_latest.forget();
     return this.ask('release');
@@ -94,19 +94,19 @@ export class Commander {
     latest.ask({ camera, ...values });
   }
 
-  /** A request without values: halt, reset, run, cancel, open, live. True when it was taken. */
+  /** Sends a request without values: halt, reset, run, cancel, open, live. Resolves to whether it was accepted. */
   plain(what: string): Promise<boolean> {
     if (what === 'reset') this.forget_tip();
     return what === 'run' ? this.run() : this.ask(what);
   }
 
-  /** All tasks, or the one at that place from the experiment's start. */
+  /** Runs all tasks, or the one with this index in the experiment. */
   run(task?: number): Promise<boolean> {
     this.forget_tip();
     return this.ask('run', task === undefined ? {} : { task });
   }
 
-  /** Leaves the present rig for that of one of the hello's examples. */
+  /** Replaces the present rig by that of one of the hello's examples. */
   open_example(example: string): Promise<boolean> {
     this.forget_tip();
     return this.ask('open', { example });
@@ -129,7 +129,7 @@ const reasons: Record<string, string> = {
   no_convergence: 'No shape found',
 };
 
-/** Why the tip does not come to where it is wanted; null where it does. */
+/** Returns why the tip cannot reach its target; null if it can. */
 export function obstruction(result: TipResult): string | null {
   if (result.danger) return result.danger;
   if (result.converged) return null;

@@ -1,15 +1,15 @@
 import type { State } from '../protocol/state';
 
-/** The states of the last seconds, so that one can look back while the rig goes on. */
+/** The states of the last seconds, for looking back while the rig continues. */
 export class History {
   private states: State[] = [];
-  /** When each state's time was first heard of, ms of this page's clock. */
+  /** When each state's time was received first, ms of this page's clock. */
   private came: number[] = [];
   private from = 0;
 
   constructor(readonly seconds = 60) {}
 
-  /** Adds the newest, which came `now`; forgets all when time went back (a reset), and what is too old. */
+  /** Adds the newest state, received at `now`. Drops old states, and all of them if time went back (a reset). */
   add(state: State, now = performance.now()): void {
     const last = this.newest;
     if (last && state.time < last.time) this.clear();
@@ -17,7 +17,7 @@ export class History {
     else this.came.push(now);
     this.states.push(state);
     while (this.states[this.from].time < state.time - this.seconds) ++this.from;
-    // Dropped in bulk: shifting an array at every state would copy it sixty times a second.
+    // Dropped in bulk: shifting an array with every state would copy it sixty times a second.
     if (this.from > 1000) {
       this.states.splice(0, this.from);
       this.came.splice(0, this.from);
@@ -47,7 +47,7 @@ export class History {
     return this.states[this.from + i];
   }
 
-  /** The place of the last state that is not after the time; 0 when all are. */
+  /** Returns the index of the last state that is not after the time; 0 if all are. */
   index_at(time: number): number {
     let low = 0;
     let high = this.count - 1;
@@ -59,7 +59,10 @@ export class History {
     return Math.max(0, low);
   }
 
-  /** How long ago, s, the first state came that is after `time`: 0 where none is. A run may be faster than the clock. */
+  /**
+   * Returns how long ago, s, the first state after `time` was received; 0 if there is none. Runs may be faster than the
+   * clock.
+   */
   outdated_for(time: number, now = performance.now()): number {
     const place = this.index_at(time);
     const next = this.count && this.at_index(place).time > time ? place : place + 1;

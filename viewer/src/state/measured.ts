@@ -1,10 +1,10 @@
-// What the program measures in the pictures that are shown, picture by picture, as long as somebody wants to see it.
+// Measurements in the shown pictures, requested picture by picture while they are displayed.
 import { effect, signal, type ReadonlySignal, type Signal } from '@preact/signals';
 import { Latest } from '../connection/latest';
 import { shape as shape_measure } from '../overlays/measures';
 import type { MeasureResult, ShapeResult } from '../protocol/types';
 
-/** What of the `Viewer` is needed. */
+/** The part of `Viewer` that is needed. */
 export interface MeasureHost {
   picture_tick: ReadonlySignal<number>;
   picture_of: ReadonlyMap<string, { number: number }>;
@@ -16,10 +16,10 @@ export interface MeasureHost {
   };
 }
 
-/** What was measured in a picture before the shown one stands for so long, ms: the next is on its way. */
+/** The result of the previous picture stays for this long, ms, until the next one arrives. */
 export const grace_ms = 300;
 
-/** Asks again for each picture; `found` is null where nothing is known of what is shown. */
+/** Requests a measurement for each picture; `found` is null if there is no result for the shown one. */
 function follow<Result>(
   found: Signal<Result | null>, ask: () => Promise<Result>, shown: () => string | null,
 ): () => void {
@@ -34,7 +34,7 @@ function follow<Result>(
     outdated ??= setTimeout(() => say(null), grace_ms);
   };
   const asker = new Latest<string, Result>(ask, (result, _, of) => {
-    // What is shown now may be another run's, or a later picture.
+    // Another run, or a later picture, may be shown by now.
     if (asked === null) return;
     say(result && of.split(' ')[0] === asked.split(' ')[0] ? result : null);
     if (of !== asked) expire();
@@ -58,11 +58,11 @@ function follow<Result>(
 }
 
 export class Measured {
-  /** By camera. */
+  /** Results by camera. */
   readonly pictures = signal<Record<string, Signal<MeasureResult | null>>>({});
   readonly shape = signal<ShapeResult | null>(null);
 
-  /** `wanted`: which measures are to be seen. Gives what ends this. */
+  /** `wanted`: the measures to display. Returns a function that stops the requests. */
   start(host: MeasureHost, wanted: ReadonlySignal<string[]>): () => void {
     let stops: (() => void)[] = [];
     const end = (): void => stops.forEach((stop) => stop());

@@ -4,13 +4,13 @@ export interface Notice {
   id: number;
   level: 'info' | 'error';
   text: string;
-  /** How often it came in a row. */
+  /** Number of consecutive repetitions. */
   times: number;
 }
 
 const shown_ms = { info: 4000, error: 9000 };
 
-/** Lines that appear for a while: refused requests above all. */
+/** Temporary messages, mainly about refused requests. */
 export class Notices {
   readonly list = signal<Notice[]>([]);
   private next = 1;
@@ -31,7 +31,7 @@ export class Notices {
   }
 
   private say(level: Notice['level'], text: string): void {
-    // A slider at a limit would else fill the screen with one line.
+    // Without this a slider at a limit would fill the screen with one message.
     const same = this.list.value.find((notice) => notice.text === text && notice.level === level);
     if (same) {
       this.list.value = this.list.value.map((notice) =>

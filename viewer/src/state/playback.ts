@@ -1,5 +1,5 @@
-// Which time is shown. Live, that is now, or an instant of the last seconds that is held; a recording has the page's
-// own clock, which asks the program for the states (one request outstanding).
+// The shown time. Live it is the present, or a held time of the last seconds. A recording uses the page's clock and
+// requests states from the program (one request outstanding).
 import { computed, signal } from '@preact/signals';
 import { Latest } from '../connection/latest';
 import type { State } from '../protocol/state';
@@ -13,18 +13,18 @@ export interface PlaybackHost {
 }
 
 export const speeds = [0.1, 0.25, 0.5, 1, 2, 4, 8];
-/** What one step is live: a sixtieth of a second, as states come. */
+/** Live step: a sixtieth of a second, the rate of states. */
 const live_step_s = 1 / 60;
 
 export class Playback {
   readonly mode = signal<'live' | 'recording'>('live');
   readonly duration = signal(0);
-  /** One step of time, s: of a recording from one of its states to the next. */
+  /** Step of time, s: for a recording the time between two of its states. */
   step_s = live_step_s;
-  /** A recording is playing. */
+  /** A recording is being played. */
   readonly playing = signal(false);
   readonly speed = signal(1);
-  /** Of a recording: where it stands. Live: the held instant, null for now. */
+  /** Time in the recording; live: the held time, null for the present. */
   readonly time = signal(0);
   readonly held = signal<number | null>(null);
   readonly running = computed(() => (this.mode.value === 'live' ? this.held.value === null : this.playing.value));
@@ -34,14 +34,14 @@ export class Playback {
 
   constructor(private readonly host: PlaybackHost) {
     this.asker = new Latest<number>((time) => host.ask_at(time), (_, error) => {
-      // One that was under way when the rig took the recording's place is nobody's concern any more.
+      // Errors of requests from before the rig replaced the recording are ignored.
       if (!error || this.mode.value !== 'recording') return;
       this.playing.value = false;
       host.failed(error);
     });
   }
 
-  /** Another run, or another rig: from its start. */
+  /** Starts at the beginning of another run or rig. */
   start(mode: 'live' | 'recording', duration: number, interval: number): void {
     this.pause();
     this.asker.forget();
@@ -53,7 +53,7 @@ export class Playback {
     if (mode === 'recording') this.asker.ask(0);
   }
 
-  /** The connection is back: asks for where it stands. */
+  /** Requests the current time again after reconnecting. */
   again(): void {
     if (this.mode.value === 'recording') this.asker.ask(this.time.value);
   }
@@ -87,7 +87,7 @@ export class Playback {
     if (newest) this.host.show(newest);
   }
 
-  /** To a time; live ones stay within what is remembered. */
+  /** Seeks to a time; live times are limited to the remembered ones. */
   seek(time: number): void {
     if (this.mode.value === 'live') return this.hold(time);
     this.time.value = Math.min(this.duration.value, Math.max(0, time));
@@ -98,7 +98,7 @@ export class Playback {
     this.skip(count * this.step_s);
   }
 
-  /** Pauses, some seconds on or back. */
+  /** Pauses and moves by some seconds, forwards or back. */
   skip(seconds: number): void {
     this.pause();
     const now = this.mode.value === 'live' ? (this.held.value ?? 0) : this.time.value;

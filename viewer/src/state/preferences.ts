@@ -1,4 +1,4 @@
-// What a person set for this browser. Nothing of an experiment is kept here.
+// User preferences stored in this browser. Nothing of an experiment is stored.
 import { effect, signal, type Signal } from '@preact/signals';
 
 const prefix = 'flexura.';
@@ -9,7 +9,7 @@ function kept<T>(name: string, standard: T): Signal<T> {
     const text = localStorage.getItem(prefix + name);
     if (text !== null) start = JSON.parse(text) as T;
   } catch {
-    // Storage may be switched off, or hold something else's value: then the standard holds.
+    // Storage may be disabled or contain an invalid value; the default is used.
   }
   const value = signal(start);
   effect(() => {
@@ -17,7 +17,7 @@ function kept<T>(name: string, standard: T): Signal<T> {
     try {
       localStorage.setItem(prefix + name, text);
     } catch {
-      // Not kept, then.
+      // The value cannot be stored.
     }
   });
   return value;
@@ -30,14 +30,14 @@ export const preferences = {
   theme: kept<Theme>('theme', 'system'),
   keys: kept('keys', true),
   hidden: kept<string[]>('hidden', []),
-  /** Until someone chose: the first that the arm has. */
+  /** Null until the user chooses: the first mode that the arm has. */
   arm_mode: kept<ArmMode | null>('arm_mode', null),
-  /** The other tendons go along with the one that is moved. */
+  /** The other tendons follow the one that is moved. */
   tendons_together: kept('tendons_together', true),
   plots: kept<[string, string]>('plots', ['tip', 'bends']),
   recording_plots: kept<[string, string]>('recording_plots', ['', '']),
   show_plots: kept('show_plots', true),
-  /** What is measured in the pictures and drawn upon them. */
+  /** Measures that are drawn on the pictures. */
   overlays: kept<string[]>('overlays', []),
 };
 
@@ -47,7 +47,7 @@ const asks_for_light = typeof matchMedia === 'function' ? matchMedia('(prefers-c
 const system_light = signal(asks_for_light?.matches ?? false);
 asks_for_light?.addEventListener('change', ({ matches }) => (system_light.value = matches));
 
-/** The theme that holds now. */
+/** Returns the current theme. */
 export function theme_now(): 'dark' | 'light' {
   const theme = preferences.theme.value;
   if (theme !== 'system') return theme;

@@ -1,4 +1,4 @@
-// Everything that the page knows, and where the messages go.
+// The state of the page and the dispatch of messages.
 import { computed, signal } from '@preact/signals';
 import { Link, type LinkListener } from '../connection/link';
 import { Pictures, type Picture } from '../connection/images';
@@ -17,13 +17,15 @@ import { extra_ghosts } from '../overlays/extras';
 import { shape } from '../overlays/measures';
 import { capital } from '../ui/format';
 
-/** What one can believe of what is on the screen. */
+/** Up-to-dateness of the shown state. */
 export type Freshness = 'live' | 'held' | 'recording' | 'stale' | 'lost' | 'none' | 'refused';
 
 const kept_events = 200;
-/** Panels read the state so often; the 3D view has every one. */
+/** Update interval of the panels, ms; the 3D view gets every state. */
 const tick_ms = 80;
-/** A live rig's time goes on: without states for so long something is wrong, answers or not. */
+/**
+ * A live rig sends states continuously: without any for this long, ms, there is a fault, even if pings are answered.
+ */
 const stateless_ms = 3000;
 const image_rate = 30;
 
@@ -41,23 +43,23 @@ export class Viewer implements LinkListener {
   readonly events = signal<EventMessage[]>([]);
   readonly progress = signal<ProgressMessage | null>(null);
   readonly layers = signal<Record<string, Layer[]>>({});
-  /** The newest: what lies upon the newest pictures. */
+  /** The newest extras; they belong to the newest pictures. */
   readonly extras = signal<Extras | null>(null);
-  /** Those that came with the state that is shown, which may be held. */
+  /** The extras of the shown state, which may be held. */
   readonly shown_extras = signal<Extras | null>(null);
-  /** As the program sends them. */
+  /** Ghosts from `ghost` messages. */
   private readonly sent_ghosts = signal<Record<string, GhostMessage>>({});
-  /** Those, and the shape that the pictures tell. */
+  /** All ghosts, including extras and the shape estimated from the pictures. */
   readonly ghosts = computed(() => this.all_ghosts());
-  /** Grows with each picture of a camera; the picture itself is in `picture_of`. */
+  /** Increases with each picture of a camera; the picture itself is in `picture_of`. */
   readonly picture_tick = signal(0);
-  /** Grows some ten times a second while the shown state changes. */
+  /** Increases about ten times a second while the shown state changes. */
   readonly tick = signal(0);
-  /** The flags of the newest state. */
+  /** Flags of the newest state. */
   readonly flags = signal(0);
   /** The picked point of the backbone, m along the unstretched arm. */
   readonly picked = signal<number | null>(null);
-  /** Counts starts afresh: a new run, a new rig, a restarted program. */
+  /** Increases with a new run, a new rig or a restarted program. */
   readonly epoch = signal(0);
   readonly freshness = computed<Freshness>(() => this.judge());
 
@@ -88,17 +90,17 @@ export class Viewer implements LinkListener {
     return !hello || hello.readonly || hello.mode === 'recording';
   }
 
-  /** What is shown may be long past, and nobody sees what a command would do. */
+  /** The shown state may be outdated, so the effect of a command would not be visible. */
   get blind(): boolean {
     return this.freshness.value === 'lost' || this.freshness.value === 'stale';
   }
 
-  /** Nothing can be moved now: a recording, a run of tasks, a connection that is lost or silent. */
+  /** Nothing can be moved: a recording, a run of tasks, or a lost or silent connection. */
   get still(): boolean {
     return this.readonly || (this.flags.value & flag_running) !== 0 || this.blind;
   }
 
-  /** How the rig stands now, also while the view is held at an instant before: what a command starts from. */
+  /** The current state of the rig, even while an earlier one is held; commands start from it. */
   get newest(): State | null {
     return this.history.newest ?? this.shown;
   }
@@ -134,7 +136,7 @@ export class Viewer implements LinkListener {
       if (kind === kind_state) this.take_state(decode_state(message));
       else if (kind === kind_image) void this.take_image(decode_image(message));
       else if (kind === kind_extras) this.take_extras(decode_extras(message));
-      // Other kinds are later versions'; this page knows nothing to draw for them.
+      // Other kinds belong to later versions and are ignored.
     } catch (error) {
       this.notices.error(error);
     }
@@ -142,7 +144,7 @@ export class Viewer implements LinkListener {
 
   closed(): void {
     this.progress.value = null;
-    // Whether they still hold nobody knows; who does says so again.
+    // The extras may be outdated; they are sent again after reconnecting.
     this.extras.value = null;
   }
 
@@ -160,12 +162,12 @@ export class Viewer implements LinkListener {
       this.playback.again();
     }
     for (const { name } of hello.scene.cameras) {
-      // A recording without pictures refuses; the page then shows none.
+      // A recording without pictures refuses this request; the page then shows none.
       this.link.request('images', { camera: name, rate: image_rate }).catch(() => {});
     }
   }
 
-  /** Nothing of another run may be taken for this one's. */
+  /** Drops everything of the previous run. */
   private forget(): void {
     this.history.clear();
     this.shown = null;
@@ -209,7 +211,7 @@ export class Viewer implements LinkListener {
     return all;
   }
 
-  /** They belong to the state that comes next; where that is shown already, to it. */
+  /** Extras belong to the next state, or to the shown one if it already has that time. */
   private take_extras(extras: Extras | null): void {
     this.extras.value = extras;
     if (this.playback.held.peek() !== null || !this.shown) return;
@@ -249,7 +251,7 @@ export class Viewer implements LinkListener {
     } catch {
       this.notices.error(`A picture of the camera ${camera} could not be read.`);
     }
-    // Also after a bad one: else the stream would stand still for ever.
+    // Sent even for an undecodable picture: otherwise the stream would stop.
     this.link.tell('ack', { camera, number: image.number });
   }
 

@@ -1,6 +1,6 @@
 import { signal } from '@preact/signals';
 
-/** Through whose eyes one looks: null is the free view. */
+/** The camera whose view is shown: null is the free view. */
 export class Views {
   readonly current = signal<string | null>(null);
 
@@ -10,7 +10,7 @@ export class Views {
     if (this.current.value !== null) this.current.value = null;
   }
 
-  /** The next or the one before, round and round. */
+  /** Selects the next or the previous view, cyclically. */
   cycle(by: 1 | -1): void {
     const all = [null, ...this.cameras()];
     const place = all.indexOf(this.current.value);

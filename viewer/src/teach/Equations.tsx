@@ -1,4 +1,4 @@
-// The paper's equations 1 to 10 in our own words and one sign, with the values of the chosen section put in.
+// The paper's equations 1 to 10 with a consistent sign convention, and the values of the chosen section.
 import type { ComponentChildren } from 'preact';
 import type { PlanarRow } from '../math/planar';
 import { Frac, Func, Math_, N, Op, Sub, Sum } from './mathml';
@@ -20,7 +20,7 @@ function len(value: number): string {
   return value.toFixed(3).replace('-', '−');
 }
 
-/** "+ 9.0°" or "− 9.0°". */
+/** Formats an angle as "+ 9.0°" or "− 9.0°". */
 function signed(radians: number): ComponentChildren {
   return <><Op>{radians < 0 ? '−' : '+'}</Op><N>{deg(Math.abs(radians))}</N></>;
 }
@@ -67,7 +67,7 @@ export function Equations({ rows, lengths, at }: Props) {
 interface EquationProps {
   number: string;
   words: string;
-  /** What goes to the next line where it does not fit beside the rest: mathematics does not break by itself. */
+  /** Part that moves to the next line if it does not fit; MathML has no automatic line breaks. */
   values?: ComponentChildren;
   children: ComponentChildren;
 }

@@ -1,4 +1,4 @@
-// The planar arm as a drawing: arcs, cords, base points, and handles to drag.
+// Drawing of the planar arm: arcs, cords, base points, and handles to drag.
 import { useRef } from 'preact/hooks';
 import { planar_rows, type PlanarSection } from '../math/planar';
 import { grid_step } from '../scene/parts/floor';
@@ -67,14 +67,14 @@ function arc_path(row: Row, length: number): string {
   return `${start}A${radius} ${radius} 0 ${large} ${row.arching > 0 ? 0 : 1} ${row.end_x} ${-row.end_y}`;
 }
 
-/** The straight section, from which the arching is measured, and the arching's angle itself. */
+/** The straight section from which the arching is measured, and the angle itself. */
 function Tangent({ row, length, unit }: { row: Row; length: number; unit: number }) {
   const far = (angle: number, r: number): [number, number] => [row.x + r * Math.cos(angle), -(row.y + r * Math.sin(angle))];
   const [x, y] = far(row.tangent, length);
   const r = Math.min(0.55 * length, 16 * unit);
   const [x0, y0] = far(row.tangent, r);
   const [x1, y1] = far(row.cord_angle, r);
-  // In a short section the next joint would lie upon it: there it stands on the tangent's other side.
+  // In a short section the label would cover the next joint, so it is placed on the other side of the tangent.
   const is_short = length < r + 8 * unit;
   const [tx, ty] = is_short
     ? far(row.tangent - Math.sign(row.arching) * 0.6, Math.max(r, 6.5 * unit))

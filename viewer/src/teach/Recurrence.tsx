@@ -10,7 +10,7 @@ function len(value: number): string {
   return value.toFixed(3).replace('-', '−');
 }
 
-/** The whole recurrence as a table: each row leans on the one above. */
+/** The whole recurrence as a table; each row depends on the one above. */
 export function Recurrence({ rows, at, choose }: { rows: PlanarRow[]; at: number; choose(at: number): void }) {
   return (
     <table class="recurrence">

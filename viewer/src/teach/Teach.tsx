@@ -1,4 +1,4 @@
-// The planar arm beside the equations that move it. It needs no program: the page computes the recurrence itself.
+// The planar arm beside its equations. No program is needed: the page computes the recurrence itself.
 import { useSignal } from '@preact/signals';
 import { archings_of, paper_cord_angles, paper_lengths, planar_rows, type PlanarSection } from '../math/planar';
 import { Slider } from '../panels/Slider';
@@ -8,7 +8,7 @@ import { exercises, type Exercise } from './exercises';
 import { PlaneView } from './PlaneView';
 import { Recurrence } from './Recurrence';
 
-/** A little more than a full turn of the section's arc. */
+/** Slightly more than a full turn of the section's arc. */
 const limit = Math.PI;
 const degree = 180 / Math.PI;
 

@@ -1,10 +1,10 @@
-// Dragging the planar arm by a joint: the archings before it follow (least squares, damped as far as it takes to get
-// nearer with every step).
+// Dragging the planar arm by a joint: the archings before it follow (least squares, with enough damping that every step
+// reduces the distance).
 import { planar_rows, type PlanarSection } from '../math/planar';
 
 const turns = 30;
 
-/** The archings with the end of section `joint` brought as near to (x, y) as it goes, within the limit. */
+/** Returns the archings that bring the end of section `joint` as near to (x, y) as possible within the limit. */
 export function pull(sections: PlanarSection[], joint: number, x: number, y: number, limit: number): PlanarSection[] {
   const reach = sections.reduce((sum, { length }) => sum + length, 0);
   let now = sections;
@@ -46,7 +46,7 @@ function step(
   });
 }
 
-/** How the joint's end moves with each arching, by differences. */
+/** Returns the derivatives of the joint's end by each arching, by finite differences. */
 function slopes(sections: PlanarSection[], joint: number): [number, number][] {
   const h = 1e-5;
   return sections.slice(0, joint + 1).map((_, i) => {

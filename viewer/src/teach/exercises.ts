@@ -1,5 +1,5 @@
-// Five exercises on the planar arm. Each knows from the arm alone whether it is done: nothing is typed that could be
-// guessed, the arm has to be there.
+// Five exercises on the planar arm. Each is checked by the state of the arm alone, so nothing can be solved by guessing
+// an input.
 import { planar_rows, type PlanarSection } from '../math/planar';
 
 export interface Exercise {
@@ -7,12 +7,12 @@ export interface Exercise {
   title: string;
   task: string;
   hint: string;
-  /** The arm that it is done with. */
+  /** Section lengths of the arm for this exercise. */
   lengths: number[];
   start: number[];
   /** A point to reach, drawn in the plane. */
   goal?: [number, number];
-  /** How it stands: done, and a line that says what is still off. */
+  /** Returns whether the exercise is done, and a line about what is missing. */
   check(sections: PlanarSection[]): { done: boolean; text: string };
 }
 
@@ -28,7 +28,7 @@ function number(value: number, places = 2): string {
   return value.toFixed(places).replace('-', '−');
 }
 
-/** What is tolerated, so that a mouse can do it: 1 % of the arm's length, and 1 degree. */
+/** Tolerances suitable for a mouse: 1 % of the arm's length, and 1 degree. */
 const close = 0.01;
 const near = 1 / degree;
 

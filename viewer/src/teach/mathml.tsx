@@ -1,4 +1,4 @@
-// A few pieces of MathML, which browsers set and screen readers read.
+// A few MathML elements, supported by browsers and screen readers.
 import { createElement, type ComponentChildren, type VNode } from 'preact';
 
 type Children = { children?: ComponentChildren };
@@ -19,7 +19,7 @@ export function Frac({ over, under }: { over: ComponentChildren; under: Componen
   return createElement('mfrac', null, <Row>{over}</Row>, <Row>{under}</Row>);
 }
 
-/** A function's name, upright and with a space behind it. */
+/** A function name, upright and followed by a space. */
 export function Func({ children }: Children) {
   return createElement('mi', { mathvariant: 'normal', class: 'func' }, children);
 }

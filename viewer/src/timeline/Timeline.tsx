@@ -5,7 +5,7 @@ import { format_time } from '../ui/format';
 import { Icon } from '../ui/Icon';
 import { labels_of, name_of } from './labels';
 
-/** Time: play, pause, step, speed, and a line to scrub along, with marks for what happened. */
+/** Timeline: play, pause, step, speed, and a scrub bar with marks for events. */
 export function Timeline() {
   const { viewer } = use_app();
   const { playback } = viewer;
@@ -46,7 +46,7 @@ function Line() {
   const from = live ? Math.max(history.oldest?.time ?? 0, newest - history.seconds) : 0;
   const to = live ? newest : playback.duration.value;
   const time = live ? (playback.held.value ?? newest) : playback.time.value;
-  // In words the time of the state that is shown, as everywhere on the page: it may lie a little before the one asked for.
+  // The spoken time is that of the shown state, as everywhere on the page; it may be slightly before the requested one.
   const said = format_time(viewer.shown?.time ?? time);
   const part = (t: number): string => `${(100 * Math.min(1, Math.max(0, (t - from) / Math.max(1e-9, to - from)))).toFixed(3)}%`;
   const marks = marks_of(viewer.hello.value?.marks ?? [], viewer.events.value, from, to);
@@ -81,7 +81,7 @@ function Line() {
   );
 }
 
-/** What is to be noticed lies in a lane of its own, without words upon it. */
+/** Returns whether a mark is a warning; warnings have a separate lane without labels. */
 function is_band({ level }: Mark): boolean {
   return level !== 'info';
 }
@@ -101,7 +101,7 @@ function MarkButton({ marks, time, is_span, left, width, words }: MarkButtonProp
     <button type="button" class="mark" data-level={marks[0].level} data-span={is_span} tabIndex={-1} style={{ left, width }}
       title={marks.map((mark) => `${format_time(mark.time)}  ${mark.name}${mark.text ? `: ${mark.text}` : ''}`).join('\n')}
       aria-label={marks.map((mark) => `${mark.level}: ${mark.name} at ${format_time(mark.time)}`).join('; ')}
-      // Keeps no focus: Space after it is to play, not to come back here.
+      // Does not take the focus: Space must then play, not activate the mark again.
       onMouseDown={(event) => event.preventDefault()} onClick={() => viewer.playback.seek(time)}>
       {words !== undefined && <span>{words}</span>}
     </button>

@@ -1,25 +1,25 @@
-// Where the words of the timeline's marks stand.
+// Placement of the labels of the timeline's marks.
 import type { Mark } from '../protocol/types';
 
-/** Words for what happened at one instant, or too near to it to be told apart on the line. */
+/** Label of one event, or of several that are too close to be distinguished. */
 export interface Label {
   time: number;
-  /** Of what lasts, its end; else the same. */
+  /** End of the longest event; equal to its time if it has no duration. */
   end: number;
-  /** Where its words must end: where the next label begins. */
+  /** Right end of the label: the start of the next one. */
   until: number;
   marks: Mark[];
 }
 
-/** A share of the line: on the narrowest, as many pixels as a mark is wide. */
+/** Smallest distance of labels, as a share of the line: the width of a mark on the narrowest line. */
 const nearest = 0.012;
 
-/** No label's words lie upon another's. */
+/** Returns labels that do not overlap. */
 export function labels_of(marks: Mark[], from: number, to: number): Label[] {
   const near = nearest * (to - from);
   const labels: Label[] = [];
   for (const mark of [...marks].sort((a, b) => a.time - b.time)) {
-    // What began before the line does stands at its start.
+    // Events that began earlier are placed at the start of the line.
     const time = Math.max(from, mark.time);
     const last = labels.at(-1);
     if (last && time - last.time <= near) {

@@ -1,4 +1,4 @@
-// What stands over the 3D view when the program cannot be reached or does not let the page in.
+// Message over the 3D view while the program is unreachable or refuses access.
 import { useEffect, useState } from 'preact/hooks';
 import { use_app } from './app';
 
@@ -8,7 +8,7 @@ export function Entrance() {
   if (status.kind === 'open') return null;
   if (status.kind === 'refused') return <Refused why={status.why} />;
   if (status.kind === 'waiting') return <Waiting why={status.why} at={status.at} />;
-  // A first connection takes no time worth a word; a lost one keeps saying so while it is tried again.
+  // The first connection is quick and needs no message; a lost one shows it while reconnecting.
   return viewer.hello.value ? <div class="entrance" role="status">Connecting again …</div> : null;
 }
 

@@ -3,7 +3,7 @@ import { effect } from '@preact/signals';
 import { use_app } from './app';
 import { Icon } from './Icon';
 
-/** The examples that the program offers where it was started without a file. Opens by itself on the first visit. */
+/** Examples offered by a program that was started without a file. Opens by itself on the first visit. */
 export function Examples() {
   const app = use_app();
   const { viewer } = app;

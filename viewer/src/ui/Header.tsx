@@ -59,7 +59,7 @@ export function Header() {
   );
 }
 
-/** That the simulation does not keep up. */
+/** Shows that the simulation is slower than real time. */
 function Pace() {
   const { viewer } = use_app();
   viewer.tick.value;
@@ -72,7 +72,7 @@ function Pace() {
   );
 }
 
-/** Tasks and what belongs to them. */
+/** Controls for tasks, recording and rig. */
 function Rig() {
   const { viewer } = use_app();
   const only = useSignal<number | null>(null);
@@ -95,7 +95,7 @@ function Rig() {
       </div>
     );
   }
-  // The program says of runs before; of one that has ended since, its own last word does.
+  // The hello covers earlier runs; a run that has ended since is known from its last progress message.
   const recorded = hello.recording || (progress?.done === true && (progress.recording ?? progress.outcome !== 'failed'));
   const run = (): void => {
     const task = only.value !== null && only.value < tasks.length ? only.value : undefined;
@@ -128,7 +128,7 @@ function Rig() {
       )}
       {recorded && !running && <button type="button" class="button" disabled={!connected} onClick={ask('open')}><Icon name="film" />Recording</button>}
       {report}
-      {/* To stop is worth a try also when nothing is heard of the rig. */}
+      {/* Halt stays enabled even if the rig does not answer. */}
       <button type="button" class="button danger" disabled={!connected || viewer.readonly} onClick={ask('halt')}
         title="Everything stops (H)"><Icon name="halt" />Halt</button>
       <button type="button" class="button quiet" disabled={!connected || viewer.still} onClick={ask('reset')}

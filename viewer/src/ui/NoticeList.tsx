@@ -1,7 +1,7 @@
 import { use_app } from './app';
 import { Icon } from './Icon';
 
-/** Lines that appear for a while. The regions are always there, so that screen readers notice what comes into them. */
+/** Temporary messages. The live regions always exist, so that screen readers announce new content. */
 export function NoticeList() {
   const { notices } = use_app().viewer;
   const list = (level: 'error' | 'info') =>

@@ -1,4 +1,4 @@
-// What every component can reach.
+// Shared state of all components.
 import { createContext } from 'preact';
 import { useContext } from 'preact/hooks';
 import { signal, type Signal } from '@preact/signals';
@@ -13,16 +13,16 @@ export interface App {
   viewer: Viewer;
   views: Views;
   view: Signal<SceneView | null>;
-  /** What is in the 3D view and can be hidden. */
+  /** Things in the 3D view that can be hidden. */
   parts: Signal<{ id: string; label: string }[]>;
   dialog: Signal<Dialog>;
   route: Signal<'viewer' | 'teach'>;
-  /** The left button pushes the arm where it is dragged. */
+  /** The left button pushes the dragged point of the arm. */
   push_tool: Signal<boolean>;
-  /** The time under the pointer in a plot or on the timeline, which all of them show. */
+  /** Time under the pointer in a plot or on the timeline, shown by all of them. */
   cursor: Signal<number | null>;
   keys: KeyMap;
-  /** Takes a pasted address or token and connects with it; false when there is none in it. */
+  /** Takes a pasted address or token and connects with it. Returns false if it contains no token. */
   use_token(text: string): boolean;
 }
 

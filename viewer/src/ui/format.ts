@@ -1,4 +1,4 @@
-/** A time as it stands on the clocks of the page. */
+/** Formats a time as shown on the page. */
 export function format_time(seconds: number): string {
   if (!Number.isFinite(seconds)) return '–';
   const sign = seconds < 0 ? '−' : '';
@@ -8,19 +8,19 @@ export function format_time(seconds: number): string {
   return minutes ? `${sign}${minutes}:${rest}` : `${sign}${rest} s`;
 }
 
-/** A number with so many places and a real minus. */
+/** Formats a number with `places` decimals and a real minus sign. */
 export function fixed(value: number, places: number): string {
   if (!Number.isFinite(value)) return '–';
   const text = value.toFixed(places);
   return (Number(text) === 0 ? (0).toFixed(places) : text).replace('-', '−');
 }
 
-/** Lengths of an arm of that size: metres with as many places as matter. */
+/** Returns the useful number of decimals for lengths of an arm of this size, in metres. */
 export function length_places(span: number): number {
   return Math.min(5, Math.max(2, 3 - Math.floor(Math.log10(span))));
 }
 
-/** The number that a person typed, with a point or a comma and either minus; null where it is none: 0x10 is no angle. */
+/** Parses a typed number, with a decimal point or comma and either minus sign; null if invalid, such as 0x10. */
 export function number_of(typed: string): number | null {
   const text = typed.trim().replace(',', '.').replace('−', '-');
   return /^[+-]?(\d+\.?\d*|\.\d+)(e[+-]?\d+)?$/i.test(text) && Number.isFinite(Number(text)) ? Number(text) : null;
@@ -36,7 +36,7 @@ export function vector(values: ArrayLike<number>, places: number): string {
   return Array.from(values, (value) => fixed(value, places)).join(', ');
 }
 
-/** A line as a sentence begins. */
+/** Capitalises the first letter. */
 export function capital(text: string): string {
   return text.charAt(0).toUpperCase() + text.slice(1);
 }

@@ -1,4 +1,4 @@
-// What everybody needs of every page, in the smallest size that it is made for, in both themes.
+// Accessibility and layout of every page, in the smallest supported size and in both themes.
 import type { Page } from 'playwright-core';
 import { describe, expect, test } from 'vitest';
 import { planar_rig, spatial_rig } from '../fake/rigs';
@@ -9,7 +9,7 @@ import { faked, visit } from './opened';
 const width = 1280;
 const height = 720;
 
-/** Controls that can be seen and have no name for those who cannot see them. */
+/** Returns visible controls without an accessible name. */
 const nameless = (page: Page) => page.evaluate(() =>
   [...document.querySelectorAll<HTMLElement>('button, a[href], input, select, textarea, summary, [tabindex="0"], [role="button"]')]
     .filter((control) => control.checkVisibility())
@@ -20,7 +20,7 @@ const nameless = (page: Page) => page.evaluate(() =>
     })
     .map(({ outerHTML }) => outerHTML.slice(0, 120)));
 
-/** What reaches out of the window, or out of a box that cannot be scrolled. */
+/** Returns elements that extend beyond the window, or beyond a box that cannot be scrolled. */
 const overflowing = (page: Page) => page.evaluate(([w, h]) => {
   const scrolls = (element: Element): boolean => {
     const { overflowX, overflowY } = getComputedStyle(element);
@@ -38,14 +38,14 @@ const overflowing = (page: Page) => page.evaluate(([w, h]) => {
   }
   const { scrollWidth, scrollHeight } = document.documentElement;
   if (scrollWidth > w || scrollHeight > h) out.push(`${scrollWidth} x ${scrollHeight}`);
-  // Sideways nothing is to be scrolled at all.
+  // No horizontal scrolling is allowed.
   for (const panel of document.querySelectorAll<HTMLElement>('.panel, .right, .teach-text, .exercises, .help-groups')) {
     if (panel.checkVisibility() && panel.scrollWidth > panel.clientWidth + 1) out.push(`${panel.className} is ${panel.scrollWidth} wide`);
   }
   return out;
 }, [width, height]);
 
-/** Texts whose colour is too near to that of their ground (WCAG 2.2, 1.4.3); what is switched off is exempt. */
+/** Returns texts with too little contrast to their background (WCAG 2.2, 1.4.3); disabled controls are exempt. */
 const faint = (page: Page) => page.evaluate(() => {
   type Color = [number, number, number, number];
   const parse = (text: string): Color => {
@@ -101,7 +101,7 @@ test('these tests see what is wrong', async () => {
   await server.stop();
 });
 
-/** The colour in the 3D view's upper right corner. */
+/** Returns the colour in the 3D view's upper right corner. */
 async function ground_of_stage(page: Page): Promise<number[]> {
   const png = (await stage_at_rest(page)).toString('base64');
   return page.evaluate(async (text) => {
@@ -113,7 +113,7 @@ async function ground_of_stage(page: Page): Promise<number[]> {
   }, png);
 }
 
-/** How much of a box can be seen only by scrolling it, px. */
+/** Returns how much of a box is visible only after scrolling, px. */
 const hidden_of = (page: Page, box: string) =>
   page.locator(box).evaluate(({ scrollHeight, clientHeight }) => Math.max(0, scrollHeight - clientHeight));
 

@@ -1,23 +1,23 @@
-// A browser for the page's tests, and hands in it.
+// A browser for the page's tests, with helpers for user input.
 import { existsSync } from 'node:fs';
 import { fileURLToPath } from 'node:url';
 import { chromium, type Browser, type Page } from 'playwright-core';
 
-/** The built page: FLEXURA_PAGE, or what `npm run build` made. */
+/** The built page: FLEXURA_PAGE, or the output of `npm run build`. */
 export const dist = process.env.FLEXURA_PAGE ?? fileURLToPath(new URL('../../dist', import.meta.url));
 
-/** Shows `dist` also where the program brings a page of its own: to work on the page without building the program. */
+/** Shows `dist` instead of the program's embedded page, to work on the page without building the program. */
 const is_instead = process.env.FLEXURA_PAGE_INSTEAD !== undefined;
 
-/** A page that came from no address of the network may not speak with one of this machine: else. */
+/** Needed because a page without a network address may otherwise not connect to local servers. */
 const has_no_address = '--disable-features=LocalNetworkAccessChecks';
 
-/** By how much longer everything may take, on a machine that does much else. */
+/** Factor on all timeouts, for busy machines. */
 const patience = Number(process.env.FLEXURA_PATIENCE ?? 1);
 
 export async function launch(): Promise<Browser> {
   if (!existsSync(`${dist}/index.html`)) throw new Error(`there is no page in ${dist}: npm run build`);
-  // The default software WebGL: it is what a headless machine has.
+  // The default software WebGL, as on a machine without a display.
   return chromium.launch({
     executablePath: process.env.CHROMIUM ?? '/usr/bin/chromium',
     args: ['--no-sandbox', '--disable-dev-shm-usage', ...(is_instead ? [has_no_address] : [])],
@@ -26,7 +26,7 @@ export async function launch(): Promise<Browser> {
 
 export interface Opened {
   page: Page;
-  /** What the browser complained of: scripts' errors, and whatever the security policy refused. */
+  /** Errors reported by the browser: script errors and violations of the security policy. */
   complaints: string[];
 }
 
@@ -49,7 +49,7 @@ export async function open_page(
   return { page, complaints };
 }
 
-/** The page's parts come from `dist`, under the policy of the server that is asked for them. */
+/** Serves the page's files from `dist`, under the server's security policy. */
 async function show_instead(page: Page): Promise<void> {
   await page.route(({ pathname }) => pathname === '/' || pathname.startsWith('/assets/'), async (route) => {
     const { origin, pathname } = new URL(route.request().url());
@@ -61,7 +61,7 @@ async function show_instead(page: Page): Promise<void> {
   });
 }
 
-/** Hides what lies upon the 3D view (a clock that runs, buttons, notes) while a picture of it is taken. */
+/** Hides overlays of the 3D view (a running clock, buttons, notes) while a picture of it is taken. */
 async function without_what_lies_upon_it<Result>(page: Page, take: () => Promise<Result>): Promise<Result> {
   const show = (visibility: string) => page.evaluate((value) => {
     for (const above of document.querySelectorAll<HTMLElement>('.stage > :not(canvas), .notices')) above.style.visibility = value;
@@ -78,32 +78,35 @@ async function shot_of_stage(page: Page): Promise<Buffer> {
   return page.screenshot({ clip: (await page.locator('#stage').boundingBox())! });
 }
 
-/** The 3D view alone. */
+/** Takes a picture of the 3D view alone. */
 export async function stage_picture(page: Page): Promise<Buffer> {
   return without_what_lies_upon_it(page, () => shot_of_stage(page));
 }
 
-/** Waits until the 3D view is drawn as what rests is, more sharply than what moves (src/scene/sharpness.ts); a graphics card draws both alike. */
+/**
+ * Waits until the 3D view is drawn at the higher resolution of scenes at rest (src/scene/sharpness.ts). With a graphics
+ * card both resolutions are equal.
+ */
 async function sharpened(page: Page, ms: number): Promise<void> {
   await page.evaluate(async (most) => {
     const canvas = document.querySelector<HTMLCanvasElement>('#stage')!;
     const end = performance.now() + most;
-    // What a hand has just asked for is drawn with the next frame.
+    // User input is drawn with the next frame.
     for (let i = 0; i < 2; ++i) await new Promise(requestAnimationFrame);
     while (canvas.width <= canvas.clientWidth && performance.now() < end) await new Promise((done) => setTimeout(done, 30));
   }, ms);
 }
 
-/** The 3D view once it shows what a hand has done, where nothing else moves. */
+/** Takes a picture of the 3D view after user input, if nothing else moves. */
 export async function stage_sharpened(page: Page): Promise<Buffer> {
   await sharpened(page, 2000 * patience);
   return stage_picture(page);
 }
 
-/** The 3D view once it has come to rest: as it was a moment before. */
+/** Takes a picture of the 3D view at rest: equal to the previous picture. */
 export async function stage_at_rest(page: Page, ms = 15000): Promise<Buffer> {
   const end = Date.now() + patience * ms;
-  // A picture costs much more than to look whether there is any sense in one.
+  // Taking pictures is expensive, so this cheaper check comes first.
   await sharpened(page, 600);
   return without_what_lies_upon_it(page, async () => {
     let before = await shot_of_stage(page);
@@ -117,7 +120,7 @@ export async function stage_at_rest(page: Page, ms = 15000): Promise<Buffer> {
   });
 }
 
-/** How many colours there are in a picture, roughly: one for each 16 levels of a channel. */
+/** Returns the approximate number of colours in a picture, at 16 levels per class and channel. */
 export async function colors_in(page: Page, png: Buffer): Promise<number> {
   return page.evaluate(async (text) => {
     const bytes = Uint8Array.from(atob(text), (c) => c.charCodeAt(0));
@@ -132,7 +135,7 @@ export async function colors_in(page: Page, png: Buffer): Promise<number> {
   }, png.toString('base64'));
 }
 
-/** How many of the first picture's pixels have this colour, or near, and where they are in the mean. */
+/** Returns how many pixels of the first picture have approximately this colour, and their mean position. */
 export async function colored(page: Page, color: string): Promise<{ count: number; u: number; v: number }> {
   return page.locator('.picture canvas').first().evaluate((canvas: HTMLCanvasElement, hex) => {
     const wanted = [1, 3, 5].map((i) => parseInt(hex.slice(i, i + 2), 16));
@@ -152,24 +155,24 @@ export interface ServerState {
   time: number;
   bends: number[];
   tip: number[];
-  /** x, y, z, q, pan, tilt, zoom, ... of the first camera. */
+  /** Row of the first camera: x, y, z, q, pan, tilt, zoom, ... */
   camera: number[];
-  /** Of the tendons. */
+  /** Tendon displacements, m. */
   displacements: number[];
-  /** Value, force and lost steps of each. */
+  /** Value, force and lost steps of each actuator. */
   actuators: number[][];
-  /** Kinetic, elastic, gravity; [] where nothing is known of it. */
+  /** Kinetic, elastic, gravity; [] if missing. */
   energy: number[];
-  /** s, place, force; [] where nothing pushes. */
+  /** s, point, force; [] if there is no push. */
   push: number[];
-  /** Obstacle, s, point, force, normal force, how it touches. */
+  /** Obstacle, s, point, force, normal force, slip state. */
   contacts: number[][];
   is_moving: boolean;
   is_weightless: boolean;
   is_running: boolean;
 }
 
-/** A state as the server sends it to another client than the page: read from the bytes, not from the page. */
+/** Returns the state that the server sends to a second client; independent of the page's decoder. */
 export async function server_state(page: Page): Promise<ServerState> {
   return page.evaluate(() => new Promise<ServerState>((resolve, reject) => {
     const socket = new WebSocket(new URL('socket', location.href.replace(/^http/, 'ws').replace(/#.*/, '')));
@@ -208,7 +211,7 @@ export async function server_state(page: Page): Promise<ServerState> {
   }));
 }
 
-/** What the server answers to another client than the page: read from its reply, not from the page. */
+/** Returns the server's answer to a second client; independent of the page. */
 export async function ask_server<Result>(page: Page, request: Record<string, unknown>): Promise<Result> {
   return page.evaluate((asked) => new Promise<Result>((resolve, reject) => {
     const socket = new WebSocket(new URL('socket', location.href.replace(/^http/, 'ws').replace(/#.*/, '')));
@@ -225,7 +228,7 @@ export async function ask_server<Result>(page: Page, request: Record<string, unk
   }), request);
 }
 
-/** How many names each plot's legend shows in full: within the plot, above its chart. */
+/** Returns for each plot how many names its legend shows completely: within the plot, above its chart. */
 export async function legends(page: Page): Promise<{ names: number; seen: number }[]> {
   return page.evaluate(() => [...document.querySelectorAll('.plot')].map((plot) => {
     const frame = plot.getBoundingClientRect();
@@ -238,7 +241,7 @@ export async function legends(page: Page): Promise<{ names: number; seen: number
   }));
 }
 
-/** Waits until it is so. */
+/** Waits until a condition holds. */
 export async function until(what: () => boolean | Promise<boolean>, ms = 8000, why = 'it did not happen'): Promise<void> {
   const end = Date.now() + patience * ms;
   while (!(await what())) {
@@ -247,12 +250,12 @@ export async function until(what: () => boolean | Promise<boolean>, ms = 8000, w
   }
 }
 
-/** Where on the screen the arm's point at s is, or its tip. */
+/** Returns the screen position of the arm's point at s, or of its tip. */
 export async function tip_on_screen(page: Page, s?: number): Promise<{ x: number; y: number }> {
   return page.evaluate((at) => (globalThis as unknown as { flexura: { tip(s?: number): { x: number; y: number } } }).flexura.tip(at), s);
 }
 
-/** Where the free view looks from. */
+/** Returns the viewpoint of the free view. */
 export async function orbit_of(page: Page): Promise<{ azimuth: number; elevation: number; distance: number; target: { x: number; y: number; z: number } }> {
   return page.evaluate(() => {
     const { azimuth, elevation, distance, target } = (globalThis as unknown as {
@@ -262,7 +265,7 @@ export async function orbit_of(page: Page): Promise<{ azimuth: number; elevation
   });
 }
 
-/** Moves a range input as a hand would: to the value, with an event. */
+/** Moves a range input to a value as a user would, with an event. */
 export async function slide(page: Page, selector: string, value: number): Promise<void> {
   await page.locator(selector).first().evaluate((input: HTMLInputElement, to) => {
     input.value = String(to);

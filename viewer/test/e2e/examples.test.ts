@@ -1,4 +1,4 @@
-// What a person finds who starts `flexura view` without a file.
+// The page of `flexura view` without a file.
 import { afterAll, beforeAll, expect, test } from 'vitest';
 import type { Page } from 'playwright-core';
 import { until } from './browser';

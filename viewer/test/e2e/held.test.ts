@@ -1,4 +1,4 @@
-// A view that is held at an instant before, and one of which nothing is heard: what a hand does then.
+// User commands while the view is held at an earlier time, and while the connection is silent.
 import type { Page } from 'playwright-core';
 import { expect, test } from 'vitest';
 import type { FakeServer } from '../fake/server';
@@ -14,17 +14,17 @@ const badge = () => page.locator('.badge').first().getAttribute('data-kind');
 const last = (what: string) => server.log.filter((request) => request.do === what).at(-1);
 const goal: [number, number][] = [[0.2, 0.1], [0.5, -0.3], [-0.4, 0.25]];
 
-/** Holds the view, and lets the rig go elsewhere meanwhile. */
+/** Holds the view and moves the rig meanwhile. */
 async function hold_and_move(): Promise<void> {
   await page.getByRole('button', { name: 'Hold the view' }).click();
   await page.waitForSelector('.badge[data-kind="held"]');
   server.session.arm.command(goal, [1.05, 0.95, 1]);
   await until(() => !server.session.moving && Math.abs(server.session.arm.stretches[0] - 1.05) < 1e-6);
-  // Until the page has heard of it, which it does not show.
+  // Until the page has received the new state, which it does not show.
   await page.waitForTimeout(400);
 }
 
-/** That a request asks for these bends, but for those of some places: as near as the steps of a slider. */
+/** Expects these bends in a request, except those given in `but`, within the step of a slider. */
 function expect_bends(bends: unknown, but: Record<number, number> = {}): void {
   (bends as [number, number][]).flat().forEach((bend, i) => expect(bend, `number ${i}`).toBeCloseTo(but[i] ?? goal.flat()[i], 2));
 }
@@ -53,7 +53,7 @@ test('a tendon too', async () => {
   await slide(page, '#arm-tendons-6', before[6] + 0.003);
   await until(() => last('arm') !== undefined);
   const asked = server.session.arm.from_tendons(last('arm')!.tendons as number[]);
-  // It ends with the third section: the first two are no concern of it.
+  // The tendon ends at the third section and does not affect the first two.
   asked.slice(0, 2).flat().forEach((bend, i) => expect(bend).toBeCloseTo(goal.flat()[i], 3));
 });
 

@@ -1,4 +1,4 @@
-// What the program measures in the pictures, upon them and in the 3D view: the fake one, and the program itself.
+// Measurements on the pictures and in the 3D view, with the fake server and with the program.
 import { fileURLToPath } from 'node:url';
 import type { Page } from 'playwright-core';
 import { beforeAll, describe, expect, test } from 'vitest';
@@ -88,6 +88,7 @@ if (program) {
   describe('the program’s rig', () => measured_tests(() => started(measured), false));
   describe('a recording that was filmed', () => measured_tests(() => recorded(measured), true));
 } else {
-  // Stands in for them. With each picture the shape is drawn anew; between slow ones the view would become sharp, and unsharp again.
+  // Fallback without the program. The shape is redrawn with each picture. A low picture rate would make the view
+  // alternate between both resolutions.
   describe('a rig', () => measured_tests(async () => Object.assign(await faked(), { resting_rate: 8 }), false));
 }

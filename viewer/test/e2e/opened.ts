@@ -1,4 +1,4 @@
-// The page that the tests of a file share, and who serves it.
+// The page shared by the tests of a file, and its server.
 import type { Browser, Page } from 'playwright-core';
 import { afterAll, afterEach, beforeAll, beforeEach, expect } from 'vitest';
 import { spatial_rig } from '../fake/rigs';
@@ -11,14 +11,14 @@ export interface Served {
   stop(): Promise<void>;
 }
 
-/** Of all files that a worker runs (vite.config.ts), and ended with it. */
+/** Shared by all files of a worker (vite.config.ts), and closed with it. */
 let browser: Promise<Browser> | null = null;
-/** Of the file that runs. */
+/** The page of the running file. */
 let shared: Opened | null = null;
 
 /**
- * Shows an address in the file's page. A page of its own would cost twice as much; each server has a port of its own, so
- * nothing that the page has stored is found again at the next one.
+ * Opens an address in the file's page. A new page would take twice as long. Each server has its own port, so nothing
+ * that the page has stored is found again on the next one.
  */
 export async function visit(url: string, { width = 1280, height = 720, dark = true } = {}): Promise<Opened> {
   if (!shared) {
@@ -35,13 +35,13 @@ export async function visit(url: string, { width = 1280, height = 720, dark = tr
   return shared;
 }
 
-/** The next file gets a page that nobody has touched. */
+/** Gives the next file a fresh page. */
 export async function leave(): Promise<void> {
   await shared?.page.context().close();
   shared = null;
 }
 
-/** Of the tests of the group where it is called: their page is there from the first of them on. */
+/** For the tests of the group in which it is called: opens their page before the first test. */
 export function opened_before(start: () => Promise<Served>, kind: 'recording' | 'live'): Opened {
   const opened = {} as Opened;
   let served: Served;
@@ -65,7 +65,7 @@ export interface Fresh {
   page: Page;
 }
 
-/** Of the tests of a file: each finds a fake rig of its own, to which the page has just come; the browser complains of none. */
+/** For the tests of a file: each gets a new fake rig and a newly loaded page, and must cause no browser errors. */
 export function fresh_before_each(use: (fresh: Fresh) => void): void {
   let server: FakeServer;
   let opened: Opened;
@@ -84,21 +84,23 @@ export function fresh_before_each(use: (fresh: Fresh) => void): void {
   });
 }
 
-/** The fake server of a rig, or of a recording of it. */
+/** Starts the fake server of a rig, or of a recording of it. */
 export async function faked(rig = spatial_rig(), kind: 'live' | 'recording' = 'live'): Promise<FakeServer> {
   const server = new FakeServer(dist, rig, kind);
   await server.start();
   return server;
 }
 
-/** The program, asked for an experiment's file or by whole words. */
+/** Starts the program with an experiment file or with complete arguments. */
 export async function started(what: string | string[] = ['view']): Promise<Served> {
   const served = new Program(what);
   await served.start();
   return served;
 }
 
-/** The program on what it recorded of an experiment's file; `status` is how the run ends. */
+/**
+ * Records an experiment file and starts the program on the results; `status` is the expected exit status of the run.
+ */
 export async function recorded(file: string, status = 0): Promise<Served> {
   const made = new Program();
   const shown = await started(['view', made.record(file, status)]);

@@ -1,4 +1,4 @@
-// A planar arm's own ways of saying its shape: the fake one, and the paper's arm by the program.
+// Shape representations of a planar arm: with the fake server, and with the program for the paper's arm.
 import type { Page } from 'playwright-core';
 import { beforeAll, describe, expect, test } from 'vitest';
 import { planar_rig } from '../fake/rigs';
@@ -30,7 +30,8 @@ function planar_tests(start: () => Promise<Served>): void {
     const [third] = [await angle(2)];
     const wanted = (await angle(1)) + 0.1;
     await slide(page, '#arm-cord_angles-1', wanted);
-    // The arching of section 2 is its cord's angle over the tangent where it starts, 90° and twice the first's arching.
+    // The arching of section 2 is its cord angle minus the tangent angle at its start, 90° plus twice the first
+    // arching.
     const arching = wanted - Math.PI / 2 - 0.3;
     await until(async () => Math.abs((await server_state(page)).bends[2] + 2 * arching) < 0.02);
     await until(async () => Math.abs((await angle(2)) - third) < 0.02);
@@ -61,7 +62,7 @@ function planar_tests(start: () => Promise<Served>): void {
   });
 }
 
-// The fake one stands in for the program where there is none.
+// The fake server is used without the program.
 const paper_arm = fileURLToPath(new URL('../../../examples/01_paper_arm/experiment.toml', import.meta.url));
 if (program) describe('the paper’s arm, before the cameras that stand there without a word', () => planar_tests(() => started(paper_arm)));
 else describe('a planar arm', () => planar_tests(() => faked(planar_rig())));

@@ -1,4 +1,4 @@
-// The page against the program itself.
+// The page with the real program.
 import { type AddressInfo, connect, createServer, type Socket } from 'node:net';
 import { fileURLToPath } from 'node:url';
 import { afterAll, describe, expect, test } from 'vitest';
@@ -9,7 +9,7 @@ import { rig_tests } from './rig_tests';
 
 const rig = fileURLToPath(new URL('rig.toml', import.meta.url));
 
-/** What comes to its port goes to another one, and back: as `ssh -L` does it. */
+/** A TCP tunnel from its port to another one, like `ssh -L`. */
 interface Tunnel {
   port: number;
   to: number;
@@ -52,7 +52,7 @@ describe.skipIf(!program)('the program', () => {
       await served?.stop();
     });
 
-    // As docs/command-line.md has it for `ssh -L` with another port than the program's.
+    // As docs/command-line.md describes `ssh -L` with a different local port.
     test('the page works under another port, once that is named', async () => {
       tunnel = await open_tunnel();
       served = new Program(['view', rig, '--name', `127.0.0.1:${tunnel.port}`]);

@@ -1,4 +1,4 @@
-// `flexura view` and `run` as a person starts them, of the build whose program FLEXURA_PROGRAM names.
+// Runs `flexura view` and `run` of the build whose program is named by FLEXURA_PROGRAM.
 import { spawn, spawnSync, type ChildProcess } from 'node:child_process';
 import { mkdtempSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
@@ -7,13 +7,13 @@ import { join } from 'node:path';
 export const program = process.env.FLEXURA_PROGRAM;
 
 export class Program {
-  /** What it printed. */
+  /** The printed address. */
   url = '';
-  /** In which it works. */
+  /** Its working folder. */
   readonly folder = mkdtempSync(join(tmpdir(), 'flexura-e2e-'));
   private child: ChildProcess | null = null;
 
-  /** Of an experiment's file or a run's folder, or by whole words: `run x.toml --view`. */
+  /** Starts with an experiment file or a run's folder, or with complete arguments: `run x.toml --view`. */
   constructor(private readonly what: string | string[] = ['view']) {}
 
   get port(): number {
@@ -38,7 +38,7 @@ export class Program {
     });
   }
 
-  /** Runs an experiment, which ends with this status (1: it was unsafe); gives the folder of its results. */
+  /** Runs an experiment with this expected exit status (1: unsafe). Returns the folder of its results. */
   record(file: string, status = 0): string {
     const results = join(this.folder, 'recorded');
     const ended = spawnSync(program!, ['run', file, '--out', results], { stdio: ['ignore', 'ignore', status ? 'ignore' : 'inherit'] });

@@ -1,4 +1,4 @@
-// Elastic arms that a hand pushes: in the 3D view, and by numbers.
+// Pushing elastic arms in the 3D view and by numbers.
 import { fileURLToPath } from 'node:url';
 import type { Page } from 'playwright-core';
 import { describe, expect, test } from 'vitest';
@@ -11,7 +11,7 @@ const example = (name: string): string => fileURLToPath(new URL(`../../../exampl
 
 const distance = (a: number[], b: number[]): number => Math.hypot(...a.map((x, i) => x - b[i]));
 
-/** Drags the arm's point at s by so many pixels, and holds it there. */
+/** Drags the arm's point at s by some pixels and holds it there. */
 async function drag(page: Page, s: number, dx: number, dy = 0): Promise<void> {
   const { x, y } = await tip_on_screen(page, s);
   await page.mouse.move(x, y);
@@ -19,7 +19,7 @@ async function drag(page: Page, s: number, dx: number, dy = 0): Promise<void> {
   for (let i = 1; i <= 5; ++i) await page.mouse.move(x + (dx * i) / 5, y + (dy * i) / 5);
 }
 
-/** From the front: what is to the right there is along x. */
+/** Front view: right is along x. */
 async function from_front(page: Page): Promise<void> {
   await page.locator('#stage').focus();
   await page.keyboard.press('1');
@@ -48,7 +48,7 @@ describe.skipIf(!program)('an arm in motion', () => {
     await page.mouse.up();
     await until(() => released(page), 8000, 'it is not released');
     expect(await page.locator('#push-label').count()).toBe(0);
-    // Its elastic energy becomes motion, and that is damped.
+    // Its elastic energy is converted to motion, which is damped.
     await until(async () => (await server_state(page)).energy[0] > 1e-5, 8000, 'it does not swing');
     await until(async () => !(await server_state(page)).is_moving, 60000, 'it does not come to rest');
     expect(distance((await server_state(page)).tip, rest.tip)).toBeLessThan(2e-3);

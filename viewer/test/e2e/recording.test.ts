@@ -1,4 +1,4 @@
-// A recording: scrubbing, playing, plots, marks; the fake one, and one that `flexura run` made.
+// Recordings: scrubbing, playback, plots, marks; with the fake server, and with a recording of `flexura run`.
 import { fileURLToPath } from 'node:url';
 import type { Page } from 'playwright-core';
 import { beforeAll, describe, expect, test } from 'vitest';
@@ -12,7 +12,7 @@ const file = fileURLToPath(new URL('recording.toml', import.meta.url));
 let page: Page;
 let complaints: string[];
 
-/** The group's page is the one above. */
+/** Opens the page of the group, stored in the variables above. */
 function on(start: () => Promise<Served>, kind: 'recording' | 'live'): void {
   const opened = opened_before(start, kind);
   beforeAll(() => {
@@ -24,7 +24,7 @@ const shown_time = () => page.evaluate(() =>
   (globalThis as unknown as { flexura: { shown(): { time: number } } }).flexura.shown().time);
 const stage = () => stage_at_rest(page);
 
-/** Of the front camera's picture of a time, as the server gives it losslessly: the values of its first channel. */
+/** Returns the first channel of the front camera's lossless picture at a time, from the server. */
 async function served_picture(of: Page, at: number): Promise<{ width: number; height: number; values: Buffer }> {
   const { text, ...size } = await of.evaluate(async (time) => {
     const answer = await fetch(`image/front.png?time=${time}`);
@@ -33,7 +33,7 @@ async function served_picture(of: Page, at: number): Promise<{ width: number; he
     const context = new OffscreenCanvas(width, height).getContext('2d')!;
     context.drawImage(bitmap, 0, 0);
     const { data } = context.getImageData(0, 0, width, height);
-    // As one text: numbers would each be packed on their own.
+    // As one text, because an array of numbers is slow to transfer.
     let text = '';
     for (let i = 0; i < data.length; i += 4) text += String.fromCharCode(data[i]);
     return { width, height, text };
@@ -42,8 +42,8 @@ async function served_picture(of: Page, at: number): Promise<{ width: number; he
 }
 
 /**
- * What holds of each recording of 6 s whose second task, `back`, starts at 4 s. It is shown at the times asked for, or up
- * to `a_state` s before; `interval` s is one step.
+ * Tests for any recording of 6 s whose second task, `back`, starts at 4 s. The shown time is at most `a_state` s before
+ * the requested one; `interval` s is one step.
  */
 function recording_tests(a_state: number, interval: number, title: string): void {
   test('scrubbing shows the states of the times, forwards and back', async () => {
@@ -105,7 +105,7 @@ function recording_tests(a_state: number, interval: number, title: string): void
     };
     const camera = page.locator('.picture canvas').first();
     const box = (await camera.boundingBox())!;
-    // Differs all around, too, where the pointer's place is coarser than the picture's pixels.
+    // The neighbours must differ as well, because the pointer position is coarser than the picture's pixels.
     const reach = Math.floor(first.width / box.width);
     const around = [-reach, 0, reach];
     const places = Array.from(first.values, (_, i) => [i % first.width, Math.floor(i / first.width)]);
@@ -269,7 +269,7 @@ describe.skipIf(!program)('the program’s rig, its refusals and its run', () =>
 });
 
 describe.skipIf(!program)('a run that is watched', () => {
-  /** Takes some seconds to be run. */
+  /** Simulated duration, s; running it takes a few seconds. */
   const watched_s = 8000;
 
   on(() => started(['run', file, '--out', 'watched', '--set', `task.0.duration=${watched_s}`, '--view']), 'live');
@@ -282,7 +282,7 @@ describe.skipIf(!program)('a run that is watched', () => {
     expect(await cancel.getAttribute('title')).toContain('belongs to the terminal');
     await page.keyboard.press('c');
     await page.waitForSelector('.badge[data-kind="recording"]', { timeout: 60_000 });
-    // To its end: nobody ended it early.
+    // The run reached its end and was not stopped early.
     expect(Number(await page.locator('#scrub').getAttribute('max'))).toBeCloseTo(watched_s + 2, 6);
     expect(await page.getByRole('button', { name: 'To the rig' }).count()).toBe(0);
     expect(complaints).toEqual([]);
@@ -294,7 +294,7 @@ describe.skipIf(!program)('a calibration, when it is over', () => {
 
   on(() => recorded(calibration), 'recording');
 
-  /** Position, pan, tilt and stage of the front camera, as the page has them. */
+  /** Returns position, pan, tilt and stage of the front camera from the page's state. */
   const front = () => page.evaluate(() => {
     const { cameras } = (globalThis as unknown as { flexura: { shown(): { cameras: Float32Array } } }).flexura.shown();
     return { position: [...cameras.subarray(0, 3)], head: [...cameras.subarray(7, 9)], stage: [...cameras.subarray(10, 13)] };
@@ -310,7 +310,7 @@ describe.skipIf(!program)('a calibration, when it is over', () => {
     await slide(page, '#scrub', end_time);
     await until(async () => Math.abs((await shown_time()) - end_time) < 0.1);
     const end = await front();
-    // They stood ten degrees askew, and half a metre off: the stage slides along its own axes.
+    // The cameras started ten degrees and half a metre off; the stage moves along its own axes.
     expect(Math.hypot(...end.head)).toBeGreaterThan(0.05);
     const way = Math.hypot(...end.position.map((x, i) => x - start.position[i]));
     expect(way).toBeGreaterThan(0.05);

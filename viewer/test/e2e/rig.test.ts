@@ -5,5 +5,5 @@ import { rig_tests } from './rig_tests';
 
 let server: FakeServer | null = null;
 
-// Stands in for the program where there is none.
+// Fallback without the program.
 rig_tests(async () => (server = await faked()), { page: true, server: !program }, () => server);

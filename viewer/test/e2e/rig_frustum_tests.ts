@@ -1,4 +1,4 @@
-// Whether what hangs in the 3D view before a camera is its own picture, the right way round.
+// Checks that each camera frustum in the 3D view shows its own picture in the right orientation.
 import { PerspectiveCamera, Quaternion, Vector3 } from 'three';
 import type { Page } from 'playwright-core';
 import { beforeAll, expect, test } from 'vitest';
@@ -7,23 +7,23 @@ import { Orbit } from '../../src/scene/orbit';
 import { hang } from '../../src/scene/parts/cameras';
 import { type Opened, orbit_of, server_state, slide, stage_at_rest, until } from './browser';
 
-/** The arm stands in the origin. */
+/** The arm stands at the origin. */
 const [span, base, size] = [0.75, [0, 0, 0], { width: 640, height: 480 }];
 
 interface Place {
-  /** In the picture, px. */
+  /** Pixel in the picture. */
   u: number;
   v: number;
-  /** In the 3D view, px. */
+  /** Pixel in the 3D view. */
   x: number;
   y: number;
 }
 
 interface Grey {
-  /** The level in the picture, and how much it differs around. */
+  /** Grey level in the picture, and its range in the neighbourhood. */
   picture: number;
   range: number;
-  /** The level in the 3D view. */
+  /** Grey level in the 3D view. */
   shown: number;
 }
 
@@ -33,7 +33,7 @@ export function frustum_tests(opened: Opened): void {
     ({ page } = opened);
   });
 
-  /** Where the free view shows pixels of the picture that hangs before a camera. */
+  /** Returns where the free view shows pixels of the picture in a camera's frustum. */
   const places_of = async (index: number): Promise<Place[]> => {
     const box = (await page.locator('#stage').boundingBox())!;
     const { target, ...angles } = await orbit_of(page);
@@ -59,7 +59,10 @@ export function frustum_tests(opened: Opened): void {
     return places;
   };
 
-  /** What the camera's own panel shows in these places, and the 3D view: grey levels. Both ways as text, which is many times as fast. */
+  /**
+   * Returns the grey levels at these places in the camera's panel and in the 3D view. Data are passed as text, which is
+   * many times faster.
+   */
   const greys = async (index: number, places: Place[], stage: Buffer): Promise<Grey[]> => JSON.parse(await page.evaluate(async ({ nth, wanted, text }) => {
     const image = await createImageBitmap(new Blob([Uint8Array.from(atob(text), (c) => c.charCodeAt(0))], { type: 'image/png' }));
     const view = new OffscreenCanvas(image.width, image.height).getContext('2d')!;
@@ -71,7 +74,7 @@ export function frustum_tests(opened: Opened): void {
     };
     const [shown, picture] = [pixels(view, image.width, image.height), pixels(panel.getContext('2d')!, panel.width, panel.height)];
     return JSON.stringify((JSON.parse(wanted) as Place[]).map(({ u, v, x, y }) => {
-      // Only where the picture is even around: the view has a pixel for several of its own.
+      // Only places with a uniform neighbourhood: a pixel of the view covers several of the picture.
       const around = [-4, 0, 4].flatMap((dv) => [-4, 0, 4].map((du) =>
         picture(Math.min(639, Math.max(0, u + du)), Math.min(479, Math.max(0, v + dv)))));
       return { picture: picture(u, v), range: Math.max(...around) - Math.min(...around), shown: shown(x, y) };
@@ -83,12 +86,12 @@ export function frustum_tests(opened: Opened): void {
     await page.getByRole('tab', { name: 'Arm' }).click();
     await page.keyboard.press('Backspace');
     await until(async () => Math.hypot(...(await server_state(page)).bends) < 1e-6);
-    // Bent to one side before one camera and to the other before the other.
+    // Bent to different sides as seen by the two cameras.
     for (const [axis, bend] of [0.9, -0.7].entries()) {
       await slide(page, `#arm-bends-${axis}`, bend);
       await until(async () => Math.abs((await server_state(page)).bends[axis] - bend) < 0.02, 8000, `bend ${bend}`);
     }
-    // From between the two, where neither picture hides the arm.
+    // From between the cameras, where neither picture hides the arm.
     await page.keyboard.press('Numpad1');
     while ((await orbit_of(page)).azimuth < 0.6) await page.keyboard.press('Numpad6');
     while ((await orbit_of(page)).elevation < 0.3) await page.keyboard.press('Numpad8');
@@ -100,7 +103,7 @@ export function frustum_tests(opened: Opened): void {
       const levels = even.map(({ picture }) => picture);
       const middle = (Math.min(...levels) + Math.max(...levels)) / 2;
       for (const [kind, some] of [['dark', even.filter(({ picture }) => picture < middle)], ['bright', even.filter(({ picture }) => picture >= middle)]] as const) {
-        // A little of the ground shows through; what stands before the picture covers some of it.
+        // The picture is slightly transparent, and objects in front cover a part of it.
         const right = some.filter(({ picture, shown }) => Math.abs(shown - 0.92 * picture) < 25).length / some.length;
         expect(some.length, `${kind} in picture ${index}`).toBeGreaterThan(30);
         expect(right, `${kind} in picture ${index}`).toBeGreaterThan(0.8);

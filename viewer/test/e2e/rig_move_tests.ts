@@ -1,10 +1,10 @@
-// How one moves a live rig: sliders, keys, its tasks, the hand on the tip.
+// Moving a live rig: sliders, keys, tasks, and dragging the tip.
 import type { Page } from 'playwright-core';
 import { beforeAll, expect, test } from 'vitest';
 import type { FakeServer } from '../fake/server';
 import { ask_server, type Opened, server_state, slide, tip_on_screen, until } from './browser';
 
-/** The arm goes where a slider says. */
+/** The arm follows the sliders. */
 export function slider_tests(opened: Opened, fake: () => FakeServer | null): void {
   let page: Page;
   beforeAll(() => {
@@ -24,7 +24,7 @@ export function slider_tests(opened: Opened, fake: () => FakeServer | null): voi
   });
 }
 
-/** Keys and the slider that has the focus. */
+/** Keys, and the focused slider. */
 export function focus_tests(opened: Opened): void {
   let page: Page;
   beforeAll(() => {
@@ -42,7 +42,7 @@ export function focus_tests(opened: Opened): void {
   });
 }
 
-/** All that the sliders, keys and tasks move. */
+/** Everything moved by sliders, keys and tasks. */
 export function steer_tests(opened: Opened): void {
   let page: Page;
   beforeAll(() => {
@@ -120,7 +120,7 @@ export function steer_tests(opened: Opened): void {
     const [before] = await shaded();
     expect(before).toBeGreaterThan(2);
     expect(await slider.locator('.limit').count()).toBe(2);
-    // A bend towards y leaves less of the same limit towards x.
+    // A bend towards y reduces the remaining range towards x.
     const other = page.locator('.section .slider input[type="range"]').nth(1);
     await slide(page, `#${await other.getAttribute('id')}`, 1.9);
     await until(async () => (await shaded())[0] > 1.5 * before);
@@ -137,7 +137,7 @@ export function steer_tests(opened: Opened): void {
   });
 }
 
-/** The hand on the tip. */
+/** Dragging the tip. */
 export function drag_tests(opened: Opened, fake: () => FakeServer | null): void {
   let page: Page;
   beforeAll(() => {
@@ -162,7 +162,7 @@ export function drag_tests(opened: Opened, fake: () => FakeServer | null): void 
       const { tip } = await server_state(page);
       return tip[0] < before[0] - 0.01 && tip[1] < before[1];
     });
-    // Where it was let go, in the plane that faced the viewer.
+    // The release position, in the plane that faced the viewer.
     const wanted = { x: from.x - 50, y: from.y + 30 };
     await until(async () => {
       const at = await tip_on_screen(page);
@@ -180,7 +180,7 @@ export function drag_tests(opened: Opened, fake: () => FakeServer | null): void 
   });
 }
 
-/** Points of the backbone are picked with a mouse and without. */
+/** Points of the backbone are picked with and without a mouse. */
 export function pick_tests(opened: Opened): void {
   let page: Page;
   beforeAll(() => {
@@ -190,7 +190,7 @@ export function pick_tests(opened: Opened): void {
   test('a click on the arm picks a point of the backbone and says what is true of it', async () => {
     await page.keyboard.press('0');
     await page.waitForTimeout(600);
-    // The base is in the middle of the view, a little way below: from there up to find the arm's foot.
+    // The base is slightly below the middle of the view: the arm's foot is above it.
     const base = await tip_on_screen(page, 0);
     await page.mouse.click(base.x, base.y - 3);
     await page.waitForSelector('.picked', { timeout: 5000 });
@@ -237,7 +237,7 @@ export function pick_tests(opened: Opened): void {
   });
 }
 
-/** What holds in a picked point. */
+/** Values of a picked point. */
 export function point_tests(opened: Opened): void {
   let page: Page;
   beforeAll(() => {
@@ -247,7 +247,7 @@ export function point_tests(opened: Opened): void {
   test('what is said of a picked point is what the server says of it', async () => {
     const wanted = [[0.4, 0.25], [-0.3, 0.35], [0.15, -0.4]];
     await ask_server(page, { do: 'arm', bends: wanted });
-    // At rest: two states in a row are one.
+    // At rest: two consecutive states are equal.
     let before: number[] = [];
     await until(async () => {
       const { bends } = await server_state(page);

@@ -1,9 +1,9 @@
-// What holds of the page whatever it shows.
+// Tests of the page that do not depend on its content.
 import type { Page } from 'playwright-core';
 import { beforeAll, expect, test } from 'vitest';
 import { type Opened, until } from './browser';
 
-/** Light, help, names, and room in small windows. */
+/** Theme, help, accessible names, and layout in small windows. */
 export function page_tests(opened: Opened): void {
   let page: Page;
   beforeAll(() => {

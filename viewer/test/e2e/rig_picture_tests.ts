@@ -1,11 +1,11 @@
-// What a live rig’s cameras and plots show, and of which time.
+// Times of a live rig's pictures and plots.
 import { readFileSync } from 'node:fs';
 import type { Page } from 'playwright-core';
 import { beforeAll, expect, test } from 'vitest';
 import type { FakeServer } from '../fake/server';
 import { colors_in, type Opened, server_state, until } from './browser';
 
-/** Pictures and pixels. */
+/** Pictures and pixel values. */
 export function picture_tests(opened: Opened): void {
   let page: Page;
   beforeAll(() => {
@@ -16,7 +16,7 @@ export function picture_tests(opened: Opened): void {
     await until(async () => (await page.locator('.picture .none').count()) === 0, 15000, 'no picture came');
     const camera = page.locator('.picture canvas').first();
     expect(await colors_in(page, await camera.screenshot())).toBeGreaterThan(3);
-    // A rig at rest: the picture that is served shows what the page was sent.
+    // At rest, the served lossless picture equals the streamed one.
     await page.keyboard.press('Backspace');
     await until(async () => Math.hypot(...(await server_state(page)).bends) < 1e-6);
     await page.waitForTimeout(800);
@@ -39,7 +39,7 @@ export function picture_tests(opened: Opened): void {
     await until(async () => (await said.first().textContent()) !== before);
   });
 
-  /** Of the front camera's picture, as the server gives it losslessly. */
+  /** Returns a pixel of the front camera's lossless picture from the server. */
   const served_pixel = (u: number, v: number): Promise<number> => page.evaluate(async ([x, y]) => {
     const answer = await fetch('image/front.png');
     const bitmap = await createImageBitmap(await answer.blob());
@@ -65,7 +65,7 @@ export function plot_tests(opened: Opened, fake: () => FakeServer | null): void 
   });
 
   test('a live plot’s window slides with the time', async () => {
-    // The line of time goes over what is remembered; the dashed line says where in it the pointer’s instant is.
+    // The timeline covers the remembered time; the dashed line marks the time under the pointer.
     const now = () => page.locator('#scrub').evaluate((scrub: HTMLInputElement) => ({ from: Number(scrub.min), to: Number(scrub.max) }));
     if (fake()) fake()!.session.time += 25;
     await until(async () => (await now()).to - (await now()).from > 22, 25000, 'no 22 s are remembered');
@@ -86,7 +86,7 @@ export function plot_tests(opened: Opened, fake: () => FakeServer | null): void 
   });
 }
 
-/** The view held, and sent back in time. */
+/** Holding the view and going back in time. */
 export function time_tests(opened: Opened): void {
   let page: Page;
   beforeAll(() => {

@@ -1,4 +1,4 @@
-// What one does with a live rig that has an arm with tendons and two cameras: the fake one, or the program's.
+// Tests of a live rig with a tendon-driven arm and two cameras, from the fake server or the program.
 import { expect, test } from 'vitest';
 import type { FakeServer } from '../fake/server';
 import { opened_before, type Served } from './opened';
@@ -9,13 +9,13 @@ import { picture_tests, plot_tests, time_tests } from './rig_picture_tests';
 import { eye_tests, orbit_tests, view_tests } from './rig_view_tests';
 
 export interface Whose {
-  /** What the page does whoever serves it: its keys, its views, its room. */
+  /** Run tests of the page itself: keys, views, layout. */
   page: boolean;
-  /** What is the server’s doing, too: where the arm goes, what is in the pictures. */
+  /** Run tests that involve the server: arm motion, picture content. */
   server: boolean;
 }
 
-/** The tests of a live rig, one after the other in one page; `faked` gives that one, to be looked into. */
+/** Tests of a live rig in sequence in one page; `faked` returns the fake server for inspection. */
 export function rig_tests(start: () => Promise<Served>, whose: Whose, faked?: () => FakeServer | null): void {
   const fake = faked ?? (() => null);
   const opened = opened_before(start, 'live');
@@ -35,7 +35,7 @@ export function rig_tests(start: () => Promise<Served>, whose: Whose, faked?: ()
     point_tests(opened);
     picture_tests(opened);
   }
-  // Of the program's pictures, which are drawn.
+  // These tests need rendered pictures of the program.
   if (!faked) frustum_tests(opened);
   if (whose.page) plot_tests(opened, fake);
   eye_tests(opened, fake, whose);

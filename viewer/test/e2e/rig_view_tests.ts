@@ -1,4 +1,4 @@
-// What one sees of a live rig in the 3D view, and from where.
+// The 3D view of a live rig and its viewpoints.
 import type { Page } from 'playwright-core';
 import { beforeAll, expect, test } from 'vitest';
 import type { FakeServer } from '../fake/server';
@@ -6,7 +6,7 @@ import {
   colors_in, type Opened, orbit_of, server_state, slide, stage_at_rest, stage_picture, stage_sharpened, tip_on_screen, until,
 } from './browser';
 
-/** Orbit, pan and zoom by the mouse. */
+/** Orbit, pan and zoom by mouse. */
 export function orbit_tests(opened: Opened): void {
   let page: Page;
   beforeAll(() => {
@@ -46,7 +46,7 @@ export function orbit_tests(opened: Opened): void {
   });
 }
 
-/** Keys, sides, double click and wheel. */
+/** Keys, side views, double click and wheel. */
 export function view_tests(opened: Opened): void {
   let page: Page;
   beforeAll(() => {
@@ -108,7 +108,7 @@ export function view_tests(opened: Opened): void {
   test('a double click looks at what is there, also through the picture of the camera that stands before it', async () => {
     await until(async () => (await page.locator('.picture .none').count()) === 0, 15000, 'no picture came');
     await page.keyboard.press('1');
-    // The pictures hang in the view a moment later.
+    // The pictures in the view are updated with a delay.
     await page.waitForTimeout(600);
     const at = await tip_on_screen(page, 0.5);
     await page.mouse.dblclick(at.x, at.y);
@@ -138,7 +138,7 @@ export function view_tests(opened: Opened): void {
   });
 }
 
-/** What stands in the scene, and what its eyes hide. */
+/** Objects in the scene, and hiding them. */
 export function eye_tests(opened: Opened, fake: () => FakeServer | null, whose: { page: boolean }): void {
   let page: Page;
   beforeAll(() => {
@@ -162,14 +162,14 @@ export function eye_tests(opened: Opened, fake: () => FakeServer | null, whose: 
 
   test('an eye hides each thing that is there', async () => {
     await page.keyboard.press('0');
-    // From farther away, aside and above, so that cameras, screens and what lies on the floor are in sight.
+    // From farther away and obliquely from above, so that cameras, screens and things on the floor are visible.
     for (const key of ['PageDown', 'Alt+ArrowLeft', 'Alt+ArrowUp']) for (let i = 0; i < 6; ++i) await page.keyboard.press(key);
     await slide(page, '.section .slider input[type="range"]', 0.7);
     await until(async () => Math.abs((await server_state(page)).bends[0]) > 0.3);
     await page.getByRole('tab', { name: 'Scene' }).click();
     const first = await stage();
     let picture = first;
-    // One camera and one screen stand for the others.
+    // One camera and one screen are tested as representatives.
     const hidden = (await names()).filter((name) => !/Camera “side”|Screen 2/.test(name));
     for (const name of hidden) {
       const eye = page.getByRole('button', { name, exact: true });

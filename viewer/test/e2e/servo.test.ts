@@ -1,4 +1,4 @@
-// A servo as one watches it, stops it, and goes through it again.
+// Watching a servo, stopping it, and replaying its recording.
 import { fileURLToPath } from 'node:url';
 import type { Page } from 'playwright-core';
 import { beforeAll, describe, expect, test } from 'vitest';

@@ -1,4 +1,4 @@
-// Of every file of tests in a browser.
+// Setup of all browser test files.
 import { afterAll } from 'vitest';
 import { leave } from './opened';
 

@@ -1,4 +1,4 @@
-// Arms that forces bend: tendons that are pulled one by one, their tensions, and weight that is switched off.
+// Elastic arms: individually driven tendons, their tensions, and switching off the weight.
 import { fileURLToPath } from 'node:url';
 import { describe, expect, test } from 'vitest';
 import { server_state, slide, until } from './browser';
@@ -33,7 +33,7 @@ describe.skipIf(!program)('an arm under its tendons', () => {
     await slide(page, '#actuator-0', 0.005);
     await until(async () => Math.abs((await server_state(page)).actuators[0][0] - 0.005) < 1e-4);
     const pulled = await server_state(page);
-    // Those that bend the same section went along.
+    // The tendons of the same section moved too.
     expect(pulled.actuators[1][0]).toBeCloseTo(-0.0025, 4);
     expect(pulled.actuators[3][0]).toBeCloseTo(0.005, 4);
     expect(distance(pulled.tip, before.tip)).toBeGreaterThan(0.05);
@@ -62,7 +62,7 @@ describe.skipIf(!program)('an arm under its tendons', () => {
     await until(async () => Math.abs((await server_state(page)).bends[1]) < 1e-3);
     await page.getByRole('button', { name: 'Tendons' }).click();
     const { bends, actuators } = await server_state(page);
-    // At 90 degrees it is pulled by the bend towards y, at -30 by cos 30 of that towards x.
+    // The tendon at 90 degrees is pulled in by the bend towards y, that at -30 degrees by cos 30 of the bend towards x.
     expect(actuators[0][0]).toBeCloseTo(0.01 * bends[1], 4);
     expect(actuators[1][0]).toBeCloseTo(0.01 * bends[0] * Math.cos(Math.PI / 6), 4);
     await until(async () => Math.abs(Number(await page.getByLabel('Tendon 2, pulled in, mm').inputValue()) - 1000 * actuators[1][0]) < 0.02);
@@ -126,14 +126,14 @@ describe.skipIf(!program)('a watched run of an elastic arm', () => {
     expect(is_running).toBe(true);
     expect(actuators).toHaveLength(2);
     expect(force).toBeGreaterThan(0);
-    // Of an arc that is bent so the tip would be in one plane with the base's axis, at this height.
+    // For an arc with this bend, the tip would be in one plane with the base's axis, at this height.
     const height = (0.5 * Math.sin(bend)) / bend;
     expect(Math.abs(tip[1] - height) + Math.abs(tip[0])).toBeGreaterThan(2e-3);
     await page.getByRole('button', { name: 'Tendons' }).click();
     await until(async () => / N$/.test((await page.locator('.pull .force').allTextContents())[0] ?? ''), 4000, 'no tension is shown');
     expect(await page.locator('#actuator-0').isDisabled()).toBe(true);
     expect(await page.locator('#weight').isDisabled()).toBe(true);
-    // So has the history: what is plotted is of the rod.
+    // So does the history: the plots show the rod.
     const legend = async (): Promise<number[]> => {
       const texts = await page.locator('.plot').first().locator('.legend li').allTextContents();
       return texts.map((text) => Number(/[−\d.]+$/.exec(text)?.[0].replace('−', '-')));

@@ -40,7 +40,7 @@ test('values follow the hand', async () => {
   expect(await effector()).not.toBe(before);
 });
 
-/** An arm of these archings, by a walk along its backbone in small straight steps: without the page's own formulas. */
+/** Computes an arm with these archings in small straight steps, independent of the page's formulas. */
 function walked(lengths: number[], archings: number[]) {
   const steps = 20000;
   let [x, y, tangent] = [0, 0, Math.PI / 2];
@@ -62,7 +62,7 @@ test('the live values are those of the arm, whoever computes them', async () => 
   const archings: number[] = [];
   for (const [i, degrees] of [20, -35, 80, 0, -10.5, 60, -75, 12].entries()) {
     await set(i, degrees);
-    // A slider has steps.
+    // Sliders are quantised.
     archings.push(Number(await page.locator(`#arching-${i}`).inputValue()));
     expect(Math.abs(archings[i] / degree - degrees)).toBeLessThan(0.2);
   }
@@ -90,7 +90,7 @@ test('the live values are those of the arm, whoever computes them', async () => 
 
 test('between the lines of an equation there is room', async () => {
   const overlaps = () => page.evaluate(() => [...document.querySelectorAll('.equation')].flatMap((equation) => {
-    // As it is drawn: what stands in a formula may reach out of the box that the browser makes of it.
+    // The rendered extent: content of a formula may extend beyond its box.
     const lines = [...equation.querySelectorAll('p, math')].map((line) => {
       const parts = [...line.querySelectorAll('mi, mn, mo')].map((part) => part.getBoundingClientRect());
       const rects = parts.length ? parts : [line.getBoundingClientRect()];
@@ -158,7 +158,7 @@ test('down to a projector’s size, the page enlarged, every slider has a track,
       expect(over, size).toBeLessThanOrEqual(0.5);
     }));
   }
-  // The last slider goes where a hand draws it.
+  // Drags the last slider with the mouse.
   const track = (await page.locator('#arching-7').boundingBox())!;
   const before = await effector();
   await page.mouse.click(track.x + 0.75 * track.width, track.y + track.height / 2);

@@ -1,4 +1,4 @@
-// What goes wrong: refusals, silence, lost connections, restarts. Only the fake server can be made to do these.
+// Faults: refusals, silence, lost connections, restarts. Only the fake server can produce these.
 import type { Page } from 'playwright-core';
 import { expect, test } from 'vitest';
 import type { FakeServer } from '../fake/server';
@@ -136,7 +136,7 @@ test('tasks run with progress, can be cancelled, and their recording can be open
   await until(async () => (await page.locator('[role="alert"]').textContent())!.includes('cancelled'));
   await page.getByRole('button', { name: 'Run tasks' }).click();
   await until(async () => Number(await page.locator('progress').getAttribute('value')) > 0.1);
-  // It takes three seconds: most of them pass at once.
+  // The tasks take three seconds; most of it is skipped.
   server.session.time += 2.5;
   await page.getByRole('button', { name: 'Recording' }).click({ timeout: 20000 });
   await page.waitForSelector('.badge[data-kind="recording"]');
@@ -190,7 +190,7 @@ test('layers lie upon the pictures, and ghosts stand in the view', async () => {
   server.tell_all({ type: 'overlay', camera: 'front', layers: [{ id: 'axis', kind: 'polyline', points: [[20, 20], [600, 400]], color: '#ffd43b' }] });
   await until(async () => (await yellow()) > 100);
   server.stuck = true;
-  // What comes no more is drawn pale: that is to be so in each of the pictures.
+  // Stale content is drawn pale; this must hold for every picture.
   await until(async () => (await page.locator('.badge[data-kind="stale"]').count()) === 1, 15000);
   const before = await stage_at_rest(page);
   server.tell_all({ type: 'ghost', id: 'desired', color: '#4dabf7', poses: [[0, 0, 0, 0.7071, -0.7071, 0, 0], [0.3, 0.3, 0, 0.5, -0.5, 0.5, -0.5]] });

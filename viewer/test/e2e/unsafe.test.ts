@@ -1,4 +1,4 @@
-// What the timeline of an unsafe run says is what `flexura check` says of the same file.
+// The timeline of an unsafe run must agree with `flexura check` for the same file.
 import { spawnSync } from 'node:child_process';
 import { fileURLToPath } from 'node:url';
 import { describe, expect, test } from 'vitest';

@@ -1,4 +1,4 @@
-// A run of tasks that a terminal has started and watches: its time is its own, faster than the clock or slower.
+// Runs started in a terminal and watched by the page. Their time may be faster or slower than real time.
 import { fileURLToPath } from 'node:url';
 import { afterAll, beforeAll, describe, expect, test } from 'vitest';
 import { server_state, until } from './browser';
@@ -8,7 +8,7 @@ import { Program, program } from './program';
 const rig = fileURLToPath(new URL('watched.toml', import.meta.url));
 
 describe.skipIf(!program)('a watched run', () => {
-  // By the pictures that the run itself takes: a hundred times as fast as the clock, and slower. Both are left early.
+  // The recorded pictures set the pace: a hundred times faster than real time, or slower. Both runs are ended early.
   describe.each([
     ['fast', ['task.0.duration=6000', 'record.cameras=true']],
     ['slow', ['task.0.duration=20', 'record.cameras=true', 'camera.0.sensor.frame_rate=10000']],
@@ -35,7 +35,7 @@ describe.skipIf(!program)('a watched run', () => {
       const end = Date.now() + 2500;
       while (Date.now() < end && (await page.locator('.badge[data-kind="live"]').count()) === 1) {
         expect(await page.locator('.camera[data-old="true"]').count()).toBe(0);
-        // Of the run's time, which the page's own clock knows nothing of.
+        // The run's time, which is independent of the page's clock.
         expect(await seconds()).toBeLessThanOrEqual((await server_state(page)).time + 0.01);
         ++looks;
       }

@@ -1,4 +1,4 @@
-// The fake rig's arm: bends that follow their targets at a rate, and inverse kinematics by damped least squares.
+// The fake rig's arm: bends follow their targets with limited rate; inverse kinematics by damped least squares.
 import { sample_arm } from './forward';
 import type { RigDescription } from './rigs';
 
@@ -68,7 +68,7 @@ export class FakeArm {
     );
   }
 
-  /** Bends whose tendons are nearest to these. */
+  /** Returns the bends whose tendon lengths are nearest to these. */
   from_tendons(lengths: number[]): Bends {
     let before: [number, number] = [0, 0];
     return this.bends.map((_, section) => {

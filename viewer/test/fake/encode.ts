@@ -1,4 +1,4 @@
-// The binary messages, written by hand from docs/viewer-protocol.md: the page's reader is tested against them.
+// Encoder of the binary messages, written independently from docs/viewer-protocol.md to test the page's decoder.
 export interface StateRows {
   flags: number;
   leaps?: number;
@@ -9,9 +9,9 @@ export interface StateRows {
   samples: ArrayLike<number>;
   cameras: ArrayLike<number>;
   displacements: ArrayLike<number>;
-  /** Three a row. */
+  /** Three numbers per row. */
   actuators?: ArrayLike<number>;
-  /** Three numbers, seven, one and ten a row. */
+  /** energy: three numbers; push: seven; pace: one; contacts: ten per row. */
   energy?: ArrayLike<number>;
   push?: ArrayLike<number>;
   pace?: number;

@@ -1,4 +1,4 @@
-// Sections bent by constant curvature, laid end to end: for the tests' own server and what tests compare with.
+// Forward kinematics of constant-curvature sections, for the fake server and as a test reference.
 import { rotate, sinc } from '../../src/math/arc';
 import { sample_stride } from '../../src/protocol/state';
 
@@ -9,7 +9,7 @@ export interface SectionShape {
   stretch: number;
 }
 
-/** Samples as in a state's message: `count` arcs a section, from the base's pose on. */
+/** Returns samples as in a state message: `count` arcs per section, from the base's pose on. */
 export function sample_arm(base: ArrayLike<number>, sections: SectionShape[], count: number): Float32Array {
   const rows = new Float32Array((sections.length * count + 1) * sample_stride);
   const pose = Float64Array.from(Array.from({ length: 7 }, (_, i) => base[i]));
@@ -49,7 +49,7 @@ function turn(pose: Float64Array, w: number, x: number, y: number): void {
   pose[6] = px * y - py * x + pz * w;
 }
 
-/** Where the arm stands unless told otherwise: z along +Y, x along +X. */
+/** Default base pose: z along +Y, x along +X. */
 export const upright: [number, number, number, number, number, number, number] = [
   0, 0, 0, Math.SQRT1_2, -Math.SQRT1_2, 0, 0,
 ];

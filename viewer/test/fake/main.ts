@@ -1,4 +1,4 @@
-// `npm run fake [planar|spatial] [live|recording]`: the page against the fake rig, to look at.
+// `npm run fake [planar|spatial] [live|recording]`: shows the page with the fake rig.
 import { fileURLToPath } from 'node:url';
 import { planar_rig, spatial_rig } from './rigs';
 import { FakeServer } from './server';

@@ -1,4 +1,4 @@
-// What a camera of the fake rig sees: the arm as a thick dark line before a bright screen, as a PNG.
+// Picture of a camera of the fake rig: the arm as a thick dark line on a bright screen, as a PNG.
 import { deflateSync } from 'node:zlib';
 
 const table = Uint32Array.from({ length: 256 }, (_, n) => {
@@ -22,7 +22,7 @@ function chunk(type: string, data: Buffer): Buffer {
   return out;
 }
 
-/** A grey PNG. */
+/** Encodes a grey PNG. */
 export function encode_png(width: number, height: number, pixels: Uint8Array): Buffer {
   const head = Buffer.alloc(13);
   head.writeUInt32BE(width, 0);
@@ -41,7 +41,7 @@ export function encode_png(width: number, height: number, pixels: Uint8Array): B
 export interface PointInPicture {
   u: number;
   v: number;
-  /** Half the arm's width there, px. */
+  /** Half the arm's width at this point, px. */
   radius: number;
 }
 

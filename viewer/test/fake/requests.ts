@@ -1,4 +1,4 @@
-// What the fake rig answers to each request of the protocol.
+// Replies of the fake rig to each request of the protocol.
 import { cord_angles_of, archings_of } from '../../src/math/planar';
 import { point_at } from '../../src/math/arc';
 import type { Bends } from './arm';
@@ -8,18 +8,18 @@ import type { FakeSession } from './session';
 export interface Client {
   send(text: string): void;
   push(bytes: Buffer): void;
-  /** Pictures a second of each camera, 0 for none. */
+  /** Pictures per second of each camera; 0 for none. */
   rates: Map<string, number>;
-  /** Where it stands in a recording. */
+  /** Time in the recording, s. */
   time: number;
-  /** The picture of each camera that was sent last. */
+  /** The last picture sent for each camera. */
   sent: Map<string, SentPicture>;
 }
 
 export interface SentPicture {
   number: number;
   pixels: Uint8Array;
-  /** Where the backbone is seen. */
+  /** Image points of the backbone. */
   points: PointInPicture[];
 }
 
@@ -163,7 +163,7 @@ const handlers: Record<string, (hub: Hub, request: Request, client: Client) => A
   },
   backbone: ({ session }, request) => ({ poses: session.arm.samples(request.bends as Bends) }),
   ping: () => ({}),
-  // For the tests only: what the rig's state is, and what the cord angles of it are.
+  // For tests only: the rig's state and its cord angles.
   test_state: ({ session }) => ({
     time: session.time, bends: session.arm.bends, target: session.arm.target,
     cord_angles: cord_angles_of(session.arm.bends.map(([x]) => -x / 2)),

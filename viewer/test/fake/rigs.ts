@@ -1,4 +1,4 @@
-// Two rigs to play: the paper's planar arm and a spatial one with tendons.
+// Two rigs: the paper's planar arm and a spatial arm with tendons.
 import { archings_of, paper_cord_angles, paper_lengths } from '../../src/math/planar';
 import type { Controls, Pose, Scene } from '../../src/protocol/types';
 import { upright } from './forward';
@@ -7,7 +7,7 @@ export interface RigDescription {
   title: string;
   scene: Scene;
   controls: Controls;
-  /** Bends in which the tasks end. */
+  /** Final bends of the tasks, rad. */
   goal: [number, number][];
   camera_poses: Pose[];
   focal: number;
@@ -23,7 +23,7 @@ function cameras(): Scene['cameras'] {
   ];
 }
 
-/** From +Z and from -X, y of the picture down: docs/conventions.md. */
+/** On +Z and on -X, image y downwards: docs/conventions.md. */
 function camera_poses(distance: number, height: number): Pose[] {
   return [
     [0, height, distance, 0, 1, 0, 0],

@@ -1,5 +1,5 @@
-// A stand-in for `flexura view`: the same requests, the same security policy, so that the page can be tested alone, and
-// some mischief that a real one should never do.
+// A fake `flexura view` with the same requests and security policy, so that the page can be tested alone. It can also
+// simulate faults that the program should never have.
 import { randomBytes } from 'node:crypto';
 import { createReadStream, existsSync } from 'node:fs';
 import { createServer, type IncomingMessage, type Server, type ServerResponse } from 'node:http';
@@ -18,31 +18,31 @@ const types: Record<string, string> = {
 
 interface Connected extends Client {
   socket: WebSocket;
-  /** Numbers of pictures not acknowledged yet, by camera. */
+  /** Numbers of unacknowledged pictures, by camera. */
   open_pictures: Map<string, number>;
   last_picture: Map<string, { time: number; seen: string }>;
 }
 
 export class FakeServer {
   session: FakeSession;
-  /** No word at all, as when the network is gone. */
+  /** Sends nothing, as after a network failure. */
   mute = false;
-  /** Answers nobody, and takes nobody in: a network that went away without a word. */
+  /** Neither answers nor accepts connections, as after a silent network failure. */
   deaf = false;
   takes_sockets = true;
-  /** Refuses what moves something, with this line. */
+  /** Refuses all requests that move something, with this message. */
   refuse = '';
-  /** Answers, but no new states. */
+  /** Answers requests, but sends no new states. */
   stuck = false;
-  /** Replies to requests for times come so much later. */
+  /** Delay of replies to requests for times, ms. */
   delay_ms = 0;
-  /** Pictures a second of what has not changed: to decode and draw the same again is most of what a page at rest costs. */
+  /** Pictures per second of an unchanged scene. Decoding and drawing them is the main cost of a page at rest. */
   resting_rate = 2;
-  /** The most such requests of a client that were without a reply at once. */
+  /** Largest number of such requests of a client that were unanswered at once. */
   most_outstanding = 0;
   token = randomBytes(16).toString('hex');
   port = 0;
-  /** Every request that came, for the tests. */
+  /** All received requests. */
   readonly log: Record<string, unknown>[] = [];
   private id = randomBytes(8).toString('hex');
   private http: Server | null = null;
@@ -87,7 +87,7 @@ export class FakeServer {
     await new Promise<void>((resolve) => (this.http ? this.http.close(() => resolve()) : resolve()));
   }
 
-  /** As when someone ends the program and starts it again: everything is new, the token too. */
+  /** Simulates a restart of the program: all state is new, including the token. */
   async restart(): Promise<void> {
     await this.stop();
     this.id = randomBytes(8).toString('hex');

@@ -1,4 +1,4 @@
-// The rig behind the fake server: live, or the recording of its last run.
+// The rig of the fake server: live, or the recording of its last run.
 import { rotate } from '../../src/math/arc';
 import type { Pose } from '../../src/protocol/types';
 import { point_at } from '../../src/math/arc';
@@ -20,10 +20,10 @@ export class FakeSession {
   running = 0;
   recorded_at = 0;
   moving = false;
-  /** As the program says it: a run that was watched leaves none. */
+  /** False after a watched run, as with the program. */
   has_rig = true;
   has_recording = false;
-  /** As a run that a terminal has started. */
+  /** Simulates a run started in a terminal. */
   is_watched = false;
 
   constructor(readonly rig: RigDescription, mode: 'live' | 'recording' = 'live') {
@@ -60,7 +60,7 @@ export class FakeSession {
     return this.mode === 'recording' ? recording_s : 0;
   }
 
-  /** The recorded motion: to the goal and half back again. */
+  /** The recorded motion: to the target and half the way back. */
   bends_at(time: number): Bends {
     const f = time < 4 ? time / 4 : 1 - (time - 4) / 4;
     return this.rig.goal.map(([x, y]) => [f * x, f * y]);
@@ -134,12 +134,12 @@ export class FakeSession {
     });
   }
 
-  /** All that the cameras' pictures depend on. */
+  /** Returns everything that the cameras' pictures depend on. */
   seen_now(): string {
     return [...this.arm.bends, ...this.arm.stretches, ...this.camera_rows()].join();
   }
 
-  /** The grey values of a picture. */
+  /** Returns the grey values of a picture. */
   pixels(i: number, time = this.time): Uint8Array {
     if (this.mode === 'recording') this.arm.bends = this.bends_at(time);
     const { width, height } = this.rig.scene.cameras[i];
@@ -151,7 +151,7 @@ export class FakeSession {
     return encode_png(width, height, pixels);
   }
 
-  /** Where the backbone is in a picture, as it was drawn last. */
+  /** Returns the image points of the backbone in the last drawn picture. */
   seen(i: number): PointInPicture[] {
     const { width, height } = this.rig.scene.cameras[i];
     const samples = this.arm.samples();

@@ -1,5 +1,5 @@
-// How fast the page is: `npm run speed`, on a machine that does nothing else. Printed, not judged. With FLEXURA_PROGRAM
-// the program's start counts too.
+// Measures the speed of the page: `npm run speed`, on an otherwise idle machine. Results are printed without a verdict.
+// With FLEXURA_PROGRAM the start of the program is included.
 import type { Browser, Page } from 'playwright-core';
 import { afterAll, beforeAll, expect, test } from 'vitest';
 import { fileURLToPath } from 'node:url';

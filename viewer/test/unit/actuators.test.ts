@@ -7,7 +7,7 @@ import type { ActuatorControl, Controls, Hello } from '../../src/protocol/types'
 import { encode_state } from '../fake/encode';
 import { spatial_rig } from '../fake/rigs';
 
-/** Three around a section. */
+/** Three tendons around a section. */
 const three: ActuatorControl[] = [0, 1, 2].map((i) => ({
   name: `Tendon ${i + 1}`, section: 0, range: [-0.02, 0.02], motor: false, together: [0, 1, 2].map((j) => (i === j ? 1 : -0.5)),
 }));
@@ -36,7 +36,7 @@ describe('tendons that are pulled one by one', () => {
     expect(a).toBeCloseTo(-0.02, 12);
     expect(b).toBeCloseTo(0.004, 12);
     expect(c).toBeCloseTo(0.008, 12);
-    // One that is beyond its end already does not jump back.
+    // A tendon that is already beyond its limit does not jump back.
     expect(moved(three, [-0.02, 0, 0], 1, 0.01, true)).toEqual([-0.02, 0, 0]);
   });
 

@@ -93,7 +93,7 @@ test.each([0, 4, 8])('tendon %i takes the others along: what is asked for is one
   arm.bends = arm.from_tendons(next.displacements);
   arm.displacements().forEach((length, j) => expect(length).toBeCloseTo(next.displacements[j], 12));
   arm.bends.flat().forEach((bend, j) => expect(bend).toBeCloseTo(next.bends[j], 12));
-  // Only its own section bends.
+  // Only the tendon's own section bends.
   const own = Math.floor(i / 3);
   pulled.bends.forEach((bend, j) => j >> 1 !== own && expect(next.bends[j]).toBe(bend));
 });
@@ -133,7 +133,7 @@ test('a cord angle’s slider is as wide as the limits of its section and of tho
     expect(high).toBeGreaterThan(most);
     expect(high).toBeLessThan(1.1 * most);
     expect(low).toBeCloseTo(-high, 9);
-    // All bent as far as can be, to one side: the slider holds that.
+    // The slider covers the pose with all sections fully bent to one side.
     const archings = narrow.sections.map(({ bend }) => bend! / 2);
     const cords = values_of('cord_angles', 'planar', state(archings.map((b) => [-2 * b, 0])));
     expect(cords[i] / degrees - 90).toBeCloseTo(most, 4);

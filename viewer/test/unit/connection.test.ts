@@ -35,7 +35,7 @@ test('a token is tried once, beside the cookie, and then forgotten', async () =>
     asked.push(header);
     expect(credentials).toBe('same-origin');
     const is_shown = header === `Bearer ${good}`;
-    if (is_shown) cookie = good;  // As the program answers.
+    if (is_shown) cookie = good;  // The program would set its cookie.
     return Promise.resolve({ status: is_shown || cookie === good ? 404 : 401 });
   });
   const come_with = async (tried: string | null): Promise<string> => {

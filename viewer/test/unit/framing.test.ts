@@ -8,7 +8,7 @@ import { total_length } from '../../src/scene/rings';
 import { FakeSession } from '../fake/session';
 import { spatial_rig } from '../fake/rigs';
 
-/** Where a camera of the view has a point, in halves of its picture. */
+/** Returns the view coordinates of a point, in half pictures. */
 function shown(point: Vector3, look: Look, distance: number): Vector3 {
   const orbit = new Orbit();
   orbit.target.copy(look.target);

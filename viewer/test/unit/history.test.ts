@@ -101,7 +101,7 @@ test('a legend says what tells the names apart', () => {
 test('a picture is as old as the first state that came after its time, whatever pace the run goes at', () => {
   for (const pace of [0.01, 1, 500]) {
     const history = new History(1e9);
-    // Sixty states a second come for 4 s; the clock of this page starts at some time.
+    // States arrive at 60 Hz for 4 s; the page's clock has an arbitrary offset.
     for (let i = 0; i < 240; ++i) history.add(state((pace * i) / 60, i), 5000 + (1000 * i) / 60);
     const now = 5000 + (1000 * 239) / 60;
     expect(history.outdated_for((pace * 239) / 60, now)).toBe(0);
@@ -116,7 +116,7 @@ test('a run that hangs at one time makes no picture of that time old', () => {
   const history = new History();
   for (let i = 0; i < 600; ++i) history.add(state(3, i), (1000 * i) / 60);
   expect(history.outdated_for(3, 10_000)).toBe(0);
-  // One of before is: since the first word of it, not since the last.
+  // A picture of an earlier time is outdated since the first state after it, not since the last one.
   expect(history.outdated_for(2.9, 10_000)).toBe(10);
 });
 
@@ -137,7 +137,7 @@ test.each([1, 7])('a live plot is broken where everything was put elsewhere, als
   expect(gaps.map((i) => [times[i - 1], times[i + 1]].map((time) => Math.round(60 * time)))).toEqual([[100, 101], [249, 250]]);
   for (const values of series) {
     expect(values.flatMap((value, i) => (value === null ? [i] : []))).toEqual(gaps);
-    // Between two breaks nothing but one value: no line leads from one to another.
+    // Between the two gaps there is a single value, so no line connects different values.
     expect(new Set(values.slice(gaps[0] + 1, gaps[1])).size).toBe(1);
   }
 });

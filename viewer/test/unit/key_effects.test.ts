@@ -1,4 +1,4 @@
-// What each key does, on a free view and a clock of the test's own.
+// Effects of all keys, with a free view and a simulated clock.
 import { signal } from '@preact/signals';
 import { PerspectiveCamera, Vector3 } from 'three';
 import { beforeEach, expect, test, vi } from 'vitest';
@@ -14,7 +14,7 @@ let mode: 'live' | 'recording';
 let is_elastic: boolean;
 const push_tool = signal(false);
 
-/** All that it is asked for is written down, with what it was asked for. */
+/** Returns an object that records all calls with their arguments. */
 function noted(name: string, has: Record<string, unknown> = {}): object {
   return new Proxy(has, {
     get: (known, what: string) => (what in known ? known[what] : (...values: unknown[]) => void done.push(`${name} ${[what, ...values].join(' ')}`)),
@@ -53,7 +53,7 @@ function press(key: string): void {
   bound[0].run({} as KeyboardEvent);
 }
 
-/** Where the view's camera went, in its own axes as they were: to the right, up, back. */
+/** Returns the motion of the view's camera in its previous axes: right, up, back. */
 function moved_by(key: string): Vector3 {
   const axes = [0, 1, 2].map((column) => new Vector3().setFromMatrixColumn(camera.matrix, column));
   const before = camera.position.clone();

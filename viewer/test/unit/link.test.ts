@@ -1,4 +1,4 @@
-// The link against the fake server, as in a browser: Node has fetch, and ws stands in for the browser's WebSocket.
+// The link with the fake server, as in a browser: Node provides fetch, and ws replaces the browser's WebSocket.
 import { afterEach, beforeEach, expect, test, vi } from 'vitest';
 import { WebSocket } from 'ws';
 import { Link, RequestError, type LinkListener, type Patience } from '../../src/connection/link';
@@ -20,18 +20,18 @@ const listener: LinkListener = {
   failed: () => {},
 };
 
-/** How long only a test that fails waits: how fast it comes is the machine's affair. */
+/** Waits for a condition. The long timeout only affects failing tests. */
 const until = (what: () => boolean): Promise<true> => vi.waitUntil(what, { timeout: 40_000, interval: 10 });
 
-/** A link that soon gives up. A machine that is held up may take it for dead, so that it comes back once more. */
+/** A link with short timeouts. On a busy machine it may drop the connection and reconnect once more. */
 const impatient: Patience = { quiet: 50, stale: 100, dead: 200, entry: 150 };
 
 function connect(token: () => string, patience?: Patience): Link {
-  // ws takes the header that a browser's cookie would be.
+  // ws sends the token in a header; a browser would send its cookie.
   class WithToken extends WebSocket {
     constructor(address: string | URL) {
       super(address, { headers: { authorization: `Bearer ${token()}` } });
-      // A browser's socket that fails, or is closed before it is open, ends nobody's program.
+      // In a browser, a socket that fails or is closed before it is open does not end the program.
       this.on('error', () => {});
     }
   }
@@ -113,7 +113,7 @@ test('a network that goes away without a word ends no attempt for good', async (
   const gone_through: string[] = [];
   open.status.subscribe(({ kind }) => gone_through.push(kind));
   server.mute = server.deaf = true;
-  // The connection is given up, then one attempt after the other that nobody answers.
+  // The connection is dropped, then several attempts remain unanswered.
   await until(() => gone_through.filter((kind) => kind === 'waiting').length >= 3);
   const before = seen.hellos.length;
   server.mute = server.deaf = false;

@@ -9,7 +9,7 @@ interface Asked {
   reject(error: Error): void;
 }
 
-/** Requests that are answered when the test says so. */
+/** Requests that the test answers explicitly. */
 function made(cameras = ['front', 'side'], wanted: string[] = ['axis']) {
   const waiting: Asked[] = [];
   const picture_of = new Map<string, { number: number }>();

@@ -2,7 +2,7 @@ import { expect, test } from 'vitest';
 import { draw_layers, overlays } from '../../src/overlays/registry';
 import type { Layer } from '../../src/protocol/types';
 
-/** A context that writes down what is done with it. */
+/** A drawing context that records all calls. */
 function recorder(): { context: CanvasRenderingContext2D; calls: string[] } {
   const calls: string[] = [];
   const context = new Proxy({}, {

@@ -3,7 +3,7 @@ import { afterEach, beforeEach, expect, test, vi } from 'vitest';
 import { follow_pixel, grace_ms, type Pixel } from '../../src/panels/pixel_value';
 import type { PixelResult } from '../../src/protocol/types';
 
-/** Requests that are answered when the test says so. */
+/** Requests that the test answers explicitly. */
 function made() {
   const waiting: ((result: PixelResult) => void)[] = [];
   const picture_of = new Map<string, { number: number }>();

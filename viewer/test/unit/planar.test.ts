@@ -6,7 +6,7 @@ import {
 import { sample_arm, upright } from '../fake/forward';
 
 function paper(f: number) {
-  // All cord angles from those of the straight arm to the paper's, linearly.
+  // Cord angles between those of the straight arm and the paper's, linearly.
   const cords = paper_cord_angles.map((angle) => Math.PI / 2 + f * (angle - Math.PI / 2));
   return planar_rows(archings_of(cords).map((arching, i) => ({ length: paper_lengths[i], arching })));
 }

@@ -3,7 +3,7 @@ import type { State } from '../../src/protocol/state';
 import { History } from '../../src/state/history';
 import { Playback, speeds } from '../../src/state/playback';
 
-/** A playback, the times that it asked for, and what ends the request that is outstanding. */
+/** A playback, its requested times, and a function that answers the outstanding request. */
 function made() {
   const asked: number[] = [];
   const shown: State[] = [];

@@ -60,7 +60,7 @@ test('between two corners the skin is round to a quarter of a pixel, however nea
     const rings = positions.count === 17 * few.length ? few : all;
     const around = positions.count / rings.length;
     sides.push(around - 1);
-    // The middle of each facet of a ring, against the radius there; no point of the arm is nearer than that.
+    // Distance of each facet's middle from the true radius, compared with the distance of the nearest point of the arm.
     let nearest = Infinity;
     for (let i = 0; i < samples.length; i += 8) {
       nearest = Math.min(nearest, Math.hypot(samples[i + 1] - tip[0] - away, samples[i + 2] - tip[1], samples[i + 3] - tip[2]));
@@ -81,12 +81,12 @@ test('between two corners the skin is round to a quarter of a pixel, however nea
   expect(sides[0]).toBe(16);
   expect(sides.at(-1)).toBeGreaterThan(32);
   expect(sides).toEqual([...sides].sort((a, b) => a - b));
-  // What moves meanwhile is laid in the skin that is shown.
+  // Motion updates the visible skin.
   const straight = new FakeArm(rig).samples();
   part.draw!({ samples: straight } as State);
   const end = new Vector3().fromBufferAttribute(skin.geometry.getAttribute('position'), skin.geometry.getAttribute('position').count - 1);
   expect(end.distanceTo(new Vector3(...point_at(straight, span).position))).toBeLessThan(2 * radius);
-  // And where one goes away again, in the other one.
+  // After moving away, the other skin is updated.
   part.seen_from!(new Vector3(30 * span, 0, 0), 1000);
   const again = new Vector3().fromBufferAttribute(skin.geometry.getAttribute('position'), skin.geometry.getAttribute('position').count - 1);
   expect(again.distanceTo(end)).toBeLessThan(1e-6);
@@ -106,13 +106,13 @@ test('each guide disk stands across the backbone at its own place', () => {
   const disks = [{ at: 0, radius: 0.05, thickness: 0.01 }, { at: 0.25, radius: 0.04, thickness: 0.02 }, { at: 0.6, radius: 0.03, thickness: 0.006 }];
   const scene = { ...rig.scene, arm: { ...arm, sections: [{ ...arm.sections[0], length }], markers: [], disks } };
   const [part] = make_arm({ scene, span: length, floor: 0, theme: 'dark' });
-  // From straight on: they go with the arm.
+  // Starting straight: the disks move with the arm.
   for (const bend_x of [0, bend]) part.draw!({ samples: sample_arm(arm.base, [{ length, bend_x, bend_y: 0, stretch: 1 }], 4) } as State);
   const mesh = (part.group as Group).children[1] as InstancedMesh;
   const corners = mesh.geometry.getAttribute('position');
   expect(mesh.count).toBe(disks.length);
   disks.forEach(({ at, radius, thickness }, i) => {
-    // An arc from the origin, upright, to the side of +x.
+    // An arc from the origin, upright, bent towards +x.
     const [bow, turned] = [length / bend, (bend * at) / length];
     const middle = new Vector3(bow * (1 - Math.cos(turned)), bow * Math.sin(turned), 0);
     const along = new Vector3(Math.sin(turned), Math.cos(turned), 0);
@@ -124,7 +124,7 @@ test('each guide disk stands across the backbone at its own place', () => {
       return { height, width: from_middle.addScaledVector(along, -height).length() };
     });
     for (const { height } of off) expect(Math.abs(height)).toBeCloseTo(thickness / 2, 5);
-    // Corners on the rim, and the middles of both faces.
+    // Corners on the rim, and the centres of both faces.
     for (const { width } of off) expect(Math.min(width, Math.abs(width - radius))).toBeLessThan(1e-5);
     expect(Math.max(...off.map(({ width }) => width))).toBeCloseTo(radius, 5);
     expect(new Set(off.map(({ height }) => Math.sign(height)))).toEqual(new Set([-1, 1]));
@@ -134,7 +134,7 @@ test('each guide disk stands across the backbone at its own place', () => {
 test('seen thin, the arm’s outline is a quarter of a pixel beside its arcs at most, at all bends', () => {
   for (const { scene } of [rig, planar_rig()]) {
     const pixels = 600 / total_length(scene.arm);
-    // Where a section is as much bent as it can be, between two rings.
+    // Largest distance between two rings at the maximum bend of a section.
     let start = 0;
     for (const { length, max_bend } of scene.arm.sections) {
       const own = plan_rings(scene.arm, painter(scene.arm), medium).map(({ s }) => s)
@@ -211,7 +211,7 @@ test('the free view goes neither into a point nor out of sight', () => {
   expect(orbit.distance).toBeCloseTo(60, 12);
 });
 
-/** The rig as it stands where the experiment names no cameras: they look at the base from 3.48 lengths away. */
+/** The default scene without configured cameras: they look at the base from 3.48 arm lengths away. */
 function default_stand(): { scene: typeof rig.scene; state: State; span: number } {
   const span = total_length(arm);
   const far = (span * Math.hypot(760, 228)) / 228;
@@ -249,7 +249,7 @@ test('no camera’s picture hangs before the arm from where one looks by the key
   for (const { name } of scene.cameras) {
     for (const part of parts) part.picture!(name, { number: 1, time: 0, bitmap: {} as ImageBitmap });
   }
-  // As key 0 leaves it, both are seen; from behind one camera the other’s.
+  // In the default view both pictures are visible; from behind one camera only that of the other.
   for (const opacity of shown(0.85, 0.34)) expect(opacity).toBeGreaterThan(0.9);
   expect(shown(0, 0)[0]).toBe(0);
   expect(shown(0, 0)[1]).toBeGreaterThan(0.9);

@@ -1,4 +1,4 @@
-// What stands around the arm lies where the protocol says: corners and rims in the world.
+// Objects around the arm are placed as the protocol specifies: corners and rims in the world.
 import { Box3, type BufferGeometry, type Group, type LineSegments, Mesh, type MeshBasicMaterial, type MeshLambertMaterial, type Object3D, Vector3 } from 'three';
 import { expect, test } from 'vitest';
 import type { SceneObstacle } from '../../src/protocol/types';
@@ -14,7 +14,7 @@ function stand(change: { screens?: object[]; etalon?: object | null; obstacles?:
   return make_stand({ scene, span, floor: 0, theme: 'dark' });
 }
 
-/** The corners of all that an object draws, in the world. */
+/** Returns the world positions of all vertices of an object. */
 function corners(object: Object3D): Vector3[] {
   object.updateMatrixWorld(true);
   const all: Vector3[] = [];
@@ -35,7 +35,7 @@ function expect_box(object: Object3D, min: number[], max: number[], places = 6):
 }
 
 test('a screen lies in its plane, width along x and height along y, and faces along z', () => {
-  // Turned by a quarter around y: its x goes to -Z, its z to X.
+  // Rotated by a quarter around y: its x points to -Z, its z to X.
   const [part] = stand({ screens: [{ pose: [1, 2, 3, half, 0, half, 0], size: [4, 6], brightness: 1 }] });
   const [sheet, edge] = (part.group as Group).children as [Mesh, LineSegments];
   for (const drawn of [sheet, edge]) {
@@ -51,7 +51,7 @@ test('a screen lies in its plane, width along x and height along y, and faces al
 
 test('the etalon stands along its y, with red lines at its z and each quarter of a turn', () => {
   const etalon = { radius: 0.5, height: 2, line_width: 0.1, color: [0.1, 0.1, 0.1], line_color: [0.8, 0.05, 0.05] };
-  // Turned by a quarter around x: its y goes to Z, its z to -Y.
+  // Rotated by a quarter around x: its y points to Z, its z to -Y.
   const [part] = stand({ etalon: { ...etalon, pose: [1, 2, 3, half, half, 0, 0] } });
   const [body, ...strips] = (part.group as Group).children as Mesh[];
   part.group.updateMatrixWorld(true);
@@ -62,7 +62,7 @@ test('the etalon stands along its y, with red lines at its z and each quarter of
     const box = new Box3().setFromPoints(all);
     expect(box.min.z).toBeCloseTo(2);
     expect(box.max.z).toBeCloseTo(4);
-    // As wide as it is said, along the cylinder's skin.
+    // The line has the given width along the cylinder's surface.
     expect(all[0].clone().setZ(0).distanceTo(all[4].clone().setZ(0))).toBeCloseTo(0.1, 2);
     for (const corner of all) expect(Math.hypot(corner.x - 1, corner.y - 2)).toBeCloseTo(0.501, 6);
     const { color } = strip.material as MeshLambertMaterial;
@@ -75,7 +75,7 @@ test('the etalon stands along its y, with red lines at its z and each quarter of
 
 test('a box is turned about its middle', () => {
   const turned: SceneObstacle = { name: 'a', kind: 'box', center: [1, 2, 3], half_sizes: [0.1, 0.2, 0.3], rotation: [2 * half, 0, 0, 2 * half] };
-  // By a quarter around z: its x goes to Y. What is not of length one turns all the same.
+  // Rotated by a quarter around z: its x points to Y. The quaternion need not have length one.
   expect_box(obstacle(turned), [0.8, 1.9, 2.7], [1.2, 2.1, 3.3]);
   const { rotation: _, ...straight } = turned;
   expect_box(obstacle(straight as SceneObstacle), [0.9, 1.8, 2.7], [1.1, 2.2, 3.3]);
@@ -85,9 +85,9 @@ test('a sphere, and a capsule from one middle to the other', () => {
   expect_box(obstacle({ name: 'a', kind: 'sphere', center: [1, 2, 3], radius: 0.5 }), [0.5, 1.5, 2.5], [1.5, 2.5, 3.5]);
   const capsule = obstacle({ name: 'a', kind: 'capsule', from: [1, 2, 3], to: [1, 2, 7], radius: 0.5 });
   expect_box(capsule, [0.5, 1.5, 2.5], [1.5, 2.5, 7.5]);
-  // Downwards, where the way from y to the axis is half a turn about whatever.
+  // Downwards: the rotation from y to the axis is half a turn about an arbitrary axis.
   expect_box(obstacle({ name: 'a', kind: 'capsule', from: [1, 2, 3], to: [1, -2, 3], radius: 0.5 }), [0.5, -2.5, 2.5], [1.5, 2.5, 3.5]);
-  // Aslant each point is as far from the line between the middles as the radius says.
+  // Obliquely: each point has the distance `radius` from the line between the end points.
   const [from, to] = [new Vector3(1, 2, 3), new Vector3(2, 3, 4.5)];
   const way = to.clone().sub(from);
   const all = corners(obstacle({ name: 'a', kind: 'capsule', from: from.toArray(), to: to.toArray(), radius: 0.5 }));

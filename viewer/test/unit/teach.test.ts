@@ -5,7 +5,7 @@ import { exercises } from '../../src/teach/exercises';
 
 const degree = Math.PI / 180;
 
-/** An arm that does what each exercise asks. */
+/** Archings that solve each exercise. */
 const answers: Record<string, number[]> = {
   'half-turn': [-90 * degree],
   parallel: [-Math.asin(1 / 4) * 1.024, Math.asin(1 / 4) * 1.024],
@@ -25,7 +25,7 @@ test('there are five, and none is done at its start', () => {
 test.each(exercises.filter(({ id }) => answers[id]).map((exercise) => [exercise.id, exercise] as const))(
   'the exercise %s knows its answer', (id, { lengths, check }) => {
     if (id === 'parallel') {
-      // One metre aside: found here by halving, as the exercise has no closed form.
+      // One metre aside, solved by bisection because the exercise has no closed-form solution.
       let [low, high] = [0, 1];
       for (let i = 0; i < 50; ++i) {
         const b = (low + high) / 2;

@@ -25,7 +25,7 @@ test('tendons run beside the backbone, and their colours say which pulls', () =>
   const rods = part.group.children[0] as InstancedMesh;
   part.draw!(state([0, 0, 0, 0, 5, 0]));
   expect(rods.visible).toBe(true);
-  // The end of the second rod of the first tendon, and the beginning of the first of the second.
+  // The end of the first tendon's second rod, and the start of the second tendon's first rod.
   const point = (i: number, y: number): number[] => {
     const matrix = new Matrix4();
     rods.getMatrixAt(i, matrix);

@@ -4,7 +4,7 @@ import type { State } from '../../src/protocol/state';
 import { make_trail, most_points } from '../../src/scene/parts/trail';
 import { spatial_rig } from '../fake/rigs';
 
-/** The trail of an arm 1 m long, and what is drawn of it. */
+/** The trail of an arm 1 m long, and the drawn points. */
 function made() {
   const [part] = make_trail({ scene: spatial_rig().scene, span: 1, floor: 0, theme: 'dark' });
   const { geometry } = part.group as Line;

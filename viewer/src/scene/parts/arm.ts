@@ -9,19 +9,19 @@ import { plain } from '../plain';
 import { coarse, medium, painter, plan_rings, radius_at } from '../rings';
 import { fineness_of, sides, Tube } from '../tube';
 
-/** The arm: skin, disks, and its shadow on the floor, which says where it is in depth. */
+/** The arm: skin, disks, and a shadow on the floor that shows its depth. */
 export function make_arm({ scene, span, floor, theme }: PartContext): Part[] {
   const { arm } = scene;
   if (!arm.visible) return [];
   const rings = plan_rings(arm);
   const few_rings = plan_rings(arm, painter(arm), medium);
   const thickest = rings.reduce((most, { radius }) => Math.max(most, radius), 0);
-  // From near, more rings and sides: each is made when it is first needed, and only the one that is seen is laid.
+  // Close views need more rings and sides. Each tube is created on first use, and only the visible one is updated.
   const tubes: Tube[] = [];
   const tube_of = (level: number): Tube => (tubes[level] ??= new Tube(level > 0 ? rings : few_rings, sides[level]));
   let tube = tube_of(0);
   let samples: ArrayLike<number> | null = null;
-  // Arms are dark, for the cameras' sake; on a dark ground a little light of its own keeps one in sight.
+  // Arms are dark, for the cameras; on a dark background a little emission keeps them visible.
   const skin = new Mesh(tube.geometry, new MeshPhongMaterial({
     vertexColors: true, shininess: 40, specular: 0x333333, emissive: theme === 'dark' ? 0x4a5a66 : 0, emissiveIntensity: 0.6,
   }));
@@ -79,7 +79,7 @@ export function make_arm({ scene, span, floor, theme }: PartContext): Part[] {
   ];
 }
 
-/** From the nearest of the backbone's samples. */
+/** Returns the distance to the nearest sample of the backbone. */
 function distance_to(samples: ArrayLike<number>, { x, y, z }: Vector3): number {
   let square = Infinity;
   for (let i = 1; i + 2 < samples.length; i += sample_stride) {
@@ -99,7 +99,7 @@ function make_disks(
   const geometry = new CylinderGeometry(1, 1, 1, 18).rotateX(Math.PI / 2);
   const mesh = new InstancedMesh(geometry, new MeshLambertMaterial({ color: new Color(...color) }), disks.length);
   mesh.frustumCulled = false;
-  // As the skin's (tube.ts): a sphere of where the disks were would keep clicks from them.
+  // As for the skin (tube.ts): a bounding sphere of the disks' former places would block clicks.
   mesh.boundingSphere = new Sphere(new Vector3(), Infinity);
   const arc = new Arc();
   const pose = new_pose();
@@ -122,7 +122,7 @@ function make_disks(
   };
 }
 
-/** A socket in which the arm stands. */
+/** The socket of the arm. */
 function make_base({ scene, span, theme }: PartContext): Part[] {
   const [x, y, z, qw, qx, qy, qz] = scene.arm.base;
   const radius = Math.max(radius_at(scene.arm, 0) * 1.9, 0.012 * span);

@@ -1,4 +1,4 @@
-// The rig's cameras as frusta that hold their pictures.
+// The rig's cameras as frusta with their pictures.
 import {
   BufferAttribute, BufferGeometry, CanvasTexture, Group, LineBasicMaterial, LineSegments, Mesh, MeshBasicMaterial,
   DoubleSide, LinearFilter, Matrix4, Vector3,
@@ -7,15 +7,15 @@ import { camera_cx, camera_cy, camera_fx, camera_fy, camera_stride, sample_strid
 import type { Part, PartContext } from '../part';
 import { plain } from '../plain';
 
-/** How far before the camera its picture hangs: a part of the way to the arm's base. */
+/** Distance of the picture in front of the camera, as a share of the distance to the arm's base. */
 const depth_share = 0.35;
-/** A long lens' picture hangs farther away, so that it stays so large, in parts of the arm's length. */
+/** The pictures of long lenses are placed farther away to have at least this width, in lengths of the arm. */
 const least_width = 0.3;
-/** How much one sees of a picture; it fades where it would hide the arm. */
+/** Opacity of a picture; it fades where it would hide the arm. */
 const opacity = 0.92;
-/** A picture is seen in full whose edge is so far from all of the arm, in parts of its width. */
+/** A picture is fully visible if its edge is at least this far from the arm, in picture widths. */
 const clear = 0.12;
-/** Pictures in the 3D view need no more. */
+/** Texture width of pictures in the 3D view, px; more is not needed. */
 const texture_width = 320;
 
 export function make_cameras({ scene, span, theme }: PartContext): Part[] {
@@ -97,7 +97,7 @@ export function make_cameras({ scene, span, theme }: PartContext): Part[] {
   });
 }
 
-/** Where a picture hangs, in its camera's frame. */
+/** Placement of a picture in its camera's frame, m. */
 export interface Hanging {
   left: number;
   right: number;
@@ -106,7 +106,10 @@ export interface Hanging {
   depth: number;
 }
 
-/** Where the picture of the camera in a state's row hangs, of so many pixels; fills and gives `out`. */
+/**
+ * Computes where the picture of the camera in a state's row is placed, given its size in pixels; fills and returns
+ * `out`.
+ */
 export function hang(
   row: Float32Array, at: number, { width, height }: { width: number; height: number }, base: ArrayLike<number>, span: number, out: Hanging,
 ): Hanging {
@@ -122,8 +125,8 @@ export function hang(
 }
 
 /**
- * How far beside a picture, in parts of its width, one sees a point past it: both in the camera's frame. 0 where the
- * picture covers the point, Infinity where it hangs not between them.
+ * Returns how far beside a picture a point appears, in picture widths; eye and point are in the camera's frame. 0 if
+ * the picture covers the point, Infinity if it is not between eye and point.
  */
 export function gap_between({ left, right, top, bottom, depth }: Hanging, eye: Vector3, point: Vector3): number {
   const before = depth - eye.z;
@@ -142,7 +145,9 @@ function set_matrix(group: Group, row: Float32Array, at: number): void {
   group.matrixWorldNeedsUpdate = true;
 }
 
-/** Four edges from the pupil, the picture's border, and a small roof that says where up is. */
+/**
+ * Fills in the lines of a frustum: four edges from the pupil, the picture's border, and a small roof at the upper side.
+ */
 function fill_frustum(
   lines: Float32Array, plane: Float32Array, l: number, r: number, t: number, b: number, d: number,
 ): void {

@@ -3,7 +3,7 @@ import type { Part, PartContext } from '../part';
 import { dispose_tree } from '../part';
 import { plain } from '../plain';
 
-/** A round number of metres that gives some ten squares along the arm. */
+/** Returns a round number of metres that gives about ten squares along the arm. */
 export function grid_step(span: number): number {
   const rough = span / 8;
   const power = 10 ** Math.floor(Math.log10(rough));

@@ -1,4 +1,4 @@
-// Forces on the arm: the spring or the force that pushes it, and what it touches pushes back.
+// Forces on the arm: the push by spring or force, and contact forces.
 import { ConeGeometry, CylinderGeometry, DynamicDrawUsage, Group, InstancedMesh, Matrix4, Mesh, MeshBasicMaterial, Quaternion, SphereGeometry, Vector3 } from 'three';
 import { Arc, locate, new_pose } from '../../math/arc';
 import { contact_force, contact_point, contact_stride, push_force, push_to, type State } from '../../protocol/state';
@@ -7,22 +7,25 @@ import { plain } from '../plain';
 
 const colors = { dark: { push: 0xff8ad1, contact: 0xb9a2ff }, light: { push: 0xb8196f, contact: 0x5f3dc4 } };
 
-/** More contacts than that are not told apart. */
+/** Maximum number of drawn contacts. */
 const most_contacts = 256;
-/** Shares of the arm's length: lines, marks, arrows without a spring, and the arrow of the greatest contact force. */
+/**
+ * Sizes as shares of the arm's length: lines, marks, arrows without a spring, and the arrow of the largest contact
+ * force.
+ */
 const line = 0.0045;
 const mark = 0.011;
 const arrow = 0.18;
 const longest = 0.3;
 
-/** The end of a scale on which a force can be read: 1, 2 or 5 times a power of ten. */
+/** Returns the end of a force scale: 1, 2 or 5 times a power of ten. */
 export function scale_end(force: number): number {
   if (!(force > 0)) return 1;
   const power = 10 ** Math.floor(Math.log10(force));
   return [1, 2, 5, 10].map((step) => step * power).find((end) => end >= force * (1 - 1e-6)) ?? 10 * power;
 }
 
-/** Seen through the arm, as its tendons are. */
+/** The forces are visible through the arm, as the tendons are. */
 export function make_forces({ scene, span, theme }: PartContext): Part[] {
   if (!scene.arm.elastic) return [];
   const along = new Vector3(0, 1, 0);
@@ -38,7 +41,7 @@ export function make_forces({ scene, span, theme }: PartContext): Part[] {
   const drawn = <M extends Mesh>(mesh: M): M => {
     mesh.frustumCulled = false;
     mesh.renderOrder = 8;
-    // A click is at the arm.
+    // Clicks belong to the arm.
     mesh.raycast = () => {};
     return mesh;
   };
@@ -56,7 +59,7 @@ export function make_forces({ scene, span, theme }: PartContext): Part[] {
   const group = new Group().add(push, shafts, heads, marks);
   const arc = new Arc();
   const pose = new_pose();
-  // Stays as long as it can: arrows can be compared from one moment to the next.
+  // The scale is kept as long as possible, so that arrows can be compared over time.
   let scale = 0;
 
   const draw_push = (state: State): void => {
@@ -104,7 +107,7 @@ export function make_forces({ scene, span, theme }: PartContext): Part[] {
       if (way.length() > 0) way.normalize();
       else way.copy(along);
       turn.setFromUnitVectors(along, way);
-      // Also of a small force one sees the direction.
+      // The direction must be visible for small forces too.
       const end = Math.min(0.04 * span, 0.6 * length);
       size.set(line * span, Math.max(1e-9, length - end), line * span);
       shafts.setMatrixAt(i, matrix.compose(middle.copy(from).addScaledVector(way, (length - end) / 2), turn, size));

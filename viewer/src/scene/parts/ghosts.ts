@@ -1,5 +1,4 @@
-// Other arms beside the one that is there: desired, estimated, true shapes. Whoever sends `ghost` messages names and
-// colours them.
+// Additional arms: target, estimated and true shapes. The sender of `ghost` messages chooses their ids and colours.
 import { Color, Group, Mesh, MeshLambertMaterial } from 'three';
 import { Arc } from '../../math/arc';
 import type { GhostMessage, Pose, SceneArm, Vector3 } from '../../protocol/types';
@@ -32,7 +31,7 @@ export function make_ghosts({ scene }: PartContext): Part[] {
       for (const id of [...shown.keys()]) if (!has_shape(messages[id])) remove(id);
       for (const [id, message] of Object.entries(messages)) {
         if (!has_shape(message) || shown.get(id)?.message === message) continue;
-        // One that moves keeps its skin: with each picture comes another shape.
+        // A moving ghost keeps its skin, because its shape changes with each picture.
         const ghost = shown.get(id) ?? make_ghost(scene.arm);
         lay(ghost, message, scene.arm);
         if (!shown.has(id)) group.add(ghost.mesh);
@@ -65,7 +64,7 @@ function lay(ghost: Shown, message: Shaped, arm: SceneArm): void {
   (ghost.mesh.material as MeshLambertMaterial).color = new Color(message.color ?? '#4dabf7');
 }
 
-/** Rows as in a state from poses alone: s by the arcs' lengths, scaled to the unstretched arm. */
+/** Computes sample rows from poses: s by the arcs' lengths, scaled to the unstretched arm. */
 export function samples_of(poses: Pose[], total: number): Float32Array {
   const rows = new Float32Array(poses.length * 8);
   poses.forEach((pose, i) => rows.set(pose, 8 * i + 1));

@@ -1,4 +1,4 @@
-// What is there for the hand: the tip's handle, its goal while it is dragged, and the picked point.
+// Interactive marks: the tip's handle, its target while it is dragged, and the picked point.
 import {
   Group, type Object3D, Mesh, MeshBasicMaterial, SphereGeometry, TorusGeometry,
 } from 'three';
@@ -53,7 +53,7 @@ export function make_handles({ scene, span }: PartContext): Handles {
   };
 }
 
-/** Not lit, and seen through the arm. */
+/** Creates an unlit object that is visible through the arm. */
 function glow(geometry: SphereGeometry | TorusGeometry, color: number, opacity: number): Object3D {
   const material = new MeshBasicMaterial({ color, opacity, transparent: true, depthTest: false, depthWrite: false });
   const mesh = new Mesh(geometry, material);

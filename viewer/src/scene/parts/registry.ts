@@ -8,6 +8,6 @@ import { make_stand } from './stand';
 import { make_tendons } from './tendons';
 import { make_trail } from './trail';
 
-/** What stands in the 3D view; a new kind of thing is one line here and one file beside. */
+/** All parts of the 3D view. A new kind needs one line here and one file. */
 export const part_makers: PartMaker[] = [make_arm, make_tendons, make_forces, make_trail, make_ghosts, make_cameras, make_stand, make_floor];
 

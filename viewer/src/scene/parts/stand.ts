@@ -1,4 +1,4 @@
-// What stands around the arm: screens, the calibration cylinder, obstacles.
+// Objects around the arm: screens, the calibration cylinder, obstacles.
 import {
   BoxGeometry, CapsuleGeometry, Color, CylinderGeometry, Group, Mesh, MeshBasicMaterial,
   MeshLambertMaterial, type Object3D, PlaneGeometry, Quaternion, SphereGeometry, Vector3,
@@ -30,8 +30,8 @@ function stand_at(object: Object3D, [x, y, z, qw, qx, qy, qz]: Pose): void {
 }
 
 /**
- * Bright to the side that it faces; from behind only its edges, so that it never hides the arm. Opaque: blending all
- * over the view is what a software renderer can do least.
+ * A screen: bright on its front; only its edges are visible from behind, so that it never hides the arm. It is opaque,
+ * because blending a large area is slow in software renderers.
  */
 function screen_of({ pose, size, brightness }: SceneScreen, { theme }: PartContext): Object3D {
   const group = new Group();
@@ -40,7 +40,7 @@ function screen_of({ pose, size, brightness }: SceneScreen, { theme }: PartConte
   const sheen = theme === 'dark' ? 0.02 * level : 0.75 + 0.25 * level;
   const sheet = new Mesh(
     new PlaneGeometry(size[0], size[1]),
-    // Pushed back a little, so that its edges lie upon it.
+    // Offset in depth, so that the edges lie on it.
     plain(new MeshBasicMaterial({
       color: new Color(sheen, sheen, 1.08 * sheen), polygonOffset: true, polygonOffsetFactor: 2, polygonOffsetUnits: 2,
     })),
@@ -65,7 +65,7 @@ function etalon_of({ pose, radius, height, line_width, color, line_color }: Scen
   const material = new MeshLambertMaterial({ color: new Color(...line_color) });
   for (let i = 0; i < 4; ++i) {
     const start = (i * Math.PI) / 2 - angle / 2;
-    // A hair larger than the cylinder: lines are painted on it.
+    // Slightly larger than the cylinder, because the lines are painted on it.
     const strip = new CylinderGeometry(radius * 1.002, radius * 1.002, height, 4, 1, true, start, angle);
     group.add(new Mesh(strip, material));
   }
@@ -108,7 +108,7 @@ function obstacle_of(obstacle: SceneObstacle, { span, theme }: PartContext): Obj
   }
 }
 
-/** A plane has no end: squares say where it lies. */
+/** Squares that mark an infinite plane. */
 function net_of(half: number, color: number): Object3D {
   const points: number[] = [];
   for (let i = -4; i <= 4; ++i) {

@@ -1,4 +1,4 @@
-// Tendons on their ways along the arm, coloured by how much they pull.
+// Tendons along the arm, coloured by tension.
 import { Color, CylinderGeometry, DynamicDrawUsage, Group, InstancedMesh, Matrix4, MeshBasicMaterial, Quaternion, Vector3 } from 'three';
 import { Arc, new_pose, rotate } from '../../math/arc';
 import { actuator_force, actuator_stride, sample_stride, type State } from '../../protocol/state';
@@ -6,21 +6,21 @@ import type { Vector3 as Point } from '../../protocol/types';
 import type { Part, PartContext } from '../part';
 import { plain } from '../plain';
 
-/** From what pulls little to what pulls most; and what hangs slack. */
+/** Colours from low to high tension, and of slack tendons. */
 const colors = {
   dark: { slack: shown(0x8796a5), low: shown(0xffe08a), high: shown(0xff4136) },
   light: { slack: shown(0x9aa8b5), low: shown(0xf5c518), high: shown(0xe8281d) },
 };
 
-/** As plain materials have them. */
+/** Converts a colour for plain materials. */
 function shown(color: number): Color {
   return new Color(color).convertLinearToSRGB();
 }
 
-/** A share of the arm's length: thicker than they are, to be seen. */
+/** Share of the arm's length; thicker than in reality, to be visible. */
 const thickness = 0.0045;
 
-/** Seen through the arm, in which most of them run. Not drawn where nobody knows how they pull. */
+/** The tendons are visible through the arm, in which most of them run. Not drawn if tensions are unknown. */
 export function make_tendons({ scene, span, theme }: PartContext): Part[] {
   const routes = scene.arm.tendons ?? [];
   if (!routes.length) return [];
@@ -31,7 +31,7 @@ export function make_tendons({ scene, span, theme }: PartContext): Part[] {
   rods.frustumCulled = false;
   rods.renderOrder = 5;
   rods.visible = false;
-  // A click is at the arm.
+  // Clicks belong to the arm.
   rods.raycast = () => {};
   const group = new Group().add(rods);
   const { slack, low, high } = colors[theme];
@@ -44,7 +44,7 @@ export function make_tendons({ scene, span, theme }: PartContext): Part[] {
   const turn = new Quaternion();
   const matrix = new Matrix4();
 
-  // A rod from each point to the next; gives where the next tendon's begin.
+  // Draws a rod from each point to the next; returns the index of the next tendon's first rod.
   const lay = (samples: Float32Array, route: Point[], from: number): number => {
     const last = samples.length / sample_stride - 2;
     let at = from;
@@ -76,7 +76,7 @@ export function make_tendons({ scene, span, theme }: PartContext): Part[] {
       if (!rods.visible) return;
       let most = 1;
       for (let i = 0; i < routes.length; ++i) most = Math.max(most, actuators[actuator_stride * i + actuator_force]);
-      // What pulls lies upon what hangs slack.
+      // Tendons under tension are drawn over slack ones.
       let at = 0;
       mixed.copy(slack);
       for (let i = 0; i < routes.length; ++i) {

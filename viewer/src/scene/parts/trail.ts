@@ -4,11 +4,14 @@ import type { Part, PartContext } from '../part';
 import { plain } from '../plain';
 
 export const most_points = 3000;
-/** Time and way between two shown states above which the tip was not seen to go there: one scrubbed. */
+/**
+ * Limits of time and distance between two shown states; beyond them the view was scrubbed, and the trail is
+ * interrupted.
+ */
 const jump_s = 0.5;
 const jump_share = 0.03;
 
-/** Where the tip was seen to go: begins anew where time goes back or jumps, and where the tip was put elsewhere. */
+/** The observed path of the tip. It restarts if time goes back or jumps, or if the tip is set to another position. */
 export function make_trail({ span, theme }: PartContext): Part[] {
   const points = new Float32Array(3 * most_points);
   const attribute = new BufferAttribute(points, 3).setUsage(DynamicDrawUsage);
@@ -34,7 +37,7 @@ export function make_trail({ span, theme }: PartContext): Part[] {
       leaps = state.leaps;
       if (count && way < 1e-3 * span) return;
       if (count === most_points) {
-        // The oldest half goes at once: moving all of it at every state would cost more.
+        // The oldest half is dropped at once, because moving all points with every state would cost more.
         points.copyWithin(0, (3 * most_points) / 2);
         count = most_points / 2;
       }

@@ -27,6 +27,7 @@
 #include "flexura/experiment/schedule.h"
 #include "flexura/log/export_csv.h"
 #include "flexura/log/export_mp4.h"
+#include "flexura/log/export_png.h"
 #include "flexura/log/results.h"
 #include "flexura/log/results_log.h"
 #include "flexura/safety/violation_groups.h"
@@ -97,9 +98,11 @@ class UnwatchedRun {
 };
 
 // Exports the films of a run's cameras.
-ExportResult export_films(const std::filesystem::path& results) {
+ExportResult export_as(const std::string& format, const std::filesystem::path& results) {
+  if (format == "csv") return export_csv(results, task_tables());
   const Experiment experiment = load_experiment(file_of_results(results, experiment_file_name));
-  return export_mp4(results, experiment.true_rig().cameras);
+  const std::vector<CameraConfig> cameras = experiment.true_rig().cameras;
+  return format == "mp4" ? export_mp4(results, cameras) : export_png(results, cameras);
 }
 
 // Answers lines about the elastic arm in a file with an `Answers` object. Throws InputError if the arm does
@@ -205,9 +208,9 @@ int linearise_command(const std::string& arm_file, std::istream& in, std::ostrea
 
 int export_command(const std::string& results, const std::string& format, std::ostream& out,
                    std::ostream& err) {
-  if (format != "csv" && format != "mp4")
-    throw input_error("--to", fmt::format("\"{}\": expected csv or mp4", format));
-  const ExportResult result = format == "csv" ? export_csv(results, task_tables()) : export_films(results);
+  if (format != "csv" && format != "mp4" && format != "png")
+    throw input_error("--to", fmt::format("\"{}\": expected csv, mp4 or png", format));
+  const ExportResult result = export_as(format, results);
   if (result.truncated)
     err << "note: the run was cut short; exported up to the last complete chunk of its log\n";
   tell(out, format == "csv" ? "tables" : "films", result.folder.string());

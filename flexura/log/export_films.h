@@ -1,0 +1,43 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "flexura/camera/camera_config.h"
+#include "flexura/camera/sensor.h"
+#include "flexura/log/export_csv.h"
+
+namespace flexura {
+
+/// Writes one film.
+class FilmWriter {
+ public:
+  virtual ~FilmWriter() = default;
+  FilmWriter() = default;
+  FilmWriter(const FilmWriter&) = delete;
+  FilmWriter& operator=(const FilmWriter&) = delete;
+  FilmWriter(FilmWriter&&) = delete;
+  FilmWriter& operator=(FilmWriter&&) = delete;
+
+  /// Appends `times` equal frames, > 0. `png` is the picture as a PNG file.
+  virtual void put(const std::string& png, std::int64_t times) = 0;
+  /// Called once, after the last frame. The film is complete afterwards.
+  virtual void finish() = 0;
+};
+
+/// Returns a new film of a camera. `stem`: its path without extension.
+using NewFilm =
+    std::function<std::unique_ptr<FilmWriter>(const std::filesystem::path& stem, const SensorConfig& sensor)>;
+
+/// Makes a film of each camera's images in a run's log, in the new folder RESULTS/FOLDER (FOLDER-2, ... if it
+/// exists). A film has the camera's frame rate, and every frame from time 0 to the run's end. Lost frames
+/// repeat the previous one, or the first one. `cameras` are the run's true cameras. Throws InputError if
+/// `results` has no log or no images.
+ExportResult export_films(const std::filesystem::path& results, const std::string& folder,
+                          const std::vector<CameraConfig>& cameras, const NewFilm& new_film);
+
+}  // namespace flexura

@@ -62,7 +62,7 @@ void print_result(const Experiment& experiment, const RunResult& result, std::os
   if (result.outcome == RunOutcome::done) {
     out << fmt::format("end effector: ({:.3f}, {:.3f}{})\n", coordinate(0), coordinate(1), z);
   }
-  tell(out, "results", result.folder.string());
+  print_line(out, "results", result.folder.string());
 }
 
 // A run with a viewer, which stays open until the program is stopped. Stopping during the run cancels it.
@@ -86,14 +86,14 @@ class UnwatchedRun {
  public:
   explicit UnwatchedRun(const std::shared_ptr<RunLink>& link)
       : stop_([this, link] {
-          if (times_told_++ > 0) std::_Exit(exit_of_signal(stop_.come()));
+          if (times_signalled_++ > 0) std::_Exit(exit_of_signal(stop_.come()));
           link->cancel();
         }) {}
   /// Returns the first stop signal received; 0: none.
-  [[nodiscard]] int told() const { return stop_.come(); }
+  [[nodiscard]] int received_signal() const { return stop_.come(); }
 
  private:
-  int times_told_ = 0;  // Used only in the signal thread.
+  int times_signalled_ = 0;  // Used only in the signal thread.
   StopSignal stop_;
 };
 
@@ -146,25 +146,26 @@ int run_command(const RunArguments& arguments, std::ostream& out, std::ostream& 
     try {
       (void)export_films(folder);
     } catch (const std::exception& error) {
-      tell(err, "no film", error.what());
+      print_line(err, "no film", error.what());
     }
   }
   write_timing(folder, started, std::chrono::duration<double>(Clock::now() - start).count(), result.summary);
   for (std::size_t i = 0; i < result.reasons.size(); ++i) {
     // After the reason of a cancellation come the reasons why the run was unsafe.
     const bool is_second = result.outcome == RunOutcome::cancelled && i > 0;
-    tell(err, name_of(is_second ? RunOutcome::unsafe : result.outcome), result.reasons[i]);
+    print_line(err, name_of(is_second ? RunOutcome::unsafe : result.outcome), result.reasons[i]);
   }
   if (arguments.json) {
     out << write_json(result.summary, 2) << '\n';
-    tell(err, "results", folder.string());
+    print_line(err, "results", folder.string());
   } else {
     print_result(experiment, result, out);
   }
   out.flush();
   link->finish({name_of(result.outcome), result.reasons.empty() ? "" : result.reasons.front(), folder});
   if (watched) watched->wait();
-  if (result.outcome == RunOutcome::cancelled && unwatched) return exit_of_signal(unwatched->told());
+  if (result.outcome == RunOutcome::cancelled && unwatched)
+    return exit_of_signal(unwatched->received_signal());
   return result.outcome == RunOutcome::done ? exit_done : exit_missed;
 }
 
@@ -178,9 +179,9 @@ int check_command(const CheckArguments& arguments, std::ostream& out, std::ostre
   if (arguments.json) {
     out << write_json(safety_node(report), 2) << '\n';
   } else {
-    for (const std::string& line : violation_lines(report)) tell(out, "unsafe", line);
-    for (const std::string& caveat : report.caveats) tell(out, "caveat", caveat);
-    for (const std::string& note : report.notes) tell(out, "note", note);
+    for (const std::string& line : violation_lines(report)) print_line(out, "unsafe", line);
+    for (const std::string& caveat : report.caveats) print_line(out, "caveat", caveat);
+    for (const std::string& note : report.notes) print_line(out, "note", note);
     if (report.is_safe()) out << "safe\n";
   }
   return report.is_safe() ? exit_done : exit_missed;
@@ -213,7 +214,7 @@ int export_command(const std::string& results, const std::string& format, std::o
   const ExportResult result = export_as(format, results);
   if (result.truncated)
     err << "note: the run was cut short; exported up to the last complete chunk of its log\n";
-  tell(out, format == "csv" ? "tables" : "films", result.folder.string());
+  print_line(out, format == "csv" ? "tables" : "films", result.folder.string());
   return exit_done;
 }
 

@@ -6,13 +6,13 @@
 
 #include "flexura/app/estimate_config.h"
 #include "flexura/base/node.h"
+#include "flexura/estimate/observation.h"
 #include "flexura/estimate/shape_estimator.h"
-#include "flexura/estimate/sighting.h"
 
 namespace flexura {
 
 /// One picture, as the answer reports it.
-struct LookedAt {
+struct PictureReport {
   std::string image;   ///< File name.
   std::string camera;  ///< Camera name.
   std::string reason;  ///< Why no arm was found; empty if one was.
@@ -20,8 +20,8 @@ struct LookedAt {
 };
 
 /// Returns the answer that `flexura estimate` prints (docs/estimation.md, "flexura estimate"). `found` is the
-/// estimate from `sightings`, one for each of `pictures`.
-[[nodiscard]] Node estimate_node(const ShapeEstimate& found, std::span<const Sighting> sightings,
-                                 std::span<const LookedAt> pictures, const EstimateConfig& config);
+/// estimate from `observations`, one for each of `pictures`.
+[[nodiscard]] Node estimate_node(const ShapeEstimate& found, std::span<const Observation> observations,
+                                 std::span<const PictureReport> pictures, const EstimateConfig& config);
 
 }  // namespace flexura

@@ -30,7 +30,7 @@ struct IdentifiedValue {
   std::string name;  ///< "youngs_modulus", "stiffness_factor", "damping_time" or "mass_factor".
   std::string unit;  ///< "Pa", "s" or "".
   std::optional<std::size_t> section = {};  ///< From 1; empty: the whole arm.
-  bool is_told = false;                     ///< If false, the motion does not determine value and sigma.
+  bool is_determined = false;               ///< If false, the motion does not determine value and sigma.
   double value = 0;
   double sigma = 0;    ///< Standard deviation of the value.
   double nominal = 0;  ///< Value in the file.

@@ -25,7 +25,7 @@ struct CalibratedCamera {
   Pose pose;        ///< X_WC
   LensConfig lens;  ///< Lens at zoom ratio 1, with the zoom's rows if it was measured at several ratios.
   std::array<int, 2> size = {640, 480};
-  ViewDoubt doubt;
+  ViewPrior view_prior;
 };
 
 /// The part of a rig that experiments include: its cameras.
@@ -40,7 +40,7 @@ const Table<RigFile>& fields_of(const RigFile*);
 /// Returns the prior standard deviations for a camera of a fit. They are three times those of the fit's
 /// covariance, which assumes independent errors of all corners. The focal one comes from the focal lengths.
 /// The rotation one comes from the principal point and from the orientation relative to the first camera.
-[[nodiscard]] ViewDoubt doubt_of(const IntrinsicsFit& fit, std::size_t camera);
+[[nodiscard]] ViewPrior view_prior_of(const IntrinsicsFit& fit, std::size_t camera);
 
 /// Returns the text of a file of measured cameras (camera/measured_camera.h).
 [[nodiscard]] std::string measured_cameras_toml(const std::vector<CalibratedCamera>& cameras,
@@ -55,7 +55,7 @@ const Table<RigFile>& fields_of(const RigFile*);
 
 /// Writes a new file of this name, or NAME-2, NAME-3, ... if it already exists: earlier files are kept.
 /// Returns the path. Throws std::runtime_error with the path if the system refuses.
-[[nodiscard]] std::filesystem::path write_beside(const std::filesystem::path& wanted, std::string_view text);
+[[nodiscard]] std::filesystem::path write_beside(const std::filesystem::path& desired, std::string_view text);
 
 /// Returns X_WC of the first camera, as given in the arguments.
 [[nodiscard]] Pose first_pose(const IntrinsicsArguments& arguments);

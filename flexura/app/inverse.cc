@@ -17,8 +17,8 @@
 
 namespace flexura {
 
-// In InverseWish's namespace, for the argument-dependent lookup of the field tables.
-static const std::vector<std::string>& names_of(const InverseWish*) {
+// In InverseObjective's namespace, for the argument-dependent lookup of the field tables.
+static const std::vector<std::string>& names_of(const InverseObjective*) {
   static const std::vector<std::string> names{"none", "least_bending", "mid_range"};
   return names;
 }
@@ -34,7 +34,7 @@ struct InverseRequest {
   std::optional<std::array<double, 4>> rotation;  ///< (w, x, y, z)
   std::optional<std::vector<Triple>> curve;       ///< m
   std::optional<double> tolerance;                ///< For a curve, m.
-  InverseWish wish = InverseWish::none;
+  InverseObjective objective = InverseObjective::none;
   bool all = false;
   std::optional<ShapeConfig> start;
 };
@@ -59,7 +59,7 @@ const Table<InverseRequest>& fields_of(const InverseRequest*) {
                  {.meaning = "how far the arm may be from the curve",
                   .unit = Unit::metre,
                   .range = above_up_to(0, farthest)})
-          .field("prefer", &InverseRequest::wish, {.meaning = "which of many solutions to prefer"})
+          .field("prefer", &InverseRequest::objective, {.meaning = "which of many solutions to prefer"})
           .renamed("wish", "prefer")
           .field("all", &InverseRequest::all, {.meaning = "whether to return all distinct solutions"})
           .field("start", &InverseRequest::start, {.meaning = "the shape from which the search begins"});
@@ -161,7 +161,7 @@ Node answer_one(const Arm& arm, const InverseRequest& request, const InverseResu
 Node answer(const ArmModel& model, const InverseRequest& request) {
   const Arm& arm = model.driven();
   InverseConfig config;
-  config.wish = request.wish;
+  config.objective = request.objective;
   if (request.start) config.start = arm_state(arm, *request.start);
   config.position_tolerance = request.tolerance;
   if (request.curve) {

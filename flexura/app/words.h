@@ -15,7 +15,7 @@
 namespace flexura {
 
 /// Prints "label: text" as one line, even if names in the text hold line breaks.
-inline void tell(std::ostream& out, std::string_view label, std::string_view text) {
+inline void print_line(std::ostream& out, std::string_view label, std::string_view text) {
   out << label << ": " << one_line(text) << '\n';
 }
 

@@ -34,11 +34,11 @@ TEST(ServoOfARod, EndsWithinItsStatedSigma) {
     let_sag("arm", 200e9, text);
     ServoBench bench(text);
     const Experiment& experiment = bench.experiment();
-    const RigModel believed = rig_model(experiment.arm_model(), experiment.cameras());
-    const ServoConfig config = servo_config(experiment, std::get<ServoTask>(experiment.task.front()),
-                                            believed, bench.ports().arm->read().value().state);
+    const RigModel nominal = rig_model(experiment.arm_model(), experiment.cameras());
+    const ServoConfig config = servo_config(experiment, std::get<ServoTask>(experiment.task.front()), nominal,
+                                            bench.ports().arm->read().value().state);
     ServoNotes notes;
-    const ServoResult result = servo_in_session(bench.ports(), believed, config, notes);
+    const ServoResult result = servo_in_session(bench.ports(), nominal, config, notes);
     ++poses;
     if (!result.is_done) {
       std::printf("[%s]: %s\n", bends.c_str(), result.reason.c_str());

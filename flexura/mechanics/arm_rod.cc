@@ -124,13 +124,13 @@ struct PieceLength {
   Eigen::RowVector3d slope = Eigen::RowVector3d::Zero();
 };
 
-PieceLength piece_length(const Eigen::Vector3d& way, const Eigen::Matrix3d& way_by_state, double along,
+PieceLength piece_length(const Eigen::Vector3d& way, const Eigen::Matrix3d& path_by_state, double along,
                          const Eigen::RowVector3d& along_by_state, double piece) {
   const double least = least_along * piece;
-  if (along >= least) return {way.norm(), way.transpose() / way.norm() * way_by_state};
+  if (along >= least) return {way.norm(), way.transpose() / way.norm() * path_by_state};
   const double aside = std::max(0.0, way.squaredNorm() - along * along),
                edge = std::sqrt(aside + least * least);
-  const Eigen::RowVector3d aside_by_state = 2 * (way.transpose() * way_by_state - along * along_by_state);
+  const Eigen::RowVector3d aside_by_state = 2 * (way.transpose() * path_by_state - along * along_by_state);
   const double beyond = (along - least) * least / edge;
   return {edge + beyond, (0.5 - 0.5 * beyond / edge) / edge * aside_by_state + least / edge * along_by_state};
 }
@@ -194,18 +194,18 @@ class TendonOnArcs {
         by_state.col(c) = t * (disk.linear.col(c) + Eigen::Vector3d(disk.angular.col(c)).cross(arm));
       by_state.col(2) = disk.position / stretch;
       const Eigen::Vector3d way = hole - before;
-      const Eigen::Matrix3d way_by_state = by_state - before_by_state;
+      const Eigen::Matrix3d path_by_state = by_state - before_by_state;
       // Direction along the rod halfway between the disks.
       const double halfway = t - 0.5 / section.disks;
       const ArcMotion middle = arc_motion(halfway * bend, halfway * section.length * stretch);
       const Eigen::Vector3d z = middle.rotation.col(2);
-      Eigen::RowVector3d along_by_state = z.transpose() * way_by_state;
+      Eigen::RowVector3d along_by_state = z.transpose() * path_by_state;
       for (int c = 0; c < 2; ++c)
         along_by_state[c] += halfway * way.dot(Eigen::Vector3d(middle.angular.col(c)).cross(z));
-      const PieceLength piece_of_way =
-          piece_length(way, way_by_state, way.dot(z), along_by_state, section.length / section.disks);
-      length += piece_of_way.length;
-      change += piece_of_way.slope;
+      const PieceLength piece_of_path =
+          piece_length(way, path_by_state, way.dot(z), along_by_state, section.length / section.disks);
+      length += piece_of_path.length;
+      change += piece_of_path.slope;
       before = hole;
       before_by_state = by_state;
     }

@@ -29,11 +29,11 @@ struct TensionFitConfig {
 /// Tensions that come nearest to target generalized forces.
 struct TensionFit {
   std::vector<double> tensions;  ///< N, one a tendon, each from 0 to its maximum.
-  Eigen::VectorXd wanted;        ///< Target generalized forces.
+  Eigen::VectorXd desired;       ///< Target generalized forces.
   Eigen::VectorXd missing;       ///< Remaining forces: target minus those of the tensions.
   /// Energies that the rod would store under the target and the missing forces, J. If no tension helps, both
   /// are equal.
-  double wanted_energy = 0, missing_energy = 0;
+  double desired_energy = 0, missing_energy = 0;
   /// Whether the tensions are unique, regardless of sign: the tendons are linearly independent.
   bool is_determined = false;
 
@@ -41,12 +41,13 @@ struct TensionFit {
   [[nodiscard]] double residual() const;
 };
 
-/// Returns the tensions that come nearest to the generalized forces `wanted` at q. They minimise the missing
+/// Returns the tensions that come nearest to the generalized forces `desired` at q. They minimise the missing
 /// energy f^T K^-1 f / 2 with the rod's stiffness K, so that stiff strains have little weight. Among several
 /// minima it takes that of least effort. Throws std::invalid_argument for lists of wrong length, numbers that
 /// are not finite, or a bound below 0.
 [[nodiscard]] TensionFit nearest_tensions(RodDynamics& dynamics, const Eigen::VectorXd& q,
-                                          const Eigen::VectorXd& wanted, const TensionFitConfig& config = {});
+                                          const Eigen::VectorXd& desired,
+                                          const TensionFitConfig& config = {});
 
 /// Returns the tensions of a motion at one time under loads: nearest_tensions to its needed_forces. Throws as
 /// nearest_tensions.
@@ -72,7 +73,7 @@ struct ComputedTorqueGains {
 /// they make all of the forces, the error e of all modes obeys e'' + Kd e' + Kp e = 0. Throws as
 /// nearest_tensions, and for gains that are not finite.
 [[nodiscard]] TensionFit computed_torque(RodDynamics& dynamics, const Eigen::VectorXd& q,
-                                         const Eigen::VectorXd& v, const RodMotionSample& wanted,
+                                         const Eigen::VectorXd& v, const RodMotionSample& desired,
                                          const ComputedTorqueGains& gains, const RodLoads& loads,
                                          const TensionFitConfig& config = {});
 

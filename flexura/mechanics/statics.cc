@@ -205,7 +205,7 @@ RodStatics::Descent RodStatics::descend(Unknowns& at, double share) {
 }
 
 // Returns whether no part of the rod is turned inside out.
-bool RodStatics::is_right_way_out() const {
+bool RodStatics::has_positive_stretch() const {
   return std::ranges::all_of(chain_.elements(), [](const RodElement& element) {
     return std::ranges::all_of(element.strains(), [](const Vector6d& strain) { return strain[2] > 0; });
   });
@@ -263,7 +263,7 @@ Equilibrium RodStatics::solve_from(const Unknowns& start, bool is_cold) {
     }
   }
   // A rod cannot pass through itself.
-  if (found && !is_right_way_out()) {
+  if (found && !has_positive_stretch()) {
     found = false;
     result.end = StaticsEnd::no_equilibrium;
   }

@@ -73,7 +73,7 @@ struct EquilibriumSlopes {
 
 /// Solves rods for equilibrium: minima of their energy in reduced strains (F. Boyer, F. Renda et al.,
 /// geometric variable strain). Newton's method follows the load path from zero load. Where the path ends
-/// before full load, the rod descends the energy from its last stable shape (RodFall).
+/// before full load, the rod descends the energy from its last stable shape (RodDescent).
 class RodStatics {
  public:
   /// Parameters as RodChain.
@@ -132,7 +132,7 @@ class RodStatics {
   bool follow(Equilibrium& result, Unknowns& at, Unknowns& last_stable);
   bool fall(Unknowns& at, Descent& descent);
   bool fall_on(Unknowns& at, Descent& descent);
-  [[nodiscard]] bool is_right_way_out() const;
+  [[nodiscard]] bool has_positive_stretch() const;
   // Takes the input and returns its problem, "" if it is valid.
   std::string take(const TendonInput& tendons, const RodLoads& loads);
   [[nodiscard]] bool is_start(const Equilibrium& near) const;

@@ -15,13 +15,13 @@ namespace flexura {
 class AxisMotion {
  public:
   /// Backlash: the load lies within motor + [low, high], and stays while the motor moves through that range.
-  struct Play {
+  struct Backlash {
     double low = 0, high = 0;  ///< low <= 0 <= high
   };
 
   /// Creates an axis whose motor and load rest at `start`. A command takes effect `delay` s after it was
   /// given. Queries are allowed back to `horizon` s before the last command.
-  AxisMotion(const AxisConfig& axis, const Play& play, double start, double delay, double horizon);
+  AxisMotion(const AxisConfig& axis, const Backlash& backlash, double start, double delay, double horizon);
 
   /// Moves to the commandable position nearest to `target`, from `time` + delay on. The motion takes
   /// `duration` s, or longer if limits require it. Throws std::invalid_argument if `time` is before the last
@@ -63,7 +63,7 @@ class AxisMotion {
   [[nodiscard]] double peak_rate(double way, double rate, double duration) const;
 
   AxisConfig axis_;
-  Play play_;
+  Backlash backlash_;
   double delay_, horizon_;
   std::deque<Plan> plans_;  // Ordered by start; never empty.
 };

@@ -19,7 +19,7 @@ class SimulatedDrive : public DrivePort {
  public:
   /// Starts at rest at `start`, microsteps. Motors obey the limits of `real`. The plant must outlive this
   /// object.
-  SimulatedDrive(const Drive& believed, const Drive& real, const std::vector<std::int64_t>& start,
+  SimulatedDrive(const Drive& nominal, const Drive& real, const std::vector<std::int64_t>& start,
                  Plant& plant, const ClockPort& clock, double horizon);
 
   [[nodiscard]] DriveQuantity quantity() const override { return DriveQuantity::motor_positions; }

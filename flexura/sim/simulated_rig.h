@@ -19,9 +19,9 @@ namespace flexura {
 /// A camera of the simulated world with its head and stage.
 class SimulatedView {
  public:
-  /// `believed` is the camera model, whose initial state its head and stage count; `config` is the true
+  /// `nominal` is the camera model, whose initial state its head and stage count; `config` is the true
   /// camera. `shot` and `take_picture` as for SimulatedCamera; the shot's view is filled in.
-  SimulatedView(const CameraConfig& believed, const CameraConfig& config, Shot shot,
+  SimulatedView(const CameraConfig& nominal, const CameraConfig& config, Shot shot,
                 const TakePicture& take_picture, SimulatedClock& clock, double horizon);
 
   /// Returns the true camera.

@@ -11,7 +11,7 @@ namespace flexura {
 
 /// Measurement of a calibration in one picture, as logged.
 struct CalibrationPicture {
-  CalibrationSightingMessage sighting;
+  CalibrationObservationMessage observation;
   std::optional<std::int64_t> number =
       {};  ///< Picture number for clients; missing if clients do not get the picture.
 };

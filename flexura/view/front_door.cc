@@ -53,7 +53,7 @@ void FrontDoor::closed(ClientId client) {
   waiting_.erase(client);
 }
 
-void FrontDoor::said(ClientId client, std::string text) {
+void FrontDoor::on_message(ClientId client, std::string text) {
   const std::lock_guard lock(mutex_);
   if (is_over_) return;
   Counter& waiting = waiting_[client];
@@ -68,7 +68,7 @@ void FrontDoor::said(ClientId client, std::string text) {
   // more.
   std::shared_ptr<const void> debt(waiting.get(), [waiting](const void*) { --*waiting; });
   items_.push_back({[client, text = std::move(text), debt = std::move(debt)](Viewer& viewer) {
-                      viewer.said(client, text, debt);
+                      viewer.on_message(client, text, debt);
                     },
                     client, true});
   filled_.notify_one();

@@ -40,7 +40,7 @@ class LiveRig {
   [[nodiscard]] std::optional<double> pace() const;
 
   /// Returns the shape of the arm according to the model.
-  [[nodiscard]] ArmState believed();
+  [[nodiscard]] ArmState nominal();
   /// Returns the state that the drives truly impose, and the true backbone, at `time` s. Future times are
   /// possible as far as commanded.
   [[nodiscard]] ArmState truth(double time) { return simulated_->arm().truth(rig_time(time)); }

@@ -17,9 +17,9 @@ namespace flexura {
 
 /// Returns the shape that a client requests, clamped to the arm's limits. Throws ViewRefusal with the reason
 /// if it does not fit this arm.
-[[nodiscard]] ArmState shape_wanted(const Arm& arm, const std::optional<Drive>& drive,
-                                    const ArmRequest& request);
-[[nodiscard]] ArmState shape_wanted(const Arm& arm, const ShapeConfig& shape);
+[[nodiscard]] ArmState requested_shape(const Arm& arm, const std::optional<Drive>& drive,
+                                       const ArmRequest& request);
+[[nodiscard]] ArmState requested_shape(const Arm& arm, const ShapeConfig& shape);
 
 /// Displacements of tendons that are pulled individually.
 struct TendonPull {
@@ -27,8 +27,8 @@ struct TendonPull {
 };
 /// Returns the displacements that a client requests for a rig's actuators. Throws ViewRefusal if their number
 /// is wrong, or if one is out of range.
-[[nodiscard]] TendonPull pull_wanted(const std::vector<PulledTendon>& actuators,
-                                     const std::vector<double>& displacements);
+[[nodiscard]] TendonPull requested_pull(const std::vector<PulledTendon>& actuators,
+                                        const std::vector<double>& displacements);
 
 /// Throws ViewRefusal if the camera has no stage, or if the stage cannot move along a requested axis.
 void require_travel(const Camera& camera, const StageRequest& request);
@@ -42,8 +42,8 @@ void require_travel(const Camera& camera, const StageRequest& request);
 
 /// Returns in one line why the arm must not move straight from one command to another; "" if the path is
 /// free. Violations that already exist at the start and do not worsen are ignored.
-[[nodiscard]] std::string danger_on_way(const ArmModel& arm, const std::vector<Obstacle>& obstacles,
-                                        const ArmState& from, const ArmState& to);
+[[nodiscard]] std::string danger_on_path(const ArmModel& arm, const std::vector<Obstacle>& obstacles,
+                                         const ArmState& from, const ArmState& to);
 
 /// Returns in one line what an arm with this backbone touches; "" if nothing.
 [[nodiscard]] std::string touched(const Backbone& backbone, const std::vector<Obstacle>& obstacles);

@@ -22,9 +22,9 @@ struct SeenPixel {
 };
 
 /// Determines what a camera's pixels show. To be used by one thread at a time.
-class PixelEye {
+class PixelProbe {
  public:
-  explicit PixelEye(ViewedRigPtr rig);
+  explicit PixelProbe(ViewedRigPtr rig);
 
   /// Returns what is seen in the centre of a pixel of the image, at mid-exposure of the frame.
   [[nodiscard]] SeenPixel look(const Shot& shot, int u, int v);

@@ -56,7 +56,7 @@ class RunLink : public Progress, public RunWatcher {
   [[nodiscard]] bool is_cancelled() const override { return cancelled_; }
   void state(double time, const ArmState& state, std::span<const CameraReading> cameras) override;
 
-  [[nodiscard]] bool wants_truth() override { return is_truth_wanted_.exchange(false); }
+  [[nodiscard]] bool needs_truth() override { return is_truth_requested_.exchange(false); }
   void truth(double time, const TrueArm& arm) override;
   void happened(double time, const std::string& level, const std::string& name,
                 const std::string& text) override;
@@ -65,7 +65,7 @@ class RunLink : public Progress, public RunWatcher {
 
   void cancel() { cancelled_ = true; }
   /// Requests the true arm with the next news: one report for each call.
-  void want_truth() { is_truth_wanted_ = true; }
+  void request_truth() { is_truth_requested_ = true; }
   void finish(End end);
   [[nodiscard]] News news() const;
   /// Returns and removes the oldest events, at most `most`. If there are very many, only the last are kept.
@@ -75,7 +75,7 @@ class RunLink : public Progress, public RunWatcher {
   void decided(const CalibrationDecisionMessage& decision);
 
   Progress* also_;
-  std::atomic<bool> cancelled_ = false, is_truth_wanted_ = false;
+  std::atomic<bool> cancelled_ = false, is_truth_requested_ = false;
   mutable std::mutex mutex_;
   News news_;
   std::vector<ServoPicture> pictures_;  // Newest picture of each camera of a servo.

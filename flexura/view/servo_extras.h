@@ -16,7 +16,7 @@ namespace flexura {
 
 /// Observation of a servo in one picture, as logged.
 struct ServoPicture {
-  ServoSightingMessage sighting;
+  ServoObservationMessage observation;
   std::optional<std::int64_t> number =
       {};  ///< Picture number for clients; missing if clients do not get the picture.
 };

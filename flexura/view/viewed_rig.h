@@ -59,7 +59,7 @@ class ViewedRig {
   std::vector<Obstacle> forbidden;  ///< Obstacles that the arm must not touch.
   std::optional<Drive> drive;       ///< Drive of the model.
   std::vector<Camera> cameras;      ///< True cameras.
-  std::vector<Camera> believed;     ///< Camera models.
+  std::vector<Camera> nominal;      ///< Camera models.
   std::vector<SensorConfig> sensors;
 
   /// Returns the index of the camera with this name; std::nullopt if there is none.
@@ -73,7 +73,7 @@ class ViewedRig {
   [[nodiscard]] CameraStance stance(std::size_t camera, const CameraReading& reading) const;
   [[nodiscard]] CameraReading reading(std::size_t camera, const CameraStance& stance) const;
   /// Returns the camera's view according to the model and its readings.
-  [[nodiscard]] View believed_view(std::size_t camera, const CameraReading& reading) const;
+  [[nodiscard]] View nominal_view(std::size_t camera, const CameraReading& reading) const;
 };
 
 using ViewedRigPtr = std::shared_ptr<const ViewedRig>;

@@ -49,7 +49,7 @@ class RawClient {
   /// Sends a masked frame. `first` as in the protocol: 0x81 a complete text, 0x82 complete binary data, 0x01
   /// the beginning of a text, and so on.
   bool send_frame(std::uint8_t first, std::string_view payload) const;
-  bool say(std::string_view text) const { return send_frame(0x81, text); }
+  bool send_text(std::string_view text) const { return send_frame(0x81, text); }
 
  private:
   /// Reads more bytes into buffer_; returns false at the end.

@@ -39,7 +39,7 @@ struct SampledComparison {
   std::size_t refuted = 0;  ///< Reported spans longer than two samples that contain no violating sample.
   std::size_t understated =
       0;  ///< Reported spans with a sample worse than their worst value, without a caveat.
-  std::size_t doubted =
+  std::size_t flagged =
       0;  ///< Reported spans with a sample worse than their worst value, with a caveat in the report.
   double most_understated =
       0;  ///< Largest excess of the spans without a caveat: contacts, m; limits, share of the value.
@@ -208,10 +208,10 @@ class SampledCheck {
   // Compares all samples of a reported span with the report.
   void compare(const Key& key, const Reported& one, double long_span, double tolerance) {
     if (!one.confirmed && one.span.end - one.span.start > long_span) ++result_.refuted;
-    const bool is_doubted = is_worse_by_its_own_words(key);
-    if (one.sampled_excess > tolerance) ++(is_doubted ? result_.doubted : result_.understated);
+    const bool is_flagged = is_worse_by_its_own_words(key);
+    if (one.sampled_excess > tolerance) ++(is_flagged ? result_.flagged : result_.understated);
     const double scale = is_contact(key) ? 1 : std::abs(one.worst.value);
-    if (!is_doubted && one.sampled_excess > 0)
+    if (!is_flagged && one.sampled_excess > 0)
       result_.most_understated = std::max(result_.most_understated, one.sampled_excess / scale);
   }
   [[nodiscard]] bool is_worse_by_its_own_words(const Key& key) const {
@@ -230,8 +230,8 @@ class SampledCheck {
   // Records a value above (sign -1: below) its limit that occurs within `within` s before `time`.
   void above(Hazard hazard, std::size_t section, double time, double value, double limit, double sign = 1,
              double within = 0) {
-    constexpr double doubtful = 1e-8;  // Below this the sign is uncertain by rounding.
-    constexpr double slack = 1e-6;     // s; reported spans are accurate to 1e-7 s.
+    constexpr double negligible = 1e-8;  // Below this the sign is uncertain by rounding.
+    constexpr double slack = 1e-6;       // s; reported spans are accurate to 1e-7 s.
     const double excess = sign * (value - limit);
     if (!(excess > 0)) return;
     bool is_reported = false;
@@ -241,7 +241,7 @@ class SampledCheck {
       // Because of rounding the sample may lie just outside the span.
       one.sampled_excess = std::max(one.sampled_excess, sign * (value - one.worst.value));
     }
-    if (excess <= doubtful) return;
+    if (excess <= negligible) return;
     ++result_.above;
     if (!is_reported) ++result_.missed;
   }

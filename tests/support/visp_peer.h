@@ -16,7 +16,7 @@ struct VispPoint {
 /// steps.
 class VispServo {
  public:
-  VispServo(const std::vector<VispPoint>& wanted, double gain);
+  VispServo(const std::vector<VispPoint>& desired, double gain);
   ~VispServo();
   VispServo(const VispServo&) = delete;
   VispServo& operator=(const VispServo&) = delete;

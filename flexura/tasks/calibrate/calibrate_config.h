@@ -10,7 +10,7 @@
 
 #include "flexura/base/fields.h"
 #include "flexura/calibrate/loop_session.h"
-#include "flexura/calibrate/rig_hands.h"
+#include "flexura/calibrate/rig_commander.h"
 #include "flexura/calibrate/rig_prior.h"
 #include "flexura/calibrate/rig_session.h"
 #include "flexura/camera/camera_config.h"
@@ -112,7 +112,7 @@ const Table<CalibrateTask>& fields_of(const CalibrateTask*);
                                               const std::vector<CameraConfig>& cameras,
                                               const StandConfig& stand);
 /// Returns the prior standard deviations that a task assumes for the rig.
-[[nodiscard]] RigPrior session_prior(const CalibrateTask& task, const RigModel& believed,
+[[nodiscard]] RigPrior session_prior(const CalibrateTask& task, const RigModel& nominal,
                                      const StandConfig& stand);
 
 /// Returns the loop configuration for a task with one of the paper's methods, without the simulator's

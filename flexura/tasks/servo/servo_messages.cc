@@ -10,19 +10,19 @@ const Table<FeatureMarkMessage>& fields_of(const FeatureMarkMessage*) {
       Table<M>("flexura.FeatureMark",
                "Something that a law compares in a picture: a pixel, or a line of some.")
           .field("seen", &M::seen, {.meaning = "As measured, px."})
-          .field("target", &M::wanted, {.meaning = "Target, px."});
+          .field("target", &M::desired, {.meaning = "Target, px."});
   return table;
 }
 
-const Table<ServoSightingMessage>& fields_of(const ServoSightingMessage*) {
-  using M = ServoSightingMessage;
+const Table<ServoObservationMessage>& fields_of(const ServoObservationMessage*) {
+  using M = ServoObservationMessage;
   static const auto table =
       Table<M>("flexura.ServoSighting", "What a servo measured in one picture.")
           .field("time", &M::time, {.meaning = "Middle of the exposure, since the experiment's start, s."})
           .field("camera", &M::camera, {.meaning = "The camera's name."})
           .field("frame", &M::frame, {.meaning = "The frame's number."})
           .field("points", &M::points, {.meaning = "Points of the median axis, base to tip."})
-          .field("target", &M::wanted,
+          .field("target", &M::desired,
                  {.meaning = "The target shape in the picture of the camera's model, base to "
                              "tip, px."})
           .field("features", &M::features,

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <set>
+#include <string>
+#include <utility>
+
+#include "flexura/base/node.h"
+#include "flexura/view/messenger.h"
+#include "flexura/view/run_link.h"
+#include "flexura/view/viewed_rig.h"
+
+namespace flexura {
+
+/// Reports a run of tasks to clients: its progress, events, observations of a calibration or servo, and its
+/// end.
+class RunReporter {
+ public:
+  RunReporter(ViewedRigPtr rig, Messenger& messenger) : rig_(std::move(rig)), messenger_(messenger) {}
+
+  /// Resets the reported state for a new run.
+  void begin();
+  /// Makes extras be sent again, for a new client.
+  void repeat() { are_extras_known_ = false; }
+  /// Reports news to the clients at `clock` s. Events carry the time `now`, s, if given; otherwise their own.
+  void report(RunLink& run, const RunLink::News& news, double clock, std::optional<double> now,
+              const std::set<ClientId>& clients);
+
+ private:
+  void report_progress(const RunLink::News& news, double clock, const std::set<ClientId>& clients);
+  void report_extras(const RunLink::News& news, double clock, std::optional<double> now,
+                     const std::set<ClientId>& clients);
+  void send(const Node& message, const std::set<ClientId>& clients);
+
+  ViewedRigPtr rig_;
+  Messenger& messenger_;
+  double reported_fraction_ = -1;
+  std::string reported_what_;
+  double reported_at_ = -1;  // s, of the clock
+  bool are_extras_known_ = true;
+  std::uint64_t changes_ = 0;
+  double drawn_at_ = -1;  // s, of the clock
+};
+
+}  // namespace flexura

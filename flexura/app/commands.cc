@@ -144,7 +144,7 @@ int run_command(const RunArguments& arguments, std::ostream& out, std::ostream& 
   // The film is optional: the run succeeds without ffmpeg, and a cancelled run does not wait for it.
   if (experiment.record.cameras && result.outcome != RunOutcome::cancelled) {
     try {
-      (void)export_films(folder);
+      (void)export_as("mp4", folder);
     } catch (const std::exception& error) {
       print_line(err, "no film", error.what());
     }

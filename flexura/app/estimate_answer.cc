@@ -82,7 +82,7 @@ void add_markers(const ShapeEstimate& found, const Backbone& backbone, Node::Tab
   for (const PlacedMarker& marker : found.markers) {
     Node::Table entry{{"s", {}, number_node(marker.s)},
                       {"at", {}, vector_node(backbone.pose(std::min(marker.s, backbone.length())).position)},
-                      {"images", {}, {static_cast<std::int64_t>(marker.looks), {}}}};
+                      {"images", {}, {static_cast<std::int64_t>(marker.count), {}}}};
     markers.push_back({std::move(entry), {}});
   }
   answer.push_back({"markers", {}, {std::move(markers), {}}});

@@ -165,25 +165,24 @@ std::vector<BandObservation> match_bands(const ShapePrior& prior, const Shape& s
 }
 
 std::vector<PlacedMarker> placed_markers(const ShapePrior& prior, const Shape& shape,
-                                         std::span<const BandObservation> observation_counts,
+                                         std::span<const BandObservation> bands,
                                          std::span<const Observation> observations) {
   SpaceCurve curve(ShapeVariables(prior), intervals_a_section(prior));
   curve.set(shape);
   std::map<std::size_t, PlacedMarker> markers;
   for (std::size_t i = 0; i < observations.size(); ++i) {
     for (const Place& place : places_of(observations[i], curve, shape, i)) {
-      const auto band_observation = std::ranges::find_if(observation_counts, [&](const BandObservation& one) {
-        return one.observation == i && one.band == place.index;
-      });
-      if (band_observation == observation_counts.end()) continue;
+      const auto band_observation = std::ranges::find_if(
+          bands, [&](const BandObservation& one) { return one.observation == i && one.band == place.index; });
+      if (band_observation == bands.end()) continue;
       PlacedMarker& marker = markers[band_observation->marker];
-      marker.s += stretch_of(shape) * place.s, ++marker.observation_counts;
+      marker.s += stretch_of(shape) * place.s, ++marker.count;
     }
   }
   std::vector<PlacedMarker> result;
   result.reserve(markers.size());
   for (const auto& [number, marker] : markers)
-    result.push_back({marker.s / static_cast<double>(marker.observation_counts), marker.observation_counts});
+    result.push_back({marker.s / static_cast<double>(marker.count), marker.count});
   std::ranges::stable_sort(result, {}, &PlacedMarker::s);
   return result;
 }

@@ -21,13 +21,13 @@ namespace flexura {
 
 /// A marker on a shape.
 struct PlacedMarker {
-  double s = 0;                        ///< Observed arc length, m; the mean over its observations.
-  std::size_t observation_counts = 0;  ///< Number of observations of the marker.
+  double s = 0;           ///< Observed arc length, m; the mean over its observations.
+  std::size_t count = 0;  ///< Number of observations of the marker.
 };
 
 /// Returns the positions of the matched markers on `shape`, from its base on.
 [[nodiscard]] std::vector<PlacedMarker> placed_markers(const ShapePrior& prior, const Shape& shape,
-                                                       std::span<const BandObservation> observation_counts,
+                                                       std::span<const BandObservation> bands,
                                                        std::span<const Observation> observations);
 
 }  // namespace flexura

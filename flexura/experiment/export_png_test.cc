@@ -24,7 +24,7 @@
 namespace flexura {
 namespace {
 
-constexpr const char* one_camera = R"(
+constexpr const char* filmed_arm = R"(
 [record]
 cameras = true
 report = false
@@ -44,7 +44,7 @@ kind = "hold"
 duration = 70
 )";
 
-struct Chunk {
+struct PngChunk {
   std::string type, data;
 };
 
@@ -55,8 +55,8 @@ std::uint32_t number_at(const std::string& bytes, std::size_t at, std::size_t co
 }
 
 // All chunks of a PNG file; expects that each has the right checksum and that nothing is left over.
-std::vector<Chunk> chunks_of(const std::string& png) {
-  std::vector<Chunk> chunks;
+std::vector<PngChunk> chunks_of(const std::string& png) {
+  std::vector<PngChunk> chunks;
   std::size_t at = 8;
   while (at + 12 <= png.size()) {
     const std::size_t length = number_at(png, at);
@@ -72,15 +72,15 @@ std::vector<Chunk> chunks_of(const std::string& png) {
 }
 
 // The compressed pixels of each picture, and its delay in ms. Expects sequence numbers without a gap.
-struct Frame {
+struct FilmFrame {
   std::string pixels;
   std::uint32_t delay = 0;
 };
 
-std::vector<Frame> frames_of(const std::vector<Chunk>& chunks) {
-  std::vector<Frame> frames;
+std::vector<FilmFrame> frames_of(const std::vector<PngChunk>& chunks) {
+  std::vector<FilmFrame> frames;
   std::uint32_t sequence = 0;
-  for (const Chunk& chunk : chunks) {
+  for (const PngChunk& chunk : chunks) {
     if (chunk.type == "fcTL") {
       EXPECT_EQ(number_at(chunk.data, 0), sequence++);
       EXPECT_EQ(number_at(chunk.data, 22, 2), 1000U);
@@ -100,7 +100,7 @@ class ExportPng : public ::testing::Test {
   void SetUp() override {
     std::filesystem::create_directory(results());
     Quiet progress;
-    (void)run_experiment(parse_experiment(one_camera, "x.toml"), results(), progress);
+    (void)run_experiment(parse_experiment(filmed_arm, "x.toml"), results(), progress);
   }
   [[nodiscard]] std::string exported() const {
     const auto cameras = load_experiment(results() / experiment_file_name).true_rig().cameras;
@@ -111,14 +111,14 @@ class ExportPng : public ::testing::Test {
 };
 
 TEST_F(ExportPng, HasEachImageOfTheLogForItsTime) {
-  const std::vector<Chunk> chunks = chunks_of(exported());
+  const std::vector<PngChunk> chunks = chunks_of(exported());
   ASSERT_GE(chunks.size(), 5U);
   EXPECT_EQ(chunks.front().type, "IHDR");
   EXPECT_EQ(number_at(chunks.front().data, 0), 40U);
   EXPECT_EQ(number_at(chunks.front().data, 4), 30U);
   ASSERT_EQ(chunks[1].type, "acTL");
   EXPECT_EQ(chunks.back().type, "IEND");
-  const std::vector<Frame> frames = frames_of(chunks);
+  const std::vector<FilmFrame> frames = frames_of(chunks);
   EXPECT_EQ(number_at(chunks[1].data, 0), frames.size());
   EXPECT_EQ(number_at(chunks[1].data, 4), 0U) << "repeats for ever";
 
@@ -129,14 +129,14 @@ TEST_F(ExportPng, HasEachImageOfTheLogForItsTime) {
     if (message.channel->topic != image_topic("one")) continue;
     const std::string png = read_as<ImageMessage>(parse_json(message.text(), "image")).data.data;
     std::string pixels;
-    for (const Chunk& chunk : chunks_of(png))
+    for (const PngChunk& chunk : chunks_of(png))
       if (chunk.type == "IDAT") pixels += chunk.data;
     if (images.empty() || images.back() != pixels) images.push_back(pixels);
   }
   EXPECT_GE(images.size(), 5U) << "the arm moves";
   std::uint32_t time = 0;
   std::size_t image = 0;
-  for (const Frame& frame : frames) {
+  for (const FilmFrame& frame : frames) {
     time += frame.delay;
     if (frame.pixels != images[image]) ++image;
     ASSERT_LT(image, images.size());

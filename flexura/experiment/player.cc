@@ -76,7 +76,7 @@ void Player::plan(double from) {
   for (const Violation& violation : safety_.violations)
     events_.push_back({violation.start, Recorder::Level::error, "unsafe", violation.text()});
   for (const auto& [task, motion] : done_) {
-    if (tasks_[task]->way() != TaskMotionSource::simulated) continue;
+    if (tasks_[task]->motion_source() != TaskMotionSource::simulated) continue;
     const bool is_last = ended_by_ && ended_by_->task == task;
     events_.push_back({schedule_.legs()[task].end(), is_last ? Recorder::Level::error : Recorder::Level::info,
                        tasks_[task]->name(), is_last ? ended_by_->failure : "there"});
@@ -186,7 +186,7 @@ void Player::stop_after(const Leg& leg, const std::string& failure) {
 std::optional<std::size_t> Player::rig_task_due(double time) const {
   if (!rig_ || !safety_.is_safe()) return std::nullopt;
   for (std::size_t i = 0; i < tasks_.size(); ++i) {
-    if (tasks_[i]->way() != TaskMotionSource::by_rig || done_.contains(i)) continue;
+    if (tasks_[i]->motion_source() != TaskMotionSource::by_rig || done_.contains(i)) continue;
     return schedule_.legs()[i].start <= time ? std::optional(i) : std::nullopt;
   }
   return std::nullopt;

@@ -42,13 +42,13 @@ std::string chunk(const std::string& type, const std::string& data) {
 }
 
 // The parts of a PNG file that its animation needs.
-struct Picture {
+struct PngParts {
   std::string header;  // Data of IHDR.
   std::string pixels;  // Data of all IDAT, compressed.
 };
 
-Picture parts_of(std::string_view png) {
-  Picture picture;
+PngParts parts_of(std::string_view png) {
+  PngParts picture;
   if (!png.starts_with(signature)) throw std::runtime_error("an image of the log is not a PNG picture");
   png.remove_prefix(signature.size());
   while (png.size() >= 12) {
@@ -70,7 +70,7 @@ class AnimatedPngWriter : public FilmWriter {
       : name_(file.string()), file_(file, std::ios::binary), frame_rate_(frame_rate) {}
 
   void put(const std::string& png, std::int64_t times) override {
-    const Picture picture = parts_of(png);
+    const PngParts picture = parts_of(png);
     if (pictures_ == 0) {
       header_ = picture.header;
       file_ << signature << chunk("IHDR", header_);
@@ -102,7 +102,7 @@ class AnimatedPngWriter : public FilmWriter {
   // How many pictures there are, and that they repeat for ever. Written again when their number is known.
   void write_control() { file_ << chunk("acTL", big_endian(pictures_, 4) + big_endian(0, 4)); }
 
-  void write_frame(const Picture& picture, std::int64_t delay) {
+  void write_frame(const PngParts& picture, std::int64_t delay) {
     const std::string size = header_.substr(0, 8), offset = big_endian(0, 4) + big_endian(0, 4);
     const std::string time = big_endian(static_cast<std::uint32_t>(delay), 2) + big_endian(1000, 2);
     const std::string replaces_all(2, '\0');

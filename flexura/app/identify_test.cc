@@ -211,7 +211,7 @@ TEST_F(Identify, RefusesATableThatIsNone) {
   refuses(tensions + ",x@0.1,y@0.1,z@0.1\n0,1,1,1,1,1,1,0,0,0\n0,1,1,1,1,1,1,0,0,0\n",
           "places.csv:3:1: time 0: expected one after 0");
   refuses(tensions + ",x@0.1,y@0.1,z@0.1\n0,1,1,1,1,1,1,0,0,0\n1,1,1,1,1,1,1,0,0,0\n",
-          "1 places do not tell 16 strain modes");
+          "1 places do not determine 16 strain modes");
 }
 
 }  // namespace

@@ -76,7 +76,7 @@ TEST_F(StoppedProgram, BringsAnArmThatIsSteeredToRest) {
   EXPECT_EQ(wait(child).status, 128 + SIGINT);
   const Node reported = parse_json(summary(), "summary");
   EXPECT_EQ(*reported.find("outcome")->as<std::string>(), "cancelled");
-  EXPECT_EQ(reported.find("reasons")->as<Node::Array>()->size(), 1U) << "that it was told to stop";
+  EXPECT_EQ(reported.find("reasons")->as<Node::Array>()->size(), 1U) << "that it was stopped";
   EXPECT_THAT(summary(), HasSubstr("\"reason\": \"cancelled\""));
   const McapReader log(path("long/log.mcap"));
   EXPECT_FALSE(log.truncated());

@@ -12,10 +12,10 @@ namespace flexura {
 [[nodiscard]] ViewError error_of(const Shape& shape, std::size_t observation);
 
 /// Returns the part of a shape's image without observation: mean square of the distances, each bounded, px^2.
-/// It is summed over the pictures with more than an axis (Sighting::borders).
+/// It is summed over the pictures with more than an axis (Observation::borders).
 [[nodiscard]] double silhouette_misfit(std::span<const Observation> observations, const Shape& shape);
 
-/// Returns the misfit: how much of the foreground (Sighting::figure) is not the shape's image, as the mean
+/// Returns the misfit: how much of the foreground (Observation::figure) is not the shape's image, as the mean
 /// square of its points' distances, each bounded, px^2. The image is widened by the factor `wider`. Invisible
 /// parts of the shape do not count: they may be hidden. 0 if no foreground is known, or the arm has no
 /// radius.

@@ -84,7 +84,7 @@ TEST(BadFiles, EachGetsALineWithPlaceValueAndExpectation) {
        "x.toml:5:13: arm.section[0].radius_mm = 1e-09: expected a number from 0.001 mm to 1000000000 mm"},
       {"cameras that stand on the base",
        file_with("[arm]", "stand.camera_distances = [1, 1e-12]\n[arm]\nbase.position = [1e6, 0, 0]"),
-       "x.toml:1:7: stand.camera_distances: puts camera \"side\" where the arm's base is"},
+       "x.toml:1:7: stand.camera_distances: puts camera \"side\" at the arm's base"},
       {"two obstacles of one name",
        file_with("[[task]]",
                  "[[obstacle]]\nkind = 'plane'\nname = 'sphere 2'\n[[obstacle]]\n"

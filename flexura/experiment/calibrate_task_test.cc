@@ -201,7 +201,7 @@ TEST(CalibrateTask, StopsWhereThePicturesDoNotTellTheAngle) {
       small_calibration("images = 3\npose = [{ bends = [[0, 0], [0, 0], [0, 0]] }]\n", wrong_cameras));
   const RigSessionResult result = bench.calibrate_bundle(bench.ports());
   EXPECT_FALSE(result.is_done);
-  EXPECT_THAT(result.reason, HasSubstr("the pictures tell the angle between the axes to"));
+  EXPECT_THAT(result.reason, HasSubstr("the standard deviation of the angle between the axes is still"));
   bench.expect_back();
 }
 

@@ -270,7 +270,7 @@ TEST(ArcsLoop, TellsWhereZoomsAreNotAsCloseAsIsAccepted) {
   const LoopResult result = bench.calibrate();
   ASSERT_TRUE(result.is_done) << result.reason;
   EXPECT_THAT(result.notes, ::testing::Contains(HasSubstr("zoom of camera front:")));
-  EXPECT_THAT(result.notes, ::testing::Contains(HasSubstr("it is left there after 3 looks")));
+  EXPECT_THAT(result.notes, ::testing::Contains(HasSubstr("stopped after 3 observations")));
 }
 
 TEST(ArcsLoop, StopsWhereAStageDoesNotReach) {

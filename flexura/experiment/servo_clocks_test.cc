@@ -73,7 +73,7 @@ TEST(ServoClocks, AHeadWhoseClockIsOddStopsTheArm) {
     ServoNotes notes;
     const ServoResult result = bench.servo(ports, notes);
     expect_stopped(bench, result, notes,
-                   *odd.reason == 0 ? "camera side does not tell how it stands"
+                   *odd.reason == 0 ? "camera side: the readings of its head or stage are not finite"
                                     : std::string("the head of camera side") + odd.reason);
   }
 }
@@ -133,8 +133,8 @@ TEST(ServoClocks, ACameraWhoseClockIsOddIsNotBelieved) {
 
 // For a moment: later pictures must be used again.
 TEST(ServoClocks, ACameraWhoseClockWasOddIsBelievedAgain) {
-  for (const auto& [off, reading] : {std::pair{1000.0, " 1000 s in the future"},
-                                     std::pair{std::numeric_limits<double>::quiet_NaN(), " not finite"}}) {
+  for (const auto& [off, reading] : {std::pair{1000.0, "1000 s in the future"},
+                                     std::pair{std::numeric_limits<double>::quiet_NaN(), "not finite"}}) {
     ServoBench bench(servo_file(servo_target));
     RigPorts ports = bench.ports();
     AlteredCamera camera(*ports.cameras[1].camera,
@@ -143,7 +143,7 @@ TEST(ServoClocks, ACameraWhoseClockWasOddIsBelievedAgain) {
     ServoNotes notes;
     const ServoResult result = bench.servo(ports, notes);
     EXPECT_TRUE(result.is_done) << result.reason;
-    EXPECT_TRUE(notes.has(std::string("camera side: its picture's timestamp is") + reading));
+    EXPECT_TRUE(notes.has(std::string("camera side: its picture's timestamp is ") + reading));
     EXPECT_TRUE(notes.has("the arm is seen again"));
     EXPECT_EQ(result.missed_steps, 0);
     for (const ServoStep& step : result.steps)

@@ -113,7 +113,7 @@ TEST(RigReadings, ACameraThatTellsNoViewIsToldInWords) {
                          &camera.stage.next_reading.state.offset.z()}) {
     const double before = *number;
     *number = none;
-    EXPECT_THAT(camera.error(), HasSubstr("camera side does not tell how it stands"));
+    EXPECT_THAT(camera.error(), HasSubstr("camera side: the readings of its head or stage are not finite"));
     *number = before;
   }
   camera.stage.fault = PortFault{FaultKind::link_lost, "gone"};

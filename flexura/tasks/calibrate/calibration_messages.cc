@@ -68,7 +68,7 @@ const Table<SeenValueMessage>& fields_of(const SeenValueMessage*) {
 const Table<CalibrationObservationMessage>& fields_of(const CalibrationObservationMessage*) {
   using M = CalibrationObservationMessage;
   static const auto table =
-      Table<M>("flexura.CalibrationSighting", "What a calibration measured in one picture.")
+      Table<M>("flexura.CalibrationObservation", "What a calibration measured in one picture.")
           .field("time", &M::time, {.meaning = "Middle of the exposure, since the experiment's start, s."})
           .field("look", &M::look, {.meaning = "Number of the look, from 1; 0: the arm is looked for."})
           .field("camera", &M::camera, {.meaning = "The camera's name."})

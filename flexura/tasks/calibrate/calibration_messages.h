@@ -57,7 +57,7 @@ struct CircleMessage {
   bool verified = false;
 };
 
-/// flexura.CalibrationSighting, on /calibration/observations: measurements in one picture.
+/// flexura.CalibrationObservation, on /calibration/observations: measurements in one picture.
 struct CalibrationObservationMessage {
   double time = 0;        ///< Middle of the exposure, s.
   std::int64_t look = 0;  ///< From 1; 0 during the search for the arm.

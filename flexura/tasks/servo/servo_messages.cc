@@ -17,7 +17,7 @@ const Table<FeatureMarkMessage>& fields_of(const FeatureMarkMessage*) {
 const Table<ServoObservationMessage>& fields_of(const ServoObservationMessage*) {
   using M = ServoObservationMessage;
   static const auto table =
-      Table<M>("flexura.ServoSighting", "What a servo measured in one picture.")
+      Table<M>("flexura.ServoObservation", "What a servo measured in one picture.")
           .field("time", &M::time, {.meaning = "Middle of the exposure, since the experiment's start, s."})
           .field("camera", &M::camera, {.meaning = "The camera's name."})
           .field("frame", &M::frame, {.meaning = "The frame's number."})

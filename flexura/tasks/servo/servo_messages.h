@@ -19,7 +19,7 @@ struct FeatureMarkMessage {
   std::vector<std::array<double, 2>> seen, desired;
 };
 
-/// flexura.ServoSighting, on /servo/observations: measurements of a servo in one picture.
+/// flexura.ServoObservation, on /servo/observations: measurements of a servo in one picture.
 struct ServoObservationMessage {
   double time = 0;  ///< Middle of the exposure, s.
   std::string camera;

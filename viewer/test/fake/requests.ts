@@ -99,7 +99,7 @@ const handlers: Record<string, (hub: Hub, request: Request, client: Client) => A
     const timer = setInterval(() => {
       if (!session.running) {
         clearInterval(timer);
-        return hub.broadcast({ type: 'progress', done: true, outcome: 'cancelled', text: 'it was told to stop at 1 s' });
+        return hub.broadcast({ type: 'progress', done: true, outcome: 'cancelled', text: 'it was stopped at 1 s' });
       }
       hub.broadcast({ type: 'progress', what: session.rig.controls.tasks[0].name, fraction: session.share() });
       if (session.share() < 1) return;

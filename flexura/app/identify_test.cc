@@ -169,9 +169,9 @@ TEST_F(Identify, RefusesWhatIsNoMotionOfTheArm) {
   refuses(folder_.path().string(), "holds no log.mcap");
   refuses(written("text.mcap", "no log at all, but text that is long enough"), "text.mcap");
   const std::string log = read_text_file(results() + "/log.mcap", 1 << 28);
-  refuses(written("cut.mcap", log.substr(0, 300)), "has no states of a true arm");
+  refuses(written("cut.mcap", log.substr(0, 300)), "has no true arm states");
   EXPECT_THAT(refused({.experiment = step_response, .motion = results(), .from = 50}),
-              HasSubstr("has no states of a true arm (/arm/truth)"));
+              HasSubstr("has no true arm states (/arm/truth)"));
   EXPECT_THAT(refused({.experiment = step_response, .motion = results(), .to = 0.05}),
               HasSubstr("samples of a motion: expected at least"));
   // The log is of another arm.
@@ -180,7 +180,7 @@ TEST_F(Identify, RefusesWhatIsNoMotionOfTheArm) {
       HasSubstr("has a true arm of 48 arcs at 0 s: expected 24"));
   EXPECT_THAT(
       refused({.experiment = step_response, .motion = results(), .sets = {"arm.base.position=[0, 0, 0]"}}),
-      HasSubstr("has an arm whose base stands 0.8 m from the experiment's arm"));
+      HasSubstr("has an arm with its base 0.8 m from the base of the experiment's arm"));
   EXPECT_THAT(
       refused({.experiment = step_response, .motion = results(), .sets = {"arm.section.0.length=0.3"}}),
       HasSubstr("no shape of the rod comes near to the places"));

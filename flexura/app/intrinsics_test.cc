@@ -189,7 +189,7 @@ TEST_F(IntrinsicsCommand, MeasuresAZoom) {
     ASSERT_NE(uncertain.find("notes"), nullptr);
     const auto& notes = *uncertain.find("notes")->as<Node::Array>();
     ASSERT_EQ(notes.size(), 1U);
-    EXPECT_NE(notes[0].as<std::string>()->find("zoom3: its ratio is said to be 5 times"), std::string::npos);
+    EXPECT_NE(notes[0].as<std::string>()->find("zoom3: its stated zoom ratio is 5 times"), std::string::npos);
     arguments_.zooms = zooms, arguments_.rig = rig;
   }
   // The lens replaces that of an existing camera.

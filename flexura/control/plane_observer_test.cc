@@ -48,7 +48,7 @@ TEST(PlaneObserver, ReadsTheArmAndErrsInTheSecondOrderOnly) {
       EXPECT_LE(off(observer, here, there), 0.05 * share * share);
     }
   });
-  EXPECT_LT(largest_ratio, 0.3);  // A quarter, plus terms of third order.
+  EXPECT_LT(largest_ratio, 0.4);  // A quarter, plus terms of third order; a half at first order.
 }
 
 TEST(PlaneObserver, HasTheNoiseOfItsPlanes) {

@@ -63,7 +63,7 @@ TEST(ShapeHint, TellsTheRadiusThatIsSeen) {
   Shape tapered = described;
   tapered.arm.sections[1].radius = {0.024, 0.012};
   const std::array<Observation, 1> twice = {edges_of(described, 0.048)};
-  EXPECT_THAT(found_hint(twice, tapered), HasSubstr("times as thick as it is described"));
+  EXPECT_THAT(found_hint(twice, tapered), HasSubstr("times as thick as in its file"));
   // No hint for an arm without a radius or without visible edges.
   EXPECT_EQ(found_hint(other, shape_of(0)), "none");
   std::array<Observation, 1> none;

@@ -353,7 +353,7 @@ TEST(CalibrateTaskFully, TellsWhatItDoesNotKnowAsWellAsIsWanted) {
     return std::ranges::any_of(result.desired.notes,
                                [&](const std::string& note) { return note.find(part) != std::string::npos; });
   };
-  EXPECT_TRUE(determines("the angle between the axes is known to"));
+  EXPECT_TRUE(determines("standard deviation of the angle between the axes"));
   EXPECT_TRUE(determines("degrees, required 0.001"));
   EXPECT_FALSE(determines("focal length"));
 }

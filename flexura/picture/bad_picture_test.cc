@@ -157,7 +157,7 @@ TEST(BadPicture, OfAFormThatIsNotReadIsCalledSo) {
   EXPECT_EQ(complaint(tiff_file(Image<std::uint8_t>(9, 9),
                                 {.bits = 1, .compression = COMPRESSION_JBIG, .rows = 9})),
             "the TIFF file has compression 34661: expected a usual one");
-  EXPECT_EQ(complaint("P5 1 1 65536\n"), "the PNM file says 65536 for white: expected 1 to 65535");
+  EXPECT_EQ(complaint("P5 1 1 65536\n"), "the PNM file has 65536 for white: expected 1 to 65535");
 }
 
 TEST(BadPicture, DamagedIsCalledSoWithWhatTheLibrarySays) {

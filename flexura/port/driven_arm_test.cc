@@ -214,7 +214,7 @@ TEST(DrivenArm, OfAControllerThatTellsNonsenseNothingIsBelieved) {
   DrivenArm arm(port, one_section(), three_tendons(), ArmState::straight(1));
   for (const double bad : {std::numeric_limits<double>::quiet_NaN(), HUGE_VAL, 1e19}) {
     port.at[2] = bad;
-    EXPECT_THAT(arm.read().fault()->what, HasSubstr("positions that are no numbers"));
+    EXPECT_THAT(arm.read().fault()->what, HasSubstr("positions that are not finite"));
   }
   port.at.pop_back();
   EXPECT_THAT(arm.read().fault()->what, HasSubstr("reports 2 axes"));

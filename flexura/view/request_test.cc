@@ -90,7 +90,7 @@ TEST(Request, SaysInOneLineWhatIsWrong) {
       {R"({"id":7,"do":"fly\nhigh"})", "expected one of arm, tip"},
       {R"({"id":7,"do":"ping","x":1})", "x"},
       {R"({"id":7,"do":"arm"})", "has no shape"},
-      {R"({"id":7,"do":"arm","tendons":[0],"bends":[[0,0]]})", "stand alone"},
+      {R"({"id":7,"do":"arm","tendons":[0],"bends":[[0,0]]})", "expected tendons alone"},
       {R"({"id":7,"do":"arm","bends":[[0,0,0]]})", "bends[0]"},
       {R"({"id":7,"do":"arm","bends":[[0,1e9]]})", "bends[0][1]"},
       {R"({"id":7,"do":"arm","bends":[[0,0]],"duration":-1})", "duration"},

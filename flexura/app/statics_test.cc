@@ -204,6 +204,31 @@ material = { youngs_modulus = 1e6, radius_mm = 1 }
   EXPECT_THAT(answer, ::testing::Not(HasSubstr("null")));
 }
 
+// Four pieces of 0.1 m with three modes: the rod that is divided into its pieces is somewhere else.
+TEST(AnswerStatics, NotesChordsThatNeedMoreModes) {
+  const auto arm = [](int sections, int disks, int modes) {
+    std::string text = "[arm]\nkind = \"spatial\"\n";
+    for (int i = 0; i < sections; ++i)
+      text += fmt::format(
+          "[[arm.section]]\nlength = {}\nradius = 0.02\nmaterial = {{ stiffness = {{ shear = 1e4, stretch = "
+          "1e4, "
+          "bend = 0.01, twist = 0.008 }}, disks = {}, modes = {{ bend = {} }} }}\n",
+          0.4 / sections, disks, modes);
+    for (const int angle : {0, 180})
+      text += fmt::format("[[arm.tendon]]\nsection = {}\nradius = 0.01\nangle_deg = {}\n", sections, angle);
+    return answers_of_text(text);
+  };
+  StaticsAnswers coarse = arm(1, 4, 3), fine = arm(1, 4, 16), pieces = arm(4, 1, 5);
+  const std::string line = R"({"tensions":[4,2]})";
+  const Node of_coarse = answer_to(coarse, line), of_fine = answer_to(fine, line);
+  ASSERT_NE(of_coarse.find("note"), nullptr);
+  EXPECT_THAT(*of_coarse.find("note")->as<std::string>(), HasSubstr("modes.bend = 16"));
+  EXPECT_EQ(of_fine.find("note"), nullptr);
+  EXPECT_EQ(answer_to(coarse, R"({"tensions":[0.2,0.1]})").find("note"), nullptr) << "hardly bent";
+  const Node of_pieces = answer_to(pieces, line);
+  EXPECT_THAT(tip_position(of_fine), near(tip_position(of_pieces), 3e-3));
+}
+
 TEST(AnswerStatics, AnswersABadLineWithItsError) {
   StaticsAnswers answers = wire_answers();
   const std::vector<std::pair<const char*, const char*>> lines{

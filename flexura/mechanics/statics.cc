@@ -277,7 +277,8 @@ Equilibrium RodStatics::solve_from(const Unknowns& start, bool is_cold) {
     }
     if (found) {
       at = falling;
-      result.snapped = result.ambiguous = true;
+      // Strong friction alone stops Newton's method, on a path that neither turns nor branches.
+      if (!chain_.has_friction()) result.snapped = result.ambiguous = true;
     }
   }
   descent.settled = found;

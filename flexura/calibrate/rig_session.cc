@@ -9,6 +9,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "flexura/base/bounded_text.h"
 #include "flexura/base/degree.h"
 #include "flexura/calibrate/rig_eyes.h"
 #include "flexura/calibrate/rig_foretelling.h"
@@ -18,6 +19,10 @@
 
 namespace flexura {
 namespace {
+
+// Larger standard deviations in messages are no numbers any more: nothing is known of an angle, or of a
+// length of which there is as much uncertainty, %.
+constexpr double most_degrees = 90;
 
 using Trouble = RigHands::Trouble;
 
@@ -69,9 +74,9 @@ class Session {
     constexpr double hopeless = 3 * degree;
     if (const double sigma = result_.steps.back().sigmas.angle; !(sigma < hopeless))
       return fmt::format(
-          "the pictures tell the angle between the axes to {:.2g} deg only: more images, other poses or "
+          "the pictures tell the angle between the axes to {} deg only: more images, other poses or "
           "turns of the heads tell more",
-          sigma / degree);
+          bounded_text(sigma / degree, most_degrees));
     result_.is_done = true;
     return std::nullopt;
   }
@@ -258,9 +263,9 @@ class Session {
       result_.verified[i] = foretelling.px;
       if (!(foretelling.sigmas <= most))
         return fmt::format(
-            "camera {} sees the {} {:.1f} px from where it was foretold after the move, which is {:.1f} "
+            "camera {} sees the {} {} px from where it was foretold after the move, which is {} "
             "times what is not known: a head with play, or one that was pushed{}",
-            name(i), what_, foretelling.px, foretelling.sigmas,
+            name(i), what_, bounded_text(foretelling.px, 1000, 3), bounded_text(foretelling.sigmas, 1000, 3),
             config_.etalon ? "" : ", or an arm that bends otherwise each time");
     }
     return std::nullopt;
@@ -293,8 +298,8 @@ class Session {
     const auto note = [&](const std::string& what, double known, double asked, const char* unit) {
       if (known > asked)
         result_.wanted.notes.push_back(
-            fmt::format("{} known to {:.2g}{}, where {:.2g} is wanted: more pictures tell it better", what,
-                        known, unit, asked));
+            fmt::format("{} known to {}{}, where {:.2g} is wanted: more pictures tell it better", what,
+                        bounded_text(known, most_degrees), unit, asked));
     };
     note("the angle between the axes is", is.angle / degree, wanted.angle / degree, " degrees");
     for (std::size_t i = 0; i < 2; ++i)

@@ -24,11 +24,12 @@ struct IntrinsicsArguments {
   std::string out;               ///< A file of measured cameras to write; "" for none.
   std::string rig;               ///< A file for experiments to include; "" for none.
   std::string rig_from;          ///< An experiment whose cameras the rig file takes; "" for none.
+  bool json = false;             ///< Print one JSON document with everything, not a table.
 };
 
-/// Calibrates cameras from pictures of a board and prints what is known then as one JSON document
-/// (docs/intrinsics.md). Returns exit_missed when the pictures do not tell it. InputError for bad input;
-/// std::runtime_error when the system refuses a file.
-int intrinsics_command(const IntrinsicsArguments& arguments, std::ostream& out);
+/// Calibrates cameras from pictures of a board and prints what is known then as a table, or with `json` as
+/// one JSON document (docs/intrinsics.md). Shows its progress on `err`. Returns exit_missed when the pictures
+/// do not tell it. InputError for bad input; std::runtime_error when the system refuses a file.
+int intrinsics_command(const IntrinsicsArguments& arguments, std::ostream& out, std::ostream& err);
 
 }  // namespace flexura

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "flexura/app/intrinsics.h"
+#include "flexura/base/progress.h"
 #include "flexura/board/board_finder.h"
 #include "flexura/board/board_target.h"
 #include "flexura/board/intrinsics_fit.h"
@@ -31,7 +32,7 @@ struct ZoomGroup {
 /// Reads pictures and looks for the board in each. InputError: fewer than two, one that cannot be read, sizes
 /// that differ, more parts of a larger board than boards of this size.
 [[nodiscard]] BoardPictures look_for_board(const std::vector<std::string>& files, const BoardTarget& board,
-                                           const std::string& option);
+                                           const std::string& option, Progress& progress);
 
 /// What `--zoom` says, in the order given. InputError for what is none, and for groups of which some have
 /// ratios (or counts) and others not.

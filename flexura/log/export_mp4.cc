@@ -120,20 +120,24 @@ class Film {
 
 }  // namespace
 
-ExportResult export_mp4(const std::filesystem::path& results, const std::vector<CameraConfig>& cameras) {
+ExportResult export_mp4(const std::filesystem::path& results, const std::vector<CameraConfig>& cameras,
+                        Progress* progress) {
   const McapReader log = open_log(results);
   const auto sensors = from_log([&] { return sensors_of(log, cameras, results); });
   if (!has_program(film_program))
-    throw std::runtime_error(
-        fmt::format("there is no program {} on the PATH: films are made by it", film_program));
+    throw std::runtime_error(fmt::format(
+        "there is no program {0} on the PATH, which makes films: install the package {0}", film_program));
   ExportResult result{make_new_folder(results / "mp4"), log.truncated()};
   std::map<std::string, Film> films;
   for (const auto& [camera, sensor] : sensors)
     films.try_emplace(camera, result.folder / (camera + ".mp4"), sensor);
+  const double end = end_of(log);
   for_each_image(log, [&](const std::string& camera, const ImageMessage& image) {
+    if (progress != nullptr)
+      progress->update(end > 0 ? std::clamp(seconds(image.timestamp) / end, 0.0, 1.0) : 0, "films");
     if (const auto film = films.find(camera); film != films.end()) film->second.show(image);
   });
-  for (auto& [camera, film] : films) film.finish(end_of(log));
+  for (auto& [camera, film] : films) film.finish(end);
   return result;
 }
 

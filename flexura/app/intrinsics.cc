@@ -119,18 +119,20 @@ Node cameras_answer(const IntrinsicsArguments& arguments, const BoardTarget& boa
   return {std::move(answer), {}};
 }
 
-// A glob without a match stays as it is written: then the file is missing, not a picture.
-void check_are_there(const IntrinsicsArguments& arguments) {
+// A glob without a match stays as it is written: then files are missing, rather than one picture too few.
+void check_globs(const IntrinsicsArguments& arguments) {
   for (const auto* files : {&arguments.images, &arguments.left, &arguments.right})
-    for (const std::string& file : *files)
-      if (std::error_code error; !std::filesystem::exists(file, error))
+    for (const std::string& file : *files) {
+      const bool is_glob = file.find_first_of("*?[") != std::string::npos;
+      if (std::error_code error; is_glob && !std::filesystem::exists(file, error))
         throw input_error(file, "no such file");
+    }
 }
 
 }  // namespace
 
 int intrinsics_command(const IntrinsicsArguments& arguments, std::ostream& out, std::ostream& err) {
-  check_are_there(arguments);
+  check_globs(arguments);
   check(arguments);
   const BoardTarget board = board_of(arguments);
   TerminalProgress progress(err);

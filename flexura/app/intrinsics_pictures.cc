@@ -142,6 +142,8 @@ BoardTarget board_of(const IntrinsicsArguments& arguments) {
 
 BoardPictures look_for_board(const std::vector<std::string>& files, const BoardTarget& board,
                              const std::string& option, Progress& progress) {
+  if (files.size() == 1 && !std::filesystem::exists(files.front()))
+    throw input_error(files.front(), "no such file");
   if (files.size() < 2)
     throw input_error(option,
                       fmt::format("{} picture{}: expected two at least, of the board from different sides",

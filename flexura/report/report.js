@@ -170,7 +170,10 @@
     const axis = { stroke: color("--soft"), grid: { stroke: color("--edge"), width: 1 }, ticks: { show: false },
       values: (_, all) => all.map((value) => String(Number(value.toPrecision(6)))) };
     // A logarithmic axis has the numbers whose powers of ten are drawn.
-    const powers = host.dataset.log ? { incrs: [0.5, 1, 2, 5, 10], values: (_, all) => all.map((value) => String(Number((10 ** value).toPrecision(2)))) } : {};
+    const powerText = (power) => (power < -3 ? (10 ** power).toExponential(Number.isInteger(power) ? 0 : 1) : String(Number((10 ** power).toPrecision(2))));
+    const powers = host.dataset.log
+      ? { incrs: (_plot, _axis, low, high) => (high - low < 2 ? [0.1, 0.2, 0.5, 1] : [1, 2, 5, 10]), values: (_, all) => all.map(powerText) }
+      : {};
     const roomy = (_, low, high) => {
       const half = 0.55 * Math.max(high - low, Number(host.dataset.least));
       return [(low + high) / 2 - half, (low + high) / 2 + half];

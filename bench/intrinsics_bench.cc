@@ -53,7 +53,7 @@ Views real_pairs() {
       std::ifstream in(folder / name, std::ios::binary);
       if (!in) return {};
       const std::vector<std::uint8_t> bytes{std::istreambuf_iterator<char>(in), {}};
-      const BoardSighting seen =
+      const BoardObservation seen =
           find_board(std::get<Image<std::uint8_t>>(read_picture(bytes, name, 1 << 20)), board);
       if (!seen.is_found()) return {};
       view.pixels.push_back(seen.pixels);

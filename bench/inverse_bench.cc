@@ -20,7 +20,7 @@ namespace {
 enum Kind : std::int64_t { position, direction, pose };
 
 struct Question {
-  ArmState wanted, near;
+  ArmState desired, near;
   TipTarget target;
   InverseConfig cold;
   InverseConfig warm;
@@ -62,7 +62,7 @@ std::vector<Question> questions(const Arm& arm, std::int64_t kind) {
     if (kind == direction) question.target.direction = X_WT.rotation.col(2);
     if (kind == pose) question.target.rotation = X_WT.rotation;
     question.warm.start = near;
-    question.wanted = state;
+    question.desired = state;
     question.near = near;
   }
   return result;
@@ -106,7 +106,7 @@ void solve_by_kdl(benchmark::State& state, bool is_warm) {
   std::vector<KDL::Frame> targets;
   std::vector<KDL::JntArray> starts;
   for (const Question& question : all) {
-    forward.JntToCart(kdl_joints(arm, question.wanted), targets.emplace_back());
+    forward.JntToCart(kdl_joints(arm, question.desired), targets.emplace_back());
     starts.push_back(kdl_joints(arm, is_warm ? question.near : bent));
   }
   // Weights of positions and angles: both in the tolerance's unit.

@@ -16,7 +16,7 @@
 #include <thread>
 #include <utility>
 
-#include "bench/loop_eye.h"
+#include "bench/loop_camera.h"
 #include "flexura/control/limiter.h"
 #include "flexura/estimate/shape_estimator.h"
 #include "flexura/servo/servo_error.h"
@@ -61,8 +61,8 @@ class Loop {
     for (std::size_t i = 0; i < 2; ++i) {
       const Setting setting = both_settings(sides)[i];
       scene_ = setting.scene;
-      eyes_[i].view = setting.view, eyes_[i].number = i;
-      eyes_[i].finder =
+      cameras_[i].view = setting.view, cameras_[i].number = i;
+      cameras_[i].finder =
           ArmFinder({.threshold = {}, .base = setting.view.project(arm_.X_WB.position), .least_sigma = 0});
     }
     if (threads > 1) helper_ = std::make_unique<Helper>();
@@ -79,29 +79,29 @@ class Loop {
   void turn() {
     Stopwatch own;
     constexpr int turns_a_goal = 20;
-    const WantedShape& wanted = goals_[static_cast<std::size_t>(turns_ / turns_a_goal % 2)];
+    const TargetShape& desired = goals_[static_cast<std::size_t>(turns_ / turns_a_goal % 2)];
     scene_.arm.tube = tube_of(Backbone(arm_, state_));
     const auto number = static_cast<std::uint64_t>(turns_++);
-    if (helper_) helper_->start([this, number] { look(eyes_[1], scene_, number); });
-    look(eyes_[0], scene_, number);
-    helper_ ? helper_->wait() : look(eyes_[1], scene_, number);
+    if (helper_) helper_->start([this, number] { look(cameras_[1], scene_, number); });
+    look(cameras_[0], scene_, number);
+    helper_ ? helper_->wait() : look(cameras_[1], scene_, number);
     Stopwatch watch;
-    sight_.seen = {eyes_[0].seen, eyes_[1].seen};
-    sight_.estimate = sight_.estimate.is_found ? estimator_.follow(sight_.seen, {arm_, expected_})
-                                               : estimator_.estimate(sight_.seen);
-    if (!sight_.estimate.is_found) throw std::runtime_error(sight_.estimate.reason);
+    observed_.seen = {cameras_[0].seen, cameras_[1].seen};
+    observed_.estimate = observed_.estimate.is_found ? estimator_.follow(observed_.seen, {arm_, expected_})
+                                                     : estimator_.estimate(observed_.seen);
+    if (!observed_.estimate.is_found) throw std::runtime_error(observed_.estimate.reason);
     fitting_ += watch.lap();
-    const ServoLaw::Wish wish = law_->step({.sight = sight_,
-                                            .is_fresh = true,
-                                            .said = state_,
-                                            .sent = state_,
-                                            .then = wanted,
-                                            .wanted = wanted,
-                                            .next = wanted.state});
+    const ServoLaw::Output output = law_->step({.observed = observed_,
+                                                .is_fresh = true,
+                                                .measured = state_,
+                                                .sent = state_,
+                                                .then = desired,
+                                                .desired = desired,
+                                                .next = desired.state});
     control_ += watch.lap();
-    const ArmState before = std::exchange(state_, limiter_.next(wish.asked).state);
+    const ArmState before = std::exchange(state_, limiter_.next(output.asked).state);
     limiting_ += watch.lap();
-    expected_ = sight_.estimate.shape.state;
+    expected_ = observed_.estimate.shape.state;
     off_ = std::max(off_, servo_error(arm_, expected_, before).rms);
     // Where it was seen, moved by what was sent since.
     for (std::size_t i = 0; i < expected_.bends.size(); ++i)
@@ -110,11 +110,11 @@ class Loop {
   }
 
   // Processor times in us a turn, of both cameras together; `own_us`: all that the calling thread does.
-  void tell(benchmark::State& state) const {
+  void report(benchmark::State& state) const {
     const double us = 1e6 / static_cast<double>(turns_);
-    state.counters["draw_us"] = us * (eyes_[0].drawing + eyes_[1].drawing);
-    state.counters["sensor_us"] = us * (eyes_[0].reading + eyes_[1].reading);
-    state.counters["find_us"] = us * (eyes_[0].finding + eyes_[1].finding);
+    state.counters["draw_us"] = us * (cameras_[0].drawing + cameras_[1].drawing);
+    state.counters["sensor_us"] = us * (cameras_[0].reading + cameras_[1].reading);
+    state.counters["find_us"] = us * (cameras_[0].finding + cameras_[1].finding);
     state.counters["fit_us"] = us * fitting_;
     state.counters["law_us"] = us * control_;
     state.counters["limiter_us"] = us * limiting_;
@@ -126,14 +126,14 @@ class Loop {
   Arm arm_ = setting_arm();
   ArmState state_ = setting_state(), expected_;
   Scene scene_;
-  std::array<Eye, 2> eyes_;
+  std::array<LoopCamera, 2> cameras_;
   ShapeEstimator estimator_{ShapePrior{.arm = arm_}};
-  std::array<WantedShape, 2> goals_;
+  std::array<TargetShape, 2> goals_;
   ServoConfig config_;
   std::unique_ptr<ServoFeatures> features_;
   std::optional<ServoLaw> law_;
   CommandLimiter limiter_{arm_, {.looks_ahead = false}, state_};
-  ServoSight sight_;
+  ServoObservation observed_;
   std::unique_ptr<Helper> helper_;
   int turns_ = 0;
   double fitting_ = 0, control_ = 0, limiting_ = 0, own_ = 0;  // s
@@ -145,7 +145,7 @@ void whole_loop(benchmark::State& state, const Sides& sides) {
     Loop loop(static_cast<int>(state.range(0)), sides);
     loop.turn();
     for (auto _ : state) loop.turn();
-    loop.tell(state);
+    loop.report(state);
   } catch (const std::exception& error) {
     state.SkipWithError(error.what());
   }

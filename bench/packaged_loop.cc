@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "bench/llvmpipe_peer.h"
-#include "bench/loop_eye.h"
+#include "bench/loop_camera.h"
 #include "bench/mujoco_peer.h"
 #include "flexura/control/feature_images.h"
 #include "tests/support/visp_peer.h"
@@ -23,7 +23,7 @@ namespace {
 
 // Gray of colour, Otsu's threshold, components, contours and the distance transform: whole pixels, and no
 // axis.
-class OpenCvEye {
+class OpenCvFinder {
  public:
   void look(const Image<std::uint8_t>& picture) {
     const cv::Mat taken(picture.height(), picture.width(), picture.channels() == 1 ? CV_8UC1 : CV_8UC3,
@@ -91,18 +91,18 @@ void packaged(benchmark::State& state, Painter kind) {
     const std::unique_ptr<Peer> peer = painter(kind, settings[0]);
     std::array<Image<std::uint8_t>, 2> pictures;
     for (std::size_t i = 0; i < 2; ++i) {
-      Eye eye{.view = settings[i].view, .number = i};
-      look(eye, settings[i].scene, 0);
-      pictures[i] = peer ? peer->picture().pixels : eye.picture;
+      LoopCamera camera{.view = settings[i].view, .number = i};
+      look(camera, settings[i].scene, 0);
+      pictures[i] = peer ? peer->picture().pixels : camera.picture;
     }
-    std::array<OpenCvEye, 2> eyes;
+    std::array<OpenCvFinder, 2> finders;
     const std::vector<VispPoint> now = points_of(setting_state());
     ArmState goal = setting_state();
     for (Eigen::Vector2d& bend : goal.bends) bend *= 0.93;
     VispServo servo(points_of(goal), 0.5);
     for (auto _ : state) {
       for (int i = 0; peer && i < 2; ++i) peer->draw();
-      for (std::size_t i = 0; i < 2; ++i) eyes[i].look(pictures[i]);
+      for (std::size_t i = 0; i < 2; ++i) finders[i].look(pictures[i]);
       benchmark::DoNotOptimize(servo.velocity(now));
     }
   } catch (const std::exception& error) {

@@ -30,7 +30,7 @@ class Listener : public flexura::Host {
  public:
   void opened(ClientId) override {}
   void closed(ClientId) override {}
-  void said(ClientId, std::string) override {}
+  void on_message(ClientId, std::string) override {}
   void asked(std::string, std::function<void(flexura::HttpAnswer)>) override {}
 };
 

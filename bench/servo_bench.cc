@@ -91,13 +91,13 @@ void as_used(benchmark::State& state) {
   std::size_t i = 0;
   Eigen::VectorXd seen, desired;
   FeatureError error;
-  if (!features->foreseen(way()[20], views, seen)) {
+  if (!features->predict(way()[20], views, seen)) {
     state.SkipWithError("not seen");
     return;
   }
   for (auto _ : state) {
     const ArmState& here = way()[i++ % way().size()];
-    if (!features->foreseen(goal(), views, desired) || !features->error(seen, desired, here, views, error)) {
+    if (!features->predict(goal(), views, desired) || !features->error(seen, desired, here, views, error)) {
       state.SkipWithError("not seen");
       return;
     }

@@ -9,7 +9,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "flexura/estimate/picture_sighting.h"
+#include "flexura/estimate/picture_observation.h"
 #include "flexura/estimate/shape_estimator.h"
 #include "flexura/estimate/shape_tracker.h"
 #include "flexura/vision/arm_finder.h"
@@ -23,7 +23,7 @@ struct Film {
   Arm arm;
   std::array<View, 2> views;
   std::vector<std::array<Image<std::uint8_t>, 2>> frames;
-  std::vector<std::vector<Sighting>> sightings;
+  std::vector<std::vector<Observation>> observations;
   std::vector<ArmState> states;
 };
 
@@ -45,11 +45,11 @@ Film make_film() {
     scene.arm.tube = tube_of(Backbone(film.arm, state));
     scene.arm.albedo = {0.08, 0.08, 0.09};
     auto& frame = film.frames.emplace_back();
-    auto& seen = film.sightings.emplace_back();
+    auto& seen = film.observations.emplace_back();
     for (std::size_t j = 0; j < 2; ++j) {
       frame[j] = photograph(scene, film.views[j], {}, 2 * i + j);
       ArmFinder finder({.threshold = {}, .base = film.views[j].project(film.arm.X_WB.position)});
-      seen.push_back(sighting_of(finder.find(frame[j]), film.views[j]));
+      seen.push_back(observation_of(finder.find(frame[j]), film.views[j]));
     }
   }
   return film;
@@ -74,7 +74,7 @@ void fit_cold(benchmark::State& state) {
   ShapeEstimator fit = estimator(state.range(0));
   std::size_t i = 0, iterations = 0;
   for (auto _ : state) {
-    const ShapeEstimate found = fit.estimate(film().sightings[i++ % film().sightings.size()]);
+    const ShapeEstimate found = fit.estimate(film().observations[i++ % film().observations.size()]);
     require(found), iterations += static_cast<std::size_t>(found.iterations);
   }
   state.counters["iterations"] = static_cast<double>(iterations) / static_cast<double>(state.iterations());
@@ -84,10 +84,10 @@ BENCHMARK(fit_cold)->Arg(0)->Arg(1)->Unit(benchmark::kMicrosecond);
 
 void fit_following(benchmark::State& state) {
   ShapeEstimator fit = estimator(state.range(0));
-  Shape before = fit.estimate(film().sightings.back()).shape;
+  Shape before = fit.estimate(film().observations.back()).shape;
   std::size_t i = 0, iterations = 0;
   for (auto _ : state) {
-    const ShapeEstimate found = fit.follow(film().sightings[i++ % film().sightings.size()], before);
+    const ShapeEstimate found = fit.follow(film().observations[i++ % film().observations.size()], before);
     require(found), iterations += static_cast<std::size_t>(found.iterations);
     before = found.shape;
   }
@@ -99,15 +99,15 @@ BENCHMARK(fit_following)->Arg(0)->Arg(1)->Unit(benchmark::kMicrosecond);
 // As a servo does it: what is wrong with the views is estimated, too, what was seen before counts, and drives
 // tell how the arm went on.
 void fit_tracking(benchmark::State& state) {
-  std::vector<std::vector<Sighting>> sightings = film().sightings;
-  for (std::vector<Sighting>& seen : sightings)
-    for (Sighting& one : seen) one.doubt = {.rotation_std = 0.02, .focal_std = 0.02};
+  std::vector<std::vector<Observation>> observations = film().observations;
+  for (std::vector<Observation>& seen : observations)
+    for (Observation& one : seen) one.view_prior = {.rotation_std = 0.02, .focal_std = 0.02};
   ShapeTracker tracker({.arm = film().arm}, {});
   std::optional<ArmState> expected;
   std::size_t i = 0, iterations = 0;
   for (auto _ : state) {
-    const std::size_t now = i % sightings.size(), next = (i + 1) % sightings.size();
-    const ShapeEstimate found = tracker.look(sightings[now], static_cast<double>(i++) / 30, expected);
+    const std::size_t now = i % observations.size(), next = (i + 1) % observations.size();
+    const ShapeEstimate found = tracker.look(observations[now], static_cast<double>(i++) / 30, expected);
     require(found), iterations += static_cast<std::size_t>(found.iterations);
     expected = found.shape.state;
     for (std::size_t k = 0; k < expected->bends.size(); ++k)
@@ -118,11 +118,11 @@ void fit_tracking(benchmark::State& state) {
 }
 BENCHMARK(fit_tracking)->Unit(benchmark::kMicrosecond);
 
-std::vector<Sighting> looks_at(std::size_t frame, std::array<ArmFinder, 2>& finders) {
-  std::vector<Sighting> seen;
+std::vector<Observation> looks_at(std::size_t frame, std::array<ArmFinder, 2>& finders) {
+  std::vector<Observation> seen;
   seen.reserve(2);
   for (std::size_t j = 0; j < 2; ++j)
-    seen.push_back(sighting_of(finders[j].find(film().frames[frame][j]), film().views[j]));
+    seen.push_back(observation_of(finders[j].find(film().frames[frame][j]), film().views[j]));
   return seen;
 }
 
@@ -146,7 +146,7 @@ BENCHMARK(pictures_cold)->Arg(0)->Arg(1)->Unit(benchmark::kMicrosecond);
 void pictures_following(benchmark::State& state) {
   ShapeEstimator fit = estimator(state.range(0));
   std::array<ArmFinder, 2> finders = make_finders();
-  Shape before = fit.estimate(film().sightings.back()).shape;
+  Shape before = fit.estimate(film().observations.back()).shape;
   std::size_t i = 0;
   for (auto _ : state) {
     const ShapeEstimate found = fit.follow(looks_at(i++ % film().frames.size(), finders), before);

@@ -52,8 +52,8 @@ std::vector<ArmState> poses() {
 
 // A true rig that is wrong, evenly within the standard deviations that calibrations count with, in all that
 // they estimate of cameras.
-RigModel wrong_rig(const RigModel& believed, const RigTrialConfig& config, TestRandom& random) {
-  RigModel rig = true_rig(believed, config, random);
+RigModel wrong_rig(const RigModel& nominal, const RigTrialConfig& config, TestRandom& random) {
+  RigModel rig = true_rig(nominal, config, random);
   const CameraPrior prior;
   const auto move = [&](double& number, double most) { number += random.uniform(-most, most); };
   for (CameraConfig& camera : rig.cameras) {
@@ -75,9 +75,9 @@ class Session {
   Session(const RigTrialConfig& config, std::uint64_t seed)
       : config_(config),
         random_(seed),
-        believed_(believed_rig()),
-        prior_(rough_prior(believed_)),
-        trial_(wrong_rig(believed_, config, random_), config, random_) {
+        nominal_(nominal_rig()),
+        prior_(rough_prior(nominal_)),
+        trial_(wrong_rig(nominal_, config, random_), config, random_) {
     if (config.are_heads_exact)
       for (CameraPrior& camera : prior_.cameras) camera.steps = 0;
     if (config_.are_bends_alike) prior_.arm.bend = prior_.arm.bend_share = 0;
@@ -92,9 +92,9 @@ class Session {
     }
     for (std::size_t i = 3; i + 1 < pictures; ++i) look(next(shown));
     const ArmState& last = shown.front();
-    const WantedRig wanted = wanted_rig(calibrate().model, wish(last));
-    look({last, {wanted.stances[0], wanted.stances[1]}});
-    RigProblem problem(believed_, prior_, trial_.seen());
+    const DesiredRig desired = desired_rig(calibrate().model, rig_goal(last));
+    look({last, {desired.stances[0], desired.stances[1]}});
+    RigProblem problem(nominal_, prior_, trial_.seen());
     const RigCalibration found = calibrate_rig(problem);
     Outcome outcome{found.is_found, found.starts, found.rms, figures_of(trial_, problem, found)};
     const std::size_t end = trial_.seen().stances.size();
@@ -122,28 +122,28 @@ class Session {
   }
 
   RigCalibration calibrate() {
-    RigProblem problem(believed_, prior_, trial_.seen());
+    RigProblem problem(nominal_, prior_, trial_.seen());
     return calibrate_rig(problem);
   }
 
-  RigWish wish(const ArmState& pose) const {
-    RigWish wish;
-    wish.target = arm_middle(believed_, pose);
-    wish.now = {RigStance{0, {0, 0, 1.2}, {}}, RigStance{1, {0, 0, 1.2}, {}}};
-    return wish;
+  RigGoal rig_goal(const ArmState& pose) const {
+    RigGoal rig_goal;
+    rig_goal.target = arm_middle(nominal_, pose);
+    rig_goal.now = {RigStance{0, {0, 0, 1.2}, {}}, RigStance{1, {0, 0, 1.2}, {}}};
+    return rig_goal;
   }
 
   ViewCandidate next(const std::vector<ArmState>& shown) {
-    RigProblem problem(believed_, prior_, trial_.seen());
+    RigProblem problem(nominal_, prior_, trial_.seen());
     const RigCalibration found = calibrate_rig(problem);
     const RigVariables& variables = problem.variables();
-    const WantedRig wanted = wanted_rig(found.model, wish(shown.front()));
-    const OpticalAxis a = optical_axis(variables, found.x, {wanted.stances[0], {}}),
-                      b = optical_axis(variables, found.x, {wanted.stances[1], {}});
+    const DesiredRig desired = desired_rig(found.model, rig_goal(shown.front()));
+    const OpticalAxis a = optical_axis(variables, found.x, {desired.stances[0], {}}),
+                      b = optical_axis(variables, found.x, {desired.stances[1], {}});
     const std::vector<ViewGoal> goals = {{axes_angle(a, b), 0.01 * degree},
                                          {log_focal(a), 0.0007},
                                          {log_focal(b), 0.0007},
-                                         {log_zoom_ratio(a, b, wish(shown.front()).target), 0.003}};
+                                         {log_zoom_ratio(a, b, rig_goal(shown.front()).target), 0.003}};
     const auto candidates = view_candidates(
         found.model,
         {.poses = shown, .zooms = {1, 2.5}, .slides = {{0, 0, 0}, {0.4, 0, 0}, {-0.4, 0, 0}}, .spread = 0.6});
@@ -155,7 +155,7 @@ class Session {
 
   RigTrialConfig config_;
   TestRandom random_;
-  RigModel believed_;
+  RigModel nominal_;
   RigPrior prior_;
   RigTrial trial_;
 };
@@ -245,9 +245,9 @@ void print_range(std::size_t trials, std::uint64_t seed) {
     int found = 0, first = 0, wrong = 0;
     for (std::size_t i = 0; i < trials; ++i) {
       TestRandom random(seed * 1000003 + i);
-      RigTrial trial(wrong_rig(believed_rig(), config, random), config, random);
+      RigTrial trial(wrong_rig(nominal_rig(), config, random), config, random);
       take_plan(trial, pictures);
-      RigProblem problem(believed_rig(), rough_prior(believed_rig()), trial.seen());
+      RigProblem problem(nominal_rig(), rough_prior(nominal_rig()), trial.seen());
       const RigCalibration answer = calibrate_rig(problem);
       if (!answer.is_found) continue;
       const RigFigure angle = figures_of(trial, problem, answer).angle;

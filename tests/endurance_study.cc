@@ -41,7 +41,7 @@ double resident() {
 struct Hour {
   double rest_squares = 0, rest_most = 0, way_squares = 0, way_most = 0;
   double rests = 0, ways = 0;  // Of these errors.
-  long steps = 0, fresh = 0, limited = 0, told = 0;
+  long steps = 0, fresh = 0, limited = 0, reported = 0;
   double heap = 0, resident = 0;
 
   [[nodiscard]] double rest_rms() const { return std::sqrt(rest_squares / std::max(1.0, rests)); }
@@ -55,8 +55,8 @@ class Logbook : public ServoSessionWatcher {
     hours.resize(slices);
   }
   void arm_sent(double, const ArmState&, double) override {}
-  void told(double time, const std::string& what) override {
-    ++at(time).told;
+  void reported(double time, const std::string& what) override {
+    ++at(time).reported;
     if (++lines_ <= 10) std::fprintf(stderr, "%.1f s: %s\n", time, what.c_str());
   }
   void stepped(const ServoStep& step) override {
@@ -164,7 +164,7 @@ void print_hours(const std::vector<Hour>& hours, double seconds) {
     fmt::print("| {:.4g} | {} | {} | {:.4f} ({:.4f}) | {:.4f} ({:.4f}) | {} | {} | {:.1f} | {:.0f} |\n",
                static_cast<double>(i) * seconds / 3600 / slices, hour.steps, hour.fresh,
                100 * hour.rest_rms(), 100 * hour.rest_most, 100 * hour.way_rms(), 100 * hour.way_most,
-               hour.limited, hour.told, hour.heap / 1024, hour.resident / 1024);
+               hour.limited, hour.reported, hour.heap / 1024, hour.resident / 1024);
   }
   fmt::print("\n");
 }
@@ -184,7 +184,7 @@ bool endure(double seconds, double step, std::uint64_t seed) {
   config.goals = repeated(one, other, seconds);
   Logbook book(bench.rig(), bench.experiment().arm.arm(), seconds / slices);
   book.begin(bench.rig().clock().now());
-  const RigModel model = bench.believed();
+  const RigModel model = bench.nominal();
   const ServoResult result = servo_in_session(bench.ports(), model, config, book);
   print_hours(book.hours, seconds);
   fmt::print("- ended: {}; steps missed: {}; fault: {}; steps kept: {}\n",

@@ -42,7 +42,7 @@ inline std::string file_bytes(const std::filesystem::path& path) {
 inline std::span<const std::byte> as_log(const std::string& text) { return std::as_bytes(std::span(text)); }
 
 /// A log's messages in a form that compares and prints well.
-inline std::vector<std::string> told(const McapReader& log) {
+inline std::vector<std::string> reported(const McapReader& log) {
   std::vector<std::string> lines;
   for (const McapMessage& message : log.messages()) {
     lines.push_back(message.channel->topic + " " + std::to_string(message.log_time) + " " +

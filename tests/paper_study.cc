@@ -72,9 +72,9 @@ void print_row(const std::string& method, const std::vector<CalibrationTrial>& t
     fmt::print(" - | - | - | - | - | - | - | - |\n");
     return;
   }
-  constexpr double wanted = 0.1;  // deg
+  constexpr double desired = 0.1;  // deg
   const auto good =
-      std::ranges::count_if(angle, [](double one) { return std::abs(one) * in_degrees <= wanted; });
+      std::ranges::count_if(angle, [](double one) { return std::abs(one) * in_degrees <= desired; });
   fmt::print(" {} | {:.1f} | {:.3f} | {:.3f} | {:.3f} | {:.1f} | {:.1f} | {:.2f} |\n", good,
              share_of(pictures, 0.5), share_of(angle, 0.5) * in_degrees, share_of(angle, 0.95) * in_degrees,
              share_of(angle, 1) * in_degrees, share_of(aim, 0.5) * 1e3, share_of(aim, 0.95) * 1e3,

@@ -27,7 +27,7 @@ int compare(std::size_t motions, std::size_t samples, std::uint64_t seed) {
   print_row("reported spans longer than two samples that no sample confirms (refuted)", found.refuted);
   print_row("reported spans with a sample worse than their worst value, by more than 1e-4 (m, or of it)",
             found.understated);
-  print_row("the same, and the check says that it may be so", found.doubted);
+  print_row("the same, and the check says that it may be so", found.flagged);
   std::printf(
       "| what the worst values are short of, where the check says nothing (m, or of it), at most | %.1e |\n",
       found.most_understated);

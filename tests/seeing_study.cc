@@ -63,10 +63,10 @@ void measure(const SeenArm& seen, double undone, ArmFinder& finder, Tally& tally
   ++tally.pictures, tally.crossing += crosses ? 1 : 0;
   Photograph photograph;
   photograph.bytes = gray_picture(seen.picture);
-  const ArmSighting& found = finder.find(linear_light(std::move(photograph), undone));
+  const ArmObservation& found = finder.find(linear_light(std::move(photograph), undone));
   if (!found.is_found()) return;
   ++tally.found, tally.crossing_found += crosses ? 1 : 0;
-  ArmSighting arm = found;
+  ArmObservation arm = found;
   to_backbone_image(seen.view.lens, arm.axis);
   Errors own;
   for (std::size_t i = 0; i < arm.axis.size(); ++i) {
@@ -88,13 +88,13 @@ void measure(const SeenArm& seen, double undone, ArmFinder& finder, Tally& tally
     tally.tip.add(std::min(to_base, (end.pixel - *seen.truth.back().pixel).norm()));
   }
   if (seen.scene.arm.markers.empty()) return;
-  const MarkerSightings markers = find_markers(seen.picture, arm);
+  const MarkerObservations markers = find_markers(seen.picture, arm);
   Renderer renderer;
   renderer.prepare(seen.scene, seen.view);
   const std::vector<MarkerView> views = marker_views(renderer);
   tally.markers_shown += static_cast<std::size_t>(std::ranges::count_if(
       views, [](const MarkerView& view) { return view.area > 12 && view.center.is_visible; }));
-  for (const MarkerSighting& marker : markers.markers) {
+  for (const MarkerObservation& marker : markers.markers) {
     if (!marker.is_band) {
       ++tally.spots;
       continue;

@@ -111,20 +111,20 @@ std::array<WrongStart, 2> half_a_degree(TestRandom& random) {
 }
 
 // Where the arm stands when exact images of it by the true cameras are taken, by those who believe otherwise,
-// as far as `doubt` goes, for the wanted shape: what cameras that are wrong leave at best.
-double floor_of(const Arm& arm, const ArmState& wanted, const std::array<View, 2>& truth,
-                const std::array<View, 2>& believed, const ViewDoubt& doubt) {
+// as far as `view_prior` goes, for the wanted shape: what cameras that are wrong leave at best.
+double floor_of(const Arm& arm, const ArmState& desired, const std::array<View, 2>& truth,
+                const std::array<View, 2>& nominal, const ViewPrior& view_prior) {
   ShapePrior prior;
   prior.arm = arm;
   EstimatorConfig config;
   config.most_rms = 1000;
   ShapeEstimator estimator(prior, config);
-  ArmState state = wanted;
+  ArmState state = desired;
   for (int turn = 0; turn < 30; ++turn) {
-    std::vector<Sighting> seen(2);
+    std::vector<Observation> seen(2);
     const Backbone backbone(arm, state);
     for (std::size_t i = 0; i < 2; ++i) {
-      seen[i].view = believed[i], seen[i].doubt = doubt;
+      seen[i].view = nominal[i], seen[i].view_prior = view_prior;
       constexpr int count = 80;
       for (int k = 0; k <= count; ++k) {
         const auto pixel = truth[i].project(backbone.pose(backbone.length() * k / count).position);
@@ -135,12 +135,12 @@ double floor_of(const Arm& arm, const ArmState& wanted, const std::array<View, 2
                 truth[i].project(backbone.pose(static_cast<double>(end) * backbone.length()).position))
           seen[i].ends[end] = SeenEnd{*pixel, 0.1};
     }
-    const ShapeEstimate estimate = estimator.follow(seen, {arm, wanted});
+    const ShapeEstimate estimate = estimator.follow(seen, {arm, desired});
     if (!estimate.is_found) return std::numeric_limits<double>::quiet_NaN();
     for (std::size_t i = 0; i < state.bends.size(); ++i)
-      state.bends[i] += wanted.bends[i] - estimate.shape.state.bends[i];
+      state.bends[i] += desired.bends[i] - estimate.shape.state.bends[i];
   }
-  return servo_error(arm, state, wanted).rms;
+  return servo_error(arm, state, desired).rms;
 }
 
 // How near to its limits the arm was sent, share of them.
@@ -161,17 +161,17 @@ class StudyRig {
         file_(study_rig(wrong(cameras))),
         colored_(servo_world_file(file_, true, world)),
         gray_(servo_world_file(file_, false, world)) {
-    believed_ = rig_model(gray_.experiment().arm_model(), gray_.experiment().cameras());
+    nominal_ = rig_model(gray_.experiment().arm_model(), gray_.experiment().cameras());
     if (cameras == Cameras::wrong || cameras == Cameras::recorded) {
       // And 1 % of focal length, believed.
-      for (CameraConfig& camera : believed_.cameras)
+      for (CameraConfig& camera : nominal_.cameras)
         camera.lens.fx *= random_.uniform(-1, 1) < 0 ? 0.99 : 1.01;
       return;
     }
     const RigSessionResult result = colored_.calibrate_bundle(colored_.ports());
     if (!result.is_done) why_not_ = "not calibrated, " + result.reason;
     if (!why_not_.empty()) return;
-    believed_ = result.found.model;
+    nominal_ = result.found.model;
     for (std::size_t i = 0; i < 2; ++i) {
       const CameraPorts found = colored_.ports().cameras[i], other = gray_.ports().cameras[i];
       (void)other.head->command(found.head->read().value().state).value();
@@ -190,16 +190,16 @@ class StudyRig {
     config.law = method.law, config.jacobian = method.jacobian;
     config.step = 1.0 / 30, config.tolerance = 0.002, config.settle = 1, config.timeout = 8;
     const Arm arm = bench.experiment().arm.arm();
-    config.markers = band_places(bench.experiment(), believed_.arm);
+    config.markers = band_places(bench.experiment(), nominal_.arm);
     // Of arcs, whatever is believed of what makes them.
-    config.goals = {{0, Actuation(believed_.driven.sections.empty() ? arm : believed_.driven).shape(target)}};
+    config.goals = {{0, Actuation(nominal_.driven.sections.empty() ? arm : nominal_.driven).shape(target)}};
     if (cameras_ == Cameras::recorded) config.goals = {{0, pictures_of(bench, target)}};
     rest_at(bench, start_for(method, target, random));
     ServoNotes notes;
     RigPorts ports = bench.ports();
     TurnedArm turned(*ports.arm, std::numbers::pi / 2, 1.3);
     if (method.is_turned) ports.arm = &turned;
-    const ServoResult result = servo_in_session(ports, believed_, config, notes);
+    const ServoResult result = servo_in_session(ports, nominal_, config, notes);
     Arrival arrival;
     arrival.is_done = result.is_done, arrival.reason = result.reason;
     arrival.settled = result.settled.value_or(0), arrival.overshoot = result.overshoot;
@@ -208,9 +208,9 @@ class StudyRig {
     arrival.rms = left.rms, arrival.most = left.most, arrival.tip = left.tip;
     arrival.limit = nearest_limit(arm, result);
     if (cameras_ == Cameras::wrong) {
-      const auto truth = true_views(bench), believed = believed_views(bench);
-      arrival.believing = floor_of(arm, target, truth, believed, {});
-      arrival.doubting = floor_of(arm, target, truth, believed, config.camera_prior);
+      const auto truth = true_views(bench), nominal = nominal_views(bench);
+      arrival.without_prior = floor_of(arm, target, truth, nominal, {});
+      arrival.with_prior = floor_of(arm, target, truth, nominal, config.camera_prior);
     }
     return arrival;
   }
@@ -237,13 +237,13 @@ class StudyRig {
     const double now = bench.rig().clock().now();
     return {bench.rig().camera(0).view(now), bench.rig().camera(1).view(now)};
   }
-  std::array<View, 2> believed_views(RigBench& bench) {
+  std::array<View, 2> nominal_views(RigBench& bench) {
     std::array<View, 2> views;
     for (std::size_t i = 0; i < 2; ++i) {
       const CameraPorts camera = bench.ports().cameras[i];
-      views[i] = view_of(believed_, {.camera = i,
-                                     .head = camera.head->read().value().state,
-                                     .stage = camera.stage->read().value().state});
+      views[i] = view_of(nominal_, {.camera = i,
+                                    .head = camera.head->read().value().state,
+                                    .stage = camera.stage->read().value().state});
     }
     return views;
   }
@@ -253,7 +253,7 @@ class StudyRig {
   LoopRig file_;
   CalibrationBench colored_;
   RigBench gray_;
-  RigModel believed_;
+  RigModel nominal_;
   std::string why_not_;
 };
 

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "flexura/estimate/picture_sighting.h"
+#include "flexura/estimate/picture_observation.h"
 #include "flexura/estimate/shape_estimator.h"
 #include "flexura/vision/picture_file.h"
 #include "tests/support/seen_shapes.h"
@@ -92,7 +92,7 @@ constexpr double aimed_rms = 2e-4, aimed_most = 5e-4, rare_unevenness = 27.88;
 
 void print_verdicts(const Tally& tally) {
   const double uneven = tally.all.shares.empty() ? NAN : unevenness(tally.all.shares);
-  const auto told = [](double value, double most, double unit, int digits) {
+  const auto reported = [](double value, double most, double unit, int digits) {
     const std::string word = verdict(value, most);
     return std::isnan(value) ? word : fmt::format("{} ({:.{}f})", word, unit * value, digits);
   };
@@ -102,10 +102,10 @@ void print_verdicts(const Tally& tally) {
                                                              verdict(std::abs(mean - 1), tally.all.chance()),
                                                              mean, tally.all.chance());
   fmt::print("| {} | {} | {} | {} | {} | {} |\n", tally.name,
-             told(root_mean_square(tally.errors), aimed_rms, 100, 4),
-             told(root_mean_square(joined(tally.errors, tally.flagged_errors)), aimed_rms, 100, 4),
-             told(quantile(tally.errors, 0.999), aimed_most, 100, 4), squares,
-             told(uneven, rare_unevenness, 1, 0));
+             reported(root_mean_square(tally.errors), aimed_rms, 100, 4),
+             reported(root_mean_square(joined(tally.errors, tally.flagged_errors)), aimed_rms, 100, 4),
+             reported(quantile(tally.errors, 0.999), aimed_most, 100, 4), squares,
+             reported(uneven, rare_unevenness, 1, 0));
 }
 
 // What is not known of the model of a border does not fall with the noise, and counts for most where there is
@@ -127,7 +127,7 @@ int study(int cases, std::uint64_t seed) {
   constexpr std::array names = {"the arm is known", "base and length are known", "the base is known",
                                 "the length is known", "nothing is known"};
   for (std::size_t k = 0; k < tallies.size(); ++k) tallies[k].name = names[k];
-  const bool is_told = std::getenv("SHAPE_STUDY_TELLS") != nullptr;
+  const bool is_verbose = std::getenv("SHAPE_STUDY_TELLS") != nullptr;
   for (int i = 0; i < cases; ++i) {
     TestRandom random(seed + static_cast<std::uint64_t>(i));
     const SeenShape one = random_seen_shape(random);
@@ -140,23 +140,23 @@ int study(int cases, std::uint64_t seed) {
         unknown_arm({}, truth.length()),
         unknown_arm({}, {}),
     };
-    std::vector<Sighting> sightings;
+    std::vector<Observation> observations;
     for (std::size_t j = 0; j < 2; ++j) {
       ArmFinderConfig config;
       // Which end is the base is told: an unknown arm may lie with it upwards.
       config.base = one.views[j].project(base);
       ArmFinder finder(config);
-      sightings.push_back(sighting_of(finder.find(one.pictures[j]), one.views[j]));
+      observations.push_back(observation_of(finder.find(one.pictures[j]), one.views[j]));
     }
     for (std::size_t k = 0; k < tallies.size(); ++k) {
       ShapeEstimator estimator(priors[k]);
-      const ShapeEstimate found = estimator.estimate(sightings);
+      const ShapeEstimate found = estimator.estimate(observations);
       tallies[k].add(found, one, k == 0);
-      if (is_told)
+      if (is_verbose)
         std::fprintf(stderr, "%d %zu %s error %.4f %% rms %.3f px doubted %.2f notes %zu%s\n", i, k,
                      found.is_found ? "found" : "lost",
                      found.is_found ? 100 * relative_shape_error(found.shape, truth) : 0.0, found.rms,
-                     found.doubted, found.notes.size(),
+                     found.outlier_share, found.notes.size(),
                      found.notes.empty() ? found.reason.c_str()
                                          : fmt::format("{}", fmt::join(found.notes, "; ")).c_str());
     }

@@ -65,14 +65,14 @@ void print_result(const Experiment& experiment, const RunResult& result, std::os
   if (result.outcome == RunOutcome::done) {
     out << fmt::format("end effector: ({:.3f}, {:.3f}{})\n", coordinate(0), coordinate(1), z);
   }
-  tell(out, "results", result.folder.string());
+  print_line(out, "results", result.folder.string());
   // What came of each task, if there are several, and last of the run.
   constexpr std::size_t most_lines = 30;
   const std::size_t count = result.outcomes.size() > 1 ? result.outcomes.size() : 0;
   for (std::size_t i = 0; i < std::min(count, most_lines); ++i)
     out << one_line(result.outcomes[i].line()) << '\n';
   if (count > most_lines) out << fmt::format("and {} more, in {}\n", count - most_lines, summary_file_name);
-  tell(out, "outcome", result.headline);
+  print_line(out, "outcome", result.headline);
 }
 
 // A run that people look at, while it goes on and then until somebody ends the program, which ends a run
@@ -96,14 +96,14 @@ class UnwatchedRun {
  public:
   explicit UnwatchedRun(const std::shared_ptr<RunLink>& link)
       : stop_([this, link] {
-          if (times_told_++ > 0) std::_Exit(exit_of_signal(stop_.come()));
+          if (times_signalled_++ > 0) std::_Exit(exit_of_signal(stop_.come()));
           link->cancel();
         }) {}
   /// The signal that told it; 0: none did.
-  [[nodiscard]] int told() const { return stop_.come(); }
+  [[nodiscard]] int received_signal() const { return stop_.come(); }
 
  private:
-  int times_told_ = 0;  // Of the signals' thread.
+  int times_signalled_ = 0;  // Of the signals' thread.
   StopSignal stop_;
 };
 
@@ -160,28 +160,30 @@ int run_command(const RunArguments& arguments, std::ostream& out, std::ostream& 
     }
   }
   progress.clear();
-  if (!no_film.empty()) tell(err, "no film", no_film);
+  if (!no_film.empty()) print_line(err, "no film", no_film);
   const auto is_recorded = [](const TaskOutcome& outcome) { return outcome.kind == "record"; };
   if (experiment.record.cameras && !has_films && std::ranges::any_of(result.outcomes, is_recorded))
-    tell(err, "note",
-         fmt::format("the log has all pictures; for a film install {0} and run: flexura export {1} --to mp4",
-                     film_program, folder.string()));
+    print_line(
+        err, "note",
+        fmt::format("the log has all pictures; for a film install {0} and run: flexura export {1} --to mp4",
+                    film_program, folder.string()));
   write_timing(folder, started, std::chrono::duration<double>(Clock::now() - start).count(), result.summary);
   for (std::size_t i = 0; i < result.reasons.size(); ++i) {
     // Behind why it was cancelled comes what is unsafe of it.
     const bool is_second = result.outcome == RunOutcome::cancelled && i > 0;
-    tell(err, name_of(is_second ? RunOutcome::unsafe : result.outcome), result.reasons[i]);
+    print_line(err, name_of(is_second ? RunOutcome::unsafe : result.outcome), result.reasons[i]);
   }
   if (arguments.json) {
     out << write_json(result.summary, 2) << '\n';
-    tell(err, "results", folder.string());
+    print_line(err, "results", folder.string());
   } else {
     print_result(experiment, result, out);
   }
   out.flush();
   link->finish({name_of(result.outcome), result.reasons.empty() ? "" : result.reasons.front(), folder});
   if (watched) watched->wait();
-  if (result.outcome == RunOutcome::cancelled && unwatched) return exit_of_signal(unwatched->told());
+  if (result.outcome == RunOutcome::cancelled && unwatched)
+    return exit_of_signal(unwatched->received_signal());
   return result.outcome == RunOutcome::done ? exit_done : exit_missed;
 }
 
@@ -195,9 +197,9 @@ int check_command(const CheckArguments& arguments, std::ostream& out, std::ostre
   if (arguments.json) {
     out << write_json(safety_node(report), 2) << '\n';
   } else {
-    for (const std::string& line : violation_lines(report)) tell(out, "unsafe", line);
-    for (const std::string& caveat : report.caveats) tell(out, "caveat", caveat);
-    for (const std::string& note : report.notes) tell(out, "note", note);
+    for (const std::string& line : violation_lines(report)) print_line(out, "unsafe", line);
+    for (const std::string& caveat : report.caveats) print_line(out, "caveat", caveat);
+    for (const std::string& note : report.notes) print_line(out, "note", note);
     if (report.is_safe()) out << "safe\n";
   }
   return report.is_safe() ? exit_done : exit_missed;
@@ -233,7 +235,7 @@ int export_command(const std::string& results, const std::string& format, std::o
   progress.clear();
   if (result.truncated)
     err << "note: the run was cut short; exported up to the last complete chunk of its log\n";
-  tell(out, format == "csv" ? "tables" : "films", result.folder.string());
+  print_line(out, format == "csv" ? "tables" : "films", result.folder.string());
   return exit_done;
 }
 

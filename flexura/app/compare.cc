@@ -210,12 +210,12 @@ int compare_command(const CompareArguments& arguments, std::ostream& out, std::o
   if (arguments.json) {
     out << write_json(json_of(arguments, values, equal), 2) << '\n';
   } else {
-    tell(out, "A", arguments.a + ": " + headline_in(a));
-    tell(out, "B", arguments.b + ": " + headline_in(b));
+    print_line(out, "A", arguments.a + ": " + headline_in(a));
+    print_line(out, "B", arguments.b + ": " + headline_in(b));
     if (!values.empty()) print_table(table_of(values), out);
     out << fmt::format("{} values are equal\n", equal);
   }
-  if (!arguments.out.empty()) tell(arguments.json ? err : out, "page", arguments.out);
+  if (!arguments.out.empty()) print_line(arguments.json ? err : out, "page", arguments.out);
   return exit_done;
 }
 

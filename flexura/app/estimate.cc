@@ -13,7 +13,7 @@
 #include "flexura/base/bytes.h"
 #include "flexura/base/source.h"
 #include "flexura/camera/measured_camera.h"
-#include "flexura/estimate/picture_sighting.h"
+#include "flexura/estimate/picture_observation.h"
 #include "flexura/estimate/shape_estimator.h"
 #include "flexura/estimate/shape_hint.h"
 #include "flexura/store/json.h"
@@ -28,13 +28,14 @@ namespace flexura {
 namespace {
 
 // One picture: what it shows of the arm.
-struct Look {
-  LookedAt told;
-  Sighting sighting;
+struct PictureObservation {
+  PictureReport report;
+  Observation observation;
   bool is_of_other_size = false;  // As far as the camera's description tells.
 };
 
-Look look_at(const PictureFile& picture, const MeasuredCamera& camera, const EstimateConfig& config) {
+PictureObservation observe(const PictureFile& picture, const MeasuredCamera& camera,
+                           const EstimateConfig& config) {
   const auto& [name, file] = picture;
   const ShapePrior& prior = config.prior;
   const Photograph photograph = linear_light(decode_picture(bytes_of(file), name), camera.gamma);
@@ -44,22 +45,23 @@ Look look_at(const PictureFile& picture, const MeasuredCamera& camera, const Est
   finding.threshold = config.threshold;
   if (prior.is_base_position_known) finding.base = view.project(prior.arm.X_WB.position);
   ArmFinder finder(finding);
-  const ArmSighting& found = finder.find(photograph);
-  Look look{{name, camera.name, found.reason, found.notes}, sighting_of(found, view, photograph.bytes)};
-  auto& notes = look.told.notes;
+  const ArmObservation& found = finder.find(photograph);
+  PictureObservation observed{{name, camera.name, found.reason, found.notes},
+                              observation_of(found, view, photograph.bytes)};
+  auto& notes = observed.report.notes;
   // A camera that says for which size it is described has been held to it.
   auto hint = camera.size ? std::nullopt : hint_of_size(view.lens, view.width, view.height);
-  look.is_of_other_size = hint.has_value();
+  observed.is_of_other_size = hint.has_value();
   if (hint) notes.push_back(std::move(*hint));
   if (!photograph.is_mask)
     if (auto note = hint_of_exposure(gray_picture(photograph.bytes))) notes.push_back(std::move(*note));
-  if (look.sighting.leaves_out) notes.emplace_back(rays_lacking);
-  look.sighting.doubt = camera.prior;
-  return look;
+  if (observed.observation.leaves_out) notes.emplace_back(rays_lacking);
+  observed.observation.view_prior = camera.prior;
+  return observed;
 }
 
 // What is to be known of all pictures together.
-void add_notes(std::span<const PictureFile> pictures, std::span<const Sighting> sightings,
+void add_notes(std::span<const PictureFile> pictures, std::span<const Observation> observations,
                const EstimateConfig& config, ShapeEstimate& found) {
   if (found.is_found && !config.prior.is_base_position_known)
     found.notes.emplace_back(
@@ -72,7 +74,7 @@ void add_notes(std::span<const PictureFile> pictures, std::span<const Sighting> 
       found.notes.push_back(
           fmt::format("pictures {} and {} are the same", same - pictures.begin() + 1, i + 1));
   }
-  if (auto hint = hint_of(config.prior, sightings, found)) found.notes.push_back(std::move(*hint));
+  if (auto hint = hint_of(config.prior, observations, found)) found.notes.push_back(std::move(*hint));
   const auto& sections = config.prior.arm.sections;
   if (config.has_bends && !found.is_trusted() && sections.size() > 1 &&
       std::ranges::any_of(sections, &Section::can_stretch))
@@ -83,23 +85,23 @@ void add_notes(std::span<const PictureFile> pictures, std::span<const Sighting> 
 
 ShapeAnswer estimate_shape(std::span<const PictureFile> pictures, const std::vector<MeasuredCamera>& cameras,
                            const EstimateConfig& config) {
-  std::vector<LookedAt> told;
-  std::vector<Sighting> sightings;
+  std::vector<PictureReport> report;
+  std::vector<Observation> observations;
   std::vector<std::string> notes, sizes;
   for (std::size_t i = 0; i < cameras.size(); ++i) {
-    Look look = look_at(pictures[i], cameras[i], config);
-    if (look.is_of_other_size)
+    PictureObservation observed = observe(pictures[i], cameras[i], config);
+    if (observed.is_of_other_size)
       sizes.push_back(fmt::format(
           "picture {} may be of another size than its camera is described for: see its own notes", i + 1));
-    else if (!look.told.notes.empty())
+    else if (!observed.report.notes.empty())
       notes.push_back(fmt::format("picture {} has notes of its own", i + 1));
-    told.push_back(std::move(look.told)), sightings.push_back(std::move(look.sighting));
+    report.push_back(std::move(observed.report)), observations.push_back(std::move(observed.observation));
   }
-  ShapeEstimate found = ShapeEstimator(config.prior, config.estimator).estimate(sightings);
-  add_notes(pictures, sightings, config, found);
+  ShapeEstimate found = ShapeEstimator(config.prior, config.estimator).estimate(observations);
+  add_notes(pictures, observations, config, found);
   if (!found.is_found) found.notes.insert(found.notes.end(), notes.begin(), notes.end());
   found.notes.insert(found.notes.end(), sizes.begin(), sizes.end());
-  return {estimate_node(found, sightings, told, config), found.is_found};
+  return {estimate_node(found, observations, report, config), found.is_found};
 }
 
 int estimate_command(const EstimateArguments& arguments, std::ostream& out) {

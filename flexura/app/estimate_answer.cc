@@ -20,10 +20,11 @@ Node vector_node(const Eigen::Vector3d& p) {
   return {Node::Array{number_node(p.x()), number_node(p.y()), number_node(p.z())}, {}};
 }
 
-Node image_node(const LookedAt& picture, const Sighting& sighting, const std::optional<ViewError>& error) {
+Node image_node(const PictureReport& picture, const Observation& observation,
+                const std::optional<ViewError>& error) {
   Node::Table entry{{"image", {}, text_node(picture.image)},
                     {"camera", {}, text_node(picture.camera)},
-                    {"points", {}, {static_cast<std::int64_t>(sighting.points.size()), {}}}};
+                    {"points", {}, {static_cast<std::int64_t>(observation.points.size()), {}}}};
   if (error) {
     Node::Table off{{"turn", {}, vector_node(error->turn)}, {"focal", {}, number_node(error->focal)}};
     entry.push_back({"camera_error", {}, {std::move(off), {}}});
@@ -59,13 +60,13 @@ void add_angles(const std::vector<DirectionAngles>& angles, const std::string& b
 }
 
 // As two image planes show them, if the cameras stand for that: one looks along Z, the other one along X.
-void add_plane_angles(std::span<const Sighting> sightings, std::size_t count, Node::Table& answer) {
-  if (sightings.size() != 2) return;
-  const Pose &first = sightings[0].view.X_WC, &second = sightings[1].view.X_WC;
+void add_plane_angles(std::span<const Observation> observations, std::size_t count, Node::Table& answer) {
+  if (observations.size() != 2) return;
+  const Pose &first = observations[0].view.X_WC, &second = observations[1].view.X_WC;
   const bool is_front_first = stand_for_planes(first, second);
   if (!is_front_first && !stand_for_planes(second, first)) return;
-  const auto angles = is_front_first ? plane_angles(sightings[0], sightings[1], count)
-                                     : plane_angles(sightings[1], sightings[0], count);
+  const auto angles = is_front_first ? plane_angles(observations[0], observations[1], count)
+                                     : plane_angles(observations[1], observations[0], count);
   if (angles.empty()) return;
   Node::Table planes;
   add_angles(angles, "", planes);
@@ -87,8 +88,8 @@ void add_markers(const ShapeEstimate& found, const Backbone& backbone, Node::Tab
   answer.push_back({"markers", {}, {std::move(markers), {}}});
 }
 
-void add_shape(const ShapeEstimate& found, std::span<const Sighting> sightings, const EstimateConfig& config,
-               Node::Table& answer) {
+void add_shape(const ShapeEstimate& found, std::span<const Observation> observations,
+               const EstimateConfig& config, Node::Table& answer) {
   const Backbone backbone(found.shape.arm, found.shape.state);
   const std::size_t count = config.points;
   Node::Array points;
@@ -98,7 +99,7 @@ void add_shape(const ShapeEstimate& found, std::span<const Sighting> sightings, 
   }
   answer.push_back({"backbone", {}, {std::move(points), {}}});
   add_angles(direction_angles(backbone, count), "", answer);
-  add_plane_angles(sightings, count, answer);
+  add_plane_angles(observations, count, answer);
   answer.push_back({"length", {}, number_node(backbone.length())});
   answer.push_back({"sigma", {}, number_node(found.rms_sigma())});
   answer.push_back({"sigmas", {}, {sigmas_at(found, count, backbone.length()), {}}});
@@ -110,17 +111,17 @@ void add_shape(const ShapeEstimate& found, std::span<const Sighting> sightings, 
 
 }  // namespace
 
-Node estimate_node(const ShapeEstimate& found, std::span<const Sighting> sightings,
-                   std::span<const LookedAt> pictures, const EstimateConfig& config) {
+Node estimate_node(const ShapeEstimate& found, std::span<const Observation> observations,
+                   std::span<const PictureReport> pictures, const EstimateConfig& config) {
   Node::Array images;
   for (std::size_t i = 0; i < pictures.size(); ++i) {
     std::optional<ViewError> error;
-    if (found.is_found && sightings[i].doubt.is_any()) error = found.shape.views.at(i);
-    images.push_back(image_node(pictures[i], sightings[i], error));
+    if (found.is_found && observations[i].view_prior.is_any()) error = found.shape.views.at(i);
+    images.push_back(image_node(pictures[i], observations[i], error));
   }
   Node::Table answer{{"found", {}, {found.is_found, {}}}, {"trusted", {}, {found.is_trusted(), {}}}};
   if (found.is_found)
-    add_shape(found, sightings, config, answer);
+    add_shape(found, observations, config, answer);
   else
     answer.push_back({"reason", {}, text_node(found.reason)});
   if (!found.notes.empty()) answer.push_back({"notes", {}, texts_node(found.notes)});

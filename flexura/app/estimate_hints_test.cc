@@ -33,7 +33,7 @@ class EstimateHints : public EstimateBench {
     write_new_file(folder_.path() / "gamma.toml", text);
     arguments_.images = {photographed("gamma", "front"), photographed("gamma", "side")};
   }
-  void say_gamma() {
+  void give_gamma() {
     std::string text = two_measured_cameras;
     for (std::size_t at = 0; (at = text.find("cx =", at)) != std::string::npos; at += 30)
       text.insert(at, "gamma = 2.2\n");
@@ -46,12 +46,12 @@ TEST_F(EstimateHints, UndoAGammaThatIsSaid) {
   arguments_.arm = (folder_.path() / "arm.toml").string();
   const double without = error(answer(exit_done));
   photograph_with_gamma();
-  const double unsaid = error(answer(exit_done));
-  say_gamma();
+  const double omitted = error(answer(exit_done));
+  give_gamma();
   const Node found = answer(exit_done);
   EXPECT_EQ(*found.find("trusted")->as<bool>(), true);
   EXPECT_LT(error(found), std::max(1.5 * without, 1e-4));
-  EXPECT_LT(error(found), 0.8 * unsaid);
+  EXPECT_LT(error(found), 0.8 * omitted);
 }
 
 TEST_F(EstimateHints, MeasureUndoesItToo) {
@@ -64,7 +64,7 @@ TEST_F(EstimateHints, MeasureUndoesItToo) {
   };
   MeasureArguments plain, by_option, by_file, by_both;
   by_option.gamma = by_both.gamma = 2.2;
-  say_gamma();
+  give_gamma();
   write_new_file(folder_.path() / "one.toml",
                  read_text_file(arguments_.cameras, 1 << 16)
                      .substr(0, read_text_file(arguments_.cameras, 1 << 16).rfind("[[camera]]")));

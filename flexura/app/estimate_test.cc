@@ -85,9 +85,9 @@ TEST_F(Estimate, UsesBandsOfWhichBothPicturesShowTheSame) {
   // One is hidden from the second camera, which sees another where none is.
   write_banded("false", {"0.15", "0.3", "0.45", "0.67", "0.75", "0.9"});
   arguments_.images[1] = photographed("false", "side");
-  const Node doubtful = answer(exit_done);
-  EXPECT_LT(error(doubtful), 5e-3);
-  EXPECT_EQ(doubtful.find("markers")->as<Node::Array>()->size(), places.size());
+  const Node uncertain = answer(exit_done);
+  EXPECT_LT(error(uncertain), 5e-3);
+  EXPECT_EQ(uncertain.find("markers")->as<Node::Array>()->size(), places.size());
   arguments_.markers.clear();
   EXPECT_LT(error(answer(exit_done)), 5e-3);
 }
@@ -128,21 +128,22 @@ TEST_F(Estimate, UndoesTheLensesDistortionWhereTheFileTellsIt) {
       folder_.path() / "bent.toml",
       replaced_everywhere(photographed_arm, "sensor =", "lens = { " + distortion + " }\nsensor ="));
   arguments_.images = {photographed("bent", "front"), photographed("bent", "side")};
-  const std::string untold = arguments_.cameras, told = (folder_.path() / "lenses.toml").string();
-  write_new_file(told, replaced_everywhere(two_measured_cameras, "fx = 800.0", "fx = 800.0\n" + distortion));
-  const auto expect_right_where_told = [&](double most) {
-    arguments_.cameras = untold;
+  const std::string without_lens = arguments_.cameras, reported = (folder_.path() / "lenses.toml").string();
+  write_new_file(reported,
+                 replaced_everywhere(two_measured_cameras, "fx = 800.0", "fx = 800.0\n" + distortion));
+  const auto expect_right_where_reported = [&](double most) {
+    arguments_.cameras = without_lens;
     const Node wrong = answer(exit_done);
     EXPECT_GT(error(wrong), 5e-3);
     EXPECT_FALSE(*wrong.find("trusted")->as<bool>());
-    arguments_.cameras = told;
+    arguments_.cameras = reported;
     EXPECT_LT(error(answer(exit_done)), most);
   };
   // A known arm, then one of unknown make.
   arguments_.arm = (folder_.path() / "arm.toml").string();
-  expect_right_where_told(5e-4);
+  expect_right_where_reported(5e-4);
   arguments_.arm.clear(), arguments_.base = {0, 0, 0}, arguments_.length = 1;
-  expect_right_where_told(4e-3);
+  expect_right_where_reported(4e-3);
 }
 
 // A lens whose distortion folds back within the picture shows no arm beyond: the answer says so.
@@ -156,9 +157,9 @@ TEST_F(Estimate, SaysWhereADistortionHasNoRays) {
     (void)estimate_command(arguments_, out);
     return out.str();
   };
-  const std::string said = "has no ray for some pixels of the arm: they count for nothing";
-  EXPECT_THAT(notes_by("-5"), HasSubstr(said));
-  EXPECT_THAT(notes_by("-0.1"), Not(HasSubstr(said)));
+  const std::string reported = "has no ray for some pixels of the arm: they count for nothing";
+  EXPECT_THAT(notes_by("-5"), HasSubstr(reported));
+  EXPECT_THAT(notes_by("-0.1"), Not(HasSubstr(reported)));
 }
 
 // What `node` holds at `key`, as finite numbers; of rows one after the other.
@@ -245,8 +246,8 @@ TEST_F(Estimate, TellsTheAnglesOfItsBackbone) {
   for (std::size_t i = 1; i < 200; ++i) {
     const Eigen::Vector3d before(&points[3 * (i - 1)]), after(&points[3 * (i + 1)]);
     const double a = azimuth[i], e = elevation[i];
-    const Eigen::Vector3d told(std::sin(a) * std::cos(e), std::cos(a) * std::cos(e), std::sin(e));
-    EXPECT_LT(((after - before).normalized() - told).norm(), 0.01) << i;
+    const Eigen::Vector3d reported(std::sin(a) * std::cos(e), std::cos(a) * std::cos(e), std::sin(e));
+    EXPECT_LT(((after - before).normalized() - reported).norm(), 0.01) << i;
   }
 }
 

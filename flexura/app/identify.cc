@@ -31,7 +31,7 @@ using Kind = RodParameter::Kind;
 // A window covers a swing, but fits several times into the record, and has samples enough.
 constexpr double least_windows = 4, least_samples_in_window = 12;
 // What is left of the equations is then five times what noise explains.
-constexpr double odd_misfit = 25;
+constexpr double large_misfit = 25;
 
 // Uniform in (0, 1), of a counter.
 double uniform_of(std::uint64_t bits) { return (static_cast<double>(bits >> 11) + 0.5) * 0x1p-53; }
@@ -63,8 +63,9 @@ double window_for(const Rod& rod, const RodLoads& loads, const std::vector<RodPl
   const double length = samples.back().time - samples.front().time,
                step = length / static_cast<double>(samples.size() - 1);
   const double period = slowest_period(rod, loads);
-  const double wanted = period > 0 ? period : length / 8;
-  return std::min(length, std::max(least_samples_in_window * step, std::min(wanted, length / least_windows)));
+  const double desired = period > 0 ? period : length / 8;
+  return std::min(length,
+                  std::max(least_samples_in_window * step, std::min(desired, length / least_windows)));
 }
 
 std::vector<RodParameter> parameters_of(const Rod& rod, const IdentifySettings& settings) {
@@ -87,7 +88,7 @@ IdentifiedValue damping_of(const Identification& found, Index stiffness, Index d
       found.covariance(damping, stiffness), found.covariance(damping, damping);
   return {.name = "damping_time",
           .unit = "s",
-          .is_told = f > 0,
+          .is_determined = f > 0,
           .value = c / f,
           .sigma = spread * std::sqrt(std::max(0.0, slope.dot(covariance * slope)))};
 }
@@ -95,7 +96,7 @@ IdentifiedValue damping_of(const Identification& found, Index stiffness, Index d
 // The rod with what was found; what was not stays.
 Rod identified_rod(Rod rod, const IdentifiedArm& found) {
   for (const IdentifiedValue& value : found.values) {
-    if (!value.is_told || !(value.value > 0)) continue;
+    if (!value.is_determined || !(value.value > 0)) continue;
     for (std::size_t i = 0; i < rod.sections.size(); ++i) {
       if (value.section && *value.section != i + 1) continue;
       RodSection& section = rod.sections[i];
@@ -119,9 +120,9 @@ Node value_node(const IdentifiedValue& value) {
   const double nothing = std::numeric_limits<double>::quiet_NaN();
   Node::Table line = {{"parameter", {}, text_node(value.name)}};
   if (value.section) line.push_back({"section", {}, {static_cast<std::int64_t>(*value.section), {}}});
-  line.push_back({"told", {}, {value.is_told, {}}});
-  line.push_back({"value", {}, number_node(value.is_told ? value.value : nothing)});
-  line.push_back({"sigma", {}, number_node(value.is_told ? value.sigma : nothing)});
+  line.push_back({"told", {}, {value.is_determined, {}}});
+  line.push_back({"value", {}, number_node(value.is_determined ? value.value : nothing)});
+  line.push_back({"sigma", {}, number_node(value.is_determined ? value.sigma : nothing)});
   line.push_back({"nominal", {}, number_node(value.nominal)});
   line.push_back({"unit", {}, text_node(value.unit)});
   return {std::move(line), {}};
@@ -155,8 +156,8 @@ void print_table(const IdentifiedArm& found, std::ostream& out) {
   for (const IdentifiedValue& value : found.values) {
     const std::string of = value.section ? fmt::format("section {}: ", *value.section) : "";
     out << fmt::format("{:<34}", of + words_of(value.name));
-    out << (value.is_told ? fmt::format("{:>12.5g}{:>12.2g}", value.value, value.sigma)
-                          : fmt::format("{:>24}", "not told by this motion"));
+    out << (value.is_determined ? fmt::format("{:>12.5g}{:>12.2g}", value.value, value.sigma)
+                                : fmt::format("{:>24}", "not told by this motion"));
     out << fmt::format("{:>12.5g}\n", value.nominal);
   }
   out << fmt::format("{} places at {} times, which the rod's shapes meet within {} (rms); misfit {:.2f}\n",
@@ -209,7 +210,7 @@ IdentifiedArm identify_arm(const ArmConfig& arm, const Rod& rod, const MeasuredM
   // What the rod's description leaves counts as noise does.
   const double spread = std::sqrt(std::max(1.0, found.misfit));
   const auto count = static_cast<Index>(settings.alike ? 1 : rod.sections.size());
-  const auto is_told = [&](Index g) { return found.is_observable[static_cast<std::size_t>(g)] != 0; };
+  const auto is_determined = [&](Index g) { return found.is_observable[static_cast<std::size_t>(g)] != 0; };
   for (Index i = 0; i < count; ++i) {
     const MaterialConfig& material = *arm.section[static_cast<std::size_t>(i)].material;
     const bool has_modulus = material.youngs_modulus.has_value() && !material.stiffness;
@@ -218,12 +219,12 @@ IdentifiedArm identify_arm(const ArmConfig& arm, const Rod& rod, const MeasuredM
     result.values.push_back({.name = has_modulus ? "youngs_modulus" : "stiffness_factor",
                              .unit = has_modulus ? "Pa" : "",
                              .section = section,
-                             .is_told = is_told(i),
+                             .is_determined = is_determined(i),
                              .value = nominal * found.values[i],
                              .sigma = nominal * spread * found.sigma[i],
                              .nominal = nominal});
     IdentifiedValue damping{.name = "damping_time", .unit = "s"};
-    if (is_told(i) && is_told(count + i)) damping = damping_of(found, i, count + i, spread);
+    if (is_determined(i) && is_determined(count + i)) damping = damping_of(found, i, count + i, spread);
     damping.section = section;
     damping.nominal = material.damping_time;
     result.values.push_back(damping);
@@ -231,7 +232,7 @@ IdentifiedArm identify_arm(const ArmConfig& arm, const Rod& rod, const MeasuredM
   if (settings.mass)
     result.values.push_back({.name = "mass_factor",
                              .unit = "",
-                             .is_told = is_told(2 * count),
+                             .is_determined = is_determined(2 * count),
                              .value = found.values[2 * count],
                              .sigma = spread * found.sigma[2 * count],
                              .nominal = 1});
@@ -258,7 +259,7 @@ int identify_command(const IdentifyArguments& arguments, std::ostream& out, std:
   } catch (const std::invalid_argument& error) {
     throw input_error(arguments.motion, error.what());
   }
-  if (found.misfit > odd_misfit)
+  if (found.misfit > large_misfit)
     err << fmt::format(
         "note: not all of the motion is that of such an arm (misfit {:.3g}): it is sampled too "
         "seldom, or the file's lengths, masses, tendons or loads are others\n",
@@ -269,7 +270,7 @@ int identify_command(const IdentifyArguments& arguments, std::ostream& out, std:
   } else {
     print_table(found, out);
   }
-  return std::ranges::any_of(found.values, &IdentifiedValue::is_told) ? exit_done : exit_missed;
+  return std::ranges::any_of(found.values, &IdentifiedValue::is_determined) ? exit_done : exit_missed;
 }
 
 }  // namespace flexura

@@ -30,7 +30,7 @@ struct IdentifiedValue {
   std::string name;  ///< "youngs_modulus", "stiffness_factor", "damping_time" or "mass_factor".
   std::string unit;  ///< "Pa", "s" or "".
   std::optional<std::size_t> section = {};  ///< From 1; none: all of the arm.
-  bool is_told = false;                     ///< Else value and sigma say nothing.
+  bool is_determined = false;               ///< Else value and sigma say nothing.
   double value = 0;
   double sigma = 0;    ///< Its standard deviation.
   double nominal = 0;  ///< In the file.

@@ -130,8 +130,8 @@ MeasuredMotion motion_in_table(const std::string& name, const Experiment& experi
                     "S its arc length in m",
                     columns, tendons));
   for (std::size_t i = 0; i < tendons; ++i)
-    if (const std::string wanted = fmt::format("tension_{}", i + 1); table.columns[1 + i] != wanted)
-      throw refuse(fmt::format("column {} is \"{}\": expected \"{}\"", 2 + i, table.columns[1 + i], wanted));
+    if (const std::string desired = fmt::format("tension_{}", i + 1); table.columns[1 + i] != desired)
+      throw refuse(fmt::format("column {} is \"{}\": expected \"{}\"", 2 + i, table.columns[1 + i], desired));
   MeasuredMotion motion;
   for (std::size_t c = 1 + tendons; c < columns; c += 3) {
     const auto s = place_in(table.columns[c], 'x');

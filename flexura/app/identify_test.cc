@@ -37,18 +37,18 @@ double number_in(const Node& line, const char* key) { return *line.find(key)->as
 
 class Identify : public Runs, public testing::Test {
  protected:
-  struct Said {
+  struct Printed {
     int status = 0;
     std::string out, err;
   };
-  static Said said(const IdentifyArguments& arguments) {
+  static Printed printed(const IdentifyArguments& arguments) {
     std::ostringstream out, err;
     const int status = identify_command(arguments, out, err);
     return {status, out.str(), err.str()};
   }
   static std::string refused(const IdentifyArguments& arguments) {
     try {
-      return said(arguments).out;
+      return printed(arguments).out;
     } catch (const InputError& error) {
       return error.what();
     }
@@ -100,15 +100,16 @@ void expect_the_truth(const std::vector<Node>& lines) {
 }
 
 TEST_F(Identify, FindsTheTrueMaterialByTheLogOfARun) {
-  const Said json = said({.experiment = step_response, .motion = results(), .noise_mm = 0.2, .json = true});
+  const Printed json =
+      printed({.experiment = step_response, .motion = results(), .noise_mm = 0.2, .json = true});
   EXPECT_EQ(json.status, exit_done);
   expect_the_truth(json_lines(json.out));
   // The log itself says the same, and the table as well.
   EXPECT_EQ(
-      said({.experiment = step_response, .motion = results() + "/log.mcap", .noise_mm = 0.2, .json = true})
+      printed({.experiment = step_response, .motion = results() + "/log.mcap", .noise_mm = 0.2, .json = true})
           .out,
       json.out);
-  const Said table = said({.experiment = step_response, .motion = results(), .noise_mm = 0.2});
+  const Printed table = printed({.experiment = step_response, .motion = results(), .noise_mm = 0.2});
   EXPECT_THAT(table.out, HasSubstr("section 2: Young's modulus, Pa"));
   EXPECT_THAT(table.out, HasSubstr("in the file"));
 }
@@ -135,7 +136,7 @@ TEST_F(Identify, FindsItByATableOfPlaces) {
         text += fmt::format(",{}", coordinate + 1e-4 * normal_number(random));
   }
   const std::string file = written("places.csv", text + "\n");
-  const Said found = said({.experiment = step_response, .motion = file, .json = true});
+  const Printed found = printed({.experiment = step_response, .motion = file, .json = true});
   EXPECT_EQ(found.status, exit_done);
   const std::vector<Node> lines = json_lines(found.out);
   expect_the_truth(lines);
@@ -145,12 +146,12 @@ TEST_F(Identify, FindsItByATableOfPlaces) {
 
 TEST_F(Identify, SaysWhatAMotionDoesNotTell) {
   // Nothing moves before the step.
-  const Said found = said({.experiment = step_response,
-                           .motion = results(),
-                           .to = 0.19,
-                           .noise_mm = 0.2,
-                           .window = 0.15,
-                           .json = true});
+  const Printed found = printed({.experiment = step_response,
+                                 .motion = results(),
+                                 .to = 0.19,
+                                 .noise_mm = 0.2,
+                                 .window = 0.15,
+                                 .json = true});
   for (const Node& line : json_lines(found.out))
     if (line.find("told") != nullptr &&
         std::string(*line.find("parameter")->as<std::string>()) == "damping_time") {

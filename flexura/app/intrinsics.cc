@@ -109,7 +109,7 @@ Node cameras_answer(const IntrinsicsArguments& arguments, const BoardTarget& boa
     cameras.reserve(names.size());
     for (std::size_t i = 0; i < names.size(); ++i)
       cameras.push_back({names[i], first_pose(arguments) * fit.poses[i], lens_config(fit.cameras[i].lens),
-                         pictures[i].size, doubt_of(fit, i)});
+                         pictures[i].size, view_prior_of(fit, i)});
     Node::Array details = entries;
     if (is_pair) details.push_back(pair_node(fit));
     write_files(arguments, cameras, {fit.rms, fit.points, details}, answer);

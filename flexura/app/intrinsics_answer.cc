@@ -40,8 +40,8 @@ Node views_node(const BoardPictures& pictures, const IntrinsicsFit& fit, std::si
   Node::Array views;
   for (std::size_t i = 0; i < pictures.names.size(); ++i) {
     Node::Table entry{{"image", {}, text_node(pictures.names[i])}};
-    if (!pictures.sightings[i].is_found()) {
-      entry.push_back({"reason", {}, text_node(pictures.sightings[i].reason)});
+    if (!pictures.observations[i].is_found()) {
+      entry.push_back({"reason", {}, text_node(pictures.observations[i].reason)});
     } else if (camera < fit.cameras.size() && i < fit.cameras[camera].view_rms.size()) {
       const auto rms = fit.cameras[camera].view_rms[i];
       entry.push_back({"rms_px", {}, rms ? number_node(*rms) : Node{}});
@@ -57,8 +57,9 @@ void add_numbers(const CameraFit& fit, Eigen::Index estimated, bool is_alone, No
   Node::Table sigma;
   for (int i = 0; i < static_cast<int>(estimated); ++i)
     sigma.push_back({parameter_names[static_cast<std::size_t>(i)], {}, number_node(fit.sigma(i))});
-  Node::Array untold;
-  for (const int i : fit.untold) untold.push_back(text_node(parameter_names[static_cast<std::size_t>(i)]));
+  Node::Array undetermined;
+  for (const int i : fit.undetermined)
+    undetermined.push_back(text_node(parameter_names[static_cast<std::size_t>(i)]));
   entry.insert(
       entry.end(),
       {{"fx", {}, number_node(lens.fx)},
@@ -67,7 +68,7 @@ void add_numbers(const CameraFit& fit, Eigen::Index estimated, bool is_alone, No
        {"cy", {}, number_node(lens.cy)},
        {"distortion", {}, numbers(lens.distortion)},
        {"sigma", {}, {std::move(sigma), {}}},
-       {"untold", {}, {std::move(untold), {}}},
+       {"untold", {}, {std::move(undetermined), {}}},
        {"corner_sigma_px", {}, std::isfinite(fit.corner_sigma) ? number_node(fit.corner_sigma) : Node{}},
        {"rms_px", {}, number_node(fit.rms)}});
   if (!is_alone) entry.push_back({"rms_alone_px", {}, number_node(fit.rms_alone)});
@@ -75,7 +76,7 @@ void add_numbers(const CameraFit& fit, Eigen::Index estimated, bool is_alone, No
 }
 
 // The pictures that a camera's lens explains much worse than the others.
-void add_doubts(const BoardPictures& pictures, const CameraFit& fit, std::vector<std::string>& notes) {
+void add_warnings(const BoardPictures& pictures, const CameraFit& fit, std::vector<std::string>& notes) {
   std::vector<double> known;
   for (const auto& rms : fit.view_rms)
     if (rms) known.push_back(*rms);
@@ -102,8 +103,8 @@ Node board_node(const BoardTarget& board) {
 Node camera_node(const std::string& name, const BoardPictures& pictures, const IntrinsicsFit& fit,
                  std::size_t camera, int distortion) {
   std::size_t used = 0;
-  for (std::size_t i = 0; i < pictures.sightings.size(); ++i)
-    used += pictures.sightings[i].is_found() && !fit.is_held_out[i] ? 1 : 0;
+  for (std::size_t i = 0; i < pictures.observations.size(); ++i)
+    used += pictures.observations[i].is_found() && !fit.is_held_out[i] ? 1 : 0;
   Node::Table entry{
       {"name", {}, text_node(name)},
       {"size",
@@ -134,7 +135,7 @@ Node pair_node(const IntrinsicsFit& fit) {
 std::vector<std::string> notes_of(const std::vector<BoardPictures>& cameras, const IntrinsicsFit& fit) {
   std::vector<std::string> notes;
   for (std::size_t i = 0; i < fit.cameras.size() && i < cameras.size(); ++i) {
-    add_doubts(cameras[i], fit.cameras[i], notes);
+    add_warnings(cameras[i], fit.cameras[i], notes);
     // As far as they are still taken for a pair (IntrinsicsFit::reason).
     constexpr double much_worse = 2, visible = 0.3;  // px
     const double alone = fit.cameras[i].rms_alone, together = fit.cameras[i].rms;
@@ -143,12 +144,12 @@ std::vector<std::string> notes_of(const std::vector<BoardPictures>& cameras, con
           fmt::format("camera {} fits to {:.2g} px alone and to {:.2g} px with the other: pictures that were "
                       "not taken together, or a camera that moved",
                       i + 1, alone, together));
-    const auto& untold = fit.cameras[i].untold;
-    if (!untold.empty() && untold.front() >= 4)
+    const auto& undetermined = fit.cameras[i].undetermined;
+    if (!undetermined.empty() && undetermined.front() >= 4)
       notes.push_back(
           fmt::format("the views do not tell {} of a lens: fewer coefficients with --distortion, or boards "
                       "that reach the image's corners, would",
-                      parameter_names[static_cast<std::size_t>(untold.front())]));
+                      parameter_names[static_cast<std::size_t>(undetermined.front())]));
   }
   return notes;
 }

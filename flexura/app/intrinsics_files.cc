@@ -44,7 +44,7 @@ LensConfig lens_config(const Intrinsics& lens) {
       .fx = lens.fx, .fy = lens.fy, .cx = lens.cx, .cy = lens.cy, .distortion = lens.distortion, .zoom = {}};
 }
 
-ViewDoubt doubt_of(const IntrinsicsFit& fit, std::size_t camera) {
+ViewPrior view_prior_of(const IntrinsicsFit& fit, std::size_t camera) {
   constexpr double together = 3;  // Corners of one picture err together: docs/intrinsics.md.
   constexpr double most = 0.3;    // More no file may say.
   const CameraFit& own = fit.cameras[camera];
@@ -67,7 +67,7 @@ std::string measured_cameras_toml(const std::vector<CalibratedCamera>& cameras, 
     written.size = {camera.size[0], camera.size[1]};
     written.position = array_of(camera.pose.position);
     written.rotation.value = array_of(quaternion_wxyz(camera.pose.rotation));
-    written.prior = camera.doubt;
+    written.prior = camera.view_prior;
   }
   return fmt::format("# {}\n", remark) +
          write_toml(Codec<MeasuredCameras>::write(file), fields_of(&file).info());
@@ -98,13 +98,13 @@ std::string rig_toml(const std::vector<CalibratedCamera>& cameras, const std::st
   return text;
 }
 
-std::filesystem::path write_beside(const std::filesystem::path& wanted, std::string_view text) {
+std::filesystem::path write_beside(const std::filesystem::path& desired, std::string_view text) {
   std::error_code error;
   for (int number = 1;; ++number) {
-    std::filesystem::path file = wanted;
+    std::filesystem::path file = desired;
     if (number > 1)
       file.replace_filename(
-          fmt::format("{}-{}{}", wanted.stem().string(), number, wanted.extension().string()));
+          fmt::format("{}-{}{}", desired.stem().string(), number, desired.extension().string()));
     // What cannot be looked at is left to the system to refuse.
     const auto type = std::filesystem::symlink_status(file, error).type();
     if (!error && type != std::filesystem::file_type::not_found) continue;

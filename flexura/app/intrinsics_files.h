@@ -25,7 +25,7 @@ struct CalibratedCamera {
   Pose pose;        ///< X_WC
   LensConfig lens;  ///< At ratio 1, with the zoom's rows where it was measured at several.
   std::array<int, 2> size = {640, 480};
-  ViewDoubt doubt;
+  ViewPrior view_prior;
 };
 
 /// What experiments include of a rig: its cameras.
@@ -40,7 +40,7 @@ const Table<RigFile>& fields_of(const RigFile*);
 /// How wrong a camera of a fit may be: three times what the fit's covariance says, which takes each corner
 /// for an observation of its own, of its focal length, and of where it looks by its principal point and by
 /// how it is turned to the first camera.
-[[nodiscard]] ViewDoubt doubt_of(const IntrinsicsFit& fit, std::size_t camera);
+[[nodiscard]] ViewPrior view_prior_of(const IntrinsicsFit& fit, std::size_t camera);
 
 /// A file of measured cameras (camera/measured_camera.h).
 [[nodiscard]] std::string measured_cameras_toml(const std::vector<CalibratedCamera>& cameras,
@@ -55,7 +55,7 @@ const Table<RigFile>& fields_of(const RigFile*);
 
 /// Writes a new file of this name, or NAME-2, NAME-3, ... when it is there already: earlier ones are kept.
 /// Returns which. std::runtime_error with the path when the system refuses.
-[[nodiscard]] std::filesystem::path write_beside(const std::filesystem::path& wanted, std::string_view text);
+[[nodiscard]] std::filesystem::path write_beside(const std::filesystem::path& desired, std::string_view text);
 
 /// X_WC of the first camera, as the command is told.
 [[nodiscard]] Pose first_pose(const IntrinsicsArguments& arguments);

@@ -64,40 +64,41 @@ ZoomGroup zoom_group(const std::string& text) {
 
 // The views of cameras whose pictures belong together one by one.
 std::vector<BoardView> views_of(const std::vector<BoardPictures>& cameras) {
-  std::vector<BoardView> views(cameras.front().sightings.size());
+  std::vector<BoardView> views(cameras.front().observations.size());
   for (std::size_t view = 0; view < views.size(); ++view)
-    for (const BoardPictures& camera : cameras) views[view].pixels.push_back(camera.sightings[view].pixels);
+    for (const BoardPictures& camera : cameras)
+      views[view].pixels.push_back(camera.observations[view].pixels);
   return views;
 }
 
 // Refuses a count that is less than the board's: the points would be a part of it, another one in each
 // picture.
 void refuse_larger(const BoardPictures& pictures, const BoardTarget& board) {
-  const auto found = std::ranges::count_if(pictures.sightings, &BoardSighting::is_found),
-             larger = std::ranges::count_if(pictures.sightings, &BoardSighting::is_larger);
+  const auto found = std::ranges::count_if(pictures.observations, &BoardObservation::is_found),
+             larger = std::ranges::count_if(pictures.observations, &BoardObservation::is_larger);
   if (larger <= found) return;
-  const auto first = std::ranges::find_if(pictures.sightings, &BoardSighting::is_larger);
+  const auto first = std::ranges::find_if(pictures.observations, &BoardObservation::is_larger);
   throw input_error(
       "--board",
       fmt::format("{}x{}: the board's pattern goes on beyond these in {} of {} pictures ({} is the first): "
                   "expected the number of all its inner corners (or circles)",
                   board.columns, board.rows, larger, pictures.names.size(),
-                  pictures.names[static_cast<std::size_t>(first - pictures.sightings.begin())]));
+                  pictures.names[static_cast<std::size_t>(first - pictures.observations.begin())]));
 }
 
 // Refuses pictures that are given twice, which would count as two observations. They have the same corners to
 // the last bit, whatever their files are called; noise keeps those of two pictures of one board apart.
 void refuse_twice(const std::vector<BoardPictures>& cameras) {
-  std::vector<std::pair<const std::string*, const BoardSighting*>> once;
+  std::vector<std::pair<const std::string*, const BoardObservation*>> once;
   std::vector<std::pair<std::string, std::string>> twice;
   for (const BoardPictures& camera : cameras) {
     for (std::size_t i = 0; i < camera.names.size(); ++i) {
-      const BoardSighting& sighting = camera.sightings[i];
-      if (!sighting.is_found()) continue;
+      const BoardObservation& observation = camera.observations[i];
+      if (!observation.is_found()) continue;
       const auto same = std::ranges::find_if(
-          once, [&](const auto& earlier) { return earlier.second->pixels == sighting.pixels; });
+          once, [&](const auto& earlier) { return earlier.second->pixels == observation.pixels; });
       if (same == once.end())
-        once.emplace_back(&camera.names[i], &sighting);
+        once.emplace_back(&camera.names[i], &observation);
       else
         twice.emplace_back(camera.names[i], *same->first);
     }
@@ -156,11 +157,11 @@ BoardPictures look_for_board(const std::vector<std::string>& files, const BoardT
     const std::string file = read_text_file(name, most_picture_bytes);
     const Photograph photograph = decode_picture(bytes_of(file), name);
     const std::array<int, 2> size = {photograph.bytes.width(), photograph.bytes.height()};
-    if (pictures.sightings.empty()) pictures.size = size;
+    if (pictures.observations.empty()) pictures.size = size;
     if (size != pictures.size)
       throw input_error(name, fmt::format("{} x {} px: expected {} x {} px, as {}", size[0], size[1],
                                           pictures.size[0], pictures.size[1], files.front()));
-    pictures.sightings.push_back(find_board(gray_picture(photograph.bytes), board));
+    pictures.observations.push_back(find_board(gray_picture(photograph.bytes), board));
   }
   progress.update(1, files.back());
   refuse_larger(pictures, board);

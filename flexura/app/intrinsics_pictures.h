@@ -16,7 +16,7 @@ namespace flexura {
 /// One camera's pictures of a board, all of one size.
 struct BoardPictures {
   std::vector<std::string> names;
-  std::vector<BoardSighting> sightings;
+  std::vector<BoardObservation> observations;
   std::array<int, 2> size = {0, 0};  ///< px
 };
 

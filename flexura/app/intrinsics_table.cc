@@ -96,14 +96,14 @@ class Lines {
 void print_pictures_without(const Node::Array& cameras, std::ostream& out) {
   for (const Node& camera : cameras)
     for (const Node& view : list_of(camera, "views"))
-      if (view.find("reason") != nullptr) tell(out, text_of(view, "image"), text_of(view, "reason"));
+      if (view.find("reason") != nullptr) print_line(out, text_of(view, "image"), text_of(view, "reason"));
 }
 
 }  // namespace
 
 void print_intrinsics(const Node& answer, std::ostream& out) {
   const Node::Array& cameras = list_of(answer, answer.find("zoom") == nullptr ? "cameras" : "zoom");
-  if (answer.find("reason") != nullptr) tell(out, "not found", text_of(answer, "reason"));
+  if (answer.find("reason") != nullptr) print_line(out, "not found", text_of(answer, "reason"));
   Lines lines(cameras, out);
   lines.add("", heading_of);
   for (const char* key : {"fx", "fy", "cx", "cy"})
@@ -121,10 +121,10 @@ void print_intrinsics(const Node& answer, std::ostream& out) {
                        *held_out->find("views")->as<std::int64_t>(), rms_of(*held_out));
   print_pictures_without(cameras, out);
   for (const char* key : {"file", "rig"})
-    if (answer.find(key) != nullptr) tell(out, key, text_of(answer, key));
-  for (const Node& note : list_of(answer, "notes")) tell(out, "note", *note.as<std::string>());
+    if (answer.find(key) != nullptr) print_line(out, key, text_of(answer, key));
+  for (const Node& note : list_of(answer, "notes")) print_line(out, "note", *note.as<std::string>());
   for (const Node& camera : cameras)
-    for (const Node& note : list_of(camera, "notes")) tell(out, "note", *note.as<std::string>());
+    for (const Node& note : list_of(camera, "notes")) print_line(out, "note", *note.as<std::string>());
 }
 
 }  // namespace flexura

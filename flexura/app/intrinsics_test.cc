@@ -186,9 +186,9 @@ TEST_F(IntrinsicsCommand, MeasuresAZoom) {
     const auto zooms =
         std::exchange(arguments_.zooms, {"1=" + path("zoom1"), "1.5=" + path("zoom2"), "5=" + path("zoom3")});
     const auto rig = std::exchange(arguments_.rig, "");
-    const Node doubted = answer(exit_done);
-    ASSERT_NE(doubted.find("notes"), nullptr);
-    const auto& notes = *doubted.find("notes")->as<Node::Array>();
+    const Node uncertain = answer(exit_done);
+    ASSERT_NE(uncertain.find("notes"), nullptr);
+    const auto& notes = *uncertain.find("notes")->as<Node::Array>();
     ASSERT_EQ(notes.size(), 1U);
     EXPECT_NE(notes[0].as<std::string>()->find("zoom3: its ratio is said to be 5 times"), std::string::npos);
     arguments_.zooms = zooms, arguments_.rig = rig;

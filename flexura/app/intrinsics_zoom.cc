@@ -60,12 +60,12 @@ std::vector<std::string> notes_on_ratios(const std::vector<MeasuredZoom>& zooms)
   const MeasuredZoom& first = *given;
   for (const MeasuredZoom& zoom : zooms) {
     if (!has_ratio(zoom)) continue;
-    const double said = *zoom.group.ratio / *first.group.ratio,
+    const double reported = *zoom.group.ratio / *first.group.ratio,
                  seen = zoom.focal_length() / first.focal_length();
-    if (!(std::abs(std::log(said / seen)) <= far))
+    if (!(std::abs(std::log(reported / seen)) <= far))
       notes.push_back(fmt::format(
           "{}: its ratio is said to be {:.4g} times that of {}, and its focal length is {:.4g} times as long",
-          zoom.group.folder, said, first.group.folder, seen));
+          zoom.group.folder, reported, first.group.folder, seen));
   }
   return notes;
 }

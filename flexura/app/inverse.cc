@@ -17,8 +17,8 @@
 
 namespace flexura {
 
-// Beside InverseWish, where the tables of fields look for it.
-static const std::vector<std::string>& names_of(const InverseWish*) {
+// Beside InverseObjective, where the tables of fields look for it.
+static const std::vector<std::string>& names_of(const InverseObjective*) {
   static const std::vector<std::string> names{"none", "least_bending", "mid_range"};
   return names;
 }
@@ -34,7 +34,7 @@ struct InverseRequest {
   std::optional<std::array<double, 4>> rotation;  ///< (w, x, y, z).
   std::optional<std::vector<Triple>> curve;       ///< m.
   std::optional<double> tolerance;                ///< m, of a curve.
-  InverseWish wish = InverseWish::none;
+  InverseObjective objective = InverseObjective::none;
   bool all = false;
   std::optional<ShapeConfig> start;
 };
@@ -59,7 +59,7 @@ const Table<InverseRequest>& fields_of(const InverseRequest*) {
                  {.meaning = "how far the arm may be from the curve",
                   .unit = Unit::metre,
                   .range = above_up_to(0, farthest)})
-          .field("wish", &InverseRequest::wish, {.meaning = "what to do with freedom that is left"})
+          .field("wish", &InverseRequest::objective, {.meaning = "what to do with freedom that is left"})
           .field("all", &InverseRequest::all, {.meaning = "whether all distinct solutions are wanted"})
           .field("start", &InverseRequest::start, {.meaning = "the shape from which the search begins"});
   return table;
@@ -160,7 +160,7 @@ Node answer_one(const Arm& arm, const InverseRequest& request, const InverseResu
 Node answer(const ArmModel& model, const InverseRequest& request) {
   const Arm& arm = model.driven();
   InverseConfig config;
-  config.wish = request.wish;
+  config.objective = request.objective;
   if (request.start) config.start = arm_state(arm, *request.start);
   config.position_tolerance = request.tolerance;
   if (request.curve) {

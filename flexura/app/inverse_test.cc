@@ -39,9 +39,9 @@ TEST(AnswerInverse, IsUndoneByForwardKinematics) {
   EXPECT_EQ(answer.find("nearest"), nullptr);
   const Node shape{Node::Table{{"bends", {}, *answer.find("bends")}}, {}};
   const Node tip = *parsed(answer_forward(arm, write_json(shape))).find("tip");
-  const std::vector<double> wanted = {0.2, 0.6, 0.1};
+  const std::vector<double> desired = {0.2, 0.6, 0.1};
   for (std::size_t i = 0; i < 3; ++i) {
-    EXPECT_NEAR(*tip.find("position")->as<Node::Array>()->at(i).as<double>(), wanted[i], 1e-9);
+    EXPECT_NEAR(*tip.find("position")->as<Node::Array>()->at(i).as<double>(), desired[i], 1e-9);
   }
   EXPECT_NEAR(*tip.find("rotation")->as<Node::Array>()->at(0).as<double>(), 1.0, 1e-9);
   EXPECT_LE(number(answer, "position_error"), 1e-9);
@@ -169,10 +169,10 @@ TEST(AnswerInverse, BeginsAtTheStartAndFollowsTheWish) {
   const std::string there = answer_inverse(arm, R"({"position":[0.2,0.6,0.1],)" + start + "}");
   const std::string plain = answer_inverse(arm, R"({"position":[0.2,0.6,0.1]})");
   EXPECT_NE(there, plain);
-  const std::string wished =
+  const std::string with_objective =
       answer_inverse(arm, R"({"position":[0.2,0.6,0.1],"wish":"least_bending",)" + start + "}");
-  EXPECT_NE(there, wished);
-  EXPECT_TRUE(flag(parsed(wished), "converged"));
+  EXPECT_NE(there, with_objective);
+  EXPECT_TRUE(flag(parsed(with_objective), "converged"));
 }
 
 TEST(AnswerInverse, AnswersABadLineWithItsError) {
@@ -252,10 +252,10 @@ TEST(AnswerInverse, OfAnElasticArmIsUndoneByForwardKinematicsUnderItsWeight) {
     const Node::Array& position = *tip.find("position")->as<Node::Array>();
     return Eigen::Vector3d(*position[0].as<double>(), *position[1].as<double>(), *position[2].as<double>());
   };
-  const Eigen::Vector3d wanted(0.3, 0.45, 0.1);
-  EXPECT_LE((tip_of(answer_forward(arm, write_json(shape))) - wanted).norm(), 1e-8);
+  const Eigen::Vector3d desired(0.3, 0.45, 0.1);
+  EXPECT_LE((tip_of(answer_forward(arm, write_json(shape))) - desired).norm(), 1e-8);
   // Arcs of these bends are elsewhere: the arm sags.
-  EXPECT_GE((tip_of(answer_forward(arm.driven(), write_json(shape))) - wanted).norm(), 0.01);
+  EXPECT_GE((tip_of(answer_forward(arm.driven(), write_json(shape))) - desired).norm(), 0.01);
   EXPECT_THAT(answer_forward(arm, R"({"bends":[[0,0],[0,0]],"at":[0,0.7]})"), Not(HasSubstr("error")));
 }
 

@@ -29,7 +29,7 @@ Node end_node(const AxisEnd& end) {
       .take();
 }
 
-Node marker_node(const MarkerSighting& marker) {
+Node marker_node(const MarkerObservation& marker) {
   Node::Array color;
   for (int c = 0; c < 3; ++c) color.push_back(number_node(std::round(marker.color[c])));
   return TableMaker()
@@ -55,7 +55,7 @@ struct MeasuredAxis {
   }
 };
 
-MeasuredAxis axis_of(const ArmSighting& arm, const std::optional<Lens>& lens,
+MeasuredAxis axis_of(const ArmObservation& arm, const std::optional<Lens>& lens,
                      std::vector<std::string>& notes) {
   if (!lens || !arm.is_found()) return {arm.axis, arm.axis, {}};
   BackboneAxis axis = backbone_axis(*lens, arm.axis);
@@ -87,8 +87,8 @@ void add_axis(const Job& job, const MeasuredAxis& axis, const std::optional<Lens
   job.answer.add("depth", {std::move(depths), {}});
 }
 
-void draw_arm(Canvas& canvas, const ArmSighting& arm, const std::vector<AxisSample>& axis,
-              const std::vector<MarkerSighting>& markers) {
+void draw_arm(Canvas& canvas, const ArmObservation& arm, const std::vector<AxisSample>& axis,
+              const std::vector<MarkerObservation>& markers) {
   for (std::size_t i = 0; i + 1 < arm.axis.size(); ++i) {
     const AxisSample &a = arm.axis[i], &b = arm.axis[i + 1];
     canvas.line(axis[i].pixel, axis[i + 1].pixel, axis_color);
@@ -96,7 +96,7 @@ void draw_arm(Canvas& canvas, const ArmSighting& arm, const std::vector<AxisSamp
     for (const double side : {0.5, -0.5})
       canvas.line(a.pixel + side * a.width * a.normal, b.pixel + side * b.width * b.normal, border_color);
   }
-  for (const MarkerSighting& marker : markers) canvas.cross(marker.pixel, 4, marker_color);
+  for (const MarkerObservation& marker : markers) canvas.cross(marker.pixel, 4, marker_color);
   canvas.cross(arm.ends[0].pixel, 7, fit_color);
 }
 
@@ -104,15 +104,15 @@ void draw_arm(Canvas& canvas, const ArmSighting& arm, const std::vector<AxisSamp
 
 bool measure_arm(const Job& job) {
   ArmFinder finder(job.config.finder);
-  const ArmSighting& arm = finder.find(job.photograph);
+  const ArmObservation& arm = finder.find(job.photograph);
   add_threshold(arm.threshold, job.answer);
   std::optional<Lens> lens;
   if (job.config.camera) lens = job.config.camera->lens();
   std::vector<std::string> notes = arm.notes;
   const MeasuredAxis axis = axis_of(arm, lens, notes);
-  ArmSighting corrected = arm;
+  ArmObservation corrected = arm;
   corrected.axis = axis.shown;
-  MarkerSightings markers;
+  MarkerObservations markers;
   if (arm.is_found()) markers = find_markers(job.photograph.bytes, corrected);
   const bool is_found = arm.is_found() && (job.config.what == MeasureTarget::arm || !markers.markers.empty());
   job.answer.add("found", {is_found, {}});
@@ -131,7 +131,7 @@ bool measure_arm(const Job& job) {
       .add("noise", number_node(arm.noise))
       .add("contrast", number_node(arm.contrast));
   Node::Array marker_nodes;
-  for (const MarkerSighting& marker : markers.markers) marker_nodes.push_back(marker_node(marker));
+  for (const MarkerObservation& marker : markers.markers) marker_nodes.push_back(marker_node(marker));
   if (job.config.what == MeasureTarget::arm) {
     add_axis(job, axis, lens);
     const AxisPoints points = independent_points(axis.fitted);

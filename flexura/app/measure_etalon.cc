@@ -20,7 +20,7 @@ Node line_node(const UprightLine& line) {
 }  // namespace
 
 bool measure_etalon(const Job& job) {
-  const EtalonSighting seen = find_etalon(job.photograph.bytes, job.gray, job.config.finder.threshold);
+  const EtalonObservation seen = find_etalon(job.photograph.bytes, job.gray, job.config.finder.threshold);
   add_threshold(seen.threshold, job.answer);
   job.answer.add("found", {seen.reason.empty(), {}});
   if (!seen.reason.empty()) {

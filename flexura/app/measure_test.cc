@@ -263,15 +263,15 @@ TEST(Measure, SeesAnArmInAFrameAndSaysWhereThePictureIsSaturated) {
     EXPECT_TRUE(found.is_found) << write_json(found.answer);
     EXPECT_EQ(*found.answer.find("figure")->as<std::string>(), "dark");
   }
-  const auto is_said = [](const Measurement& found) {
+  const auto is_reported = [](const Measurement& found) {
     return write_json(*found.answer.find("notes")).find("saturated") != std::string::npos;
   };
-  EXPECT_FALSE(is_said(measured(png(picture))));
+  EXPECT_FALSE(is_reported(measured(png(picture))));
   for (int v = 0; v < picture.height() / 3; ++v)
     for (int u = 0; u < picture.width(); ++u)
       for (int c = 0; c < picture.channels(); ++c)
         if (picture.at(u, v, c) > 150) picture.at(u, v, c) = 255;
-  EXPECT_TRUE(is_said(measured(png(picture))));
+  EXPECT_TRUE(is_reported(measured(png(picture))));
 }
 
 TEST(Measure, TellsSidesAndLinesOfTheEtalon) {

@@ -73,11 +73,11 @@ TEST_F(MeasureBy, EachThresholdFindsTheSameAxisAndNamesItself) {
       const Node answer = measured_by(picture, how);
       EXPECT_EQ(word(answer, "method"), how.level ? "fixed" : how.method.value_or("otsu"));
       EXPECT_EQ(word(answer, "figure"), "dark");
-      const double told = *answer.find("threshold")->as<double>();
+      const double reported = *answer.find("threshold")->as<double>();
       // Between the arm's 30 and the ground's 220, with their noise.
-      EXPECT_GT(told, 33);
-      EXPECT_LT(told, 217);
-      EXPECT_EQ(told == level, how.level.has_value());
+      EXPECT_GT(reported, 33);
+      EXPECT_LT(reported, 217);
+      EXPECT_EQ(reported == level, how.level.has_value());
       const auto [most, reach] = off_and_reach(answer, wave);
       EXPECT_LT(most, 0.3);
       EXPECT_GT(reach, 265);

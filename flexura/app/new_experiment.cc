@@ -70,9 +70,9 @@ int new_command(const NewArguments& arguments, std::ostream& out) {
   if (!is_missing(file))
     throw input_error(file, "the file is there already and is kept: expected the name of a new file");
   write_new_file(file, for_file(std::string(chosen->text), file));
-  tell(out, "wrote", fmt::format("{} ({})", file, chosen->meaning));
-  tell(out, "see it", "flexura view " + shell_word(file));
-  tell(out, "run it", "flexura run " + shell_word(file));
+  print_line(out, "wrote", fmt::format("{} ({})", file, chosen->meaning));
+  print_line(out, "see it", "flexura view " + shell_word(file));
+  print_line(out, "run it", "flexura run " + shell_word(file));
   return exit_done;
 }
 

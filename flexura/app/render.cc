@@ -67,12 +67,12 @@ int render_command(const RenderArguments& arguments, std::ostream& out) {
   const Shot shot = filming.shot(place, arguments.time);
   const Picture picture = filming.take(shot);
   replace_file(arguments.out, std::visit([](const auto& image) { return png(image); }, picture));
-  tell(out, "image", arguments.out);
+  print_line(out, "image", arguments.out);
   if (!arguments.truth) return exit_done;
   const auto files =
       write_truth(filming.shown(shot, frame.middle),
                   has_next ? std::optional(filming.shown(shot, next.middle)) : std::nullopt, arguments.out);
-  for (const auto& file : files) tell(out, "truth", file.string());
+  for (const auto& file : files) print_line(out, "truth", file.string());
   return exit_done;
 }
 

@@ -55,12 +55,12 @@ TEST_F(StoppedProgram, EndsEarlyAndLeavesWhatItHas) {
     const Ended ended = wait(child);
     EXPECT_EQ(ended.status, 128 + signal);
     EXPECT_THAT(ended.out, testing::StartsWith("results: long\noutcome: cancelled at "));
-    const Node told = parse_json(summary(), "summary");
-    EXPECT_EQ(*told.find("outcome")->as<std::string>(), "cancelled");
-    const auto& reasons = *told.find("reasons")->as<Node::Array>();
+    const Node reported = parse_json(summary(), "summary");
+    EXPECT_EQ(*reported.find("outcome")->as<std::string>(), "cancelled");
+    const auto& reasons = *reported.find("reasons")->as<Node::Array>();
     ASSERT_EQ(reasons.size(), 1U);
     EXPECT_EQ(*reasons[0].as<std::string>(),
-              fmt::format("it was told to stop at {:.6g} s", *told.find("duration")->as<double>()));
+              fmt::format("it was told to stop at {:.6g} s", *reported.find("duration")->as<double>()));
     EXPECT_EQ(ended.err, "cancelled: " + *reasons[0].as<std::string>() + "\n");
     const McapReader log(path("long/log.mcap"));
     EXPECT_FALSE(log.truncated());
@@ -74,9 +74,9 @@ TEST_F(StoppedProgram, BringsAnArmThatIsSteeredToRest) {
   const pid_t child = running("[record]\nreport = false\n" + servo_file(task), 100'000);
   kill(child, SIGINT);
   EXPECT_EQ(wait(child).status, 128 + SIGINT);
-  const Node told = parse_json(summary(), "summary");
-  EXPECT_EQ(*told.find("outcome")->as<std::string>(), "cancelled");
-  EXPECT_EQ(told.find("reasons")->as<Node::Array>()->size(), 1U) << "that it was told to stop";
+  const Node reported = parse_json(summary(), "summary");
+  EXPECT_EQ(*reported.find("outcome")->as<std::string>(), "cancelled");
+  EXPECT_EQ(reported.find("reasons")->as<Node::Array>()->size(), 1U) << "that it was told to stop";
   EXPECT_THAT(summary(), HasSubstr("\"reason\": \"cancelled\""));
   const McapReader log(path("long/log.mcap"));
   EXPECT_FALSE(log.truncated());

@@ -34,7 +34,7 @@ TEST_F(ViewerProgram, ServesAViewerUntilItIsTold) {
   for (const int signal : {SIGINT, SIGTERM}) {
     std::filesystem::remove(path("out"));
     const pid_t child = start("view --no-browser --port 0", path("out"));
-    EXPECT_THAT(told_in(path("out")), HasSubstr("viewer: http://127.0.0.1:"));
+    EXPECT_THAT(reported_in(path("out")), HasSubstr("viewer: http://127.0.0.1:"));
     kill(child, signal);
     EXPECT_EQ(wait(child).status, 0);
   }
@@ -74,7 +74,7 @@ TEST_F(ViewerProgram, OpensTheBrowserUnlessItIsToldNotTo) {
     std::filesystem::remove(path("out"));
     std::filesystem::remove(path("opened"));
     const pid_t child = start("view --port 0 " + options, path("out"));
-    const std::string printed = told_in(path("out"));
+    const std::string printed = reported_in(path("out"));
     const bool is_expected = options.empty();
     // What is not to come is given a while in which it would.
     for (int i = 0; i < (is_expected ? 3000 : 10) && !std::filesystem::exists(path("opened")); ++i)
@@ -120,7 +120,7 @@ TEST_F(ViewerProgram, ServesWhatARunLeft) {
   EXPECT_THAT(of_the_log.err, HasSubstr("expected the folder in which it lies"));
   std::filesystem::remove(path("out"));
   const pid_t child = start("view results --no-browser --port 0", path("out"));
-  EXPECT_THAT(told_in(path("out")), HasSubstr("viewer: "));
+  EXPECT_THAT(reported_in(path("out")), HasSubstr("viewer: "));
   kill(child, SIGTERM);
   EXPECT_EQ(wait(child).status, 0);
 }
@@ -133,7 +133,7 @@ std::string port_in(const std::string& printed) {
 
 TEST_F(ViewerProgram, ServesThePageOrSaysThatItHasNone) {
   const pid_t child = start("view --no-browser --port 0", path("out"));
-  const std::string port = port_in(told_in(path("out")));
+  const std::string port = port_in(reported_in(path("out")));
   RawClient client(static_cast<std::uint16_t>(std::stoi(port)));
   client.send("GET / HTTP/1.1\r\nHost: localhost:" + port + "\r\n\r\n");
   const RawAnswer answer = client.read_answer();
@@ -163,7 +163,7 @@ Look look_at_run(const std::string& printed) {
               "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n\r\n");
   EXPECT_EQ(client.read_answer().status, 101);
   for (const char* camera : {"front", "side"})
-    client.say(std::string(R"({"id":1,"do":"images","rate":30,"camera":")") + camera + "\"}");
+    client.send_text(std::string(R"({"id":1,"do":"images","rate":30,"camera":")") + camera + "\"}");
   Look look;
   while (true) {
     const RawFrame frame = client.read_frame();
@@ -176,8 +176,8 @@ Look look_at_run(const std::string& printed) {
     ++look.pictures;
     const unsigned number =
         static_cast<unsigned char>(frame.payload[4]) + 256U * static_cast<unsigned char>(frame.payload[5]);
-    client.say(R"({"do":"ack","camera":")" + std::string(frame.payload[1] == 0 ? "front" : "side") +
-               R"(","number":)" + std::to_string(number) + "}");
+    client.send_text(R"({"do":"ack","camera":")" + std::string(frame.payload[1] == 0 ? "front" : "side") +
+                     R"(","number":)" + std::to_string(number) + "}");
   }
 }
 
@@ -200,7 +200,7 @@ TEST_F(ViewerProgram, RunsToTheSameBytesWhenItIsViewed) {
   EXPECT_EQ(run("run long.toml --out alone").status, 0);
   std::filesystem::remove(path("out"));
   const pid_t child = start("run long.toml --out viewed --view --no-browser --port 0", path("out"));
-  const Look look = look_at_run(told_in(path("out")));
+  const Look look = look_at_run(reported_in(path("out")));
   EXPECT_GT(look.running_states, 0);
   EXPECT_GT(look.pictures, 0);
   kill(child, SIGTERM);
@@ -221,7 +221,7 @@ TEST_F(ViewerProgram, EndsAViewedRunEarlyWhenItIsTold) {
   std::ofstream(path("long.toml"))
       << "[[arm.section]]\nlength = 1\n[[task]]\nkind = 'hold'\nduration = 19000\n";
   const pid_t child = start("run long.toml --out long --view --no-browser --port 0", path("out"));
-  EXPECT_THAT(told_in(path("out")), HasSubstr("viewer: "));
+  EXPECT_THAT(reported_in(path("out")), HasSubstr("viewer: "));
   kill(child, SIGINT);
   EXPECT_EQ(wait(child).status, 1);
   EXPECT_THAT(read_text_file(path("long/summary.json"), 1 << 20), HasSubstr("\"outcome\": \"cancelled\""));

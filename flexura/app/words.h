@@ -15,7 +15,7 @@
 namespace flexura {
 
 /// Prints "label: text" as one line, whatever names the text holds.
-inline void tell(std::ostream& out, std::string_view label, std::string_view text) {
+inline void print_line(std::ostream& out, std::string_view label, std::string_view text) {
   out << label << ": " << one_line(text) << '\n';
 }
 

@@ -8,7 +8,7 @@ namespace flexura {
 namespace {
 
 // An array that must not be empty in a file is empty if the file omits it.
-bool says_nothing(const Node& node, const Spec& spec) {
+bool is_default(const Node& node, const Spec& spec) {
   const auto* entries = node.as<Node::Array>();
   return node.empty() || (entries != nullptr && entries->empty() && spec.count.min > 0);
 }
@@ -62,7 +62,7 @@ Node AnyTable::write_at(const void* value) const {
   Node::Table members;
   for (std::size_t i = 0; i < bindings_.size(); ++i) {
     Node node = bindings_[i].codec->write(static_cast<const char*>(value) + bindings_[i].offset);
-    if (!says_nothing(node, info_.fields[i].spec))
+    if (!is_default(node, info_.fields[i].spec))
       members.push_back({info_.fields[i].name, {}, std::move(node)});
   }
   return {std::move(members), {}};

@@ -34,8 +34,8 @@ double least_spacing(const Corners& corners, const BoardTarget& board) {
 // large, without the neighbours' corners.
 int half_window(double spacing) {
   constexpr double usual = 5, least = 2;
-  const double wanted = std::max(usual, spacing / 8);
-  return static_cast<int>(std::floor(std::clamp(wanted, least, std::max(least, 0.5 * spacing - 1))));
+  const double desired = std::max(usual, spacing / 8);
+  return static_cast<int>(std::floor(std::clamp(desired, least, std::max(least, 0.5 * spacing - 1))));
 }
 
 // Returns whether neighbouring pixels are uncorrelated, as behind a lens cap. OpenCV would search squares in
@@ -118,7 +118,7 @@ void put_in_order(const Image<std::uint8_t>& gray, const BoardTarget& board, std
 
 }  // namespace
 
-BoardSighting find_board(const Image<std::uint8_t>& gray, const BoardTarget& board) {
+BoardObservation find_board(const Image<std::uint8_t>& gray, const BoardTarget& board) {
   if (is_noise(gray)) return {.pixels = {}, .reason = "the picture is nothing but noise"};
   // Equal bytes on every machine, whatever its number of processors. (Also, ThreadSanitizer cannot see into
   // the packaged library and reports its locks on this stack as races.)
@@ -133,7 +133,7 @@ BoardSighting find_board(const Image<std::uint8_t>& gray, const BoardTarget& boa
   } catch (const cv::Exception&) {
     is_found = false;  // For example a picture too small for the search.
   }
-  BoardSighting sighting;
+  BoardObservation observation;
   const auto is_inside = [&](const cv::Point2f& at) {
     return at.x >= 0 && at.y >= 0 && at.x <= static_cast<float>(gray.width() - 1) &&
            at.y <= static_cast<float>(gray.height() - 1);
@@ -141,14 +141,14 @@ BoardSighting find_board(const Image<std::uint8_t>& gray, const BoardTarget& boa
   if (!is_found ||
       corners.size() != static_cast<std::size_t>(board.columns) * static_cast<std::size_t>(board.rows) ||
       !std::ranges::all_of(corners, is_inside)) {
-    sighting.reason = "no board of this size is wholly in the picture";
-    return sighting;
+    observation.reason = "no board of this size is wholly in the picture";
+    return observation;
   }
-  for (const cv::Point2f& corner : corners) sighting.pixels.emplace_back(corner.x, corner.y);
-  if (goes_on(gray, board, sighting.pixels))
+  for (const cv::Point2f& corner : corners) observation.pixels.emplace_back(corner.x, corner.y);
+  if (goes_on(gray, board, observation.pixels))
     return {.pixels = {}, .reason = "a part of a larger board: its pattern goes on", .is_larger = true};
-  put_in_order(gray, board, sighting.pixels);
-  return sighting;
+  put_in_order(gray, board, observation.pixels);
+  return observation;
 }
 
 }  // namespace flexura

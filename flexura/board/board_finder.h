@@ -11,7 +11,7 @@
 namespace flexura {
 
 /// A board in one picture.
-struct BoardSighting {
+struct BoardObservation {
   /// Image points of the board, in its order; empty if it was not found.
   std::vector<Eigen::Vector2d> pixels;
   std::string reason;      ///< Why it was not found; "" if it was.
@@ -24,6 +24,6 @@ struct BoardSighting {
 /// subpixel (W. Foerstner's saddle point, cornerSubPix, in a window without neighbouring corners). The first
 /// point is chosen so that rows and columns turn as on the board. On an unambiguous chessboard the square
 /// inward of it is also dark. A part of a larger board is not accepted. Equal pictures give equal results.
-[[nodiscard]] BoardSighting find_board(const Image<std::uint8_t>& gray, const BoardTarget& board);
+[[nodiscard]] BoardObservation find_board(const Image<std::uint8_t>& gray, const BoardTarget& board);
 
 }  // namespace flexura

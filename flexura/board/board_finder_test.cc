@@ -22,7 +22,7 @@ constexpr int width = 320, height = 240;
 const Intrinsics lens_numbers = {.fx = 330, .fy = 330, .cx = 159.5, .cy = 119.5};
 
 // Root mean square of the distances from the true points.
-double error(const BoardSighting& found, const BoardTarget& board, const Pose& X_CB) {
+double error(const BoardObservation& found, const BoardTarget& board, const Pose& X_CB) {
   const Lens lens(lens_numbers);
   const auto points = board.points();
   double sum = 0;
@@ -33,7 +33,7 @@ double error(const BoardSighting& found, const BoardTarget& board, const Pose& X
   return std::sqrt(sum / static_cast<double>(points.size()));
 }
 
-BoardSighting look(const BoardTarget& board, const Pose& X_CB) {
+BoardObservation look(const BoardTarget& board, const Pose& X_CB) {
   return find_board(board_picture(board, Lens(lens_numbers), X_CB, width, height), board);
 }
 
@@ -60,7 +60,7 @@ TEST(BoardFinder, FindsCornersToATwelfthOfAPixelInTheBoardsOrder) {
   const BoardTarget board{.columns = 7, .rows = 4};
   for_random_cases(6, [&](TestRandom& random) {
     const Pose X_CB = random_board(random, board, 0.3, 0.5, 0.05);
-    const BoardSighting found = look(board, X_CB);
+    const BoardObservation found = look(board, X_CB);
     ASSERT_TRUE(found.is_found()) << found.reason;
     EXPECT_LT(error(found, board, X_CB), 0.08);
   });
@@ -72,7 +72,7 @@ TEST(BoardFinder, KnowsTheFirstCornerOfABoardThatIsUpsideDown) {
     Pose X_CB = random_board(random, board, 0.3, 0.4, 0.02);
     const Eigen::Vector3d last(6 * board.square, 3 * board.square, 0);
     X_CB = X_CB * Pose{Eigen::Vector3d(-1, -1, 1).asDiagonal(), last};
-    const BoardSighting found = look(board, X_CB);
+    const BoardObservation found = look(board, X_CB);
     ASSERT_TRUE(found.is_found()) << found.reason;
     EXPECT_LT(error(found, board, X_CB), 0.08);
   });
@@ -86,9 +86,9 @@ TEST(BoardFinder, FindsGridsOfCircles) {
     TestRandom random(case_seed(0));
     Pose X_CB = random_board(random, board, 0.3, 0.3, 0.02);
     X_CB.position.x() -= board.pattern == BoardPattern::circles ? 0.0 : 0.03;
-    const BoardSighting found = look(board, X_CB);
+    const BoardObservation found = look(board, X_CB);
     ASSERT_TRUE(found.is_found()) << found.reason;
-    BoardSighting reversed = found;
+    BoardObservation reversed = found;
     std::ranges::reverse(reversed.pixels);
     const double least = std::min(error(found, board, X_CB), error(reversed, board, X_CB));
     EXPECT_LT(board.is_ambiguous() ? least : error(found, board, X_CB), 0.3);
@@ -104,7 +104,7 @@ TEST(BoardFinder, SaysWhyThereIsNone) {
          {BoardPattern::chessboard, BoardPattern::circles, BoardPattern::asymmetric_circles}) {
       BoardTarget other = board;
       other.pattern = pattern;
-      const BoardSighting found = find_board(picture, other);
+      const BoardObservation found = find_board(picture, other);
       EXPECT_FALSE(found.is_found());
       EXPECT_NE(found.reason, "");
     }

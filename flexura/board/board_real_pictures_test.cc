@@ -34,7 +34,7 @@ class RealBoards : public testing::Test {
     GTEST_SKIP() << "skipped: " << folder << " is not there";
   }
 
-  static BoardSighting look(const std::string& name, const BoardTarget& board = {}) {
+  static BoardObservation look(const std::string& name, const BoardTarget& board = {}) {
     std::ifstream in(folder / name, std::ios::binary);
     const std::vector<std::uint8_t> bytes{std::istreambuf_iterator<char>(in), {}};
     return find_board(std::get<Image<std::uint8_t>>(read_picture(bytes, name, 1 << 20)), board);
@@ -47,7 +47,7 @@ class RealBoards : public testing::Test {
         if (number == 10) continue;
         BoardView& view = views.emplace_back();
         for (const char* side : {"left", "right"}) {
-          const BoardSighting seen = look(fmt::format("{}{:02}.jpg", side, number));
+          const BoardObservation seen = look(fmt::format("{}{:02}.jpg", side, number));
           EXPECT_TRUE(seen.is_found()) << side << number;
           view.pixels.push_back(seen.pixels);
         }
@@ -74,10 +74,10 @@ TEST_F(RealBoards, GiveEachCameraTheKnownResidual) {
   EXPECT_NEAR(right.rms, 0.207, 0.005 * 0.207);
   // No board comes near the corners of the left pictures: the last coefficient is undetermined, and the
   // others are sufficient.
-  EXPECT_EQ(left.cameras[0].untold, std::vector<int>{8});
-  EXPECT_TRUE(right.cameras[0].untold.empty());
+  EXPECT_EQ(left.cameras[0].undetermined, std::vector<int>{8});
+  EXPECT_TRUE(right.cameras[0].undetermined.empty());
   const IntrinsicsFit fewer = fit_intrinsics(points_, side(0), one_size, {.distortion = 4});
-  EXPECT_TRUE(fewer.cameras[0].untold.empty());
+  EXPECT_TRUE(fewer.cameras[0].undetermined.empty());
   EXPECT_LT(fewer.rms, 1.002 * left.rms);
   EXPECT_NEAR(left.cameras[0].lens.fx, 532.8, 1);
   EXPECT_NEAR(right.cameras[0].lens.fx, 537.5, 1);
@@ -124,7 +124,7 @@ TEST_F(RealBoards, AreNotTakenForSmallerOnes) {
   int larger = 0;
   for (const char* side : {"left", "right"}) {
     for (int number = 2; number <= 8; ++number) {
-      const BoardSighting part = look(fmt::format("{}{:02}.jpg", side, number), {.columns = 8, .rows = 6});
+      const BoardObservation part = look(fmt::format("{}{:02}.jpg", side, number), {.columns = 8, .rows = 6});
       EXPECT_FALSE(part.is_found()) << side << number;
       larger += part.is_larger ? 1 : 0;
     }

@@ -113,11 +113,11 @@ Intrinsics start_lens(std::span<const Matrix3d> homographies, int width, int hei
   std::optional<Vector2d> focal;
   Vector2d center = middle;
   // Distortion and noise shift a weakly determined principal point far away: it must be in the middle half.
-  const auto told = principal_point(homographies, scale);
-  if (told && std::abs(told->x() - middle.x()) < 0.25 * width &&
-      std::abs(told->y() - middle.y()) < 0.25 * height) {
-    focal = focal_lengths(homographies, *told);
-    if (focal) center = *told;
+  const auto determined = principal_point(homographies, scale);
+  if (determined && std::abs(determined->x() - middle.x()) < 0.25 * width &&
+      std::abs(determined->y() - middle.y()) < 0.25 * height) {
+    focal = focal_lengths(homographies, *determined);
+    if (focal) center = *determined;
   }
   if (!focal) focal = focal_lengths(homographies, middle);
   constexpr double widest = 0.2, longest = 50;  // In the image's size.

@@ -67,7 +67,7 @@ class Calibration {
     if (std::string reason = why_apart(fit); !reason.empty()) return fail(std::move(reason));
     if (!fit.is_converged) return fail(why_not_converged(fit));
     take(fit);
-    tell_views();
+    report_views();
     predict();
     judge();
     return std::move(result_);
@@ -205,7 +205,7 @@ class Calibration {
            6 * (static_cast<Index>(camera) - 1);
   }
 
-  void tell_views() {
+  void report_views() {
     for (std::size_t i = 0; i < numbers_.size(); ++i) result_.boards[numbers_[i]] = bundle_.boards[i];
     for (std::size_t camera = 0; camera < sizes_.size(); ++camera) {
       CameraFit& own = result_.cameras[camera];
@@ -258,8 +258,8 @@ class Calibration {
   void judge() {
     for (std::size_t camera = 0; camera < sizes_.size(); ++camera) {
       judge(camera);
-      const auto& untold = result_.cameras[camera].untold;
-      if (!untold.empty() && untold.front() < 4) result_.reason = camera_text(camera) + untilted;
+      const auto& undetermined = result_.cameras[camera].undetermined;
+      if (!undetermined.empty() && undetermined.front() < 4) result_.reason = camera_text(camera) + untilted;
     }
     result_.is_found = result_.reason.empty();
   }
@@ -277,8 +277,9 @@ class Calibration {
     const bool are_corners_known = grown * own.corner_sigma <= largest;
     for (int i = 0; i < 4 + config_.distortion; ++i) {
       const double sigma = grown * own.sigma(i);
-      const bool is_told = seen[i] * sigma <= largest && (are_corners_known || corners[i] * sigma <= largest);
-      if (!is_told) own.untold.push_back(i);
+      const bool is_determined =
+          seen[i] * sigma <= largest && (are_corners_known || corners[i] * sigma <= largest);
+      if (!is_determined) own.undetermined.push_back(i);
     }
   }
 

@@ -36,7 +36,7 @@ struct CameraFit {
   /// The undetermined intrinsics. A standard deviation of one moves observed points by more than a hundredth
   /// of the image's diagonal. Corners count as accurate to a twentieth of a pixel at best. Or, if
   /// corner_sigma is larger than that hundredth, it moves the image's corners that far.
-  std::vector<int> untold;
+  std::vector<int> undetermined;
 
   /// Returns the standard deviation of one, by its index in the order of `intrinsics_count`, in its unit.
   [[nodiscard]] double sigma(int parameter) const;

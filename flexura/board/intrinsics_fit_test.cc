@@ -242,13 +242,13 @@ TEST(IntrinsicsFit, KnowsThatBoardsInTheMiddleDoNotTellDistortion) {
   const IntrinsicsFit middle = fit_intrinsics(points, seen_boards(truth, points, 0.1, random), one_size);
   ASSERT_TRUE(middle.is_found) << middle.reason;
   EXPECT_GT(middle.cameras[0].corner_sigma, 8);
-  EXPECT_THAT(middle.cameras[0].untold, Contains(8));
+  EXPECT_THAT(middle.cameras[0].undetermined, Contains(8));
   // Boards all over the image determine it.
   for (Pose& pose : truth.boards) pose = random_board(random, board, 0.25, 0.6, 0.3);
   const IntrinsicsFit all_over = fit_intrinsics(points, seen_boards(truth, points, 0.1, random), one_size);
   ASSERT_TRUE(all_over.is_found) << all_over.reason;
   EXPECT_LT(all_over.cameras[0].corner_sigma, 2);
-  EXPECT_THAT(all_over.cameras[0].untold, IsEmpty());
+  EXPECT_THAT(all_over.cameras[0].undetermined, IsEmpty());
 }
 
 TEST(IntrinsicsFit, PredictsHeldOutViewsAsWellAsItExplainsTheOthers) {

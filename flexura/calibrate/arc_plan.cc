@@ -36,7 +36,7 @@ std::optional<ArmState> arc_state(const Arm& arm, double bend, const Eigen::Vect
 }
 
 std::optional<std::string> plan_arcs(LookLoop& loop, bool aims_at_centers, ArcPlan& plan) {
-  const Arm& arm = loop.believed().arm;
+  const Arm& arm = loop.nominal().arm;
   const double bend = loop.config().arc;
   plan.radius = arm.length() / bend;
   plan.normals = {Eigen::Vector3d::UnitZ(), Eigen::Vector3d::UnitX()};
@@ -51,7 +51,7 @@ std::optional<std::string> plan_arcs(LookLoop& loop, bool aims_at_centers, ArcPl
     if (!state)
       return fmt::format("the arm cannot be bent into an arc of {:.0f} deg in {}", bend / degree,
                          name_of_plane(i));
-    plan.arcs[i] = loop.believed().arm_model().actuation().command(*state);
+    plan.arcs[i] = loop.nominal().arm_model().actuation().command(*state);
     const Backbone backbone(arm, *state);
     plan.centers[i] = backbone.pose(0).position + plan.radius * towards[i];
     middles[i] = aims_at_centers ? plan.centers[i] : backbone.pose(0.5 * arm.length()).position;

@@ -18,46 +18,46 @@ class ArcsAsPrinted : public ArcsLoop {
     ArmPictureConfig picture = loop.config().picture;
     for (std::size_t i = 0; i < 2; ++i) {
       picture.white = loop.model(i).sensor.white();
-      eyes_.emplace_back(picture);
+      finders_.emplace_back(picture);
     }
   }
 
  private:
-  Trouble align() override {
+  Error align() override {
     for (std::size_t i = 0; i < 2; ++i)
-      if (auto trouble = settle({i})) return trouble;
+      if (auto error = settle({i})) return error;
     return std::nullopt;
   }
 
   // Steps 3 to 5: takes a picture, extracts the centerline, fits a circle to it.
-  Trouble look(std::size_t i) override {
-    auto trouble = loop_.look(i, [&](RigSight& sight) {
-      sight.seen = eyes_[i].see(*sight.frame.picture, Lens(loop_.lens(i)),
-                                expected_markers(loop_.believed().arm, plan_.arcs[i],
-                                                 loop_.config().picture.markers, plan_.ideal[i]));
+  Error look(std::size_t i) override {
+    auto error = loop_.look(i, [&](CameraObservation& observed) {
+      observed.seen = finders_[i].see(*observed.frame.picture, Lens(loop_.lens(i)),
+                                      expected_markers(loop_.nominal().arm, plan_.arcs[i],
+                                                       loop_.config().picture.markers, plan_.ideal[i]));
       // Missing markers are no error: they are not needed.
-      if (!sight.seen.points.empty()) sight.seen.reason.clear();
+      if (!observed.seen.points.empty()) observed.seen.reason.clear();
       points_.clear();
-      for (const CurvePoint& point : sight.seen.points) points_.push_back(point.pixel);
-      sight.circle = circle_ = fit_circle(points_);
+      for (const CurvePoint& point : observed.seen.points) points_.push_back(point.pixel);
+      observed.circle = circle_ = fit_circle(points_);
       if (!circle_) return;
-      sight.values = {{"radius, px", circle_->radius},
-                      {"rms, px", circle_->rms},
-                      {"verified", circle_->is_verified ? 1.0 : 0.0},
-                      {"detectable tilt, deg", circle_->detectable_tilt / degree}};
+      observed.values = {{"radius, px", circle_->radius},
+                         {"rms, px", circle_->rms},
+                         {"verified", circle_->is_verified ? 1.0 : 0.0},
+                         {"detectable tilt, deg", circle_->detectable_tilt / degree}};
     });
-    if (trouble || circle_) return trouble;
-    const std::string& reason = loop_.sight().seen.reason;
+    if (error || circle_) return error;
+    const std::string& reason = loop_.observed().seen.reason;
     return fmt::format("the arm is out of view of camera {}: {}", loop_.name(i),
                        reason.empty() ? "no arc is seen" : reason);
   }
 
-  Trouble decide(std::size_t i, std::optional<RigStance>& next) override {
+  Error decide(std::size_t i, std::optional<RigStance>& next) override {
     const Intrinsics ideal = plan_.ideal[i].lens.intrinsics(), lens = loop_.lens(i);
-    const auto wanted = plan_.ideal[i].project(plan_.centers[i]);
+    const auto desired = plan_.ideal[i].project(plan_.centers[i]);
     const Eigen::Vector2d off =
         circle_->center - Eigen::Vector2d(lens.cx, lens.cy) -
-        (wanted.value_or(Eigen::Vector2d(ideal.cx, ideal.cy)) - Eigen::Vector2d(ideal.cx, ideal.cy));
+        (desired.value_or(Eigen::Vector2d(ideal.cx, ideal.cy)) - Eigen::Vector2d(ideal.cx, ideal.cy));
     if (circle_->is_verified) {
       loop_.decide(i, "circle", circle_->rms, 0, "px",
                    fmt::format("the circle's equation is verified; the test would see a tilt of {:.2f} deg",
@@ -74,7 +74,7 @@ class ArcsAsPrinted : public ArcsLoop {
   }
 
   // Centres the circle with the head, one of the two kinds of motion that make the image a circle.
-  Trouble centre(std::size_t i, const Eigen::Vector2d& off, RigStance& next) {
+  Error centre(std::size_t i, const Eigen::Vector2d& off, RigStance& next) {
     next.head = turned_towards(next.head, loop_.lens(i), off);
     next = loop_.commandable_stance(i, next);
     loop_.decide(i, "centre", off.norm(), loop_.config().accepted, "px",
@@ -85,7 +85,7 @@ class ArcsAsPrinted : public ArcsLoop {
   }
 
   // Moves the stage around the centre by the angle from the axis ratio, which does not give the side.
-  Trouble go_around(std::size_t i, RigStance& next) {
+  Error go_around(std::size_t i, RigStance& next) {
     Orbit& orbit = orbits_[i];
     const auto ellipse = fit_ellipse(points_);
     if (!ellipse)
@@ -121,7 +121,7 @@ class ArcsAsPrinted : public ArcsLoop {
     Eigen::Vector3d way = Eigen::Vector3d::Zero();
   };
   std::array<Orbit, 2> orbits_;
-  std::vector<ArmPicture> eyes_;
+  std::vector<ArmPicture> finders_;
   std::vector<Eigen::Vector2d> points_;
   std::optional<CircleFit> circle_;
 };

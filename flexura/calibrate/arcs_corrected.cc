@@ -11,7 +11,7 @@
 #include "flexura/base/degree.h"
 #include "flexura/calibrate/arcs_loop.h"
 #include "flexura/calibrate/etalon_view.h"
-#include "flexura/calibrate/rig_eyes.h"
+#include "flexura/calibrate/rig_observer.h"
 #include "flexura/calibrate/rig_quantities.h"
 #include "flexura/camera/mount.h"
 #include "flexura/vision/eight_bits.h"
@@ -33,7 +33,7 @@ RigPrior arcs_prior(RigPrior prior) {
 
 namespace {
 
-RigSessionConfig eyes_of_arcs(const LoopConfig& config) {
+RigSessionConfig observers_of_arcs(const LoopConfig& config) {
   RigSessionConfig session;
   session.cameras = config.cameras, session.picture = config.picture;
   session.fewest = std::min(session.fewest, config.picture.markers.size());
@@ -44,26 +44,26 @@ class ArcsCorrected : public ArcsLoop {
  public:
   explicit ArcsCorrected(LookLoop& loop)
       : ArcsLoop(loop),
-        prior_(arcs_prior(loop.config().prior.value_or(rough_prior(loop.believed())))),
-        seen_as_(eyes_of_arcs(loop.config())),
-        eyes_(arm_eyes(loop.believed(), prior_, seen_as_,
-                       arm_middle(loop.believed(), ArmState::straight(loop.believed().sections())))) {}
+        prior_(arcs_prior(loop.config().prior.value_or(rough_prior(loop.nominal())))),
+        seen_as_(observers_of_arcs(loop.config())),
+        observer_(arm_observer(loop.nominal(), prior_, seen_as_,
+                               arm_middle(loop.nominal(), ArmState::straight(loop.nominal().sections())))) {}
 
  private:
   [[nodiscard]] const RigModel* before() const { return reading_ ? &reading_->found.model : nullptr; }
-  [[nodiscard]] const RigModel& model() const { return reading_ ? *before() : loop_.believed(); }
+  [[nodiscard]] const RigModel& model() const { return reading_ ? *before() : loop_.nominal(); }
   [[nodiscard]] const CameraConfig& found(std::size_t i) const {
     return model().cameras[loop_.config().cameras[i]];
   }
   [[nodiscard]] double pan_step(std::size_t i) const { return loop_.camera(i).head_axes()[0].resolution; }
 
-  Trouble align() override {
+  Error align() override {
     for (const bool is_centered : {false, true}) {
       if (is_centered)
-        if (auto trouble = center()) return trouble;
+        if (auto error = center()) return error;
       last_.fill(std::numeric_limits<double>::infinity());
-      if (auto trouble = settle({0, 1})) return trouble;
-      if (auto trouble = disagreement()) return trouble;
+      if (auto error = settle({0, 1})) return error;
+      if (auto error = disagreement()) return error;
     }
     loop_.result().notes.push_back(
         fmt::format("the angle between the axes is known within {} deg (standard deviation); residuals are "
@@ -78,39 +78,39 @@ class ArcsCorrected : public ArcsLoop {
   }
 
   // Turns towards what is dark in the picture until enough markers are visible, no matter which.
-  Trouble look(std::size_t i) override {
+  Error look(std::size_t i) override {
     for (;;) {
-      eyes_->sent(i, loop_.stance(i));
-      auto trouble = loop_.look(i, [&](RigSight& sight) {
-        eyes_->see(i, before(), sight);
-        if (eyes_->markers() < seen_as_.fewest && sight.seen.reason.empty())
-          sight.seen.reason =
-              fmt::format("{} markers are seen, fewer than {}", eyes_->markers(), seen_as_.fewest);
-        sight.values = {{"markers", static_cast<double>(sight.seen.markers.size())}};
+      observer_->sent(i, loop_.stance(i));
+      auto error = loop_.look(i, [&](CameraObservation& observed) {
+        observer_->see(i, before(), observed);
+        if (observer_->markers() < seen_as_.fewest && observed.seen.reason.empty())
+          observed.seen.reason =
+              fmt::format("{} markers are seen, fewer than {}", observer_->markers(), seen_as_.fewest);
+        observed.values = {{"markers", static_cast<double>(observed.seen.markers.size())}};
       });
-      if (trouble || eyes_->markers() >= seen_as_.fewest) return trouble;
+      if (error || observer_->markers() >= seen_as_.fewest) return error;
       constexpr double near = 4;  // px: the figure is centred, yet too few markers are visible.
-      const RigSight& sight = loop_.sight();
-      trouble = loop_.turn_towards(
-          i, "arm", dark_centroid(eight_bits(*sight.frame.picture, loop_.model(i).sensor.white())), near,
-          loop_.lens(i), "camera {} does not see enough of the arm: {}", sight.seen.reason);
-      if (trouble) return trouble;
+      const CameraObservation& observed = loop_.observed();
+      error = loop_.turn_towards(
+          i, "arm", dark_centroid(eight_bits(*observed.frame.picture, loop_.model(i).sensor.white())), near,
+          loop_.lens(i), "camera {} does not see enough of the arm: {}", observed.seen.reason);
+      if (error) return error;
     }
   }
 
   // Estimates the camera poses from all pictures so far, and the poses to move to.
-  Trouble learn() override {
-    foretold_.reset();
-    if (reading_) foretold_ = angle({AskedStance{loop_.stance(0), {}}, AskedStance{loop_.stance(1), {}}});
-    RigReading reading = eyes_->read(before());
+  Error learn() override {
+    predicted_.reset();
+    if (reading_) predicted_ = angle({AskedStance{loop_.stance(0), {}}, AskedStance{loop_.stance(1), {}}});
+    RigReading reading = observer_->read(before());
     if (!reading.found.is_found) return "no two cameras explain what was seen: " + reading.found.reason;
     reading_ = std::move(reading);
     const RigVariables& variables = reading_->problem->variables();
-    angle_ = angle({observed_stance(variables, eyes_->stance(0).value()),
-                    observed_stance(variables, eyes_->stance(1).value())});
+    angle_ = angle({observed_stance(variables, observer_->stance(0).value()),
+                    observed_stance(variables, observer_->stance(1).value())});
     for (std::size_t i = 0; i < 2; ++i) loop_.result().roll[i] = roll_of(pose(i).rotation);
     loop_.result().angle = angle_.value - std::numbers::pi / 2;
-    find_wanted();
+    find_desired();
     return std::nullopt;
   }
 
@@ -132,19 +132,19 @@ class ArcsCorrected : public ArcsLoop {
   }
 
   // Returns why the observations cannot be trusted, if so.
-  [[nodiscard]] Trouble disagreement() const {
+  [[nodiscard]] Error disagreement() const {
     if (!reading_->is_whole())
       return fmt::format(
           "{:.0f} of {:.0f} things that were seen are not explained: expected a twentieth at most",
-          reading_->amiss, reading_->things);
-    if (!foretold_) return std::nullopt;
+          reading_->unexplained, reading_->things);
+    if (!predicted_) return std::nullopt;
     constexpr double farthest = 6;  // Standard deviations.
-    const double off = std::abs(angle_.value - foretold_->value);
-    if (off <= farthest * foretold_->sigma) return std::nullopt;
+    const double off = std::abs(angle_.value - predicted_->value);
+    if (off <= farthest * predicted_->sigma) return std::nullopt;
     return fmt::format(
         "the last pictures do not agree with those before: the angle between the axes is {:.3f} deg, "
         "foretold were {:.3f} deg with a standard deviation of {:.3f} deg",
-        angle_.value / degree, foretold_->value / degree, foretold_->sigma / degree);
+        angle_.value / degree, predicted_->value / degree, predicted_->sigma / degree);
   }
 
   // Distance of a camera's ideal position from the plane of its arc, m.
@@ -174,7 +174,7 @@ class ArcsCorrected : public ArcsLoop {
 
   // Finds the commands that bring both cameras to the simulator's poses. Of the neighbouring head positions
   // it takes the pans whose axes are the most nearly orthogonal.
-  void find_wanted() {
+  void find_desired() {
     std::array<RigStance, 2> asked = {loop_.stance(0), loop_.stance(1)};
     std::array<double, 2> pans = {0, 0};
     for (std::size_t i = 0; i < 2; ++i) {
@@ -197,9 +197,9 @@ class ArcsCorrected : public ArcsLoop {
       return std::abs(off0 - off1) + aim * (std::abs(off0) + std::abs(off1));
     });
     for (std::size_t i = 0; i < 2; ++i) {
-      const RigStance& next = wanted_[i] = beside(i, best[i]);
-      const auto is_beyond = [](double is, double wanted, const AxisConfig& axis) {
-        return std::abs(is - wanted) > 2 * axis.resolution + 1e-9;
+      const RigStance& next = desired_[i] = beside(i, best[i]);
+      const auto is_beyond = [](double is, double desired, const AxisConfig& axis) {
+        return std::abs(is - desired) > 2 * axis.resolution + 1e-9;
       };
       const auto& [pan, tilt, zoom] = loop_.camera(i).head_axes();
       is_short_[i] =
@@ -210,9 +210,9 @@ class ArcsCorrected : public ArcsLoop {
     }
   }
 
-  Trouble decide(std::size_t i, std::optional<RigStance>& next) override {
+  Error decide(std::size_t i, std::optional<RigStance>& next) override {
     const double off = offset(i), last = std::exchange(last_[i], off);
-    const bool is_there = loop_.stands_there(i, wanted_[i]), is_far = off > allowed(i);
+    const bool is_there = loop_.stands_there(i, desired_[i]), is_far = off > allowed(i);
     if (is_far && (is_there || is_short_[i])) {
       const auto side = LookLoop::look_from_one_side(model(), {loop_.stance(0), loop_.stance(1)}, "seen");
       return fmt::format("{}camera {}: what can be commanded ends {:.4g} px before it holds",
@@ -225,7 +225,7 @@ class ArcsCorrected : public ArcsLoop {
     else if (off > 0.5 * last && !is_far)
       what = "holds: the pictures tell nothing finer";
     else
-      next = wanted_[i];
+      next = desired_[i];
     if (next)
       what = fmt::format(
           "residuals are {:.2f} times their noise, the angle between the axes is known within {} deg; "
@@ -247,7 +247,7 @@ class ArcsCorrected : public ArcsLoop {
       const View view = view_of(model(), stance);
       if (std::ranges::all_of(plan_.arcs, [&](const ArmState& arc) {
             return markers_inside(
-                       expected_markers(model().arm, model().bent(arc), markers, view, loop_.believed().arm),
+                       expected_markers(model().arm, model().bent(arc), markers, view, loop_.nominal().arm),
                        view, margin) >= enough;
           }))
         return times;
@@ -256,7 +256,7 @@ class ArcsCorrected : public ArcsLoop {
   }
 
   // A longer focal length moves image points away from the principal point; this determines it.
-  Trouble center() {
+  Error center() {
     std::array<RigStance, 2> wide = {loop_.stance(0), loop_.stance(1)};
     std::vector<std::size_t> looking;
     for (std::size_t i = 0; i < 2; ++i) {
@@ -270,23 +270,23 @@ class ArcsCorrected : public ArcsLoop {
         continue;
       }
       looking.push_back(i), is_centered_[i] = true;
-      if (auto trouble = loop_.go_longer(i, next)) return trouble;
+      if (auto error = loop_.go_longer(i, next)) return error;
     }
     if (looking.empty()) return std::nullopt;
-    if (auto trouble = look_at({0, 1}, looking)) return trouble;
+    if (auto error = look_at({0, 1}, looking)) return error;
     for (const std::size_t i : looking)
-      if (auto trouble = loop_.go(i, wide[i])) return trouble;
+      if (auto error = loop_.go(i, wide[i])) return error;
     return std::nullopt;
   }
 
   RigPrior prior_;
   RigSessionConfig seen_as_;
-  std::unique_ptr<RigEyes> eyes_;                     // Holds all pictures.
+  std::unique_ptr<RigObserver> observer_;             // Holds all pictures.
   std::optional<RigReading> reading_;                 // Estimate from all pictures.
   std::array<bool, 2> is_centered_ = {false, false};  // By a longer focal length.
   Angle angle_;
-  std::optional<Angle> foretold_;  // Predicted axis angle, before the last pictures were taken.
-  std::array<RigStance, 2> wanted_;
+  std::optional<Angle> predicted_;  // Predicted axis angle, before the last pictures were taken.
+  std::array<RigStance, 2> desired_;
   std::array<bool, 2> is_short_{};  // Whether a head or stage ended short of its commanded position.
   std::array<double, 2> last_{};    // Previous deviations, px.
 };

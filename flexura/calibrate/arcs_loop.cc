@@ -12,38 +12,38 @@
 
 namespace flexura {
 
-LookLoop::Trouble ArcsLoop::run(bool aims_at_centers) {
-  if (auto trouble = loop_.begin()) return trouble;
+LookLoop::Error ArcsLoop::run(bool aims_at_centers) {
+  if (auto error = loop_.begin()) return error;
   if (auto why = plan_arcs(loop_, aims_at_centers, plan_)) return why;
   loop_.result().target = plan_.target;
   for (std::size_t i = 0; i < 2; ++i)
-    if (auto trouble = loop_.begin_zoomed(i, plan_.zoom[i], "zoom as planned",
-                                          "zoom to {:.5g}, as the simulator has it"))
-      return trouble;
-  if (auto trouble = align()) return trouble;
+    if (auto error = loop_.begin_zoomed(i, plan_.zoom[i], "zoom as planned",
+                                        "zoom to {:.5g}, as the simulator has it"))
+      return error;
+  if (auto error = align()) return error;
   return equalize_zooms();
 }
 
-LookLoop::Trouble ArcsLoop::look_at(const std::vector<std::size_t>& arcs,
-                                    const std::vector<std::size_t>& cameras) {
+LookLoop::Error ArcsLoop::look_at(const std::vector<std::size_t>& arcs,
+                                  const std::vector<std::size_t>& cameras) {
   for (const std::size_t arc : arcs) {
-    if (auto trouble = loop_.show(plan_.arcs[arc])) return trouble;
+    if (auto error = loop_.show(plan_.arcs[arc])) return error;
     for (const std::size_t i : cameras)
-      if (auto trouble = look(i)) return trouble;
+      if (auto error = look(i)) return error;
   }
   return std::nullopt;
 }
 
-LookLoop::Trouble ArcsLoop::settle(const std::vector<std::size_t>& numbers) {
+LookLoop::Error ArcsLoop::settle(const std::vector<std::size_t>& numbers) {
   for (;;) {
-    if (auto trouble = look_at(numbers, numbers)) return trouble;
-    if (auto trouble = learn()) return trouble;
+    if (auto error = look_at(numbers, numbers)) return error;
+    if (auto error = learn()) return error;
     bool is_moved = false;
     for (const std::size_t i : numbers) {
       std::optional<RigStance> next;
-      if (auto trouble = decide(i, next)) return trouble;
+      if (auto error = decide(i, next)) return error;
       if (!next) continue;
-      if (auto trouble = loop_.go(i, *next)) return trouble;
+      if (auto error = loop_.go(i, *next)) return error;
       is_moved = true;
     }
     if (!is_moved) return std::nullopt;
@@ -52,21 +52,21 @@ LookLoop::Trouble ArcsLoop::settle(const std::vector<std::size_t>& numbers) {
 
 // Step 13: sets the zooms for which each camera shows its arc as large as the simulator's picture, by
 // normalised cross-correlation.
-LookLoop::Trouble ArcsLoop::equalize_zooms() {
+LookLoop::Error ArcsLoop::equalize_zooms() {
   std::array<double, 2> last = {1, 1};
   for (std::size_t i = 0; i < 2; ++i) {
-    if (auto trouble = loop_.show(plan_.arcs[i])) return trouble;
+    if (auto error = loop_.show(plan_.arcs[i])) return error;
     constexpr int rounds = 3;
     std::string end;
     for (int round = 1; end.empty(); ++round) {
       ZoomCorrelation seen;
-      auto trouble = loop_.look(i, [&](RigSight& sight) {
-        const Image<std::uint8_t> bytes = eight_bits(*sight.frame.picture, loop_.model(i).sensor.white());
+      auto error = loop_.look(i, [&](CameraObservation& observed) {
+        const Image<std::uint8_t> bytes = eight_bits(*observed.frame.picture, loop_.model(i).sensor.white());
         seen = correlate_zoom(bytes.channels() == 1 ? bytes : gray_picture(bytes), plan_.pictures[i]);
-        sight.seen.reason = seen.reason;
-        sight.values = {{"zoom over the ideal picture's", seen.ratio}, {"correlation", seen.peak}};
+        observed.seen.reason = seen.reason;
+        observed.values = {{"zoom over the ideal picture's", seen.ratio}, {"correlation", seen.peak}};
       });
-      if (trouble) return trouble;
+      if (error) return error;
       if (!seen.reason.empty()) return fmt::format("zoom of camera {}: {}", loop_.name(i), seen.reason);
       last[i] = seen.ratio;
       const RigStance next = loop_.zoomed(i, 1 / seen.ratio);

@@ -20,32 +20,31 @@ class ArcsLoop {
   ArcsLoop(const ArcsLoop&) = delete;
   ArcsLoop& operator=(const ArcsLoop&) = delete;
   /// Runs the calibration; `aims_at_centers` as in plan_arcs.
-  [[nodiscard]] LookLoop::Trouble run(bool aims_at_centers);
+  [[nodiscard]] LookLoop::Error run(bool aims_at_centers);
 
  protected:
-  using Trouble = LookLoop::Trouble;
+  using Error = LookLoop::Error;
 
   /// Takes a picture of an arc and measures it.
-  [[nodiscard]] virtual Trouble look(std::size_t i) = 0;
+  [[nodiscard]] virtual Error look(std::size_t i) = 0;
   /// Evaluates all pictures of a round.
-  [[nodiscard]] virtual Trouble learn() { return std::nullopt; }
+  [[nodiscard]] virtual Error learn() { return std::nullopt; }
   /// Sets `next` to the next position of a camera; leaves it empty if the camera stays.
-  [[nodiscard]] virtual Trouble decide(std::size_t i, std::optional<RigStance>& next) = 0;
+  [[nodiscard]] virtual Error decide(std::size_t i, std::optional<RigStance>& next) = 0;
   /// Moves both cameras to the poses of the plan.
-  [[nodiscard]] virtual Trouble align() = 0;
+  [[nodiscard]] virtual Error align() = 0;
 
   /// Looks at each of the arcs with each of the cameras.
-  [[nodiscard]] Trouble look_at(const std::vector<std::size_t>& arcs,
-                                const std::vector<std::size_t>& cameras);
+  [[nodiscard]] Error look_at(const std::vector<std::size_t>& arcs, const std::vector<std::size_t>& cameras);
   /// Looks at the arcs with these numbers through the cameras with these numbers, learns and moves, until the
   /// cameras stay.
-  [[nodiscard]] Trouble settle(const std::vector<std::size_t>& numbers);
+  [[nodiscard]] Error settle(const std::vector<std::size_t>& numbers);
 
   LookLoop& loop_;
   ArcPlan plan_;
 
  private:
-  [[nodiscard]] Trouble equalize_zooms();
+  [[nodiscard]] Error equalize_zooms();
 };
 
 /// The thirteen steps as printed: each camera looks at one arc and moves until the centerline satisfies the

@@ -17,7 +17,7 @@ namespace flexura {
 namespace {
 
 TEST(ArcState, IsOneArcOfACircleInItsPlaneWhereTheArmCan) {
-  Arm arm = believed_rig().arm;
+  Arm arm = nominal_rig().arm;
   arm.sections[2].length *= 0.8;
   for (Section& section : arm.sections) section.max_bend = 2;
   for_random_cases(100, [&](TestRandom& random) {
@@ -47,7 +47,7 @@ constexpr RigTrialConfig known_lenses = {
 RigObservations arcs_seen(const RigModel& truth, TestRandom& random) {
   RigTrial trial(truth, known_lenses, random);
   for (const Eigen::Vector3d& towards : {Eigen::Vector3d::UnitX().eval(), (-Eigen::Vector3d::UnitZ()).eval()})
-    (void)trial.add_pose(arc_state(believed_rig().arm, 2 * std::numbers::pi / 3, towards).value());
+    (void)trial.add_pose(arc_state(nominal_rig().arm, 2 * std::numbers::pi / 3, towards).value());
   for (const std::size_t camera : {std::size_t{0}, std::size_t{1}}) {
     const std::size_t stance = trial.add_stance({.camera = camera});
     for (const std::size_t pose : {std::size_t{0}, std::size_t{1}}) (void)trial.add_image(stance, pose);
@@ -59,8 +59,8 @@ TEST(ArcsPrior, MakesTwoArcsTellTheAngleBetweenTheAxesAsWellAsItSays) {
   double squares = 0, largest = 0;
   int count = 0;
   for_random_cases(30, [&](TestRandom& random) {
-    const RigModel truth = true_rig(believed_rig(), known_lenses, random);
-    RigProblem problem(believed_rig(), arcs_prior(rough_prior(believed_rig())), arcs_seen(truth, random));
+    const RigModel truth = true_rig(nominal_rig(), known_lenses, random);
+    RigProblem problem(nominal_rig(), arcs_prior(rough_prior(nominal_rig())), arcs_seen(truth, random));
     const RigCalibration found = calibrate_rig(problem);
     ASSERT_TRUE(found.is_found) << found.reason;
     const RigVariables& variables = problem.variables();

@@ -16,11 +16,11 @@ namespace {
 // (docs/studies/seeing.md).
 constexpr double least_marker_sigma = 0.2;
 
-MarkerScene scene_of(const ArmSighting& arm, const std::vector<MarkerSighting>& markers) {
+MarkerScene scene_of(const ArmObservation& arm, const std::vector<MarkerObservation>& markers) {
   MarkerScene scene;
-  for (const MarkerSighting& marker : markers) {
+  for (const MarkerObservation& marker : markers) {
     auto& place = scene.markers.emplace_back();
-    if (marker.tells_place()) place = MarkerScene::Place{marker.pixel, marker.color};
+    if (marker.determines_place()) place = MarkerScene::Place{marker.pixel, marker.color};
   }
   if (!arm.is_whole()) return scene;
   for (const std::size_t i : {std::size_t{0}, std::size_t{1}})
@@ -74,7 +74,7 @@ std::size_t markers_inside(const MarkerScene& scene, const View& view, double ma
 }
 
 ArmFigure ArmPicture::look(const Picture& picture) {
-  const ArmSighting& arm = finder_.find(picture, config_.white);
+  const ArmObservation& arm = finder_.find(picture, config_.white);
   ArmFigure look;
   if (!arm.is_found()) {
     look.reason = arm.reason;
@@ -95,7 +95,7 @@ SeenArm recognised(const ArmFigure& look, const MarkerMatch& match, const Lens& 
   seen.reason = look.reason;
   if (!look.reason.empty()) return seen;
   for (std::size_t i = 0; i < look.markers.size(); ++i) {
-    const MarkerSighting& marker = look.markers[i];
+    const MarkerObservation& marker = look.markers[i];
     // Where the lens has no ray there is no point of the arm and no usable marker.
     if (!lens.unproject(marker.pixel)) continue;
     if (match.markers[i]) {

@@ -10,7 +10,7 @@
 #include "flexura/calibrate/marker_match.h"
 #include "flexura/calibrate/marker_vote.h"
 #include "flexura/camera/view.h"
-#include "flexura/estimate/sighting.h"
+#include "flexura/estimate/observation.h"
 #include "flexura/model/arm.h"
 #include "flexura/port/camera_port.h"
 #include "flexura/vision/arm_finder.h"
@@ -27,10 +27,10 @@ struct ArmPictureConfig {
 /// The arm in one picture before its markers are identified.
 struct ArmFigure {
   std::vector<AxisSample> axis;
-  std::vector<MarkerSighting> markers;  ///< Markers in order along the centerline.
-  MarkerScene scene;                    ///< The markers and arm ends that can be identified.
-  std::array<int, 2> size = {0, 0};     ///< Size of the picture, px.
-  std::string reason;                   ///< Why no arm was found; "" if one was.
+  std::vector<MarkerObservation> markers;  ///< Markers in order along the centerline.
+  MarkerScene scene;                       ///< The markers and arm ends that can be identified.
+  std::array<int, 2> size = {0, 0};        ///< Size of the picture, px.
+  std::string reason;                      ///< Why no arm was found; "" if one was.
 };
 
 /// The arm in one picture with its markers identified.

@@ -36,13 +36,13 @@ struct Disagreement {
 };
 
 void compare(const RigTrial& trial, double bound, Disagreement& worst) {
-  const RigModel guess = believed_rig();
+  const RigModel guess = nominal_rig();
   const RigPrior prior = rough_prior(guess);
   RigProblem problem(guess, prior, trial.seen());
   const RigCalibration found =
-      calibrate_rig(problem, {.linear_beyond = bound, .doubted_beyond = std::max(8.0, 2 * bound)});
+      calibrate_rig(problem, {.linear_beyond = bound, .outlier_beyond = std::max(8.0, 2 * bound)});
   ASSERT_TRUE(found.is_found) << found.reason;
-  ASSERT_TRUE(found.doubts.empty());
+  ASSERT_TRUE(found.outliers.empty());
   const CeresBundle peer = ceres_bundle(guess, prior, trial.seen(), bound);
   ASSERT_TRUE(peer.is_settled);
   ASSERT_EQ(peer.x.size(), found.x.size());
@@ -78,7 +78,7 @@ Disagreement worst_of(int trials, double bound) {
   for_random_cases(trials, [&](TestRandom& random) {
     RigTrialConfig config;
     config.points = 0;
-    RigTrial trial(true_rig(believed_rig(), config, random), config, random);
+    RigTrial trial(true_rig(nominal_rig(), config, random), config, random);
     take_plan(trial);
     compare(trial, bound, worst);
   });

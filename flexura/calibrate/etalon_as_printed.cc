@@ -79,29 +79,29 @@ EtalonCounts count_etalon(const Image<std::uint8_t>& picture) {
   return counts;
 }
 
-void tell_counts(const EtalonCounts& counts, const LookLoop& loop, RigSight& sight) {
-  sight.seen.reason = counts.reason;
+void report_counts(const EtalonCounts& counts, const LookLoop& loop, CameraObservation& observed) {
+  observed.seen.reason = counts.reason;
   if (!counts.reason.empty()) return;
   // Same layout as drawn_etalon: the counts bound the silhouette, and an axis is a column.
   constexpr double whole_pixel = 0.29;  // Standard deviation of a position rounded to whole pixels, px.
-  const SensorConfig& sensor = loop.believed().cameras[sight.stance.camera].sensor;
+  const SensorConfig& sensor = loop.nominal().cameras[observed.stance.camera].sensor;
   const double left = counts.left, right = static_cast<double>(sensor.width - 1 - counts.right),
                top = counts.above, bottom = static_cast<double>(sensor.height - 1 - counts.below);
   for (const Eigen::Vector2d& corner :
        {Eigen::Vector2d(left, top), {left, bottom}, {right, bottom}, {right, top}})
-    sight.seen.points.push_back({corner, whole_pixel});
+    observed.seen.points.push_back({corner, whole_pixel});
   for (const double axis : counts.axes)
     for (const double share : {0.75, 0.25})
-      sight.seen.markers.push_back(
+      observed.seen.markers.push_back(
           {{axis, bottom + share * (top - bottom)}, share * loop.config().etalon.height, whole_pixel});
-  sight.values = {{"white left, px", left},
-                  {"white right, px", static_cast<double>(counts.right)},
-                  {"white above, px", top},
-                  {"white below, px", static_cast<double>(counts.below)},
-                  {"black in the first line, px", static_cast<double>(counts.first)},
-                  {"black in the last line, px", static_cast<double>(counts.last)},
-                  {"white, px", static_cast<double>(counts.white)},
-                  {"red axes", static_cast<double>(counts.axes.size())}};
+  observed.values = {{"white left, px", left},
+                     {"white right, px", static_cast<double>(counts.right)},
+                     {"white above, px", top},
+                     {"white below, px", static_cast<double>(counts.below)},
+                     {"black in the first line, px", static_cast<double>(counts.first)},
+                     {"black in the last line, px", static_cast<double>(counts.last)},
+                     {"white, px", static_cast<double>(counts.white)},
+                     {"red axes", static_cast<double>(counts.axes.size())}};
 }
 
 class EtalonAsPrinted : public EtalonLoop {
@@ -109,12 +109,12 @@ class EtalonAsPrinted : public EtalonLoop {
   explicit EtalonAsPrinted(LookLoop& loop) : EtalonLoop(loop, true) {}
 
  private:
-  Trouble look(std::size_t i) override {
-    auto trouble = loop_.look(i, [this, i](RigSight& sight) {
-      counts_[i] = count_etalon(eight_bits(*sight.frame.picture, loop_.model(i).sensor.white()));
-      tell_counts(counts_[i], loop_, sight);
+  Error look(std::size_t i) override {
+    auto error = loop_.look(i, [this, i](CameraObservation& observed) {
+      counts_[i] = count_etalon(eight_bits(*observed.frame.picture, loop_.model(i).sensor.white()));
+      report_counts(counts_[i], loop_, observed);
     });
-    if (trouble) return trouble;
+    if (error) return error;
     if (counts_[i].reason.empty()) return std::nullopt;
     return fmt::format("camera {} does not see the cylinder: {}", loop_.name(i), counts_[i].reason);
   }
@@ -133,7 +133,7 @@ class EtalonAsPrinted : public EtalonLoop {
   }
 
   // If horizontal positioning sees two axes, turns the outer one out of the picture.
-  Trouble prepare(std::size_t i, std::size_t offset, bool& is_turned) override {
+  Error prepare(std::size_t i, std::size_t offset, bool& is_turned) override {
     if (offset != 1) return std::nullopt;
     const std::vector<double>& axes = counts_[i].axes;
     if (axes.empty()) return fmt::format("camera {} sees no red axis", loop_.name(i));
@@ -161,12 +161,12 @@ class EtalonAsPrinted : public EtalonLoop {
     return loop_.go(i, next);
   }
 
-  Trouble align(std::size_t i) override {
+  Error align(std::size_t i) override {
     for (std::size_t first = 0; first < 4; first += 2) {
       for (bool holds = false; !holds;) {
         for (const std::size_t offset : {first, first + 1})
-          if (auto trouble = null(i, {offset})) return trouble;
-        if (auto trouble = look(i)) return trouble;
+          if (auto error = null(i, {offset})) return error;
+        if (auto error = look(i)) return error;
         // As printed, the vertical test checks the offset of positioning, which was just accepted: it always
         // stops.
         const Offset tested = offsets(i)[first + 1];
@@ -186,7 +186,7 @@ class EtalonAsPrinted : public EtalonLoop {
     return static_cast<double>(counts_[1].white) / static_cast<double>(counts_[0].white);
   }
 
-  Trouble finish() override {
+  Error finish() override {
     // The printed method never checks whether the counts cover the whole cylinder.
     for (std::size_t i = 0; i < 2; ++i) {
       const EtalonCounts& last = counts_[i];

@@ -5,8 +5,8 @@
 #include <limits>
 
 #include "flexura/base/degree.h"
-#include "flexura/calibrate/etalon_eyes.h"
 #include "flexura/calibrate/etalon_loop.h"
+#include "flexura/calibrate/etalon_observer.h"
 #include "flexura/vision/eight_bits.h"
 
 namespace flexura {
@@ -24,24 +24,24 @@ class EtalonCorrected : public EtalonLoop {
     return lens;
   }
 
-  Trouble look(std::size_t i) override {
-    return loop_.look(i, [this, i](RigSight& sight) {
+  Error look(std::size_t i) override {
+    return loop_.look(i, [this, i](CameraObservation& observed) {
       const EtalonView& view = views_[i] =
-          view_etalon(eight_bits(*sight.frame.picture, loop_.model(i).sensor.white()), lens(i),
+          view_etalon(eight_bits(*observed.frame.picture, loop_.model(i).sensor.white()), lens(i),
                       loop_.config().etalon.radius);
       if (view.reason.empty()) {
-        sight.seen =
-            drawn_etalon(view.sighting, loop_.config().etalon, view_of(loop_.believed(), sight.stance));
-        sight.values = {{"silhouette right of the middle, px", view.middle},
-                        {"line right of the silhouette's middle, px", view.line},
-                        {"silhouette below the middle, px", view.height},
-                        {"width above less below, px", view.taper},
-                        {"width, px", view.width}};
+        observed.seen =
+            drawn_etalon(view.observation, loop_.config().etalon, view_of(loop_.nominal(), observed.stance));
+        observed.values = {{"silhouette right of the middle, px", view.middle},
+                           {"line right of the silhouette's middle, px", view.line},
+                           {"silhouette below the middle, px", view.height},
+                           {"width above less below, px", view.taper},
+                           {"width, px", view.width}};
       }
-      sight.seen.reason = view.reason;
+      observed.seen.reason = view.reason;
     });
   }
-  Trouble unmeasured(std::size_t i) const override {
+  Error unmeasured(std::size_t i) const override {
     return views_[i].reason.empty() ? std::nullopt : std::optional(views_[i].reason);
   }
 
@@ -70,7 +70,7 @@ class EtalonCorrected : public EtalonLoop {
   }
 
   // Turns towards the visible part of the cylinder until all of it is visible.
-  Trouble prepare(std::size_t i, std::size_t /*offset*/, bool& is_turned) override {
+  Error prepare(std::size_t i, std::size_t /*offset*/, bool& is_turned) override {
     const EtalonView& view = views_[i];
     is_turned = !view.reason.empty();
     if (!is_turned) turns_[i] = 0;
@@ -84,11 +84,11 @@ class EtalonCorrected : public EtalonLoop {
 
   // Nulls all four offsets in one picture, then again with the principal point found by a longer focal
   // length.
-  Trouble align(std::size_t i) override {
+  Error align(std::size_t i) override {
     for (const bool is_centered : {false, true}) {
       if (is_centered)
-        if (auto trouble = center(i)) return trouble;
-      if (auto trouble = null(i, {0, 1, 2, 3})) return trouble;
+        if (auto error = center(i)) return error;
+      if (auto error = null(i, {0, 1, 2, 3})) return error;
       for (const Offset& offset : offsets(i))
         loop_.decide(i, offset.step, offset.px, loop_.config().accepted, "px",
                      std::abs(offset.want) <= offset.accepted ? "holds" : "nothing finer can be commanded");
@@ -99,7 +99,7 @@ class EtalonCorrected : public EtalonLoop {
 
   // Factor by which the focal length can grow while the whole cylinder stays visible.
   [[nodiscard]] double longer(std::size_t i) const {
-    const EtalonSighting& seen = views_[i].sighting;
+    const EtalonObservation& seen = views_[i].observation;
     const Intrinsics lens = this->lens(i);
     const SensorConfig& sensor = loop_.model(i).sensor;
     const double half = 0.5 * (seen.bottom - seen.top);
@@ -118,7 +118,7 @@ class EtalonCorrected : public EtalonLoop {
   }
 
   // A longer focal length moves image points away from the principal point; this determines it.
-  Trouble center(std::size_t i) {
+  Error center(std::size_t i) {
     const RigStance wide = loop_.stance(i);
     const EtalonView before = views_[i];
     const Intrinsics lens = this->lens(i);
@@ -136,8 +136,8 @@ class EtalonCorrected : public EtalonLoop {
             loop_.name(i), LookLoop::least_longer));
         return loop_.stands_there(i, wide) ? std::nullopt : loop_.go(i, wide);
       }
-      if (auto trouble = loop_.go_longer(i, next)) return trouble;
-      if (auto trouble = look(i)) return trouble;
+      if (auto error = loop_.go_longer(i, next)) return error;
+      if (auto error = look(i)) return error;
       if (views_[i].reason.empty()) break;
       // A large error of the principal point moves the cylinder out of the picture.
       times = std::sqrt(times);
@@ -159,7 +159,7 @@ class EtalonCorrected : public EtalonLoop {
 
   // Chooses, of the neighbouring positions, the pans whose axes are the most nearly orthogonal; among equals
   // those that look at the cylinder. Then takes one more picture per camera to measure the result.
-  Trouble finish() override {
+  Error finish() override {
     constexpr double visible = 0.01;
     if (std::abs(*loop_.result().zoom_ratio - 1) > visible)
       return fmt::format("no zoom that both cameras have shows the cylinder alike: the ratio stays at {:.4f}",
@@ -178,9 +178,9 @@ class EtalonCorrected : public EtalonLoop {
       if (!loop_.stands_there(i, next)) {
         loop_.decide(i, "orthogonal axes", (across(0) - across(1)) / degree, 0, "deg",
                      "pan by a step: together the axes are more nearly orthogonal");
-        if (auto trouble = loop_.go(i, next)) return trouble;
+        if (auto error = loop_.go(i, next)) return error;
       }
-      if (auto trouble = look(i)) return trouble;
+      if (auto error = look(i)) return error;
       if (!views_[i].reason.empty())
         return fmt::format("camera {} after its last move: {}", loop_.name(i), views_[i].reason);
     }

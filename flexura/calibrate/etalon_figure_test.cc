@@ -22,7 +22,7 @@
 namespace flexura {
 namespace {
 
-// A cylinder between the two cameras of believed_rig, turned about its axis.
+// A cylinder between the two cameras of nominal_rig, turned about its axis.
 EtalonConfig random_etalon(TestRandom& random) {
   const double half = random.uniform(-0.2, 0.2);
   EtalonConfig etalon;
@@ -47,7 +47,7 @@ TEST(EtalonFigure, SidesAndRimsAreWhereItsSurfaceEndsAndPixelsShowPointsOfThem) 
     EtalonConfig etalon = random_etalon(random);
     etalon.position[1] = random.uniform(-0.8, 1.2);  // Also from above and below.
     const EtalonFigure figure(etalon);
-    const View view = seen_by(true_rig(believed_rig(), {.turn = 0.02, .roll = 0}, random), 0);
+    const View view = seen_by(true_rig(nominal_rig(), {.turn = 0.02, .roll = 0}, random), 0);
     const auto expected = figure.expected(view, -1e4);
     ASSERT_TRUE(expected);
     for (const EtalonPoint& point : *expected) {
@@ -94,7 +94,7 @@ TEST(EtalonFigure, SidesAndRimsAreWhereItsSurfaceEndsAndPixelsShowPointsOfThem) 
   });
   EtalonConfig around_camera;
   around_camera.position = {0, 0, 2.5}, around_camera.height = 1;
-  EXPECT_FALSE(EtalonFigure(around_camera).nearest({}, seen_by(believed_rig(), 0)));
+  EXPECT_FALSE(EtalonFigure(around_camera).nearest({}, seen_by(nominal_rig(), 0)));
 }
 
 // Pictures of a cylinder by a rig with errors, from several stances.
@@ -142,14 +142,14 @@ TEST(EtalonFigure, ItsOutlineBoundsBothRims) {
                     640, 480};
     const auto outline = figure.outline(view, 0);
     ASSERT_TRUE(outline);
-    Eigen::AlignedBox2d told, drawn;
-    for (const Eigen::Vector2d& point : *outline) told.extend(point);
+    Eigen::AlignedBox2d reported, drawn;
+    for (const Eigen::Vector2d& point : *outline) reported.extend(point);
     for (const double height : {0.0, etalon.height})
       for (int i = 0; i < 1000; ++i)
         drawn.extend(*view.project(surface_point(etalon, 2e-3 * std::numbers::pi * i, height)));
-    EXPECT_LT((told.min() - drawn.min()).norm(), 0.5);
-    EXPECT_LT((told.max() - drawn.max()).norm(), 0.5);
-    EXPECT_FALSE(figure.outline(view, told.min().minCoeff() + 1));
+    EXPECT_LT((reported.min() - drawn.min()).norm(), 0.5);
+    EXPECT_LT((reported.max() - drawn.max()).norm(), 0.5);
+    EXPECT_FALSE(figure.outline(view, reported.min().minCoeff() + 1));
   });
 }
 
@@ -186,7 +186,7 @@ TEST(EtalonFigure, HalvesOfARimMeetAtTheCamerasHeight) {
 
 TEST(EtalonFigure, DerivativesOfItsRowsAreThoseOfDifferences) {
   for_random_cases(4, [](TestRandom& random) {
-    const RigModel model = true_rig(believed_rig(), {}, random);
+    const RigModel model = true_rig(nominal_rig(), {}, random);
     RigProblem problem(model, rough_prior(model), seen_etalon(model, random_etalon(random), 0, random));
     const Eigen::VectorXd x = Eigen::VectorXd::Zero(problem.variables().count());
     ASSERT_TRUE(problem.linearise(x));
@@ -212,10 +212,10 @@ TEST(EtalonFigure, TellsARigFromRoughGuessesAndHowWell) {
   for_random_cases(8, [&](TestRandom& random) {
     RigTrialConfig wrong;
     wrong.turn = 5 * degree, wrong.shift = 0.1, wrong.are_heads_exact = true;
-    const RigModel truth = true_rig(believed_rig(), wrong, random);
-    RigPrior prior = rough_prior(believed_rig());
+    const RigModel truth = true_rig(nominal_rig(), wrong, random);
+    RigPrior prior = rough_prior(nominal_rig());
     for (CameraPrior& camera : prior.cameras) camera.steps = 0;
-    RigProblem problem(believed_rig(), prior, seen_etalon(truth, random_etalon(random), 0.05, random));
+    RigProblem problem(nominal_rig(), prior, seen_etalon(truth, random_etalon(random), 0.05, random));
     const RigCalibration found = calibrate_rig(problem);
     ASSERT_TRUE(found.is_found) << found.reason;
     EXPECT_LE(found.rms, 1.05);

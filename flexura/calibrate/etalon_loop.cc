@@ -25,29 +25,29 @@ bool falls_short(const Camera& camera, const RigStance& asked, const RigStance& 
 
 }  // namespace
 
-LookLoop::Trouble EtalonLoop::run() {
+LookLoop::Error EtalonLoop::run() {
   loop_.result().target = EtalonFigure(loop_.config().etalon).middle();
   // Red lines are 90 degrees apart: the camera model identifies which one a camera sees.
-  if (auto trouble = loop_.begin()) return trouble;
+  if (auto error = loop_.begin()) return error;
   for (std::size_t i = 0; i < 2; ++i)
-    if (auto trouble = loop_.begin_zoomed(i, zoom_ends(loop_.camera(i))[0], "zoom to x1",
-                                          "the shortest focal length, to see all of the cylinder"))
-      return trouble;
+    if (auto error = loop_.begin_zoomed(i, zoom_ends(loop_.camera(i))[0], "zoom to x1",
+                                        "the shortest focal length, to see all of the cylinder"))
+      return error;
   for (std::size_t i = 0; i < 2; ++i)
-    if (auto trouble = align(i)) return trouble;
-  if (auto trouble = zoom()) return trouble;
+    if (auto error = align(i)) return error;
+  if (auto error = zoom()) return error;
   return finish();
 }
 
-LookLoop::Trouble EtalonLoop::null(std::size_t i, std::initializer_list<std::size_t> which) {
+LookLoop::Error EtalonLoop::null(std::size_t i, std::initializer_list<std::size_t> which) {
   std::vector<OffsetSteps> steps;
   const auto begun = [](const Offset& offset) {
     return offset.most > 0 ? OffsetSteps(offset.accepted, offset.most) : OffsetSteps(offset.accepted);
   };
   for (;;) {
-    if (auto trouble = look(i)) return trouble;
+    if (auto error = look(i)) return error;
     bool is_moved = false;
-    if (auto trouble = prepare(i, *which.begin(), is_moved)) return trouble;
+    if (auto error = prepare(i, *which.begin(), is_moved)) return error;
     if (is_moved) {
       if (is_printed_) steps.clear();
       continue;
@@ -56,7 +56,7 @@ LookLoop::Trouble EtalonLoop::null(std::size_t i, std::initializer_list<std::siz
     for (std::size_t k = 0; k < which.size() && !is_moved; ++k) {
       const Offset& offset = all[which.begin()[k]];
       if (steps.size() == k) steps.push_back(begun(offset));
-      if (auto trouble = step(i, offset, steps[k], is_moved)) return trouble;
+      if (auto error = step(i, offset, steps[k], is_moved)) return error;
       // The correction that a slide leaves to the head does not count as one of the head's own steps.
       if (is_moved && k % 2 == 1) steps[k - 1] = begun(all[which.begin()[k - 1]]);
     }
@@ -64,7 +64,7 @@ LookLoop::Trouble EtalonLoop::null(std::size_t i, std::initializer_list<std::siz
   }
 }
 
-LookLoop::Trouble EtalonLoop::step(std::size_t i, const Offset& offset, OffsetSteps& steps, bool& is_moved) {
+LookLoop::Error EtalonLoop::step(std::size_t i, const Offset& offset, OffsetSteps& steps, bool& is_moved) {
   OffsetSteps tried = steps;
   const bool holds = std::abs(offset.want) <= offset.accepted;
   if (tried.take(offset.want) == LoopState::stuck && !holds)
@@ -94,14 +94,14 @@ LookLoop::Trouble EtalonLoop::step(std::size_t i, const Offset& offset, OffsetSt
   return loop_.go(i, next);
 }
 
-LookLoop::Trouble EtalonLoop::zoom() {
+LookLoop::Error EtalonLoop::zoom() {
   const double accepted = loop_.config().zoom_accepted;
   OffsetSteps steps(accepted);
   std::array<bool, 2> is_new = {is_printed_, is_printed_};
   for (;;) {
     for (std::size_t i = 0; i < 2; ++i) {
       if (!is_new[i]) continue;
-      if (auto trouble = look(i)) return trouble;
+      if (auto error = look(i)) return error;
       if (auto why = unmeasured(i)) return fmt::format("zoom of camera {}: {}", loop_.name(i), *why);
     }
     const double ratio = this->ratio();
@@ -131,7 +131,7 @@ LookLoop::Trouble EtalonLoop::zoom() {
     if (is_printed_ && !holds && !next)
       return fmt::format("zoom runs away: camera {} is at the end of its zoom", loop_.name(chosen));
     if (!next) return std::nullopt;
-    if (auto trouble = loop_.go(*next, stance)) return trouble;
+    if (auto error = loop_.go(*next, stance)) return error;
     is_new = {is_printed_ || *next == 0, is_printed_ || *next == 1};
   }
 }

@@ -22,10 +22,10 @@ class EtalonLoop {
   virtual ~EtalonLoop() = default;
   EtalonLoop(const EtalonLoop&) = delete;
   EtalonLoop& operator=(const EtalonLoop&) = delete;
-  [[nodiscard]] LookLoop::Trouble run();
+  [[nodiscard]] LookLoop::Error run();
 
  protected:
-  using Trouble = LookLoop::Trouble;
+  using Error = LookLoop::Error;
   /// An offset to be nulled, and the motion that nulls it in the model of the image.
   struct Offset {
     const char* step;
@@ -38,28 +38,28 @@ class EtalonLoop {
   };
 
   /// Takes a picture and measures it.
-  [[nodiscard]] virtual Trouble look(std::size_t i) = 0;
+  [[nodiscard]] virtual Error look(std::size_t i) = 0;
   /// Returns why the last picture could not be measured.
-  [[nodiscard]] virtual Trouble unmeasured(std::size_t /*i*/) const { return std::nullopt; }
+  [[nodiscard]] virtual Error unmeasured(std::size_t /*i*/) const { return std::nullopt; }
   /// Returns the offsets of the last picture: horizontal orientation and positioning, then vertical.
   [[nodiscard]] virtual std::array<Offset, 4> offsets(std::size_t i) const = 0;
   /// Turns the camera first if the picture requires it; sets `is_turned` if it did.
-  [[nodiscard]] virtual Trouble prepare(std::size_t i, std::size_t offset, bool& is_turned) = 0;
+  [[nodiscard]] virtual Error prepare(std::size_t i, std::size_t offset, bool& is_turned) = 0;
   /// Nulls all offsets of a camera.
-  [[nodiscard]] virtual Trouble align(std::size_t i) = 0;
+  [[nodiscard]] virtual Error align(std::size_t i) = 0;
   /// Returns the size of the cylinder in the first camera relative to the second.
   [[nodiscard]] virtual double ratio() const = 0;
   /// Runs what follows the zooms; returns why the result is not acceptable, if so.
-  [[nodiscard]] virtual Trouble finish() = 0;
+  [[nodiscard]] virtual Error finish() = 0;
 
   /// Looks and moves until these offsets hold in one picture, or nothing finer can be commanded.
-  [[nodiscard]] Trouble null(std::size_t i, std::initializer_list<std::size_t> which);
+  [[nodiscard]] Error null(std::size_t i, std::initializer_list<std::size_t> which);
 
   LookLoop& loop_;
 
  private:
-  [[nodiscard]] Trouble step(std::size_t i, const Offset& offset, OffsetSteps& steps, bool& is_moved);
-  [[nodiscard]] Trouble zoom();
+  [[nodiscard]] Error step(std::size_t i, const Offset& offset, OffsetSteps& steps, bool& is_moved);
+  [[nodiscard]] Error zoom();
 
   bool is_printed_;
 };

@@ -35,7 +35,7 @@ void find_centroid(const Image<std::uint8_t>& gray, EtalonView& view) {
 }
 
 // Computes angles around the vertical from the three positions on the row of the principal point.
-void find_bearing(const EtalonSighting& seen, const UprightLine& line, const Lens& lens, double radius,
+void find_bearing(const EtalonObservation& seen, const UprightLine& line, const Lens& lens, double radius,
                   EtalonView& view) {
   const double v = lens.intrinsics().cy;
   const auto at = [&](const UprightLine& side) { return side.at + side.slope * (v - seen.middle_row); };
@@ -60,7 +60,7 @@ void find_bearing(const EtalonSighting& seen, const UprightLine& line, const Len
 }
 
 // Computes vertical angles, from the ends and the taper.
-void find_climb(const EtalonSighting& seen, const Lens& lens, EtalonView& view) {
+void find_climb(const EtalonObservation& seen, const Lens& lens, EtalonView& view) {
   const double v = 0.5 * (*seen.upper_edge + *seen.lower_edge);
   view.height = v - lens.intrinsics().cy;
   const auto ray = lens.unproject({seen.middle(v), v});
@@ -86,7 +86,7 @@ EtalonView view_etalon(const Image<std::uint8_t>& picture, const Intrinsics& int
   EtalonView view;
   const Image<std::uint8_t> gray = picture.channels() == 1 ? picture : gray_picture(picture);
   find_centroid(gray, view);
-  EtalonSighting& seen = view.sighting = find_etalon(picture, gray);
+  EtalonObservation& seen = view.observation = find_etalon(picture, gray);
   if (!seen.reason.empty()) {
     view.reason = seen.reason;
   } else if (seen.touches_border) {

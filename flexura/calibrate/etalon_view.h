@@ -17,7 +17,7 @@ struct EtalonView {
   std::string reason;                       ///< Why nothing below is known, or only `centroid`; "" if all is.
   std::optional<Eigen::Vector2d> centroid;  ///< Centroid of the visible part of the dark figure, px.
   bool is_too_large = false;                ///< Whether it touches opposite borders.
-  EtalonSighting sighting;
+  EtalonObservation observation;
 
   double middle = 0;         ///< Middle of the silhouette, right of the principal point, px.
   double line = 0;           ///< Nearest red line, right of the silhouette's middle, px.

@@ -12,23 +12,23 @@
 
 namespace flexura {
 
-LookLoop::LookLoop(const RigPorts& ports, const RigModel& believed, const LoopConfig& config,
+LookLoop::LookLoop(const RigPorts& ports, const RigModel& nominal, const LoopConfig& config,
                    RigSessionWatcher& watcher)
-    : believed_(believed),
+    : nominal_(nominal),
       config_(config),
       watcher_(watcher),
-      trip_(ports, believed, config.cameras, config.patience, config.move_duration, watcher),
-      cameras_{Camera(believed.cameras.at(config.cameras[0])),
-               Camera(believed.cameras.at(config.cameras[1]))} {}
-
-LookLoop::Trouble LookLoop::begin() {
-  auto trouble = trip_.begin();
-  result_.start = trip_.start();
-  return trouble ? trouble : look_from_one_side(believed_, trip_.start(), "believed");
+      excursion_(ports, nominal, config.cameras, config.patience, config.move_duration, watcher),
+      cameras_{Camera(nominal.cameras.at(config.cameras[0])), Camera(nominal.cameras.at(config.cameras[1]))} {
 }
 
-LookLoop::Trouble LookLoop::look_from_one_side(const RigModel& rig, const std::array<RigStance, 2>& stances,
-                                               const char* how) {
+LookLoop::Error LookLoop::begin() {
+  auto error = excursion_.begin();
+  result_.start = excursion_.start();
+  return error ? error : look_from_one_side(nominal_, excursion_.start(), "believed");
+}
+
+LookLoop::Error LookLoop::look_from_one_side(const RigModel& rig, const std::array<RigStance, 2>& stances,
+                                             const char* how) {
   const double beyond = remainder(rig, stances, Eigen::Vector3d::Zero()).angle;
   constexpr double farthest = std::numbers::pi / 4;
   if (std::abs(beyond) <= farthest) return std::nullopt;
@@ -37,32 +37,32 @@ LookLoop::Trouble LookLoop::look_from_one_side(const RigModel& rig, const std::a
       beyond < 0 ? "one side" : "opposite sides", how, 90 + beyond / degree);
 }
 
-LookLoop::Trouble LookLoop::look(std::size_t i, const Measure& measure) {
+LookLoop::Error LookLoop::look(std::size_t i, const Measure& measure) {
   if (watcher_.is_cancelled()) return "cancelled";
   if (result_.pictures[i] >= config_.images)
     return fmt::format("the limit of {} pictures of camera {} is reached, during {}", config_.images, name(i),
                        result_.steps.empty() ? "the first step" : result_.steps.back().step);
-  auto taken = trip_.picture(i, result_.pictures[i] + 1);
+  auto taken = excursion_.picture(i, result_.pictures[i] + 1);
   if (const auto* why = std::get_if<std::string>(&taken)) return *why;
-  const auto arm = trip_.arm();
+  const auto arm = excursion_.arm();
   if (const auto* why = std::get_if<std::string>(&arm)) return *why;
   ++result_.pictures[i];
-  sight_ = std::get<RigSight>(std::move(taken)), sight_.pose = std::get<ArmState>(arm);
-  measure(sight_);
-  watcher_.seen(sight_);
-  if (!result_.before[i]) result_.before[i] = sight_;
-  result_.after[i] = sight_;
+  observed_ = std::get<CameraObservation>(std::move(taken)), observed_.pose = std::get<ArmState>(arm);
+  measure(observed_);
+  watcher_.seen(observed_);
+  if (!result_.before[i]) result_.before[i] = observed_;
+  result_.after[i] = observed_;
   return std::nullopt;
 }
 
 void LookLoop::plan(std::size_t i, const std::string& plane, const ArmState& arc, const View& ideal,
                     const Image<std::uint8_t>& picture) {
-  watcher_.planned({trip_.now(), config_.cameras[i], plane, arc, ideal, picture});
+  watcher_.planned({excursion_.now(), config_.cameras[i], plane, arc, ideal, picture});
 }
 
 void LookLoop::decide(std::size_t i, const std::string& step, double offset, double accepted,
                       const std::string& unit, const std::string& next) {
-  result_.steps.push_back({.time = trip_.now(),
+  result_.steps.push_back({.time = excursion_.now(),
                            .looks = result_.pictures[0] + result_.pictures[1],
                            .camera = config_.cameras[i],
                            .step = step,
@@ -73,12 +73,12 @@ void LookLoop::decide(std::size_t i, const std::string& step, double offset, dou
   watcher_.decided(result_.steps.back());
 }
 
-LookLoop::Trouble LookLoop::go(std::size_t i, const RigStance& stance) {
-  if (auto trouble = trip_.send(i, stance)) return trouble;
-  return trip_.settle();
+LookLoop::Error LookLoop::go(std::size_t i, const RigStance& stance) {
+  if (auto error = excursion_.send(i, stance)) return error;
+  return excursion_.settle();
 }
 
-LookLoop::Trouble LookLoop::begin_zoomed(std::size_t i, double zoom, const char* step, const char* why) {
+LookLoop::Error LookLoop::begin_zoomed(std::size_t i, double zoom, const char* step, const char* why) {
   RigStance next = stance(i);
   next.head.zoom = zoom;
   next = commandable_stance(i, next);
@@ -87,10 +87,10 @@ LookLoop::Trouble LookLoop::begin_zoomed(std::size_t i, double zoom, const char*
   return go(i, next);
 }
 
-LookLoop::Trouble LookLoop::turn_towards(std::size_t i, const char* what,
-                                         const std::optional<Eigen::Vector2d>& seen, double near,
-                                         const Intrinsics& lens, const char* in_vain,
-                                         const std::string& reason) {
+LookLoop::Error LookLoop::turn_towards(std::size_t i, const char* what,
+                                       const std::optional<Eigen::Vector2d>& seen, double near,
+                                       const Intrinsics& lens, const char* in_vain,
+                                       const std::string& reason) {
   if (!seen) return fmt::format("the {} is out of view of camera {}: {}", what, name(i), reason);
   const Eigen::Vector2d off = *seen - Eigen::Vector2d(lens.cx, lens.cy);
   RigStance next = stance(i);
@@ -101,7 +101,7 @@ LookLoop::Trouble LookLoop::turn_towards(std::size_t i, const char* what,
   return go(i, next);
 }
 
-LookLoop::Trouble LookLoop::go_longer(std::size_t i, const RigStance& stance) {
+LookLoop::Error LookLoop::go_longer(std::size_t i, const RigStance& stance) {
   decide(i, "principal point", 0, 0, "px",
          fmt::format("zoom to {:.5g}, for what stays where it is", stance.head.zoom));
   return go(i, stance);
@@ -122,10 +122,10 @@ bool LookLoop::stands_there(std::size_t i, const RigStance& stance) const {
          (stance.stage.offset - is.stage.offset).norm() < rounding;
 }
 
-LoopResult LookLoop::finish(const Trouble& trouble) {
-  result_.is_done = !trouble;
-  if (trouble) result_.reason = *trouble + trip_.retreat();
-  result_.stances = trouble ? result_.start : trip_.stances();
+LoopResult LookLoop::finish(const Error& error) {
+  result_.is_done = !error;
+  if (error) result_.reason = *error + excursion_.retreat();
+  result_.stances = error ? result_.start : excursion_.stances();
   return std::move(result_);
 }
 

@@ -9,7 +9,7 @@
 
 #include "flexura/calibrate/loop_session.h"
 #include "flexura/calibrate/rig_aim.h"
-#include "flexura/calibrate/rig_trip.h"
+#include "flexura/calibrate/rig_excursion.h"
 #include "flexura/camera/camera.h"
 
 namespace flexura {
@@ -18,25 +18,25 @@ namespace flexura {
 /// the way back after an error. Cameras have the numbers 0 and 1 here, as in LoopConfig::cameras.
 class LookLoop {
  public:
-  using Trouble = RigHands::Trouble;
+  using Error = RigCommander::Error;
   /// Fills in the observation of a picture.
-  using Measure = std::function<void(RigSight&)>;
+  using Measure = std::function<void(CameraObservation&)>;
 
   /// Throws std::invalid_argument if the ports are for other cameras than the model's.
-  LookLoop(const RigPorts& ports, const RigModel& believed, const LoopConfig& config,
+  LookLoop(const RigPorts& ports, const RigModel& nominal, const LoopConfig& config,
            RigSessionWatcher& watcher);
   LookLoop(const LookLoop&) = delete;
   LookLoop& operator=(const LookLoop&) = delete;
 
   /// Waits for rest and stores all positions. Returns an error if the modelled cameras look from about one
   /// side.
-  Trouble begin();
+  Error begin();
   /// Returns an error if the optical axes of cameras in these positions are more than 45 degrees from a right
   /// angle. `how` states how the angle is known.
-  [[nodiscard]] static Trouble look_from_one_side(const RigModel& rig,
-                                                  const std::array<RigStance, 2>& stances, const char* how);
+  [[nodiscard]] static Error look_from_one_side(const RigModel& rig, const std::array<RigStance, 2>& stances,
+                                                const char* how);
   /// Takes a new picture after the last motion; an error if the limit of pictures is reached.
-  Trouble look(std::size_t i, const Measure& measure);
+  Error look(std::size_t i, const Measure& measure);
   /// Reports the simulator's plan for a camera's arc.
   void plan(std::size_t i, const std::string& plane, const ArmState& arc, const View& ideal,
             const Image<std::uint8_t>& picture);
@@ -44,21 +44,21 @@ class LookLoop {
   void decide(std::size_t i, const std::string& step, double offset, double accepted, const std::string& unit,
               const std::string& next);
   /// Moves a camera, or the arm via its initial shape, and waits.
-  Trouble go(std::size_t i, const RigStance& stance);
-  Trouble show(const ArmState& pose) { return trip_.show(pose); }
+  Error go(std::size_t i, const RigStance& stance);
+  Error show(const ArmState& pose) { return excursion_.show(pose); }
   /// Moves a camera's zoom to its position before the loop begins, unless it is there. `why`: format string
   /// of the reason, with the zoom.
-  Trouble begin_zoomed(std::size_t i, double zoom, const char* step, const char* why);
+  Error begin_zoomed(std::size_t i, double zoom, const char* step, const char* why);
   /// Turns a camera towards a visible part (`seen`) of its target (`what`) if the picture could not be
   /// measured for a `reason`. Returns an error if nothing is visible, if it is less than `near` px from the
   /// middle, or if the camera cannot turn. `in_vain`: format string of that error, with the camera's name and
   /// the reason.
-  Trouble turn_towards(std::size_t i, const char* what, const std::optional<Eigen::Vector2d>& seen,
-                       double near, const Intrinsics& lens, const char* in_vain, const std::string& reason);
+  Error turn_towards(std::size_t i, const char* what, const std::optional<Eigen::Vector2d>& seen, double near,
+                     const Intrinsics& lens, const char* in_vain, const std::string& reason);
   /// Smallest zoom factor that determines a principal point; noise counts eight times there.
   static constexpr double least_longer = 1.2;
   /// Moves a camera to the position with the longer focal length.
-  Trouble go_longer(std::size_t i, const RigStance& stance);
+  Error go_longer(std::size_t i, const RigStance& stance);
   /// Return the nearest stance that can be commanded, and whether it is the one commanded last.
   [[nodiscard]] RigStance commandable_stance(std::size_t i, const RigStance& stance) const {
     return commanded(cameras_[i], stance);
@@ -67,30 +67,30 @@ class LookLoop {
   /// Returns that stance with the focal length multiplied by `ratio`.
   [[nodiscard]] RigStance zoomed(std::size_t i, double ratio) const;
   /// Returns the result with the final positions; after an error everything returns to the start first.
-  LoopResult finish(const Trouble& trouble);
+  LoopResult finish(const Error& error);
 
   [[nodiscard]] const LoopConfig& config() const { return config_; }
-  [[nodiscard]] const RigModel& believed() const { return believed_; }
+  [[nodiscard]] const RigModel& nominal() const { return nominal_; }
   [[nodiscard]] const Camera& camera(std::size_t i) const { return cameras_[i]; }
   [[nodiscard]] const CameraConfig& model(std::size_t i) const {
-    return believed_.cameras[config_.cameras[i]];
+    return nominal_.cameras[config_.cameras[i]];
   }
   [[nodiscard]] const std::string& name(std::size_t i) const { return model(i).name; }
   /// As commanded.
-  [[nodiscard]] const RigStance& stance(std::size_t i) const { return trip_.stances()[i]; }
+  [[nodiscard]] const RigStance& stance(std::size_t i) const { return excursion_.stances()[i]; }
   /// The modelled lens at the present zoom.
   [[nodiscard]] Intrinsics lens(std::size_t i) const { return cameras_[i].lens().at(stance(i).head.zoom); }
   [[nodiscard]] LoopResult& result() { return result_; }
-  [[nodiscard]] const RigSight& sight() const { return sight_; }
+  [[nodiscard]] const CameraObservation& observed() const { return observed_; }
 
  private:
-  const RigModel& believed_;
+  const RigModel& nominal_;
   const LoopConfig& config_;
   RigSessionWatcher& watcher_;
-  RigTrip trip_;
+  RigExcursion excursion_;
   std::array<Camera, 2> cameras_;
   LoopResult result_;
-  RigSight sight_;
+  CameraObservation observed_;
 };
 
 /// Returns the pair of positions of least cost, each head at its position or one step beside it.

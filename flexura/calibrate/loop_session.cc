@@ -6,10 +6,10 @@
 
 namespace flexura {
 
-LoopResult calibrate_by_loop(const RigPorts& ports, const RigModel& believed, const LoopConfig& config,
+LoopResult calibrate_by_loop(const RigPorts& ports, const RigModel& nominal, const LoopConfig& config,
                              RigSessionWatcher& watcher) {
-  LookLoop loop(ports, believed, config, watcher);
-  const auto run = [&]() -> LookLoop::Trouble {
+  LookLoop loop(ports, nominal, config, watcher);
+  const auto run = [&]() -> LookLoop::Error {
     switch (config.method) {
       case LoopMethod::etalon:
         return etalon_corrected(loop)->run();

@@ -63,16 +63,17 @@ struct LoopResult {
   std::optional<double> angle;       ///< Observed angle between the axes minus 90 degrees, rad.
   std::optional<double> zoom_ratio;  ///< Observed size in the first camera relative to the second.
   std::vector<std::string> notes;    ///< Further messages.
-  std::array<std::optional<RigSight>, 2> before, after;  ///< The first and the last picture of each camera.
+  std::array<std::optional<CameraObservation>, 2> before,
+      after;  ///< The first and the last picture of each camera.
 };
 
 /// Calibrates two cameras by a loop of looking, measuring, deciding and moving (docs/calibration-paper.md),
-/// through the ports alone. `believed` gives ranges and resolutions of heads, stages and lenses, and focal
+/// through the ports alone. `nominal` gives ranges and resolutions of heads, stages and lenses, and focal
 /// lengths. Any error ends the loop, also one that never ends or diverges. Heads, stages and arm then return
 /// to the start, and the result holds the reason. Equal rigs, readings and pictures give equal results.
 /// Throws std::invalid_argument if the ports are for other cameras than the model's, or if both cameras are
 /// the same.
-[[nodiscard]] LoopResult calibrate_by_loop(const RigPorts& ports, const RigModel& believed,
+[[nodiscard]] LoopResult calibrate_by_loop(const RigPorts& ports, const RigModel& nominal,
                                            const LoopConfig& config, RigSessionWatcher& watcher);
 
 }  // namespace flexura

@@ -27,11 +27,11 @@ struct Trial {
 class Matcher {
  public:
   Matcher(std::vector<MarkerFeature> expected, std::vector<MarkerFeature> seen,
-          const std::array<int, 2>& size, const MatchDoubt& doubt)
+          const std::array<int, 2>& size, const MatchPrior& match_prior)
       : expected_(std::move(expected)),
         seen_(std::move(seen)),
         size_(size),
-        doubt_(doubt),
+        match_prior_(match_prior),
         tolerance_(tolerances(expected_)),
         moved_(expected_) {
     for (const MarkerFeature& one : expected_) middle_ += one.at / static_cast<double>(expected_.size());
@@ -40,7 +40,7 @@ class Matcher {
   Trial best() {
     Trial best;
     // The unmoved expected picture.
-    if (!expected_.empty() && std::isfinite(doubt_.shift)) try_map({}, best);
+    if (!expected_.empty() && std::isfinite(match_prior_.shift)) try_map({}, best);
     for_likely_moves(expected_, seen_, [&](const Point& turn, const Point& from, const Point& to) {
       try_map({turn, to - turn * from}, best);
     });
@@ -60,21 +60,22 @@ class Matcher {
       best = std::move(trial);
   }
   // Negative log-likelihood of this motion of the picture, doubled: a sum of squares in standard deviations.
-  [[nodiscard]] double surprise(const Similarity& map) const {
-    const double shift = std::abs(map(middle_) - middle_) / doubt_.shift,
-                 turn = std::arg(map.turn) / doubt_.turn, scale = std::log(std::abs(map.turn)) / doubt_.scale;
+  [[nodiscard]] double prior_cost(const Similarity& map) const {
+    const double shift = std::abs(map(middle_) - middle_) / match_prior_.shift,
+                 turn = std::arg(map.turn) / match_prior_.turn,
+                 scale = std::log(std::abs(map.turn)) / match_prior_.scale;
     return shift * shift + turn * turn + scale * scale;
   }
   [[nodiscard]] bool is_plausible(const Similarity& map) const {
     constexpr double quarter_pi = 0.785398163397448, unlikely = 16;
     return std::abs(map.turn) > 0.5 && std::abs(map.turn) < 2 && std::abs(std::arg(map.turn)) < quarter_pi &&
-           surprise(map) < unlikely;
+           prior_cost(map) < unlikely;
   }
 
   [[nodiscard]] Trial tried(const Similarity& map) {
     for (std::size_t a = 0; a < expected_.size(); ++a) moved_[a].at = map(expected_[a].at);
     Trial trial{nearest_pairs(moved_, tolerance_, std::abs(map.turn), seen_, size_), 0};
-    trial.score = trial.found.score - 0.5 * surprise(map);
+    trial.score = trial.found.score - 0.5 * prior_cost(map);
     return trial;
   }
 
@@ -98,7 +99,7 @@ class Matcher {
 
   std::vector<MarkerFeature> expected_, seen_;
   std::array<int, 2> size_;
-  MatchDoubt doubt_;
+  MatchPrior match_prior_;
   std::vector<double> tolerance_;
   std::vector<MarkerFeature> moved_;
   Point middle_{0, 0};
@@ -107,11 +108,11 @@ class Matcher {
 }  // namespace
 
 MarkerMatch match_markers(const MarkerScene& expected, const MarkerScene& seen,
-                          const std::array<int, 2>& size, const MatchDoubt& doubt) {
+                          const std::array<int, 2>& size, const MatchPrior& match_prior) {
   const MarkerPalette palette(expected, seen);
   const std::vector<MarkerFeature> expected_features = features_of(expected, palette),
                                    seen_features = features_of(seen, palette);
-  const Trial best = Matcher(expected_features, seen_features, size, doubt).best();
+  const Trial best = Matcher(expected_features, seen_features, size, match_prior).best();
   MarkerMatch match;
   match.markers.resize(seen.markers.size());
   std::vector<std::pair<std::size_t, std::size_t>> order;  // Indices along the picture and along the arm.

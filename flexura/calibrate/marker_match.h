@@ -35,7 +35,7 @@ struct MarkerMatch {
 };
 
 /// Prior standard deviations of the motion of a whole picture relative to the expected one.
-struct MatchDoubt {
+struct MatchPrior {
   double shift = std::numeric_limits<double>::infinity();  ///< Shift, px.
   double turn = std::numeric_limits<double>::infinity();   ///< Rotation, rad.
   double scale = std::numeric_limits<double>::infinity();  ///< Logarithm of the scale.
@@ -45,10 +45,10 @@ struct MatchDoubt {
 /// scaled (by half to twice) until most seen features coincide with one of their kind. Ends and markers are
 /// of different kinds, and so are markers of different colours. A seen feature that is not expected counts
 /// against a match. An expected one inside an image of `size` px that is not seen counts by half. Motions
-/// count by half the square of their size in standard deviations of `doubt`. This prevents matching a chain
-/// of equal markers shifted by one. Of equal matches the one with the smaller distances wins, then the one
-/// found first.
+/// count by half the square of their size in standard deviations of `match_prior`. This prevents matching a
+/// chain of equal markers shifted by one. Of equal matches the one with the smaller distances wins, then the
+/// one found first.
 [[nodiscard]] MarkerMatch match_markers(const MarkerScene& expected, const MarkerScene& seen,
-                                        const std::array<int, 2>& size, const MatchDoubt& doubt = {});
+                                        const std::array<int, 2>& size, const MatchPrior& match_prior = {});
 
 }  // namespace flexura

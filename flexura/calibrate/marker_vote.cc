@@ -18,9 +18,9 @@ using Point = std::complex<double>;
 Point point(const Eigen::Vector2d& pixel) { return {pixel.x(), pixel.y()}; }
 
 // Points in W as seen by a camera with pose and lens errors.
-class WrongSight {
+class MisalignedView {
  public:
-  WrongSight(const View& view, const SightError& error)
+  MisalignedView(const View& view, const PointingError& error)
       : view_(view), turn_(so3_exp(error.turn)), scale_(std::exp(error.scale)) {}
   [[nodiscard]] std::optional<Eigen::Vector2d> operator()(const Eigen::Vector3d& p_W) const {
     const Eigen::Vector3d& eye = view_.X_WC.position;
@@ -41,7 +41,7 @@ class WrongSight {
 constexpr double pair_sigma = 20;
 
 struct Candidate {
-  SightError error;
+  PointingError error;
   double score = 0;
   std::vector<std::vector<MarkerPairs::Pair>> pairs;  // By picture.
 
@@ -65,8 +65,8 @@ struct Candidate {
 
 class Vote {
  public:
-  Vote(std::span<const MarkerPicture> pictures, const SightDoubt& doubt)
-      : pictures_(pictures), doubt_(doubt) {
+  Vote(std::span<const MarkerPicture> pictures, const PointingPrior& pointing_prior)
+      : pictures_(pictures), pointing_prior_(pointing_prior) {
     for (const MarkerPicture& picture : pictures) {
       const MarkerScene expected = expected_scene(picture, {});
       const MarkerPalette palette(expected, picture.seen);
@@ -79,12 +79,12 @@ class Vote {
     }
   }
 
-  std::vector<SightError> best(std::size_t most) {
+  std::vector<PointingError> best(std::size_t most) {
     keep(tried({}, 0, sides_.size()), most_kept, best_);
     for (std::size_t k = 0; k < sides_.size(); ++k) hypothesise(k);
     for (Candidate& one : best_) one = refined(std::move(one));
     std::ranges::stable_sort(best_, [](const auto& a, const auto& b) { return a.is_better_than(b); });
-    std::vector<SightError> result;
+    std::vector<PointingError> result;
     std::vector<const Candidate*> kept;
     for (const Candidate& one : best_) {
       if (result.size() == most) break;
@@ -117,8 +117,8 @@ class Vote {
     for (const Candidate& one : likely) keep(tried(one.error, 0, sides_.size()), most_kept, best_);
   }
   // Returns the error that rotates and scales a picture like this and maps one point in it to another.
-  [[nodiscard]] std::optional<SightError> error_of(const View& view, const Point& turn, const Point& from,
-                                                   const Point& to) const {
+  [[nodiscard]] std::optional<PointingError> error_of(const View& view, const Point& turn, const Point& from,
+                                                      const Point& to) const {
     const double scale = std::log(std::abs(turn)), roll = std::arg(turn);
     const Intrinsics& lens = view.lens.intrinsics();
     const Point middle(lens.cx, lens.cy), back = middle + (to - middle) / std::abs(turn);
@@ -128,9 +128,9 @@ class Vote {
     };
     const Eigen::Vector3d rolled = so3_exp(Eigen::Vector3d(0, 0, roll)) * ray(from), aimed = ray(back);
     const Eigen::Matrix3d R = so3_exp(between(rolled, aimed)) * so3_exp(Eigen::Vector3d(0, 0, roll));
-    SightError error{view.X_WC.rotation * so3_log(R), scale};
+    PointingError error{view.X_WC.rotation * so3_log(R), scale};
     constexpr double unlikely = 16;
-    if (!error.turn.allFinite() || surprise(view, error) > unlikely) return std::nullopt;
+    if (!error.turn.allFinite() || prior_cost(view, error) > unlikely) return std::nullopt;
     return error;
   }
   // Rotation vector from one direction to another.
@@ -140,25 +140,26 @@ class Vote {
     return sine > 0 ? Eigen::Vector3d(axis * (std::atan2(sine, from.dot(to)) / sine)) : axis;
   }
   // Sum of squares, in standard deviations.
-  [[nodiscard]] double surprise(const View& view, const SightError& error) const {
+  [[nodiscard]] double prior_cost(const View& view, const PointingError& error) const {
     const double roll = error.turn.dot(view.X_WC.rotation.col(2));
     const double sideways = (error.turn - roll * view.X_WC.rotation.col(2)).squaredNorm();
-    return sideways / (doubt_.sideways * doubt_.sideways) + roll * roll / (doubt_.roll * doubt_.roll) +
-           error.scale * error.scale / (doubt_.scale * doubt_.scale);
+    return sideways / (pointing_prior_.sideways * pointing_prior_.sideways) +
+           roll * roll / (pointing_prior_.roll * pointing_prior_.roll) +
+           error.scale * error.scale / (pointing_prior_.scale * pointing_prior_.scale);
   }
 
   // Evaluates an error on the pictures [from, to).
-  [[nodiscard]] Candidate tried(const SightError& error, std::size_t from, std::size_t to) {
+  [[nodiscard]] Candidate tried(const PointingError& error, std::size_t from, std::size_t to) {
     Candidate result;
     result.error = error;
-    result.score = -0.5 * surprise(pictures_.front().view, error);
+    result.score = -0.5 * prior_cost(pictures_.front().view, error);
     for (std::size_t k = from; k < to; ++k) {
       Side& side = sides_[k];
-      const WrongSight sight(pictures_[k].view, error);
+      const MisalignedView misaligned(pictures_[k].view, error);
       side.moved = side.expected;
       for (std::size_t a = 0; a < side.moved.size(); ++a) {
         constexpr double nowhere = 1e6;
-        const auto pixel = sight(side.places[a]);
+        const auto pixel = misaligned(side.places[a]);
         side.moved[a].at = pixel ? point(*pixel) : Point(-nowhere, -nowhere);
       }
       MarkerPairs found = nearest_pairs(side.moved, side.tolerance, std::exp(error.scale), side.seen,
@@ -195,22 +196,22 @@ class Vote {
     }
     return candidate;
   }
-  [[nodiscard]] SightError step_from(const Candidate& candidate) const {
+  [[nodiscard]] PointingError step_from(const Candidate& candidate) const {
     constexpr double h = 1e-6;  // rad
     const View& first = pictures_.front().view;
     const Eigen::Vector3d axis = first.X_WC.rotation.col(2);
     Eigen::Matrix4d normal = Eigen::Matrix4d::Zero();
-    normal.topLeftCorner<3, 3>() =
-        (Eigen::Matrix3d::Identity() - axis * axis.transpose()) / (doubt_.sideways * doubt_.sideways) +
-        axis * axis.transpose() / (doubt_.roll * doubt_.roll);
-    normal(3, 3) = 1 / (doubt_.scale * doubt_.scale);
+    normal.topLeftCorner<3, 3>() = (Eigen::Matrix3d::Identity() - axis * axis.transpose()) /
+                                       (pointing_prior_.sideways * pointing_prior_.sideways) +
+                                   axis * axis.transpose() / (pointing_prior_.roll * pointing_prior_.roll);
+    normal(3, 3) = 1 / (pointing_prior_.scale * pointing_prior_.scale);
     Eigen::Vector4d x;
     x << candidate.error.turn, candidate.error.scale;
     Eigen::Vector4d gradient = normal * x;
     for (std::size_t k = 0; k < sides_.size(); ++k) {
       for (const auto& [i, a] : candidate.pairs[k]) {
         const auto pixel_at = [&](const Eigen::Vector4d& at) {
-          return WrongSight(pictures_[k].view, {at.head<3>(), at[3]})(sides_[k].places[a]);
+          return MisalignedView(pictures_[k].view, {at.head<3>(), at[3]})(sides_[k].places[a]);
         };
         const auto here = pixel_at(x);
         if (!here) continue;
@@ -237,28 +238,28 @@ class Vote {
   static constexpr std::size_t most_kept = 12;
 
   std::span<const MarkerPicture> pictures_;
-  SightDoubt doubt_;
+  PointingPrior pointing_prior_;
   std::vector<Side> sides_;
   std::vector<Candidate> best_;
 };
 
 }  // namespace
 
-MarkerScene expected_scene(const MarkerPicture& picture, const SightError& error) {
-  const WrongSight sight(picture.view, error);
+MarkerScene expected_scene(const MarkerPicture& picture, const PointingError& error) {
+  const MisalignedView misaligned(picture.view, error);
   MarkerScene scene;
   for (const MarkerPicture::Place& marker : picture.markers) {
     auto& place = scene.markers.emplace_back();
-    if (const auto pixel = sight(marker.p_W)) place = MarkerScene::Place{*pixel, marker.color};
+    if (const auto pixel = misaligned(marker.p_W)) place = MarkerScene::Place{*pixel, marker.color};
   }
-  for (const std::size_t i : {std::size_t{0}, std::size_t{1}}) scene.ends[i] = sight(picture.ends[i]);
+  for (const std::size_t i : {std::size_t{0}, std::size_t{1}}) scene.ends[i] = misaligned(picture.ends[i]);
   return scene;
 }
 
-std::vector<SightError> likely_errors(std::span<const MarkerPicture> pictures, const SightDoubt& doubt,
-                                      std::size_t most) {
+std::vector<PointingError> likely_errors(std::span<const MarkerPicture> pictures,
+                                         const PointingPrior& pointing_prior, std::size_t most) {
   if (pictures.empty()) return {};
-  return Vote(pictures, doubt).best(most);
+  return Vote(pictures, pointing_prior).best(most);
 }
 
 }  // namespace flexura

@@ -27,26 +27,26 @@ struct MarkerPicture {
 /// Error of a camera's orientation and focal length, equal in all its pictures. The arm appears rotated about
 /// the camera by `turn` (a rotation vector in W, rad) and larger by exp(`scale`). A position error looks
 /// almost like such an error when the arm is far away.
-struct SightError {
+struct PointingError {
   Eigen::Vector3d turn = {0, 0, 0};
   double scale = 0;
 };
 
-/// Prior standard deviations of a SightError.
-struct SightDoubt {
+/// Prior standard deviations of a PointingError.
+struct PointingPrior {
   double sideways = 0.25;  ///< Rotations that shift a picture, rad.
   double roll = 0.17;      ///< Rotations about the line of sight, rad.
   double scale = 0.22;
 };
 
 /// Returns what a picture of a camera with this error should show.
-[[nodiscard]] MarkerScene expected_scene(const MarkerPicture& picture, const SightError& error);
+[[nodiscard]] MarkerScene expected_scene(const MarkerPicture& picture, const PointingError& error);
 
 /// Returns the errors of one camera that explain most of all its pictures together, best first, at most
 /// `most`. Errors with the same marker identities count once. In a single picture, a chain of markers that
 /// leaves the picture could be matched shifted along the arm. Other bends would need another shift. Empty
-/// without pictures; no error if nothing is seen. All values of `doubt` must be positive.
-[[nodiscard]] std::vector<SightError> likely_errors(std::span<const MarkerPicture> pictures,
-                                                    const SightDoubt& doubt, std::size_t most);
+/// without pictures; no error if nothing is seen. All values of `pointing_prior` must be positive.
+[[nodiscard]] std::vector<PointingError> likely_errors(std::span<const MarkerPicture> pictures,
+                                                       const PointingPrior& pointing_prior, std::size_t most);
 
 }  // namespace flexura

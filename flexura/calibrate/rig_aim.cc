@@ -24,16 +24,16 @@ double focal_of(const Camera& camera, double zoom) {
   return std::sqrt(lens.fx * lens.fy);
 }
 
-// Returns the lens position at which a size that grows with the focal length equals `wanted`, or is nearest
+// Returns the lens position at which a size that grows with the focal length equals `desired`, or is nearest
 // to it.
 template <class Size>
-double zoom_where(const Camera& camera, double wanted, int halvings, const Size& size) {
+double zoom_where(const Camera& camera, double desired, int halvings, const Size& size) {
   auto [low, high] = zoom_ends(camera);
-  if (!(wanted > size(low))) return low;
-  if (!(wanted < size(high))) return high;
+  if (!(desired > size(low))) return low;
+  if (!(desired < size(high))) return high;
   for (int i = 0; i < halvings; ++i) {
     const double middle = 0.5 * (low + high);
-    (size(middle) < wanted ? low : high) = middle;
+    (size(middle) < desired ? low : high) = middle;
   }
   return 0.5 * (low + high);
 }
@@ -45,37 +45,37 @@ double zoom_of(const Camera& camera, double focal) {
 // Moves two cameras towards the wanted configuration.
 class Seeker {
  public:
-  Seeker(const RigModel& model, const RigWish& wish)
-      : wish_(wish),
-        stances_(wish.now),
-        models_{&model.cameras.at(wish.now[0].camera), &model.cameras.at(wish.now[1].camera)},
+  Seeker(const RigModel& model, const RigGoal& rig_goal)
+      : goal_(rig_goal),
+        stances_(rig_goal.now),
+        models_{&model.cameras.at(rig_goal.now[0].camera), &model.cameras.at(rig_goal.now[1].camera)},
         cameras_{Camera(*models_[0]), Camera(*models_[1])} {
-    if (wish.now[0].camera == wish.now[1].camera)
+    if (rig_goal.now[0].camera == rig_goal.now[1].camera)
       throw std::invalid_argument("a wanted configuration of one camera with itself");
   }
 
-  WantedRig seek(const RigModel& model) {
+  DesiredRig seek(const RigModel& model) {
     for (const std::size_t i : {std::size_t{0}, std::size_t{1}})
       start_[i] = focal_of(cameras_[i], stances_[i].head.zoom) / depth(i);
     constexpr int rounds = 5;  // The pupils shift a little with the zooms.
     for (int round = 0; round < rounds; ++round) {
       zoom();
-      if (wish_.may_use_stages) slide();
+      if (goal_.may_use_stages) slide();
     }
     for (const std::size_t i : {std::size_t{0}, std::size_t{1}}) settle(i);
     turn();
-    WantedRig result;
+    DesiredRig result;
     draw_to_steps(model);
     note(result);
     result.stances = stances_;
-    result.remainder = remainder(model, stances_, wish_.target);
+    result.remainder = remainder(model, stances_, goal_.target);
     return result;
   }
 
  private:
-  void aim(std::size_t i) { stances_[i].head = aimed(*models_[i], stances_[i], wish_.target); }
+  void aim(std::size_t i) { stances_[i].head = aimed(*models_[i], stances_[i], goal_.target); }
   [[nodiscard]] Eigen::Vector3d sight(std::size_t i) const {
-    return wish_.target - cameras_[i].pose(stances_[i].stance()).position;
+    return goal_.target - cameras_[i].pose(stances_[i].stance()).position;
   }
   [[nodiscard]] double depth(std::size_t i) const { return sight(i).norm(); }
 
@@ -88,8 +88,8 @@ class Seeker {
           focal_of(cameras_[i], zoom_of(cameras_[i], std::numeric_limits<double>::infinity())) / depth(i);
       least = std::max(least, a), most = std::min(most, b);
     }
-    const double wanted = std::sqrt(start_[0] * start_[1]);
-    magnification_ = std::min(std::max(wanted, least), most);
+    const double desired = std::sqrt(start_[0] * start_[1]);
+    magnification_ = std::min(std::max(desired, least), most);
     is_zoom_short_ = least > most;
     for (const std::size_t i : {std::size_t{0}, std::size_t{1}})
       stances_[i].head.zoom = zoom_of(cameras_[i], magnification_ * depth(i));
@@ -159,18 +159,18 @@ class Seeker {
   // Chooses, of the positions around the wanted one, those with the most nearly orthogonal axes; among these,
   // those that aim best at the target.
   void draw_to_steps(const RigModel& model) {
-    wanted_ = stances_;
+    desired_ = stances_;
     constexpr unsigned ways = 16;
     constexpr double axes_first = 1e4;
     double least = std::numeric_limits<double>::infinity();
     for (unsigned way = 0; way < ways; ++way) {
-      std::array<RigStance, 2> tried = wanted_;
+      std::array<RigStance, 2> tried = desired_;
       for (const std::size_t i : {std::size_t{0}, std::size_t{1}}) {
         const unsigned bits = way >> (2 * i);
-        tried[i].head.pan = neighbour(cameras_[i].head_axes()[0], wanted_[i].head.pan, (bits & 1) != 0);
-        tried[i].head.tilt = neighbour(cameras_[i].head_axes()[1], wanted_[i].head.tilt, (bits & 2) != 0);
+        tried[i].head.pan = neighbour(cameras_[i].head_axes()[0], desired_[i].head.pan, (bits & 1) != 0);
+        tried[i].head.tilt = neighbour(cameras_[i].head_axes()[1], desired_[i].head.tilt, (bits & 2) != 0);
       }
-      const RigRemainder left = remainder(model, tried, wish_.target);
+      const RigRemainder left = remainder(model, tried, goal_.target);
       double cost = axes_first * left.angle * left.angle;
       for (const std::size_t i : {std::size_t{0}, std::size_t{1}})
         cost += left.aim[i].squaredNorm() / (depth(i) * depth(i));
@@ -183,10 +183,10 @@ class Seeker {
     return commandable(axis, axis.resolution * (is_above ? std::ceil(step) : std::floor(step)));
   }
 
-  void note(WantedRig& result) const {
+  void note(DesiredRig& result) const {
     for (const std::size_t i : {std::size_t{0}, std::size_t{1}}) {
       const std::array<double, 2> is = {stances_[i].head.pan, stances_[i].head.tilt},
-                                  should = {wanted_[i].head.pan, wanted_[i].head.tilt};
+                                  should = {desired_[i].head.pan, desired_[i].head.tilt};
       constexpr std::array<const char*, 2> names = {"pan", "tilt"};
       for (std::size_t j = 0; j < 2; ++j) {
         const AxisConfig& axis = cameras_[i].head_axes()[j];
@@ -205,8 +205,8 @@ class Seeker {
           std::abs(std::asin(std::clamp(cosine, -1.0, 1.0)))));
   }
 
-  const RigWish& wish_;
-  std::array<RigStance, 2> stances_, wanted_;
+  const RigGoal& goal_;
+  std::array<RigStance, 2> stances_, desired_;
   std::array<const CameraConfig*, 2> models_;
   std::array<Camera, 2> cameras_;
   std::array<double, 2> start_ = {0, 0};
@@ -292,6 +292,8 @@ RigRemainder remainder(const RigModel& model, const std::array<RigStance, 2>& st
   return left;
 }
 
-WantedRig wanted_rig(const RigModel& model, const RigWish& wish) { return Seeker(model, wish).seek(model); }
+DesiredRig desired_rig(const RigModel& model, const RigGoal& rig_goal) {
+  return Seeker(model, rig_goal).seek(model);
+}
 
 }  // namespace flexura

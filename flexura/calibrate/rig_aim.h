@@ -41,7 +41,7 @@ namespace flexura {
 [[nodiscard]] double zoom_by(const Camera& camera, double from, double ratio);
 
 /// The configuration that section 3.4 of the paper asks for.
-struct RigWish {
+struct RigGoal {
   Eigen::Vector3d target = Eigen::Vector3d::Zero();  ///< Target of both cameras, in W, m.
   std::array<RigStance, 2> now;                      ///< Start positions of two cameras.
   bool may_use_stages = true;                        ///< Otherwise the stages stay in place.
@@ -57,7 +57,7 @@ struct RigRemainder {
 };
 
 /// Commands for the wanted configuration, and the deviation that ranges and resolutions leave.
-struct WantedRig {
+struct DesiredRig {
   std::array<RigStance, 2> stances;  ///< Positions to command, clamped and quantised.
   RigRemainder remainder;            ///< Deviation at these positions.
   std::vector<std::string> notes;    ///< What limits the result: "front: pan ends at ...".
@@ -70,7 +70,7 @@ struct WantedRig {
 /// the positions around, those with the most nearly orthogonal axes are taken. Throws std::invalid_argument
 /// for two stances of one camera. Throws std::out_of_range for a camera that the model lacks, or a zoom
 /// beyond the ends of its table.
-[[nodiscard]] WantedRig wanted_rig(const RigModel& model, const RigWish& wish);
+[[nodiscard]] DesiredRig desired_rig(const RigModel& model, const RigGoal& rig_goal);
 
 /// Returns the deviation for cameras in these positions, `target` in W, m. Throws std::out_of_range for a
 /// camera that the model lacks, or a zoom beyond the ends of its table.

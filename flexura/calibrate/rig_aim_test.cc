@@ -25,7 +25,7 @@ constexpr double step = 0.075 * degree;
 
 // A rig as calibrations find it, with errors everywhere.
 RigModel found_rig(TestRandom& random) {
-  RigModel model = true_rig(believed_rig(), {}, random);
+  RigModel model = true_rig(nominal_rig(), {}, random);
   for (CameraConfig& camera : model.cameras) {
     camera.head.pan.zero = random.uniform(-0.02, 0.02), camera.head.tilt.zero = random.uniform(-0.02, 0.02);
     for (double& offset : camera.head.pupil) offset = random.uniform(-0.05, 0.05);
@@ -35,12 +35,12 @@ RigModel found_rig(TestRandom& random) {
   return model;
 }
 
-RigWish wish_for(TestRandom& random) {
-  RigWish wish;
-  wish.target = {0, 0.5, 0};
-  wish.now = {RigStance{0, {0, 0, random.uniform(1, 2.5)}, {}},
-              RigStance{1, {0, 0, random.uniform(1, 2.5)}, {}}};
-  return wish;
+RigGoal goal_for(TestRandom& random) {
+  RigGoal rig_goal;
+  rig_goal.target = {0, 0.5, 0};
+  rig_goal.now = {RigStance{0, {0, 0, random.uniform(1, 2.5)}, {}},
+                  RigStance{1, {0, 0, random.uniform(1, 2.5)}, {}}};
+  return rig_goal;
 }
 
 TEST(Aim, BringsThePointOntoTheAxis) {
@@ -65,19 +65,19 @@ MountConfig looking_down_z() {
 // Returns the distance of the pupil from its target after each move.
 std::vector<double> distances_by_stage(const Eigen::Vector3d& turn, const Eigen::Vector3d& start, int moves) {
   const MountConfig mount = looking_down_z();
-  CameraConfig truth, believed;
-  truth.mount = believed.mount = mount;
+  CameraConfig truth, nominal;
+  truth.mount = nominal.mount = mount;
   const Eigen::Quaterniond wrong(so3_exp(turn) * mount.pose().rotation);
-  believed.mount.look_at.reset(), believed.mount.rotation = {{wrong.w(), wrong.x(), wrong.y(), wrong.z()}};
+  nominal.mount.look_at.reset(), nominal.mount.rotation = {{wrong.w(), wrong.x(), wrong.y(), wrong.z()}};
   RigStance stance{0, {0, 0, 1}, {start}};
-  const Eigen::Vector3d wanted = Camera(truth).pose({stance.head, {}}).position;
+  const Eigen::Vector3d desired = Camera(truth).pose({stance.head, {}}).position;
   std::vector<double> distances;
   for (int i = 0; i <= moves; ++i) {
     const Eigen::Vector3d now = Camera(truth).pose(stance.stance()).position;
-    distances.push_back((now - wanted).norm());
-    const Eigen::Vector3d off = now - Camera(believed).pose(stance.stance()).position;
-    for (std::size_t k = 0; k < 3; ++k) believed.mount.position[k] += off[static_cast<Eigen::Index>(k)];
-    stance.stage.offset = stage_towards(believed, stance, wanted);
+    distances.push_back((now - desired).norm());
+    const Eigen::Vector3d off = now - Camera(nominal).pose(stance.stance()).position;
+    for (std::size_t k = 0; k < 3; ++k) nominal.mount.position[k] += off[static_cast<Eigen::Index>(k)];
+    stance.stage.offset = stage_towards(nominal, stance, desired);
   }
   return distances;
 }
@@ -101,68 +101,68 @@ TEST(StageTowards, ClosesInWhereTheMountsTurnIsKnownWithin60DegreesAndNowhereEls
   });
 }
 
-TEST(WantedRig, IsReachedExactlyWhereNothingHasStepsAndWithinHalfAStepOfHeads) {
+TEST(DesiredRig, IsReachedExactlyWhereNothingHasStepsAndWithinHalfAStepOfHeads) {
   for_random_cases(50, [](TestRandom& random) {
     RigModel model = found_rig(random);
-    RigWish wish = wish_for(random);
-    const WantedRig in_steps = wanted_rig(model, wish);
+    RigGoal rig_goal = goal_for(random);
+    const DesiredRig in_steps = desired_rig(model, rig_goal);
     EXPECT_LE(std::abs(in_steps.remainder.angle), 0.51 * step);
     for (const Eigen::Vector2d& aim : in_steps.remainder.aim) EXPECT_LE(aim.norm(), 2 * step * 3.2);
     for (const RigStance& stance : in_steps.stances)
       EXPECT_EQ(stance.head, commanded(Camera(model.cameras[stance.camera]), stance).head);
     for (CameraConfig& camera : model.cameras) camera.head.pan.resolution = camera.head.tilt.resolution = 0;
-    const WantedRig wanted = wanted_rig(model, wish);
-    EXPECT_TRUE(wanted.notes.empty());
-    EXPECT_NEAR(wanted.remainder.angle, 0, 1e-10);
-    for (const Eigen::Vector2d& aim : wanted.remainder.aim) EXPECT_LE(aim.norm(), 1e-10);
-    EXPECT_NEAR(wanted.remainder.zoom_ratio, 1, 1e-4);  // Five rounds follow the shift of the pupils.
+    const DesiredRig desired = desired_rig(model, rig_goal);
+    EXPECT_TRUE(desired.notes.empty());
+    EXPECT_NEAR(desired.remainder.angle, 0, 1e-10);
+    for (const Eigen::Vector2d& aim : desired.remainder.aim) EXPECT_LE(aim.norm(), 1e-10);
+    EXPECT_NEAR(desired.remainder.zoom_ratio, 1, 1e-4);  // Five rounds follow the shift of the pupils.
     for (std::size_t i = 0; i < 2; ++i) {
       const auto limits = Camera(model.cameras[i]).stage_axes()[0].limits;
-      EXPECT_LE(wanted.stances[i].stage.offset.cwiseAbs().maxCoeff(), limits[1]);
+      EXPECT_LE(desired.stances[i].stage.offset.cwiseAbs().maxCoeff(), limits[1]);
     }
     // The heads make up for the stages.
-    wish.may_use_stages = false;
-    const WantedRig turned = wanted_rig(model, wish);
+    rig_goal.may_use_stages = false;
+    const DesiredRig turned = desired_rig(model, rig_goal);
     EXPECT_NEAR(turned.remainder.angle, 0, 1e-10);
-    for (std::size_t i = 0; i < 2; ++i) EXPECT_EQ(turned.stances[i].stage, wish.now[i].stage);
+    for (std::size_t i = 0; i < 2; ++i) EXPECT_EQ(turned.stances[i].stage, rig_goal.now[i].stage);
     const double passed = std::max(turned.remainder.aim[0].norm(), turned.remainder.aim[1].norm());
     EXPECT_EQ(passed > 0.5e-3 * 2.8, !turned.notes.empty()) << passed;
   });
 }
 
-TEST(WantedRig, SaysWhichAxisEndsTooEarly) {
+TEST(DesiredRig, SaysWhichAxisEndsTooEarly) {
   TestRandom random(1);
   RigModel model = found_rig(random);
   model.cameras[0].head.pan.limits = {0.5, 1};
-  const WantedRig wanted = wanted_rig(model, wish_for(random));
-  ASSERT_FALSE(wanted.notes.empty());
-  EXPECT_EQ(wanted.notes[0].substr(0, 10), "front: pan") << testing::PrintToString(wanted.notes);
-  EXPECT_NEAR(wanted.stances[0].head.pan, 0.5, step);
+  const DesiredRig desired = desired_rig(model, goal_for(random));
+  ASSERT_FALSE(desired.notes.empty());
+  EXPECT_EQ(desired.notes[0].substr(0, 10), "front: pan") << testing::PrintToString(desired.notes);
+  EXPECT_NEAR(desired.stances[0].head.pan, 0.5, step);
 }
 
-TEST(WantedRig, SaysWhereNoZoomOfBothShowsTheTargetAlike) {
+TEST(DesiredRig, SaysWhereNoZoomOfBothShowsTheTargetAlike) {
   TestRandom random(1);
   RigModel model = found_rig(random);
-  const std::string said = "no zoom that both cameras have shows the target alike";
-  EXPECT_THAT(wanted_rig(model, wish_for(random)).notes, Not(Contains(said)));
+  const std::string reported = "no zoom that both cameras have shows the target alike";
+  EXPECT_THAT(desired_rig(model, goal_for(random)).notes, Not(Contains(reported)));
   model.cameras[0].head.zoom.limits = {1, 1.2}, model.cameras[1].head.zoom.limits = {2, 3};
-  const WantedRig wanted = wanted_rig(model, wish_for(random));
-  EXPECT_THAT(wanted.notes, Contains(said));
-  EXPECT_EQ(wanted.stances[0].head.zoom, 1.2);
-  EXPECT_EQ(wanted.stances[1].head.zoom, 2);
+  const DesiredRig desired = desired_rig(model, goal_for(random));
+  EXPECT_THAT(desired.notes, Contains(reported));
+  EXPECT_EQ(desired.stances[0].head.zoom, 1.2);
+  EXPECT_EQ(desired.stances[1].head.zoom, 2);
 }
 
-TEST(WantedRig, ReportsTheRollThatNoHeadCorrects) {
-  RigModel model = believed_rig();
+TEST(DesiredRig, ReportsTheRollThatNoHeadCorrects) {
+  RigModel model = nominal_rig();
   model.cameras[0].mount.roll = 0.02;
-  RigWish wish;
-  wish.target = {0, 0.5, 0};
-  wish.now = {RigStance{0, {}, {}}, RigStance{1, {}, {}}};
-  const WantedRig wanted = wanted_rig(model, wish);
-  EXPECT_NEAR(wanted.remainder.roll[0], 0.02, 1e-9);
-  EXPECT_NEAR(wanted.remainder.roll[1], 0, 1e-9);
-  wish.now[1].camera = 0;
-  EXPECT_THROW((void)wanted_rig(model, wish), std::invalid_argument);
+  RigGoal rig_goal;
+  rig_goal.target = {0, 0.5, 0};
+  rig_goal.now = {RigStance{0, {}, {}}, RigStance{1, {}, {}}};
+  const DesiredRig desired = desired_rig(model, rig_goal);
+  EXPECT_NEAR(desired.remainder.roll[0], 0.02, 1e-9);
+  EXPECT_NEAR(desired.remainder.roll[1], 0, 1e-9);
+  rig_goal.now[1].camera = 0;
+  EXPECT_THROW((void)desired_rig(model, rig_goal), std::invalid_argument);
 }
 
 }  // namespace

@@ -137,16 +137,16 @@ double scale_of(const RigProblem& problem, const Eigen::VectorXd& x) {
 
 void judge(const RigProblem& problem, const RigDescent& descent, const RigCalibrationConfig& config,
            RigCalibration& result) {
-  constexpr double most_doubted = 0.3;
-  const auto doubted = static_cast<double>(result.doubts.size());
-  const double all = doubted + static_cast<double>(problem.sizes().size());
+  constexpr double max_outlier_share = 0.3;
+  const auto outlier_count = static_cast<double>(result.outliers.size());
+  const double all = outlier_count + static_cast<double>(problem.sizes().size());
   if (!(all > 0)) {
     result.reason = "nothing was seen";
   } else if (!std::isfinite(descent.cost)) {
     result.reason = "nothing that was seen can be seen from where the cameras are guessed to stand";
-  } else if (!(doubted <= most_doubted * all)) {
+  } else if (!(outlier_count <= max_outlier_share * all)) {
     result.reason = fmt::format("{:.0f} % of what was seen is not explained by any rig near the guess",
-                                100 * doubted / all);
+                                100 * outlier_count / all);
   } else if (!(result.rms <= config.most_rms)) {
     result.reason =
         fmt::format("what was seen is {:.1f} times farther off than its noise explains", result.rms);
@@ -157,13 +157,13 @@ void judge(const RigProblem& problem, const RigDescent& descent, const RigCalibr
 }
 
 // Excludes outliers and fits again, until they no longer change.
-RigDescent without_doubtful(RigProblem& problem, RigDescent found, const RigCalibrationConfig& config) {
+RigDescent without_outliers(RigProblem& problem, RigDescent found, const RigCalibrationConfig& config) {
   RigDescentConfig descent;
   descent.bound = config.linear_beyond, descent.most_iterations = config.most_iterations;
   descent.does_bound_rise = false;
   constexpr int most = 8;
   for (int round = 0; round < most && std::isfinite(found.cost); ++round) {
-    if (!problem.doubt_beyond(config.doubted_beyond)) break;
+    if (!problem.exclude_beyond(config.outlier_beyond)) break;
     const int before = found.iterations;
     found = descend(problem, found.x, descent);
     found.iterations += before;
@@ -187,7 +187,7 @@ RigCalibration calibrate_rig(RigProblem& problem, const RigCalibrationConfig& co
   RigProblem coarse(variables.guess(), problem.prior(), marked(problem.observations()));
   RigCalibration result;
   RigDescent best;
-  problem.doubt_nothing();
+  problem.include_all();
   for (const Detour& detour : detours) {
     RigDescent found = approach(coarse, problem, detour, config);
     ++result.starts, result.iterations += found.iterations;
@@ -197,8 +197,8 @@ RigCalibration calibrate_rig(RigProblem& problem, const RigCalibrationConfig& co
   }
   (void)problem.choose_rims(best.x);
   (void)problem.linearise(best.x);
-  best = without_doubtful(problem, std::move(best), config);
-  result.x = best.x, result.doubts = problem.doubts();
+  best = without_outliers(problem, std::move(best), config);
+  result.x = best.x, result.outliers = problem.outliers();
   result.model = variables.model(result.x);
   for (std::size_t i = 0; i < variables.commanded().size(); ++i)
     result.poses.push_back(variables.pose(result.x, i));

@@ -12,7 +12,7 @@ namespace flexura {
 struct RigCalibrationConfig {
   int most_iterations = 60;   ///< Per descent.
   double linear_beyond = 3;   ///< Residuals count linearly beyond this, in standard deviations.
-  double doubted_beyond = 6;  ///< Residuals beyond this are excluded as outliers, in standard deviations.
+  double outlier_beyond = 6;  ///< Residuals beyond this are excluded as outliers, in standard deviations.
   double most_rms = 3;        ///< A fit with a larger root mean square of the residuals is rejected.
 };
 
@@ -29,8 +29,8 @@ struct RigCalibration {
   double rms = 0;    ///< Root mean square of the residual entries, in their standard deviations.
   double scale = 1;  ///< Scale of the residuals, corrected for the number of fitted variables; sigmas are
                      ///< multiplied by it if it is above 1.
-  std::vector<RigDoubt> doubts;    ///< Excluded outliers.
-  int iterations = 0, starts = 0;  ///< Iterations of all descents together; number of rough starts tried.
+  std::vector<RigOutlier> outliers;  ///< Excluded outliers.
+  int iterations = 0, starts = 0;    ///< Iterations of all descents together; number of rough starts tried.
 };
 
 /// Estimates the rig that explains the observations best, starting from rough guesses (docs/calibration.md):

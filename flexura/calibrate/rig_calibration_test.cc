@@ -21,7 +21,7 @@ namespace {
 constexpr double unknown = std::numeric_limits<double>::infinity();
 
 RigTrial planned_trial(const RigTrialConfig& config, TestRandom& random, std::size_t pictures = 12) {
-  RigTrial trial(true_rig(believed_rig(), config, random), config, random);
+  RigTrial trial(true_rig(nominal_rig(), config, random), config, random);
   take_plan(trial, pictures);
   return trial;
 }
@@ -52,7 +52,7 @@ TEST(RigCalibration, ConvergesFromRoughGuessesAndKnowsHowWell) {
   int count = 0;
   for_random_cases(40, [&](TestRandom& random) {
     const RigTrial trial = planned_trial({}, random);
-    RigProblem problem(believed_rig(), rough_prior(believed_rig()), trial.seen());
+    RigProblem problem(nominal_rig(), rough_prior(nominal_rig()), trial.seen());
     const RigCalibration found = calibrate_rig(problem);
     ASSERT_TRUE(found.is_found) << found.reason;
     EXPECT_LE(found.rms, 1.05);
@@ -81,14 +81,14 @@ TEST(RigCalibration, SolvesMinimalCasesExactly) {
       config.are_heads_exact = true, config.noise = 0, config.markers = markers, config.points = 0;
       config.focal = config.principal_point = config.bend = config.length = config.zero = 0;
       config.turn = 3 * degree, config.shift = 0.1;
-      RigModel believed = believed_rig();
-      believed.cameras.resize(1);
-      RigTrial trial(true_rig(believed, config, random), config, random);
+      RigModel nominal = nominal_rig();
+      nominal.cameras.resize(1);
+      RigTrial trial(true_rig(nominal, config, random), config, random);
       take_plan(trial, 1);
       ASSERT_EQ(trial.seen().images[0].markers.size(), markers);
-      RigPrior prior = all_held(believed);
+      RigPrior prior = all_held(nominal);
       prior.cameras[0].position = prior.cameras[0].rotation = unknown;
-      RigProblem problem(believed, prior, trial.seen());
+      RigProblem problem(nominal, prior, trial.seen());
       ASSERT_EQ(problem.variables().count(), 6);
       const RigCalibration found = calibrate_rig(problem);
       ASSERT_TRUE(found.is_found) << found.reason;
@@ -106,13 +106,13 @@ TEST(RigCalibration, FindsEverythingWithoutNoise) {
     RigTrialConfig config;
     config.are_heads_exact = true, config.noise = 0, config.points = 0;
     config.length = 0;  // Otherwise the overall scale is free.
-    RigTrial trial(true_rig(believed_rig(), config, random), config, random);
+    RigTrial trial(true_rig(nominal_rig(), config, random), config, random);
     take_plan(trial);
-    RigPrior prior = all_held(believed_rig());
+    RigPrior prior = all_held(nominal_rig());
     prior.arm.bend_gain = unknown;
     for (CameraPrior& camera : prior.cameras)
       camera.position = camera.rotation = camera.tilt_zero = camera.focal = camera.principal_point = unknown;
-    RigProblem problem(believed_rig(), prior, trial.seen());
+    RigProblem problem(nominal_rig(), prior, trial.seen());
     const RigCalibration found = calibrate_rig(problem);
     ASSERT_TRUE(found.is_found) << found.reason;
     const RigFigures figures = figures_of(trial, problem, found);
@@ -125,21 +125,21 @@ TEST(RigCalibration, FindsEverythingWithoutNoise) {
 // One row of one camera's zoom table has a focal length wrong by 1 %.
 TEST(RigCalibration, FindsTheRowOfAZoomTableThatIsWrong) {
   for_random_cases(4, [](TestRandom& random) {
-    RigModel believed = believed_rig();
-    for (CameraConfig& camera : believed.cameras)
+    RigModel nominal = nominal_rig();
+    for (CameraConfig& camera : nominal.cameras)
       for (const double ratio : {1.0, 1.5, 2.0}) camera.lens.zoom.emplace_back().ratio = ratio;
     RigTrialConfig config;
     config.focal = 0;
-    RigModel truth = true_rig(believed, config, random);
+    RigModel truth = true_rig(nominal, config, random);
     const std::size_t wrong = random.integer(0, 1) == 1 ? 1 : 0;
     const double off = random.integer(0, 1) == 1 ? 0.01 : -0.01;
     LensConfig& lens = truth.cameras[wrong].lens;
     lens.zoom[1].fx = lens.zoom[1].fy = lens.fx * 1.5 * (1 + off);
     RigTrial trial(truth, config, random);
     take_plan(trial);
-    RigPrior prior = rough_prior(believed);
+    RigPrior prior = rough_prior(nominal);
     for (CameraPrior& camera : prior.cameras) camera.focal = 0;
-    RigProblem problem(believed, prior, trial.seen());
+    RigProblem problem(nominal, prior, trial.seen());
     const RigCalibration found = calibrate_rig(problem);
     ASSERT_TRUE(found.is_found) << found.reason;
     EXPECT_LE(found.rms, 1.05);
@@ -161,23 +161,24 @@ TEST(RigCalibration, FindsTheRowOfAZoomTableThatIsWrong) {
 TEST(RigCalibration, LeavesOutWhatIsNotTheArm) {
   for_random_cases(2, [](TestRandom& random) {
     RigTrial trial = planned_trial({}, random);
-    std::vector<RigDoubt> wrong;
+    std::vector<RigOutlier> wrong;
     for (std::size_t i = 0; i < trial.seen().images.size(); i += 2) {
       trial.change_seen().images[i].markers[2].pixel += Eigen::Vector2d(30, -20);
       wrong.push_back({i, 2});
     }
-    RigProblem problem(believed_rig(), rough_prior(believed_rig()), trial.seen());
+    RigProblem problem(nominal_rig(), rough_prior(nominal_rig()), trial.seen());
     const RigCalibration found = calibrate_rig(problem);
     ASSERT_TRUE(found.is_found) << found.reason;
-    for (const RigDoubt& doubt : wrong) EXPECT_NE(std::ranges::find(found.doubts, doubt), found.doubts.end());
-    EXPECT_LE(found.doubts.size(), wrong.size() + 3);
+    for (const RigOutlier& outlier : wrong)
+      EXPECT_NE(std::ranges::find(found.outliers, outlier), found.outliers.end());
+    EXPECT_LE(found.outliers.size(), wrong.size() + 3);
     EXPECT_LE(found.rms, 1.05);
   });
 }
 
 TEST(RigCalibration, IsNoneWhereNothingWasSeen) {
-  const RigModel believed = believed_rig();
-  RigProblem problem(believed, rough_prior(believed), {});
+  const RigModel nominal = nominal_rig();
+  RigProblem problem(nominal, rough_prior(nominal), {});
   const RigCalibration none = calibrate_rig(problem);
   EXPECT_FALSE(none.is_found);
   EXPECT_EQ(none.reason, "nothing was seen");
@@ -189,7 +190,7 @@ TEST(RigCalibration, SaysWhyWhenNothingFits) {
     for (RigImage& image : trial.change_seen().images)
       for (SeenMarker& marker : image.markers) marker.pixel = random.vector<2>(0, 480);
     for (RigImage& image : trial.change_seen().images) image.points.clear();
-    RigProblem problem(believed_rig(), rough_prior(believed_rig()), trial.seen());
+    RigProblem problem(nominal_rig(), rough_prior(nominal_rig()), trial.seen());
     const RigCalibration found = calibrate_rig(problem);
     EXPECT_FALSE(found.is_found);
     EXPECT_FALSE(found.reason.empty());
@@ -200,7 +201,7 @@ TEST(RigCalibration, SaysWhyWhenNothingFits) {
 TEST(RigCalibration, IsTheSameWhereverTheWorldIsCountedFrom) {
   for_random_cases(1, [](TestRandom& random) {
     const RigTrial trial = planned_trial({}, random);
-    const RigModel here = believed_rig();
+    const RigModel here = nominal_rig();
     const Pose X_VW{so3_exp({0.3, -1.0, 0.4}), {3, -2, 5}};
     RigModel there = here;
     there.arm.X_WB = X_VW * here.arm.X_WB;
@@ -231,7 +232,7 @@ TEST(RigCalibration, GivesTheSameBitsInEveryThread) {
   threads.reserve(answers.size());
   for (Eigen::VectorXd& answer : answers)
     threads.emplace_back([&] {
-      RigProblem problem(believed_rig(), rough_prior(believed_rig()), trial.seen());
+      RigProblem problem(nominal_rig(), rough_prior(nominal_rig()), trial.seen());
       answer = calibrate_rig(problem).x;
     });
   for (std::thread& thread : threads) thread.join();
@@ -241,28 +242,28 @@ TEST(RigCalibration, GivesTheSameBitsInEveryThread) {
 TEST(RigObservability, SaysWhatThePicturesDoNotTell) {
   TestRandom random(3);
   const RigTrial trial = planned_trial({}, random);
-  RigProblem problem(believed_rig(), rough_prior(believed_rig()), trial.seen());
-  const RigObservability told = observability(problem.variables(), calibrate_rig(problem).covariance);
+  RigProblem problem(nominal_rig(), rough_prior(nominal_rig()), trial.seen());
+  const RigObservability determined = observability(problem.variables(), calibrate_rig(problem).covariance);
   const auto find = [&](const std::string& name) {
-    const auto found = std::ranges::find(told.numbers, name, &RigKnowledge::name);
-    EXPECT_NE(found, told.numbers.end()) << name;
+    const auto found = std::ranges::find(determined.numbers, name, &RigKnowledge::name);
+    EXPECT_NE(found, determined.numbers.end()) << name;
     return *found;
   };
-  EXPECT_TRUE(find("front: focal length").is_told);
-  EXPECT_TRUE(find("side: mount's turn, y").is_told);
+  EXPECT_TRUE(find("front: focal length").is_determined);
+  EXPECT_TRUE(find("side: mount's turn, y").is_determined);
   // Along the tilt axis, shifts of pupil and axis are indistinguishable.
-  EXPECT_FALSE(find("front: pupil, x").is_told);
-  EXPECT_FALSE(find("front: tilt axis, x").is_told);
-  ASSERT_FALSE(told.blindness.empty());
-  EXPECT_GE(told.blindness.front().share, 0.99);
-  EXPECT_LE(told.blindness.front().share, 1 + 1e-6);
-  for (std::size_t i = 1; i < told.blindness.size(); ++i)
-    EXPECT_LE(told.blindness[i].share, told.blindness[i - 1].share);
+  EXPECT_FALSE(find("front: pupil, x").is_determined);
+  EXPECT_FALSE(find("front: tilt axis, x").is_determined);
+  ASSERT_FALSE(determined.unobservable.empty());
+  EXPECT_GE(determined.unobservable.front().share, 0.99);
+  EXPECT_LE(determined.unobservable.front().share, 1 + 1e-6);
+  for (std::size_t i = 1; i < determined.unobservable.size(); ++i)
+    EXPECT_LE(determined.unobservable[i].share, determined.unobservable[i - 1].share);
 }
 
 TEST(RigCalibration, LearnsThePrincipalPointFromZoomingWithoutATurn) {
   TestRandom random(4);
-  RigTrial trial(true_rig(believed_rig(), {}, random), {}, random);
+  RigTrial trial(true_rig(nominal_rig(), {}, random), {}, random);
   take_plan(trial, 3);
   for (std::size_t camera = 0; camera < 2; ++camera) {
     RigStance stance = trial.seen().stances[camera];
@@ -270,7 +271,7 @@ TEST(RigCalibration, LearnsThePrincipalPointFromZoomingWithoutATurn) {
     trial.add_image(trial.add_stance(stance), 0);
   }
   const auto sigma = [](const RigObservations& seen) {
-    RigProblem problem(believed_rig(), rough_prior(believed_rig()), seen);
+    RigProblem problem(nominal_rig(), rough_prior(nominal_rig()), seen);
     const RigCalibration found = calibrate_rig(problem);
     EXPECT_TRUE(found.is_found) << found.reason;
     const std::size_t slot = problem.variables().camera_slots(0) + principal_point_slot;
@@ -285,11 +286,11 @@ TEST(RigCalibration, LearnsThePrincipalPointFromZoomingWithoutATurn) {
 TEST(RigProblem, IsNoneWhereALensIsNone) {
   TestRandom random(9);
   const RigTrial trial = planned_trial({}, random, 1);
-  RigModel believed = believed_rig();
+  RigModel nominal = nominal_rig();
   for (const double ratio : {1.0, 1.05, 3.0})
-    believed.cameras[0].lens.zoom.push_back(
+    nominal.cameras[0].lens.zoom.push_back(
         {.ratio = ratio, .count = {}, .fx = {}, .fy = {}, .cx = {}, .cy = {}, .distortion = {}});
-  RigProblem problem(believed, rough_prior(believed), trial.seen());
+  RigProblem problem(nominal, rough_prior(nominal), trial.seen());
   const RigVariables& variables = problem.variables();
   Eigen::VectorXd x = Eigen::VectorXd::Zero(variables.count());
   EXPECT_TRUE(problem.linearise(x));
@@ -301,7 +302,7 @@ TEST(RigProblem, IsNoneWhereALensIsNone) {
 }
 
 TEST(RigProblem, RefusesWhatDoesNotFit) {
-  const RigModel model = believed_rig();
+  const RigModel model = nominal_rig();
   RigPrior prior = rough_prior(model);
   RigObservations seen;
   seen.poses = {ArmState::straight(2)};

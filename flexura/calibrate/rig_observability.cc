@@ -14,7 +14,7 @@ namespace flexura {
 namespace {
 
 // Share of the prior below which a variable counts as observed.
-constexpr double told = 0.5;
+constexpr double determined = 0.5;
 
 // Describes the largest components of a direction; the largest is made positive.
 std::string words_of(const RigVariables& variables, const Eigen::VectorXd& direction) {
@@ -44,15 +44,15 @@ RigObservability observability(const RigVariables& variables, const Eigen::Matri
     const RigVariables::Variable& variable = variables.variable(i);
     scales[i] = variable.scale;
     const double sigma = std::sqrt(covariance(i, i));
-    result.numbers.push_back({variable.name, variable.sigma, sigma, sigma < told * variable.scale});
+    result.numbers.push_back({variable.name, variable.sigma, sigma, sigma < determined * variable.scale});
   }
   const Eigen::MatrixXd left = scales.cwiseInverse().asDiagonal() * covariance.topLeftCorner(count, count) *
                                scales.cwiseInverse().asDiagonal();
   const auto [values, vectors] = symmetric_eigen(left);
   for (Eigen::Index i = count - 1; i >= 0; --i) {
     const double share = std::sqrt(std::max(0.0, values[i]));
-    if (share < told) break;
-    result.blindness.push_back({share, words_of(variables, vectors.col(i))});
+    if (share < determined) break;
+    result.unobservable.push_back({share, words_of(variables, vectors.col(i))});
   }
   return result;
 }

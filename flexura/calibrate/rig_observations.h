@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "flexura/calibrate/etalon_figure.h"
-#include "flexura/estimate/sighting.h"
+#include "flexura/estimate/observation.h"
 #include "flexura/model/arm.h"
 #include "flexura/port/rig_model.h"
 

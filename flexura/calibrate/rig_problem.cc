@@ -9,7 +9,7 @@ namespace flexura {
 
 RigProblem::RigProblem(const RigModel& guess, const RigPrior& prior, RigObservations seen)
     : prior_(prior), variables_(guess, prior, seen), seen_(std::move(seen)), rows_(seen_.images.size()) {
-  for (const RigImage& image : seen_.images) is_doubted_.emplace_back(image.things(), false);
+  for (const RigImage& image : seen_.images) is_outlier_.emplace_back(image.things(), false);
 }
 
 bool RigProblem::choose_rims(const Eigen::VectorXd& x) {
@@ -45,7 +45,7 @@ void RigProblem::for_each_thing(const Visit& visit) const {
     Eigen::Index first = 0;
     for (std::size_t j = 0; j < rows_[i].sizes.size(); ++j) {
       const Eigen::Index count = rows_[i].sizes[j];
-      if (!is_doubted_[i][j]) visit(i, first, count, rows_[i].residuals.segment(first, count).norm());
+      if (!is_outlier_[i][j]) visit(i, first, count, rows_[i].residuals.segment(first, count).norm());
       first += count;
     }
   }
@@ -111,31 +111,31 @@ std::size_t RigProblem::entries() const {
   return static_cast<std::size_t>(sum);
 }
 
-bool RigProblem::doubt_beyond(double bound) {
+bool RigProblem::exclude_beyond(double bound) {
   bool is_changed = false;
   for (std::size_t i = 0; i < rows_.size(); ++i) {
     Eigen::Index first = 0;
     for (std::size_t j = 0; j < rows_[i].sizes.size(); ++j) {
       const Eigen::Index count = rows_[i].sizes[j];
       const bool is_off = rows_[i].residuals.segment(first, count).norm() > bound;
-      is_changed |= is_off != is_doubted_[i][j];
-      is_doubted_[i][j] = is_off;
+      is_changed |= is_off != is_outlier_[i][j];
+      is_outlier_[i][j] = is_off;
       first += count;
     }
   }
   return is_changed;
 }
 
-void RigProblem::doubt_nothing() {
-  for (std::vector<bool>& image : is_doubted_) image.assign(image.size(), false);
+void RigProblem::include_all() {
+  for (std::vector<bool>& image : is_outlier_) image.assign(image.size(), false);
 }
 
-std::vector<RigDoubt> RigProblem::doubts() const {
-  std::vector<RigDoubt> doubts;
-  for (std::size_t i = 0; i < is_doubted_.size(); ++i)
-    for (std::size_t j = 0; j < is_doubted_[i].size(); ++j)
-      if (is_doubted_[i][j]) doubts.push_back({i, j});
-  return doubts;
+std::vector<RigOutlier> RigProblem::outliers() const {
+  std::vector<RigOutlier> outliers;
+  for (std::size_t i = 0; i < is_outlier_.size(); ++i)
+    for (std::size_t j = 0; j < is_outlier_[i].size(); ++j)
+      if (is_outlier_[i][j]) outliers.push_back({i, j});
+  return outliers;
 }
 
 }  // namespace flexura

@@ -11,11 +11,11 @@
 namespace flexura {
 
 /// An outlier: an observation that the rig does not explain.
-struct RigDoubt {
+struct RigOutlier {
   std::size_t image = 0;
   std::size_t thing = 0;  ///< Index in the image's markers, then axis points, then etalon points.
 
-  bool operator==(const RigDoubt&) const = default;
+  bool operator==(const RigOutlier&) const = default;
 };
 
 /// The cost function of a rig: half the sum of the observation residuals and the deviations of x from the
@@ -48,9 +48,9 @@ class RigProblem {
 
   /// Marks exactly the observations whose residual is larger than `bound` as outliers. Returns whether this
   /// changed anything.
-  bool doubt_beyond(double bound);
-  void doubt_nothing();
-  [[nodiscard]] std::vector<RigDoubt> doubts() const;
+  bool exclude_beyond(double bound);
+  void include_all();
+  [[nodiscard]] std::vector<RigOutlier> outliers() const;
 
  private:
   template <class Visit>
@@ -61,7 +61,7 @@ class RigProblem {
   RigObservations seen_;
   Eigen::VectorXd x_;
   std::vector<RigRows> rows_;
-  std::vector<std::vector<bool>> is_doubted_;
+  std::vector<std::vector<bool>> is_outlier_;
 };
 
 }  // namespace flexura

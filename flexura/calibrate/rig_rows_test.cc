@@ -72,10 +72,10 @@ TEST(RigRows, AxisPointsFollowTheCurveAsItMoves) {
   for_random_cases(3, [](TestRandom& random) {
     RigTrialConfig config;
     config.markers = 2;
-    RigTrial trial(true_rig(believed_rig(), config, random), config, random);
+    RigTrial trial(true_rig(nominal_rig(), config, random), config, random);
     take_plan(trial, 2);
     RigModel model = trial.truth();
-    model.arm = believed_rig().arm;
+    model.arm = nominal_rig().arm;
     RigProblem problem(model, rough_prior(model), trial.seen());
     const Eigen::VectorXd x = Eigen::VectorXd::Zero(problem.variables().count());
     ASSERT_TRUE(problem.linearise(x));

@@ -13,7 +13,7 @@
 #include "flexura/calibrate/arm_picture.h"
 #include "flexura/calibrate/rig_aim.h"
 #include "flexura/calibrate/rig_calibration.h"
-#include "flexura/calibrate/rig_hands.h"
+#include "flexura/calibrate/rig_commander.h"
 #include "flexura/calibrate/rig_observability.h"
 #include "flexura/camera/view.h"
 #include "flexura/model/stand.h"
@@ -37,7 +37,7 @@ struct RigSessionConfig {
   std::size_t images = 12;  ///< Maximum number of looks, each one picture per camera; the last one verifies.
   std::size_t first = 3;    ///< Number of looks from the initial head positions.
   std::size_t fewest = 5;   ///< Fewest markers in a useful picture.
-  RigSigmas wanted;         ///< Looks end when these are reached.
+  RigSigmas desired;        ///< Looks end when these are reached.
   std::optional<Eigen::Vector3d> target;  ///< Target of the cameras in W, m; default: the arm's middle.
   /// Observe the calibration cylinder, which stands there alone, instead of the arm. Then no markers are
   /// needed, the only pose is the arm's present one, and the default target is the cylinder's middle. Looks
@@ -61,7 +61,7 @@ struct SeenValue {
 };
 
 /// One picture and its observations.
-struct RigSight {
+struct CameraObservation {
   std::size_t look = 0;  ///< Number of the look, from 1; 0 during the search for the arm.
   RigStance stance;      ///< Camera stance as read.
   ArmState pose;         ///< Arm pose as measured by the drives.
@@ -73,16 +73,16 @@ struct RigSight {
 
 /// State of knowledge after a look.
 struct RigStep {
-  double time = 0;                       ///< Time, s.
-  std::size_t looks = 0;                 ///< Looks so far.
-  bool is_found = false;                 ///< Whether a rig explains the observations so far.
-  std::string reason;                    ///< Why none does.
-  double rms = 0;                        ///< Root mean square of the residuals, in standard deviations.
-  std::size_t doubts = 0;                ///< Number of excluded outliers (RigCalibration::doubts).
-  double angle = 0;                      ///< Estimated angle between the axes in the `wanted` positions, rad.
+  double time = 0;           ///< Time, s.
+  std::size_t looks = 0;     ///< Looks so far.
+  bool is_found = false;     ///< Whether a rig explains the observations so far.
+  std::string reason;        ///< Why none does.
+  double rms = 0;            ///< Root mean square of the residuals, in standard deviations.
+  std::size_t outliers = 0;  ///< Number of excluded outliers (RigCalibration::outliers).
+  double angle = 0;          ///< Estimated angle between the axes in the `desired` positions, rad.
   std::array<double, 2> focal = {0, 0};  ///< Estimated focal lengths at ratio 1, px.
   RigSigmas sigmas;                      ///< Present standard deviations.
-  std::array<RigStance, 2> wanted;       ///< Positions that would be commanded.
+  std::array<RigStance, 2> desired;      ///< Positions that would be commanded.
   /// Deviation in those positions, by the final estimate.
   std::optional<RigRemainder> remainder;
   std::string next;  ///< The next look and its reason.
@@ -123,7 +123,7 @@ class RigSessionWatcher {
   /// A head and a stage were commanded to a stance; `time` is that of the rig's clock, s.
   virtual void camera_sent(double time, const RigStance& stance) = 0;
   /// A picture was taken and measured.
-  virtual void seen(const RigSight& sight) = 0;
+  virtual void seen(const CameraObservation& observed) = 0;
   /// The least-squares estimate was updated after a look (calibrate_rig_in_session).
   virtual void known(const RigStep& step) = 0;
   /// A loop of the paper's methods computed an ideal arc (calibrate_by_loop).
@@ -148,13 +148,14 @@ struct RigSessionResult {
   Eigen::Vector3d target = Eigen::Vector3d::Zero();  ///< Target of the cameras in W, m.
   std::array<RigStance, 2> start;                    ///< Initial positions.
   /// Deviation that the commands of the initial model would have left, and that of the initial positions.
-  std::optional<RigRemainder> believed_remainder, start_remainder;
-  WantedRig wanted;        ///< Wanted configuration as commanded.
+  std::optional<RigRemainder> nominal_remainder, start_remainder;
+  DesiredRig desired;      ///< Wanted configuration as commanded.
   RigRemainder remainder;  ///< Deviation estimated afterwards.
   /// Prediction errors in the last look by camera, root mean square, px. Its pictures have no part in the
   /// prediction.
   std::array<double, 2> verified = {0, 0};
-  std::array<std::optional<RigSight>, 2> before, after;  ///< The first and the last picture of each camera.
+  std::array<std::optional<CameraObservation>, 2> before,
+      after;  ///< The first and the last picture of each camera.
 };
 
 /// Calibrates two cameras of a rig and moves them to the wanted configuration (section 3.4 of the paper;
@@ -167,7 +168,7 @@ struct RigSessionResult {
 /// pictures give equal results. Throws std::invalid_argument without poses, without markers, with fewer than
 /// 3 images or none from the initial head positions. Also if both cameras are the same, or the ports are for
 /// other cameras than the model's.
-[[nodiscard]] RigSessionResult calibrate_rig_in_session(const RigPorts& ports, const RigModel& believed,
+[[nodiscard]] RigSessionResult calibrate_rig_in_session(const RigPorts& ports, const RigModel& nominal,
                                                         const RigPrior& prior, const RigSessionConfig& config,
                                                         RigSessionWatcher& watcher);
 

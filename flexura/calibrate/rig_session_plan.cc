@@ -71,36 +71,36 @@ Eigen::Vector3d RigSessionPlan::target(const RigModel& model) const {
 
 RigStance RigSessionPlan::first(const RigStance& begins) const {
   RigStance stance = begins;
-  if (config_.etalon) stance.head.zoom = zoom_ends(Camera(believed_.cameras[begins.camera]))[0];
+  if (config_.etalon) stance.head.zoom = zoom_ends(Camera(nominal_.cameras[begins.camera]))[0];
   return stance;
 }
 
-WantedRig RigSessionPlan::wanted(const RigModel& model, const std::array<RigStance, 2>& stands) const {
-  RigWish wish;
-  wish.target = target(model), wish.now = stands, wish.may_use_stages = config_.may_use_stages;
-  for (RigStance& stance : wish.now) {
+DesiredRig RigSessionPlan::desired(const RigModel& model, const std::array<RigStance, 2>& stands) const {
+  RigGoal rig_goal;
+  rig_goal.target = target(model), rig_goal.now = stands, rig_goal.may_use_stages = config_.may_use_stages;
+  for (RigStance& stance : rig_goal.now) {
     // From the initial positions of stage and zoom, as looks have moved them since.
-    const Camera camera(believed_.cameras[stance.camera]);
+    const Camera camera(nominal_.cameras[stance.camera]);
     stance.stage = camera.initial_stage(), stance.head.zoom = camera.initial_head().zoom;
     stance = first(stance);
   }
-  return wanted_rig(model, wish);
+  return desired_rig(model, rig_goal);
 }
 
 std::vector<ViewGoal> RigSessionPlan::goals(const RigVariables& variables, const RigCalibration& found,
-                                            const WantedRig& wanted) const {
-  const OpticalAxis a = optical_axis(variables, found.x, {wanted.stances[0], {}}),
-                    b = optical_axis(variables, found.x, {wanted.stances[1], {}});
-  return {{axes_angle(a, b), config_.wanted.angle},
-          {log_focal(a), config_.wanted.focal[0]},
-          {log_focal(b), config_.wanted.focal[1]},
-          {log_zoom_ratio(a, b, target(found.model)), config_.wanted.zoom_ratio}};
+                                            const DesiredRig& desired) const {
+  const OpticalAxis a = optical_axis(variables, found.x, {desired.stances[0], {}}),
+                    b = optical_axis(variables, found.x, {desired.stances[1], {}});
+  return {{axes_angle(a, b), config_.desired.angle},
+          {log_focal(a), config_.desired.focal[0]},
+          {log_focal(b), config_.desired.focal[1]},
+          {log_zoom_ratio(a, b, target(found.model)), config_.desired.zoom_ratio}};
 }
 
-void RigSessionPlan::know(const RigVariables& variables, const RigCalibration& found, const WantedRig& wanted,
-                          RigStep& step) const {
-  const std::vector<ViewGoal> known = goals(variables, found, wanted);
-  step.wanted = wanted.stances;
+void RigSessionPlan::know(const RigVariables& variables, const RigCalibration& found,
+                          const DesiredRig& desired, RigStep& step) const {
+  const std::vector<ViewGoal> known = goals(variables, found, desired);
+  step.desired = desired.stances;
   step.angle = known[0].quantity.value;
   const auto sigma = [&](std::size_t i) { return known[i].quantity.sigma(found.covariance); };
   step.sigmas = {sigma(0), {sigma(1), sigma(2)}, sigma(3)};
@@ -147,7 +147,7 @@ ViewGrid RigSessionPlan::grid(const RigModel& model) const {
   ViewGrid grid;
   grid.poses = config_.poses, grid.spread = 0.6;
   grid.zooms.clear();
-  const Camera camera(believed_.cameras[config_.cameras[0]]);
+  const Camera camera(nominal_.cameras[config_.cameras[0]]);
   const double start = camera.lens().ratio(camera.initial_head().zoom);
   for (const double ratio : config_.zooms) {
     // Limited by the lens.
@@ -163,8 +163,8 @@ ViewGrid RigSessionPlan::grid(const RigModel& model) const {
   }
   double travel = 0;
   for (const std::size_t i : config_.cameras) {
-    const auto& [least, most] = believed_.cameras[i].mount.stage.x.limits;
-    const double distance = (vector(believed_.cameras[i].mount.position) - target(believed_)).norm();
+    const auto& [least, most] = nominal_.cameras[i].mount.stage.x.limits;
+    const double distance = (vector(nominal_.cameras[i].mount.position) - target(nominal_)).norm();
     travel = std::max(travel, std::min(config_.slide * distance, std::max(most, -least)));
   }
   if (config_.may_use_stages && travel > 0) grid.slides = {{0, 0, 0}, {travel, 0, 0}, {-travel, 0, 0}};
@@ -172,7 +172,7 @@ ViewGrid RigSessionPlan::grid(const RigModel& model) const {
 }
 
 std::pair<std::optional<ViewCandidate>, std::string> RigSessionPlan::next(
-    const RigProblem& problem, const RigCalibration& found, const WantedRig& wanted,
+    const RigProblem& problem, const RigCalibration& found, const DesiredRig& desired,
     const std::array<RigStance, 2>& stands, const std::vector<ViewCandidate>& missed) const {
   std::vector<ViewCandidate> candidates = view_candidates(found.model, grid(found.model));
   for (ViewCandidate& candidate : candidates) {
@@ -186,7 +186,7 @@ std::pair<std::optional<ViewCandidate>, std::string> RigSessionPlan::next(
   }
   std::erase_if(candidates, [&](const ViewCandidate& candidate) {
     return std::ranges::any_of(missed,
-                               [&](const ViewCandidate& one) { return is_like(believed_, candidate, one); });
+                               [&](const ViewCandidate& one) { return is_like(nominal_, candidate, one); });
   });
   // Outside a screen the background is as dark as the cylinder.
   const auto lacks_screen = [&](const ViewCandidate& candidate) {
@@ -200,7 +200,7 @@ std::pair<std::optional<ViewCandidate>, std::string> RigSessionPlan::next(
   if (config_.etalon) view.sigma = 0.05;  // Borders and lines, px.
   view.markers = std::max<std::size_t>(config_.picture.markers.size(), 2), view.fewest = config_.fewest;
   const auto choice =
-      next_best_view(problem, found, candidates, goals(problem.variables(), found, wanted), view);
+      next_best_view(problem, found, candidates, goals(problem.variables(), found, desired), view);
   if (!choice) return {std::nullopt, "another pose: no view is known to show the arm"};
   const ViewCandidate& best = candidates[choice->candidate];
   const auto pose =
@@ -213,13 +213,13 @@ std::pair<std::optional<ViewCandidate>, std::string> RigSessionPlan::next(
                       a.zoom, b.pan / degree, b.tilt / degree, b.zoom, choice->sigmas[0] / degree)};
 }
 
-RigHands::Trouble RigSessionPlan::trouble_with(const RigModel& model, const WantedRig& wanted,
+RigCommander::Error RigSessionPlan::error_with(const RigModel& model, const DesiredRig& desired,
                                                const RigStep& step, const ArmState& home) const {
   constexpr double known = 3 * degree, steepest = 50 * degree;
   if (step.sigmas.angle > known) return std::nullopt;
   std::array<Eigen::Vector3d, 2> sights;  // From each camera to the target, m.
   for (std::size_t i = 0; i < 2; ++i)
-    sights[i] = target(model) - view_of(model, wanted.stances[i]).X_WC.position;
+    sights[i] = target(model) - view_of(model, desired.stances[i]).X_WC.position;
   const double cosine = sights[0].normalized().dot(sights[1].normalized()),
                angle = std::acos(std::clamp(cosine, -1.0, 1.0));
   if (std::min(angle, std::numbers::pi - angle) < steepest)
@@ -228,9 +228,9 @@ RigHands::Trouble RigSessionPlan::trouble_with(const RigModel& model, const Want
         "alone cannot make orthogonal axes of that",
         angle < std::numbers::pi / 2 ? "from one side" : "from opposite sides", angle / degree);
   std::string why;
-  for (const std::string& note : wanted.notes) why += "; " + note;
+  for (const std::string& note : desired.notes) why += "; " + note;
   constexpr double far_off = 0.5 * degree, likely = 4;  // Standard deviations.
-  const double left = std::abs(wanted.remainder.angle);
+  const double left = std::abs(desired.remainder.angle);
   double step_of_heads = 0;
   for (const std::size_t i : config_.cameras) {
     const HeadConfig& head = model.cameras[i].head;
@@ -242,16 +242,16 @@ RigHands::Trouble RigSessionPlan::trouble_with(const RigModel& model, const Want
   // The heads make up for the stages and then look beside the arm.
   constexpr double most_aside = 0.1;  // Share of the distance.
   for (std::size_t i = 0; i < 2; ++i) {
-    const double aside = wanted.remainder.aim[i].norm();
+    const double aside = desired.remainder.aim[i].norm();
     if (aside > most_aside * sights[i].norm())
       return fmt::format(
           "where the stages end the lines of sight are {:.1f} deg apart: of orthogonal axes that of camera "
           "{} would pass {:.2f} m beside the {}; mount the cameras more nearly at a right angle, or let the "
           "stages travel farther{}",
-          angle / degree, model.cameras[wanted.stances[i].camera].name, aside,
+          angle / degree, model.cameras[desired.stances[i].camera].name, aside,
           config_.etalon ? "cylinder" : "arm", why);
   }
-  for (const RigStance& stance : wanted.stances)
+  for (const RigStance& stance : desired.stances)
     if (!is_in_view(model, stance, config_.poses.empty() ? home : config_.poses.front()))
       return fmt::format("camera {} would not see the {} in the wanted configuration{}",
                          model.cameras[stance.camera].name, config_.etalon ? "cylinder" : "arm", why);
@@ -262,11 +262,11 @@ bool RigSessionPlan::is_in_view(const RigModel& model, const RigStance& stance, 
   const View view = view_of(model, stance);
   if (config_.etalon) return EtalonFigure(*config_.etalon).expected(view, 0).has_value();
   const MarkerScene scene =
-      expected_markers(model.arm, model.bent(shown), config_.picture.markers, view, believed_.arm);
+      expected_markers(model.arm, model.bent(shown), config_.picture.markers, view, nominal_.arm);
   return markers_inside(scene, view, 0) >= config_.fewest;
 }
 
-std::vector<Eigen::Vector2d> RigSessionPlan::search_ways() const {
+std::vector<Eigen::Vector2d> RigSessionPlan::search_directions() const {
   std::vector<Eigen::Vector2d> ways;
   for (const double size : {0.5, 1.0}) {
     for (const auto& [pan, tilt] :

@@ -20,8 +20,8 @@ namespace flexura {
 /// Decisions of a session by its present knowledge; moves nothing.
 class RigSessionPlan {
  public:
-  RigSessionPlan(const RigModel& believed, const RigSessionConfig& config)
-      : believed_(believed), config_(config) {}
+  RigSessionPlan(const RigModel& nominal, const RigSessionConfig& config)
+      : nominal_(nominal), config_(config) {}
 
   /// Returns the first viewpoint of a camera from its initial one: for an etalon, with the shortest focal
   /// length.
@@ -30,32 +30,32 @@ class RigSessionPlan {
   /// the first pose.
   [[nodiscard]] Eigen::Vector3d target(const RigModel& model) const;
   /// Returns the positions to command from the present ones.
-  [[nodiscard]] WantedRig wanted(const RigModel& model, const std::array<RigStance, 2>& stands) const;
+  [[nodiscard]] DesiredRig desired(const RigModel& model, const std::array<RigStance, 2>& stands) const;
   /// Fills in what is known about the wanted configuration.
-  void know(const RigVariables& variables, const RigCalibration& found, const WantedRig& wanted,
+  void know(const RigVariables& variables, const RigCalibration& found, const DesiredRig& desired,
             RigStep& step) const;
   /// Returns the next look from the present positions and its expected result in words. Excludes looks
   /// similar to one in `missed`, each of one camera, at which too little was visible.
   [[nodiscard]] std::pair<std::optional<ViewCandidate>, std::string> next(
-      const RigProblem& problem, const RigCalibration& found, const WantedRig& wanted,
+      const RigProblem& problem, const RigCalibration& found, const DesiredRig& desired,
       const std::array<RigStance, 2>& stands, const std::vector<ViewCandidate>& missed) const;
   /// Returns why the wanted configuration is not acceptable: both cameras look from about one side, or would
   /// not see the arm. No error as long as the angle is not known.
-  [[nodiscard]] RigHands::Trouble trouble_with(const RigModel& model, const WantedRig& wanted,
+  [[nodiscard]] RigCommander::Error error_with(const RigModel& model, const DesiredRig& desired,
                                                const RigStep& step, const ArmState& home) const;
   /// Returns head turns from the present position for the search of the arm: pan and tilt, rad.
-  [[nodiscard]] std::vector<Eigen::Vector2d> search_ways() const;
+  [[nodiscard]] std::vector<Eigen::Vector2d> search_directions() const;
 
  private:
   [[nodiscard]] std::vector<ViewGoal> goals(const RigVariables& variables, const RigCalibration& found,
-                                            const WantedRig& wanted) const;
+                                            const DesiredRig& desired) const;
   [[nodiscard]] ViewGrid grid(const RigModel& model) const;
   // Three zooms: ratio of focal length, and share of half the image beside its middle.
   [[nodiscard]] std::array<std::array<double, 2>, 3> etalon_zooms(const RigModel& model,
                                                                   std::size_t camera) const;
   [[nodiscard]] bool is_in_view(const RigModel& model, const RigStance& stance, const ArmState& shown) const;
 
-  const RigModel& believed_;
+  const RigModel& nominal_;
   const RigSessionConfig& config_;
 };
 

@@ -19,7 +19,7 @@ ZoomRow row(double ratio, double count) {
 
 // Motor counts that fall from wide to long on the first camera, and rise on the second.
 RigModel rig_of_two_lenses() {
-  RigModel rig = believed_rig();
+  RigModel rig = nominal_rig();
   rig.cameras[0].lens.zoom = {row(1, 9000), row(4, 8000)};
   rig.cameras[1].lens.zoom = {row(1, 0), row(4, 600)};
   rig.cameras[0].initial.zoom = 9000, rig.cameras[1].initial.zoom = 0;
@@ -31,7 +31,7 @@ ViewCandidate look_of(std::size_t camera, const HeadState& head, const Eigen::Ve
 }
 
 TEST(IsLike, GoesByWhatIsSeenOfThePoseAndFromWhere) {
-  const RigModel rig = believed_rig();
+  const RigModel rig = nominal_rig();
   const ViewCandidate look = look_of(0, {.pan = 0.1, .tilt = 0.05, .zoom = 2});
   EXPECT_TRUE(is_like(rig, look, look));
   EXPECT_TRUE(is_like(rig, look_of(0, {.pan = 0.12, .tilt = 0.04, .zoom = 2.1}, {0.03, 0, 0}), look));
@@ -60,42 +60,42 @@ TEST(IsLike, ComparesZoomRatiosAndNotTheMotorsCounts) {
 
 // A session about to choose its next look after three pictures per camera.
 struct Choice {
-  explicit Choice(const RigModel& rig) : believed(rig) {
+  explicit Choice(const RigModel& rig) : nominal(rig) {
     TestRandom random(5);
     config.poses = some_poses(), config.picture.markers = bands();
     RigTrialConfig wrong;
     wrong.turn = 3 * degree, wrong.shift = 0.05;
-    RigTrial trial(true_rig(believed, wrong, random), wrong, random);
+    RigTrial trial(true_rig(nominal, wrong, random), wrong, random);
     for (const ArmState& shown : config.poses) {
       const std::size_t pose = trial.add_pose(shown);
       for (const std::size_t camera : {std::size_t{0}, std::size_t{1}}) {
-        const HeadState start = Camera(believed.cameras[camera]).initial_head();
+        const HeadState start = Camera(nominal.cameras[camera]).initial_head();
         trial.add_image(trial.add_stance({.camera = camera, .head = start}), pose);
       }
     }
-    problem.emplace(believed, rough_prior(believed), trial.seen());
+    problem.emplace(nominal, rough_prior(nominal), trial.seen());
     found = calibrate_rig(*problem);
   }
   [[nodiscard]] std::optional<ViewCandidate> next(const std::vector<ViewCandidate>& missed) const {
-    const RigSessionPlan plan(believed, config);
+    const RigSessionPlan plan(nominal, config);
     const std::array<RigStance, 2> stands = {RigStance{.camera = 0}, RigStance{.camera = 1}};
-    return plan.next(*problem, found, plan.wanted(found.model, stands), stands, missed).first;
+    return plan.next(*problem, found, plan.desired(found.model, stands), stands, missed).first;
   }
 
-  RigModel believed;
+  RigModel nominal;
   RigSessionConfig config;
   std::optional<RigProblem> problem;
   RigCalibration found;
 };
 
 TEST(RigSessionPlan, TriesNoViewAgainThatWasMissed) {
-  const Choice choice(believed_rig());
+  const Choice choice(nominal_rig());
   ASSERT_TRUE(choice.found.is_found) << choice.found.reason;
   std::vector<ViewCandidate> missed;
   for (int i = 0; i < 4; ++i) {
     const auto next = choice.next(missed);
     ASSERT_TRUE(next);
-    for (const ViewCandidate& one : missed) EXPECT_FALSE(is_like(choice.believed, *next, one)) << i;
+    for (const ViewCandidate& one : missed) EXPECT_FALSE(is_like(choice.nominal, *next, one)) << i;
     missed.push_back({next->pose, {next->stances[static_cast<std::size_t>(i % 2)]}});
   }
 }

@@ -112,7 +112,7 @@ Eigen::MatrixXd goal_rows(std::span<const ViewGoal> goals, Eigen::Index own) {
   Eigen::MatrixXd rows(static_cast<Eigen::Index>(goals.size()), own);
   for (std::size_t i = 0; i < goals.size(); ++i)
     rows.row(static_cast<Eigen::Index>(i)) =
-        goals[i].quantity.gradient.head(own).transpose() / goals[i].wanted;
+        goals[i].quantity.gradient.head(own).transpose() / goals[i].desired;
   return rows;
 }
 
@@ -134,7 +134,8 @@ std::optional<ViewChoice> next_best_view(const RigProblem& problem, const RigCal
     if (!std::isfinite(value) || (best && !(value < best->after))) continue;
     best = ViewChoice{i, value, {}};
     for (std::size_t j = 0; j < goals.size(); ++j)
-      best->sigmas.push_back(goals[j].wanted * std::sqrt(variances.diagonal()[static_cast<Eigen::Index>(j)]));
+      best->sigmas.push_back(goals[j].desired *
+                             std::sqrt(variances.diagonal()[static_cast<Eigen::Index>(j)]));
   }
   return best;
 }

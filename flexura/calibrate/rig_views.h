@@ -31,7 +31,7 @@ struct ViewConfig {
 /// A quantity of the rig's variables to be determined, and how well.
 struct ViewGoal {
   RigQuantity quantity;
-  double wanted = 1;  ///< Sufficient standard deviation, in the quantity's unit; > 0.
+  double desired = 1;  ///< Sufficient standard deviation, in the quantity's unit; > 0.
 };
 
 struct ViewChoice {

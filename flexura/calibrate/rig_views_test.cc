@@ -27,12 +27,12 @@ std::vector<ViewGoal> goals_of(const RigProblem& problem, const RigCalibration& 
   return {{axes_angle(a, b), 0.01 * degree}, {log_focal(a), 0.003}, {log_focal(b), 0.003}};
 }
 
-TEST(NextBestView, ForetellsWhatThePictureWillTell) {
+TEST(NextBestView, PredictsThePicture) {
   TestRandom random(5);
   RigTrialConfig config;
-  RigTrial trial(true_rig(believed_rig(), config, random), config, random);
+  RigTrial trial(true_rig(nominal_rig(), config, random), config, random);
   take_plan(trial, 3);
-  RigProblem problem(believed_rig(), rough_prior(believed_rig()), trial.seen());
+  RigProblem problem(nominal_rig(), rough_prior(nominal_rig()), trial.seen());
   const RigCalibration found = calibrate_rig(problem);
   const std::vector<ViewCandidate> candidates =
       view_candidates(found.model, {.poses = {bent(0.5, 0), bent(0, 0.7), bent(-0.5, 0.4)},
@@ -52,7 +52,7 @@ TEST(NextBestView, ForetellsWhatThePictureWillTell) {
   const ViewCandidate& next = candidates[choice->candidate];
   const std::size_t pose = trial.add_pose(next.pose);
   for (const RigStance& stance : next.stances) trial.add_image(trial.add_stance(stance), pose);
-  RigProblem after(believed_rig(), rough_prior(believed_rig()), trial.seen());
+  RigProblem after(nominal_rig(), rough_prior(nominal_rig()), trial.seen());
   const RigCalibration better = calibrate_rig(after);
   const auto reached = goals_of(after, better);
   for (std::size_t i = 0; i < goals.size(); ++i) {
@@ -63,9 +63,9 @@ TEST(NextBestView, ForetellsWhatThePictureWillTell) {
 
 TEST(NextBestView, HasNoneWhereTheArmIsOutOfView) {
   TestRandom random(8);
-  RigTrial trial(true_rig(believed_rig(), {}, random), {}, random);
+  RigTrial trial(true_rig(nominal_rig(), {}, random), {}, random);
   take_plan(trial, 2);
-  RigProblem problem(believed_rig(), rough_prior(believed_rig()), trial.seen());
+  RigProblem problem(nominal_rig(), rough_prior(nominal_rig()), trial.seen());
   const RigCalibration found = calibrate_rig(problem);
   const std::vector<ViewCandidate> away = {{bent(0, 0), {{0, {1.5, 0, 1}, {}}, {1, {0, 0, 1}, {}}}}};
   EXPECT_FALSE(next_best_view(problem, found, away, goals_of(problem, found)));

@@ -59,11 +59,11 @@ double largest_radius_of(const std::array<double, 5>& distortion) {
   return infinity;
 }
 
-// Returns the point whose radial distortion gives `wanted`; one near the rim if no point does.
-Eigen::Vector2d undistort_radially(const Eigen::Vector2d& wanted, const std::array<double, 5>& distortion,
+// Returns the point whose radial distortion gives `desired`; one near the rim if no point does.
+Eigen::Vector2d undistort_radially(const Eigen::Vector2d& desired, const std::array<double, 5>& distortion,
                                    double largest_radius) {
-  const double radius = wanted.norm();
-  if (!(radius > 0)) return wanted;
+  const double radius = desired.norm();
+  if (!(radius > 0)) return desired;
   const double k1 = distortion[0], k2 = distortion[1], k3 = distortion[4];
   constexpr double beyond = 1e4;
   double low = 0, high = std::min(largest_radius, beyond);
@@ -80,7 +80,7 @@ Eigen::Vector2d undistort_radially(const Eigen::Vector2d& wanted, const std::arr
     r = next > low && next < high ? next : middle;
     if (std::abs(r - last) <= 1e-15 * r) break;
   }
-  return wanted * (r / radius);
+  return desired * (r / radius);
 }
 
 // Distorted coordinates and their derivative by the undistorted ones.
@@ -174,10 +174,10 @@ bool Lens::project_by_point(const Eigen::Vector3d& p_CP, PointProjection& result
 }
 
 std::optional<Eigen::Vector2d> Lens::unproject(const Eigen::Vector2d& pixel) const {
-  Eigen::Vector2d wanted((pixel.x() - intrinsics_.cx) / intrinsics_.fx,
-                         (pixel.y() - intrinsics_.cy) / intrinsics_.fy);
-  if (!wanted.allFinite()) return std::nullopt;
-  if (!intrinsics_.is_distorted()) return wanted;
+  Eigen::Vector2d desired((pixel.x() - intrinsics_.cx) / intrinsics_.fx,
+                          (pixel.y() - intrinsics_.cy) / intrinsics_.fy);
+  if (!desired.allFinite()) return std::nullopt;
+  if (!intrinsics_.is_distorted()) return desired;
   // Starts from the radial part alone, whose inversion always succeeds. Then Newton's method, damped so that
   // the error falls; steps outside the field are pulled back into it.
   constexpr int most_steps = 60;
@@ -186,17 +186,17 @@ std::optional<Eigen::Vector2d> Lens::unproject(const Eigen::Vector2d& pixel) con
     const double radius = normal.norm();
     return radius > largest_radius_ ? Eigen::Vector2d(normal * (largest_radius_ / radius)) : normal;
   };
-  Eigen::Vector2d normal = inside(undistort_radially(wanted, intrinsics_.distortion, largest_radius_));
+  Eigen::Vector2d normal = inside(undistort_radially(desired, intrinsics_.distortion, largest_radius_));
   Distorted distorted = distort(normal, intrinsics_.distortion);
-  double error = (distorted.point - wanted).norm();
-  const double close = tolerance * (1 + wanted.norm());
+  double error = (distorted.point - desired).norm();
+  const double close = tolerance * (1 + desired.norm());
   for (int step = 0; step < most_steps && error > close; ++step) {
-    const Eigen::Vector2d move = distorted.by_point.inverse() * (wanted - distorted.point);
+    const Eigen::Vector2d move = distorted.by_point.inverse() * (desired - distorted.point);
     bool fell = false;
     for (double part = 1; part > 1e-4 && !fell; part /= 2) {
       const Eigen::Vector2d tried = inside(normal + part * move);
       const Distorted there = distort(tried, intrinsics_.distortion);
-      const double new_error = (there.point - wanted).norm();
+      const double new_error = (there.point - desired).norm();
       if (!(new_error < error)) continue;
       normal = tried, distorted = there, error = new_error;
       fell = true;
@@ -204,7 +204,7 @@ std::optional<Eigen::Vector2d> Lens::unproject(const Eigen::Vector2d& pixel) con
     if (!fell) break;
   }
   // At the rim, rounding may keep it from coming closer than this.
-  if (!(error <= 1e-12 * (1 + wanted.norm()))) return std::nullopt;
+  if (!(error <= 1e-12 * (1 + desired.norm()))) return std::nullopt;
   return normal;
 }
 

@@ -100,8 +100,8 @@ std::optional<std::string> MeasuredCamera::other_size(int width, int height) con
                      (*size)[0], (*size)[1], Node{name, {}}.brief());
 }
 
-const Table<ViewDoubt>& fields_of(const ViewDoubt*) {
-  using C = ViewDoubt;
+const Table<ViewPrior>& fields_of(const ViewPrior*) {
+  using C = ViewPrior;
   static const Table<C> table =
       Table<C>("prior",
                "Prior standard deviations of a camera's description. Its errors are then estimated with the "

@@ -46,7 +46,7 @@ struct MeasuredCamera {
   RotationConfig rotation;                             ///< R_WC: C's x right, y down, z forward.
   double gamma = 1;                                    ///< Its values are light to the power 1/gamma.
   std::optional<std::array<std::int64_t, 2>> size;     ///< Width and height of the pictures meant, px.
-  ViewDoubt prior;                                     ///< Of its orientation and focal lengths.
+  ViewPrior prior;                                     ///< Of its orientation and focal lengths.
 
   /// Throws std::invalid_argument as Lens does.
   [[nodiscard]] Lens lens() const;
@@ -62,7 +62,7 @@ struct MeasuredCameras {
   std::vector<MeasuredCamera> camera;
 };
 
-const Table<ViewDoubt>& fields_of(const ViewDoubt*);
+const Table<ViewPrior>& fields_of(const ViewPrior*);
 const Table<MeasuredCamera>& fields_of(const MeasuredCamera*);
 const Table<MeasuredCameras>& fields_of(const MeasuredCameras*);
 

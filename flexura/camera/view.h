@@ -30,7 +30,7 @@ struct View {
 };
 
 /// Prior standard deviations of the error in a camera's description; 0: exact.
-struct ViewDoubt {
+struct ViewPrior {
   double rotation_std = 0;  ///< Of the frame's orientation, about each axis, rad.
   double focal_std = 0;     ///< Of the focal lengths, relative.
 

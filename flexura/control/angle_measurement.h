@@ -10,7 +10,7 @@ namespace flexura {
 /// Quantities that a law measures to get the angles.
 enum class AngleReading : std::uint8_t {
   angles,  ///< theta and q at each node.
-  planes,  ///< Angles in two parallel views of each point of the arm (PlaneSight).
+  planes,  ///< Angles in two parallel views of each point of the arm (PlaneObserver).
 };
 
 /// Measurement of a distributed arm's angles for a law without exact angles.

@@ -99,11 +99,11 @@ TEST(ImageLaw, StepsAsTheLeastSquaresOfTheTallMatrixDo) {
     tall << J, Eigen::MatrixXd::Identity(6, 6) * damping * std::sqrt(J.squaredNorm() / 6);
     Eigen::VectorXd right(rows + 6);
     right << error, Eigen::VectorXd::Zero(6);
-    const Eigen::VectorXd wanted = (std::exp(-3 * dt) - 1) * least_norm_solution(tall, right);
+    const Eigen::VectorXd desired = (std::exp(-3 * dt) - 1) * least_norm_solution(tall, right);
     const ImageStep step = law.step(straight, error, J, dt);
     for (std::size_t i = 0; i < 3; ++i)
-      EXPECT_LE((step.asked.bends[i] - wanted.segment<2>(2 * static_cast<Eigen::Index>(i))).norm(),
-                1e-13 * wanted.norm() / (least * least));
+      EXPECT_LE((step.asked.bends[i] - desired.segment<2>(2 * static_cast<Eigen::Index>(i))).norm(),
+                1e-13 * desired.norm() / (least * least));
   });
 }
 

@@ -65,15 +65,15 @@ ServoEnd run_loop(const ServoLoop& loop, const ArmState& start, const ArmState& 
                   const Asked& asked) {
   ServoEnd ended;
   CommandLimiter limiter(loop.arm, {.step = servo_step, .looks_ahead = false}, start);
-  const ArmState wanted = loop.mechanism(target);
+  const ArmState desired = loop.mechanism(target);
   for (int k = 0; k < static_cast<int>(seconds / servo_step); ++k) {
     const ArmState now = loop.mechanism(limiter.sent());
-    if (shape_error(loop.arm, now, wanted) > 0.02) ended.settled = k * servo_step;
-    const std::optional<ArmState> wish = asked(k, now, limiter.sent());
-    if (!wish) return ended.is_lost = true, ended;
-    (void)limiter.next(*wish);
+    if (shape_error(loop.arm, now, desired) > 0.02) ended.settled = k * servo_step;
+    const std::optional<ArmState> requested = asked(k, now, limiter.sent());
+    if (!requested) return ended.is_lost = true, ended;
+    (void)limiter.next(*requested);
   }
-  ended.error = shape_error(loop.arm, loop.mechanism(limiter.sent()), wanted);
+  ended.error = shape_error(loop.arm, loop.mechanism(limiter.sent()), desired);
   return ended;
 }
 
@@ -94,7 +94,7 @@ ServoEnd servo(const ServoLoop& loop, const ArmState& start, const ArmState& tar
                JacobianEstimate estimate = {}) {
   const ImageLaw law = loop.law();
   FeatureImages images(loop.arm, loop.set);
-  Eigen::VectorXd desired, seen, believed;
+  Eigen::VectorXd desired, seen, nominal;
   if (!images.values(loop.mechanism(target), loop.truth, desired)) return {.is_lost = true};
   std::optional<Eigen::VectorXd> x_before, f_before;
   const bool learns = !std::holds_alternative<std::monostate>(estimate);
@@ -107,7 +107,7 @@ ServoEnd servo(const ServoLoop& loop, const ArmState& start, const ArmState& tar
                       J = learned(estimate, x - x_before.value_or(x),
                                   feature_error(loop.set, seen, f_before.value_or(seen)));
                     } else {
-                      if (!images.derive(sent, loop.model, believed, by_state)) return std::nullopt;
+                      if (!images.derive(sent, loop.model, nominal, by_state)) return std::nullopt;
                       J = law.by_variables(by_state);
                     }
                     x_before = x, f_before = seen;

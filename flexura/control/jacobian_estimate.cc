@@ -32,12 +32,12 @@ bool BroydenEstimate::learn(const Eigen::VectorXd& dx, const Eigen::VectorXd& df
   return true;
 }
 
-RecursiveEstimate::RecursiveEstimate(Eigen::MatrixXd J, double forgetting, double doubt, double least)
-    : J_(std::move(J)), forgetting_(forgetting), doubt_(doubt), least_(least) {
-  require_numbers(forgetting > 0 && forgetting <= 1 && doubt > 0 && std::isfinite(doubt) && least > 0 &&
-                      std::isfinite(least),
+RecursiveEstimate::RecursiveEstimate(Eigen::MatrixXd J, double forgetting, double max_variance, double least)
+    : J_(std::move(J)), forgetting_(forgetting), max_variance_(max_variance), least_(least) {
+  require_numbers(forgetting > 0 && forgetting <= 1 && max_variance > 0 && std::isfinite(max_variance) &&
+                      least > 0 && std::isfinite(least),
                   J_);
-  P_ = doubt * Eigen::MatrixXd::Identity(J_.cols(), J_.cols());
+  P_ = max_variance * Eigen::MatrixXd::Identity(J_.cols(), J_.cols());
 }
 
 bool RecursiveEstimate::learn(const Eigen::VectorXd& dx, const Eigen::VectorXd& df) {
@@ -51,7 +51,7 @@ bool RecursiveEstimate::learn(const Eigen::VectorXd& dx, const Eigen::VectorXd& 
   // Keeps the matrix symmetric despite rounding, and limits its growth at rest.
   P_ = (0.5 * (P_ + P_.transpose())).eval();
   const double most = P_.diagonal().maxCoeff();
-  if (most > doubt_) P_ *= doubt_ / most;
+  if (most > max_variance_) P_ *= max_variance_ / most;
   return true;
 }
 

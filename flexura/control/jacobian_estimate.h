@@ -30,11 +30,11 @@ class BroydenEstimate {
 /// (L. Ljung, "System Identification", 11.2).
 class RecursiveEstimate {
  public:
-  /// forgetting in (0, 1]: factor on the weight of a motion for each later one. `doubt` > 0: initial
+  /// forgetting in (0, 1]: factor on the weight of a motion for each later one. `max_variance` > 0: initial
   /// covariance of J, in units of motion^-2. It is also the upper limit, so that the covariance does not grow
   /// without bound while the arm rests. Throws std::invalid_argument for numbers out of these ranges or not
   /// finite.
-  explicit RecursiveEstimate(Eigen::MatrixXd J, double forgetting = 0.95, double doubt = 1e4,
+  explicit RecursiveEstimate(Eigen::MatrixXd J, double forgetting = 0.95, double max_variance = 1e4,
                              double least = 1e-6);
 
   [[nodiscard]] const Eigen::MatrixXd& jacobian() const { return J_; }
@@ -43,7 +43,7 @@ class RecursiveEstimate {
 
  private:
   Eigen::MatrixXd J_, P_;
-  double forgetting_, doubt_, least_;
+  double forgetting_, max_variance_, least_;
 };
 
 }  // namespace flexura

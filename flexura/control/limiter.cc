@@ -9,11 +9,11 @@
 #include <stdexcept>
 #include <utility>
 
-#include "flexura/control/limiter_ways.h"
+#include "flexura/control/limiter_paths.h"
 #include "flexura/kinematics/motion.h"
 #include "flexura/kinematics/motors.h"
 #include "flexura/kinematics/tendons.h"
-#include "flexura/model/arm_way.h"
+#include "flexura/model/arm_difference.h"
 #include "flexura/safety/motion_check.h"
 
 namespace flexura {
@@ -60,15 +60,15 @@ LimitedCommand CommandLimiter::next(const ArmState& asked) {
   }
   if (fault_) return brake();
   std::string reason;
-  const ArmState wanted = within_limits(asked, reason);
-  Plan whole = plan(wanted, config_.looks_ahead);
+  const ArmState desired = within_limits(asked, reason);
+  Plan whole = plan(desired, config_.looks_ahead);
   if (whole.is_allowed) return send(std::move(whole), reason, reason.empty());
   if (reason.empty()) reason = whole.reason;
   // From braking, which is allowed, as far towards the law's command as allowed.
-  const ArmState braked = way_to_rest_.empty() ? sent_ : way_to_rest_.front();
+  const ArmState braked = path_to_rest_.empty() ? sent_ : path_to_rest_.front();
   double low = 0, high = 1;
   Plan best;
-  const ArmWay way = minus(wanted, braked);
+  const ArmDifference way = minus(desired, braked);
   for (int i = 0; i < 40 && high - low > 1e-3 * high; ++i) {
     const double middle = 0.5 * (low + high);
     Plan trial = plan(plus(braked, way, middle), false);
@@ -106,7 +106,7 @@ ArmState CommandLimiter::within_braking(const ArmState& asked, double rate) cons
 
 LimitedCommand CommandLimiter::brake() {
   Plan plan;
-  plan.way = way_to_rest_.empty() ? std::vector<ArmState>{sent_} : way_to_rest_;
+  plan.way = path_to_rest_.empty() ? std::vector<ArmState>{sent_} : path_to_rest_;
   plan.is_allowed = true;
   return send(std::move(plan), fault_ ? fault_->reason : std::string(), false);
 }
@@ -126,7 +126,7 @@ LimitedCommand CommandLimiter::send(Plan plan, std::string reason, bool is_untou
   command.is_at_rest = plan.way.size() == 1 && plan.way.front() == sent_;
   if (config_.drive) last_step_ = motor_step(sent_, last_step_.motors, plan.way.front());
   sent_ = plan.way.front();
-  way_to_rest_.assign(plan.way.begin() + 1, plan.way.end());
+  path_to_rest_.assign(plan.way.begin() + 1, plan.way.end());
   ++steps_;
   command.state = sent_;
   command.is_untouched = is_untouched;
@@ -165,7 +165,7 @@ CommandLimiter::Plan CommandLimiter::plan(const ArmState& next, bool looks_ahead
       if (plan.reason.empty()) plan.reason = "the motors' acceleration";
       return plan;
     }
-    plan.way = way_of(sent_, next, count);
+    plan.way = path_of(sent_, next, count);
     plan.reason = breach(plan.way);
     if (plan.reason.empty() || fewest == 1) break;
   }
@@ -237,7 +237,7 @@ std::string CommandLimiter::breach_of_motors(const std::vector<ArmState>& way) c
       };
       // A stop is a hard limit: the list has to stay within it with backlash and rounding. If the arm starts
       // nearer to it than that, it must not get nearer.
-      const double beyond = drive.axes[i].play() + 0.5;
+      const double beyond = drive.axes[i].backlash_steps() + 0.5;
       const double already = std::min(std::abs(before.motors[at]), motor.max_position);
       if (!(std::abs(now.motors[at]) <= std::max(motor.max_position - beyond, already)))
         return say("position");

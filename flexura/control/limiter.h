@@ -85,7 +85,7 @@ class CommandLimiter {
   /// Returns the last command.
   [[nodiscard]] const ArmState& sent() const { return sent_; }
   /// Returns true if the arm stays at the last command.
-  [[nodiscard]] bool is_at_rest() const { return way_to_rest_.empty(); }
+  [[nodiscard]] bool is_at_rest() const { return path_to_rest_.empty(); }
 
  private:
   struct Plan {
@@ -113,7 +113,7 @@ class CommandLimiter {
   LimiterConfig config_;
   std::vector<LimitWatch> limits_;
   ArmState sent_;
-  std::vector<ArmState> way_to_rest_;
+  std::vector<ArmState> path_to_rest_;
   double row_ = 0, turning_time_ = 0;  // In s.
   MotorStep last_step_;                // Empty without drives.
   long steps_ = 0;

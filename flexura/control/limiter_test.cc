@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-#include "flexura/control/limiter_ways.h"
+#include "flexura/control/limiter_paths.h"
 #include "flexura/kinematics/motion.h"
 #include "flexura/kinematics/motors.h"
 #include "flexura/kinematics/tendons.h"
@@ -60,13 +60,13 @@ Drive limited_drive(TestRandom& random, const Arm& arm) {
 }
 
 // Returns commands of a law: a random walk, with jumps, beyond every limit at times.
-ArmState next_wish(TestRandom& random, const Arm& arm, const ArmState& before) {
-  ArmState wish = before;
+ArmState next_request(TestRandom& random, const Arm& arm, const ArmState& before) {
+  ArmState requested = before;
   const double size = random.integer(0, 9) == 0 ? 3 : 0.1;
-  for (Eigen::Vector2d& bend : wish.bends) bend += size * random.vector<2>(-1, 1);
+  for (Eigen::Vector2d& bend : requested.bends) bend += size * random.vector<2>(-1, 1);
   for (std::size_t i = 0; i < arm.sections.size(); ++i)
-    if (arm.sections[i].stretch_limits[0] < 1) wish.stretches[i] = random.uniform(0.7, 1.4);
-  return wish;
+    if (arm.sections[i].stretch_limits[0] < 1) requested.stretches[i] = random.uniform(0.7, 1.4);
+  return requested;
 }
 
 // Returns all findings of a run's check in a sequence of commands.
@@ -109,13 +109,13 @@ TEST(Limiter, SendsNothingThatBreaksALimitWhateverIsAskedFor) {
     const ArmState straight = ArmState::straight(arm.sections.size());
     CommandLimiter limiter(arm, config, straight);
     std::vector<ArmState> sent{straight};
-    ArmState wish = straight;
+    ArmState requested = straight;
     for (int i = 0; i < 60; ++i) {
-      wish = next_wish(random, arm, wish);
-      const LimitedCommand command = limiter.next(wish);
+      requested = next_request(random, arm, requested);
+      const LimitedCommand command = limiter.next(requested);
       EXPECT_EQ(command.is_untouched, command.reason.empty());
       held_back += command.reason.empty() ? 0 : 1;
-      for (std::size_t k = 0; k < wish.bends.size(); ++k)
+      for (std::size_t k = 0; k < requested.bends.size(); ++k)
         if (command.state.bends[k] != sent.back().bends[k]) ++moved;
       sent.push_back(command.state);
     }
@@ -137,11 +137,11 @@ TEST(Limiter, KeepsOffObstaclesAndOffTheArmItself) {
     const ArmState straight = ArmState::straight(arm.sections.size());
     CommandLimiter limiter(arm, config, straight);
     std::vector<ArmState> sent{straight};
-    ArmState wish = straight;
+    ArmState requested = straight;
     for (int i = 0; i < 40; ++i) {
       if (i % 10 == 0)
-        for (Eigen::Vector2d& bend : wish.bends) bend = 2.5 * random.vector<2>(-1, 1);
-      const LimitedCommand command = limiter.next(wish);
+        for (Eigen::Vector2d& bend : requested.bends) bend = 2.5 * random.vector<2>(-1, 1);
+      const LimitedCommand command = limiter.next(requested);
       if (command.reason.find("contact") != std::string::npos) ++stopped;
       sent.push_back(command.state);
     }
@@ -160,13 +160,13 @@ TEST(Limiter, PassesWhatIsWithinTheLimitsBitForBit) {
     const ArmState straight = ArmState::straight(arm.sections.size());
     CommandLimiter limiter(arm, config, straight);
     for (int i = 1; i < 90; ++i) {
-      ArmState wish = straight;
+      ArmState requested = straight;
       const double share = 0.004 * (1 - std::cos(0.05 * i));
-      for (Eigen::Vector2d& bend : wish.bends) bend = Eigen::Vector2d(share, -0.3 * share);
-      const LimitedCommand command = limiter.next(wish);
+      for (Eigen::Vector2d& bend : requested.bends) bend = Eigen::Vector2d(share, -0.3 * share);
+      const LimitedCommand command = limiter.next(requested);
       EXPECT_TRUE(command.is_untouched) << command.reason;
-      EXPECT_EQ(command.state.bends, wish.bends);
-      EXPECT_EQ(command.state.stretches, wish.stretches);
+      EXPECT_EQ(command.state.bends, requested.bends);
+      EXPECT_EQ(command.state.stretches, requested.stretches);
     }
   });
 }
@@ -179,14 +179,14 @@ TEST(Limiter, ArrivesAtAWishWithinTheLimits) {
     for (Axis& axis : config.drive->axes) {
       axis.motor.max_position = std::numeric_limits<double>::infinity();
     }
-    ArmState wish = ArmState::straight(arm.sections.size());
-    CommandLimiter limiter(arm, config, wish);
-    for (Eigen::Vector2d& bend : wish.bends) bend = random.vector<2>(-0.3, 0.3);
+    ArmState requested = ArmState::straight(arm.sections.size());
+    CommandLimiter limiter(arm, config, requested);
+    for (Eigen::Vector2d& bend : requested.bends) bend = random.vector<2>(-0.3, 0.3);
     bool arrived = false;
-    for (int i = 0; i < 3000 && !arrived; ++i) arrived = limiter.next(wish).is_at_rest;
+    for (int i = 0; i < 3000 && !arrived; ++i) arrived = limiter.next(requested).is_at_rest;
     EXPECT_TRUE(arrived);
-    EXPECT_EQ(limiter.sent().bends, wish.bends);
-    EXPECT_TRUE(limiter.next(wish).is_untouched);
+    EXPECT_EQ(limiter.sent().bends, requested.bends);
+    EXPECT_TRUE(limiter.next(requested).is_untouched);
   });
 }
 
@@ -201,14 +201,14 @@ TEST(Limiter, GoesNoFasterThanItsMotorsBrakeInTheWayThatIsLeft) {
     config.drive->disks.reset();
     const ArmState straight = ArmState::straight(arm.sections.size());
     const CommandLimiter limiter(arm, config, straight);
-    ArmState wish = straight;
-    for (Eigen::Vector2d& bend : wish.bends) bend = random.vector<2>(-0.3, 0.3);
+    ArmState requested = straight;
+    for (Eigen::Vector2d& bend : requested.bends) bend = random.vector<2>(-0.3, 0.3);
     const double rate = random.uniform(1, 5);
-    const ArmState slow = limiter.within_braking(wish, rate);
+    const ArmState slow = limiter.within_braking(requested, rate);
     const auto motors = [&](const ArmState& state) {
       return motor_positions(*config.drive, tendon_displacements(arm, *config.drive, state));
     };
-    const std::vector<double> begun = motors(straight), far = motors(wish), near = motors(slow);
+    const std::vector<double> begun = motors(straight), far = motors(requested), near = motors(slow);
     double most = 0;
     for (std::size_t i = 0; i < begun.size(); ++i) {
       const double speed = std::abs(near[i] - begun[i]) / config.step;
@@ -216,7 +216,7 @@ TEST(Limiter, GoesNoFasterThanItsMotorsBrakeInTheWayThatIsLeft) {
       const double braking = 0.5 * motor_acceleration(config.drive->axes[i].motor);
       most = std::max(most, speed * speed / (2 * braking * left));
     }
-    const bool is_slowed = slow.bends != wish.bends;
+    const bool is_slowed = slow.bends != requested.bends;
     slowed += is_slowed ? 1 : 0;
     EXPECT_LE(most, 1 + 1e-6);
     EXPECT_GE(most, is_slowed ? 1 - 1e-6 : 0);
@@ -232,13 +232,13 @@ TEST(Limiter, StopsAtAFaultAndKeepsWhatWasKnown) {
     const ArmState straight = ArmState::straight(arm.sections.size());
     CommandLimiter limiter(arm, config, straight);
     std::vector<ArmState> sent{straight};
-    ArmState wish = straight, seen = straight;
-    for (Eigen::Vector2d& bend : wish.bends) bend = random.vector<2>(-2, 2);
-    for (int i = 0; i < 6; ++i) sent.push_back(limiter.next(wish).state);
+    ArmState requested = straight, seen = straight;
+    for (Eigen::Vector2d& bend : requested.bends) bend = random.vector<2>(-2, 2);
+    for (int i = 0; i < 6; ++i) sent.push_back(limiter.next(requested).state);
     seen.bends[0] = {0.123, 0};
     limiter.observe(seen);
     const int kind = random.integer(0, 3);
-    ArmState bad = wish;
+    ArmState bad = requested;
     if (kind == 0) bad.bends[0].x() = std::nan("");
     if (kind == 1) bad.stretches[0] = std::numeric_limits<double>::infinity();
     if (kind == 2) bad.bends.emplace_back(0, 0);
@@ -252,15 +252,16 @@ TEST(Limiter, StopsAtAFaultAndKeepsWhatWasKnown) {
     EXPECT_NEAR(limiter.fault()->time, 0.3, 1e-12);
     EXPECT_EQ(limiter.fault()->sent.bends, before.bends);
     EXPECT_EQ(limiter.fault()->observed->bends, seen.bends);
-    EXPECT_EQ(limiter.fault()->asked->bends.size(), kind == 2 ? wish.bends.size() + 1 : wish.bends.size());
+    EXPECT_EQ(limiter.fault()->asked->bends.size(),
+              kind == 2 ? requested.bends.size() + 1 : requested.bends.size());
     // For any commands of the law, the arm must come to rest, within all limits, and stay.
     for (int i = 0; i < 300 && !limiter.is_at_rest(); ++i) {
       EXPECT_THROW(limiter.reset(), std::logic_error);
-      sent.push_back(limiter.next(wish).state);
+      sent.push_back(limiter.next(requested).state);
     }
     const ArmState rest = limiter.sent();
     for (int i = 0; i < 3; ++i) {
-      const LimitedCommand command = limiter.next(wish);
+      const LimitedCommand command = limiter.next(requested);
       EXPECT_TRUE(command.is_at_rest);
       EXPECT_EQ(command.state.bends, rest.bends);
       EXPECT_FALSE(command.reason.empty());
@@ -269,7 +270,7 @@ TEST(Limiter, StopsAtAFaultAndKeepsWhatWasKnown) {
     expect_safe(judged(arm, config, sent));
     limiter.reset();
     EXPECT_FALSE(limiter.fault().has_value());
-    EXPECT_NE(limiter.next(wish).state.bends, rest.bends);
+    EXPECT_NE(limiter.next(requested).state.bends, rest.bends);
   });
 }
 
@@ -322,7 +323,7 @@ TEST(Limiter, BeginsAtAMotorsStopAndGoesNoNearer) {
     const double share = random.uniform(0, 1);
     for (std::size_t i = 0; i < begun.size(); ++i) {
       Axis& axis = config.drive->axes[i];
-      axis.motor.max_position = std::abs(begun[i]) + share * (axis.play() + 0.5);
+      axis.motor.max_position = std::abs(begun[i]) + share * (axis.backlash_steps() + 0.5);
     }
     CommandLimiter limiter(arm, config, start);
     ArmState farther = start, back = start;
@@ -334,10 +335,10 @@ TEST(Limiter, BeginsAtAMotorsStopAndGoesNoNearer) {
         left = std::min(left, std::abs(begun[i]) - std::abs(now[i]));
       return left;
     };
-    const auto steer = [&](const ArmState& wish) {
+    const auto steer = [&](const ArmState& requested) {
       ArmState sent;
       for (int i = 0; i < 100; ++i) {
-        sent = limiter.next(wish).state;
+        sent = limiter.next(requested).state;
         EXPECT_GE(least_left(sent), -1e-6);
       }
       return least_left(sent);

@@ -10,12 +10,13 @@ PlaneView plane_view(double theta, double q) {
   return {theta, std::atan2(std::sin(q), std::cos(theta) * std::cos(q))};
 }
 
-bool planes_tell(const Eigen::Vector2d& measured, const Eigen::Vector2d& desired) {
-  const auto is_told = [](const Eigen::Vector2d& angles) {
+bool planes_determine(const Eigen::Vector2d& measured, const Eigen::Vector2d& desired) {
+  const auto is_determined = [](const Eigen::Vector2d& angles) {
     return !is_singular_for_planes(angles[0]) && !is_singular_for_planes(angles[1]) &&
            std::cos(angles[1]) > 0;
   };
-  return is_told(measured) && is_told(desired) && std::cos(measured[0]) * std::cos(desired[0]) > 0 &&
+  return is_determined(measured) && is_determined(desired) &&
+         std::cos(measured[0]) * std::cos(desired[0]) > 0 &&
          std::abs(measured[0] - desired[0]) < std::numbers::pi;
 }
 

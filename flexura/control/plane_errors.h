@@ -24,7 +24,7 @@ struct PlaneError {
 /// rad. Both must be at least 10 degrees from a quarter turn of either angle, with no quarter turn of theta
 /// between them. Otherwise, both pictures have to be triangulated. Azimuths are continuous along their way: a
 /// whole turn more is another direction.
-[[nodiscard]] bool planes_tell(const Eigen::Vector2d& measured, const Eigen::Vector2d& desired);
+[[nodiscard]] bool planes_determine(const Eigen::Vector2d& measured, const Eigen::Vector2d& desired);
 
 /// Returns true if one view sees the direction along +Y and the other one along -Y, which noise may cause.
 [[nodiscard]] bool planes_contradict(const PlaneView& seen);

@@ -35,14 +35,14 @@ TEST(PlaneErrors, AreTheDerivativesOfTheViewsReading) {
 }
 
 TEST(PlaneErrors, TellNothingWithin10DegreesOfTheQuarterTurn) {
-  const auto tells = [](double theta, double theta_d) {
-    return planes_tell({theta * degree, 20 * degree}, {theta_d * degree, 0});
+  const auto determines = [](double theta, double theta_d) {
+    return planes_determine({theta * degree, 20 * degree}, {theta_d * degree, 0});
   };
-  EXPECT_TRUE(tells(79.9, 0));
-  EXPECT_FALSE(tells(80.1, 0));
-  EXPECT_FALSE(tells(0, 89));
-  EXPECT_FALSE(tells(-95, -120));
-  EXPECT_TRUE(tells(120, 120));
+  EXPECT_TRUE(determines(79.9, 0));
+  EXPECT_FALSE(determines(80.1, 0));
+  EXPECT_FALSE(determines(0, 89));
+  EXPECT_FALSE(determines(-95, -120));
+  EXPECT_TRUE(determines(120, 120));
 }
 
 }  // namespace

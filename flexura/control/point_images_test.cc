@@ -53,9 +53,9 @@ TEST(PointImages, AreThoseOfTheBackbonesJacobian) {
     Eigen::MatrixXd by_state(2 * images.count(), images.columns());
     ASSERT_TRUE(images.see(view, pixels, by_state));
     ASSERT_TRUE(images.see(view, alone));
-    const Eigen::MatrixXd wanted = multiplied_out(arm, state, view, shares);
-    worst = std::max(worst, (by_state - wanted).cwiseAbs().maxCoeff());
-    EXPECT_LE((by_state - wanted).cwiseAbs().maxCoeff(), 1e-12 * wanted.cwiseAbs().maxCoeff());
+    const Eigen::MatrixXd desired = multiplied_out(arm, state, view, shares);
+    worst = std::max(worst, (by_state - desired).cwiseAbs().maxCoeff());
+    EXPECT_LE((by_state - desired).cwiseAbs().maxCoeff(), 1e-12 * desired.cwiseAbs().maxCoeff());
     EXPECT_LE((pixels - alone).cwiseAbs().maxCoeff(), 1e-11);
     const BackboneJacobian backbone(arm, state);
     for (Eigen::Index i = 0; i < images.count(); ++i) {

@@ -138,7 +138,7 @@ TEST(PotentialLaw, BringsLengthsToTheirTargetsToo) {
 
 // A run of a law that violates a condition: violations that it reports, and result of the run.
 struct Violated {
-  std::vector<std::string> said;
+  std::vector<std::string> reported;
   LyapunovVerdict shown;
   double off = 0;  // In rad, at the end.
 };
@@ -147,7 +147,7 @@ Violated violated(const DistributedArm& arm, const PotentialGains& gains) {
   const PotentialLaw law(arm, target, gains);
   Eigen::VectorXd end;
   Violated result;
-  result.said = law.violations();
+  result.reported = law.violations();
   result.shown = watched_run(arm, law, bent(arm, 0.3, -0.2), 3, end);
   result.off = (end - target).cwiseAbs().maxCoeff();
   return result;
@@ -156,23 +156,23 @@ Violated violated(const DistributedArm& arm, const PotentialGains& gains) {
 TEST(PotentialLaw, FailsWithItsReasonWhereAConditionIsViolated) {
   const DistributedArm arm = small_arm();
   const Violated good = violated(arm, {});
-  EXPECT_THAT(good.said, IsEmpty());
+  EXPECT_THAT(good.reported, IsEmpty());
   EXPECT_THAT(good.shown.reasons, IsEmpty());
   EXPECT_LE(good.off, 1e-2);
 
   const Violated excited = violated(arm, {.damping = -0.3 * Eigen::Matrix2d::Identity()});
-  EXPECT_THAT(excited.said, Contains(HasSubstr("K is not positive")));
+  EXPECT_THAT(excited.reported, Contains(HasSubstr("K is not positive")));
   EXPECT_THAT(excited.shown.reasons, Contains(HasSubstr("K is not positive")));
   EXPECT_FALSE(excited.shown.is_monotone);
   EXPECT_FALSE(excited.shown.is_settled);
 
   const Violated undamped = violated(arm, {.damping = Eigen::Matrix2d::Zero()});
-  EXPECT_THAT(undamped.said, Contains(HasSubstr("K is not positive")));
+  EXPECT_THAT(undamped.reported, Contains(HasSubstr("K is not positive")));
   EXPECT_THAT(undamped.shown.reasons, Contains(HasSubstr("damping took none")));
   EXPECT_FALSE(undamped.shown.is_settled);
 
   const Violated heavy = violated(arm, {.gravity_share = 0});
-  EXPECT_THAT(heavy.said, Contains(HasSubstr("gravity is compensated to 0 %")));
+  EXPECT_THAT(heavy.reported, Contains(HasSubstr("gravity is compensated to 0 %")));
   EXPECT_THAT(heavy.shown.reasons, Contains(HasSubstr("gravity is not compensated: 100 %")));
   EXPECT_GT(heavy.off, 0.05);
 
@@ -181,18 +181,18 @@ TEST(PotentialLaw, FailsWithItsReasonWhereAConditionIsViolated) {
   EXPECT_GT(lifted.off, 0.1);
 
   const Violated stiff = violated(small_arm(4), {.elasticity = ElasticityRule::ignored});
-  EXPECT_THAT(stiff.said, Contains(HasSubstr("elasticity")));
+  EXPECT_THAT(stiff.reported, Contains(HasSubstr("elasticity")));
   EXPECT_THAT(stiff.shown.reasons, Contains(HasSubstr("elasticity is not compensated: 100 %")));
   EXPECT_GT(stiff.off, 0.05);
 
   const Violated wrong = violated(arm, {.sign = -1});
-  EXPECT_THAT(wrong.said, Contains(HasSubstr("sign")));
+  EXPECT_THAT(wrong.reported, Contains(HasSubstr("sign")));
   EXPECT_THAT(wrong.shown.reasons, Contains(HasSubstr("leads away")));
   EXPECT_GT(wrong.off, 0.5);
 
   for (const Violated& one : {excited, undamped, heavy, lifted, stiff, wrong}) {
     EXPECT_FALSE(one.shown.is_good());
-    EXPECT_FALSE(one.said.empty());
+    EXPECT_FALSE(one.reported.empty());
     EXPECT_FALSE(one.shown.is_settled && one.shown.is_monotone && one.shown.is_balanced);
   }
 }

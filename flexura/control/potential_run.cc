@@ -61,9 +61,9 @@ double PotentialRun::force(const DistributedArm& arm, const Eigen::VectorXd& x, 
     law_.force(arm, x, v, Q);
   }
   if (given_.size() > 0) {
-    wanted_ = Q;
-    Q.noalias() = given_ * wanted_;
-    largest_ = std::max(largest_, wanted_.norm()), left_over_ = std::max(left_over_, (wanted_ - Q).norm());
+    desired_ = Q;
+    Q.noalias() = given_ * desired_;
+    largest_ = std::max(largest_, desired_.norm()), left_over_ = std::max(left_over_, (desired_ - Q).norm());
   }
   // No step goes beyond: the last one ends just before it.
   if (!is_regular(arm)) Q.setConstant(std::numeric_limits<double>::quiet_NaN());

@@ -8,7 +8,7 @@
 #include "flexura/control/angle_measurement.h"
 #include "flexura/control/distributed_arm.h"
 #include "flexura/control/lyapunov_monitor.h"
-#include "flexura/control/plane_sight.h"
+#include "flexura/control/plane_observer.h"
 #include "flexura/control/potential_law.h"
 
 namespace flexura {
@@ -41,7 +41,7 @@ class PotentialRun {
   /// Returns the largest part of the law's force that the drives could not produce, share of the largest
   /// force.
   [[nodiscard]] double left_over() const { return largest_ > 0 ? left_over_ / largest_ : 0; }
-  /// Returns PlaneSight::triangulated; 0 if the law does not use two planes.
+  /// Returns PlaneObserver::triangulated; 0 if the law does not use two planes.
   [[nodiscard]] double triangulated() const { return planes_ ? planes_->triangulated() : 0; }
   /// Returns the current energies. If elasticity is shaped, V_e is part of Pi and 0 here.
   [[nodiscard]] LyapunovSample sample() const;
@@ -54,9 +54,9 @@ class PotentialRun {
 
   PotentialLaw law_;
   std::optional<MeasuredCoordinates> measured_;
-  std::optional<PlaneSight> planes_;
+  std::optional<PlaneObserver> planes_;
   Eigen::MatrixXd given_;               // Produced part of a force: G G^+. Empty: all of it.
-  Eigen::VectorXd wanted_;              // A force before this projection.
+  Eigen::VectorXd desired_;             // A force before this projection.
   double largest_ = 0, left_over_ = 0;  // |Q|, |Q - G G^+ Q|.
   DistributedArm seen_;                 // Set to the last measured shape.
   Eigen::VectorXd seen_x_;              // Coordinates of seen_.

@@ -66,14 +66,14 @@ TEST(ShapeFeatures, HaveTheDerivativesOfTheirValues) {
     Eigen::MatrixXd by_state;
     if (!images.derive(state, views, desired, by_state)) return;  // Outside the lens's view.
     ++seen;
-    const auto wanted = numerical_jacobian(
+    const auto desired = numerical_jacobian(
         [&](const Eigen::VectorXd& q) -> Eigen::VectorXd {
           EXPECT_TRUE(images.values(unpacked(q), views, there));
           return feature_error(set, there, desired);
         },
         packed(state), 1e-3);
     for (Eigen::Index row = 0; row < desired.size(); ++row)
-      EXPECT_LE((by_state - wanted.value).row(row).norm(), 1e-6 * (1 + wanted.value.row(row).norm()))
+      EXPECT_LE((by_state - desired.value).row(row).norm(), 1e-6 * (1 + desired.value.row(row).norm()))
           << "row " << row;
   });
   EXPECT_GE(seen, 30 / one_case_of);

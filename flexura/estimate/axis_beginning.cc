@@ -9,7 +9,7 @@
 
 namespace flexura {
 
-std::optional<Aside> aside_of_beginning(const Sighting& seen, const Eigen::Vector2d& pixel) {
+std::optional<Aside> aside_of_beginning(const Observation& seen, const Eigen::Vector2d& pixel) {
   constexpr double stretch = 40, before = 15, behind = 5;  // px
   constexpr std::size_t fewest = 8;
   const auto& points = seen.points;

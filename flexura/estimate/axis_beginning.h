@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <optional>
 
-#include "flexura/estimate/sighting.h"
+#include "flexura/estimate/observation.h"
 
 namespace flexura {
 
@@ -17,6 +17,6 @@ struct Aside {
 /// extended beyond its first point by a parabola through its first 40 px, or eight points. Empty if the
 /// visible curve is shorter or turns by more than half a radian there. Also empty if the pixel is not near
 /// the beginning: from 15 px before it to 5 px behind.
-[[nodiscard]] std::optional<Aside> aside_of_beginning(const Sighting& seen, const Eigen::Vector2d& pixel);
+[[nodiscard]] std::optional<Aside> aside_of_beginning(const Observation& seen, const Eigen::Vector2d& pixel);
 
 }  // namespace flexura

@@ -10,8 +10,8 @@ namespace flexura {
 namespace {
 
 // Points on a circle, `spacing` px apart along it, from (100, 100) on towards `way` (rad); curvature in 1/px.
-Sighting arc(double spacing, double length, double curvature, double way = 0.3) {
-  Sighting seen;
+Observation arc(double spacing, double length, double curvature, double way = 0.3) {
+  Observation seen;
   for (double s = 0; s <= length; s += spacing) {
     const double turn = curvature * s, chord = turn == 0 ? s : s * std::sin(turn / 2) / (turn / 2);
     seen.points.push_back(
@@ -30,7 +30,7 @@ Eigen::Vector2d beside(double along, double across, double way = 0.3) {
 // For any size of the picture, and hence any distance between its points.
 TEST(AxisBeginning, TellsHowFarAPixelIsAside) {
   for (const double spacing : {1.0, 3.0, 8.0, 24.0}) {
-    const Sighting seen = arc(spacing, 100 * spacing, 0.2 / (100 * spacing));
+    const Observation seen = arc(spacing, 100 * spacing, 0.2 / (100 * spacing));
     const auto on = aside_of_beginning(seen, beside(-2, 0)), off = aside_of_beginning(seen, beside(-2, 1.5));
     ASSERT_TRUE(on && off) << spacing;
     EXPECT_LT(on->distance, 0.01) << spacing;
@@ -53,7 +53,7 @@ TEST(AxisBeginning, SaysNothingOfWhatIsShortOrCurledOrElsewhere) {
 
 // A kink, which is no parabola, is reported as uncertain.
 TEST(AxisBeginning, CountsWhatIsNoParabola) {
-  Sighting kinked = arc(2, 100, 0);
+  Observation kinked = arc(2, 100, 0);
   for (std::size_t i = 10; i < kinked.points.size(); ++i)
     kinked.points[i].pixel +=
         0.3 * (static_cast<double>(i) - 10) * Eigen::Vector2d(-std::sin(0.3), std::cos(0.3));

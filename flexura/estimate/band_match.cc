@@ -25,7 +25,7 @@ using Places = std::vector<Place>;
 
 void sort(Places& places) { std::ranges::stable_sort(places, {}, &Place::s); }
 
-Places places_of(const Sighting& seen, const SpaceCurve& curve, const Shape& shape, std::size_t number) {
+Places places_of(const Observation& seen, const SpaceCurve& curve, const Shape& shape, std::size_t number) {
   CurveImage image;
   Places places;
   if (!image.set(corrected(seen.view, error_of(shape, number)), curve)) return places;
@@ -49,7 +49,7 @@ double spacing(const Places& places, double length) {
 }
 
 // Cost of matching two; leaving both out costs 1.
-double strangeness(const Place& a, const Place& b, double gate) {
+double mismatch(const Place& a, const Place& b, double gate) {
   constexpr double other_color = 120;
   const double off = (a.s - b.s) / gate;
   const double color = a.color && b.color ? (*a.color - *b.color).norm() / other_color : 0;
@@ -65,7 +65,7 @@ Pairs paired(const Places& a, const Places& b, double gate) {
   std::vector<double> costs(rows * columns, 0.0);
   const auto cost = [&](std::size_t i, std::size_t j) -> double& { return costs[i * columns + j]; };
   const auto together = [&](std::size_t i, std::size_t j) {
-    return cost(i - 1, j - 1) + strangeness(a[i - 1], b[j - 1], gate);
+    return cost(i - 1, j - 1) + mismatch(a[i - 1], b[j - 1], gate);
   };
   for (std::size_t i = 0; i < rows; ++i)
     for (std::size_t j = 0; j < columns; ++j) {
@@ -106,31 +106,34 @@ class Matching {
     count_ = markers_.size();
   }
 
-  void add(std::size_t sighting, const Places& seen) {
+  void add(std::size_t observation, const Places& seen) {
     const bool is_first = !is_known_ && markers_.empty();
     std::vector<bool> is_placed(seen.size(), false);
     Pairs pairs;
     if (!is_first) pairs = pairs_with(seen);
     for (const auto& [i, j] : pairs) {
       const Place& marker = markers_[i];
-      looks_.push_back({sighting, seen[j].index, marker.index,
-                        is_known_ ? std::optional<double>(marker.s) : std::nullopt});
+      band_observations_.push_back({observation, seen[j].index, marker.index,
+                                    is_known_ ? std::optional<double>(marker.s) : std::nullopt});
       is_placed[j] = true;
     }
     if (is_known_) return;
     for (std::size_t j = 0; j < seen.size(); ++j) {
       if (is_placed[j]) continue;
-      looks_.push_back({sighting, seen[j].index, count_, std::nullopt});
+      band_observations_.push_back({observation, seen[j].index, count_, std::nullopt});
       markers_.push_back({seen[j].s, seen[j].color, count_++});
     }
     sort(markers_);
   }
 
-  std::vector<BandLook> take() {
-    std::vector<std::size_t> looks(count_, 0);
-    for (const BandLook& look : looks_) ++looks[look.marker];
-    std::erase_if(looks_, [&](const BandLook& look) { return !look.s && looks[look.marker] < 2; });
-    return looks_;
+  std::vector<BandObservation> take() {
+    std::vector<std::size_t> observation_counts(count_, 0);
+    for (const BandObservation& band_observation : band_observations_)
+      ++observation_counts[band_observation.marker];
+    std::erase_if(band_observations_, [&](const BandObservation& band_observation) {
+      return !band_observation.s && observation_counts[band_observation.marker] < 2;
+    });
+    return band_observations_;
   }
 
  private:
@@ -146,40 +149,41 @@ class Matching {
   double length_, sigma_;
   Places markers_;
   std::size_t count_ = 0;
-  std::vector<BandLook> looks_;
+  std::vector<BandObservation> band_observations_;
 };
 
 }  // namespace
 
-std::vector<BandLook> match_bands(const ShapePrior& prior, const Shape& shape, double sigma,
-                                  std::span<const Sighting> sightings) {
+std::vector<BandObservation> match_bands(const ShapePrior& prior, const Shape& shape, double sigma,
+                                         std::span<const Observation> observations) {
   SpaceCurve curve(ShapeVariables(prior), intervals_a_section(prior));
   curve.set(shape);
   Matching matching(prior, sigma / stretch_of(shape));
-  for (std::size_t i = 0; i < sightings.size(); ++i)
-    matching.add(i, places_of(sightings[i], curve, shape, i));
+  for (std::size_t i = 0; i < observations.size(); ++i)
+    matching.add(i, places_of(observations[i], curve, shape, i));
   return matching.take();
 }
 
 std::vector<PlacedMarker> placed_markers(const ShapePrior& prior, const Shape& shape,
-                                         std::span<const BandLook> looks,
-                                         std::span<const Sighting> sightings) {
+                                         std::span<const BandObservation> observation_counts,
+                                         std::span<const Observation> observations) {
   SpaceCurve curve(ShapeVariables(prior), intervals_a_section(prior));
   curve.set(shape);
   std::map<std::size_t, PlacedMarker> markers;
-  for (std::size_t i = 0; i < sightings.size(); ++i) {
-    for (const Place& place : places_of(sightings[i], curve, shape, i)) {
-      const auto look = std::ranges::find_if(
-          looks, [&](const BandLook& one) { return one.sighting == i && one.band == place.index; });
-      if (look == looks.end()) continue;
-      PlacedMarker& marker = markers[look->marker];
-      marker.s += stretch_of(shape) * place.s, ++marker.looks;
+  for (std::size_t i = 0; i < observations.size(); ++i) {
+    for (const Place& place : places_of(observations[i], curve, shape, i)) {
+      const auto band_observation = std::ranges::find_if(observation_counts, [&](const BandObservation& one) {
+        return one.observation == i && one.band == place.index;
+      });
+      if (band_observation == observation_counts.end()) continue;
+      PlacedMarker& marker = markers[band_observation->marker];
+      marker.s += stretch_of(shape) * place.s, ++marker.observation_counts;
     }
   }
   std::vector<PlacedMarker> result;
   result.reserve(markers.size());
   for (const auto& [number, marker] : markers)
-    result.push_back({marker.s / static_cast<double>(marker.looks), marker.looks});
+    result.push_back({marker.s / static_cast<double>(marker.observation_counts), marker.observation_counts});
   std::ranges::stable_sort(result, {}, &PlacedMarker::s);
   return result;
 }

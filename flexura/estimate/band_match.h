@@ -4,9 +4,9 @@
 #include <span>
 #include <vector>
 
+#include "flexura/estimate/observation.h"
 #include "flexura/estimate/shape_problem.h"
 #include "flexura/estimate/shape_variables.h"
-#include "flexura/estimate/sighting.h"
 
 namespace flexura {
 
@@ -15,18 +15,19 @@ namespace flexura {
 /// markers, by position and colour. Bands without a counterpart are omitted: false detections, or bands
 /// hidden in a picture. Otherwise bands are counted, if all observations have equally many. Empty if no match
 /// is possible. Markers seen only once are omitted unless their position is known.
-[[nodiscard]] std::vector<BandLook> match_bands(const ShapePrior& prior, const Shape& shape, double sigma,
-                                                std::span<const Sighting> sightings);
+[[nodiscard]] std::vector<BandObservation> match_bands(const ShapePrior& prior, const Shape& shape,
+                                                       double sigma,
+                                                       std::span<const Observation> observations);
 
 /// A marker on a shape.
 struct PlacedMarker {
-  double s = 0;           ///< Observed arc length, m; the mean over its observations.
-  std::size_t looks = 0;  ///< Number of observations of the marker.
+  double s = 0;                        ///< Observed arc length, m; the mean over its observations.
+  std::size_t observation_counts = 0;  ///< Number of observations of the marker.
 };
 
 /// Returns the positions of the matched markers on `shape`, from its base on.
 [[nodiscard]] std::vector<PlacedMarker> placed_markers(const ShapePrior& prior, const Shape& shape,
-                                                       std::span<const BandLook> looks,
-                                                       std::span<const Sighting> sightings);
+                                                       std::span<const BandObservation> observation_counts,
+                                                       std::span<const Observation> observations);
 
 }  // namespace flexura

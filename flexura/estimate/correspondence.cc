@@ -19,7 +19,7 @@ struct SeenRay {
   std::size_t point = 0;           // Index of the point in the observation.
 };
 
-std::vector<SeenRay> rays_of(const Sighting& seen) {
+std::vector<SeenRay> rays_of(const Observation& seen) {
   std::vector<SeenRay> rays;
   for (std::size_t i = 0; i < seen.points.size(); ++i) {
     const auto ab = seen.view.lens.unproject(seen.points[i].pixel);
@@ -30,7 +30,7 @@ std::vector<SeenRay> rays_of(const Sighting& seen) {
   return rays;
 }
 
-double focal_length(const Sighting& seen) {
+double focal_length(const Observation& seen) {
   return 0.5 * (seen.view.lens.intrinsics().fx + seen.view.lens.intrinsics().fy);
 }
 
@@ -111,7 +111,7 @@ std::optional<Eigen::Vector3d> meeting_of(const SeenRay& a, const SeenRay& b) {
 
 }  // namespace
 
-std::vector<SpacePoint> correspondence(const Sighting& a, const Sighting& b) {
+std::vector<SpacePoint> correspondence(const Observation& a, const Observation& b) {
   const std::vector<SeenRay> left = rays_of(a), right = rays_of(b);
   if (left.empty() || right.empty()) return {};
   const Eigen::Vector3d baseline = b.view.X_WC.position - a.view.X_WC.position;

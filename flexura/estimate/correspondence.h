@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "flexura/estimate/sighting.h"
+#include "flexura/estimate/observation.h"
 
 namespace flexura {
 
@@ -18,6 +18,6 @@ struct SpacePoint {
 /// Returns corresponding points of two observations of one curve. The pairing is monotonic along both curves
 /// and has the least sum of squared distances from the epipolar lines (dynamic programming). Ends visible in
 /// both correspond. Empty where the lenses have no rays.
-[[nodiscard]] std::vector<SpacePoint> correspondence(const Sighting& a, const Sighting& b);
+[[nodiscard]] std::vector<SpacePoint> correspondence(const Observation& a, const Observation& b);
 
 }  // namespace flexura

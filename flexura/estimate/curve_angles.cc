@@ -11,7 +11,7 @@ namespace flexura {
 namespace {
 
 // Direction in W of a curve's image at point i, as in a parallel projection.
-Eigen::Vector3d image_direction(const Sighting& seen, std::size_t i) {
+Eigen::Vector3d image_direction(const Observation& seen, std::size_t i) {
   constexpr std::size_t reach = 3;
   const std::size_t first = i - std::min(i, reach), last = std::min(i + reach, seen.points.size() - 1);
   return seen.view.parallel_way(seen.points[last].pixel - seen.points[first].pixel);
@@ -39,7 +39,8 @@ DirectionAngles angles_of_planes(double alpha_1, double alpha_2) {
   return {alpha_1, elevation_of_planes(alpha_1, alpha_2), is_singular_for_planes(alpha_1)};
 }
 
-std::vector<DirectionAngles> plane_angles(const Sighting& front, const Sighting& side, std::size_t count) {
+std::vector<DirectionAngles> plane_angles(const Observation& front, const Observation& side,
+                                          std::size_t count) {
   constexpr std::size_t fewest = 8;
   const std::vector<SpacePoint> common = correspondence(front, side);
   if (common.size() < fewest) return {};

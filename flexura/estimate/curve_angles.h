@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "flexura/estimate/sighting.h"
+#include "flexura/estimate/observation.h"
 #include "flexura/model/backbone.h"
 
 namespace flexura {
@@ -31,7 +31,7 @@ struct DirectionAngles {
 /// Each image direction is read as a parallel projection along the camera's axis. `front` looks roughly along
 /// Z, `side` along X. Points are paired by correspondence(). Empty if the pictures have fewer than 8 points
 /// in common. With real perspective the error is degrees (docs/estimation.md).
-[[nodiscard]] std::vector<DirectionAngles> plane_angles(const Sighting& front, const Sighting& side,
+[[nodiscard]] std::vector<DirectionAngles> plane_angles(const Observation& front, const Observation& side,
                                                         std::size_t count);
 
 }  // namespace flexura

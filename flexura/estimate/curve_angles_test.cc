@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "flexura/base/degree.h"
+#include "tests/support/observations.h"
 #include "tests/support/random_cases.h"
-#include "tests/support/sightings.h"
 
 namespace flexura {
 namespace {
@@ -53,10 +53,10 @@ TEST(DirectionAngles, OfTwoPicturesComeNearAsTheCamerasGoFar) {
   std::vector<double> largest;
   for (const double distance : {5.0, 500.0}) {
     TestRandom random(1);
-    std::vector<Sighting> seen;
+    std::vector<Observation> seen;
     for (View view : two_views(distance)) {
       view.lens = Lens({.fx = 320 * distance, .fy = 320 * distance});
-      seen.push_back(sighting_of(backbone, view, random, 0, {0, 1}, 400));
+      seen.push_back(observation_of(backbone, view, random, 0, {0, 1}, 400));
     }
     const auto found = plane_angles(seen[0], seen[1], 51);
     ASSERT_EQ(found.size(), 51U);

@@ -92,7 +92,7 @@ CurveImage::Point CurveImage::at(double place) const {
 CurveImage::Point CurveImage::nearest(const Eigen::Vector2d& pixel, const Eigen::Vector2d& heading,
                                       const Window& window) const {
   // Penalty for a branch in the opposite direction, px.
-  constexpr double astray = 10;
+  constexpr double turn_penalty = 10;
   double least = std::numeric_limits<double>::infinity(), place = static_cast<double>(window.first);
   const auto consider = [&](std::size_t i) {
     const Piece& piece = pieces_[i];
@@ -100,7 +100,7 @@ CurveImage::Point CurveImage::nearest(const Eigen::Vector2d& pixel, const Eigen:
     const double away = (pixel - piece.middle).norm() - piece.radius;
     if (away > 0 && away * away >= least) return;
     const double f = foot(piece, pixel);
-    const double turned = astray * (1 - heading.dot(piece.slope(f).normalized()));
+    const double turned = turn_penalty * (1 - heading.dot(piece.slope(f).normalized()));
     const double distance = (piece.at(f) - pixel).squaredNorm() + turned * turned;
     if (distance < least) least = distance, place = static_cast<double>(i) + f;
   };

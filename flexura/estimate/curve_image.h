@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "flexura/camera/view.h"
-#include "flexura/estimate/sighting.h"
+#include "flexura/estimate/observation.h"
 #include "flexura/estimate/space_curve.h"
 
 namespace flexura {

@@ -9,8 +9,8 @@
 
 #include "flexura/estimate/band_match.h"
 #include "flexura/estimate/shape_estimator.h"
+#include "tests/support/observations.h"
 #include "tests/support/random_cases.h"
-#include "tests/support/sightings.h"
 
 namespace flexura {
 namespace {
@@ -38,17 +38,17 @@ SeenBand band_at(const Backbone& backbone, const View& view, double s, double of
 struct BandedCase {
   Arm arm = three_section_arm();
   Backbone truth;
-  std::vector<Sighting> plain, banded;
+  std::vector<Observation> plain, banded;
 
   explicit BandedCase(TestRandom& random)
-      : truth(arm, random_bends(random, arm, 1.3)), plain(sightings_of(truth, random, 0.05)) {
+      : truth(arm, random_bends(random, arm, 1.3)), plain(observations_of(truth, random, 0.05)) {
     // Ends have an error of 0.3 px along the curve.
-    for (Sighting& seen : plain)
+    for (Observation& seen : plain)
       for (const std::size_t end : {std::size_t{0}, std::size_t{1}})
         seen.ends[end]->pixel =
             band_at(truth, seen.view, static_cast<double>(end) * 0.9999, random.uniform(-0.5, 0.5)).pixel;
     banded = plain;
-    for (Sighting& seen : banded)
+    for (Observation& seen : banded)
       for (const double s : band_places)
         seen.bands.push_back(band_at(truth, seen.view, s, random.uniform(-0.3, 0.3)));
   }
@@ -66,7 +66,8 @@ TEST(ShapeBands, TellWhereAnArmOfUnknownMakeLiesAlongItself) {
   Errors plain, shared, known;
   for_five_cases([&](TestRandom& random) {
     const BandedCase one(random);
-    const auto error = [&](const ShapePrior& prior, const std::vector<Sighting>& seen, std::size_t markers) {
+    const auto error = [&](const ShapePrior& prior, const std::vector<Observation>& seen,
+                           std::size_t markers) {
       const ShapeEstimate found = ShapeEstimator(prior).estimate(seen);
       EXPECT_TRUE(found.is_found) << found.reason;
       EXPECT_EQ(found.markers.size(), markers);
@@ -90,13 +91,13 @@ TEST(ShapeBands, ThatAreFalseOrHiddenDoNoHarm) {
     // One is hidden in each picture, one is displaced, and one is a false detection.
     one.banded[0].bands.erase(one.banded[0].bands.begin() + random.integer(0, 6));
     one.banded[1].bands.erase(one.banded[1].bands.begin() + random.integer(0, 6));
-    for (Sighting& seen : one.banded) {
+    for (Observation& seen : one.banded) {
       seen.bands[static_cast<std::size_t>(random.integer(0, 5))] =
           band_at(one.truth, seen.view, random.uniform(0.05, 0.95), 0);
       seen.bands.push_back(band_at(one.truth, seen.view, random.uniform(0.05, 0.95), 0));
     }
     ShapePrior prior = unknown_arm(Eigen::Vector3d(0, 0, 0), 1.0, 12);
-    const auto error = [&](const std::vector<Sighting>& seen) {
+    const auto error = [&](const std::vector<Observation>& seen) {
       const ShapeEstimate found = ShapeEstimator(prior).estimate(seen);
       EXPECT_TRUE(found.is_found) << found.reason;
       return shape_error(found.shape, one.truth);
@@ -113,7 +114,7 @@ TEST(ShapeBands, ThatAreFalseOrHiddenDoNoHarm) {
 }
 
 TEST(ShapeBands, AtPlacesThatAreToldWronglyDoNoHarm) {
-  Errors plain, told;
+  Errors plain, reported;
   for_random_cases(10, [&](TestRandom& random) {
     const BandedCase one(random);
     ShapePrior prior{.arm = one.arm};
@@ -124,15 +125,18 @@ TEST(ShapeBands, AtPlacesThatAreToldWronglyDoNoHarm) {
     const ShapeEstimate found = ShapeEstimator(prior).estimate(one.banded);
     ASSERT_TRUE(found.is_found) << found.reason;
     EXPECT_FALSE(found.notes.empty());
-    told.add(shape_error(found.shape, one.truth));
+    reported.add(shape_error(found.shape, one.truth));
   });
-  EXPECT_LT(told.worst, 1.5 * plain.worst);
+  EXPECT_LT(reported.worst, 1.5 * plain.worst);
 }
 
 // The band of each observation, by marker; -1: not visible.
-std::vector<std::array<int, 2>> table(const std::vector<BandLook>& looks, std::size_t markers) {
+std::vector<std::array<int, 2>> table(const std::vector<BandObservation>& band_observations,
+                                      std::size_t markers) {
   std::vector<std::array<int, 2>> result(markers, {-1, -1});
-  for (const BandLook& look : looks) result.at(look.marker).at(look.sighting) = static_cast<int>(look.band);
+  for (const BandObservation& band_observation : band_observations)
+    result.at(band_observation.marker).at(band_observation.observation) =
+        static_cast<int>(band_observation.band);
   return result;
 }
 
@@ -172,8 +176,8 @@ TEST(MatchBands, GoesByColourWherePlacesAreAlike) {
   green.color = {30, 200, 30};
   one.banded[1].bands[3] = band_at(one.truth, one.banded[1].view, 0.51, 0);
   one.banded[1].bands.push_back(green);
-  const auto looks = table(match_bands({.arm = one.arm}, near, 1e-4, one.banded), 7);
-  EXPECT_EQ(looks[3], (std::array<int, 2>{3, 3}));
+  const auto band_observations = table(match_bands({.arm = one.arm}, near, 1e-4, one.banded), 7);
+  EXPECT_EQ(band_observations[3], (std::array<int, 2>{3, 3}));
 }
 
 }  // namespace

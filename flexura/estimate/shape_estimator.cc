@@ -16,7 +16,7 @@
 #include "flexura/base/degree.h"
 #include "flexura/estimate/axis_beginning.h"
 #include "flexura/estimate/band_match.h"
-#include "flexura/estimate/picture_sighting.h"
+#include "flexura/estimate/picture_observation.h"
 #include "flexura/estimate/shape_search.h"
 #include "flexura/estimate/shape_silhouette.h"
 #include "flexura/estimate/shape_start.h"
@@ -26,7 +26,7 @@ namespace flexura {
 namespace {
 
 // Orders the observation so that the end nearer to the base's image comes first.
-Sighting from_base(Sighting seen, const Eigen::Vector3d& p_WB) {
+Observation from_base(Observation seen, const Eigen::Vector3d& p_WB) {
   const auto base = seen.view.project(p_WB);
   if (!base || seen.points.empty()) return seen;
   const bool is_reversed =
@@ -34,8 +34,8 @@ Sighting from_base(Sighting seen, const Eigen::Vector3d& p_WB) {
   return is_reversed ? reversed(std::move(seen)) : seen;
 }
 
-bool have_axes(std::span<const Sighting> sightings) {
-  return std::ranges::all_of(sightings, [](const Sighting& seen) { return are_enough({&seen, 1}); });
+bool have_axes(std::span<const Observation> observations) {
+  return std::ranges::all_of(observations, [](const Observation& seen) { return are_enough({&seen, 1}); });
 }
 
 // Fills in the knots' positions and their standard deviations; returns the arm's length.
@@ -55,19 +55,19 @@ double add_sigmas(const ShapeProblem& problem, const Eigen::MatrixXd& covariance
 // Returns why the arm may begin or end elsewhere on the same curve; "" if two of base, tip, length and marker
 // positions are known. Otherwise an axis that stops short pulls the shape's end to its last point. The rows
 // across that end would then determine its position along the curve, to a hundredth of a pixel.
-std::string doubt_of_ends(const ShapePrior& prior, const ShapeProblem& problem) {
+std::string warning_about_ends(const ShapePrior& prior, const ShapeProblem& problem) {
   std::set<double> places;  // Of known markers, m.
   std::array<bool, 2> is_seen = {};
-  for (const Sighting& seen : problem.sightings()) {
+  for (const Observation& seen : problem.observations()) {
     for (std::size_t end = 0; end < 2; ++end) is_seen[end] = is_seen[end] || seen.ends[end].has_value();
     for (const SeenMarker& marker : seen.markers) places.insert(marker.s);
   }
-  for (const BandLook& look : problem.looks())
-    if (look.s) places.insert(*look.s);
+  for (const BandObservation& band_observation : problem.band_observations())
+    if (band_observation.s) places.insert(*band_observation.s);
   const bool has_base = prior.is_base_position_known || is_seen[0], has_tip = is_seen[1];
-  const std::size_t told =
+  const std::size_t determined =
       places.size() + (has_base ? 1 : 0) + (has_tip ? 1 : 0) + (prior.is_length_known ? 1 : 0);
-  if (told >= 2) return "";
+  if (determined >= 2) return "";
   const char* what = "either end";
   if (has_base) what = "the tip";
   if (has_tip) what = "the base";
@@ -76,11 +76,11 @@ std::string doubt_of_ends(const ShapePrior& prior, const ShapeProblem& problem) 
 
 // Adds notes on pictures that differ from the shape by more than the arm's disks and rings, or slightly wrong
 // cameras, explain.
-void add_misfit(std::span<const Sighting> sightings, ShapeEstimate& result) {
+void add_misfit(std::span<const Observation> observations, ShapeEstimate& result) {
   constexpr double little = 0.01;  // px^2
   constexpr double with_disks = 2;
-  for (std::size_t i = 0; i < sightings.size(); ++i) {
-    const double square = misfit(sightings[i], error_of(result.shape, i), result.shape, with_disks);
+  for (std::size_t i = 0; i < observations.size(); ++i) {
+    const double square = misfit(observations[i], error_of(result.shape, i), result.shape, with_disks);
     if (square > little + result.rms * result.rms)
       result.notes.push_back(fmt::format(
           "picture {} is not all as this shape would be seen: of something else, or another shape", i + 1));
@@ -89,14 +89,15 @@ void add_misfit(std::span<const Sighting> sightings, ShapeEstimate& result) {
 
 // Adds notes on pictures in which an arm without a kinematic model begins beside its base: the given base or
 // camera is wrong. Such an arm adapts to any base, and nothing else would show the error.
-void add_base_aside(const ShapePrior& prior, std::span<const Sighting> sightings, ShapeEstimate& result) {
+void add_base_aside(const ShapePrior& prior, std::span<const Observation> observations,
+                    ShapeEstimate& result) {
   constexpr double most = 0.5, sigmas = 5;  // px, plus this many standard deviations
   if (!prior.is_base_position_known || prior.is_base_direction_known) return;
-  for (std::size_t i = 0; i < sightings.size(); ++i) {
+  for (std::size_t i = 0; i < observations.size(); ++i) {
     const auto base =
-        corrected(sightings[i].view, error_of(result.shape, i)).project(prior.arm.X_WB.position);
-    if (!base || !sightings[i].ends[0]) continue;
-    const auto aside = aside_of_beginning(sightings[i], *base);
+        corrected(observations[i].view, error_of(result.shape, i)).project(prior.arm.X_WB.position);
+    if (!base || !observations[i].ends[0]) continue;
+    const auto aside = aside_of_beginning(observations[i], *base);
     if (aside && aside->distance > most + sigmas * aside->sigma)
       result.notes.push_back(
           fmt::format("picture {} shows the arm begin {:.2g} px aside of where its base would be: is that "
@@ -121,9 +122,9 @@ std::string bent_beyond_arms(const Shape& shape) {
 }
 
 // Returns whether the fit is good enough to give information on the cameras.
-bool tells_of_cameras(const ShapeFit& fit) {
-  constexpr double most_doubted = 0.1;
-  return fit.doubted < most_doubted && fit.scale < ShapeFit::most_scale;
+bool indicates_cameras(const ShapeFit& fit) {
+  constexpr double max_outlier_share = 0.1;
+  return fit.outlier_share < max_outlier_share && fit.scale < ShapeFit::most_scale;
 }
 
 std::string elsewhere(std::size_t picture, const ViewError& error) {
@@ -135,26 +136,29 @@ std::string elsewhere(std::size_t picture, const ViewError& error) {
 }
 
 // Returns the first picture in which most points are outliers; a few points do not count.
-std::optional<std::size_t> picture_of_another(std::span<const Sighting> sightings, const ShapeFit& fit) {
-  constexpr double most_doubted = 0.6;
+std::optional<std::size_t> picture_of_another(std::span<const Observation> observations,
+                                              const ShapeFit& fit) {
+  constexpr double max_outlier_share = 0.6;
   constexpr std::size_t few = 8;
-  for (std::size_t i = 0; i < sightings.size(); ++i) {
-    const Sighting& seen = sightings[i];
-    const bool is_other = fit.doubted_in[i] > most_doubted && seen.points.size() + seen.borders.size() >= few;
-    const bool tells = are_enough({&seen, 1}) || explains_border(seen, error_of(fit.shape, i), fit.shape);
-    if (is_other || !tells) return i;
+  for (std::size_t i = 0; i < observations.size(); ++i) {
+    const Observation& seen = observations[i];
+    const bool is_other =
+        fit.outlier_share_in[i] > max_outlier_share && seen.points.size() + seen.borders.size() >= few;
+    const bool determines =
+        are_enough({&seen, 1}) || explains_border(seen, error_of(fit.shape, i), fit.shape);
+    if (is_other || !determines) return i;
   }
   return std::nullopt;
 }
 
-void add_doubts_of_fit(const ShapeFit& fit, ShapeEstimate& result) {
-  constexpr double poor = 3, most_doubted = 0.1;
+void add_fit_warnings(const ShapeFit& fit, ShapeEstimate& result) {
+  constexpr double poor = 3, max_outlier_share = 0.1;
   if (fit.scale > poor)
     result.notes.push_back(fmt::format("the images are {} times farther off than their noise explains",
                                        bounded_text(std::round(fit.scale), 1000, 4)));
   if (!fit.is_settled) result.notes.emplace_back("the fit did not settle");
-  if (fit.doubted > most_doubted)
-    result.notes.push_back(fmt::format("{:.0f} % of the points are not the arm's", 100 * fit.doubted));
+  if (fit.outlier_share > max_outlier_share)
+    result.notes.push_back(fmt::format("{:.0f} % of the points are not the arm's", 100 * fit.outlier_share));
   if (fit.contradicted > 0)
     result.notes.push_back(fmt::format(
         "{} of the ends and markers are seen elsewhere than the shape has them", fit.contradicted));
@@ -178,21 +182,21 @@ double ShapeEstimate::rms_sigma() const {
 ShapeEstimator::ShapeEstimator(ShapePrior prior, EstimatorConfig config)
     : prior_(std::move(prior)), config_(config) {}
 
-std::vector<Sighting> ShapeEstimator::prepared(std::span<const Sighting> sightings) const {
-  std::vector<Sighting> result;
-  result.reserve(sightings.size());
-  for (const Sighting& seen : sightings) {
+std::vector<Observation> ShapeEstimator::prepared(std::span<const Observation> observations) const {
+  std::vector<Observation> result;
+  result.reserve(observations.size());
+  for (const Observation& seen : observations) {
     const auto is_none = [](const auto& point) {
       return !point.pixel.allFinite() || !(point.sigma > 0) || !std::isfinite(point.sigma);
     };
-    Sighting whole = seen;
+    Observation whole = seen;
     std::erase_if(whole.points, is_none), std::erase_if(whole.borders, is_none);
     std::erase_if(whole.points, [](const CurvePoint& point) { return !(std::abs(point.offset) < 1e6); });
     if (!(whole.reach.offset > 0)) whole.reach.offset = ErrorReach{}.offset;
     std::erase_if(whole.markers, is_none), std::erase_if(whole.bands, is_none);
     for (auto& end : whole.ends)
       if (end && is_none(*end)) end.reset();
-    Sighting thin = thinned(std::move(whole), config_.most_points);
+    Observation thin = thinned(std::move(whole), config_.most_points);
     // Borders give no information on an arm without a radius.
     const auto has_radius = [](const Section& section) {
       return section.radius[0] > 0 || section.radius[1] > 0;
@@ -204,8 +208,8 @@ std::vector<Sighting> ShapeEstimator::prepared(std::span<const Sighting> sightin
   return result;
 }
 
-ShapeEstimate ShapeEstimator::estimate(std::span<const Sighting> sightings) {
-  std::vector<Sighting> prepared_ones = prepared(sightings);
+ShapeEstimate ShapeEstimator::estimate(std::span<const Observation> observations) {
+  std::vector<Observation> prepared_ones = prepared(observations);
   if (prepared_ones.empty() || !have_axes(prepared_ones)) return unseen(straight_shape(prior_));
   ShapeSearch search(prior_, config_.most_iterations, config_.most_rms, descent_);
   auto [fit, seen, apart] = search.best(prepared_ones);
@@ -222,8 +226,8 @@ ShapeEstimate ShapeEstimator::estimate(std::span<const Sighting> sightings) {
   return result;
 }
 
-ShapeEstimate ShapeEstimator::follow(std::span<const Sighting> sightings, const Shape& before) {
-  const std::vector<Sighting> seen = prepared(sightings);
+ShapeEstimate ShapeEstimator::follow(std::span<const Observation> observations, const Shape& before) {
+  const std::vector<Observation> seen = prepared(observations);
   if (!are_enough(seen)) return unseen(before);
   ShapeProblem problem(prior_, seen);
   ShapeFit fit = descent_.descend(problem, before, config_.most_iterations, StartKind::near);
@@ -236,8 +240,9 @@ ShapeEstimate ShapeEstimator::follow(std::span<const Sighting> sightings, const 
   return with_bands(seen, answer(problem, std::move(fit)), cost, nullptr);
 }
 
-ShapeEstimate ShapeEstimator::update(std::span<const Sighting> sightings, const ShapeBelief& before) {
-  const std::vector<Sighting> seen = prepared(sightings);
+ShapeEstimate ShapeEstimator::update(std::span<const Observation> observations,
+                                     const ShapePrediction& before) {
+  const std::vector<Observation> seen = prepared(observations);
   if (!are_enough(seen)) return unseen(before.mean);
   ShapeProblem problem(prior_, seen, {}, &before);
   ShapeFit fit = descent_.descend(problem, before.mean, config_.most_iterations, StartKind::near);
@@ -245,13 +250,15 @@ ShapeEstimate ShapeEstimator::update(std::span<const Sighting> sightings, const 
   return with_bands(seen, answer(problem, std::move(fit)), cost, &before);
 }
 
-ShapeEstimate ShapeEstimator::with_bands(std::span<const Sighting> sightings, ShapeEstimate first,
-                                         double cost, const ShapeBelief* belief) {
-  const auto is_plain = [](const Sighting& seen) { return seen.bands.empty(); };
-  if (!std::isfinite(cost) || first.sigma.empty() || std::ranges::all_of(sightings, is_plain)) return first;
-  const std::vector<BandLook> looks = match_bands(prior_, first.shape, first.rms_sigma(), sightings);
-  if (looks.empty()) return first;
-  ShapeProblem problem(prior_, sightings, looks, belief);
+ShapeEstimate ShapeEstimator::with_bands(std::span<const Observation> observations, ShapeEstimate first,
+                                         double cost, const ShapePrediction* prediction) {
+  const auto is_plain = [](const Observation& seen) { return seen.bands.empty(); };
+  if (!std::isfinite(cost) || first.sigma.empty() || std::ranges::all_of(observations, is_plain))
+    return first;
+  const std::vector<BandObservation> band_observations =
+      match_bands(prior_, first.shape, first.rms_sigma(), observations);
+  if (band_observations.empty()) return first;
+  ShapeProblem problem(prior_, observations, band_observations, prediction);
   ShapeFit fit = descent_.descend(problem, first.shape, config_.most_iterations, StartKind::near);
   // Of the axes: markers may shift the shape along itself but not off the axes.
   constexpr double worse = 1.5, little = 1e-4;
@@ -261,20 +268,20 @@ ShapeEstimate ShapeEstimator::with_bands(std::span<const Sighting> sightings, Sh
     first.notes.emplace_back("the markers speak against the axes: they are not used");
     return first;
   }
-  result.markers = placed_markers(prior_, result.shape, looks, sightings);
+  result.markers = placed_markers(prior_, result.shape, band_observations, observations);
   return result;
 }
 
 ShapeEstimate ShapeEstimator::answer(const ShapeProblem& problem, ShapeFit fit) const {
   ShapeEstimate result;
   result.shape = fit.shape, result.covariance = fit.covariance, result.iterations = fit.iterations;
-  result.rms = fit.rms, result.doubted = fit.doubted, result.scale = fit.scale;
-  result.surprise = fit.surprise;
+  result.rms = fit.rms, result.outlier_share = fit.outlier_share, result.scale = fit.scale;
+  result.innovation = fit.innovation;
   if (!std::isfinite(fit.cost)) {
     result.reason =
         "no shape of the arm is seen by these cameras: what they see meets nowhere before all of them";
-    const auto lacks_rays = [](const Sighting& seen) { return !shows_all(seen.view); };
-    const auto seen = problem.sightings();
+    const auto lacks_rays = [](const Observation& seen) { return !shows_all(seen.view); };
+    const auto seen = problem.observations();
     if (const auto found = std::ranges::find_if(seen, lacks_rays); found != seen.end())
       result.reason += fmt::format(
           ", or within the part of picture {} for which its lens has rays: is its distortion as described?",
@@ -283,8 +290,8 @@ ShapeEstimate ShapeEstimator::answer(const ShapeProblem& problem, ShapeFit fit) 
   }
   const double length = add_sigmas(problem, fit.covariance, result);
   const double sigma = result.rms_sigma();
-  constexpr double hopeless = 0.05;
-  if (!(sigma < hopeless * length)) {
+  constexpr double unrecoverable = 0.05;
+  if (!(sigma < unrecoverable * length)) {
     result.reason = "the images do not tell the shape";
     return result;
   }
@@ -292,31 +299,32 @@ ShapeEstimate ShapeEstimator::answer(const ShapeProblem& problem, ShapeFit fit) 
     result.reason = std::move(reason);
     return result;
   }
-  if (const auto view = view_elsewhere(problem.sightings(), fit.shape)) {
-    result.is_elsewhere = tells_of_cameras(fit);
+  if (const auto view = view_elsewhere(problem.observations(), fit.shape)) {
+    result.is_elsewhere = indicates_cameras(fit);
     result.reason = result.is_elsewhere
                         ? elsewhere(*view, fit.shape.views[*view])
                         : "the cameras would have to stand otherwise by far more than is doubted";
     return result;
   }
-  if (const auto picture = picture_of_another(problem.sightings(), fit)) {
+  if (const auto picture = picture_of_another(problem.observations(), fit)) {
     result.reason = fmt::format("picture {} shows something else than the arm", *picture + 1);
     return result;
   }
-  result.is_found = fit.doubted < 0.5 && (fit.rms < config_.most_rms || fit.scale < ShapeFit::most_scale);
+  result.is_found =
+      fit.outlier_share < 0.5 && (fit.rms < config_.most_rms || fit.scale < ShapeFit::most_scale);
   if (!result.is_found) {
     result.reason = fmt::format(
         "no shape explains the images: {:.0f} % of the points lie elsewhere, the rest {} px off",
-        100 * fit.doubted, fit.rms < 100 ? fmt::format("{:.2f}", fit.rms) : bounded_text(fit.rms, 100));
+        100 * fit.outlier_share, fit.rms < 100 ? fmt::format("{:.2f}", fit.rms) : bounded_text(fit.rms, 100));
   }
-  add_doubts_of_fit(fit, result);
+  add_fit_warnings(fit, result);
   if (const auto section = bent_too_far(fit.shape))
     result.notes.push_back(fmt::format("section {} would be bent by {:.0f} degrees: it goes to {:.0f}",
                                        *section + 1, fit.shape.state.bends[*section].norm() / degree,
                                        fit.shape.arm.sections[*section].max_bend / degree));
-  add_base_aside(prior_, problem.sightings(), result);
-  if (std::string doubt = doubt_of_ends(prior_, problem); !doubt.empty())
-    result.notes.push_back(std::move(doubt));
+  add_base_aside(prior_, problem.observations(), result);
+  if (std::string warning = warning_about_ends(prior_, problem); !warning.empty())
+    result.notes.push_back(std::move(warning));
   if (sigma > config_.uncertain * length)
     result.notes.push_back(fmt::format(
         "uncertain to {} m{}", bounded_text(sigma, length),

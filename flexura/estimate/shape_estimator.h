@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "flexura/estimate/band_match.h"
+#include "flexura/estimate/observation.h"
 #include "flexura/estimate/shape_fit.h"
 #include "flexura/estimate/shape_variables.h"
-#include "flexura/estimate/sighting.h"
 
 namespace flexura {
 
@@ -33,12 +33,12 @@ struct ShapeEstimate {
   bool is_elsewhere = false;  ///< Not found because the cameras' errors would be far beyond their priors.
   std::vector<std::string> notes;  ///< Reasons against the estimate; empty if there are none.
   double rms = 0;                  ///< Root mean square of the points' distances from the shape's images, px.
-  double doubted = 0;              ///< Share of the points that are outliers.
+  double outlier_share = 0;        ///< Share of the points that are outliers.
   double scale = 1;  ///< Scale of the residuals, in units of their sigmas: at least 1; included in `sigma`.
   /// Standard deviation of the position at the knots `s` (m of arc length), m: the root of the trace.
   std::vector<double> s, sigma;
   Eigen::MatrixXd covariance;         ///< Covariance of the unknowns (ShapeVariables).
-  double surprise = 0;                ///< Normalised innovation (ShapeFit::surprise).
+  double innovation = 0;              ///< Normalised innovation (ShapeFit::innovation).
   int iterations = 0;                 ///< Iterations of the final descent.
   std::vector<PlacedMarker> markers;  ///< Markers used by the fit, from the base on.
 
@@ -63,23 +63,24 @@ class ShapeEstimator {
   /// largest visible arm. Their points are paired by epipolar geometry and order, and triangulated. If the
   /// base's position is known, each observation is ordered from the end nearer to it. Otherwise the order of
   /// the first one's points holds, and the others are tried both ways.
-  [[nodiscard]] ShapeEstimate estimate(std::span<const Sighting> sightings);
+  [[nodiscard]] ShapeEstimate estimate(std::span<const Observation> observations);
 
   /// Estimates from the shape a moment ago, of the prior's arm, with any `views`.
-  [[nodiscard]] ShapeEstimate follow(std::span<const Sighting> sightings, const Shape& before);
+  [[nodiscard]] ShapeEstimate follow(std::span<const Observation> observations, const Shape& before);
 
   /// Updates a previous belief, which is weighted like an observation. It includes the views' errors: the
   /// observations' own priors only show which views have them.
-  [[nodiscard]] ShapeEstimate update(std::span<const Sighting> sightings, const ShapeBelief& before);
+  [[nodiscard]] ShapeEstimate update(std::span<const Observation> observations,
+                                     const ShapePrediction& before);
 
  private:
   // `problem` must be linearised at the fit's shape.
   [[nodiscard]] ShapeEstimate answer(const ShapeProblem& problem, ShapeFit fit) const;
   // Repeats the fit `first`, made without bands, with those that it identifies. Adds a note to it if they
   // cannot be used.
-  [[nodiscard]] ShapeEstimate with_bands(std::span<const Sighting> sightings, ShapeEstimate first,
-                                         double cost, const ShapeBelief* belief);
-  [[nodiscard]] std::vector<Sighting> prepared(std::span<const Sighting> sightings) const;
+  [[nodiscard]] ShapeEstimate with_bands(std::span<const Observation> observations, ShapeEstimate first,
+                                         double cost, const ShapePrediction* prediction);
+  [[nodiscard]] std::vector<Observation> prepared(std::span<const Observation> observations) const;
 
   ShapePrior prior_;
   EstimatorConfig config_;

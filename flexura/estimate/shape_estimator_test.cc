@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "tests/support/mahalanobis.h"
+#include "tests/support/observations.h"
 #include "tests/support/random_cases.h"
-#include "tests/support/sightings.h"
 
 namespace flexura {
 namespace {
@@ -25,10 +25,10 @@ TEST(ShapeEstimator, FindsAKnownArmExactlyWithoutNoise) {
     const ArmState state = random_bends(random, prior.arm, 1.8);
     const Backbone truth(prior.arm, state);
     ShapeEstimator estimator(prior);
-    const ShapeEstimate found = estimator.estimate(sightings_of(truth, random, 0));
+    const ShapeEstimate found = estimator.estimate(observations_of(truth, random, 0));
     ASSERT_TRUE(found.is_found) << found.reason;
     EXPECT_LT(shape_error(found.shape, truth), 1e-5);
-    EXPECT_LT(found.doubted, 0.01);
+    EXPECT_LT(found.outlier_share, 0.01);
   });
 }
 
@@ -39,7 +39,7 @@ TEST(ShapeEstimator, IsWithinItsOwnSigmasUnderNoise) {
     const ShapePrior prior{.arm = three_section_arm()};
     const Backbone truth(prior.arm, random_bends(random, prior.arm, 1.5));
     ShapeEstimator estimator(prior);
-    const ShapeEstimate found = estimator.estimate(sightings_of(truth, random, 0.05));
+    const ShapeEstimate found = estimator.estimate(observations_of(truth, random, 0.05));
     ASSERT_TRUE(found.is_found) << found.reason;
     worst = std::max(worst, shape_error(found.shape, truth));
     const Backbone backbone(found.shape.arm, found.shape.state);
@@ -77,12 +77,12 @@ class Together {
 
 TEST(ShapeEstimator, IsWithinItsOwnSigmasWhereErrorsGoTogether) {
   constexpr double sigma = 0.03, offset = 0.02, reach = 8;
-  double told = 0, untold = 0, count = 0;
+  double determined = 0, undetermined = 0, count = 0;
   for_random_cases(100, [&](TestRandom& random) {
     const ShapePrior prior{.arm = three_section_arm()};
     const ArmState state = random_bends(random, prior.arm, 1.5);
-    std::vector<Sighting> seen = sightings_of(Backbone(prior.arm, state), random, 0);
-    for (Sighting& one : seen) {
+    std::vector<Observation> seen = observations_of(Backbone(prior.arm, state), random, 0);
+    for (Observation& one : seen) {
       Together near, far;
       const std::vector<CurvePoint> exact = one.points;
       for (std::size_t i = 0; i + 1 < exact.size(); ++i) {
@@ -102,17 +102,17 @@ TEST(ShapeEstimator, IsWithinItsOwnSigmasWhereErrorsGoTogether) {
         off.segment<2>(static_cast<Eigen::Index>(2 * i)) = found.shape.state.bends[i] - state.bends[i];
       return mahalanobis_square(found.covariance, off);
     };
-    told += square_of(), count += 6;
-    for (Sighting& one : seen) {
+    determined += square_of(), count += 6;
+    for (Observation& one : seen) {
       one.reach.sigma = 0;
       for (CurvePoint& point : one.points) point.offset = 0;
     }
-    untold += square_of();
+    undetermined += square_of();
   });
   // The mean of chi^2 over its degrees of freedom, over 600: 1 to a sixteenth.
-  EXPECT_GT(told / count, 0.75);
-  EXPECT_LT(told / count, 1.25);
-  EXPECT_GT(untold / count, 1.5);
+  EXPECT_GT(determined / count, 0.75);
+  EXPECT_LT(determined / count, 1.25);
+  EXPECT_GT(undetermined / count, 1.5);
 }
 
 TEST(ShapeEstimator, FindsAnArmOfUnknownMake) {
@@ -120,7 +120,7 @@ TEST(ShapeEstimator, FindsAnArmOfUnknownMake) {
     const Arm arm = three_section_arm();
     const Backbone truth(arm, random_bends(random, arm, 1.2));
     ShapeEstimator estimator(unknown_arm(std::nullopt, std::nullopt));
-    const ShapeEstimate found = estimator.estimate(sightings_of(truth, random, 0.02));
+    const ShapeEstimate found = estimator.estimate(observations_of(truth, random, 0.02));
     ASSERT_TRUE(found.is_found) << found.reason;
     EXPECT_LT(shape_error(found.shape, truth), 2e-3);
     EXPECT_NEAR(Backbone(found.shape.arm, found.shape.state).length(), 1, 3e-3);
@@ -135,7 +135,7 @@ TEST(ShapeEstimator, FollowsFromTheShapeBefore) {
     const Shape before{prior.arm, state};
     for (Eigen::Vector2d& bend : state.bends) bend += random.vector<2>(-0.05, 0.05);
     const Backbone truth(prior.arm, state);
-    const ShapeEstimate found = estimator.follow(sightings_of(truth, random, 0.02), before);
+    const ShapeEstimate found = estimator.follow(observations_of(truth, random, 0.02), before);
     ASSERT_TRUE(found.is_found) << found.reason;
     EXPECT_LT(shape_error(found.shape, truth), 1e-4);
     EXPECT_LE(found.iterations, 12);
@@ -146,14 +146,14 @@ TEST(ShapeEstimator, HoldsAgainstPointsOfSomethingElse) {
   for_random_cases(30, [](TestRandom& random) {
     const ShapePrior prior{.arm = three_section_arm()};
     const Backbone truth(prior.arm, random_bends(random, prior.arm, 1.2));
-    std::vector<Sighting> seen = sightings_of(truth, random, 0.03);
-    for (Sighting& one : seen)
+    std::vector<Observation> seen = observations_of(truth, random, 0.03);
+    for (Observation& one : seen)
       for (std::size_t i = 40; i < 50; ++i) one.points[i].pixel += Eigen::Vector2d(6, -5);
     ShapeEstimator estimator(prior);
     const ShapeEstimate found = estimator.estimate(seen);
     ASSERT_TRUE(found.is_found) << found.reason;
     EXPECT_LT(shape_error(found.shape, truth), 3e-4);
-    EXPECT_GT(found.doubted, 0.03);
+    EXPECT_GT(found.outlier_share, 0.03);
   });
 }
 
@@ -161,10 +161,10 @@ TEST(ShapeEstimator, KnowsLessWhereTheArmIsCut) {
   for_random_cases(20, [](TestRandom& random) {
     const ShapePrior prior{.arm = three_section_arm()};
     const Backbone truth(prior.arm, random_bends(random, prior.arm, 1.0));
-    std::vector<Sighting> seen = sightings_of(truth, random, 0.05);
+    std::vector<Observation> seen = observations_of(truth, random, 0.05);
     ShapeEstimator estimator(prior);
     const ShapeEstimate whole = estimator.estimate(seen);
-    seen[1] = sighting_of(truth, seen[1].view, random, 0.05, {0, 0.6});
+    seen[1] = observation_of(truth, seen[1].view, random, 0.05, {0, 0.6});
     const ShapeEstimate cut = estimator.estimate(seen);
     ASSERT_TRUE(cut.is_found) << cut.reason;
     EXPECT_GT(cut.sigma.back(), 2 * whole.sigma.back());
@@ -180,9 +180,9 @@ TEST(ShapeEstimator, DoesNotTellASectionThatNoPictureShows) {
     const ShapePrior prior{.arm = three_section_arm()};
     const Backbone truth(prior.arm, random_bends(random, prior.arm, 1.0));
     const double most = random.uniform(0.3, 0.66);
-    std::vector<Sighting> seen;
+    std::vector<Observation> seen;
     for (const View& view : two_views())
-      seen.push_back(sighting_of(truth, view, random, 0.02, {0, random.uniform(0.5, 1) * most}));
+      seen.push_back(observation_of(truth, view, random, 0.02, {0, random.uniform(0.5, 1) * most}));
     const ShapeEstimate found = ShapeEstimator(prior).estimate(seen);
     EXPECT_FALSE(found.is_found);
     EXPECT_FALSE(found.reason.empty());
@@ -197,8 +197,8 @@ TEST(ShapeEstimator, TrustsNoLengthOfAnArmWhoseTipIsNowhereSeen) {
     const Backbone truth(arm, random_bends(random, arm, 1.0));
     const std::array<View, 2> views = two_views();
     const auto seen_to = [&](std::array<double, 2> shares) {
-      return std::vector<Sighting>{sighting_of(truth, views[0], random, 0.02, {0, shares[0]}),
-                                   sighting_of(truth, views[1], random, 0.02, {0, shares[1]})};
+      return std::vector<Observation>{observation_of(truth, views[0], random, 0.02, {0, shares[0]}),
+                                      observation_of(truth, views[1], random, 0.02, {0, shares[1]})};
     };
     const auto speaks_of_tip = [](const ShapeEstimate& found) {
       return std::ranges::any_of(
@@ -217,8 +217,8 @@ TEST(ShapeEstimator, TrustsNoLengthOfAnArmWhoseTipIsNowhereSeen) {
     EXPECT_FALSE(speaks_of_tip(of_base.estimate(seen_to({1, 0.98}))));
     EXPECT_FALSE(speaks_of_tip(of_length.estimate(seen_to({0.98, 0.98}))));
     // Or a marker at a known position.
-    std::vector<Sighting> marked = seen_to({0.98, 0.98});
-    for (Sighting& one : marked)
+    std::vector<Observation> marked = seen_to({0.98, 0.98});
+    for (Observation& one : marked)
       one.markers.push_back({one.view.project(truth.pose(0.5 * truth.length()).position).value(), 0.5, 0.1});
     EXPECT_FALSE(speaks_of_tip(of_base.estimate(marked)));
   });
@@ -228,19 +228,19 @@ TEST(ShapeEstimator, DoubtsOrRefusesWhatNoShapeExplains) {
   for_random_cases(6, [](TestRandom& random) {
     const ShapePrior prior{.arm = three_section_arm()};
     const Backbone one(prior.arm, random_bends(random, prior.arm, 1.0));
-    std::vector<Sighting> seen = sightings_of(one, random, 0.02);
+    std::vector<Observation> seen = observations_of(one, random, 0.02);
     // Notes on uncertainty alone are switched off.
     ShapeEstimator estimator(prior, {.uncertain = 1e-2});
     const ShapeEstimate right = estimator.estimate(seen);
     EXPECT_TRUE(right.is_found) << right.reason;
     EXPECT_TRUE(right.notes.empty()) << right.notes.front();
     // The second camera is elsewhere than modelled: no shape has both images.
-    std::vector<Sighting> moved = seen;
+    std::vector<Observation> moved = seen;
     for (CurvePoint& point : moved[1].points) point.pixel.y() += 60;
     for (auto& end : moved[1].ends) end->pixel.y() += 60;
     const ShapeEstimate wrong = estimator.estimate(moved);
     if (wrong.is_found) {
-      EXPECT_FALSE(wrong.notes.empty()) << wrong.rms << " px, doubted " << wrong.doubted;
+      EXPECT_FALSE(wrong.notes.empty()) << wrong.rms << " px, doubted " << wrong.outlier_share;
     } else {
       EXPECT_NE(wrong.reason, "");
     }
@@ -260,9 +260,9 @@ TEST(ShapeEstimator, IsNotSureOfAnotherShapeWhereNoPictureShowsTheTip) {
     ShapePrior prior{.arm = three_section_arm()};
     for (Section& section : prior.arm.sections) section.max_bend = 2.97;
     const Backbone truth(prior.arm, random_bends(random, prior.arm, 2.9));
-    std::vector<Sighting> seen;
+    std::vector<Observation> seen;
     for (const View& view : two_views())
-      seen.push_back(sighting_of(truth, view, random, 0.02, {0, random.uniform(0.6, 0.95)}));
+      seen.push_back(observation_of(truth, view, random, 0.02, {0, random.uniform(0.6, 0.95)}));
     const ShapeEstimate estimate = ShapeEstimator(prior).estimate(seen);
     if (!estimate.is_found) return;
     ++found;
@@ -276,8 +276,8 @@ TEST(ShapeEstimator, IsNotSureOfAnotherShapeWhereNoPictureShowsTheTip) {
 TEST(ShapeEstimator, NamesThePictureThatItsLensShowsTheArmInNoPartOf) {
   TestRandom random(1);
   const ShapePrior prior{.arm = three_section_arm()};
-  std::vector<Sighting> seen =
-      sightings_of(Backbone(prior.arm, random_bends(random, prior.arm, 1)), random, 0.02);
+  std::vector<Observation> seen =
+      observations_of(Backbone(prior.arm, random_bends(random, prior.arm, 1)), random, 0.02);
   Intrinsics folded = seen[1].view.lens.intrinsics();
   folded.distortion[0] = -20;
   seen[1].view.lens = Lens(folded);
@@ -294,7 +294,7 @@ TEST(ShapeEstimator, SaysWhereASectionWouldBendFartherThanItGoes) {
   ShapePrior prior{.arm = three_section_arm()};
   ArmState state = ArmState::straight(3);
   state.bends[1] = {0.9, 1.2};
-  const std::vector<Sighting> seen = sightings_of(Backbone(prior.arm, state), random, 0.02);
+  const std::vector<Observation> seen = observations_of(Backbone(prior.arm, state), random, 0.02);
   // Notes on uncertainty alone are switched off.
   const auto notes = [&] { return ShapeEstimator(prior, {.uncertain = 1}).estimate(seen).notes; };
   EXPECT_THAT(notes(), testing::IsEmpty());

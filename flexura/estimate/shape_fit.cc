@@ -18,7 +18,7 @@ using RowKind = ShapeProblem::RowKind;
 // Median of |x| of a standard normal deviate.
 constexpr double median_size = 0.6745;
 // In standard deviations: beyond this a residual's weight decreases with its size.
-constexpr double doubtful = 4;
+constexpr double uncertain = 4;
 // px; limits the cost of a point far from the shape.
 constexpr double far_away = 3;
 
@@ -68,8 +68,8 @@ double ShapeDescent::cutoff(const ShapeProblem& problem) {
   for (Eigen::Index i = 0; i < problem.rows(); ++i)
     if (problem.kind(i) == RowKind::point || problem.kind(i) == RowKind::marker)
       sizes_.push_back(std::abs(problem.residuals()[i]));
-  if (sizes_.empty()) return doubtful;
-  return doubtful * std::max(1.0, median(std::span(sizes_)) / median_size);
+  if (sizes_.empty()) return uncertain;
+  return uncertain * std::max(1.0, median(std::span(sizes_)) / median_size);
 }
 
 void ShapeDescent::weigh(const ShapeProblem& problem, double cutoff) {
@@ -108,7 +108,7 @@ ShapeFit ShapeDescent::descend(ShapeProblem& problem, const Shape& start, int mo
   // Narrows the limit after a step that reduced the cost by `gain`; returns whether it was the last.
   const auto narrow = [&](double gain, double cost) {
     constexpr double slow = 0.3, narrowing = 0.25;
-    const double least = cutoff(problem), scale = limit / doubtful;
+    const double least = cutoff(problem), scale = limit / uncertain;
     // The step just made was a tenth of a standard deviation: the next one would be a thirtieth.
     fit.is_settled = gain <= 1e-2 * scale * scale && least >= 0.99 * limit;
     if (is_near || gain <= slow * cost)
@@ -144,13 +144,13 @@ ShapeFit ShapeDescent::descend(ShapeProblem& problem, const Shape& start, int mo
 }
 
 void ShapeDescent::finish(const ShapeProblem& problem, double cutoff, ShapeFit& fit) {
-  double square = 0, weight = 0, square_px = 0, believed = 0, points = 0, far = 0, against = 0, beliefs = 0,
-         on_axes = 0;
+  double square = 0, weight = 0, square_px = 0, inliers = 0, points = 0, far = 0, against = 0,
+         predictions = 0, on_axes = 0;
   sizes_.clear();
-  std::vector<double> seen_in(problem.sightings().size()), believed_in(seen_in.size());
+  std::vector<double> seen_in(problem.observations().size()), inliers_in(seen_in.size());
   for (Eigen::Index i = 0; i < problem.rows(); ++i) {
     const double r = problem.residuals()[i], px = r * problem.sigma(i);
-    if (problem.kind(i) == RowKind::belief) against += r * r, ++beliefs;
+    if (problem.kind(i) == RowKind::prediction) against += r * r, ++predictions;
     if (!problem.is_seen(i)) continue;
     const RowKind kind = problem.kind(i);
     if (kind == RowKind::point) square += weights_[i] * r * r, weight += weights_[i];
@@ -158,21 +158,21 @@ void ShapeDescent::finish(const ShapeProblem& problem, double cutoff, ShapeFit& 
       if (std::abs(r) > cutoff) ++fit.contradicted;
       continue;
     }
-    ++points, far += bounded_square(px, far_away), ++seen_in[problem.sighting(i)];
+    ++points, far += bounded_square(px, far_away), ++seen_in[problem.observation(i)];
     if (!(std::abs(r) < cutoff)) continue;
-    ++believed, ++believed_in[problem.sighting(i)];
+    ++inliers, ++inliers_in[problem.observation(i)];
     if (kind == RowKind::point) ++on_axes, square_px += px * px, sizes_.push_back(r);
   }
-  fit.scale = cutoff / doubtful;
+  fit.scale = cutoff / uncertain;
   fit.cost = far / std::max(points, 1.0);
   fit.rms = on_axes > 0 ? std::sqrt(square_px / on_axes) : 0.0;
-  fit.doubted = points > 0 ? 1 - believed / points : 0.0;
+  fit.outlier_share = points > 0 ? 1 - inliers / points : 0.0;
   for (std::size_t i = 0; i < seen_in.size(); ++i)
-    fit.doubted_in.push_back(seen_in[i] > 0 ? 1 - believed_in[i] / seen_in[i] : 0.0);
-  fit.surprise = std::sqrt(against / std::max(beliefs, 1.0));
+    fit.outlier_share_in.push_back(seen_in[i] > 0 ? 1 - inliers_in[i] / seen_in[i] : 0.0);
+  fit.innovation = std::sqrt(against / std::max(predictions, 1.0));
   // After a belief, the estimate belongs to a filter, which treats points as independent.
   fit.covariance =
-      beliefs > 0 ? filtered_covariance(problem, square, weight) : covariance(problem, square, weight);
+      predictions > 0 ? filtered_covariance(problem, square, weight) : covariance(problem, square, weight);
 }
 
 // Inverse of the sum of the previous information and that of the observations, scaled by their residuals.
@@ -182,7 +182,7 @@ Eigen::MatrixXd ShapeDescent::filtered_covariance(const ShapeProblem& problem, d
   const double variance = std::max(1.0, square / freedom) * correlation_factor(sizes_);
   load_scatter(problem);
   damped_.setZero(count, count);
-  damped_.selfadjointView<Eigen::Lower>().rankUpdate(told_);
+  damped_.selfadjointView<Eigen::Lower>().rankUpdate(predicted_rows_);
   damped_ += (normal_ - damped_) / variance;
   solver_.compute(damped_);
   if (!solver_.is_definite(rounding))
@@ -211,8 +211,8 @@ Eigen::MatrixXd ShapeDescent::covariance(const ShapeProblem& problem, double squ
   scatter_.noalias() = followed_ * alike_.transpose();
   normal_.noalias() = scatter_ * damped_;
   Eigen::MatrixXd result = normal_ + normal_.transpose();
-  if (told_.cols() > 0) {
-    followed_.noalias() = damped_ * told_;
+  if (predicted_rows_.cols() > 0) {
+    followed_.noalias() = damped_ * predicted_rows_;
     result.noalias() += followed_ * followed_.transpose();
   }
   return result;
@@ -224,18 +224,18 @@ Eigen::MatrixXd ShapeDescent::covariance(const ShapeProblem& problem, double squ
 void ShapeDescent::load_scatter(const ShapeProblem& problem) {
   // The errors of ends have long tails: tips may be hidden.
   constexpr double of_ends = 2.5;
-  Eigen::Index all_seen = 0, all_told = 0;
-  for (Eigen::Index i = 0; i < problem.rows(); ++i) ++(problem.is_seen(i) ? all_seen : all_told);
+  Eigen::Index all_seen = 0, all_predicted = 0;
+  for (Eigen::Index i = 0; i < problem.rows(); ++i) ++(problem.is_seen(i) ? all_seen : all_predicted);
   const Eigen::Index count = normal_.rows();
   parts_.resize(count, all_seen), alike_.resize(count, all_seen), apart_.resize(count, all_seen);
-  told_.resize(count, all_told);
-  std::size_t sighting = problem.sightings().size(), point = 0;
+  predicted_rows_.resize(count, all_predicted);
+  std::size_t observation = problem.observations().size(), point = 0;
   double likes = 0, pairs = 0;
-  all_seen = all_told = 0;
+  all_seen = all_predicted = 0;
   for (Eigen::Index i = 0; i < problem.rows(); ++i) {
     const auto derivative = problem.derivatives().row(i).transpose();
     if (!problem.is_seen(i)) {
-      told_.col(all_told++) = derivative;
+      predicted_rows_.col(all_predicted++) = derivative;
       continue;
     }
     const Eigen::Index k = all_seen++;
@@ -245,11 +245,11 @@ void ShapeDescent::load_scatter(const ShapeProblem& problem) {
       alike.setZero(), apart = (problem.kind(i) == RowKind::end ? 0.5 * of_ends : 0.5) * part;
       continue;
     }
-    if (problem.sighting(i) != sighting) {
-      sighting = problem.sighting(i), point = 0;
+    if (problem.observation(i) != observation) {
+      observation = problem.observation(i), point = 0;
       near_.setZero(count), far_.setZero(count);
     }
-    const Sighting& seen = problem.sightings()[sighting];
+    const Observation& seen = problem.observations()[observation];
     const CurvePoint& here = seen.points[point];
     if (point > 0) {
       const double way = (here.pixel - seen.points[point - 1].pixel).norm();

@@ -13,20 +13,20 @@ struct ShapeFit {
   Shape shape;
   bool is_settled = false;  ///< Whether no step reduces the cost further.
   int iterations = 0;
-  double scale = 1;    ///< Robust scale of the residuals, in units of their sigmas; at least 1.
-  double cost = 0;     ///< Mean of the points' squared distances, each bounded, px^2.
-  double rms = 0;      ///< Root mean square of the inlier points' distances, px.
-  double doubted = 0;  ///< Share of the points that are outliers.
-  std::vector<double> doubted_in = {};  ///< Share of outliers in each observation.
-  double surprise = 0;   ///< Normalised innovation of a belief: root mean square of its residuals in sigmas.
-  int contradicted = 0;  ///< Number of ends and markers observed elsewhere than on the shape.
+  double scale = 1;          ///< Robust scale of the residuals, in units of their sigmas; at least 1.
+  double cost = 0;           ///< Mean of the points' squared distances, each bounded, px^2.
+  double rms = 0;            ///< Root mean square of the inlier points' distances, px.
+  double outlier_share = 0;  ///< Share of the points that are outliers.
+  std::vector<double> outlier_share_in = {};  ///< Share of outliers in each observation.
+  double innovation = 0;  ///< Normalised innovation of a belief: root mean square of its residuals in sigmas.
+  int contradicted = 0;   ///< Number of ends and markers observed elsewhere than on the shape.
   /// Covariance of the unknowns; infinite if the observations do not determine them.
   Eigen::MatrixXd covariance;
 
   static constexpr double most_scale = 8;  ///< In sigmas: a larger scale is no fit.
   /// Returns whether no better fit is needed. `most_rms`: of inlier points, px.
   [[nodiscard]] bool is_good(double most_rms) const {
-    return is_settled && doubted < 0.1 && (scale < most_scale || rms < 0.5 * most_rms);
+    return is_settled && outlier_share < 0.1 && (scale < most_scale || rms < 0.5 * most_rms);
   }
 };
 
@@ -54,8 +54,9 @@ class ShapeDescent {
 
   std::vector<double> sizes_;
   Eigen::VectorXd weights_, gradient_, step_, near_, far_;
-  Eigen::MatrixXd weighted_, normal_, damped_;                         // Lower halves of symmetric matrices.
-  Eigen::MatrixXd parts_, alike_, apart_, told_, followed_, scatter_;  // For the covariance, complete.
+  Eigen::MatrixXd weighted_, normal_, damped_;  // Lower halves of symmetric matrices.
+  Eigen::MatrixXd parts_, alike_, apart_, predicted_rows_, followed_,
+      scatter_;          // For the covariance, complete.
   double promised_ = 1;  // Ratio of the variance of the points' mean to that of independent ones.
   PivotedCholesky solver_;
 };

@@ -11,7 +11,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "flexura/estimate/picture_sighting.h"
+#include "flexura/estimate/picture_observation.h"
 #include "flexura/estimate/shape_estimator.h"
 #include "flexura/math/so3.h"
 #include "tests/support/seen_arms.h"
@@ -39,16 +39,17 @@ View view_from_side(const BentArm& bent, double azimuth) {
   return pinhole_view(look_at(from, middle), 640, 480, 850);
 }
 
-std::vector<Sighting> photographed(const BentArm& bent, const std::vector<View>& views, std::uint64_t seed) {
+std::vector<Observation> photographed(const BentArm& bent, const std::vector<View>& views,
+                                      std::uint64_t seed) {
   Scene scene;
   scene.background = Color::Constant(0.85);
   scene.arm.tube = tube_of(bent.backbone());
   scene.arm.albedo = {0.08, 0.08, 0.09};
-  std::vector<Sighting> seen;
+  std::vector<Observation> seen;
   for (const View& view : views) {
     ArmFinder finder({.threshold = {}, .base = view.project(bent.arm.X_WB.position)});
     const SeenArmConfig options{.noise = 1};
-    seen.push_back(sighting_of(finder.find(photograph(scene, view, options, seed++)), view));
+    seen.push_back(observation_of(finder.find(photograph(scene, view, options, seed++)), view));
   }
   return seen;
 }
@@ -58,13 +59,13 @@ struct Outcome {
   double sigma = 0;   // Root mean square along the arm, m.
   double error = 0;   // Root mean square along the arm, m.
   double square = 0;  // Mean along the arm of the squared errors in sigmas.
-  [[nodiscard]] bool is_told() const { return !found.is_found || !found.notes.empty(); }
+  [[nodiscard]] bool is_reported() const { return !found.is_found || !found.notes.empty(); }
   // Three coordinates depend on few independent variables: a mean square of nine is beyond the 0.1 % quantile
   // of chi-square.
   [[nodiscard]] bool is_covered() const { return found.is_found && square < 9; }
 };
 
-Outcome outcome(const BentArm& bent, const ShapePrior& prior, const std::vector<Sighting>& seen) {
+Outcome outcome(const BentArm& bent, const ShapePrior& prior, const std::vector<Observation>& seen) {
   Outcome result{.found = ShapeEstimator(prior).estimate(seen)};
   if (!result.found.is_found) return result;
   const Backbone truth = bent.backbone(), shape(result.found.shape.arm, result.found.shape.state);
@@ -91,7 +92,7 @@ void expect_honest(const Outcome& one) {
     EXPECT_NE(one.found.reason, "");
     return;
   }
-  EXPECT_TRUE(one.is_covered() || one.is_told()) << one.error << " m, sigma " << one.sigma;
+  EXPECT_TRUE(one.is_covered() || one.is_reported()) << one.error << " m, sigma " << one.sigma;
 }
 
 // Results for a known arm and for one without a kinematic model, with difficult and with ordinary views.
@@ -146,7 +147,7 @@ TEST(HardShapes, TheArmBeforeItself) {
     // For the known arm, the length determines the branch that one camera does not see.
     EXPECT_TRUE(views.hard[0].is_covered());
     for (std::size_t i = 0; i < 2; ++i) {
-      EXPECT_TRUE(views.hard[i].is_told());
+      EXPECT_TRUE(views.hard[i].is_reported());
       // For the unknown one there may be no answer: other shapes explain the images, too.
       if (i == 0 || views.hard[i].found.is_found) {
         EXPECT_GT(views.hard[i].sigma, 5 * views.plain[i].sigma);

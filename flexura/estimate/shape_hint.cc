@@ -52,7 +52,7 @@ std::optional<Vector3d> direction_of(const Lens& lens, const Eigen::Vector2d& pi
 
 // Adds the ratios of observed to described radii where both edges of the tube are visible. The chord between
 // their directions is 2 r over the distance (backbone_depths).
-void add_ratios(const Sighting& seen, const ViewError& error, const Shape& shape,
+void add_ratios(const Observation& seen, const ViewError& error, const Shape& shape,
                 std::vector<double>& ratios) {
   const View view = corrected(seen.view, error);
   const std::vector<BackbonePlace> places = places_from(view, shape);
@@ -69,12 +69,12 @@ void add_ratios(const Sighting& seen, const ViewError& error, const Shape& shape
 }
 
 // Returns a hint if the observed radius differs from the described one.
-std::optional<std::string> hint_of_radius(std::span<const Sighting> sightings, const Shape& shape) {
+std::optional<std::string> hint_of_radius(std::span<const Observation> observations, const Shape& shape) {
   constexpr double most_off = 0.15;
   constexpr std::size_t fewest = 20;
   std::vector<double> ratios;
-  for (std::size_t i = 0; i < sightings.size(); ++i)
-    add_ratios(sightings[i], error_of(shape, i), shape, ratios);
+  for (std::size_t i = 0; i < observations.size(); ++i)
+    add_ratios(observations[i], error_of(shape, i), shape, ratios);
   if (ratios.size() < fewest) return std::nullopt;
   const double ratio = median(std::span(ratios));
   if (!(std::abs(ratio - 1) > most_off)) return std::nullopt;
@@ -90,10 +90,10 @@ std::optional<std::string> hint_of_radius(std::span<const Sighting> sightings, c
 }
 
 // Returns a hint if the base, p_WB, would not be near the observed points.
-std::optional<std::string> hint_of_base(std::span<const Sighting> sightings, const Vector3d& p_WB) {
+std::optional<std::string> hint_of_base(std::span<const Observation> observations, const Vector3d& p_WB) {
   constexpr double far = 0.05;  // Share of the picture's diagonal.
-  for (std::size_t i = 0; i < sightings.size(); ++i) {
-    const Sighting& seen = sightings[i];
+  for (std::size_t i = 0; i < observations.size(); ++i) {
+    const Observation& seen = observations[i];
     const auto base = seen.view.project(p_WB);
     if (!((seen.view.X_WC.inverse() * p_WB).z() > 0))
       return fmt::format(
@@ -118,10 +118,10 @@ std::optional<std::string> hint_of_base(std::span<const Sighting> sightings, con
 
 }  // namespace
 
-std::optional<std::string> hint_of(const ShapePrior& prior, std::span<const Sighting> sightings,
+std::optional<std::string> hint_of(const ShapePrior& prior, std::span<const Observation> observations,
                                    const ShapeEstimate& estimate) {
-  if (estimate.is_found) return hint_of_radius(sightings, estimate.shape);
-  return prior.is_base_position_known ? hint_of_base(sightings, prior.arm.X_WB.position) : std::nullopt;
+  if (estimate.is_found) return hint_of_radius(observations, estimate.shape);
+  return prior.is_base_position_known ? hint_of_base(observations, prior.arm.X_WB.position) : std::nullopt;
 }
 
 }  // namespace flexura

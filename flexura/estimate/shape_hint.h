@@ -4,8 +4,8 @@
 #include <span>
 #include <string>
 
+#include "flexura/estimate/observation.h"
 #include "flexura/estimate/shape_estimator.h"
-#include "flexura/estimate/sighting.h"
 
 namespace flexura {
 
@@ -14,7 +14,8 @@ namespace flexura {
 /// arms without a radius). For one that was not found: the camera that has the base behind it, or the picture
 /// in which the base is far from all observed points. Empty if, in each picture, the base is near these
 /// points or outside.
-[[nodiscard]] std::optional<std::string> hint_of(const ShapePrior& prior, std::span<const Sighting> sightings,
+[[nodiscard]] std::optional<std::string> hint_of(const ShapePrior& prior,
+                                                 std::span<const Observation> observations,
                                                  const ShapeEstimate& estimate);
 
 }  // namespace flexura

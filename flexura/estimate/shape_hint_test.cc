@@ -34,8 +34,8 @@ Shape shape_of(double radius) {
 }
 
 // The edges of a tube along it.
-Sighting edges_of(const Shape& shape, double radius) {
-  Sighting seen;
+Observation edges_of(const Shape& shape, double radius) {
+  Observation seen;
   seen.view = seen_from_origin();
   const Backbone backbone(shape.arm, shape.state);
   for (double s = 0.02; s < backbone.length(); s += 0.02) {
@@ -49,31 +49,31 @@ Sighting edges_of(const Shape& shape, double radius) {
 }
 
 // Returns the hint if the arm of this shape is found.
-std::string found_hint(std::span<const Sighting> sightings, const Shape& shape) {
+std::string found_hint(std::span<const Observation> observations, const Shape& shape) {
   ShapeEstimate estimate;
   estimate.is_found = true, estimate.shape = shape;
-  return hint_of({.arm = shape.arm}, sightings, estimate).value_or("none");
+  return hint_of({.arm = shape.arm}, observations, estimate).value_or("none");
 }
 
 TEST(ShapeHint, TellsTheRadiusThatIsSeen) {
   const Shape described = shape_of(0.024);
-  const std::array<Sighting, 1> other = {edges_of(described, 0.018)}, same = {edges_of(described, 0.023)};
+  const std::array<Observation, 1> other = {edges_of(described, 0.018)}, same = {edges_of(described, 0.023)};
   EXPECT_THAT(found_hint(other, described), HasSubstr("show an arm of 0.018 m radius, its file has 0.024 m"));
   EXPECT_EQ(found_hint(same, described), "none");
   Shape tapered = described;
   tapered.arm.sections[1].radius = {0.024, 0.012};
-  const std::array<Sighting, 1> twice = {edges_of(described, 0.048)};
+  const std::array<Observation, 1> twice = {edges_of(described, 0.048)};
   EXPECT_THAT(found_hint(twice, tapered), HasSubstr("times as thick as it is described"));
   // No hint for an arm without a radius or without visible edges.
   EXPECT_EQ(found_hint(other, shape_of(0)), "none");
-  std::array<Sighting, 1> none;
+  std::array<Observation, 1> none;
   none[0].view = seen_from_origin();
   EXPECT_EQ(found_hint(none, described), "none");
 }
 
 TEST(ShapeHint, TellsWhereTheBaseWouldBe) {
-  std::array<Sighting, 2> seen;
-  for (Sighting& one : seen) one.view = seen_from_origin();
+  std::array<Observation, 2> seen;
+  for (Observation& one : seen) one.view = seen_from_origin();
   ShapePrior prior{.arm = shape_of(0.024).arm};
   const auto hint = [&] { return hint_of(prior, seen, ShapeEstimate{}).value_or("none"); };
   const Eigen::Vector2d there = seen[0].view.project(prior.arm.X_WB.position).value();

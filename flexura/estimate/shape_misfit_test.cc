@@ -11,8 +11,8 @@
 #include "flexura/estimate/shape_estimator.h"
 #include "flexura/estimate/shape_silhouette.h"
 #include "flexura/estimate/shape_start.h"
+#include "tests/support/observations.h"
 #include "tests/support/random_cases.h"
-#include "tests/support/sightings.h"
 
 namespace flexura {
 namespace {
@@ -36,26 +36,26 @@ std::vector<Eigen::Vector2d> figure_of(const Backbone& backbone, const View& vie
 struct Seen {
   ShapePrior prior{.arm = three_section_arm()};
   Shape truth;
-  std::vector<Sighting> sightings;
+  std::vector<Observation> observations;
 };
 Seen random_seen(TestRandom& random) {
   Seen seen;
   seen.truth = {seen.prior.arm, random_bends(random, seen.prior.arm, 1.0), {}};
   const Backbone backbone(seen.truth.arm, seen.truth.state);
-  seen.sightings = sightings_of(backbone, random, 0.02);
-  for (Sighting& one : seen.sightings) one.figure = figure_of(backbone, one.view);
+  seen.observations = observations_of(backbone, random, 0.02);
+  for (Observation& one : seen.observations) one.figure = figure_of(backbone, one.view);
   return seen;
 }
 
 TEST(ShapeMisfit, IsNoneOfTheShapeAndSomeOfAnother) {
   for_random_cases(100, [](TestRandom& random) {
     const Seen seen = random_seen(random);
-    EXPECT_LT(misfit(seen.sightings, seen.truth), 1e-6);
+    EXPECT_LT(misfit(seen.observations, seen.truth), 1e-6);
     // Some 5 px or more at the tip: at least one camera sees a shift there and back.
     const Eigen::Vector2d bend = seen.truth.state.bends[2];
     for (Shape& other : bent_otherwise(seen.truth, 2, bend.norm() + 0.3, 4))
       if ((other.state.bends[2] - bend).norm() > 0.3) {
-        EXPECT_GT(misfit(seen.sightings, other), 0.002) << (other.state.bends[2] - bend).norm();
+        EXPECT_GT(misfit(seen.observations, other), 0.002) << (other.state.bends[2] - bend).norm();
       }
   });
 }
@@ -63,7 +63,7 @@ TEST(ShapeMisfit, IsNoneOfTheShapeAndSomeOfAnother) {
 TEST(ShapeMisfit, CountsWhatTheShapeDoesNotExplainAndNotWhatIsHidden) {
   TestRandom random(1);
   const Seen seen = random_seen(random);
-  Sighting more = seen.sightings[0], less = more, none = more;
+  Observation more = seen.observations[0], less = more, none = more;
   for (double u = 0; u < 40; u += spacing) more.figure.emplace_back(10 + u, 10);
   std::erase_if(less.figure,
                 [&](const Eigen::Vector2d& place) { return (place - less.ends[1]->pixel).norm() < 60; });
@@ -74,7 +74,7 @@ TEST(ShapeMisfit, CountsWhatTheShapeDoesNotExplainAndNotWhatIsHidden) {
   EXPECT_LT(misfit(less, {}, seen.truth), 1e-6);
   EXPECT_EQ(misfit(none, {}, seen.truth), 0);
   // The picture's border cuts the arm: the part beyond is not missing.
-  Sighting cut = seen.sightings[0];
+  Observation cut = seen.observations[0];
   const double middle = 0.5 * (cut.ends[0]->pixel.x() + cut.ends[1]->pixel.x());
   ASSERT_GT(std::abs(cut.ends[1]->pixel.x() - middle), 60);
   cut.view.width = static_cast<int>(middle);
@@ -82,7 +82,7 @@ TEST(ShapeMisfit, CountsWhatTheShapeDoesNotExplainAndNotWhatIsHidden) {
   EXPECT_LT(misfit(cut, {}, seen.truth), 1e-6);
   Shape thin = seen.truth;
   for (Section& section : thin.arm.sections) section.radius = {0, 0};
-  EXPECT_EQ(misfit(seen.sightings[0], {}, thin), 0);
+  EXPECT_EQ(misfit(seen.observations[0], {}, thin), 0);
   more.figure.emplace_back(std::numeric_limits<double>::quiet_NaN(), 0);
   EXPECT_TRUE(std::isfinite(misfit(more, {}, seen.truth)));
 }
@@ -91,14 +91,14 @@ TEST(ShapeMisfit, IsToldWhereThePictureShowsSomethingElse) {
   for_random_cases(20, [](TestRandom& random) {
     Seen seen = random_seen(random);
     ShapeEstimator estimator(seen.prior);
-    const ShapeEstimate alone = estimator.estimate(seen.sightings);
+    const ShapeEstimate alone = estimator.estimate(seen.observations);
     ASSERT_TRUE(alone.is_trusted());
-    for (double u = 0; u < 80; u += spacing) seen.sightings[1].figure.emplace_back(10 + u, 10);
-    const ShapeEstimate beside = estimator.estimate(seen.sightings);
+    for (double u = 0; u < 80; u += spacing) seen.observations[1].figure.emplace_back(10 + u, 10);
+    const ShapeEstimate beside = estimator.estimate(seen.observations);
     ASSERT_TRUE(beside.is_found);
     EXPECT_FALSE(beside.is_trusted());
-    const auto is_told = [](const std::string& note) { return note.starts_with("picture 2 is not all"); };
-    EXPECT_TRUE(std::ranges::any_of(beside.notes, is_told));
+    const auto is_reported = [](const std::string& note) { return note.starts_with("picture 2 is not all"); };
+    EXPECT_TRUE(std::ranges::any_of(beside.notes, is_reported));
     EXPECT_LT(shape_error(beside.shape, Backbone(seen.truth.arm, seen.truth.state)), 1e-3);
   });
 }
@@ -112,11 +112,11 @@ TEST(ShapeMisfit, LeavesArmsThatAreHiddenInPart) {
     Seen seen = random_seen(random);
     const Backbone backbone(seen.truth.arm, seen.truth.state);
     const bool is_taken_for_tip = random.uniform(0, 1) < 0.5;
-    Sighting& part = seen.sightings[static_cast<std::size_t>(random.uniform(0, 2))];
+    Observation& part = seen.observations[static_cast<std::size_t>(random.uniform(0, 2))];
     part.points.resize(84), part.figure.resize(std::size_t{3} * 84);
     part.ends[1].reset();
     if (is_taken_for_tip) part.ends[1] = SeenEnd{part.points.back().pixel};
-    const ShapeEstimate found = ShapeEstimator(seen.prior).estimate(seen.sightings);
+    const ShapeEstimate found = ShapeEstimator(seen.prior).estimate(seen.observations);
     const bool is_right = found.is_found && shape_error(found.shape, backbone) < 2e-3;
     right += is_right ? one_case_of : 0;
     if (found.is_found && !(shape_error(found.shape, backbone) < 1e-2)) wrong += one_case_of;
@@ -139,7 +139,7 @@ TEST(ShapeMisfit, GoesByTheWidthOfTaperedArms) {
         tapered.arm.sections[i].radius.at(end) =
             0.02 * (1 - 0.8 * static_cast<double>(i + end) / static_cast<double>(count));
     // The silhouette has the full width: the part beside the tip is no longer explained, that at the base is.
-    Sighting base = seen.sightings[0], tip = base;
+    Observation base = seen.observations[0], tip = base;
     base.figure.resize(30), tip.figure.erase(tip.figure.begin(), tip.figure.end() - 30);
     EXPECT_LT(misfit(base, {}, tapered), 1e-6);
     EXPECT_GT(misfit(tip, {}, tapered), 0.1);
@@ -151,19 +151,19 @@ TEST(ShapeMisfit, GoesByTheWidthOfTaperedArms) {
 TEST(ShapeMisfit, IsNotToldOfDisksOrOfWideLenses) {
   for_random_cases(20, [](TestRandom& random) {
     Seen seen = random_seen(random);
-    for (Sighting& one : seen.sightings) {
+    for (Observation& one : seen.observations) {
       const std::vector<Eigen::Vector2d> places = one.figure;
       for (std::size_t k = 0; k + 2 < places.size(); k += 30)
         for (const std::size_t side : {k, k + 2})
           one.figure.emplace_back(places[side] + 0.8 * (places[side] - places[k + 1]));
     }
-    EXPECT_GT(misfit(seen.sightings, seen.truth), 0);
-    const ShapeEstimate found = ShapeEstimator(seen.prior).estimate(seen.sightings);
+    EXPECT_GT(misfit(seen.observations, seen.truth), 0);
+    const ShapeEstimate found = ShapeEstimator(seen.prior).estimate(seen.observations);
     EXPECT_TRUE(found.is_trusted()) << (found.notes.empty() ? found.reason : found.notes.front());
     // A camera near the arm, which is seen 40 degrees off its axis.
     const Backbone backbone(seen.truth.arm, seen.truth.state);
     View wide = view_from({0, 0.4, 0.9}, {0.75, 0.4, 0}, 300);
-    Sighting aside = seen.sightings[0];
+    Observation aside = seen.observations[0];
     aside.view = wide, aside.figure = figure_of(backbone, wide);
     EXPECT_LT(misfit(aside, {}, seen.truth), 0.005);
   });

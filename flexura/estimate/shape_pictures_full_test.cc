@@ -8,21 +8,21 @@
 #include <cstdint>
 #include <vector>
 
-#include "flexura/estimate/picture_sighting.h"
+#include "flexura/estimate/picture_observation.h"
 #include "flexura/estimate/shape_estimator.h"
+#include "tests/support/observations.h"
 #include "tests/support/seen_shapes.h"
-#include "tests/support/sightings.h"
 #include "tests/support/study_numbers.h"
 
 namespace flexura {
 namespace {
 
 // The base end is given.
-std::vector<Sighting> sightings_of(const SeenShape& one) {
-  std::vector<Sighting> seen;
+std::vector<Observation> observations_of(const SeenShape& one) {
+  std::vector<Observation> seen;
   for (std::size_t i = 0; i < 2; ++i) {
     ArmFinder finder({.threshold = {}, .base = one.views[i].project(one.bent.arm.X_WB.position)});
-    seen.push_back(sighting_of(finder.find(one.pictures[i]), one.views[i]));
+    seen.push_back(observation_of(finder.find(one.pictures[i]), one.views[i]));
   }
   return seen;
 }
@@ -50,7 +50,7 @@ TEST(ShapesInPictures, OfKnownArmsAreAsGoodAsTheirCovarianceSays) {
   Consistency all, thin;
   for_random_cases(cases, [&](TestRandom& random) {
     const SeenShape one = random_seen_shape(random);
-    const ShapeEstimate found = ShapeEstimator({.arm = one.bent.arm}).estimate(sightings_of(one));
+    const ShapeEstimate found = ShapeEstimator({.arm = one.bent.arm}).estimate(observations_of(one));
     if (!found.is_found || !found.notes.empty()) return;
     errors.push_back(relative_shape_error(found.shape, one.bent.backbone()));
     all.add(found, one.bent.state);
@@ -78,7 +78,7 @@ TEST(ShapesInPictures, OfWhichNothingIsKnownAreRefusedOrTold) {
     SCOPED_TRACE(seed);
     TestRandom random(seed);
     const SeenShape one = random_seen_shape(random);
-    const ShapeEstimate found = ShapeEstimator(unknown_arm({}, {})).estimate(sightings_of(one));
+    const ShapeEstimate found = ShapeEstimator(unknown_arm({}, {})).estimate(observations_of(one));
     EXPECT_NE(found.is_found, !found.reason.empty());
     EXPECT_NE(found.is_found, found.notes.empty());
   }
@@ -91,7 +91,7 @@ TEST(ShapesInPictures, OfUnknownLengthWithoutATipAreNotTrusted) {
     TestRandom random(seed);
     const SeenShape one = random_seen_shape(random);
     const Eigen::Vector3d base = one.bent.arm.X_WB.position;
-    const ShapeEstimate found = ShapeEstimator(unknown_arm(base, {})).estimate(sightings_of(one));
+    const ShapeEstimate found = ShapeEstimator(unknown_arm(base, {})).estimate(observations_of(one));
     ASSERT_TRUE(found.is_found);
     EXPECT_GT(relative_shape_error(found.shape, one.bent.backbone()), 5e-3);
     EXPECT_FALSE(found.is_trusted());
@@ -105,7 +105,7 @@ TEST(ShapesInPictures, ThatHideTheirTipsAreFoundByTheirFigures) {
     SCOPED_TRACE(seed);
     TestRandom random(seed);
     const SeenShape one = random_seen_shape(random);
-    const ShapeEstimate found = ShapeEstimator({.arm = one.bent.arm}).estimate(sightings_of(one));
+    const ShapeEstimate found = ShapeEstimator({.arm = one.bent.arm}).estimate(observations_of(one));
     ASSERT_TRUE(found.is_found);
     EXPECT_LT(relative_shape_error(found.shape, one.bent.backbone()), 2e-3);
   }
@@ -118,8 +118,9 @@ TEST(ShapesOfPlaces, AreDoubtedOrRefused) {
   for (std::uint64_t seed = 1; seed < 9; ++seed) {
     TestRandom random(seed);
     const Arm arm = three_section_arm();
-    std::vector<Sighting> seen = sightings_of(Backbone(arm, random_bends(random, arm, 1.2)), random, 0.02);
-    for (Sighting& one : seen) {
+    std::vector<Observation> seen =
+        observations_of(Backbone(arm, random_bends(random, arm, 1.2)), random, 0.02);
+    for (Observation& one : seen) {
       const Eigen::Vector2d place = one.points[60].pixel;
       for (CurvePoint& point : one.points) point.pixel = place + 1e-9 * (point.pixel - place);
       one.ends = {};

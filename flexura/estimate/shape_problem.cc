@@ -12,33 +12,34 @@ namespace flexura {
 namespace {
 
 // Unit direction of the points at point i.
-Eigen::Vector2d heading(const Sighting& seen, std::size_t i) {
+Eigen::Vector2d heading(const Observation& seen, std::size_t i) {
   const std::size_t before = i > 0 ? i - 1 : i, after = std::min(i + 1, seen.points.size() - 1);
   return (seen.points[after].pixel - seen.points[before].pixel).normalized();
 }
 
 }  // namespace
 
-ShapeProblem::ShapeProblem(const ShapePrior& prior, std::span<const Sighting> sightings,
-                           std::vector<BandLook> looks, const ShapeBelief* belief)
+ShapeProblem::ShapeProblem(const ShapePrior& prior, std::span<const Observation> observations,
+                           std::vector<BandObservation> band_observations, const ShapePrediction* prediction)
     : prior_(prior),
-      variables_(prior, sightings),
-      sightings_(sightings),
-      looks_(std::move(looks)),
+      variables_(prior, observations),
+      observations_(observations),
+      band_observations_(std::move(band_observations)),
       curve_(variables_, intervals_a_section(prior)) {
-  std::size_t rows = 2 * prior.arm.sections.size() + looks_.size();
-  for (const BandLook& look : looks_)
-    if (look.marker >= first_looks_.size()) first_looks_.resize(look.marker + 1);
-  for (const Sighting& seen : sightings)
+  std::size_t rows = 2 * prior.arm.sections.size() + band_observations_.size();
+  for (const BandObservation& band_observation : band_observations_)
+    if (band_observation.marker >= first_observations_.size())
+      first_observations_.resize(band_observation.marker + 1);
+  for (const Observation& seen : observations)
     rows += seen.points.size() + seen.borders.size() + 2 + 2 * seen.markers.size() + 4;
-  if (belief != nullptr && belief->covariance.cols() == variables_.count() &&
-      belief->covariance.allFinite()) {
-    const Cholesky known(belief->covariance);
+  if (prediction != nullptr && prediction->covariance.cols() == variables_.count() &&
+      prediction->covariance.allFinite()) {
+    const Cholesky known(prediction->covariance);
     const Eigen::Index count = variables_.count();
     if (known.is_definite()) {
-      believed_ = belief->mean;
+      predicted_ = prediction->mean;
       // Any root of the inverse works: here that of L L^T.
-      belief_ = known.solve_lower(Eigen::MatrixXd::Identity(count, count));
+      prediction_ = known.solve_lower(Eigen::MatrixXd::Identity(count, count));
       rows += static_cast<std::size_t>(count);
     }
   }
@@ -46,16 +47,16 @@ ShapeProblem::ShapeProblem(const ShapePrior& prior, std::span<const Sighting> si
   derivatives_.resize(static_cast<Eigen::Index>(rows), variables_.count());
   kinds_.resize(rows);
   sigmas_.resize(rows);
-  of_sighting_.resize(rows);
+  of_observation_.resize(rows);
   row_.resize(variables_.count());
 }
 
 bool ShapeProblem::linearise(const Shape& shape) {
   count_ = 0;
   curve_.set(shape);
-  for (FirstLook& look : first_looks_) look.is_there = false;
-  for (std::size_t i = 0; i < sightings_.size(); ++i) {
-    const Sighting& seen = sightings_[i];
+  for (FirstObservation& band_observation : first_observations_) band_observation.is_there = false;
+  for (std::size_t i = 0; i < observations_.size(); ++i) {
+    const Observation& seen = observations_[i];
     const ViewError error = error_of(shape, i);
     if (!image_.set(seen.view, error, curve_, variables_.of_view(i), variables_.count())) return false;
     const auto first = static_cast<std::ptrdiff_t>(count_);
@@ -64,11 +65,12 @@ bool ShapeProblem::linearise(const Shape& shape) {
     add_ends(seen);
     add_markers(seen, shape.arm);
     add_bands(i, shape.arm);
-    std::fill(of_sighting_.begin() + first, of_sighting_.begin() + static_cast<std::ptrdiff_t>(count_), i);
-    if (seen.doubt.is_any() && !believed_) add_doubt(i, error);
+    std::fill(of_observation_.begin() + first, of_observation_.begin() + static_cast<std::ptrdiff_t>(count_),
+              i);
+    if (seen.view_prior.is_any() && !predicted_) add_view_prior(i, error);
   }
   if (std::isfinite(prior_.curvature_step)) add_prior(shape);
-  if (believed_) add_belief(shape);
+  if (predicted_) add_prediction(shape);
   return residuals_.head(count_).allFinite() && derivatives_.topRows(count_).allFinite();
 }
 
@@ -83,7 +85,7 @@ void ShapeProblem::add_row(RowKind kind, const Eigen::Vector2d& direction, const
 
 // Points follow each other along the curve, so each is searched a little way on from the previous one. Where
 // the curve's image crosses itself, the nearest point may be on the wrong branch.
-void ShapeProblem::add_points(const Sighting& seen) {
+void ShapeProblem::add_points(const Observation& seen) {
   const auto knots = static_cast<std::size_t>(image_.last());
   const std::size_t back = 1 + knots / 16, ahead = 2 + knots / 6;
   CurveImage::Window window{0, seen.ends[0] ? ahead : knots, 0};
@@ -103,7 +105,7 @@ void ShapeProblem::add_points(const Sighting& seen) {
 
 // A tube's silhouette is about its radius away from its backbone's image. Beyond the curve's ends caps are
 // visible, at the same distance.
-void ShapeProblem::add_borders(const Sighting& seen, const Arm& arm) {
+void ShapeProblem::add_borders(const Observation& seen, const Arm& arm) {
   for (const SeenBorder& border : seen.borders) {
     const CurveImage::Point near = image_.nearest(border.pixel, Eigen::Vector2d::Zero(), image_.everywhere());
     const auto section = std::min(static_cast<std::size_t>(near.place) / curve_.intervals_a_section(),
@@ -119,7 +121,7 @@ void ShapeProblem::add_borders(const Sighting& seen, const Arm& arm) {
   }
 }
 
-void ShapeProblem::add_ends(const Sighting& seen) {
+void ShapeProblem::add_ends(const Observation& seen) {
   for (const std::size_t end : {std::size_t{0}, std::size_t{1}}) {
     if (!seen.ends[end]) continue;
     const CurveImage::Point there = image_.at(end == 0 ? 0 : image_.last());
@@ -128,7 +130,7 @@ void ShapeProblem::add_ends(const Sighting& seen) {
   }
 }
 
-void ShapeProblem::add_markers(const Sighting& seen, const Arm& arm) {
+void ShapeProblem::add_markers(const Observation& seen, const Arm& arm) {
   for (const SeenMarker& marker : seen.markers) {
     const CurveImage::Point there = image_.at(curve_.place_of(arm, marker.s));
     for (const Eigen::Vector2d& axis : {Eigen::Vector2d(1, 0), Eigen::Vector2d(0, 1)})
@@ -136,12 +138,12 @@ void ShapeProblem::add_markers(const Sighting& seen, const Arm& arm) {
   }
 }
 
-void ShapeProblem::add_bands(std::size_t sighting, const Arm& arm) {
-  for (const BandLook& look : looks_) {
-    if (look.sighting != sighting) continue;
-    const SeenBand& band = sightings_[sighting].bands[look.band];
-    if (look.s) {
-      const CurveImage::Point there = image_.at(curve_.place_of(arm, *look.s));
+void ShapeProblem::add_bands(std::size_t observation, const Arm& arm) {
+  for (const BandObservation& band_observation : band_observations_) {
+    if (band_observation.observation != observation) continue;
+    const SeenBand& band = observations_[observation].bands[band_observation.band];
+    if (band_observation.s) {
+      const CurveImage::Point there = image_.at(curve_.place_of(arm, *band_observation.s));
       add_row(RowKind::marker, there.tangent, band.pixel - there.pixel, there.place, band.sigma);
       continue;
     }
@@ -150,7 +152,7 @@ void ShapeProblem::add_bands(std::size_t sighting, const Arm& arm) {
                  sigma = band.sigma / near.speed;
     // The observed position along the curve moves opposite to the curve's point.
     image_.along(near.tangent / -near.speed, near.place, row_);
-    FirstLook& first = first_looks_[look.marker];
+    FirstObservation& first = first_observations_[band_observation.marker];
     if (!first.is_there) {
       first.is_there = true, first.place = place, first.sigma = sigma, first.unknowns = row_;
       continue;
@@ -165,27 +167,27 @@ void ShapeProblem::add_bands(std::size_t sighting, const Arm& arm) {
 }
 
 // Prior of a view's error.
-void ShapeProblem::add_doubt(std::size_t sighting, const ViewError& error) {
+void ShapeProblem::add_view_prior(std::size_t observation, const ViewError& error) {
   // Replaces 0: a thousandth of a pixel at the border of a picture of a thousand.
   constexpr double least = 1e-6;
-  const ViewDoubt& doubt = sightings_[sighting].doubt;
+  const ViewPrior& view_prior = observations_[observation].view_prior;
   for (Eigen::Index k = 0; k < 4; ++k) {
-    const double sigma = std::max(k < 3 ? doubt.rotation_std : doubt.focal_std, least);
+    const double sigma = std::max(k < 3 ? view_prior.rotation_std : view_prior.focal_std, least);
     residuals_[count_] = (k < 3 ? error.turn[k] : error.focal) / sigma;
     derivatives_.row(count_).setZero();
-    derivatives_(count_, variables_.of_view(sighting) + k) = 1 / sigma;
+    derivatives_(count_, variables_.of_view(observation) + k) = 1 / sigma;
     kinds_[static_cast<std::size_t>(count_)] = RowKind::prior;
     sigmas_[static_cast<std::size_t>(count_)] = 1;
     ++count_;
   }
 }
 
-void ShapeProblem::add_belief(const Shape& shape) {
+void ShapeProblem::add_prediction(const Shape& shape) {
   const Eigen::Index count = variables_.count();
-  residuals_.segment(count_, count) = belief_ * variables_.minus(shape, *believed_);
-  derivatives_.middleRows(count_, count) = belief_;
+  residuals_.segment(count_, count) = prediction_ * variables_.minus(shape, *predicted_);
+  derivatives_.middleRows(count_, count) = prediction_;
   for (Eigen::Index k = 0; k < count; ++k, ++count_) {
-    kinds_[static_cast<std::size_t>(count_)] = RowKind::belief;
+    kinds_[static_cast<std::size_t>(count_)] = RowKind::prediction;
     sigmas_[static_cast<std::size_t>(count_)] = 1;
   }
 }

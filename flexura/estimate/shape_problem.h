@@ -8,15 +8,15 @@
 #include <vector>
 
 #include "flexura/estimate/curve_image.h"
+#include "flexura/estimate/observation.h"
 #include "flexura/estimate/shape_variables.h"
-#include "flexura/estimate/sighting.h"
 #include "flexura/estimate/space_curve.h"
 
 namespace flexura {
 
 /// A band that was identified as one of the arm's markers.
-struct BandLook {
-  std::size_t sighting = 0, band = 0;  ///< Indices of the observation and of its band.
+struct BandObservation {
+  std::size_t observation = 0, band = 0;  ///< Indices of the observation and of its band.
   std::size_t marker = 0;   ///< Number of the marker, from 0; equal for all observations of one marker.
   std::optional<double> s;  ///< Position, m along the unstretched arm, if known.
 };
@@ -26,14 +26,15 @@ struct BandLook {
 /// own.
 class ShapeProblem {
  public:
-  /// `sightings` must outlive the problem. Only the bands in `looks` are used. A known marker is compared
-  /// with its position along the curve, an unknown one between pictures. A belief also replaces the priors of
-  /// the observations' views; it is ignored unless its covariance is positive definite.
-  ShapeProblem(const ShapePrior& prior, std::span<const Sighting> sightings, std::vector<BandLook> looks = {},
-               const ShapeBelief* belief = nullptr);
+  /// `observations` must outlive the problem. Only the bands in `band_observations` are used. A known marker
+  /// is compared with its position along the curve, an unknown one between pictures. A belief also replaces
+  /// the priors of the observations' views; it is ignored unless its covariance is positive definite.
+  ShapeProblem(const ShapePrior& prior, std::span<const Observation> observations,
+               std::vector<BandObservation> band_observations = {},
+               const ShapePrediction* prediction = nullptr);
 
   /// What a row compares; the last two are not observations.
-  enum class RowKind { point, border, end, marker, prior, belief };
+  enum class RowKind { point, border, end, marker, prior, prediction };
 
   /// Linearises at a shape; returns false if part of it is outside a lens's field.
   bool linearise(const Shape& shape);
@@ -47,32 +48,32 @@ class ShapeProblem {
   /// Returns the standard deviation by which a row was divided: px, except for the prior's.
   [[nodiscard]] double sigma(Eigen::Index row) const { return sigmas_[static_cast<std::size_t>(row)]; }
   /// Returns the observation of an observed row.
-  [[nodiscard]] std::size_t sighting(Eigen::Index row) const {
-    return of_sighting_[static_cast<std::size_t>(row)];
+  [[nodiscard]] std::size_t observation(Eigen::Index row) const {
+    return of_observation_[static_cast<std::size_t>(row)];
   }
   [[nodiscard]] const SpaceCurve& curve() const { return curve_; }
-  [[nodiscard]] std::span<const Sighting> sightings() const { return sightings_; }
-  [[nodiscard]] std::span<const BandLook> looks() const { return looks_; }
+  [[nodiscard]] std::span<const Observation> observations() const { return observations_; }
+  [[nodiscard]] std::span<const BandObservation> band_observations() const { return band_observations_; }
 
  private:
-  void add_points(const Sighting& seen);
-  void add_borders(const Sighting& seen, const Arm& arm);
-  void add_ends(const Sighting& seen);
-  void add_markers(const Sighting& seen, const Arm& arm);
-  void add_bands(std::size_t sighting, const Arm& arm);
+  void add_points(const Observation& seen);
+  void add_borders(const Observation& seen, const Arm& arm);
+  void add_ends(const Observation& seen);
+  void add_markers(const Observation& seen, const Arm& arm);
+  void add_bands(std::size_t observation, const Arm& arm);
   void add_prior(const Shape& shape);
-  void add_belief(const Shape& shape);
-  void add_doubt(std::size_t sighting, const ViewError& error);
+  void add_prediction(const Shape& shape);
+  void add_view_prior(std::size_t observation, const ViewError& error);
   // residual = direction . (pixel - curve).
   void add_row(RowKind kind, const Eigen::Vector2d& direction, const Eigen::Vector2d& off, double place,
                double sigma);
 
   ShapePrior prior_;
   ShapeVariables variables_;
-  std::span<const Sighting> sightings_;
-  std::vector<BandLook> looks_;
-  std::optional<Shape> believed_;
-  Eigen::MatrixXd belief_;  // R, with R^T R the inverse of its covariance.
+  std::span<const Observation> observations_;
+  std::vector<BandObservation> band_observations_;
+  std::optional<Shape> predicted_;
+  Eigen::MatrixXd prediction_;  // R, with R^T R the inverse of its covariance.
   SpaceCurve curve_;
   CurveImage image_;
   Eigen::Index count_ = 0;
@@ -80,15 +81,15 @@ class ShapeProblem {
   Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> derivatives_;
   std::vector<RowKind> kinds_;
   std::vector<double> sigmas_;
-  std::vector<std::size_t> of_sighting_;
+  std::vector<std::size_t> of_observation_;
   Eigen::RowVectorXd row_;
   // Position along the curve of a marker's first observation.
-  struct FirstLook {
+  struct FirstObservation {
     bool is_there = false;
     double place = 0, sigma = 0;  // In knots.
     Eigen::RowVectorXd unknowns;  // Derivative of the position.
   };
-  std::vector<FirstLook> first_looks_;
+  std::vector<FirstObservation> first_observations_;
 };
 
 }  // namespace flexura

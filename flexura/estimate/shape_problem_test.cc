@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "flexura/math/derivative_check.h"
+#include "tests/support/observations.h"
 #include "tests/support/random_cases.h"
-#include "tests/support/sightings.h"
 
 namespace flexura {
 namespace {
@@ -17,19 +17,19 @@ TEST(ShapeProblem, HasTheDerivativesOfItsResiduals) {
     prior.is_length_known = random.integer(0, 1) == 1;
     if (random.integer(0, 1) == 1) prior.curvature_step = 3;
     Shape shape{prior.arm, random_bends(random, prior.arm, 1.5)};
-    const int doubted = random.integer(0, 3);
+    const int with_prior = random.integer(0, 3);
     const Backbone backbone(shape.arm, shape.state);
-    std::vector<Sighting> seen;
+    std::vector<Observation> seen;
     for (const View& view : two_views()) {
-      seen.push_back(sighting_of(backbone, view, random, 0.2, {0.05, 0.95}, 15));
+      seen.push_back(observation_of(backbone, view, random, 0.2, {0.05, 0.95}, 15));
       for (const double s : {0.3, 0.5, 0.7})
         seen.back().borders.push_back(
             {view.project(backbone.pose(s).position).value() + random.vector<2>(-9, 9), 0.5});
       seen.back().markers.push_back({view.project(backbone.pose(0.4).position).value(), 0.37, 0.1});
       ViewError& error = shape.views.emplace_back();
-      const bool is_doubted = (doubted >> (seen.size() - 1)) % 2 == 1;
-      if (!is_doubted) continue;
-      seen.back().doubt = {0.02, random.integer(0, 1) == 1 ? 0.01 : 0};
+      const bool has_prior = (with_prior >> (seen.size() - 1)) % 2 == 1;
+      if (!has_prior) continue;
+      seen.back().view_prior = {0.02, random.integer(0, 1) == 1 ? 0.01 : 0};
       error = {random.vector<3>(-0.03, 0.03), random.uniform(-0.02, 0.02)};
     }
     ShapeProblem problem(prior, seen);

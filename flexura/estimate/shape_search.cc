@@ -9,18 +9,18 @@
 #include <optional>
 #include <utility>
 
+#include "flexura/estimate/observation_pair.h"
 #include "flexura/estimate/shape_silhouette.h"
 #include "flexura/estimate/shape_start.h"
-#include "flexura/estimate/sighting_pair.h"
 #include "flexura/model/backbone.h"
 
 namespace flexura {
 namespace {
 
 // Returns the rotation of a view with a prior that moves the base's image to the arm's beginning.
-ViewError aimed_at_base(const Sighting& seen, const Eigen::Vector3d& p_WB) {
+ViewError aimed_at_base(const Observation& seen, const Eigen::Vector3d& p_WB) {
   ViewError error;
-  if (!(seen.doubt.rotation_std > 0) || !seen.ends[0]) return error;
+  if (!(seen.view_prior.rotation_std > 0) || !seen.ends[0]) return error;
   const auto ray = seen.view.lens.unproject(seen.ends[0]->pixel);
   if (!ray) return error;
   const Eigen::Vector3d looked = ray->homogeneous().normalized(),
@@ -28,22 +28,22 @@ ViewError aimed_at_base(const Sighting& seen, const Eigen::Vector3d& p_WB) {
   // If it is farther away, it is not the base but where the arm emerges from behind something.
   constexpr double most = 3;  // Standard deviations of the prior.
   const Eigen::Vector3d turn = looked.cross(there);
-  if (turn.norm() < most * seen.doubt.rotation_std) error.turn = turn;
+  if (turn.norm() < most * seen.view_prior.rotation_std) error.turn = turn;
   return error;
 }
 
 // Returns the squared distances of observed ends from a shape's ends, each bounded, px^2. If a tip is hidden,
 // what is taken for it may lie anywhere.
-double ends_elsewhere(std::span<const Sighting> sightings, const Shape& shape) {
+double ends_elsewhere(std::span<const Observation> observations, const Shape& shape) {
   constexpr double most = 1;  // px^2
   const Backbone backbone(shape.arm, shape.state);
   double sum = 0;
-  for (std::size_t i = 0; i < sightings.size(); ++i) {
-    const View view = corrected(sightings[i].view, error_of(shape, i));
+  for (std::size_t i = 0; i < observations.size(); ++i) {
+    const View view = corrected(observations[i].view, error_of(shape, i));
     for (std::size_t end = 0; end < 2; ++end) {
-      if (!sightings[i].ends[end]) continue;
+      if (!observations[i].ends[end]) continue;
       const auto pixel = view.project(backbone.pose(end == 0 ? 0 : backbone.length()).position);
-      const double square = pixel ? (*pixel - sightings[i].ends[end]->pixel).squaredNorm()
+      const double square = pixel ? (*pixel - observations[i].ends[end]->pixel).squaredNorm()
                                   : std::numeric_limits<double>::infinity();
       sum += std::isfinite(square) ? square / (1 + square / most) : most;
     }
@@ -52,10 +52,10 @@ double ends_elsewhere(std::span<const Sighting> sightings, const Shape& shape) {
 }
 
 // Improves the bend of the last section by descent on the misfit of silhouettes and ends.
-Shape last_bent_to_fit(std::span<const Sighting> sightings, Shape shape) {
+Shape last_bent_to_fit(std::span<const Observation> observations, Shape shape) {
   constexpr double first = 0.1, last = 0.01;  // rad
   Eigen::Vector2d& bend = shape.state.bends.back();
-  const auto against = [&] { return misfit(sightings, shape) + ends_elsewhere(sightings, shape); };
+  const auto against = [&] { return misfit(observations, shape) + ends_elsewhere(observations, shape); };
   double least = against();
   const int axes = shape.arm.kind == ArmKind::planar ? 1 : 2;
   for (double step = first; step > last; step /= 2) {
@@ -78,7 +78,7 @@ Shape last_bent_to_fit(std::span<const Sighting> sightings, Shape shape) {
 }
 
 // Returns the few shapes with another bend of the last section that fit silhouettes and ends best.
-std::vector<Shape> last_bent_otherwise(std::span<const Sighting> sightings, const Shape& shape) {
+std::vector<Shape> last_bent_otherwise(std::span<const Observation> observations, const Shape& shape) {
   constexpr double step = 0.2;  // rad
   constexpr int steps = 8, ways = 12;
   constexpr std::size_t few = 8;
@@ -90,7 +90,7 @@ std::vector<Shape> last_bent_otherwise(std::span<const Sighting> sightings, cons
   std::vector<Other> others;
   for (int k = 0; k < steps; ++k)
     for (Shape& other : bent_otherwise(shape, last, k * step, k > 0 ? ways : 1)) {
-      const double against = misfit(sightings, other) + ends_elsewhere(sightings, other);
+      const double against = misfit(observations, other) + ends_elsewhere(observations, other);
       others.push_back({std::move(other), against});
     }
   std::ranges::stable_sort(others, {}, &Other::against);
@@ -98,7 +98,7 @@ std::vector<Shape> last_bent_otherwise(std::span<const Sighting> sightings, cons
   if (!(others.back().against > others.front().against)) return {};
   std::vector<Shape> shapes;
   for (std::size_t i = 0; i < std::min(few, others.size()); ++i)
-    shapes.push_back(last_bent_to_fit(sightings, std::move(others[i].shape)));
+    shapes.push_back(last_bent_to_fit(observations, std::move(others[i].shape)));
   return shapes;
 }
 
@@ -133,11 +133,11 @@ Shape scaled(Shape shape, double factor) {
 
 }  // namespace
 
-std::optional<std::size_t> view_elsewhere(std::span<const Sighting> sightings, const Shape& shape) {
+std::optional<std::size_t> view_elsewhere(std::span<const Observation> observations, const Shape& shape) {
   constexpr double most = 5;         // standard deviations
   constexpr double rounding = 1e-4;  // Of views without a prior.
-  for (std::size_t i = 0; i < std::min(sightings.size(), shape.views.size()); ++i) {
-    const auto& [turn, focal] = sightings[i].doubt;
+  for (std::size_t i = 0; i < std::min(observations.size(), shape.views.size()); ++i) {
+    const auto& [turn, focal] = observations[i].view_prior;
     const ViewError& error = shape.views[i];
     if (!(error.turn.norm() <= most * turn + rounding) || !(std::abs(error.focal) <= most * focal + rounding))
       return i;
@@ -158,16 +158,16 @@ ShapeSearch::Try ShapeSearch::tried(ShapeProblem& problem, const Start& start, d
   Try one;
   one.fit = descent_.descend(problem, start.shape, most_iterations_, start.kind);
   const Shape& shape = one.fit.shape;
-  const std::span<const Sighting> seen = problem.sightings();
+  const std::span<const Observation> seen = problem.observations();
   // A fit may diverge to invalid lengths.
   if (!has_lengths(shape)) {
     one.merit = one.misfit = std::numeric_limits<double>::infinity();
     return one;
   }
   one.ends = ends_elsewhere(seen, shape);
-  one.unexplained = one.fit.cost - one.fit.rms * one.fit.rms + astray(seen, shape);
-  one.merit = one.fit.cost + astray(seen, shape) + of_ends * one.ends;
-  one.is_as_doubted = !view_elsewhere(seen, shape);
+  one.unexplained = one.fit.cost - one.fit.rms * one.fit.rms + silhouette_misfit(seen, shape);
+  one.merit = one.fit.cost + silhouette_misfit(seen, shape) + of_ends * one.ends;
+  one.is_within_prior = !view_elsewhere(seen, shape);
   one.is_possible = !bent_too_far(shape);
   one.misfit = std::numeric_limits<double>::infinity();
   if (!(one.merit < most)) return one;
@@ -177,7 +177,7 @@ ShapeSearch::Try ShapeSearch::tried(ShapeProblem& problem, const Start& start, d
 }
 
 bool ShapeSearch::is_better(const Try& one, const Try& other) {
-  if (one.is_as_doubted != other.is_as_doubted) return one.is_as_doubted;
+  if (one.is_within_prior != other.is_within_prior) return one.is_within_prior;
   // One whose bends are all possible may explain slightly less.
   constexpr double most = 2, little = 0.01;  // px^2
   if (one.is_possible && !other.is_possible) return one.merit < most * other.merit + little;
@@ -201,31 +201,32 @@ bool ShapeSearch::leaves_much(const Try& one) const {
          one.misfit > most_misfit || one.ends > most_ends;
 }
 
-ShapeSearch::Result ShapeSearch::best(const std::vector<Sighting>& sightings) {
+ShapeSearch::Result ShapeSearch::best(const std::vector<Observation>& observations) {
   // `otherwise`: one that explains everything with camera errors beyond their priors.
   std::optional<Try> best, otherwise;
-  std::vector<Sighting> best_seen, seen_otherwise;
+  std::vector<Observation> best_seen, seen_otherwise;
   const auto most = [&] {
-    return best && best->is_as_doubted && best->is_possible ? best->merit
-                                                            : std::numeric_limits<double>::infinity();
+    return best && best->is_within_prior && best->is_possible ? best->merit
+                                                              : std::numeric_limits<double>::infinity();
   };
   const auto is_best = [&](const Try& one) { return !best || is_better(one, *best); };
-  const auto note = [&](const Try& one, const std::vector<Sighting>& as_seen) {
-    if (!one.is_as_doubted && !otherwise && is_explained(one)) otherwise = one, seen_otherwise = as_seen;
+  const auto note = [&](const Try& one, const std::vector<Observation>& as_seen) {
+    if (!one.is_within_prior && !otherwise && is_explained(one)) otherwise = one, seen_otherwise = as_seen;
   };
-  const auto is_end = [&] { return best->is_as_doubted && best->is_possible && is_explained(*best); };
+  const auto is_end = [&] { return best->is_within_prior && best->is_possible && is_explained(*best); };
   // Without a base it is unknown which ends of the axes correspond. Both orders are tried for two pictures;
   // the others follow the resulting points.
-  const bool has_base = prior_.is_base_position_known, has_pair = sightings.size() >= 2;
-  const SightingPair pair = has_pair ? best_pair(sightings) : SightingPair{0, 0};
+  const bool has_base = prior_.is_base_position_known, has_pair = observations.size() >= 2;
+  const ObservationPair pair = has_pair ? best_pair(observations) : ObservationPair{0, 0};
   for (const bool against : {false, true}) {
     if (against && (has_base || !has_pair)) break;
-    const std::vector<Sighting> seen = has_pair ? run_alike(sightings, pair, against, has_base) : sightings;
+    const std::vector<Observation> seen =
+        has_pair ? run_alike(observations, pair, against, has_base) : observations;
     ShapeProblem problem(prior_, seen);
     for (const Shape& start : starts(seen, pair)) {
       Try one = tried(problem, {start}, most());
       note(one, seen);
-      const bool is_last = one.fit.is_good(most_rms_) && one.is_as_doubted;
+      const bool is_last = one.fit.is_good(most_rms_) && one.is_within_prior;
       if (is_best(one)) best = std::move(one), best_seen = seen;
       if (is_last) break;
     }
@@ -246,10 +247,10 @@ ShapeSearch::Result ShapeSearch::best(const std::vector<Sighting>& sightings) {
       if (is_end()) break;
     }
   }
-  if (otherwise && (!best->is_as_doubted || leaves_much(*best)))
+  if (otherwise && (!best->is_within_prior || leaves_much(*best)))
     return {std::move(otherwise->fit), std::move(seen_otherwise)};
   // Alternatives are also checked if no picture shows the tip.
-  const auto shows_tip = [](const Sighting& seen) { return seen.ends[1].has_value(); };
+  const auto shows_tip = [](const Observation& seen) { return seen.ends[1].has_value(); };
   const bool may_be_another =
       is_explained(*best) && (best->ends > one_end || std::ranges::none_of(best_seen, shows_tip));
   Result result{std::move(best->fit), std::move(best_seen)};
@@ -260,11 +261,11 @@ ShapeSearch::Result ShapeSearch::best(const std::vector<Sighting>& sightings) {
 // One end of the arm is displaced: it may be hidden, or the true shape may be another one with a similar
 // image.
 double ShapeSearch::apart(const Result& found) {
-  const auto is_doubtful = [](const Sighting& seen) {
-    return seen.doubt.is_any() || !seen.bands.empty() || !seen.markers.empty();
+  const auto is_uncertain = [](const Observation& seen) {
+    return seen.view_prior.is_any() || !seen.bands.empty() || !seen.markers.empty();
   };
   if (!prior_.is_base_position_known || !prior_.is_length_known ||
-      std::ranges::any_of(found.seen, is_doubtful))
+      std::ranges::any_of(found.seen, is_uncertain))
     return 0;
   double largest = 0;
   ShapeProblem problem(prior_, found.seen);
@@ -276,14 +277,15 @@ double ShapeSearch::apart(const Result& found) {
   return largest;
 }
 
-std::vector<Shape> ShapeSearch::starts(std::span<const Sighting> sightings, const SightingPair& pair) const {
+std::vector<Shape> ShapeSearch::starts(std::span<const Observation> observations,
+                                       const ObservationPair& pair) const {
   std::vector<Shape> shapes;
   std::vector<ViewError> views;
-  for (const Sighting& seen : sightings)
+  for (const Observation& seen : observations)
     views.push_back(prior_.is_base_position_known ? aimed_at_base(seen, prior_.arm.X_WB.position)
                                                   : ViewError{});
-  if (sightings.size() >= 2) {
-    std::array<Sighting, 2> aimed = {sightings[pair[0]], sightings[pair[1]]};
+  if (observations.size() >= 2) {
+    std::array<Observation, 2> aimed = {observations[pair[0]], observations[pair[1]]};
     for (std::size_t k = 0; k < 2; ++k) aimed[k].view = corrected(aimed[k].view, views[pair[k]]);
     std::vector<Eigen::Vector3d> points = places_seen(aimed[0], aimed[1]);
     if (prior_.is_base_position_known && !points.empty()) points.front() = prior_.arm.X_WB.position;
@@ -303,7 +305,7 @@ std::vector<Shape> ShapeSearch::starts(std::span<const Sighting> sightings, cons
   return shapes;
 }
 
-std::vector<ShapeSearch::Start> ShapeSearch::look_alikes(std::span<const Sighting> sightings,
+std::vector<ShapeSearch::Start> ShapeSearch::look_alikes(std::span<const Observation> observations,
                                                          const Shape& shape) const {
   std::vector<Start> shapes;
   // A diverged fit may have shrunk an arm of unknown length to zero.
@@ -315,7 +317,7 @@ std::vector<ShapeSearch::Start> ShapeSearch::look_alikes(std::span<const Sightin
   const std::size_t sections = prior_.arm.sections.size();
   constexpr std::size_t most = 4;  // Of many short sections, only every nth.
   for (std::size_t i = 0; i < sections; i += 1 + (sections - 1) / most)
-    for (const Sighting& seen : sightings) shapes.push_back({mirrored(prior_, shape, i, seen.view)});
+    for (const Observation& seen : observations) shapes.push_back({mirrored(prior_, shape, i, seen.view)});
   if (sections > most) return shapes;
   const auto append = [&](std::vector<Shape> others, StartKind kind) {
     for (Shape& other : others) shapes.push_back({std::move(other), kind});
@@ -323,7 +325,7 @@ std::vector<ShapeSearch::Start> ShapeSearch::look_alikes(std::span<const Sightin
   for (const double bend : {0.0, 0.6, 1.2})
     append(bent_otherwise(shape, sections - 1, bend, bend > 0 ? 8 : 1), StartKind::far);
   // These lie on the silhouette: axis points beside them are outliers at once.
-  append(last_bent_otherwise(sightings, shape), StartKind::near);
+  append(last_bent_otherwise(observations, shape), StartKind::near);
   return shapes;
 }
 

@@ -5,15 +5,15 @@
 #include <span>
 #include <vector>
 
+#include "flexura/estimate/observation.h"
+#include "flexura/estimate/observation_pair.h"
 #include "flexura/estimate/shape_fit.h"
 #include "flexura/estimate/shape_variables.h"
-#include "flexura/estimate/sighting.h"
-#include "flexura/estimate/sighting_pair.h"
 
 namespace flexura {
 
 /// Returns the first view whose error would be far beyond its prior, if any.
-[[nodiscard]] std::optional<std::size_t> view_elsewhere(std::span<const Sighting> sightings,
+[[nodiscard]] std::optional<std::size_t> view_elsewhere(std::span<const Observation> observations,
                                                         const Shape& shape);
 
 /// Returns the first section bent beyond its limit by more than the pictures' error, if any.
@@ -31,14 +31,14 @@ class ShapeSearch {
   /// The best shape, with the observations in the corresponding order.
   struct Result {
     ShapeFit fit;
-    std::vector<Sighting> seen;
+    std::vector<Observation> seen;
     /// Distance of another shape that explains everything equally well, m; 0: no such shape. Determined if an
     /// end is displaced and nothing else decides.
     double apart = 0;
   };
   /// Needs at least one observation. If the base is unknown, the first one keeps its order and the others are
   /// tried both ways.
-  [[nodiscard]] Result best(const std::vector<Sighting>& sightings);
+  [[nodiscard]] Result best(const std::vector<Observation>& observations);
 
  private:
   struct Try {
@@ -47,7 +47,7 @@ class ShapeSearch {
     double unexplained = 0;  // Of points and borders, beyond the distances of inliers, px^2.
     double misfit = 0;       // px^2
     double ends = 0;         // Squared distances of observed ends, px^2.
-    bool is_as_doubted = false;
+    bool is_within_prior = false;
     bool is_possible = true;  // No section is bent beyond its limit.
   };
   struct Start {
@@ -61,10 +61,11 @@ class ShapeSearch {
   [[nodiscard]] bool leaves_much(const Try& one) const;
   [[nodiscard]] double apart(const Result& found);
   // Starts from the pair's information.
-  [[nodiscard]] std::vector<Shape> starts(std::span<const Sighting> sightings,
-                                          const SightingPair& pair) const;
+  [[nodiscard]] std::vector<Shape> starts(std::span<const Observation> observations,
+                                          const ObservationPair& pair) const;
   // Alternatives: shapes that look similar to one of the cameras, or have another bend of the last section.
-  [[nodiscard]] std::vector<Start> look_alikes(std::span<const Sighting> sightings, const Shape& shape) const;
+  [[nodiscard]] std::vector<Start> look_alikes(std::span<const Observation> observations,
+                                               const Shape& shape) const;
 
   const ShapePrior& prior_;
   int most_iterations_;

@@ -18,7 +18,7 @@ struct SeenPlace {
   double half_width = 0;  // px
   double widest = 0;      // Half width in the direction of the largest stretch of a pinhole image, px.
 };
-std::vector<SeenPlace> seen_places(const Sighting& seen, const ViewError& error, const Shape& shape) {
+std::vector<SeenPlace> seen_places(const Observation& seen, const ViewError& error, const Shape& shape) {
   constexpr int count = 80;
   const Backbone backbone(shape.arm, shape.state);
   const View view = corrected(seen.view, error);
@@ -44,7 +44,7 @@ std::vector<SeenPlace> seen_places(const Sighting& seen, const ViewError& error,
 }
 
 // Mean distance between the remaining observed points, px.
-double spacing(const Sighting& seen) {
+double spacing(const Observation& seen) {
   double way = 0;
   const auto count = static_cast<double>(std::max<std::size_t>(1, seen.points.size() + seen.borders.size()));
   for (std::size_t i = 1; i < seen.points.size(); ++i)
@@ -60,7 +60,7 @@ double bounded(double off) {
 }
 
 // Returns the part of a shape's image without observation: mean square of the distances, each bounded, px^2.
-double astray(const Sighting& seen, const ViewError& error, const Shape& shape) {
+double silhouette_misfit(const Observation& seen, const ViewError& error, const Shape& shape) {
   constexpr double gap = 2;  // px
   const std::vector<SeenPlace> places = seen_places(seen, error, shape);
   const double apart = gap + spacing(seen);
@@ -138,7 +138,7 @@ double outside(const std::vector<Chain>& tube, const Eigen::Vector2d& pixel, dou
 
 }  // namespace
 
-double misfit(const Sighting& seen, const ViewError& error, const Shape& shape, double wider) {
+double misfit(const Observation& seen, const ViewError& error, const Shape& shape, double wider) {
   const auto has_radius = [](const Section& section) {
     return section.radius[0] > 0 || section.radius[1] > 0;
   };
@@ -152,26 +152,28 @@ double misfit(const Sighting& seen, const ViewError& error, const Shape& shape, 
   return sum / static_cast<double>(seen.figure.size());
 }
 
-ViewError error_of(const Shape& shape, std::size_t sighting) {
-  return sighting < shape.views.size() ? shape.views[sighting] : ViewError{};
+ViewError error_of(const Shape& shape, std::size_t observation) {
+  return observation < shape.views.size() ? shape.views[observation] : ViewError{};
 }
 
-double astray(std::span<const Sighting> sightings, const Shape& shape) {
+double silhouette_misfit(std::span<const Observation> observations, const Shape& shape) {
   double sum = 0;
-  for (std::size_t i = 0; i < sightings.size(); ++i)
-    if (!sightings[i].borders.empty()) sum += astray(sightings[i], error_of(shape, i), shape);
+  for (std::size_t i = 0; i < observations.size(); ++i)
+    if (!observations[i].borders.empty())
+      sum += silhouette_misfit(observations[i], error_of(shape, i), shape);
   return sum;
 }
 
-double misfit(std::span<const Sighting> sightings, const Shape& shape) {
+double misfit(std::span<const Observation> observations, const Shape& shape) {
   double sum = 0;
-  for (std::size_t i = 0; i < sightings.size(); ++i) sum += misfit(sightings[i], error_of(shape, i), shape);
+  for (std::size_t i = 0; i < observations.size(); ++i)
+    sum += misfit(observations[i], error_of(shape, i), shape);
   return sum;
 }
 
-bool explains_border(const Sighting& seen, const ViewError& error, const Shape& shape) {
-  constexpr double most_astray = 1, close = 2, enough = 0.7;  // px^2, px, share
-  if (astray(seen, error, shape) > most_astray) return false;
+bool explains_border(const Observation& seen, const ViewError& error, const Shape& shape) {
+  constexpr double max_silhouette_misfit = 1, close = 2, enough = 0.7;  // px^2, px, share
+  if (silhouette_misfit(seen, error, shape) > max_silhouette_misfit) return false;
   const std::vector<SeenPlace> places = seen_places(seen, error, shape);
   // Within the stretch between two points.
   const auto is_between = [&](const SeenPlace& a, const SeenPlace& b, const Eigen::Vector2d& pixel) {

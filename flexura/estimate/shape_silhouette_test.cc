@@ -15,7 +15,7 @@ namespace flexura {
 namespace {
 
 // The misfit by exhaustive search over many points along the arm.
-double misfit_by_places(const Sighting& seen, const Shape& shape) {
+double misfit_by_places(const Observation& seen, const Shape& shape) {
   constexpr int count = 4000;
   constexpr double close = 1.5, far = 3;  // px
   const Backbone backbone(shape.arm, shape.state);
@@ -40,7 +40,7 @@ double misfit_by_places(const Sighting& seen, const Shape& shape) {
 TEST(ShapeSilhouette, CountsTheNearestPartOfTheArmForEachPixel) {
   for_random_cases(12, [](TestRandom& random) {
     const auto between = [&](double low, double high) { return random.uniform(low, high); };
-    Sighting seen;
+    Observation seen;
     seen.view = {Lens(Intrinsics{.fx = 800, .fy = 800, .cx = 319.5, .cy = 239.5}), Pose{}, 640, 480};
     Shape shape;
     shape.arm.kind = ArmKind::spatial;

@@ -17,30 +17,30 @@ ShapeTracker::ShapeTracker(ShapePrior prior, const EstimatorConfig& estimator, c
     throw std::invalid_argument("a tracker needs an arm whose base and length are known");
 }
 
-ShapeBelief ShapeTracker::gone_on(std::span<const Sighting> sightings, double time,
-                                  const ArmState& expected) const {
-  ShapeBelief belief = *belief_;
+ShapePrediction ShapeTracker::gone_on(std::span<const Observation> observations, double time,
+                                      const ArmState& expected) const {
+  ShapePrediction prediction = *prediction_;
   const double since = std::isfinite(time - time_) ? std::max(0.0, time - time_) : 0.0;
-  auto variances = belief.covariance.diagonal();
+  auto variances = prediction.covariance.diagonal();
   const Eigen::Index bends = variables_.bends_a_section();
   for (std::size_t i = 0; i < expected.bends.size(); ++i) {
-    const double went = (expected.bends[i] - belief.mean.state.bends[i]).norm();
-    const double astray = config_.astray * went;
+    const double went = (expected.bends[i] - prediction.mean.state.bends[i]).norm();
+    const double motion_noise = config_.motion_noise * went;
     variances.segment(static_cast<Eigen::Index>(i) * bends, bends).array() +=
-        config_.drift * config_.drift * since + astray * astray;
+        config_.process_noise * config_.process_noise * since + motion_noise * motion_noise;
   }
   // Variables without a prior stay fixed.
-  const ShapeVariables variables(prior_, sightings);
-  for (std::size_t i = 0; i < sightings.size() && variables.count() == variances.size(); ++i) {
+  const ShapeVariables variables(prior_, observations);
+  for (std::size_t i = 0; i < observations.size() && variables.count() == variances.size(); ++i) {
     const Eigen::Index at = variables.of_view(i);
     if (at < 0) continue;
-    const double turn = sightings[i].doubt.rotation_std > 0 ? config_.turn_drift : 0,
-                 focal = sightings[i].doubt.focal_std > 0 ? config_.focal_drift : 0;
+    const double turn = observations[i].view_prior.rotation_std > 0 ? config_.turn_noise : 0,
+                 focal = observations[i].view_prior.focal_std > 0 ? config_.focal_noise : 0;
     variances.segment<3>(at).array() += turn * turn * since;
     variances[at + 3] += focal * focal * since;
   }
-  belief.mean.state = expected;
-  return belief;
+  prediction.mean.state = expected;
+  return prediction;
 }
 
 // View errors leave residuals that are similar in successive pictures.
@@ -49,75 +49,76 @@ bool ShapeTracker::is_as_usual(const ShapeEstimate& estimate) const {
   return estimate.is_found && estimate.rms <= std::max(few, as_usual * usual_rms_);
 }
 
-ShapeEstimate ShapeTracker::followed(std::span<const Sighting> sightings, double time,
+ShapeEstimate ShapeTracker::followed(std::span<const Observation> observations, double time,
                                      const ArmState& expected) {
-  if (belief_) {
-    ShapeEstimate updated = estimator_.update(sightings, gone_on(sightings, time, expected));
-    is_surprising_ = updated.is_found && !(updated.surprise <= config_.most_surprise);
-    if (is_as_usual(updated) && !is_surprising_) return updated;
+  if (prediction_) {
+    ShapeEstimate updated = estimator_.update(observations, gone_on(observations, time, expected));
+    is_innovation_large_ = updated.is_found && !(updated.innovation <= config_.max_innovation);
+    if (is_as_usual(updated) && !is_innovation_large_) return updated;
   }
-  return estimator_.follow(sightings,
-                           Shape{arm_, expected, belief_ ? belief_->mean.views : std::vector<ViewError>{}});
+  return estimator_.follow(
+      observations, Shape{arm_, expected, prediction_ ? prediction_->mean.views : std::vector<ViewError>{}});
 }
 
 // A fit that begins beside the arm and treats the contradictions as outliers would persist.
 bool ShapeTracker::is_to_be_checked(const ShapeEstimate& estimate) {
-  if (estimate.doubted > config_.most_doubted)
-    ++doubtful_;
+  if (estimate.outlier_share > config_.max_outlier_share)
+    ++unreliable_;
   else
-    doubtful_ = 0;
-  return doubtful_ >= config_.patience;
+    unreliable_ = 0;
+  return unreliable_ >= config_.patience;
 }
 
-ShapeEstimate ShapeTracker::from_nothing(std::span<const Sighting> sightings) {
+ShapeEstimate ShapeTracker::from_nothing(std::span<const Observation> observations) {
   // The explanation of the last pictures, with cameras beyond their priors, probably explains these.
   const auto explains = [&](const ShapeEstimate& one) {
-    return one.is_elsewhere && one.doubted < config_.most_doubted && one.scale < ShapeFit::most_scale;
+    return one.is_elsewhere && one.outlier_share < config_.max_outlier_share &&
+           one.scale < ShapeFit::most_scale;
   };
   if (elsewhere_) {
-    ShapeEstimate again = estimator_.follow(sightings, *elsewhere_);
+    ShapeEstimate again = estimator_.follow(observations, *elsewhere_);
     if (explains(again)) return again;
   }
-  ShapeEstimate anew = estimator_.estimate(sightings);
+  ShapeEstimate anew = estimator_.estimate(observations);
   elsewhere_.reset();
   if (explains(anew)) elsewhere_ = anew.shape;
   return anew;
 }
 
-ShapeEstimate ShapeTracker::found(std::span<const Sighting> sightings, double time,
+ShapeEstimate ShapeTracker::found(std::span<const Observation> observations, double time,
                                   const std::optional<ArmState>& expected) {
   ShapeEstimate best;
-  is_surprising_ = false;
+  is_innovation_large_ = false;
   if (expected && !elsewhere_) {
-    best = followed(sightings, time, *expected);
-    if (is_as_usual(best) && !is_surprising_) {
+    best = followed(observations, time, *expected);
+    if (is_as_usual(best) && !is_innovation_large_) {
       if (!is_to_be_checked(best)) return best;
-      doubtful_ = 0;
-      ShapeEstimate anew = from_nothing(sightings);
-      const bool is_better = anew.is_found && anew.doubted < 0.5 * best.doubted;
+      unreliable_ = 0;
+      ShapeEstimate anew = from_nothing(observations);
+      const bool is_better = anew.is_found && anew.outlier_share < 0.5 * best.outlier_share;
       return elsewhere_ || is_better ? anew : best;
     }
   }
-  doubtful_ = 0;
-  ShapeEstimate anew = from_nothing(sightings);
+  unreliable_ = 0;
+  ShapeEstimate anew = from_nothing(observations);
   // If none is found, the second one gives the reason, unless it could not be tried.
-  const bool is_tried = !expected || std::ranges::all_of(sightings, [](const Sighting& seen) {
+  const bool is_tried = !expected || std::ranges::all_of(observations, [](const Observation& seen) {
     return are_enough({&seen, 1});
   });
   if (!best.reason.empty() && !best.is_found && !anew.is_found && !is_tried) return best;
   return !best.is_found || ((anew.is_found || elsewhere_) && anew.rms < best.rms) ? anew : best;
 }
 
-ShapeEstimate ShapeTracker::look(std::span<const Sighting> sightings, double time,
+ShapeEstimate ShapeTracker::look(std::span<const Observation> observations, double time,
                                  const std::optional<ArmState>& expected) {
-  if (!are_enough(sightings)) {
+  if (!are_enough(observations)) {
     ShapeEstimate none;
     none.reason = "the arm is not seen in every image";
     return none;
   }
-  ShapeEstimate estimate = found(sightings, time, expected);
+  ShapeEstimate estimate = found(observations, time, expected);
   if (!estimate.is_found) return estimate;
-  belief_ = ShapeBelief{estimate.shape, estimate.covariance};
+  prediction_ = ShapePrediction{estimate.shape, estimate.covariance};
   time_ = time, usual_rms_ = estimate.rms;
   return estimate;
 }

@@ -4,23 +4,24 @@
 #include <span>
 #include <vector>
 
+#include "flexura/estimate/observation.h"
 #include "flexura/estimate/shape_estimator.h"
 #include "flexura/estimate/shape_variables.h"
-#include "flexura/estimate/sighting.h"
 
 namespace flexura {
 
 /// Process noise of an arm and of the cameras' views: standard deviations.
 struct TrackerConfig {
-  double drift = 0.005;  ///< Process noise of each bend, rad per root second.
-  double astray = 0.1;   ///< Motion-proportional noise of each bend: share of its section's predicted change.
-  double turn_drift = 1e-4;   ///< Process noise of a view's rotation error, rad per root second.
-  double focal_drift = 1e-4;  ///< Process noise of a view's focal error, per root second.
-  /// Predictions with a larger normalised innovation (ShapeEstimate::surprise) are discarded.
-  double most_surprise = 2.5;
+  double process_noise = 0.005;  ///< Process noise of each bend, rad per root second.
+  double motion_noise =
+      0.1;  ///< Motion-proportional noise of each bend: share of its section's predicted change.
+  double turn_noise = 1e-4;   ///< Process noise of a view's rotation error, rad per root second.
+  double focal_noise = 1e-4;  ///< Process noise of a view's focal error, per root second.
+  /// Predictions with a larger normalised innovation (ShapeEstimate::innovation) are discarded.
+  double max_innovation = 2.5;
   /// If more than this share of the points are outliers in `patience` successive observations, the arm is
   /// also estimated without a start.
-  double most_doubted = 0.1;
+  double max_outlier_share = 0.1;
   int patience = 10;
 };
 
@@ -35,23 +36,23 @@ class ShapeTracker {
   /// Returns the shape at `time` (s). `expected` is its prediction, if any: the previous estimate, advanced
   /// by the known motion of the arm since. Without it, earlier observations are discarded. Estimates that are
   /// found have the views' errors in `shape.views`.
-  [[nodiscard]] ShapeEstimate look(std::span<const Sighting> sightings, double time,
+  [[nodiscard]] ShapeEstimate look(std::span<const Observation> observations, double time,
                                    const std::optional<ArmState>& expected);
 
   /// Resets the tracker: the next observations are of an unknown arm.
-  void forget() { belief_.reset(), usual_rms_ = 0, doubtful_ = 0, elsewhere_.reset(); }
+  void forget() { prediction_.reset(), usual_rms_ = 0, unreliable_ = 0, elsewhere_.reset(); }
 
  private:
   // The predicted state of the filter.
-  [[nodiscard]] ShapeBelief gone_on(std::span<const Sighting> sightings, double time,
-                                    const ArmState& expected) const;
+  [[nodiscard]] ShapePrediction gone_on(std::span<const Observation> observations, double time,
+                                        const ArmState& expected) const;
   [[nodiscard]] bool is_as_usual(const ShapeEstimate& estimate) const;
   // Estimates from the prediction, and sets whether the observations contradict it.
-  [[nodiscard]] ShapeEstimate followed(std::span<const Sighting> sightings, double time,
+  [[nodiscard]] ShapeEstimate followed(std::span<const Observation> observations, double time,
                                        const ArmState& expected);
   [[nodiscard]] bool is_to_be_checked(const ShapeEstimate& estimate);
-  [[nodiscard]] ShapeEstimate from_nothing(std::span<const Sighting> sightings);
-  [[nodiscard]] ShapeEstimate found(std::span<const Sighting> sightings, double time,
+  [[nodiscard]] ShapeEstimate from_nothing(std::span<const Observation> observations);
+  [[nodiscard]] ShapeEstimate found(std::span<const Observation> observations, double time,
                                     const std::optional<ArmState>& expected);
 
   ShapePrior prior_;
@@ -59,11 +60,11 @@ class ShapeTracker {
   TrackerConfig config_;
   ShapeVariables variables_;
   ShapeEstimator estimator_;
-  std::optional<ShapeBelief> belief_;
-  double time_ = 0;       // Of `belief_`, s.
+  std::optional<ShapePrediction> prediction_;
+  double time_ = 0;       // Of `prediction_`, s.
   double usual_rms_ = 0;  // Of the last estimate's residuals, px.
-  bool is_surprising_ = false;
-  int doubtful_ = 0;  // Number of successive observations with many outliers, up to the last one.
+  bool is_innovation_large_ = false;
+  int unreliable_ = 0;  // Number of successive observations with many outliers, up to the last one.
   // Explanation of the last estimate without a start, if it needs camera errors beyond their priors.
   std::optional<Shape> elsewhere_;
 };

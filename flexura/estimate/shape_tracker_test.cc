@@ -11,15 +11,15 @@
 #include <vector>
 
 #include "flexura/estimate/shape_estimator.h"
+#include "tests/support/observations.h"
 #include "tests/support/random_cases.h"
-#include "tests/support/sightings.h"
 #include "tests/support/wrong_cameras.h"
 
 namespace flexura {
 namespace {
 
 // The same arm, observed repeatedly by cameras whose views have priors.
-TEST(ShapeTracker, KnowsMoreWithEverySighting) {
+TEST(ShapeTracker, KnowsMoreWithEveryObservation) {
   double once = 0, tracked = 0;
   for_random_cases(20, [&](TestRandom& random) {
     const ShapePrior prior{.arm = three_section_arm()};
@@ -29,17 +29,17 @@ TEST(ShapeTracker, KnowsMoreWithEverySighting) {
     ShapeEstimator alone(prior);
     std::optional<ArmState> expected;
     for (int k = 0; k < 40; ++k) {
-      ArmState told = state;
+      ArmState given = state;
       for (Eigen::Vector2d& bend : state.bends) bend += random.vector<2>(-0.02, 0.02);
       const Backbone truth(prior.arm, state);
-      std::vector<Sighting> seen = sightings_of(truth, random, 0.2);
+      std::vector<Observation> seen = observations_of(truth, random, 0.2);
       for (std::size_t i = 0; i < 2; ++i) {
         for (auto& end : seen[i].ends) end->pixel += 0.1 * random.vector<2>(-1.7, 1.7), end->sigma = 0.1;
-        seen[i].view = first.seen[i].view, seen[i].doubt = a_degree_and_two_percent;
+        seen[i].view = first.seen[i].view, seen[i].view_prior = a_degree_and_two_percent;
       }
       // As drives report it: the motion of each section, to a hundredth.
       if (expected)
-        for (std::size_t i = 0; i < 3; ++i) expected->bends[i] += 0.99 * (state.bends[i] - told.bends[i]);
+        for (std::size_t i = 0; i < 3; ++i) expected->bends[i] += 0.99 * (state.bends[i] - given.bends[i]);
       const ShapeEstimate found = tracker.look(seen, k / 30.0, expected);
       ASSERT_TRUE(found.is_found) << found.reason;
       expected = found.shape.state;
@@ -64,8 +64,8 @@ TEST(ShapeTracker, KnowsHowMuchMoreItKnows) {
     ShapeTracker tracker(prior, {});
     std::optional<ArmState> expected;
     for (int k = 0; k < 100; ++k) {
-      std::vector<Sighting> seen = cameras.seen;
-      for (Sighting& one : seen) {
+      std::vector<Observation> seen = cameras.seen;
+      for (Observation& one : seen) {
         one.reach.sigma = reach;
         for (auto& end : one.ends) end->pixel += 0.1 * random.vector<2>(-1.7, 1.7), end->sigma = 0.1;
         Eigen::Vector2d off = noise * random.vector<2>(-1.7, 1.7), before = one.points[0].pixel;
@@ -97,7 +97,7 @@ TEST(ShapeTracker, KnowsHowMuchMoreItKnows) {
 }
 
 // An arm far from its prediction is found where it is.
-TEST(ShapeTracker, GivesUpWhatTheSightingsSpeakAgainst) {
+TEST(ShapeTracker, GivesUpWhatTheObservationsSpeakAgainst) {
   for_random_cases(20, [](TestRandom& random) {
     const ShapePrior prior{.arm = three_section_arm()};
     ArmState state = random_bends(random, prior.arm, 1.5);
@@ -123,9 +123,9 @@ TEST(ShapeTracker, FindsOutThatACameraIsWrongFarBeyondDoubt) {
     const ShapePrior prior{.arm = three_section_arm()};
     const ArmState state = random_bends(random, prior.arm, 1.5);
     const Backbone truth(prior.arm, state);
-    std::vector<Sighting> seen = wrong_cameras(truth, random, 0.02, 0).seen;
+    std::vector<Observation> seen = wrong_cameras(truth, random, 0.02, 0).seen;
     seen[1].view = corrected(seen[1].view, {.turn = Eigen::Vector3d::Zero(), .focal = 0.2});
-    for (Sighting& one : seen) one.doubt = {.rotation_std = 0.02, .focal_std = 0.02};
+    for (Observation& one : seen) one.view_prior = {.rotation_std = 0.02, .focal_std = 0.02};
     ShapeTracker tracker(prior, {});
     ArmState expected = state;
     for (Eigen::Vector2d& bend : expected.bends) bend += random.vector<2>(-0.2, 0.2);
@@ -150,8 +150,8 @@ TEST(ShapeTracker, ForgetsWhenTold) {
     const ShapePrior prior{.arm = three_section_arm()};
     const Backbone first(prior.arm, random_bends(random, prior.arm, 1.5)),
         second(prior.arm, random_bends(random, prior.arm, 1.5));
-    const std::vector<Sighting> before = wrong_cameras(first, random, 0.02).seen,
-                                seen = wrong_cameras(second, random, 0.02).seen;
+    const std::vector<Observation> before = wrong_cameras(first, random, 0.02).seen,
+                                   seen = wrong_cameras(second, random, 0.02).seen;
     ShapeTracker fresh(prior, {}), used(prior, {}), keeps(prior, {});
     (void)used.look(before, 0, std::nullopt);
     (void)keeps.look(before, 0, std::nullopt);
@@ -172,7 +172,7 @@ TEST(ShapeTracker, LeavesAloneWhatIsNotDoubted) {
     std::optional<ArmState> expected;
     for (int k = 0; k < 30; ++k) {
       WrongCameras cameras = wrong_cameras(Backbone(prior.arm, state), random, 0.05);
-      for (Sighting& one : cameras.seen) one.doubt = {.rotation_std = 0.02, .focal_std = 0};
+      for (Observation& one : cameras.seen) one.view_prior = {.rotation_std = 0.02, .focal_std = 0};
       const ShapeEstimate found = tracker.look(cameras.seen, k, expected);
       for (const ViewError& error : found.shape.views) EXPECT_LT(std::abs(error.focal), 1e-4);
       expected = found.shape.state;
@@ -185,8 +185,8 @@ TEST(ShapeTracker, PassesOverAFewPointsOfSomethingElse) {
   for_random_cases(20, [](TestRandom& random) {
     const ShapePrior prior{.arm = three_section_arm()};
     const Backbone truth(prior.arm, random_bends(random, prior.arm, 0.8));
-    std::vector<Sighting> seen = wrong_cameras(truth, random, 0.02, 0).seen;
-    for (Sighting& one : seen) one.doubt = {};
+    std::vector<Observation> seen = wrong_cameras(truth, random, 0.02, 0).seen;
+    for (Observation& one : seen) one.view_prior = {};
     ShapeTracker tracker(prior, {});
     const ArmState expected = tracker.look(seen, 0, std::nullopt).shape.state;
     seen[1].points.clear(), seen[1].ends = {};
@@ -207,7 +207,7 @@ TEST(ShapeTracker, RefusesAnAxisOfSomethingElse) {
   for_random_cases(20, [](TestRandom& random) {
     const ShapePrior prior{.arm = three_section_arm()};
     const ArmState state = random_bends(random, prior.arm, 1.5);
-    std::vector<Sighting> seen = wrong_cameras(Backbone(prior.arm, state), random, 0.02, 0).seen;
+    std::vector<Observation> seen = wrong_cameras(Backbone(prior.arm, state), random, 0.02, 0).seen;
     ShapeTracker tracker(prior, {});
     ArmState expected = tracker.look(seen, 0, std::nullopt).shape.state;
     for (Eigen::Vector2d& bend : expected.bends) bend += random.vector<2>(-0.1, 0.1);

@@ -12,12 +12,12 @@
 #include <vector>
 
 #include "flexura/base/degree.h"
+#include "flexura/estimate/observation.h"
 #include "flexura/estimate/shape_estimator.h"
-#include "flexura/estimate/sighting.h"
 #include "flexura/math/so3.h"
 #include "flexura/model/backbone.h"
+#include "tests/support/observations.h"
 #include "tests/support/random_cases.h"
-#include "tests/support/sightings.h"
 
 namespace flexura {
 namespace {
@@ -31,10 +31,10 @@ TEST(ShapeOfUnknownMake, IsNotTrustedWhereTheBaseIsElsewhere) {
   for_random_cases(30, [](TestRandom& random) {
     const Arm arm = three_section_arm();
     const Backbone truth(arm, random_bends(random, arm, 1.2));
-    const std::vector<Sighting> seen = sightings_of(truth, random, 0.02);
-    const auto estimate = [&](const Eigen::Vector3d& base, const std::vector<Sighting>& sightings) {
+    const std::vector<Observation> seen = observations_of(truth, random, 0.02);
+    const auto estimate = [&](const Eigen::Vector3d& base, const std::vector<Observation>& observations) {
       // Notes on uncertainty alone are switched off.
-      return ShapeEstimator(unknown_arm(base, truth.length()), {.uncertain = 1}).estimate(sightings);
+      return ShapeEstimator(unknown_arm(base, truth.length()), {.uncertain = 1}).estimate(observations);
     };
     const auto speaks_of_base = Contains(HasSubstr("aside of where its base would be"));
     const ShapeEstimate right = estimate({0, 0, 0}, seen);
@@ -45,7 +45,7 @@ TEST(ShapeOfUnknownMake, IsNotTrustedWhereTheBaseIsElsewhere) {
     EXPECT_FALSE(beside.is_trusted());
     EXPECT_THAT(beside.notes, speaks_of_base);
     // A camera rotated by a tenth of a degree: 1.4 px.
-    std::vector<Sighting> turned = seen;
+    std::vector<Observation> turned = seen;
     const int one = random.integer(0, 1);
     View& view = turned[static_cast<std::size_t>(one)].view;
     view.X_WC.rotation = view.X_WC.rotation * so3_exp({0, 0.1 * degree, 0});
@@ -53,7 +53,7 @@ TEST(ShapeOfUnknownMake, IsNotTrustedWhereTheBaseIsElsewhere) {
     EXPECT_FALSE(aside.is_trusted());
     EXPECT_THAT(aside.notes, speaks_of_base);
     // With a prior of that size the error is estimated.
-    for (Sighting& doubtful : turned) doubtful.doubt = {0.2 * degree, 0.001};
+    for (Observation& uncertain : turned) uncertain.view_prior = {0.2 * degree, 0.001};
     EXPECT_THAT(estimate({0, 0, 0}, turned).notes, Not(speaks_of_base));
   });
 }
@@ -63,8 +63,8 @@ TEST(ShapeOfUnknownMake, SaysNothingOfABaseThatNoPictureShows) {
   TestRandom random(1);
   const Arm arm = three_section_arm();
   const Backbone truth(arm, random_bends(random, arm, 1.0));
-  std::vector<Sighting> seen;
-  for (const View& view : two_views()) seen.push_back(sighting_of(truth, view, random, 0.02, {0.05, 1}));
+  std::vector<Observation> seen;
+  for (const View& view : two_views()) seen.push_back(observation_of(truth, view, random, 0.02, {0.05, 1}));
   const ShapeEstimate found =
       ShapeEstimator(unknown_arm(Eigen::Vector3d(0.003, 0, 0), truth.length())).estimate(seen);
   EXPECT_TRUE(found.is_found) << found.reason;
@@ -77,11 +77,12 @@ TEST(ShapeOfUnknownMake, IsFoundInMoreThanTwoPictures) {
     const Arm arm = three_section_arm();
     const Backbone truth(arm, random_bends(random, arm, 1.2));
     const Eigen::Vector3d middle(0, 0.4, 0);
-    const std::array<Eigen::Vector3d, 4> eyes = {Eigen::Vector3d(0, 0, 2.5), Eigen::Vector3d(0.02, 0, 2.5),
-                                                 Eigen::Vector3d(-2.5, 0, 0), Eigen::Vector3d(1.8, 0, 1.8)};
-    std::vector<Sighting> seen;
-    for (const Eigen::Vector3d& eye : eyes) {
-      Sighting one = sighting_of(truth, view_from(middle + eye, middle, 800), random, 0.02);
+    const std::array<Eigen::Vector3d, 4> viewpoints = {
+        Eigen::Vector3d(0, 0, 2.5), Eigen::Vector3d(0.02, 0, 2.5), Eigen::Vector3d(-2.5, 0, 0),
+        Eigen::Vector3d(1.8, 0, 1.8)};
+    std::vector<Observation> seen;
+    for (const Eigen::Vector3d& eye : viewpoints) {
+      Observation one = observation_of(truth, view_from(middle + eye, middle, 800), random, 0.02);
       const bool is_reversed = !seen.empty() && random.uniform(0, 1) < 0.5;
       seen.push_back(is_reversed ? reversed(one) : one);
     }
@@ -97,16 +98,16 @@ TEST(ShapeOfUnknownMake, IsFoundBesideAPictureOfAFragment) {
     const Arm arm = three_section_arm();
     const Backbone truth(arm, random_bends(random, arm, 1.2));
     const Eigen::Vector3d middle(0, 0.4, 0);
-    const std::array<Eigen::Vector3d, 3> eyes = {Eigen::Vector3d(0, 0, 2.5), Eigen::Vector3d(-2.5, 0, 0),
-                                                 Eigen::Vector3d(1.8, 0, 1.8)};
+    const std::array<Eigen::Vector3d, 3> viewpoints = {
+        Eigen::Vector3d(0, 0, 2.5), Eigen::Vector3d(-2.5, 0, 0), Eigen::Vector3d(1.8, 0, 1.8)};
     const auto fragment = static_cast<std::size_t>(random.integer(0, 2));
     const double from = random.uniform(0.2, 0.6);
-    std::vector<Sighting> seen;
-    for (std::size_t i = 0; i < eyes.size(); ++i) {
-      const View view = view_from(middle + eyes[i], middle, 800);
+    std::vector<Observation> seen;
+    for (std::size_t i = 0; i < viewpoints.size(); ++i) {
+      const View view = view_from(middle + viewpoints[i], middle, 800);
       const std::array<double, 2> shares =
           i == fragment ? std::array{from, from + 0.2} : std::array{0.0, 1.0};
-      const Sighting one = sighting_of(truth, view, random, 0.02, shares);
+      const Observation one = observation_of(truth, view, random, 0.02, shares);
       seen.push_back(i > 0 && random.uniform(0, 1) < 0.5 ? reversed(one) : one);
     }
     const ShapeEstimate found = ShapeEstimator(unknown_arm(std::nullopt, std::nullopt)).estimate(seen);
@@ -125,14 +126,14 @@ TEST(ShapeOfUnknownMake, TellsWhichWayAFragmentOfAHairpinRuns) {
     state.bends[1] = random.uniform(2.2, 2.8) * way, state.bends[2] = random.uniform(0.5, 1) * way;
     const Backbone truth(arm, state);
     const Eigen::Vector3d middle(0, 0.3, 0);
-    const std::array<Eigen::Vector3d, 3> eyes = {Eigen::Vector3d(0, 0, 2.5), Eigen::Vector3d(-2.5, 0, 0),
-                                                 Eigen::Vector3d(1.8, 0, 1.8)};
+    const std::array<Eigen::Vector3d, 3> viewpoints = {
+        Eigen::Vector3d(0, 0, 2.5), Eigen::Vector3d(-2.5, 0, 0), Eigen::Vector3d(1.8, 0, 1.8)};
     const double from = random.uniform(0.3, 0.65);
-    std::vector<Sighting> two, three;
-    for (std::size_t i = 0; i < eyes.size(); ++i) {
-      const View view = view_from(middle + eyes[i], middle, 800);
+    std::vector<Observation> two, three;
+    for (std::size_t i = 0; i < viewpoints.size(); ++i) {
+      const View view = view_from(middle + viewpoints[i], middle, 800);
       const std::array<double, 2> shares = i == 2 ? std::array{from, from + 0.3} : std::array{0.0, 1.0};
-      const Sighting one = sighting_of(truth, view, random, 0.02, shares);
+      const Observation one = observation_of(truth, view, random, 0.02, shares);
       three.push_back(i == 2 && random.uniform(0, 1) < 0.5 ? reversed(one) : one);
       if (i < 2) two.push_back(one);
     }

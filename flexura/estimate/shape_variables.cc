@@ -7,7 +7,7 @@
 
 namespace flexura {
 
-ShapeVariables::ShapeVariables(const ShapePrior& prior, std::span<const Sighting> sightings)
+ShapeVariables::ShapeVariables(const ShapePrior& prior, std::span<const Observation> observations)
     : sections_(static_cast<Eigen::Index>(prior.arm.sections.size())),
       bends_(prior.arm.kind == ArmKind::planar ? 1 : 2),
       count_(sections_ * bends_) {
@@ -17,7 +17,8 @@ ShapeVariables::ShapeVariables(const ShapePrior& prior, std::span<const Sighting
   if (!prior.is_length_known) stretch_ = take(1);
   of_shape_ = count_;
   constexpr Eigen::Index of_view = 4;
-  for (const Sighting& seen : sightings) views_.push_back(seen.doubt.is_any() ? take(of_view) : -1);
+  for (const Observation& seen : observations)
+    views_.push_back(seen.view_prior.is_any() ? take(of_view) : -1);
 }
 
 Shape ShapeVariables::plus(const Shape& shape, const Eigen::VectorXd& step) const {

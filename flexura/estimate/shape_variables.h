@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "flexura/estimate/sighting.h"
+#include "flexura/estimate/observation.h"
 #include "flexura/math/pose.h"
 #include "flexura/model/arm.h"
 
@@ -33,7 +33,7 @@ struct Shape {
 };
 
 /// Previous knowledge of a shape.
-struct ShapeBelief {
+struct ShapePrediction {
   Shape mean;
   Eigen::MatrixXd covariance;  ///< Covariance of the unknowns (ShapeVariables), including views with a prior.
 };
@@ -43,16 +43,16 @@ struct ShapeBelief {
 /// Then the error of each view with a prior (turn in rad, focal).
 class ShapeVariables {
  public:
-  /// `sightings` show which views have a prior.
-  explicit ShapeVariables(const ShapePrior& prior, std::span<const Sighting> sightings = {});
+  /// `observations` show which views have a prior.
+  explicit ShapeVariables(const ShapePrior& prior, std::span<const Observation> observations = {});
 
   /// Returns the number of all unknowns.
   [[nodiscard]] Eigen::Index count() const { return count_; }
   /// Returns the number of unknowns of the arm's shape, which come first.
   [[nodiscard]] Eigen::Index of_shape() const { return of_shape_; }
   /// Returns the first index of the error of an observation's view; -1: it has none.
-  [[nodiscard]] Eigen::Index of_view(std::size_t sighting) const {
-    return sighting < views_.size() ? views_[sighting] : -1;
+  [[nodiscard]] Eigen::Index of_view(std::size_t observation) const {
+    return observation < views_.size() ? views_[observation] : -1;
   }
   /// Returns 1 for a planar arm, 2 for a spatial one.
   [[nodiscard]] Eigen::Index bends_a_section() const { return bends_; }

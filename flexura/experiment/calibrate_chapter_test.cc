@@ -58,7 +58,7 @@ TEST(CalibrationChapter, ShowsOffsetsFallingAndBothCamerasBeforeAndAfter) {
   CalibrationBench bench(etalon_rig("method = \"etalon\"\n", rig));
   CalibrationRun run;
   run.name = "cylinder", run.is_before_etalon = true, run.cameras = {"front", "side"};
-  run.believed = bench.believed();
+  run.nominal = bench.nominal();
   run.loop = bench.calibrate();
   ASSERT_TRUE(run.loop->is_done) << run.loop->reason;
   const Chapter chapter = calibration_chapter(run, 0);

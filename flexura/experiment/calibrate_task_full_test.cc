@@ -14,7 +14,7 @@
 
 #include "flexura/base/degree.h"
 #include "flexura/base/progress.h"
-#include "flexura/calibrate/etalon_eyes.h"
+#include "flexura/calibrate/etalon_observer.h"
 #include "flexura/experiment/run.h"
 #include "flexura/log/results.h"
 #include "flexura/store/text_file.h"
@@ -135,10 +135,10 @@ class TruePoints : public NobodyWatches {
   explicit TruePoints(const Experiment& experiment)
       : figure_(*experiment.stand.etalon),
         truth_(rig_model(experiment.arm.arm(), experiment.true_rig().cameras)) {}
-  void seen(const RigSight& sight) override {
-    if (!sight.seen.reason.empty()) return;
-    const Image<std::uint8_t> picture = eight_bits(*sight.frame.picture, 255);
-    const View view = view_of(truth_, sight.stance);
+  void seen(const CameraObservation& observed) override {
+    if (!observed.seen.reason.empty()) return;
+    const Image<std::uint8_t> picture = eight_bits(*observed.frame.picture, 255);
+    const View view = view_of(truth_, observed.stance);
     for (const EtalonPoint& point :
          etalon_points(find_etalon(picture, gray_picture(picture)), figure_, view)) {
       const Eigen::Vector2d off = *view.project(*figure_.nearest(point, view)) - point.pixel;
@@ -170,7 +170,7 @@ TEST(CalibrateTaskFully, SeesTheCylindersPartsWhereTheyAre) {
     TruePoints points(bench.experiment());
     const RigSessionResult result = bench.calibrate_bundle(bench.ports(), points);
     EXPECT_TRUE(result.is_done) << result.reason;
-    EXPECT_EQ(result.found.doubts.size(), 0U);
+    EXPECT_EQ(result.found.outliers.size(), 0U);
     for (const EtalonPart part : {EtalonPart::left_side, EtalonPart::right_side}) {
       EXPECT_LE(std::abs(points.off(part)[0]), 0.02) << up;
       EXPECT_LE(points.off(part)[1], 0.04) << up;
@@ -350,13 +350,13 @@ TEST(CalibrateTaskFully, TellsWhatItDoesNotKnowAsWellAsIsWanted) {
       "images = 4\nrequired_std = { angle_deg = 0.001, focal = 0.5 }\n" + three_poses, wrong_cameras));
   const RigSessionResult result = bench.calibrate_bundle(bench.ports());
   ASSERT_TRUE(result.is_done) << result.reason;
-  const auto tells = [&](const std::string& part) {
-    return std::ranges::any_of(result.wanted.notes,
+  const auto determines = [&](const std::string& part) {
+    return std::ranges::any_of(result.desired.notes,
                                [&](const std::string& note) { return note.find(part) != std::string::npos; });
   };
-  EXPECT_TRUE(tells("the angle between the axes is known to"));
-  EXPECT_TRUE(tells("degrees, where 0.001 is wanted"));
-  EXPECT_FALSE(tells("focal length"));
+  EXPECT_TRUE(determines("the angle between the axes is known to"));
+  EXPECT_TRUE(determines("degrees, where 0.001 is wanted"));
+  EXPECT_FALSE(determines("focal length"));
 }
 
 // White is visible to the left and to the right, but not above and below, and the printed method does not

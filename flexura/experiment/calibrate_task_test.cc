@@ -64,7 +64,7 @@ TEST(CalibrateTask, FindsZerosOfHeadsThatStagesTellFromTurnedMounts) {
   EXPECT_LT(std::abs(bench.truth(result.target).angle), 4 * sigma);
 }
 
-TEST(CalibrateTask, StopsWhereTheMoveEndsElsewhereThanItWasForetold) {
+TEST(CalibrateTask, StopsWhereTheMoveEndsElsewhereThanPredicted) {
   CalibrationBench bench(small_calibration(
       "images = 8\n" + three_poses, both_heads("{ pan = { backlash_deg = 3 }, tilt = { zero_deg = 0 } }")));
   const RigSessionResult result = bench.calibrate_bundle(bench.ports());
@@ -102,9 +102,10 @@ TEST(CalibrateTask, StopsWhereTheArmIsOutOfView) {
 // Counts pictures of the search for the arm, and records where cameras missed it.
 class SeenLooks : public NobodyWatches {
  public:
-  void seen(const RigSight& sight) override {
-    if (sight.look == 0) ++searches;
-    if (sight.look > 0 && !sight.seen.reason.empty()) missed.push_back({sight.pose, {sight.stance}});
+  void seen(const CameraObservation& observed) override {
+    if (observed.look == 0) ++searches;
+    if (observed.look > 0 && !observed.seen.reason.empty())
+      missed.push_back({observed.pose, {observed.stance}});
   }
   int searches = 0;
   std::vector<ViewCandidate> missed;
@@ -146,7 +147,7 @@ TEST(CalibrateTask, SearchesForAnArmThatBendsOutOfViewBeforeAnythingIsKnown) {
 TEST(CalibrateTask, DoesNotLookAgainFromWhereACameraSawNothing) {
   CalibrationBench bench(small_calibration("images = 9\n" + three_poses, wrong_cameras));
   RigPorts ports = bench.ports();
-  OddCamera blind(*ports.cameras[1].camera, [&head = *ports.cameras[1].head](Frame frame) {
+  AlteredCamera blind(*ports.cameras[1].camera, [&head = *ports.cameras[1].head](Frame frame) {
     if (head.read().value().state.zoom < 1.5) return frame;
     const auto& seen = std::get<Image<std::uint8_t>>(*frame.picture);
     frame.picture = std::make_shared<const Picture>(
@@ -157,10 +158,10 @@ TEST(CalibrateTask, DoesNotLookAgainFromWhereACameraSawNothing) {
   SeenLooks looks;
   const RigSessionResult result = bench.calibrate_bundle(ports, looks);
   EXPECT_FALSE(looks.missed.empty());
-  const RigModel believed = rig_model(bench.experiment().arm.arm(), bench.experiment().cameras());
+  const RigModel nominal = rig_model(bench.experiment().arm.arm(), bench.experiment().cameras());
   for (std::size_t i = 0; i < looks.missed.size(); ++i)
     for (std::size_t j = 0; j < i; ++j)
-      EXPECT_FALSE(is_like(believed, looks.missed[i], looks.missed[j])) << i << " and " << j;
+      EXPECT_FALSE(is_like(nominal, looks.missed[i], looks.missed[j])) << i << " and " << j;
   if (!result.is_done) {
     EXPECT_THAT(result.reason, HasSubstr("does not see the arm in 3 pictures in a row"));
   }

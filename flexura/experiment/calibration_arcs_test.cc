@@ -48,14 +48,15 @@ TEST(ArcsCalibration, LogsAndReportsItsArcsDriveCommandsAndIdealImages) {
   const auto arcs = logged<CalibrationArcMessage>(result, calibration_arcs_topic);
   const auto commands = logged<DriveCommandsMessage>(result, drive_commands_topic);
   const auto last = logged<CalibrationDecisionMessage>(result, calibration_decisions_topic).back();
-  std::map<std::string, CalibrationSightingMessage> first;  // By camera.
-  for (const auto& sighting : logged<CalibrationSightingMessage>(result, calibration_sightings_topic))
-    first.emplace(sighting.camera, sighting);
+  std::map<std::string, CalibrationObservationMessage> first;  // By camera.
+  for (const auto& observation :
+       logged<CalibrationObservationMessage>(result, calibration_observations_topic))
+    first.emplace(observation.camera, observation);
   ASSERT_EQ(arcs.size(), 2U);
   EXPECT_EQ(arcs[0].camera + " " + arcs[0].plane, "front XOY");
   EXPECT_EQ(arcs[1].camera + " " + arcs[1].plane, "side ZOY");
   for (const CalibrationArcMessage& arc : arcs) {
-    const CalibrationSightingMessage& sighting = first.at(arc.camera);
+    const CalibrationObservationMessage& observation = first.at(arc.camera);
     double bend = 0;
     for (std::size_t i = 0; i < arc.bends.size(); ++i) {
       bend += std::hypot(arc.bends[i][0], arc.bends[i][1]);
@@ -63,17 +64,17 @@ TEST(ArcsCalibration, LogsAndReportsItsArcsDriveCommandsAndIdealImages) {
     }
     EXPECT_NEAR(bend, 2 * std::numbers::pi / 3, 1e-9);
     // The motors' actual commands when the camera took the picture.
-    const auto after = std::ranges::upper_bound(commands, sighting.time, {}, &DriveCommandsMessage::time);
+    const auto after = std::ranges::upper_bound(commands, observation.time, {}, &DriveCommandsMessage::time);
     EXPECT_EQ(arc.positions, std::prev(after)->positions) << arc.camera;
     // The ideal axis is along the ideal picture's arm, and a circle is fitted in the real picture.
     const Picture ideal =
         read_png(logged<ImageMessage>(result, ideal_image_topic(arc.camera)).front().data.data);
     const auto& picture = std::get<Image<std::uint8_t>>(ideal);
-    ASSERT_TRUE(sighting.ideal && sighting.circle);
-    const auto& [u, v] = (*sighting.ideal)[sighting.ideal->size() / 2];
+    ASSERT_TRUE(observation.ideal && observation.circle);
+    const auto& [u, v] = (*observation.ideal)[observation.ideal->size() / 2];
     EXPECT_LT(picture.at(static_cast<int>(std::lround(u)), static_cast<int>(std::lround(v))) + 50,
               picture.at(2, 2));
-    EXPECT_NEAR(arc.focal / 2.5 / (2 * std::numbers::pi / 3), sighting.circle->radius, 20);
+    EXPECT_NEAR(arc.focal / 2.5 / (2 * std::numbers::pi / 3), observation.circle->radius, 20);
   }
   EXPECT_TRUE(last.ended.value_or(false));
   EXPECT_EQ(last.next, "calibrated");
@@ -144,10 +145,10 @@ TEST(EtalonLoop, DoubtsPlacesByTheDistanceFromTheCylinder) {
   const CalibrationBench bench(
       etalon_rig("method = \"bundle-etalon\"\ncamera_prior.position_std = 0.1\n", {}, "height = 0.4\n"));
   const Experiment& file = bench.experiment();
-  const RigModel believed = rig_model(file.arm.arm(), file.cameras());
-  const RigPrior prior = session_prior(std::get<CalibrateTask>(file.task.front()), believed, file.stand);
+  const RigModel nominal = rig_model(file.arm.arm(), file.cameras());
+  const RigPrior prior = session_prior(std::get<CalibrateTask>(file.task.front()), nominal, file.stand);
   for (std::size_t i = 0; i < 2; ++i) {
-    const Eigen::Vector3d from = vector(believed.cameras[i].mount.position);
+    const Eigen::Vector3d from = vector(nominal.cameras[i].mount.position);
     EXPECT_NEAR(prior.cameras[i].position, 0.1 * (from - Eigen::Vector3d(0, 0.3 + 0.5 * 0.4, 0)).norm(),
                 1e-12);
   }

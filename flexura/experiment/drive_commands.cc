@@ -27,13 +27,13 @@ DriveCommands::DriveCommands(Arm arm, Drive drive, const std::filesystem::path& 
 }
 
 void DriveCommands::step(double time, const ArmState& state, Recorder& recorder) {
-  const TendonDisplacements wanted = tendon_displacements(arm_, drive_, state);
+  const TendonDisplacements desired = tendon_displacements(arm_, drive_, state);
   std::vector<std::int64_t> before;
   if (commander_) {
     before = commander_->positions();
-    commander_->follow(wanted);
+    commander_->follow(desired);
   } else {
-    commander_.emplace(drive_, wanted);
+    commander_.emplace(drive_, desired);
     before = commander_->positions();
     time_ = time;
   }
@@ -54,9 +54,9 @@ void DriveCommands::step(double time, const ArmState& state, Recorder& recorder)
 std::vector<std::int64_t> DriveCommands::positions_after(std::span<const ArmState> way) const {
   std::optional<MotorCommander> commander = commander_;
   for (const ArmState& state : way) {
-    const TendonDisplacements wanted = tendon_displacements(arm_, drive_, state);
-    if (!commander) commander.emplace(drive_, wanted);
-    commander->follow(wanted);
+    const TendonDisplacements desired = tendon_displacements(arm_, drive_, state);
+    if (!commander) commander.emplace(drive_, desired);
+    commander->follow(desired);
   }
   return commander ? commander->positions() : std::vector<std::int64_t>{};
 }

@@ -86,11 +86,11 @@ TEST_F(LaboratoryArm, FollowsItsCommandsToHalfAMicrostepThroughThePlay) {
   const Arm arm = experiment.arm.arm();
   const Drive drive = experiment.drive->drive();
   const std::vector<Row> rows = rows_of(run(experiment).folder, 9);
-  PlayModel mechanism(drive, rows.front().positions);
+  BacklashModel mechanism(drive, rows.front().positions);
   for (const Row& row : rows) {
     mechanism.follow(row.positions);
-    const ArmState wanted = schedule.state_at(row.time);
-    const TendonDisplacements needed = tendon_displacements(arm, drive, wanted);
+    const ArmState desired = schedule.state_at(row.time);
+    const TendonDisplacements needed = tendon_displacements(arm, drive, desired);
     const TendonDisplacements made = mechanism.displacements();
     for (std::size_t i = 0; i < 9; ++i) {
       ASSERT_LE(std::abs(made.pulled[i] - needed.pulled[i]) * drive.axes[i].microsteps_a_metre(), 0.5 + 3e-6)
@@ -98,7 +98,7 @@ TEST_F(LaboratoryArm, FollowsItsCommandsToHalfAMicrostepThroughThePlay) {
     }
     // Half a microstep is a micrometre of cable, 14 mm from the backbone.
     const ArmState found = fit_state(arm, drive, made).state;
-    for (std::size_t i = 0; i < 3; ++i) ASSERT_LE((found.bends[i] - wanted.bends[i]).norm(), 1e-4);
+    for (std::size_t i = 0; i < 3; ++i) ASSERT_LE((found.bends[i] - desired.bends[i]).norm(), 1e-4);
   }
 }
 

@@ -65,9 +65,9 @@ TEST_F(Dynamics, GoesOnWhereTheTaskBeforeEndedAndTheNextGoesOnFromThere) {
       EXPECT_NEAR(std::hypot(states[i].bends[k][0] - states[i - 1].bends[k][0],
                              states[i].bends[k][1] - states[i - 1].bends[k][1]),
                   0, 0.1);
-  const std::vector<std::array<double, 2>> wanted = {{0.5, -0.3}, {0.4, 0.2}, {0.3, -0.2}};
+  const std::vector<std::array<double, 2>> desired = {{0.5, -0.3}, {0.4, 0.2}, {0.3, -0.2}};
   for (std::size_t k = 0; k < 3; ++k)
-    for (std::size_t i = 0; i < 2; ++i) EXPECT_NEAR(states.back().bends[k][i], wanted[k][i], 1e-3);
+    for (std::size_t i = 0; i < 2; ++i) EXPECT_NEAR(states.back().bends[k][i], desired[k][i], 1e-3);
   EXPECT_EQ(states.back().bends, states[states.size() - 2].bends);
 }
 
@@ -114,12 +114,12 @@ TEST_F(Dynamics, CanBeCancelledWhileItIsSimulated) {
 TEST_F(Dynamics, CanBeCancelledBetweenTwoSamples) {
   class CancelledSoon : public Quiet {
    public:
-    void update(double fraction, std::string_view) override { told_.push_back(fraction); }
-    [[nodiscard]] bool is_cancelled() const override { return told_.size() > 20; }
-    [[nodiscard]] const std::vector<double>& told() const { return told_; }
+    void update(double fraction, std::string_view) override { reported_.push_back(fraction); }
+    [[nodiscard]] bool is_cancelled() const override { return reported_.size() > 20; }
+    [[nodiscard]] const std::vector<double>& reported() const { return reported_; }
 
    private:
-    std::vector<double> told_;
+    std::vector<double> reported_;
   } cancelled;
   const Experiment experiment =
       parse_experiment("[clock]\nstep = 5\n" + dynamics_arm() + dynamics_task(bent_target), "x.toml");
@@ -129,9 +129,9 @@ TEST_F(Dynamics, CanBeCancelledBetweenTwoSamples) {
   EXPECT_EQ(run.reason(), "cancelled");
   EXPECT_GT(run.samples.back().energies.time, 0);
   EXPECT_LT(run.samples.back().energies.time, 1);
-  EXPECT_EQ(cancelled.told().size(), 21);
-  EXPECT_GT(cancelled.told().back(), 0);
-  EXPECT_LT(cancelled.told().back(), 0.2);
+  EXPECT_EQ(cancelled.reported().size(), 21);
+  EXPECT_GT(cancelled.reported().back(), 0);
+  EXPECT_LT(cancelled.reported().back(), 0.2);
 }
 
 // The run ends with the first failed task; known facts about later tasks must be reported.
@@ -141,7 +141,8 @@ TEST_F(Dynamics, TellsWhatIsWrongAfterATaskThatFailsToo) {
       dynamics_task("name = \"second\"\nlaw.sign = -1\nlaw.elasticity = \"ignored\"\n" + bent_target) +
       dynamics_task("name = \"third\"\n" + bent_target);
   const Experiment experiment = parse_experiment(text, "x.toml", {{"record.report=false"}, {}});
-  const auto is_told = [](const std::vector<std::string>& caveats, const std::vector<std::string>& notes) {
+  const auto is_reported = [](const std::vector<std::string>& caveats,
+                              const std::vector<std::string>& notes) {
     for (const char* name : {"second", "third"})
       EXPECT_THAT(caveats,
                   testing::Contains(fmt::format("{}: judged by the straight way only: it is not simulated, "
@@ -153,7 +154,7 @@ TEST_F(Dynamics, TellsWhatIsWrongAfterATaskThatFailsToo) {
   };
   Quiet quiet;
   const SafetyReport report = check_experiment_safety(experiment, quiet);
-  is_told(report.caveats, report.notes);
+  is_reported(report.caveats, report.notes);
   EXPECT_THAT(report.notes, testing::Contains("first: gravity is compensated to 50 %, not to 100 %"));
   const RunResult result = run(experiment);
   const auto lines = [&](const char* key) {
@@ -162,7 +163,7 @@ TEST_F(Dynamics, TellsWhatIsWrongAfterATaskThatFailsToo) {
       texts.push_back(*line.as<std::string>());
     return texts;
   };
-  is_told(lines("caveats"), lines("notes"));
+  is_reported(lines("caveats"), lines("notes"));
   EXPECT_THAT(result.reasons, ElementsAre("first: gravity is compensated to 50 %, not to 100 %"));
 }
 

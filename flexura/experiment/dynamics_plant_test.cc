@@ -62,7 +62,7 @@ TEST(DynamicsPlant, HasTheDirectionsAtTheSectionsEnds) {
     const DynamicsPlant plant(DynamicsTask{}, arm, state);
     const ArmState back = plant.state(plant.start(), before);
     const Eigen::Matrix2Xd ends = plant.end_angles(plant.start());
-    const Backbone backbone(arm, back), wanted(arm, state);
+    const Backbone backbone(arm, back), desired(arm, state);
     for (std::size_t i = 0; i < state.bends.size(); ++i) {
       const Eigen::Vector3d e = i + 1 < state.bends.size() ? backbone.arcs()[i + 1].X_WS.rotation.col(2)
                                                            : backbone.tip().rotation.col(2);

@@ -101,7 +101,7 @@ TEST_F(Dynamics, LyapunovsFunctionFallsInAllThatIsLogged) {
 
 TEST_F(Dynamics, EachViolatedConditionFailsWithItsReason) {
   struct Violation {
-    const char *set, *said, *shown;
+    const char *set, *reported, *shown;
   };
   for (const Violation& violation :
        {Violation{"task.0.law.gravity_compensation=0", "gravity is compensated to 0 %",
@@ -125,11 +125,11 @@ TEST_F(Dynamics, EachViolatedConditionFailsWithItsReason) {
     EXPECT_EQ(result.outcome, RunOutcome::failed);
     ASSERT_EQ(result.reasons.size(), 1);
     EXPECT_THAT(result.reasons[0], StartsWith("dynamics: "));
-    EXPECT_THAT(result.reasons[0], HasSubstr(violation.said));
-    const Node& told = dynamics(result);
-    EXPECT_FALSE(truth(told, "done"));
-    EXPECT_THAT(write_json(*told.find("violations")), HasSubstr(violation.said));
-    EXPECT_THAT(write_json(*told.find("verdict")->find("reasons")), HasSubstr(violation.shown));
+    EXPECT_THAT(result.reasons[0], HasSubstr(violation.reported));
+    const Node& reported = dynamics(result);
+    EXPECT_FALSE(truth(reported, "done"));
+    EXPECT_THAT(write_json(*reported.find("violations")), HasSubstr(violation.reported));
+    EXPECT_THAT(write_json(*reported.find("verdict")->find("reasons")), HasSubstr(violation.shown));
   }
 }
 
@@ -243,9 +243,9 @@ TEST_F(Dynamics, ReportsDelayAndNoise) {
                                      "measurement = { delay_ms = 60, noise_deg = 0.5 }\n");
   const RunResult result = run(text);
   EXPECT_EQ(result.outcome, RunOutcome::done) << testing::PrintToString(result.reasons);
-  const Node& told = dynamics(result);
-  EXPECT_TRUE(truth(told, "measured"));
-  const Node& verdict = *told.find("verdict");
+  const Node& reported = dynamics(result);
+  EXPECT_TRUE(truth(reported, "measured"));
+  const Node& verdict = *reported.find("verdict");
   EXPECT_FALSE(truth(verdict, "monotone"));
   EXPECT_FALSE(truth(verdict, "balanced"));
   EXPECT_TRUE(truth(verdict, "settled"));

@@ -74,10 +74,9 @@ Node with_defaults_below(const Node& truth, Node document) {
   const bool needs_screens = true_stand != nullptr && true_stand->find("screen") != nullptr &&
                              is_left_out(document.find("stand"), "screen");
   if (!needs_cameras && !needs_screens) return document;
-  Node believed = document;
-  std::erase_if(*believed.as<Node::Table>(),
-                [](const Node::Member& member) { return member.key == "truth"; });
-  const auto experiment = read_as<Experiment>(believed);
+  Node nominal = document;
+  std::erase_if(*nominal.as<Node::Table>(), [](const Node::Member& member) { return member.key == "truth"; });
+  const auto experiment = read_as<Experiment>(nominal);
   if (needs_cameras) made(document, "camera", Node::Array{}) = entries_of(experiment.cameras());
   if (needs_screens) {
     made(made(document, "stand", Node::Table{}), "screen", Node::Array{}) =

@@ -138,7 +138,7 @@ TEST(Filming, GivesTheSameFilmForAnyStepOfAnArmThatStands) {
 
 TEST(Filming, ShowsTheTruthAndNotWhatIsBelieved) {
   const std::string quiet = replaced(small_pictures, "read_noise = 1, ", "");
-  const Film believed = film_of(quiet);
+  const Film nominal = film_of(quiet);
   const Film same = film_of(quiet + "[truth.arm.base]\nposition = [0, 0, 0]\n");
   const Film shifted = film_of(quiet + "[truth.arm.base]\nposition = [0.1, 0, 0]\n");
   const Film light = film_of(quiet + "[truth.arm.look]\ncolor = [0.9, 0.9, 0.9]\n");
@@ -146,13 +146,13 @@ TEST(Filming, ShowsTheTruthAndNotWhatIsBelieved) {
                            "[[truth.stand.screen]]\nbrightness = 0.7\n[[truth.stand.screen]]\n"
                            "brightness = 0.7\n");
   const Film turned = film_of(quiet + "[[truth.camera]]\nname = \"side\"\ninitial = { pan_deg = 2 }\n");
-  ASSERT_EQ(believed.size(), turned.size());
-  for (std::size_t i = 0; i < believed.size(); ++i) {
-    EXPECT_EQ(*believed[i].second.picture, *same[i].second.picture) << i;
-    EXPECT_NE(*believed[i].second.picture, *shifted[i].second.picture) << i;
-    EXPECT_NE(*believed[i].second.picture, *light[i].second.picture) << i;
-    EXPECT_NE(*believed[i].second.picture, *dim[i].second.picture) << i;
-    EXPECT_EQ(*believed[i].second.picture == *turned[i].second.picture, believed[i].first == "front") << i;
+  ASSERT_EQ(nominal.size(), turned.size());
+  for (std::size_t i = 0; i < nominal.size(); ++i) {
+    EXPECT_EQ(*nominal[i].second.picture, *same[i].second.picture) << i;
+    EXPECT_NE(*nominal[i].second.picture, *shifted[i].second.picture) << i;
+    EXPECT_NE(*nominal[i].second.picture, *light[i].second.picture) << i;
+    EXPECT_NE(*nominal[i].second.picture, *dim[i].second.picture) << i;
+    EXPECT_EQ(*nominal[i].second.picture == *turned[i].second.picture, nominal[i].first == "front") << i;
   }
 }
 

@@ -13,8 +13,8 @@
 
 #include "flexura/kinematics/spatial.h"
 #include "flexura/servo/flow_features.h"
+#include "tests/support/observation_keeper.h"
 #include "tests/support/servo_bench.h"
-#include "tests/support/sight_keeper.h"
 
 namespace flexura {
 namespace {
@@ -32,12 +32,12 @@ struct FlowErrors {
 class FlowTrial {
  public:
   explicit FlowTrial(const std::string& sensor) : bench_(file(sensor)), keeper_(bench_) {
-    const RigModel model = bench_.believed();
+    const RigModel model = bench_.nominal();
     (void)servo_in_session(bench_.ports(), model, bench_.config(), keeper_);
     arm_ = bench_.experiment().arm.arm();
   }
 
-  [[nodiscard]] std::size_t count() const { return keeper_.sights.size(); }
+  [[nodiscard]] std::size_t count() const { return keeper_.observations.size(); }
 
   [[nodiscard]] FlowErrors errors(double anchor) {
     constexpr int points = 6;
@@ -47,7 +47,7 @@ class FlowTrial {
     double late = 0, all = 0, turns = 0;
     std::array<std::vector<double>, 2> measured_before;
     for (std::size_t n = 0; n < count(); ++n) {
-      features.look(keeper_.sights[n]);
+      features.look(keeper_.observations[n]);
       for (std::size_t i = 0; i < 2; ++i) {
         const auto& angles = features.angles()[i];
         const std::vector<double> truth = true_angles(n, i, points);
@@ -63,9 +63,10 @@ class FlowTrial {
             ++sums.unknown;
             continue;
           }
-          const double turn = turned_by(truth[k], before[i][k]), astray = turned_by(angles.turns[k], turn);
-          sums.turned += astray * astray, ++turns;
-          sums.most_turned = std::max(sums.most_turned, std::abs(astray));
+          const double turn = turned_by(truth[k], before[i][k]),
+                       turn_error = turned_by(angles.turns[k], turn);
+          sums.turned += turn_error * turn_error, ++turns;
+          sums.most_turned = std::max(sums.most_turned, std::abs(turn_error));
           sums.differed += std::pow(turned_by(turned_by(angles.measured[k], measured_before[i][k]), turn), 2);
         }
         before[i] = truth, measured_before[i] = angles.measured;
@@ -89,7 +90,7 @@ class FlowTrial {
         rig);
   }
   [[nodiscard]] std::vector<double> true_angles(std::size_t n, std::size_t camera, int points) {
-    const View view = bench_.rig().camera(camera).view(keeper_.sights[n].time);
+    const View view = bench_.rig().camera(camera).view(keeper_.observations[n].time);
     const ArmState& state = keeper_.truth[n];
     const Backbone backbone(arm_, state);
     std::vector<double> angles;
@@ -104,7 +105,7 @@ class FlowTrial {
   }
 
   ServoBench bench_;
-  SightKeeper keeper_;
+  ObservationKeeper keeper_;
   Arm arm_;
 };
 
@@ -137,7 +138,7 @@ TEST(FlowMeasure, DriftsWithoutAnAnchorAndStaysBoundedWithOne) {
 
 // The laws with chords must reach their shape with carried angles as well.
 TEST(FlowMeasure, BringsTheArmToAShape) {
-  const ArmState wanted = {{{0.8, 0.3}, {-0.7, 0.9}, {1.0, -0.6}}, {1, 1, 1}};
+  const ArmState desired = {{{0.8, 0.3}, {-0.7, 0.9}, {1.0, -0.6}}, {1, 1, 1}};
   for (const char* law : {"chords", "potential"}) {
     for (const char* measure : {"picture", "flow"}) {
       ServoBench bench(servo_file(
@@ -145,7 +146,7 @@ TEST(FlowMeasure, BringsTheArmToAShape) {
           servo_target));
       const ServoResult result = bench.servo();
       ASSERT_TRUE(result.is_done) << law << ", " << measure << ": " << result.reason;
-      const ServoError left = bench.truth(wanted);
+      const ServoError left = bench.truth(desired);
       std::printf("%s, %s: settled in %.2f s, %.4f %% of the length left\n", law, measure,
                   result.settled.value_or(-1), 100 * left.rms);
       EXPECT_LT(left.rms, 0.006);

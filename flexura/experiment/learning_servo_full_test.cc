@@ -11,7 +11,7 @@
 namespace flexura {
 namespace {
 
-const ArmState wanted = {{{0.8, 0.3}, {-0.7, 0.9}, {1.0, -0.6}}, {1, 1, 1}};
+const ArmState desired = {{{0.8, 0.3}, {-0.7, 0.9}, {1.0, -0.6}}, {1, 1, 1}};
 
 class LearningServo : public testing::TestWithParam<std::string> {};
 
@@ -49,8 +49,8 @@ TEST_P(LearningServo, SteersAnArmOfWhichTheModelIsWrong) {
     const ServoResult result = servo_of_turned_arm(bench);
     ASSERT_TRUE(result.is_done) << law << ": " << result.reason;
     std::printf("%s: settled in %.2f s, %.4f %% of the length left\n", law.c_str(),
-                result.settled.value_or(-1), 100 * bench.truth(wanted).rms);
-    EXPECT_LT(bench.truth(wanted).rms, 0.003);
+                result.settled.value_or(-1), 100 * bench.truth(desired).rms);
+    EXPECT_LT(bench.truth(desired).rms, 0.003);
     EXPECT_LT(*result.settled, 4);
   }
 }
@@ -61,7 +61,7 @@ INSTANTIATE_TEST_SUITE_P(Both, LearningServo, testing::Values("broyden", "recurs
 TEST(Servo, IsLostWithAModelThatIsWrong) {
   ServoBench bench(servo_file("timeout = 1\n" + servo_target));
   EXPECT_FALSE(servo_of_turned_arm(bench).is_done);
-  EXPECT_GT(bench.truth(wanted).rms, 0.05);
+  EXPECT_GT(bench.truth(desired).rms, 0.05);
 }
 
 }  // namespace

@@ -61,7 +61,7 @@ TEST_P(StoppedLoop, WhoseHeadDoesNotTurn) {
 TEST_P(StoppedLoop, WhoseArmMovesOn) {
   CalibrationBench bench(rig({}));
   RigPorts ports = bench.ports();
-  OddArm restless(*ports.arm, [](ArmReading reading) {
+  AlteredArm restless(*ports.arm, [](ArmReading reading) {
     reading.moving = true;
     return reading;
   });

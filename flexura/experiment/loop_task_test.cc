@@ -297,8 +297,8 @@ TEST(ArcsPaperLoop, StopsAtACircleWhereverItLooksAndSaysWhatThatIsWorth) {
 
 // Returns the error of a file, without its place.
 std::string problem_of(const std::string& text) {
-  const std::string told = error_of_file(text);
-  return told.substr(told.find(": ") + 2);
+  const std::string reported = error_of_file(text);
+  return reported.substr(reported.find(": ") + 2);
 }
 
 TEST(EtalonLoop, RefusesWhatItCannotDo) {

@@ -70,7 +70,7 @@ TEST(CameraCount, AtThePortsOfOneCameraNothingIsBegun) {
   ServoBench servo(servo_file(servo_target));
   RigPorts one = servo.ports();
   one.cameras.pop_back();
-  RigModel model = servo.believed();
+  RigModel model = servo.nominal();
   const ServoConfig config = servo.config();
   ServoNotes notes;
   EXPECT_THROW((void)servo_in_session(one, model, config, notes), std::invalid_argument);

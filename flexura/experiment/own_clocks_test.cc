@@ -24,13 +24,13 @@ std::vector<SensorConfig> sensors_of(const Experiment& experiment) {
 TEST(OwnClocks, AServoGoesAsByTheRigsClock) {
   ServoBench plain(servo_file(servo_target)), bench(servo_file(servo_target));
   OwnClocks clocks(bench.ports(), clocks_ahead, clocks_drift);
-  const ServoResult wanted = plain.servo(),
+  const ServoResult desired = plain.servo(),
                     result = bench.servo(clocks.mapped(sensors_of(bench.experiment())));
   ASSERT_TRUE(result.is_done) << result.reason;
   const ArmState target = std::get<ArmState>(bench.config().goals.back().shape);
   EXPECT_LT(bench.truth(target).rms, 0.006);
   EXPECT_NEAR(bench.truth(target).rms, plain.truth(target).rms, 5e-4);
-  EXPECT_NEAR(*result.settled, *wanted.settled, 0.1);
+  EXPECT_NEAR(*result.settled, *desired.settled, 0.1);
   EXPECT_EQ(result.missed_steps, 0);
   // A picture's time determines the arm's position: an error of it would be an error of the estimate in
   // motion.
@@ -58,11 +58,11 @@ TEST(OwnClocks, ACalibrationGoesAsByTheRigsClock) {
       wrong_cameras);
   CalibrationBench plain(file), bench(file);
   OwnClocks clocks(bench.ports(), clocks_ahead, clocks_drift);
-  const RigSessionResult wanted = plain.calibrate_bundle(plain.ports());
+  const RigSessionResult desired = plain.calibrate_bundle(plain.ports());
   const RigSessionResult result = bench.calibrate_bundle(clocks.mapped(sensors_of(bench.experiment())));
-  ASSERT_TRUE(wanted.is_done) << wanted.reason;
+  ASSERT_TRUE(desired.is_done) << desired.reason;
   ASSERT_TRUE(result.is_done) << result.reason;
-  EXPECT_EQ(result.looks, wanted.looks);
+  EXPECT_EQ(result.looks, desired.looks);
   EXPECT_LT(std::abs(bench.truth(result.target).angle), 0.01);
 }
 

@@ -29,21 +29,21 @@ class Aside : public Progress {
 
 }  // namespace
 
-Player::Player(const Experiment& experiment, Witness& witness, Progress& progress, RunWatcher* watcher,
-               const RigFactory& make_rig)
+Player::Player(const Experiment& experiment, RunRecorder& run_recorder, Progress& progress,
+               RunWatcher* watcher, const RigFactory& make_rig)
     : experiment_(experiment),
-      witness_(witness),
+      run_recorder_(run_recorder),
       whole_(progress),
       watcher_(watcher),
       tasks_(task_runners(experiment)),
       progress_(progress, experiment, tasks_),
       schedule_(scheduled()),
       safety_(judged()),
-      believed_{.model = rig_model(experiment.arm_model(), experiment.cameras())},
+      nominal_{.model = rig_model(experiment.arm_model(), experiment.cameras())},
       played_{0, 0, schedule_.initial(), false, ""} {
   for (const auto& task : tasks_)
-    if (task->way() == TaskWay::simulated) telling_.push_back(task.get());
-  const auto is_by_rig = [](const auto& task) { return task->way() == TaskWay::by_rig; };
+    if (task->motion_source() == TaskMotionSource::simulated) publishing_.push_back(task.get());
+  const auto is_by_rig = [](const auto& task) { return task->motion_source() == TaskMotionSource::by_rig; };
   // Only the rig gives the motion of an arm that differs from the model.
   const bool is_other = experiment.true_rig().arm.mechanics != ArmMechanics::kinematic ||
                         (experiment.truth && experiment.truth->arm);
@@ -71,14 +71,14 @@ SafetyReport Player::judged() {
 
 // Plans the events from that time on. Violations and starts of tasks at one time are in this order.
 void Player::plan(double from) {
-  witness_.expect(schedule_.steps());
+  run_recorder_.expect(schedule_.steps());
   events_.clear();
   for (const Leg& leg : schedule_.legs())
     events_.push_back({leg.start, Recorder::Level::info, leg.name, fmt::format("{} starts", leg.kind)});
   for (const Violation& violation : safety_.violations)
     events_.push_back({violation.start, Recorder::Level::error, "unsafe", violation.text()});
   for (const auto& [task, motion] : done_) {
-    if (tasks_[task]->way() != TaskWay::simulated) continue;
+    if (tasks_[task]->way() != TaskMotionSource::simulated) continue;
     const bool is_last = ended_by_ && ended_by_->task == task;
     events_.push_back({schedule_.legs()[task].end(), is_last ? Recorder::Level::error : Recorder::Level::info,
                        tasks_[task]->name(), is_last ? ended_by_->failure : "there"});
@@ -87,10 +87,10 @@ void Player::plan(double from) {
   std::ranges::stable_sort(events_, {}, &Event::time);
 }
 
-void Player::tell_up_to(double time) {
+void Player::publish_up_to(double time) {
   const auto end = std::ranges::upper_bound(events_, time, {}, &Event::time);
   std::for_each(events_.begin(), end, [this](const Event& event) {
-    witness_.log().event(event.time, event.level, event.name, event.text);
+    run_recorder_.log().event(event.time, event.level, event.name, event.text);
   });
   events_.erase(events_.begin(), end);
 }
@@ -104,20 +104,20 @@ Played Player::play() {
       if (!perform(*task)) break;
       continue;
     }
-    tell_up_to(time);
+    publish_up_to(time);
     if (ends_with_simulated(time)) break;
     const ArmState state = schedule_.state_at(time);
     if (!is_possible(state)) break;
     play_to(time, state);
     step(time, state);
-    tell_progress(time);
+    report_progress(time);
   }
-  if (played_.states == 0) witness_.state(0, 0, played_.last);
+  if (played_.states == 0) run_recorder_.state(0, 0, played_.last);
   return played_;
 }
 
 // Everything before the leg at `time` is done.
-void Player::tell_progress(double time) {
+void Player::report_progress(double time) {
   const std::size_t now = schedule_.leg_at(time);
   const Leg& leg = schedule_.legs()[now];
   for (; finished_ < now; ++finished_) {
@@ -136,7 +136,7 @@ void Player::play_to(double time, const ArmState& state) {
   if (!is_rig_played()) return;
   if (experiment_.record.cameras) {
     rig_->play_to(time, state, [this](const FilmedFrame& filmed) {
-      witness_.log().image(
+      run_recorder_.log().image(
           filmed.camera, filmed.frame,
           filmed.message.empty() ? logged_image(filmed.camera, filmed.frame) : filmed.message);
     });
@@ -147,22 +147,22 @@ void Player::play_to(double time, const ArmState& state) {
 
 void Player::step(double time, const ArmState& state) {
   if (step_ % static_cast<std::size_t>(experiment_.record.every) == 0 || step_ == schedule_.steps()) {
-    witness_.state(step_, time, state);
-    tell_tasks(time);
-    if (is_rig_played()) witness_.readings(*rig_);
+    run_recorder_.state(step_, time, state);
+    report_tasks(time);
+    if (is_rig_played()) run_recorder_.readings(*rig_);
   }
-  witness_.command(time, state);
-  tell_watcher(time, state);
+  run_recorder_.command(time, state);
+  notify_watcher(time, state);
   ++step_;
   played_ = {step_, time, state, false, ""};
 }
 
-void Player::tell_watcher(double time, const ArmState& state) {
+void Player::notify_watcher(double time, const ArmState& state) {
   if (watcher_ == nullptr) return;
   watcher_->state(time, state,
                   is_rig_played() ? camera_readings(rig_->ports(), optics_) : std::vector<CameraReading>());
   RigTruth* truth = is_rig_played() ? rig_->truth() : nullptr;
-  if (truth == nullptr || !watcher_->wants_truth()) return;
+  if (truth == nullptr || !watcher_->needs_truth()) return;
   // While a task waits for the rig, several clock steps have one time of the rig.
   const double now = rig_->ports().clock->now();
   watcher_->truth(time, {.backbone = truth->backbone(now),
@@ -173,8 +173,8 @@ void Player::tell_watcher(double time, const ArmState& state) {
                          .contacts = contact_messages(truth->contacts(now))});
 }
 
-void Player::tell_tasks(double time) {
-  for (TaskRunner* task : telling_) task->tell_up_to(time, witness_.log());
+void Player::report_tasks(double time) {
+  for (TaskRunner* task : publishing_) task->publish_up_to(time, run_recorder_.log());
 }
 
 // Returns true if the simulated task that ends the run is over.
@@ -190,17 +190,17 @@ bool Player::ends_with_simulated(double time) {
 // Ends the run with the state at the task's end, which belongs to no step.
 void Player::stop_after(const Leg& leg, const std::string& failure) {
   played_ = {step_, leg.end(), leg.motion->at(leg.motion->duration()), whole_.is_cancelled(), failure};
-  witness_.expect(step_);
-  witness_.state(step_, leg.end(), played_.last);
-  tell_tasks(leg.end());
-  if (is_rig_played()) witness_.readings(*rig_);
+  run_recorder_.expect(step_);
+  run_recorder_.state(step_, leg.end(), played_.last);
+  report_tasks(leg.end());
+  if (is_rig_played()) run_recorder_.readings(*rig_);
 }
 
 // Returns the task for the rig that begins at `time` or before, if it is not done and permitted.
 std::optional<std::size_t> Player::rig_task_due(double time) const {
   if (!rig_ || !safety_.is_safe()) return std::nullopt;
   for (std::size_t i = 0; i < tasks_.size(); ++i) {
-    if (tasks_[i]->way() != TaskWay::by_rig || done_.contains(i)) continue;
+    if (tasks_[i]->way() != TaskMotionSource::by_rig || done_.contains(i)) continue;
     return schedule_.legs()[i].start <= time ? std::optional(i) : std::nullopt;
   }
   return std::nullopt;
@@ -209,7 +209,7 @@ std::optional<std::size_t> Player::rig_task_due(double time) const {
 // Returns true if the run continues after it.
 bool Player::perform(std::size_t task) {
   const Leg leg = schedule_.legs()[task];
-  tell_up_to(leg.start);
+  publish_up_to(leg.start);
   const ArmState from = leg.motion->at(0);
   play_to(leg.start, from);
   const RecordSteps record_steps = [this](double until, const std::function<ArmState(double)>& state_at) {
@@ -220,13 +220,13 @@ bool Player::perform(std::size_t task) {
   };
   TaskStage stage{
       .rig = *rig_,
-      .believed = believed_,
-      .log = witness_.log(),
+      .nominal = nominal_,
+      .log = run_recorder_.log(),
       .progress = progress_.task(task),
       .record_steps = record_steps,
-      .motors_after = [this](std::span<const ArmState> way) { return witness_.motors_after(way); }};
+      .motors_after = [this](std::span<const ArmState> way) { return run_recorder_.motors_after(way); }};
   const TaskEnd end = tasks_[task]->perform(from, stage);
-  witness_.log().task_ended();
+  run_recorder_.log().task_ended();
   done_[task] = end.motion;
   progress_.task(task).update(1, leg.name);
   schedule_ = !end.failure ? scheduled() : Schedule(experiment_, tasks_, done_);

@@ -8,8 +8,8 @@
 
 #include "flexura/base/progress.h"
 #include "flexura/experiment/run_progress.h"
+#include "flexura/experiment/run_recorder.h"
 #include "flexura/experiment/schedule.h"
-#include "flexura/experiment/witness.h"
 #include "flexura/log/run_watcher.h"
 #include "flexura/rig/rig.h"
 #include "flexura/safety/violation.h"
@@ -32,7 +32,7 @@ class Player {
   /// A rig does nothing unsafe: its tasks are then only stepped through, and only a simulated rig moves.
   /// `make_rig` is called if cameras are recorded, a task needs a rig, or the true arm differs from the
   /// model.
-  Player(const Experiment& experiment, Witness& witness, Progress& progress, RunWatcher* watcher,
+  Player(const Experiment& experiment, RunRecorder& run_recorder, Progress& progress, RunWatcher* watcher,
          const RigFactory& make_rig);
 
   [[nodiscard]] const Schedule& schedule() const { return schedule_; }
@@ -54,28 +54,28 @@ class Player {
     std::string name, text;
   };
   [[nodiscard]] Schedule scheduled();
-  void tell_progress(double time);
+  void report_progress(double time);
   [[nodiscard]] SafetyReport judged();
   void plan(double from);
-  void tell_up_to(double time);
+  void publish_up_to(double time);
   void step(double time, const ArmState& state);
   [[nodiscard]] bool is_rig_played() const;
   void play_to(double time, const ArmState& state);
-  void tell_watcher(double time, const ArmState& state);
-  void tell_tasks(double time);
+  void notify_watcher(double time, const ArmState& state);
+  void report_tasks(double time);
   [[nodiscard]] bool ends_with_simulated(double time);
   void stop_after(const Leg& leg, const std::string& failure);
   [[nodiscard]] std::optional<std::size_t> rig_task_due(double time) const;
   [[nodiscard]] bool perform(std::size_t task);
 
   const Experiment& experiment_;
-  Witness& witness_;
+  RunRecorder& run_recorder_;
   Progress& whole_;
   RunWatcher* watcher_;
   TaskRunners tasks_;
   RunProgress progress_;
-  std::size_t finished_ = 0;          // Tasks whose progress is complete.
-  std::vector<TaskRunner*> telling_;  // Those of tasks_ that log during the run.
+  std::size_t finished_ = 0;             // Tasks whose progress is complete.
+  std::vector<TaskRunner*> publishing_;  // Those of tasks_ that log during the run.
   DoneTasks done_;
   std::optional<EndedBy> ended_by_;  // A simulated task.
   Schedule schedule_;
@@ -83,7 +83,7 @@ class Player {
   std::unique_ptr<Rig> rig_;    // Null if no rig plays.
   std::vector<Camera> optics_;  // Camera models.
   std::vector<Event> events_;   // Pending, in the order of time.
-  BelievedRig believed_;
+  NominalRig nominal_;
   std::size_t step_ = 0;  // Next step.
   Played played_;
 };

@@ -12,11 +12,11 @@ namespace {
 ReportData::Safety shown_safety(const SafetyReport& safety) {
   ReportData::Safety shown;
   for (const Violation& violation : safety.violations) {
-    auto& told = shown.violations.emplace_back();
-    told.start = violation.start, told.end = violation.end, told.text = violation.text();
-    told.target = violation.target;
+    auto& reported = shown.violations.emplace_back();
+    reported.start = violation.start, reported.end = violation.end, reported.text = violation.text();
+    reported.target = violation.target;
     for (const auto& section : {violation.section, violation.other_section})
-      if (section) told.sections.push_back(*section);
+      if (section) reported.sections.push_back(*section);
   }
   for (const ViolationGroup& group : grouped(safety))
     shown.lines.push_back({safety.violations[group.members.front()].start, text_of(safety, group)});
@@ -43,7 +43,7 @@ void add_safety(const SafetyReport& safety, const Schedule& schedule, ReportData
   SafetyReport worst;  // One of each group: repeated violations look alike.
   for (const ViolationGroup& group : grouped(safety))
     worst.violations.push_back(safety.violations[group.worst]);
-  for (const std::size_t i : most_telling(worst, max_pictured_violations)) {
+  for (const std::size_t i : most_relevant(worst, max_pictured_violations)) {
     const double when = worst.violations[i].worst_time;
     // Other violations with their worst value at that time are in the same picture.
     for (std::size_t k = 0; k < safety.violations.size(); ++k) {

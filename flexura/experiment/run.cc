@@ -15,9 +15,9 @@
 #include "flexura/camera/camera.h"
 #include "flexura/experiment/player.h"
 #include "flexura/experiment/run_outcomes.h"
+#include "flexura/experiment/run_recorder.h"
 #include "flexura/experiment/safety_nodes.h"
 #include "flexura/experiment/schedule.h"
-#include "flexura/experiment/witness.h"
 #include "flexura/log/messages.h"
 #include "flexura/log/recorder.h"
 #include "flexura/log/results.h"
@@ -155,23 +155,23 @@ RunResult run_experiment(const Experiment& as_read, const std::filesystem::path&
   const ArmModel arm = experiment.arm_model();
   RunResult result;
   result.folder = folder;
-  Witness witness(folder, arm, watcher);
-  if (experiment.drive) witness.name_axes(experiment.drive->drive());
-  if (experiment.record.scene) witness.draw_scene(experiment);
-  Player player(experiment, witness, progress, watcher, make_rig);
+  RunRecorder run_recorder(folder, arm, watcher);
+  if (experiment.drive) run_recorder.name_axes(experiment.drive->drive());
+  if (experiment.record.scene) run_recorder.draw_scene(experiment);
+  Player player(experiment, run_recorder, progress, watcher, make_rig);
   result.reasons = violation_lines(player.safety());
   const bool is_safe = player.safety().is_safe();
   if (!is_safe) result.outcome = RunOutcome::unsafe;
   // No motor commands for harmful motions: an unsafe motion is only simulated.
   if (experiment.drive && is_safe)
-    witness.write_commands(experiment.drive->drive(), folder / commands_file_name);
+    run_recorder.write_commands(experiment.drive->drive(), folder / commands_file_name);
   const Played played = player.play();
   // A task that decides its motion during the run may differ from the first check.
   const bool became_unsafe = is_safe && !player.safety().is_safe() && !has_failed(played);
   if (became_unsafe) result.outcome = RunOutcome::unsafe, result.reasons = violation_lines(player.safety());
   conclude(played, result);
-  witness.log().event(played.time, Recorder::Level::info, "run", name_of(result.outcome));
-  witness.close();
+  run_recorder.log().event(played.time, Recorder::Level::info, "run", name_of(result.outcome));
+  run_recorder.close();
   if (became_unsafe) std::filesystem::remove(folder / commands_file_name);
 
   for (std::size_t i = 0; i < player.tasks().size(); ++i) {
@@ -179,17 +179,17 @@ RunResult run_experiment(const Experiment& as_read, const std::filesystem::path&
     task.finish(folder, played.is_cancelled, player.progress().results(i));
     player.progress().results(i).update(1, task.name());
   }
-  result.outcomes = run_outcomes(player, played, witness.true_tip_off(), witness.log().frames());
+  result.outcomes = run_outcomes(player, played, run_recorder.true_tip_off(), run_recorder.log().frames());
   result.headline = headline_of(result.outcome, played.time, result.outcomes);
   result.summary = summary_of(experiment, arm, player, played, result);
   auto& summary = *result.summary.as<Node::Table>();
   if (experiment.record.cameras || !experiment.camera.empty())
-    summary.push_back({"cameras", {}, camera_nodes(experiment.cameras(), witness.log().frames())});
+    summary.push_back({"cameras", {}, camera_nodes(experiment.cameras(), run_recorder.log().frames())});
   add_results(experiment, player.tasks(), summary);
   write_new_file(folder / summary_file_name, write_json(result.summary, 2) + "\n");
   if (experiment.record.report && !played.is_cancelled) {
     player.progress().report().update(0, "writing the report");
-    ReportData data = std::move(witness).report_data(experiment, player.schedule(), player.safety());
+    ReportData data = std::move(run_recorder).report_data(experiment, player.schedule(), player.safety());
     data.headline = result.headline;
     for (const TaskOutcome& outcome : result.outcomes)
       data.outcomes.push_back({outcome.task, outcome.text, outcome.is_reached});

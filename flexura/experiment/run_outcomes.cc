@@ -16,7 +16,7 @@ constexpr double same_instant = 1e-9;  // In s.
 TaskOutcome outcome_of(const TaskRunner& task, const Leg& leg, const Played& played, bool is_whole) {
   TaskOutcome outcome = task.outcome(*leg.motion);
   outcome.kind = leg.kind;
-  if (is_whole || task.way() != TaskWay::known || leg.motion->duration() == 0) return outcome;
+  if (is_whole || task.way() != TaskMotionSource::known || leg.motion->duration() == 0) return outcome;
   const double played_of_it = played.time - leg.start;
   if (played_of_it <= same_instant)
     return not_begun(outcome.task, outcome.kind, outcome.noun, outcome.success);
@@ -37,7 +37,7 @@ std::vector<TaskOutcome> run_outcomes(const Player& player, const Played& played
   bool is_measured = false;
   for (std::size_t i = 0; i < player.tasks().size(); ++i) {
     outcomes.push_back(outcome_of(*player.tasks()[i], schedule.legs()[i], played, is_whole));
-    is_measured = is_measured || player.tasks()[i]->way() == TaskWay::by_rig;
+    is_measured = is_measured || player.tasks()[i]->motion_source() == TaskMotionSource::by_rig;
   }
   constexpr double shows = 1e-6;  // In m.
   if (true_tip_off && *true_tip_off > shows && !is_measured)

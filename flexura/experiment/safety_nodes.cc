@@ -55,7 +55,7 @@ Node group_node(const SafetyReport& report, const ViolationGroup& group) {
 }  // namespace
 
 Node safety_node(const SafetyReport& report) {
-  const std::vector<ViolationGroup> kept = most_telling(report, grouped(report), max_violation_lines);
+  const std::vector<ViolationGroup> kept = most_relevant(report, grouped(report), max_violation_lines);
   Node::Array groups;
   for (const ViolationGroup& group : kept) groups.push_back(group_node(report, group));
   Node::Array violations;

@@ -37,9 +37,9 @@ TEST(RunsLog, OpensElsewhereUnderFoxglovesNames) {
   std::string output;
   for (int c = std::fgetc(pipe); c != EOF; c = std::fgetc(pipe)) output += static_cast<char>(c);
   ASSERT_EQ(::pclose(pipe), 0);
-  const Node told = parse_json(output, "read_mcap.mjs");
+  const Node reported = parse_json(output, "read_mcap.mjs");
   std::map<std::string, std::string> schemas;
-  for (const Node& channel : *told.find("indexed")->find("channels")->as<Node::Array>()) {
+  for (const Node& channel : *reported.find("indexed")->find("channels")->as<Node::Array>()) {
     EXPECT_GT(*channel.find("count")->as<std::int64_t>(), 0);
     EXPECT_EQ(*channel.find("schemaEncoding")->as<std::string>(), "jsonschema");
     schemas[*channel.find("topic")->as<std::string>()] = *channel.find("schema")->as<std::string>();

@@ -38,7 +38,7 @@ Schedule::Schedule(const Experiment& experiment, const TaskRunners& tasks, const
                      .start = duration_,
                      .motion = plan.motion,
                      .is_steered = plan.is_steered,
-                     .is_foreseen = plan.is_foreseen});
+                     .is_planned = plan.is_planned});
     duration_ += plan.motion->duration();
     for (const MissedTarget& missed : plan.missed) add_missed(missed);
   }
@@ -104,7 +104,7 @@ SafetyReport Schedule::check(Progress* progress) const {
     for (std::size_t step = 0; step <= steps_; ++step) times.push_back(time_of_step(step));
     std::vector<SteeredSpan> steered;
     for (const Leg& leg : legs_)
-      if (leg.is_steered) steered.push_back({leg.start, leg.end(), leg.is_foreseen});
+      if (leg.is_steered) steered.push_back({leg.start, leg.end(), leg.is_planned});
     check_drive(
         model_.driven(), *drive_, [this](double time) { return state_at(time); }, times,
         [this](double start, double end) { return rates(start, end); }, report, steered);
@@ -117,8 +117,8 @@ std::optional<EndedBy> simulate_tasks(const Experiment& experiment, const TaskRu
                                       const std::function<Progress&(std::size_t task)>& progress_of) {
   for (std::size_t i = 0; i < tasks.size(); ++i) {
     if (done.contains(i)) continue;
-    if (tasks[i]->way() == TaskWay::by_rig) return std::nullopt;
-    if (tasks[i]->way() == TaskWay::known) continue;
+    if (tasks[i]->motion_source() == TaskMotionSource::by_rig) return std::nullopt;
+    if (tasks[i]->motion_source() == TaskMotionSource::known) continue;
     const Leg leg = Schedule(experiment, tasks, done).legs()[i];
     const ArmState from = leg.motion->at(0);
     if (!is_possible(from)) return std::nullopt;  // The run ends before.

@@ -29,7 +29,7 @@ struct Leg {
   double start = 0;         ///< In s.
   MotionPtr motion;         ///< Never null; its times count from `start`.
   bool is_steered = false;  ///< By cameras: a limiter decides the commands during the run.
-  bool is_foreseen = true;  ///< The motion is known before the run; a servo's only afterwards.
+  bool is_planned = true;   ///< The motion is known before the run; a servo's only afterwards.
 
   [[nodiscard]] double end() const { return start + motion->duration(); }  ///< In s.
 };
@@ -38,8 +38,8 @@ using TaskRunners = std::vector<std::unique_ptr<TaskRunner>>;
 /// Returns the runners of an experiment's tasks, in their order. The experiment must outlive them.
 [[nodiscard]] TaskRunners task_runners(const Experiment& experiment);
 
-/// Motions of completed tasks that are decided during the run or simulated before (TaskWay), by their
-/// numbers.
+/// Motions of completed tasks that are decided during the run or simulated before (TaskMotionSource), by
+/// their numbers.
 using DoneTasks = std::map<std::size_t, MotionPtr>;
 
 /// Planned motion of an experiment: the arm's state at every time, known before anything moves.

@@ -10,9 +10,9 @@
 
 #include "flexura/control/contour_images.h"
 #include "flexura/servo/measured_places.h"
+#include "tests/support/observation_keeper.h"
 #include "tests/support/random_cases.h"
 #include "tests/support/servo_bench.h"
-#include "tests/support/sight_keeper.h"
 
 namespace flexura {
 namespace {
@@ -22,18 +22,18 @@ TEST(MeasuredEdges, AreTheTrueContours) {
   ServoSetup rig;
   rig.sensor = "read_noise = 1, delay = 0, exposure = 0";
   ServoBench bench(servo_file("camera_prior = { rotation_std = 0, focal_std = 0 }\n" + servo_target, rig));
-  SightKeeper keeper(bench);
-  const RigModel model = bench.believed();
+  ObservationKeeper keeper(bench);
+  const RigModel model = bench.nominal();
   (void)servo_in_session(bench.ports(), model, bench.config(), keeper);
   ContourImages contours(bench.experiment().arm.arm(), {0.1, 0.3, 0.5, 0.7, 0.9});
   double squares = 0;
   int places = 0, moved = 0;
-  for (std::size_t n = 0; n < keeper.sights.size(); ++n) {
+  for (std::size_t n = 0; n < keeper.observations.size(); ++n) {
     contours.set(keeper.truth[n]);
     for (std::size_t i = 0; i < 2; ++i) {
-      const Sighting& seen = keeper.sights[n].seen[i];
+      const Observation& seen = keeper.observations[n].seen[i];
       ContourImage truth;
-      ASSERT_TRUE(contours.see(bench.rig().camera(i).view(keeper.sights[n].time), truth));
+      ASSERT_TRUE(contours.see(bench.rig().camera(i).view(keeper.observations[n].time), truth));
       Eigen::Matrix2Xd pixels(2, contours.count());
       measured_edges(truth, seen, pixels);
       for (Eigen::Index k = 0; k < contours.count(); ++k) {
@@ -61,7 +61,7 @@ TEST(Servo, ComesBySilhouettesFromWhereverItComesByPoints) {
       ServoConfig config = bench.config();
       config.law = law, config.goals = {{0, target}};
       ServoNotes notes;
-      const RigModel model = bench.believed();
+      const RigModel model = bench.nominal();
       const ServoResult result = servo_in_session(bench.ports(), model, config, notes);
       const double left = bench.truth(target).rms;
       const bool is_edges = law == ServoLawKind::silhouettes;

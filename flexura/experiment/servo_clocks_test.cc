@@ -17,20 +17,20 @@ namespace {
 using Shown = std::function<double(double now)>;
 
 // Returns a function that replaces the time of readings by `shown` from 0.4 s on.
-auto odd_clock(const Shown& shown) {
-  return [shown](auto said) {
-    if (said.time >= 0.4) said.time = shown(said.time);
-    return said;
+auto altered_clock(const Shown& shown) {
+  return [shown](auto reading) {
+    if (reading.time >= 0.4) reading.time = shown(reading.time);
+    return reading;
   };
 }
 
-struct OddClock {
+struct AlteredClock {
   Shown shown;
   const char* reason;  // For the arm and for heads.
 };
 
-const std::vector<OddClock>& odd_clocks() {
-  static const std::vector<OddClock> list = {
+const std::vector<AlteredClock>& altered_clocks() {
+  static const std::vector<AlteredClock> list = {
       {[](double now) { return now + 1000; }, " tells of a time that is 1000 s from now"},
       {[](double now) { return now - 1000; }, " tells of nothing since 1000 s ago"},
       {[](double) { return 0.4; }, " tells of nothing since 0.3"},
@@ -53,10 +53,10 @@ void expect_stopped(ServoBench& bench, const ServoResult& result, const ServoNot
 }
 
 TEST(ServoClocks, AnArmWhoseClockIsOddIsStopped) {
-  for (const OddClock& odd : odd_clocks()) {
+  for (const AlteredClock& odd : altered_clocks()) {
     ServoBench bench(servo_file(servo_target));
     RigPorts ports = bench.ports();
-    OddArm arm(*ports.arm, odd_clock(odd.shown));
+    AlteredArm arm(*ports.arm, altered_clock(odd.shown));
     ports.arm = &arm;
     ServoNotes notes;
     const ServoResult result = bench.servo(ports, notes);
@@ -65,10 +65,10 @@ TEST(ServoClocks, AnArmWhoseClockIsOddIsStopped) {
 }
 
 TEST(ServoClocks, AHeadWhoseClockIsOddStopsTheArm) {
-  for (const OddClock& odd : odd_clocks()) {
+  for (const AlteredClock& odd : altered_clocks()) {
     ServoBench bench(servo_file(servo_target));
     RigPorts ports = bench.ports();
-    OddHead head(*ports.cameras[1].head, odd_clock(odd.shown));
+    AlteredHead head(*ports.cameras[1].head, altered_clock(odd.shown));
     ports.cameras[1].head = &head;
     ServoNotes notes;
     const ServoResult result = bench.servo(ports, notes);
@@ -84,7 +84,7 @@ TEST(ServoClocks, AnArmThatBeginsInAnotherTimeIsNotMoved) {
     ServoBench bench(servo_file(servo_target));
     bench.rig().clock().wait_until(1);
     RigPorts ports = bench.ports();
-    OddArm arm(*ports.arm, odd_clock([off](double now) { return now + off; }));
+    AlteredArm arm(*ports.arm, altered_clock([off](double now) { return now + off; }));
     ports.arm = &arm;
     ServoNotes notes;
     EXPECT_NE(bench.servo(ports, notes).reason.find("1000 s"), std::string::npos);
@@ -99,9 +99,9 @@ TEST(ServoClocks, ReadingsThatAreRepeatedDoNoHarm) {
   for (const Shown& shown : harmless) {
     ServoBench bench(servo_file(servo_target));
     RigPorts ports = bench.ports();
-    OddArm arm(*ports.arm, odd_clock(shown));
+    AlteredArm arm(*ports.arm, altered_clock(shown));
     ports.arm = &arm;
-    OddHead head(*ports.cameras[0].head, odd_clock(shown));
+    AlteredHead head(*ports.cameras[0].head, altered_clock(shown));
     ports.cameras[0].head = &head;
     ServoNotes notes;
     const ServoResult result = bench.servo(ports, notes);
@@ -119,7 +119,7 @@ TEST(ServoClocks, ACameraWhoseClockIsOddIsNotBelieved) {
   for (const auto& [shown, reason] : cases) {
     ServoBench bench(servo_file(servo_target));
     RigPorts ports = bench.ports();
-    OddCamera camera(*ports.cameras[1].camera, odd_clock(shown));
+    AlteredCamera camera(*ports.cameras[1].camera, altered_clock(shown));
     ports.cameras[1].camera = &camera;
     ServoNotes notes;
     const ServoResult result = bench.servo(ports, notes);
@@ -133,17 +133,17 @@ TEST(ServoClocks, ACameraWhoseClockIsOddIsNotBelieved) {
 
 // For a moment: later pictures must be used again.
 TEST(ServoClocks, ACameraWhoseClockWasOddIsBelievedAgain) {
-  for (const auto& [off, said] : {std::pair{1000.0, " a time that is "},
-                                  std::pair{std::numeric_limits<double>::quiet_NaN(), " no time"}}) {
+  for (const auto& [off, reading] : {std::pair{1000.0, " a time that is "},
+                                     std::pair{std::numeric_limits<double>::quiet_NaN(), " no time"}}) {
     ServoBench bench(servo_file(servo_target));
     RigPorts ports = bench.ports();
-    OddCamera camera(*ports.cameras[1].camera,
-                     odd_clock([off = off](double now) { return now < 0.7 ? now + off : now; }));
+    AlteredCamera camera(*ports.cameras[1].camera,
+                         altered_clock([off = off](double now) { return now < 0.7 ? now + off : now; }));
     ports.cameras[1].camera = &camera;
     ServoNotes notes;
     const ServoResult result = bench.servo(ports, notes);
     EXPECT_TRUE(result.is_done) << result.reason;
-    EXPECT_TRUE(notes.has(std::string("camera side: its picture tells of") + said));
+    EXPECT_TRUE(notes.has(std::string("camera side: its picture tells of") + reading));
     EXPECT_TRUE(notes.has("the arm is seen again"));
     EXPECT_EQ(result.missed_steps, 0);
     for (const ServoStep& step : result.steps)

@@ -20,10 +20,10 @@ namespace flexura {
 namespace {
 
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
-const ArmState servo_wish = {{{0.8, 0.3}, {-0.7, 0.9}, {1.0, -0.6}}, {1, 1, 1}};
+const ArmState servo_goal_state = {{{0.8, 0.3}, {-0.7, 0.9}, {1.0, -0.6}}, {1, 1, 1}};
 
 // A head whose tilt is not a number from a time on.
-OddHead::Said lost_from(double from) {
+AlteredHead::ChangeReading lost_from(double from) {
   return [from](HeadReading reading) {
     if (reading.time >= from) reading.state.tilt = none;
     return reading;
@@ -92,7 +92,7 @@ class TimelessCamera : public CameraPort {
 TEST(ServoFaults, AHeadThatTellsNoNumberStopsTheArm) {
   ServoBench bench(servo_file(servo_target));
   RigPorts ports = bench.ports();
-  OddHead lost(*ports.cameras[1].head, lost_from(0.4));
+  AlteredHead lost(*ports.cameras[1].head, lost_from(0.4));
   ports.cameras[1].head = &lost;
   ServoNotes notes;
   const ServoResult result = bench.servo(ports, notes);
@@ -106,7 +106,7 @@ TEST(ServoFaults, AHeadThatTellsNoNumberStopsTheArm) {
   for (const auto& [time, state] : notes.sent)
     for (const Eigen::Vector2d& bend : state.bends) EXPECT_TRUE(bend.allFinite()) << "at " << time;
   // From the start: no commands at all.
-  OddHead never(*bench.ports().cameras[0].head, lost_from(0));
+  AlteredHead never(*bench.ports().cameras[0].head, lost_from(0));
   ports = bench.ports();
   ports.cameras[0].head = &never;
   ServoNotes silent;
@@ -124,7 +124,7 @@ TEST(ServoFaults, StepsThatArePassedAreLeftOut) {
   ServoNotes notes;
   const ServoResult result = bench.servo(ports, notes);
   ASSERT_TRUE(result.is_done) << result.reason;
-  EXPECT_LT(bench.truth(servo_wish).rms, 0.006);
+  EXPECT_LT(bench.truth(servo_goal_state).rms, 0.006);
   const double step = 1.0 / 30;
   long missed = 0;
   for (std::size_t i = 1; i < result.steps.size(); ++i) {
@@ -151,7 +151,7 @@ TEST(ServoFaults, PicturesInTheWrongOrderAreRefused) {
   RecordedViews views;
   for (std::size_t i = 0; i < 2; ++i) views[i] = *other.ports().cameras[i].camera->wait(1).value()->picture;
   ServoConfig config = bench.config();
-  const RigModel model = bench.believed();
+  const RigModel model = bench.nominal();
   config.goals = {{0, RecordedViews{views[1], views[0]}}};
   ServoNotes notes;
   const ServoResult refused = servo_in_session(bench.ports(), model, config, notes);
@@ -162,7 +162,7 @@ TEST(ServoFaults, PicturesInTheWrongOrderAreRefused) {
   config.goals = {{0, views}};
   const ServoResult result = servo_in_session(bench.ports(), model, config, notes);
   ASSERT_TRUE(result.is_done) << result.reason;
-  EXPECT_LT(bench.truth(servo_wish).rms, 0.006);
+  EXPECT_LT(bench.truth(servo_goal_state).rms, 0.006);
 }
 
 // Pictures without a shape must give a reason.
@@ -176,7 +176,7 @@ TEST(ServoFaults, PicturesOfTwoShapesAreRefusedWithAReason) {
   }
   ServoConfig config = bench.config();
   config.goals = {{0, views}};
-  const RigModel model = bench.believed();
+  const RigModel model = bench.nominal();
   ServoNotes notes;
   const ServoResult result = servo_in_session(bench.ports(), model, config, notes);
   EXPECT_FALSE(result.is_done);
@@ -209,9 +209,9 @@ TEST(ServoFaults, BandsCountAndOneThatIsLostDoesNoHarm) {
      public:
       std::vector<double> middles;
       std::set<std::size_t> gone_by;  // Numbers of the bands that shapes were fitted to.
-      void seen(const ServoSight& sight) override {
+      void seen(const ServoObservation& observed) override {
         const auto distance = [](double s) { return [s](double middle) { return std::abs(middle - s); }; };
-        for (const PlacedMarker& marker : sight.estimate.markers)
+        for (const PlacedMarker& marker : observed.estimate.markers)
           gone_by.insert(static_cast<std::size_t>(std::ranges::min_element(middles, {}, distance(marker.s)) -
                                                   middles.begin()));
       }
@@ -220,8 +220,8 @@ TEST(ServoFaults, BandsCountAndOneThatIsLostDoesNoHarm) {
     const ServoResult result = bench.servo(bench.ports(), notes);
     ASSERT_TRUE(result.is_done) << result.reason;
     std::printf("%zu bands were gone by, %.4f %% of the length left\n", notes.gone_by.size(),
-                100 * bench.truth(servo_wish).rms);
-    EXPECT_LT(bench.truth(servo_wish).rms, 0.006);
+                100 * bench.truth(servo_goal_state).rms);
+    EXPECT_LT(bench.truth(servo_goal_state).rms, 0.006);
     EXPECT_LT(*result.settled, 2);
     // The missing band must not be confused with another one.
     EXPECT_EQ(notes.gone_by.contains(4), !is_one_lost);
@@ -291,7 +291,7 @@ TEST(ServoFaults, AWatcherThatFailsLeavesTheArmAtRestAndIsTheReason) {
       if (step.time < 0.5) return;
       throw std::runtime_error(++failures == 1 ? "cannot write the log: no space" : "the log is closed");
     }
-    void told(double, const std::string&) override {
+    void reported(double, const std::string&) override {
       if (failures > 0) throw std::runtime_error("the log is closed");
     }
   };
@@ -334,7 +334,7 @@ TEST(ServoFaults, PicturesOfNoTimeAreNoPictures) {
   ASSERT_TRUE(result.is_done) << result.reason;
   EXPECT_TRUE(notes.has("camera side: its picture tells of no time"));
   EXPECT_TRUE(notes.has("the arm is seen again"));
-  EXPECT_LT(bench.truth(servo_wish).rms, 0.006);
+  EXPECT_LT(bench.truth(servo_goal_state).rms, 0.006);
   for (const ServoStep& step : result.steps) {
     if (!step.seen_at) continue;
     EXPECT_TRUE(std::isfinite(*step.seen_at));

@@ -14,13 +14,13 @@ namespace {
 class StretchingArm : public testing::TestWithParam<std::string> {};
 
 TEST_P(StretchingArm, ComesToAShapeOfOtherLengths) {
-  for (const bool are_lengths_told : {false, true}) {
+  for (const bool are_lengths_given : {false, true}) {
     ServoSetup rig;
     rig.arm += "\nstretch_limits = [0.8, 1.3]\nmax_stretch_rate = 0.5";
     const std::string task = fmt::format(
         "law = \"{}\"\ntolerance = 0.003\nsettle = 0.5\n[[task.target]]\nbends = [[0.8, 0.3], [-0.7, 0.9], "
         "[1.0, -0.6]]\n{}",
-        GetParam(), are_lengths_told ? "stretches = [1.2, 0.9, 1.1]\n" : "");
+        GetParam(), are_lengths_given ? "stretches = [1.2, 0.9, 1.1]\n" : "");
     ServoBench bench(servo_file(task, rig));
     const ServoResult result = bench.servo();
     ASSERT_TRUE(result.is_done) << result.reason;
@@ -52,7 +52,7 @@ TEST(StretchingArm, SaysWhichSectionIsStretchedAsFarAsItGoes) {
     state.stretches[1] = 1 + share * (state.stretches[1] - 1);
     return state;
   };
-  OddArm lazy(
+  AlteredArm lazy(
       *ports.arm,
       [&](ArmReading reading) {
         reading.state = with_share(reading.state, 2);

@@ -49,28 +49,28 @@ TEST(ServoLog, HasWhatHeadsAndStretchesWereSentTo) {
 }
 
 // Returns the mean distance, px, of the pixels that the law compares from their targets.
-double to_go(const ServoSightingMessage& sighting) {
+double to_go(const ServoObservationMessage& observation) {
   double sum = 0;
-  for (const FeatureMarkMessage& mark : *sighting.features)
+  for (const FeatureMarkMessage& mark : *observation.features)
     sum += (Eigen::Vector2d(mark.seen.at(0)[0], mark.seen.at(0)[1]) -
-            Eigen::Vector2d(mark.wanted.at(0)[0], mark.wanted.at(0)[1]))
+            Eigen::Vector2d(mark.desired.at(0)[0], mark.desired.at(0)[1]))
                .norm();
-  return sum / static_cast<double>(sighting.features->size());
+  return sum / static_cast<double>(observation.features->size());
 }
 
 TEST(ServoLog, HasWhatTheLawCompares) {
   Runs runs;
   const RunResult result = runs.run(servo_file("law = \"points\"\npoints = 9\n" + servo_target));
   EXPECT_EQ(result.outcome, RunOutcome::done);
-  const auto sightings = logged<ServoSightingMessage>(result, servo_sightings_topic);
-  ASSERT_GT(sightings.size(), 40u);
-  for (const ServoSightingMessage& sighting : sightings) {
-    ASSERT_TRUE(sighting.features);
-    EXPECT_EQ(sighting.features->size(), 9u);
+  const auto observations = logged<ServoObservationMessage>(result, servo_observations_topic);
+  ASSERT_GT(observations.size(), 40u);
+  for (const ServoObservationMessage& observation : observations) {
+    ASSERT_TRUE(observation.features);
+    EXPECT_EQ(observation.features->size(), 9u);
   }
   EXPECT_TRUE(std::filesystem::exists(result.folder / "figures" / "servo-1-errors.svg"));
-  EXPECT_GT(to_go(sightings.front()), 15);
-  EXPECT_LT(to_go(sightings.back()), 0.5);
+  EXPECT_GT(to_go(observations.front()), 15);
+  EXPECT_LT(to_go(observations.back()), 0.5);
 }
 
 // Four pixels cannot determine six bends.

@@ -12,7 +12,7 @@
 namespace flexura {
 namespace {
 
-const ArmState wanted = {{{0.8, 0.3}, {-0.7, 0.9}, {1.0, -0.6}}, {1, 1, 1}};
+const ArmState desired = {{{0.8, 0.3}, {-0.7, 0.9}, {1.0, -0.6}}, {1, 1, 1}};
 
 class ServoLaws : public testing::TestWithParam<std::string> {};
 
@@ -21,7 +21,7 @@ TEST_P(ServoLaws, BringTheArmToAShape) {
   ServoBench bench(servo_file(fmt::format("law = \"{}\"\n", law) + servo_target));
   const ServoResult result = bench.servo();
   ASSERT_TRUE(result.is_done) << result.reason;
-  const ServoError left = bench.truth(wanted);
+  const ServoError left = bench.truth(desired);
   std::printf("%s: settled in %.2f s, %.4f %% of the length left\n", law.c_str(), *result.settled,
               100 * left.rms);
   EXPECT_LT(left.rms, 0.005);
@@ -68,8 +68,8 @@ TEST_P(IdealServo, PotentialFallsAllTheWay) {
   for (const ServoStep& step : result.steps) {
     if (!step.is_fresh) continue;
     if (before > 1e299) first = step.potential;
-    const bool is_told = before > least * first;
-    if (is_told) {
+    const bool is_reported = before > least * first;
+    if (is_reported) {
       EXPECT_LT(step.potential, before) << "at " << step.time << " s";
       if (step.potential < before) ++fell;
     }
@@ -89,7 +89,7 @@ TEST(Servo, IsPatientWithLatePictures) {
   ServoBench bench(servo_file("hold_after = 3\ngive_up_after = 10\n" + servo_target, setup));
   const ServoResult result = bench.servo();
   ASSERT_TRUE(result.is_done) << result.reason;
-  EXPECT_LT(bench.truth(wanted).rms, 0.006);
+  EXPECT_LT(bench.truth(desired).rms, 0.006);
   EXPECT_LT(result.overshoot, 0.05);
 }
 
@@ -156,7 +156,7 @@ TEST(Servo, WaitsWhileACameraIsCovered) {
   for (std::size_t i = 1; i < notes.sent.size(); ++i)
     if (notes.sent[i].first < 1.3 && notes.sent[i].second.bends == notes.sent[i - 1].second.bends) ++still;
   EXPECT_GT(still, 10);
-  EXPECT_LT(bench.truth(wanted).rms, 0.006);
+  EXPECT_LT(bench.truth(desired).rms, 0.006);
 }
 
 TEST(Servo, GivesUpWithoutACamera) {
@@ -228,10 +228,10 @@ TEST(Servo, ReachesPicturesByCamerasThatAreElsewhere) {
   for (std::size_t i = 0; i < 2; ++i) views[i] = *other.ports().cameras[i].camera->wait(1).value()->picture;
   config.goals = {{0, views}}, config.law = ServoLawKind::points;
   ServoNotes notes;
-  const RigModel model = bench.believed();
+  const RigModel model = bench.nominal();
   const ServoResult result = servo_in_session(bench.ports(), model, config, notes);
   ASSERT_TRUE(result.is_done) << result.reason;
-  EXPECT_LT(bench.truth(wanted).rms, 0.003);
+  EXPECT_LT(bench.truth(desired).rms, 0.003);
 }
 
 // The result of a servo must not depend on whether its steps are kept.
@@ -242,7 +242,7 @@ TEST(Servo, KeepsNoStepsWhereNoneAreAskedFor) {
     ServoConfig config = bench.config();
     config.keeps_steps = result == &kept;
     ServoNotes notes;
-    const RigModel model = bench.believed();
+    const RigModel model = bench.nominal();
     *result = servo_in_session(bench.ports(), model, config, notes);
     ASSERT_TRUE(result->is_done) << result->reason;
   }

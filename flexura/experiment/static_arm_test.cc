@@ -81,7 +81,7 @@ TEST_F(StaticArm, IsPlayedAndLogsItsTensionsAndItsSag) {
 class SeesTheTruth : public RunWatcher {
  public:
   void state(double time, const ArmState&, std::span<const CameraReading>) override { time_ = time; }
-  bool wants_truth() override { return wants_ = !wants_; }
+  bool needs_truth() override { return needs_truth_ = !needs_truth_; }
   void truth(double time, const TrueArm& arm) override {
     EXPECT_EQ(time, time_);
     seen.push_back(arm);
@@ -90,7 +90,7 @@ class SeesTheTruth : public RunWatcher {
 
  private:
   double time_ = -1;
-  bool wants_ = false;
+  bool needs_truth_ = false;
 };
 
 TEST_F(StaticArm, IsToldToAWatcherAsItTrulyLies) {

@@ -30,9 +30,9 @@ constexpr double uneven = 0.3;
 const ArmState uneven_goal = {{{0.8, 0.3}, {-0.7, 0.9}, {1.0, -0.6}}, {1, 1, 1}};
 
 // Returns a file with sections that truly bend more near their bases, and with their model.
-std::string uneven_file(const std::string& task, const std::string& believed) {
+std::string uneven_file(const std::string& task, const std::string& nominal) {
   ServoSetup rig;
-  rig.arm += "\n" + believed;
+  rig.arm += "\n" + nominal;
   for (int i = 0; i < 3; ++i)
     rig.rest += fmt::format("[[truth.arm.section]]\nbend_profile = [{}, 1, {}]\n", 1 + uneven, 1 - uneven);
   return servo_file(task + servo_target, rig);
@@ -44,19 +44,19 @@ struct Reached {
   ServoError left;       // Error of the arm, relative to the target.
 };
 
-Reached servo(const std::string& law, const std::string& believed) {
-  ServoBench bench(uneven_file("law = \"" + law + "\"\ntolerance = 0.02\n", believed));
+Reached servo(const std::string& law, const std::string& nominal) {
+  ServoBench bench(uneven_file("law = \"" + law + "\"\ntolerance = 0.02\n", nominal));
   Reached reached{bench.servo(), {}, {}};
   EXPECT_TRUE(reached.result.is_done) << reached.result.reason;
   if (!reached.result.last) return reached;
   const Arm shaped = bench.experiment().arm.model().shaped();
-  const ServoSight& sight = *reached.result.last;
-  reached.estimated = servo_error(bench.rig().arm().backbone(sight.time),
-                                  Backbone(shaped, sight.estimate.shape.state), shaped.length());
+  const ServoObservation& observed = *reached.result.last;
+  reached.estimated = servo_error(bench.rig().arm().backbone(observed.time),
+                                  Backbone(shaped, observed.estimate.shape.state), shaped.length());
   reached.left = servo_error(bench.rig().arm().backbone(bench.rig().clock().now()),
                              bench.experiment().arm.model().backbone(uneven_goal), shaped.length());
   std::printf("%s, %s: the estimate %.4f %% of the length off, the arm %.4f %%\n", law.c_str(),
-              believed.empty() ? "one arc a section" : believed.c_str(), 100 * reached.estimated.rms,
+              nominal.empty() ? "one arc a section" : nominal.c_str(), 100 * reached.estimated.rms,
               100 * reached.left.rms);
   return reached;
 }

@@ -36,7 +36,7 @@ double square_of(const MatrixXd& J, const VectorXd& r) {
 }
 
 // Returns |r + J way|^2, with the sum in `sum`.
-double foreseen(const MatrixXd& J, const VectorXd& r, const VectorXd& way, VectorXd& sum) {
+double predict(const MatrixXd& J, const VectorXd& r, const VectorXd& way, VectorXd& sum) {
   return by_rows(J, r, [&]<int rows>(const Rows<rows>& slope, const Column<rows>& here) {
     Eigen::Map<Eigen::Matrix<double, rows, 1>> there(sum.data(), sum.size());
     there.noalias() = here + slope * way;
@@ -141,7 +141,7 @@ void BoundedDescent::try_step(const Bounds& within, const VectorXd& x, double da
     for (int pass = 0; pass < max_passes; ++pass) {
       if (pass == 0) held_J = J;
       if (!hold_broken(within, x, step, is_held, offset, held_J)) break;
-      foreseen(J, r, offset, trial_r);
+      predict(J, r, offset, trial_r);
       damped_step(held_J, trial_r, damping, step);
       step += offset;
     }
@@ -160,10 +160,10 @@ Descent BoundedDescent::descend(const DescentLimits& limits, VectorXd& x) {
     // Relative to |r|^2: vanishes towards a solution, so that the last steps are Newton's.
     try_step(bounds, x, damping * square + least_damping);
     step = trial - x;
-    const double foreseen_square = foreseen(J, r, step, trial_r);
+    const double predicted_square = predict(J, r, step, trial_r);
     problem.linearise(trial, trial_r, trial_J);
     ++iterations;
-    return {square_of(trial_J, trial_r), square - foreseen_square};
+    return {square_of(trial_J, trial_r), square - predicted_square};
   };
   const auto is_level = [&] {
     find_gradient(J, r, gradient);

@@ -23,7 +23,7 @@ CurveProblem::CurveProblem(const ArmVariables& variables, const std::vector<Eige
   parts_.back() = 1.0;
   const std::size_t count = point_count(placed_.size());
   for (std::size_t k = 1; k <= count; ++k) {
-    wanted_.push_back(at(static_cast<double>(k) / static_cast<double>(count)));
+    desired_.push_back(at(static_cast<double>(k) / static_cast<double>(count)));
   }
   scale_ = 1.0 / (length * std::sqrt(static_cast<double>(count)));
 }
@@ -96,10 +96,10 @@ void CurveProblem::linearise(const Eigen::VectorXd& x, Eigen::VectorXd& r, Eigen
   place(x);
   const double total = placed_.back().s + placed_.back().length;
   std::size_t section = 0;
-  for (std::size_t k = 0; k < wanted_.size(); ++k) {
-    const double fraction = static_cast<double>(k + 1) / static_cast<double>(wanted_.size());
+  for (std::size_t k = 0; k < desired_.size(); ++k) {
+    const double fraction = static_cast<double>(k + 1) / static_cast<double>(desired_.size());
     while (section + 1 < placed_.size() && fraction * total > placed_[section + 1].s) ++section;
-    point_rows(fraction, section, 3 * static_cast<Eigen::Index>(k), wanted_[k], r, J);
+    point_rows(fraction, section, 3 * static_cast<Eigen::Index>(k), desired_[k], r, J);
   }
   r *= scale_;
   J *= scale_;
@@ -108,7 +108,7 @@ void CurveProblem::linearise(const Eigen::VectorXd& x, Eigen::VectorXd& r, Eigen
 // A stretch moves the point at a fixed share of the arc length in two ways. It moves the material, and it
 // moves the point through the material along the tangent.
 void CurveProblem::point_rows(double fraction, std::size_t section, Eigen::Index row,
-                              const Eigen::Vector3d& wanted, Eigen::VectorXd& r, Eigen::MatrixXd& J) const {
+                              const Eigen::Vector3d& desired, Eigen::VectorXd& r, Eigen::MatrixXd& J) const {
   const Placed& own = placed_[section];
   const double total = placed_.back().s + placed_.back().length;
   const double own_part = std::clamp((fraction * total - own.s) / own.length, 0.0, 1.0);
@@ -116,7 +116,7 @@ void CurveProblem::point_rows(double fraction, std::size_t section, Eigen::Index
   const Eigen::Vector3d along = own.X_BS.rotation * motion.position;
   const Eigen::Vector3d p = own.X_BS.position + along;
   const Eigen::Vector3d tangent = own.X_BS.rotation * motion.rotation.col(2);
-  r.segment<3>(row) = p - wanted;
+  r.segment<3>(row) = p - desired;
   for (std::size_t i = 0; i < placed_.size(); ++i) {
     const ArmVariables::Part& part = variables_.parts()[i];
     const Placed& placed = placed_[i];
@@ -144,7 +144,7 @@ void CurveProblem::point_rows(double fraction, std::size_t section, Eigen::Index
 
 double CurveProblem::largest_distance(const Eigen::VectorXd& x) {
   constexpr std::size_t finer = 32;
-  const std::size_t count = finer * wanted_.size();
+  const std::size_t count = finer * desired_.size();
   std::vector<double> fractions = parts_;
   for (std::size_t k = 1; k < count; ++k)
     fractions.push_back(static_cast<double>(k) / static_cast<double>(count));

@@ -19,7 +19,7 @@ class CurveProblem final : public BoundedProblem {
   CurveProblem(const ArmVariables& variables, const std::vector<Eigen::Vector3d>& points, double length);
 
   [[nodiscard]] Eigen::Index row_count() const override {
-    return 3 * static_cast<Eigen::Index>(wanted_.size());
+    return 3 * static_cast<Eigen::Index>(desired_.size());
   }
   void linearise(const Eigen::VectorXd& x, Eigen::VectorXd& r, Eigen::MatrixXd& J) override;
   /// Returns true if nothing is left to gain: a curve is fitted as well as possible.
@@ -32,7 +32,7 @@ class CurveProblem final : public BoundedProblem {
   /// Returns the state that turns each section's end along the curve's tangent there.
   [[nodiscard]] Eigen::VectorXd start_along_tangents() const;
   /// Returns the curve's last point, m.
-  [[nodiscard]] const Eigen::Vector3d& end() const { return wanted_.back(); }
+  [[nodiscard]] const Eigen::Vector3d& end() const { return desired_.back(); }
 
  private:
   /// A section in a state.
@@ -46,7 +46,7 @@ class CurveProblem final : public BoundedProblem {
     Eigen::Matrix<double, 3, 2> linear, angular;  // Of its end, per bend.
   };
   void place(const Eigen::VectorXd& x);
-  void point_rows(double fraction, std::size_t section, Eigen::Index row, const Eigen::Vector3d& wanted,
+  void point_rows(double fraction, std::size_t section, Eigen::Index row, const Eigen::Vector3d& desired,
                   Eigen::VectorXd& r, Eigen::MatrixXd& J) const;
   [[nodiscard]] Eigen::Vector3d at(double fraction) const;
   [[nodiscard]] Eigen::Vector3d tangent_at(double fraction) const;
@@ -54,7 +54,7 @@ class CurveProblem final : public BoundedProblem {
   const ArmVariables& variables_;
   std::vector<Eigen::Vector3d> points_;
   std::vector<double> parts_;  // Share of the polyline's length up to each point.
-  std::vector<Eigen::Vector3d> wanted_;
+  std::vector<Eigen::Vector3d> desired_;
   std::vector<Placed> placed_;
   double scale_;
 };

@@ -73,11 +73,11 @@ std::size_t find_call(const std::string& text, const std::string& function, std:
 }
 
 std::size_t position_of(const mu::ParserError& error, const std::string& text) {
-  const auto told = static_cast<std::size_t>(error.GetPos());
+  const auto reported = static_cast<std::size_t>(error.GetPos());
   if (error.GetPos() < 0) return 0;  // Error of the whole formula.
   const bool is_of_call = error.GetCode() == mu::ecTOO_MANY_PARAMS || error.GetCode() == mu::ecTOO_FEW_PARAMS;
-  const std::size_t found = is_of_call ? find_call(text, error.GetToken(), told) : told;
-  return std::min(found == std::string::npos ? told : found, text.size());
+  const std::size_t found = is_of_call ? find_call(text, error.GetToken(), reported) : reported;
+  return std::min(found == std::string::npos ? reported : found, text.size());
 }
 
 }  // namespace

@@ -10,8 +10,8 @@
 #include "flexura/kinematics/driven_problem.h"
 #include "flexura/kinematics/inverse_check.h"
 #include "flexura/kinematics/inverse_distinct.h"
+#include "flexura/kinematics/inverse_objective.h"
 #include "flexura/kinematics/inverse_search.h"
-#include "flexura/kinematics/inverse_wish.h"
 #include "flexura/kinematics/reach.h"
 #include "flexura/kinematics/spatial.h"
 #include "flexura/kinematics/tip_problem.h"
@@ -150,8 +150,8 @@ InverseResult answer(const Question& q) {
     search(descent, starts, q.config.max_starts, found);
   }
   if (!found.is_met()) settle(descent, settling_iterations, found);
-  if (found.is_met() && q.config.wish != InverseWish::none) {
-    follow_wish(descent, WishScale(q.variables, q.config.wish), found.x);
+  if (found.is_met() && q.config.objective != InverseObjective::none) {
+    follow_objective(descent, ObjectiveScale(q.variables, q.config.objective), found.x);
   }
   InverseResult result = describe(q, found);
   result.iterations = descent.iterations;
@@ -171,7 +171,7 @@ bool is_round(const Question& q) {
 /// One of several solutions.
 struct Solution {
   Found found;
-  double wish = 0.0;
+  double objective = 0.0;
   std::vector<Eigen::Vector3d> points;
 };
 
@@ -181,11 +181,12 @@ class SolutionList {
   SolutionList(const Question& q, BoundedDescent& descent)
       : q_(q),
         descent_(descent),
-        scale_(q.variables, q.config.wish == InverseWish::none ? InverseWish::least_bending : q.config.wish),
+        scale_(q.variables, q.config.objective == InverseObjective::none ? InverseObjective::least_bending
+                                                                         : q.config.objective),
         is_round_(is_round(q)) {}
 
   void add(Found found) {
-    follow_wish(descent_, scale_, found.x);
+    follow_objective(descent_, scale_, found.x);
     // Most starts lead to the same few solutions, which need not be minimised again.
     if (is_known(solution(found))) return;
     run_down_to_minimum(descent_, scale_, found.x);
@@ -195,7 +196,7 @@ class SolutionList {
 
   [[nodiscard]] std::vector<Solution> in_order() && {
     std::ranges::stable_sort(solutions_, [](const Solution& a, const Solution& b) {
-      return comes_first(a.wish, a.found.x, b.wish, b.found.x);
+      return comes_first(a.objective, a.found.x, b.objective, b.found.x);
     });
     return std::move(solutions_);
   }
@@ -203,9 +204,9 @@ class SolutionList {
  private:
   [[nodiscard]] Solution solution(Found found) const {
     if (is_round_) turn_to_x(q_.variables, found.x);
-    const double wish = scale_.relative(found.x).squaredNorm();
+    const double objective = scale_.relative(found.x).squaredNorm();
     std::vector<Eigen::Vector3d> points = backbone_points(q_.variables, found.x);
-    return {std::move(found), wish, std::move(points)};
+    return {std::move(found), objective, std::move(points)};
   }
   [[nodiscard]] bool is_known(const Solution& other) const {
     constexpr double same_arm = 1e-4;  // Share of the arm's length.
@@ -216,7 +217,7 @@ class SolutionList {
 
   const Question& q_;
   BoundedDescent& descent_;
-  WishScale scale_;
+  ObjectiveScale scale_;
   bool is_round_;
   std::vector<Solution> solutions_;
 };

@@ -26,7 +26,7 @@ struct CurveTarget {
 };
 
 /// Preference among the solutions of a target.
-enum class InverseWish {
+enum class InverseObjective {
   none,           ///< Take the first solution found.
   least_bending,  ///< Minimise the sum of squares of the bends (rad) and of the stretches' distances from 1.
   mid_range,      ///< Minimise the same sum relative to the limits: a bend to max_bend (pi without one), a
@@ -43,7 +43,7 @@ enum class InverseWish {
 struct InverseConfig {
   /// Start of the search; by default one arc towards the target.
   std::optional<ArmState> start = {};
-  InverseWish wish = InverseWish::none;  ///< Preference for redundant freedom.
+  InverseObjective objective = InverseObjective::none;  ///< Preference for redundant freedom.
   /// In m; default 1e-9 of the arm's greatest length. For curves the default is 1e-3 of it plus twice
   /// polyline_error(), together at most 1e-2 of it. A coarser polyline needs a tolerance from the caller.
   std::optional<double> position_tolerance = {};

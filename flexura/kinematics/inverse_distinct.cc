@@ -50,10 +50,11 @@ void turn_to_x(const ArmVariables& variables, Eigen::VectorXd& x) {
   }
 }
 
-bool comes_first(double wish_a, const Eigen::VectorXd& a, double wish_b, const Eigen::VectorXd& b) {
-  constexpr double same_wish = 1e-7;
+bool comes_first(double objective_a, const Eigen::VectorXd& a, double objective_b, const Eigen::VectorXd& b) {
+  constexpr double same_objective = 1e-7;
   constexpr double same_value = 1e-5;
-  if (std::abs(wish_a - wish_b) > same_wish * (1.0 + wish_a)) return wish_a < wish_b;
+  if (std::abs(objective_a - objective_b) > same_objective * (1.0 + objective_a))
+    return objective_a < objective_b;
   for (Eigen::Index i = 0; i < a.size(); ++i) {
     if (std::abs(a[i] - b[i]) > same_value) return a[i] > b[i];
   }

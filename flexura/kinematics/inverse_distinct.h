@@ -19,10 +19,10 @@ namespace flexura {
 /// Rotates the arm about its base's z until its first bent section bends towards x.
 void turn_to_x(const ArmVariables& variables, Eigen::VectorXd& x);
 
-/// Returns true if `a` comes before `b` in a list of solutions with the preferences `wish_a` and `wish_b`.
-/// The smaller preference comes first. If they are equal up to rounding, as for mirror images, the first
-/// variable that differs decides, the larger first.
-[[nodiscard]] bool comes_first(double wish_a, const Eigen::VectorXd& a, double wish_b,
+/// Returns true if `a` comes before `b` in a list of solutions with the preferences `objective_a` and
+/// `objective_b`. The smaller preference comes first. If they are equal up to rounding, as for mirror images,
+/// the first variable that differs decides, the larger first.
+[[nodiscard]] bool comes_first(double objective_a, const Eigen::VectorXd& a, double objective_b,
                                const Eigen::VectorXd& b);
 
 }  // namespace flexura

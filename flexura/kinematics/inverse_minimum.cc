@@ -3,15 +3,15 @@
 #include <cmath>
 #include <optional>
 
-#include "flexura/kinematics/inverse_wish.h"
+#include "flexura/kinematics/inverse_objective.h"
 #include "flexura/math/dense.h"
 
 namespace flexura {
 namespace {
 
-class WishMinimum {
+class ObjectiveMinimum {
  public:
-  WishMinimum(BoundedDescent& descent, const WishScale& scale) : descent_(descent), scale_(scale) {}
+  ObjectiveMinimum(BoundedDescent& descent, const ObjectiveScale& scale) : descent_(descent), scale_(scale) {}
 
   // Makes a Newton step, downhill where the preference is concave on the surface (a saddle is left to either
   // side). Returns false if x is at the minimum.
@@ -45,7 +45,7 @@ class WishMinimum {
     Eigen::VectorXd gradient;  // Gradient of half the preference, in relative values, along the surface.
   };
 
-  [[nodiscard]] double wish(const Eigen::VectorXd& x) const { return scale_.relative(x).squaredNorm(); }
+  [[nodiscard]] double objective(const Eigen::VectorXd& x) const { return scale_.relative(x).squaredNorm(); }
 
   // At the bounds that hold x, the surface follows them.
   Slope slope(const Eigen::VectorXd& x) {
@@ -95,10 +95,10 @@ class WishMinimum {
   // Moves x along `way` as far as it leads down; returns false if it does not.
   bool go(Eigen::VectorXd& x, const Eigen::VectorXd& way) {
     constexpr double least_gain = 1e-14;
-    const double enough = (1.0 - least_gain) * wish(x);
+    const double enough = (1.0 - least_gain) * objective(x);
     for (double part = 1.0; part > 1e-3; part *= 0.5) {
       const auto next = moved(x, part * way);
-      if (!next || !(wish(*next) < enough)) continue;
+      if (!next || !(objective(*next) < enough)) continue;
       x = *next;
       return true;
     }
@@ -106,15 +106,15 @@ class WishMinimum {
   }
 
   BoundedDescent& descent_;
-  const WishScale& scale_;
+  const ObjectiveScale& scale_;
 };
 
 }  // namespace
 
-void run_down_to_minimum(BoundedDescent& descent, const WishScale& scale, Eigen::VectorXd& x) {
+void run_down_to_minimum(BoundedDescent& descent, const ObjectiveScale& scale, Eigen::VectorXd& x) {
   // Long valleys of sections bent by a whole turn, whose direction hardly matters, take the most steps.
   constexpr int most_steps = 200;
-  WishMinimum minimum(descent, scale);
+  ObjectiveMinimum minimum(descent, scale);
   for (int i = 0; i < most_steps && minimum.step(x); ++i) {
   }
 }

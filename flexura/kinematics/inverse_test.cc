@@ -148,16 +148,17 @@ TEST(Inverse, LeastBendingBendsLeastNearby) {
     const Arm arm = random_three_sections(random);
     const TipTarget target = target_at(tip_pose(arm, random_state_within(random, arm)), TargetKind::position);
     const InverseResult plain = solve_inverse(arm, target);
-    const InverseResult wished = solve_inverse(arm, target, {.wish = InverseWish::least_bending});
-    expect_solves(arm, target, wished);
-    EXPECT_LE(bending(wished.state), bending(plain.state) + 1e-9);
+    const InverseResult with_objective =
+        solve_inverse(arm, target, {.objective = InverseObjective::least_bending});
+    expect_solves(arm, target, with_objective);
+    EXPECT_LE(bending(with_objective.state), bending(plain.state) + 1e-9);
     // No solution close by may bend less.
     for (int i = 0; i < 10; ++i) {
-      ArmState start = wished.state;
+      ArmState start = with_objective.state;
       for (Eigen::Vector2d& bend : start.bends) bend += random.vector<2>(-0.02, 0.02);
       const InverseResult other = solve_inverse(arm, target, {.start = start});
       if (!other.converged()) continue;
-      EXPECT_GE(bending(other.state), bending(wished.state) - 1e-5);
+      EXPECT_GE(bending(other.state), bending(with_objective.state) - 1e-5);
     }
   });
 }
@@ -181,8 +182,8 @@ TEST(Inverse, MidRangeTradesBendingForStretchesAwayFromTheirLimits) {
     arm.sections.emplace_back(Section{.length = 0.3, .max_bend = max_bend, .stretch_limits = {0.8, 1.1}});
   }
   const TipTarget target{.position = {0.2, 0.5, 0.1}};
-  const InverseResult mid = solve_inverse(arm, target, {.wish = InverseWish::mid_range});
-  const InverseResult least = solve_inverse(arm, target, {.wish = InverseWish::least_bending});
+  const InverseResult mid = solve_inverse(arm, target, {.objective = InverseObjective::mid_range});
+  const InverseResult least = solve_inverse(arm, target, {.objective = InverseObjective::least_bending});
   expect_solves(arm, target, mid);
   expect_solves(arm, target, least);
   EXPECT_LT(distance_from_middle(arm, mid.state), distance_from_middle(arm, least.state) - 1e-3);

@@ -67,15 +67,15 @@ void MotorCommander::command(std::size_t axis, double target) {
   positions_[axis] = static_cast<std::int64_t>(sense(axes_[axis]) * std::round(target));
 }
 
-void MotorCommander::follow(const TendonDisplacements& wanted) {
-  require_one_an_axis(axes_.size(), wanted.pulled.size());
+void MotorCommander::follow(const TendonDisplacements& desired) {
+  require_one_an_axis(axes_.size(), desired.pulled.size());
   for (std::size_t i = 0; i < axes_.size(); ++i) {
-    const double target = wanted.pulled[i] * axes_[i].microsteps_a_metre();
+    const double target = desired.pulled[i] * axes_[i].microsteps_a_metre();
     Side& side = sides_[i];
     const double ahead = side.letting_out ? side.farthest - target : target - side.farthest;
     if (ahead < -rounding) side.letting_out = !side.letting_out;
     if (ahead > 0 || ahead < -rounding) side.farthest = target;
-    command(i, side.letting_out ? target - axes_[i].play() : target);
+    command(i, side.letting_out ? target - axes_[i].backlash_steps() : target);
   }
 }
 

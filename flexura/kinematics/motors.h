@@ -33,8 +33,8 @@ class MotorCommander {
   [[nodiscard]] const std::vector<std::int64_t>& positions() const { return positions_; }
   /// Returns the positions before rounding.
   [[nodiscard]] const std::vector<double>& targets() const { return targets_; }
-  /// Moves to `wanted`. Throws std::out_of_range if a position is beyond 2^53 or not a number.
-  void follow(const TendonDisplacements& wanted);
+  /// Moves to `desired`. Throws std::out_of_range if a position is beyond 2^53 or not a number.
+  void follow(const TendonDisplacements& desired);
 
  private:
   struct Side {

@@ -62,18 +62,18 @@ TEST(Motors, RoundTripsToHalfAMicrostepOverRandomArms) {
     const ArmState state = random_state(random, arm);
     ArmState inextensible = state;
     std::ranges::fill(inextensible.stretches, 1.0);
-    const TendonDisplacements wanted = tendon_displacements(arm, drive, inextensible);
-    const MotorCommander commander(drive, wanted);
+    const TendonDisplacements desired = tendon_displacements(arm, drive, inextensible);
+    const MotorCommander commander(drive, desired);
     const std::vector<double> positions = reals(commander.positions());
 
     const TendonFit fit = fit_state(arm, drive, displacements_at(drive, positions));
     const TendonDisplacements found = tendon_displacements(arm, drive, fit.state);
     const std::vector<double> back = motor_positions(drive, found);
-    const std::vector<double> exact = motor_positions(drive, wanted);
+    const std::vector<double> exact = motor_positions(drive, desired);
     for (std::size_t i = 0; i < positions.size(); ++i) {
       EXPECT_LE(std::abs(positions[i] - exact[i]), 0.5 + 1e-6);
       EXPECT_NEAR(back[i], positions[i], 1e-6);
-      EXPECT_LE(std::abs(found.pulled[i] - wanted.pulled[i]) * drive.axes[i].microsteps_a_metre(),
+      EXPECT_LE(std::abs(found.pulled[i] - desired.pulled[i]) * drive.axes[i].microsteps_a_metre(),
                 0.5 + 2e-6);
     }
     EXPECT_EQ(MotorCommander(drive, found).positions(), commander.positions());
@@ -127,10 +127,10 @@ TEST(Motors, RoundTripWithThreeFourOrFiveTendonsEvenAndUneven) {
       const TendonDisplacements rounded = displacements_at(drive, reals(commander.positions()));
       const TendonFit fit = fit_state(arm, drive, rounded);
       const double half_step = 0.5 / drive.axes[0].microsteps_a_metre();
-      Eigen::Vector2d wanted = Eigen::Vector2d::Zero();
+      Eigen::Vector2d desired = Eigen::Vector2d::Zero();
       Eigen::Vector2d found = Eigen::Vector2d::Zero();
       for (std::size_t k = 0; k < arm.sections.size(); ++k) {
-        wanted += state.bends[k];
+        desired += state.bends[k];
         found += fit.state.bends[k];
         const Eigen::MatrixXd inverse = bends_of_cables(drive, k);
         Eigen::VectorXd cables(inverse.cols());
@@ -138,7 +138,7 @@ TEST(Motors, RoundTripWithThreeFourOrFiveTendonsEvenAndUneven) {
           cables[i] = rounded.pulled[k * angles.size() + static_cast<std::size_t>(i)];
         EXPECT_LT((found - inverse * cables).norm(), 1e-9);
         const double most = inverse.colwise().norm().sum() * half_step;
-        EXPECT_LE((found - wanted).norm(), most * (1 + 1e-6) + 1e-9);
+        EXPECT_LE((found - desired).norm(), most * (1 + 1e-6) + 1e-9);
       }
     });
   }
@@ -148,20 +148,20 @@ TEST(Motors, WithPlayTakenUpFollowToHalfAMicrostepWhateverTheWay) {
   for_random_cases(100, [](TestRandom& random) {
     Arm arm = random_arm(random);
     const Drive drive = random_drive(random, arm);
-    TendonDisplacements wanted{std::vector<double>(drive.axes.size(), 0.0)};
-    MotorCommander commander(drive, wanted);
-    PlayModel mechanism(drive, commander.positions());
+    TendonDisplacements desired{std::vector<double>(drive.axes.size(), 0.0)};
+    MotorCommander commander(drive, desired);
+    BacklashModel mechanism(drive, commander.positions());
     for (int step = 0; step < 300; ++step) {
       for (std::size_t i = 0; i < drive.axes.size(); ++i) {
         // Steps of hundreds of microsteps and of fractions of one, in either direction, and rests.
         const double size = std::pow(10.0, random.integer(-2, 3)) * random.integer(0, 1);
-        wanted.pulled[i] += random.uniform(-size, size) / drive.axes[i].microsteps_a_metre();
+        desired.pulled[i] += random.uniform(-size, size) / drive.axes[i].microsteps_a_metre();
       }
-      commander.follow(wanted);
+      commander.follow(desired);
       mechanism.follow(commander.positions());
       const TendonDisplacements made = mechanism.displacements();
       for (std::size_t i = 0; i < drive.axes.size(); ++i) {
-        EXPECT_LE(std::abs(made.pulled[i] - wanted.pulled[i]) * drive.axes[i].microsteps_a_metre(),
+        EXPECT_LE(std::abs(made.pulled[i] - desired.pulled[i]) * drive.axes[i].microsteps_a_metre(),
                   0.5 + 3e-6)
             << "step " << step << ", axis " << i;
       }
@@ -170,10 +170,10 @@ TEST(Motors, WithPlayTakenUpFollowToHalfAMicrostepWhateverTheWay) {
 }
 
 TEST(Motors, TakeUpThePlayWhenATendonReverses) {
-  const double play = 100.25;  // Microsteps.
-  const Drive drive = one_axis(play / 30000 * 2 * std::numbers::pi);
+  const double backlash = 100.25;  // Microsteps.
+  const Drive drive = one_axis(backlash / 30000 * 2 * std::numbers::pi);
   const double microstep = one_turn / 30000;
-  EXPECT_NEAR(drive.axes[0].play(), play, 1e-12);
+  EXPECT_NEAR(drive.axes[0].backlash_steps(), backlash, 1e-12);
   MotorCommander commander(drive, {{0}});
   const auto positions_at = [&](double microsteps) {
     commander.follow({{microsteps * microstep}});

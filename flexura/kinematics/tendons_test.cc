@@ -11,7 +11,7 @@
 #include "flexura/kinematics/shape.h"
 #include "flexura/math/derivative_check.h"
 #include "flexura/math/quadrature.h"
-#include "flexura/model/arm_way.h"
+#include "flexura/model/arm_difference.h"
 #include "flexura/model/backbone.h"
 #include "tests/support/arms.h"
 #include "tests/support/drives.h"
@@ -134,10 +134,10 @@ TEST(Tendons, JacobianIsTheDerivativeAndInAChannelTheMapItself) {
   });
 }
 
-void expect_state_near(const ArmState& found, const ArmState& wanted, double tolerance) {
-  for (std::size_t i = 0; i < wanted.bends.size(); ++i) {
-    EXPECT_LE((found.bends[i] - wanted.bends[i]).norm(), tolerance) << i;
-    EXPECT_NEAR(found.stretches[i], wanted.stretches[i], tolerance) << i;
+void expect_state_near(const ArmState& found, const ArmState& desired, double tolerance) {
+  for (std::size_t i = 0; i < desired.bends.size(); ++i) {
+    EXPECT_LE((found.bends[i] - desired.bends[i]).norm(), tolerance) << i;
+    EXPECT_NEAR(found.stretches[i], desired.stretches[i], tolerance) << i;
   }
 }
 

@@ -4,10 +4,10 @@
 
 namespace flexura {
 
-/// Makes the new folder `wanted`, or `wanted`-2, -3, ... if that exists: results are never overwritten. Makes
-/// missing folders above it. Returns the new folder. Throws std::runtime_error with the path on a system
-/// error.
-[[nodiscard]] std::filesystem::path make_new_folder(const std::filesystem::path& wanted);
+/// Makes the new folder `desired`, or `desired`-2, -3, ... if that exists: results are never overwritten.
+/// Makes missing folders above it. Returns the new folder. Throws std::runtime_error with the path on a
+/// system error.
+[[nodiscard]] std::filesystem::path make_new_folder(const std::filesystem::path& desired);
 
 /// Returns the default folder of an experiment's results: results/NAME. NAME is the file's, or its folder's
 /// for a file named experiment.toml.

@@ -10,7 +10,7 @@ void RunLog::event(double time, Recorder::Level level, const std::string& name, 
   if (watcher_ != nullptr) watcher_->happened(time, events_.back().level, name, text);
 }
 
-void RunLog::tell(const LoggedMessage& message) {
+void RunLog::publish(const LoggedMessage& message) {
   recorder_.write(message);
   if (watcher_ != nullptr) watcher_->logged(message);
 }

@@ -28,7 +28,7 @@ class RunLog {
 
   void event(double time, Recorder::Level level, const std::string& name, const std::string& text);
   /// Writes a task's message, also to the watcher.
-  void tell(const LoggedMessage& message);
+  void publish(const LoggedMessage& message);
   /// Writes a camera's frame, with its logged_image.
   void image(const std::string& camera, const Frame& frame, std::string_view message);
   /// Reports the end of a task of the rig.

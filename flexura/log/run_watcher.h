@@ -43,7 +43,7 @@ class RunWatcher {
   /// The readings are empty if the run plays no rig; its cameras are then at rest.
   virtual void state(double time, const ArmState& state, std::span<const CameraReading> cameras) = 0;
   /// Returns true if the truth is needed at the next step: it takes time to compute.
-  [[nodiscard]] virtual bool wants_truth() { return false; }
+  [[nodiscard]] virtual bool needs_truth() { return false; }
   /// Receives the true arm at a clock step, if known, after its state.
   virtual void truth(double /*time*/, const TrueArm& /*arm*/) {}
   /// Receives an event of the log: `time` in s, level "info", "warning" or "error", source, text.

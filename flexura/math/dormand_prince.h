@@ -46,9 +46,9 @@ class DormandPrince {
     f(t, y, slopes_[0]);
     while (t < until) {
       if (progress.steps + progress.taken_back == tolerance_.most_steps || !go_on()) return progress;
-      const double wanted = std::min(step_, tolerance_.largest_step);
-      const bool is_last = t + wanted >= until;
-      const double h = is_last ? until - t : wanted;
+      const double desired = std::min(step_, tolerance_.largest_step);
+      const bool is_last = t + desired >= until;
+      const double h = is_last ? until - t : desired;
       if (!is_last && !(t + h > t)) return progress;
       const double error = attempt(f, t, y, h);
       const double factor =

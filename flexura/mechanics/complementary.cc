@@ -22,8 +22,8 @@ std::optional<Eigen::VectorXd> Complementary::solve(std::vector<char>& held_off,
     x.setZero();
     if (!open.empty()) {
       const Eigen::MatrixXd part = matrix(open, open);
-      const Eigen::VectorXd wanted = rhs(open);
-      x(open) = part.partialPivLu().solve(wanted).eval();
+      const Eigen::VectorXd desired = rhs(open);
+      x(open) = part.partialPivLu().solve(desired).eval();
     }
     if (!x.allFinite()) return std::nullopt;
     // What would go below 0 is held there, then what is below its own bound is let go; the worst first.

@@ -95,7 +95,7 @@ RodDynamics::Work::Work(Rod rod, const RodDynamicsConfig& given, std::span<const
   answers_.setZero(n, count);
   give_.setZero(count, count);
   pivot_.setZero(count, count);
-  for (Eigen::VectorXd* vector : {&lengths_, &wanted_, &found_, &pull_change_}) vector->setZero(count);
+  for (Eigen::VectorXd* vector : {&lengths_, &desired_, &found_, &pull_change_}) vector->setZero(count);
   taut_.resize(chain.tendons());
   tensions.resize(chain.tendons());
 

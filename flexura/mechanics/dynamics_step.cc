@@ -55,7 +55,7 @@ bool RodDynamics::Work::pull_tight() {
     found_.setZero();
     for (Eigen::Index i = 0; i < count; ++i) {
       if (taut_[static_cast<std::size_t>(i)] == 0) continue;
-      double right = wanted_[i], diagonal = give_(i, i);
+      double right = desired_[i], diagonal = give_(i, i);
       for (Eigen::Index j = 0; j < i; ++j) {
         if (taut_[static_cast<std::size_t>(j)] == 0) continue;
         double sum = give_(i, j);
@@ -86,7 +86,7 @@ bool RodDynamics::Work::pull_tight() {
     least = -rounding;
     for (Eigen::Index i = 0; i < count; ++i) {
       if (taut_[static_cast<std::size_t>(i)] != 0) continue;
-      double left = -wanted_[i];
+      double left = -desired_[i];
       for (Eigen::Index j = 0; j < count; ++j) left += give_(i, j) * found_[j];
       if (!std::isfinite(left)) return false;
       if (left < least) worst = i, least = left;
@@ -99,7 +99,7 @@ bool RodDynamics::Work::pull_tight() {
 
 // The same where tendons rub, of a matrix that is not symmetric.
 bool RodDynamics::Work::find_tensions() {
-  Complementary problem{.matrix = give_, .rhs = wanted_, .kinds = {}};
+  Complementary problem{.matrix = give_, .rhs = desired_, .kinds = {}};
   problem.kinds.assign(taut_.size(), Complementary::Kind::at_least_0);
   const std::optional<Eigen::VectorXd> found = problem.solve(taut_, 1e-13 * chain.rod().length());
   if (!found) return false;
@@ -129,8 +129,8 @@ bool RodDynamics::Work::solve_with_tendons(const Stage& stage, Solve&& solve) {
     for (Eigen::Index j = 0; j < count; ++j)
       give_(i, j) = stage.stretch * stage.stretch * length_slopes_.col(i).dot(answers_.col(j));
     give_(i, i) += compliance[tendon];
-    wanted_[i] = lengths_[i] - rest_lengths[tendon] + stage.tendons.displacements[tendon] +
-                 stage.stretch * length_slopes_.col(i).dot(change_);
+    desired_[i] = lengths_[i] - rest_lengths[tendon] + stage.tendons.displacements[tendon] +
+                  stage.stretch * length_slopes_.col(i).dot(change_);
   }
   if (!(rubs() ? find_tensions() : pull_tight())) return false;
   for (Eigen::Index i = 0; i < count; ++i) {

@@ -138,17 +138,17 @@ TEST(Dynamics, TheErrorOfAStepIsToldToFirstOrder) {
       finer(soft_tentacle(), {.spectral_radius = 0.8});
   const Eigen::VectorXd none = Eigen::VectorXd::Zero(dynamics.chain().size());
   const RodLoads weight = soft_tentacle_weight();
-  double told = 0;
+  double reported = 0;
   RodState state = dynamics.start(none, none, {}, weight), exact = state;
   EXPECT_EQ(dynamics.step_error(state), 0);
   for (int i = 0; i < 50; ++i) {
     ASSERT_TRUE(dynamics.step(state, {}, weight, 4e-3).converged());
-    told += dynamics.step_error(state);
+    reported += dynamics.step_error(state);
   }
   go(finer, exact, {}, weight, 2e-4, 0.2);
   const double error = (dynamics.tip(state).position - finer.tip(exact).position).norm();
-  EXPECT_LT(error, 3 * told);
-  EXPECT_GT(error, 0.1 * told);
+  EXPECT_LT(error, 3 * reported);
+  EXPECT_GT(error, 0.1 * reported);
 }
 
 // For 10 s in steps of 0.1 ms, and it does not drift.

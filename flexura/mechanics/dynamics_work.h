@@ -118,7 +118,7 @@ struct RodDynamics::Work {
   double turning_inertia_ = 1;  // kg m^2
   // Of displacements: by tendon.
   Eigen::MatrixXd length_slopes_, pull_slopes_, answers_, give_, pivot_;
-  Eigen::VectorXd lengths_, wanted_, found_, pull_change_;
+  Eigen::VectorXd lengths_, desired_, found_, pull_change_;
   std::vector<char> taut_;
   // Of friction, as `motion` has it.
   const double* held_before_ = nullptr;

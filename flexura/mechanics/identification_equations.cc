@@ -332,8 +332,8 @@ std::vector<Window> windows_of(const std::vector<RodMotionRecordSample>& samples
   if (!(wide > 0) || !(wide <= length))
     throw std::invalid_argument("a window must be above 0 and no longer than the record");
   const auto most = std::max<Index>(4, most_equations / std::max<Index>(1, modes));
-  const double wanted = std::floor((length - wide) / (wide / windows_overlap)) + 1;
-  const auto count = static_cast<std::size_t>(std::min(static_cast<double>(most), wanted));
+  const double desired = std::floor((length - wide) / (wide / windows_overlap)) + 1;
+  const auto count = static_cast<std::size_t>(std::min(static_cast<double>(most), desired));
   std::vector<Window> windows;
   for (std::size_t w = 0; w < count; ++w) {
     const double part = count > 1 ? static_cast<double>(w) / static_cast<double>(count - 1) : 0.5;
@@ -363,10 +363,10 @@ std::vector<Window> windows_of(const std::vector<RodMotionRecordSample>& samples
 
 // How the noise of samples comes into a column of a window: modes x (samples x directions of noise), in
 // standard deviations.
-using NoiseWay = MatrixXd;
+using NoiseSensitivity = MatrixXd;
 
-MatrixXd covariance_of(const std::vector<Window>& windows, const std::vector<NoiseWay>& a,
-                       const std::vector<NoiseWay>& b, Index modes, Index directions) {
+MatrixXd covariance_of(const std::vector<Window>& windows, const std::vector<NoiseSensitivity>& a,
+                       const std::vector<NoiseSensitivity>& b, Index modes, Index directions) {
   const auto count = static_cast<Index>(windows.size());
   MatrixXd C = MatrixXd::Zero(count * modes, count * modes);
   for (std::size_t i = 0; i < windows.size(); ++i) {
@@ -375,7 +375,7 @@ MatrixXd covariance_of(const std::vector<Window>& windows, const std::vector<Noi
                         end = std::min(windows[i].first + windows[i].count,
                                        windows[j].first + windows[j].count);
       if (end <= first) continue;
-      const auto columns = [&](const NoiseWay& way, const Window& window) {
+      const auto columns = [&](const NoiseSensitivity& way, const Window& window) {
         return way.middleCols(static_cast<Index>(first - window.first) * directions,
                               static_cast<Index>(end - first) * directions);
       };
@@ -424,10 +424,10 @@ IdentificationEquations::IdentificationEquations(const Rod& rod, const std::vect
       std::ranges::any_of(rod.tendons, [](const TendonRoute& each) { return each.friction > 0; });
   const Index directions = has_rates ? 2 * n : n;
   const VectorXd v_noise = record.v_noise.size() > 0 ? record.v_noise : VectorXd::Zero(n);
-  std::vector<std::vector<NoiseWay>> ways(is_noisy ? static_cast<std::size_t>(count) + 1 : 0);
-  for (std::vector<NoiseWay>& way : ways)
+  std::vector<std::vector<NoiseSensitivity>> ways(is_noisy ? static_cast<std::size_t>(count) + 1 : 0);
+  for (std::vector<NoiseSensitivity>& way : ways)
     for (const Window& window : windows)
-      way.emplace_back(NoiseWay::Zero(n, static_cast<Index>(window.count) * directions));
+      way.emplace_back(NoiseSensitivity::Zero(n, static_cast<Index>(window.count) * directions));
 
   std::vector<MatrixXd> roots;
   for (std::size_t k = 0; is_noisy && k < samples.size(); ++k) roots.push_back(noise_root(record, k));
@@ -463,7 +463,7 @@ IdentificationEquations::IdentificationEquations(const Rod& rod, const std::vect
           by_parameter.block(row, static_cast<Index>(f) - 1, n, 1) += value;
         }
         if (!is_noisy) continue;
-        NoiseWay& way = ways[f][w];
+        NoiseSensitivity& way = ways[f][w];
         const MatrixXd by_v = bump * term.bump_by_v + slope * term.slope_by_v;
         way.middleCols(at * directions, n) += (bump * term.bump_by_q + slope * term.slope_by_q) * roots[k];
         if (has_rates) {
@@ -477,8 +477,8 @@ IdentificationEquations::IdentificationEquations(const Rod& rod, const std::vect
       }
     }
   }
-  for (const std::vector<NoiseWay>& a : ways)
-    for (const std::vector<NoiseWay>& b : ways)
+  for (const std::vector<NoiseSensitivity>& a : ways)
+    for (const std::vector<NoiseSensitivity>& b : ways)
       covariances_.push_back(covariance_of(windows, a, b, n, directions));
 }
 

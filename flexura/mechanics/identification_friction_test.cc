@@ -80,8 +80,8 @@ RodMotionRecord with_errors(RodMotionRecord record, double q_noise, double v_noi
 
 TEST(IdentificationOfFriction, OfAnExactRecordGivesItBack) {
   const RodMotionRecord record = pulled_in_turns();
-  for (const double believed : {0.0, 0.5}) {
-    const Identification found = identify(rubbing_tentacle(believed), sought_with_friction, record);
+  for (const double nominal : {0.0, 0.5}) {
+    const Identification found = identify(rubbing_tentacle(nominal), sought_with_friction, record);
     EXPECT_TRUE(found.converged);
     for (Eigen::Index g = 0; g < 3; ++g) {
       EXPECT_TRUE(found.is_observable[static_cast<std::size_t>(g)]);

@@ -16,7 +16,7 @@ namespace {
 using Kind = RodParameter::Kind;
 
 // What is believed: a soft rod of two sections with three tendons to each one's end.
-Rod believed_tentacle(StrainModes modes = {.shear = 0, .stretch = 0, .bend = 2, .twist = 0}) {
+Rod nominal_tentacle(StrainModes modes = {.shear = 0, .stretch = 0, .bend = 2, .twist = 0}) {
   Rod rod = soft_tentacle();
   rod.sections[0].length = 0.3;
   rod.sections[0].modes = modes;
@@ -87,8 +87,8 @@ const Eigen::Vector4d known_values(1.25, 0.8, 0.05, 1.1);
 
 TEST(Identification, OfAnExactRecordGivesTheRodBack) {
   for (const bool with_rates : {true, false}) {
-    const RodMotionRecord record = step_response(true_tentacle(believed_tentacle(), {}), with_rates);
-    const Identification found = identify(believed_tentacle(), all_of_it, record);
+    const RodMotionRecord record = step_response(true_tentacle(nominal_tentacle(), {}), with_rates);
+    const Identification found = identify(nominal_tentacle(), all_of_it, record);
     for (Eigen::Index g = 0; g < 4; ++g) {
       EXPECT_TRUE(found.is_observable[static_cast<std::size_t>(g)]);
       EXPECT_NEAR(found.values[g], known_values[g], 3e-3 * known_values[g]) << g << with_rates;
@@ -101,14 +101,14 @@ TEST(Identification, OfAnExactRecordGivesTheRodBack) {
 // Values within three standard deviations, and those of many seeds as wide as is told.
 TEST(Identification, TellsHowWrongItIsUnderNoise) {
   for (const bool with_rates : {false, true}) {
-    const RodMotionRecord exact = step_response(true_tentacle(believed_tentacle(), {}), with_rates);
+    const RodMotionRecord exact = step_response(true_tentacle(nominal_tentacle(), {}), with_rates);
     TestRandom random(case_seed(with_rates ? 1 : 0));
     const int seeds = 16;
     Eigen::Vector4d squares = Eigen::Vector4d::Zero(), sum = Eigen::Vector4d::Zero();
     double mahalanobis = 0, misfit = 0;
     for (int seed = 0; seed < seeds; ++seed) {
       const Identification found =
-          identify(believed_tentacle(), all_of_it, noisy(exact, with_rates ? 0.02 : 0.005, 0.2, random));
+          identify(nominal_tentacle(), all_of_it, noisy(exact, with_rates ? 0.02 : 0.005, 0.2, random));
       const Eigen::Vector4d error = found.values - known_values;
       const Eigen::Vector4d parts = error.cwiseQuotient(found.sigma);
       EXPECT_LT(parts.cwiseAbs().maxCoeff(), 4);
@@ -132,17 +132,17 @@ TEST(Identification, TellsHowWrongItIsUnderNoise) {
 
 // In a plane nothing twists, and the rod's stiffness against it is not seen.
 TEST(Identification, FlagsWhatTheRecordDoesNotTell) {
-  const Rod believed = believed_tentacle({.shear = 0, .stretch = 0, .bend = 2, .twist = 1});
+  const Rod nominal = nominal_tentacle({.shear = 0, .stretch = 0, .bend = 2, .twist = 1});
   const RodLoads down{.gravity = {-9.81, 0, 0}};
   const RodMotionRecord exact =
-      step_response(true_tentacle(believed, {}), false, down, {4, 0, 0, 3, 0, 0}, {1, 0, 0, 5, 0, 0});
+      step_response(true_tentacle(nominal, {}), false, down, {4, 0, 0, 3, 0, 0}, {1, 0, 0, 5, 0, 0});
   std::vector<RodParameter> parameters = all_of_it;
   parameters.push_back({.kind = Kind::twist});
   parameters.push_back({.kind = Kind::shear});
   TestRandom random(case_seed(0));
   for (const bool is_noisy : {false, true}) {
     const Identification found =
-        identify(believed, parameters, is_noisy ? noisy(exact, 0.005, 0, random) : exact);
+        identify(nominal, parameters, is_noisy ? noisy(exact, 0.005, 0, random) : exact);
     EXPECT_TRUE(found.values.allFinite());
     EXPECT_TRUE(found.covariance.allFinite());
     for (const std::size_t g : {4u, 5u}) {
@@ -161,7 +161,7 @@ TEST(Identification, FlagsWhatTheRecordDoesNotTell) {
 
 // Left to itself without weight a rod tells ratios alone: mass, stiffness and damping by one factor.
 TEST(Identification, FlagsFactorsThatOnlyTheirRatiosTell) {
-  const Rod truth = true_tentacle(believed_tentacle(), {});
+  const Rod truth = true_tentacle(nominal_tentacle(), {});
   RodDynamics dynamics(truth, {.spectral_radius = 1});
   RodState state = dynamics.start(Eigen::VectorXd::Constant(8, 1.0), Eigen::VectorXd::Zero(8), {}, {});
   RodMotionRecord record;
@@ -169,14 +169,14 @@ TEST(Identification, FlagsFactorsThatOnlyTheirRatiosTell) {
     record.samples.push_back({.time = state.time, .q = state.q});
     for (int i = 0; i < 8; ++i) ASSERT_TRUE(dynamics.step(state, {}, {}, sample_time / 8).converged());
   }
-  const Identification all = identify(believed_tentacle(), all_of_it, record);
+  const Identification all = identify(nominal_tentacle(), all_of_it, record);
   EXPECT_TRUE(all.values.allFinite());
   for (std::size_t g = 0; g < 4; ++g) {
     EXPECT_FALSE(all.is_observable[g]);
     EXPECT_TRUE(std::isinf(all.sigma[static_cast<Eigen::Index>(g)]));
   }
   // With the mass believed the others are known by it.
-  const Identification some = identify(believed_tentacle(), {all_of_it.begin(), all_of_it.end() - 1}, record);
+  const Identification some = identify(nominal_tentacle(), {all_of_it.begin(), all_of_it.end() - 1}, record);
   for (Eigen::Index g = 0; g < 3; ++g)
     EXPECT_NEAR(some.values[g], known_values[g] / 1.1, 3e-3 * known_values[g]);
 }
@@ -184,15 +184,15 @@ TEST(Identification, FlagsFactorsThatOnlyTheirRatiosTell) {
 TEST(Identification, OfARodThatDoesNotMoveNothingIsKnown) {
   RodMotionRecord record;
   for (int k = 0; k < 100; ++k) record.samples.push_back({.time = 0.01 * k, .q = Eigen::VectorXd::Zero(8)});
-  const Identification found = identify(believed_tentacle(), all_of_it, record);
+  const Identification found = identify(nominal_tentacle(), all_of_it, record);
   EXPECT_TRUE(found.values.allFinite());
   for (std::size_t g = 0; g < 4; ++g) EXPECT_FALSE(found.is_observable[g]);
   record.q_noise = Eigen::VectorXd::Constant(8, 0.01);
-  EXPECT_TRUE(identify(believed_tentacle(), all_of_it, record).values.allFinite());
+  EXPECT_TRUE(identify(nominal_tentacle(), all_of_it, record).values.allFinite());
 }
 
 TEST(Identification, RefusesWhatIsNoRecord) {
-  const Rod rod = believed_tentacle();
+  const Rod rod = nominal_tentacle();
   RodMotionRecord record;
   for (int k = 0; k < 100; ++k)
     record.samples.push_back({.time = 0.01 * k, .q = Eigen::VectorXd::Constant(8, 0.1 * k)});

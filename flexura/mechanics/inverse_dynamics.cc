@@ -88,24 +88,24 @@ Eigen::MatrixXd RodDynamics::damping_matrix() const {
 }
 
 double TensionFit::residual() const {
-  return wanted_energy > 0 ? std::sqrt(missing_energy / wanted_energy) : 0;
+  return desired_energy > 0 ? std::sqrt(missing_energy / desired_energy) : 0;
 }
 
-TensionFit nearest_tensions(RodDynamics& dynamics, const Eigen::VectorXd& q, const Eigen::VectorXd& wanted,
+TensionFit nearest_tensions(RodDynamics& dynamics, const Eigen::VectorXd& q, const Eigen::VectorXd& desired,
                             const TensionFitConfig& config) {
-  require_modes(wanted, dynamics.chain().size(), "generalized forces");
-  TensionFit fit{.tensions = {}, .wanted = wanted, .missing = wanted};
+  require_modes(desired, dynamics.chain().size(), "generalized forces");
+  TensionFit fit{.tensions = {}, .desired = desired, .missing = desired};
   const auto count = static_cast<Eigen::Index>(dynamics.chain().tendons());
   const Eigen::VectorXd most = most_tensions(config, count);
   const Eigen::MatrixXd pulls = -dynamics.lengths_by_q(q).transpose();
-  if (wanted.size() == 0) {
+  if (desired.size() == 0) {
     fit.tensions.assign(dynamics.chain().tendons(), 0.0);
     return fit;
   }
   const Cholesky stiffness(dynamics.stiffness_matrix());
-  const Eigen::VectorXd goal = stiffness.solve_lower(wanted);
-  fit.wanted_energy = 0.5 * goal.squaredNorm();
-  fit.missing_energy = fit.wanted_energy;
+  const Eigen::VectorXd goal = stiffness.solve_lower(desired);
+  fit.desired_energy = 0.5 * goal.squaredNorm();
+  fit.missing_energy = fit.desired_energy;
   if (count == 0) return fit;
   const Eigen::MatrixXd made = stiffness.solve_lower(pulls);
   Eigen::MatrixXd square = made.transpose() * made;
@@ -114,7 +114,7 @@ TensionFit nearest_tensions(RodDynamics& dynamics, const Eigen::VectorXd& q, con
   const Eigen::VectorXd tensions =
       least_in_box(square, -made.transpose() * goal, Eigen::VectorXd::Zero(count), most);
   fit.tensions.assign(tensions.begin(), tensions.end());
-  fit.missing = wanted - pulls * tensions;
+  fit.missing = desired - pulls * tensions;
   fit.missing_energy = 0.5 * (goal - made * tensions).squaredNorm();
   fit.is_determined = size > 0 && rank_of(made, same_pull) == count;
   return fit;
@@ -142,15 +142,15 @@ TensionFit gravity_compensation(RodDynamics& dynamics, const Eigen::VectorXd& q,
 }
 
 TensionFit computed_torque(RodDynamics& dynamics, const Eigen::VectorXd& q, const Eigen::VectorXd& v,
-                           const RodMotionSample& wanted, const ComputedTorqueGains& gains,
+                           const RodMotionSample& desired, const ComputedTorqueGains& gains,
                            const RodLoads& loads, const TensionFitConfig& config) {
   const Eigen::Index n = dynamics.chain().size();
-  for (const Eigen::VectorXd* list : {&q, &wanted.q}) require_modes(*list, n, "modes");
-  for (const Eigen::VectorXd* list : {&v, &wanted.v}) require_modes(*list, n, "rates");
-  require_modes(wanted.a, n, "accelerations");
+  for (const Eigen::VectorXd* list : {&q, &desired.q}) require_modes(*list, n, "modes");
+  for (const Eigen::VectorXd* list : {&v, &desired.v}) require_modes(*list, n, "rates");
+  require_modes(desired.a, n, "accelerations");
   if (!std::isfinite(gains.position) || !std::isfinite(gains.velocity))
     throw std::invalid_argument("gains that are not finite");
-  const Eigen::VectorXd a = wanted.a + gains.velocity * (wanted.v - v) + gains.position * (wanted.q - q);
+  const Eigen::VectorXd a = desired.a + gains.velocity * (desired.v - v) + gains.position * (desired.q - q);
   return inverse_dynamics(dynamics, {.q = q, .v = v, .a = a}, loads, config);
 }
 

@@ -30,11 +30,11 @@ struct TensionFitConfig {
 /// Tensions that come nearest to generalized forces.
 struct TensionFit {
   std::vector<double> tensions;  ///< N, one a tendon, each from 0 to its most.
-  Eigen::VectorXd wanted;        ///< The generalized forces that were asked for.
+  Eigen::VectorXd desired;       ///< The generalized forces that were asked for.
   Eigen::VectorXd missing;       ///< What is left of them: wanted less what the tensions make.
   /// How large that is: the energy that the rod would store under them, J. Forces of wanted energy E that
   /// are missed altogether have the missing energy E.
-  double wanted_energy = 0, missing_energy = 0;
+  double desired_energy = 0, missing_energy = 0;
   /// Whether no other tensions, of whatever sign, make the same forces: the tendons do not depend on each
   /// other.
   bool is_determined = false;
@@ -43,12 +43,13 @@ struct TensionFit {
   [[nodiscard]] double residual() const;
 };
 
-/// The tensions that come nearest to generalized forces `wanted` at q: those of the least missing energy f^T
+/// The tensions that come nearest to generalized forces `desired` at q: those of the least missing energy f^T
 /// K^-1 f / 2, K the rod's stiffness, so that stiff strains count as little as they give. Of many that do,
 /// those of least effort. std::invalid_argument: another number of modes or bounds, numbers that are not
 /// finite, a bound below 0.
 [[nodiscard]] TensionFit nearest_tensions(RodDynamics& dynamics, const Eigen::VectorXd& q,
-                                          const Eigen::VectorXd& wanted, const TensionFitConfig& config = {});
+                                          const Eigen::VectorXd& desired,
+                                          const TensionFitConfig& config = {});
 
 /// The tensions of a motion at one time, under loads: nearest_tensions to its needed_forces. Errors likewise.
 [[nodiscard]] TensionFit inverse_dynamics(RodDynamics& dynamics, const RodMotionSample& motion,
@@ -73,7 +74,7 @@ struct ComputedTorqueGains {
 /// make all of the forces, the error e of all modes obeys e'' + Kd e' + Kp e = 0. Errors likewise; gains that
 /// are not finite.
 [[nodiscard]] TensionFit computed_torque(RodDynamics& dynamics, const Eigen::VectorXd& q,
-                                         const Eigen::VectorXd& v, const RodMotionSample& wanted,
+                                         const Eigen::VectorXd& v, const RodMotionSample& desired,
                                          const ComputedTorqueGains& gains, const RodLoads& loads,
                                          const TensionFitConfig& config = {});
 

@@ -160,20 +160,20 @@ TEST(InverseDynamics, TellsWhatTooFewTendonsMiss) {
 TEST(ComputedTorque, FollowsAMotionWithAnErrorThatFalls) {
   RodDynamics dynamics(arc_under_four_tendons(), {.spectral_radius = 1});
   const double radius = 1.5, rate = 6, h = 1e-3;
-  const auto wanted = [&](double t) {
+  const auto desired = [&](double t) {
     const Eigen::Vector2d out(std::cos(rate * t), std::sin(rate * t)), along(-out.y(), out.x());
     return RodMotionSample{
         .time = t, .q = radius * out, .v = radius * rate * along, .a = -radius * rate * rate * out};
   };
   const ComputedTorqueGains gains{.position = 400, .velocity = 40};
-  RodState state = dynamics.start(0.6 * wanted(0).q, Eigen::Vector2d::Zero(), {}, level_weight);
+  RodState state = dynamics.start(0.6 * desired(0).q, Eigen::Vector2d::Zero(), {}, level_weight);
   std::vector<double> errors;
   for (int step = 0; step < 1500; ++step) {
-    const TensionFit fit =
-        computed_torque(dynamics, state.q, dynamics.velocity(state), wanted(state.time), gains, level_weight);
+    const TensionFit fit = computed_torque(dynamics, state.q, dynamics.velocity(state), desired(state.time),
+                                           gains, level_weight);
     EXPECT_LT(fit.residual(), 1e-4);
     ASSERT_TRUE(dynamics.step(state, {.tensions = fit.tensions}, level_weight, h).converged());
-    errors.push_back((state.q - wanted(state.time).q).norm());
+    errors.push_back((state.q - desired(state.time).q).norm());
   }
   // e'' + 40 e' + 400 e = 0 from e = 0.4 r, e' = r w, as far as tensions stay for a step.
   for (const int step : {50, 100, 200, 300}) {

@@ -10,13 +10,13 @@
 namespace flexura {
 namespace {
 
-enum class Wish { tip, direction, pose, shape };
+enum class TargetQuantity { tip, direction, pose, shape };
 
 struct Tally {
   int robots = 0, reached = 0, least = 0, above = 0, evaluations = 0;
 };
 
-void ask(TestRandom& random, Wish wish, bool is_loaded, Tally& tally) {
+void ask(TestRandom& random, TargetQuantity quantity, bool is_loaded, Tally& tally) {
   Rod rod = random_rod(random);
   for (RodSection& section : rod.sections) section.modes = {.shear = 1, .stretch = 1, .bend = 4, .twist = 3};
   std::vector<RodPlace> places;
@@ -24,16 +24,16 @@ void ask(TestRandom& random, Wish wish, bool is_loaded, Tally& tally) {
     for (const double at : {0.3, 0.6, 1.0}) places.push_back({.section = i, .at = at});
   const std::vector<double> tensions = random_tensions(random, rod, 6);
   const RodLoads loads = is_loaded ? random_loads(random, rod) : RodLoads{};
-  RodStatics statics(rod, wish == Wish::shape ? places : std::vector<RodPlace>{});
+  RodStatics statics(rod, quantity == TargetQuantity::shape ? places : std::vector<RodPlace>{});
   const Equilibrium made = statics.solve({.tensions = tensions}, loads);
   ASSERT_TRUE(made.converged());
   if (!made.stable) return;  // Nor is it reached.
   RodTarget target;
-  if (wish != Wish::shape) target.position = made.tip.position;
-  if (wish == Wish::direction) target.direction = made.tip.rotation.col(2);
-  if (wish == Wish::pose) target.rotation = made.tip.rotation;
+  if (quantity != TargetQuantity::shape) target.position = made.tip.position;
+  if (quantity == TargetQuantity::direction) target.direction = made.tip.rotation.col(2);
+  if (quantity == TargetQuantity::pose) target.rotation = made.tip.rotation;
   for (const RodPlace& place : places) {
-    if (wish != Wish::shape) break;
+    if (quantity != TargetQuantity::shape) break;
     const RodElement& element = statics.chain().elements()[place.section];
     target.places.push_back({place, element.poses()[element.grid().node_at(place.at)].position});
   }
@@ -51,14 +51,15 @@ void ask(TestRandom& random, Wish wish, bool is_loaded, Tally& tally) {
 
 TEST(InverseStaticsFull, ManyRobotsReachWhatTensionsMade) {
   for (const bool is_loaded : {false, true}) {
-    for (const Wish wish : {Wish::tip, Wish::direction, Wish::pose, Wish::shape}) {
+    for (const TargetQuantity quantity :
+         {TargetQuantity::tip, TargetQuantity::direction, TargetQuantity::pose, TargetQuantity::shape}) {
       Tally tally;
-      for_random_cases(300, [&](TestRandom& random) { ask(random, wish, is_loaded, tally); });
+      for_random_cases(300, [&](TestRandom& random) { ask(random, quantity, is_loaded, tally); });
       const double each = static_cast<double>(tally.evaluations) / tally.robots;
       std::printf(
           "%s %d: of %d robots %d reached, %d with least effort, %d above that which made the target; "
           "%.1f equilibria each\n",
-          is_loaded ? "loaded" : "not loaded", static_cast<int>(wish), tally.robots, tally.reached,
+          is_loaded ? "loaded" : "not loaded", static_cast<int>(quantity), tally.robots, tally.reached,
           tally.least, tally.above, each);
       EXPECT_EQ(tally.reached, tally.robots);
       EXPECT_GE(tally.least, 0.98 * tally.robots);

@@ -206,15 +206,15 @@ TEST(InverseStatics, OutOfReachItComesAsNearAsAnyTensions) {
     for (int b = 0; b <= steps; ++b)
       tips.push_back(statics.solve({.tensions = {most * a / steps, most * b / steps}}, loads).tip.position);
   for_random_cases(30, [&](TestRandom& random) {
-    const Eigen::Vector3d wanted(random.uniform(-0.4, 0.4), random.uniform(-0.05, 0.05),
-                                 random.uniform(-0.2, 0.4));
+    const Eigen::Vector3d desired(random.uniform(-0.4, 0.4), random.uniform(-0.05, 0.05),
+                                  random.uniform(-0.2, 0.4));
     double best = std::numeric_limits<double>::infinity();
-    for (const Eigen::Vector3d& tip : tips) best = std::min(best, (tip - wanted).norm());
+    for (const Eigen::Vector3d& tip : tips) best = std::min(best, (tip - desired).norm());
     const InverseStaticsResult result =
-        solve_inverse_statics(statics, {.position = wanted}, loads, {most, most});
+        solve_inverse_statics(statics, {.position = desired}, loads, {most, most});
     ASSERT_EQ(result.end, InverseStaticsEnd::nearest);
     EXPECT_FALSE(result.reached() || result.is_least || result.problem.empty());
-    EXPECT_NEAR((result.equilibrium.tip.position - wanted).norm(), result.position_error, 1e-12);
+    EXPECT_NEAR((result.equilibrium.tip.position - desired).norm(), result.position_error, 1e-12);
     EXPECT_LE(result.position_error, best + 1e-7);
     EXPECT_GE(result.position_error, best - 2e-3);
   });

@@ -49,7 +49,7 @@ class PlaceFit {
   // From `q` on, to the least |p(q) - positions|^2 / noise^2 + |q / spread|^2. What is left of the positions.
   VectorXd fit(std::span<const Eigen::Vector3d> positions, double noise, const VectorXd& spread,
                VectorXd& q) {
-    wanted_ = positions, noise_ = noise;
+    desired_ = positions, noise_ = noise;
     const VectorXd prior = spread.cwiseAbs2().cwiseInverse();
     VectorXd left = left_at(q), at = q, next = q, then = left;
     MatrixXd information;
@@ -100,7 +100,7 @@ class PlaceFit {
     chain_.place(q);
     VectorXd left(rows_);
     for (std::size_t i = 0; i < nodes_.size(); ++i)
-      left.segment<3>(3 * static_cast<Index>(i)) = position(nodes_[i]) - wanted_[i];
+      left.segment<3>(3 * static_cast<Index>(i)) = position(nodes_[i]) - desired_[i];
     return left;
   }
   MatrixXd slopes_at(const VectorXd& q) {
@@ -123,7 +123,7 @@ class PlaceFit {
   RodChain chain_;
   Index rows_;
   std::vector<Node> nodes_;
-  std::span<const Eigen::Vector3d> wanted_;
+  std::span<const Eigen::Vector3d> desired_;
   double noise_ = 1;
   MatrixXd covariance_;
 };

@@ -111,8 +111,8 @@ class RodElement {
     double left = 1;  // Of the tension at the tendon's base; of a chord that begins here.
   };
   [[nodiscard]] static Eigen::Vector3d way(const Passage& passage, const Vector6d& strain);
-  [[nodiscard]] static Eigen::Vector3d way_slope(const Passage& passage, const Vector6d& strain,
-                                                 const Vector6d& slope);
+  [[nodiscard]] static Eigen::Vector3d path_slope(const Passage& passage, const Vector6d& strain,
+                                                  const Vector6d& slope);
   [[nodiscard]] Vector6d strain_slope(std::size_t node) const;
   [[nodiscard]] const std::vector<Passage>* passages_of(std::size_t tendon) const;
   // What a wrench makes of how the intervals turn each other.

@@ -33,7 +33,8 @@ Eigen::Vector3d RodElement::way(const Passage& passage, const Vector6d& strain) 
 }
 
 // How that changes for each metre, the turning of the frame included.
-Eigen::Vector3d RodElement::way_slope(const Passage& passage, const Vector6d& strain, const Vector6d& slope) {
+Eigen::Vector3d RodElement::path_slope(const Passage& passage, const Vector6d& strain,
+                                       const Vector6d& slope) {
   const Eigen::Vector3d u = strain.tail<3>();
   return u.cross(way(passage, strain)) + slope.head<3>() + slope.tail<3>().cross(passage.offset) +
          u.cross(passage.slope) + passage.second;
@@ -70,7 +71,7 @@ void RodElement::rub(std::size_t tendon, double friction, Run& run) {
   for (std::size_t k = 0; k < passages.size(); ++k) {
     const Eigen::Vector3d along = way(passages[k], strain_[k]);
     rates_[static_cast<Eigen::Index>(k)] =
-        along.cross(way_slope(passages[k], strain_[k], strain_slope(k))).norm() / along.squaredNorm();
+        along.cross(path_slope(passages[k], strain_[k], strain_slope(k))).norm() / along.squaredNorm();
   }
   const double before = run.turned;
   for (std::size_t k = 0; k < passages.size(); ++k) {
@@ -121,21 +122,21 @@ void RodElement::rub_change(std::size_t tendon, double friction, double tension,
   const auto strain_change = [&](const Eigen::MatrixXd& modes, std::size_t node) {
     return grid_.strain(none, dq, modes.col(static_cast<Eigen::Index>(node)));
   };
-  const auto way_change = [&](std::size_t node) {
+  const auto path_change = [&](std::size_t node) {
     const Vector6d strain = strain_change(grid_.at_node, node);
     return Eigen::Vector3d(strain.head<3>() + strain.tail<3>().cross((*passages)[node].offset));
   };
   const Eigen::Vector3d first = way((*passages)[0], strain_[0]);
-  turn_to(first.normalized(), unit_change(first, way_change(0)));
+  turn_to(first.normalized(), unit_change(first, path_change(0)));
   const std::size_t nodes = grid_.t.size();
   Eigen::VectorXd rate_changes(static_cast<Eigen::Index>(nodes));
   for (std::size_t k = 0; k < nodes; ++k) {
     const Passage& passage = (*passages)[k];
     const Eigen::Vector3d along = way(passage, strain_[k]),
-                          turning = way_slope(passage, strain_[k], strain_slope(k));
+                          turning = path_slope(passage, strain_[k], strain_slope(k));
     const Vector6d by_strain = strain_change(grid_.at_node, k),
                    by_slope = strain_change(grid_.slope_at_node, k);
-    const Eigen::Vector3d d_along = way_change(k), du = by_strain.tail<3>();
+    const Eigen::Vector3d d_along = path_change(k), du = by_strain.tail<3>();
     const Eigen::Vector3d d_turning = du.cross(along) + strain_[k].tail<3>().cross(d_along) +
                                       by_slope.head<3>() + by_slope.tail<3>().cross(passage.offset) +
                                       du.cross(passage.slope);
@@ -161,7 +162,7 @@ void RodElement::rub_change(std::size_t tendon, double friction, double tension,
   }
   const Eigen::Vector3d last = way(passages->back(), strain_.back());
   run.direction = last.normalized();
-  change.direction = unit_change(last, way_change(nodes - 1));
+  change.direction = unit_change(last, path_change(nodes - 1));
 }
 
 }  // namespace flexura

@@ -28,7 +28,7 @@ constexpr double first_stride = 0.2, longest_stride = 1, shortest_stride = 1e-7;
 constexpr double shortest_at_branch = 1e-3;
 constexpr int max_strides = 2000, max_correction = 8;
 constexpr int max_iterations = 1500;  // Linear systems of one search.
-constexpr double longest_way = 400;   // Sections turn around many times.
+constexpr double longest_path = 400;  // Sections turn around many times.
 constexpr double least_share = -0.5;  // Of the load, where a way turned back.
 
 bool all_finite(const std::vector<double>& values) {
@@ -283,7 +283,7 @@ bool RodStatics::follow(Equilibrium& result, Unknowns& at) {
       if (negative_ != negative && !turns) stride = std::max(stride, afterwards);
       break;
     }
-    if (way > longest_way || share < least_share) {
+    if (way > longest_path || share < least_share) {
       result.end = StaticsEnd::no_equilibrium;
       return false;
     }
@@ -292,7 +292,7 @@ bool RodStatics::follow(Equilibrium& result, Unknowns& at) {
 }
 
 // Whether no part of the rod is turned inside out.
-bool RodStatics::is_right_way_out() const {
+bool RodStatics::has_positive_stretch() const {
   return std::ranges::all_of(chain_.elements(), [](const RodElement& element) {
     return std::ranges::all_of(element.strains(), [](const Vector6d& strain) { return strain[2] > 0; });
   });
@@ -344,7 +344,7 @@ Equilibrium RodStatics::solve_from(const Unknowns& start, bool is_cold) {
     }
   }
   // A rod cannot pass through itself.
-  if (found && !is_right_way_out()) {
+  if (found && !has_positive_stretch()) {
     found = false;
     result.end = StaticsEnd::no_equilibrium;
   }

@@ -111,7 +111,7 @@ class RodStatics {
   [[nodiscard]] double compliance(std::size_t tendon) const;
   Descent descend(Unknowns& at, double share);
   bool follow(Equilibrium& result, Unknowns& at);
-  [[nodiscard]] bool is_right_way_out() const;
+  [[nodiscard]] bool has_positive_stretch() const;
   void finish(Equilibrium& result, const Unknowns& at);
   Equilibrium solve_from(const Unknowns& start, bool is_cold);
   void solve_with_friction(Eigen::MatrixXd& rhs);

@@ -28,7 +28,7 @@ Rod finer(Rod rod, int modes) {
   return rod;
 }
 
-TEST(StaticsWitness, AThousandRobotsFromACold) {
+TEST(StaticsReference, AThousandRobotsFromACold) {
   double worst = 0;
   for_random_cases(1000, [&](TestRandom& random) {
     const Rod rod = random_rod(random);
@@ -36,8 +36,8 @@ TEST(StaticsWitness, AThousandRobotsFromACold) {
     const RodLoads loads = random_loads(random, rod);
     const Equilibrium at = RodStatics(rod).solve({.tensions = tensions}, loads);
     ASSERT_TRUE(at.converged()) << words(at.end);
-    ShootingRod witness(rod, tensions, loads);
-    const ShootingRod::Shot shot = witness.shoot(wrench_at_base(rod, at, tensions, loads));
+    ShootingRod run_recorder(rod, tensions, loads);
+    const ShootingRod::Shot shot = run_recorder.shoot(wrench_at_base(rod, at, tensions, loads));
     ASSERT_TRUE(shot.hit) << shot.miss;
     const double difference = (shot.tip.position - at.tip.position).norm() / rod.length();
     worst = std::max(worst, difference);
@@ -53,7 +53,7 @@ TEST(StaticsWitness, AThousandRobotsFromACold) {
   std::printf("the farthest from the witness: %.1e of the length\n", worst);
 }
 
-TEST(StaticsWitness, EachModeMoreComesNearer) {
+TEST(StaticsReference, EachModeMoreComesNearer) {
   for_random_cases(12, [](TestRandom& random) {
     Rod rod = random_rod(random);
     for (RodSection& section : rod.sections) section.masses.clear();  // There the curvature has a kink.
@@ -61,8 +61,8 @@ TEST(StaticsWitness, EachModeMoreComesNearer) {
     RodLoads loads = random_loads(random, rod);
     loads.gravity = random.vector<3>(-10.0, 10.0);
     const Equilibrium first = RodStatics(rod).solve({.tensions = tensions}, loads);
-    ShootingRod witness(rod, tensions, loads);
-    const ShootingRod::Shot shot = witness.shoot(wrench_at_base(rod, first, tensions, loads));
+    ShootingRod run_recorder(rod, tensions, loads);
+    const ShootingRod::Shot shot = run_recorder.shoot(wrench_at_base(rod, first, tensions, loads));
     ASSERT_TRUE(shot.hit);
     const auto error = [&](int modes) {
       const Equilibrium at = RodStatics(finer(rod, modes)).solve({.tensions = tensions}, loads);

@@ -17,10 +17,10 @@ constexpr int max_corrections = 200;
 // What the derivative makes to rhs, with what friction adds to it: by corrections, each smaller by about the
 // friction times the angle that tendons turn.
 void RodStatics::solve_with_friction(Eigen::MatrixXd& rhs) {
-  const Eigen::MatrixXd wanted = rhs;
+  const Eigen::MatrixXd desired = rhs;
   chain_.solve(rhs);
   for (int i = 0; i < max_corrections && chain_.has_friction(); ++i) {
-    Eigen::MatrixXd next = wanted;
+    Eigen::MatrixXd next = desired;
     for (Eigen::Index c = 0; c < rhs.cols(); ++c) next.col(c) -= chain_.friction_change(rhs.col(c), pulls_);
     chain_.solve(next);
     const double change = (next - rhs).cwiseAbs().maxCoeff(), size = next.cwiseAbs().maxCoeff();

@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "flexura/model/arm_way.h"
+#include "flexura/model/arm_difference.h"
 
 namespace flexura {
 namespace {

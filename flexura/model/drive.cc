@@ -26,7 +26,7 @@ double Axis::microsteps_a_metre() const {
   return motor.resolution() * spool.gear / (2 * std::numbers::pi * spool.radius);
 }
 
-double Axis::play() const {
+double Axis::backlash_steps() const {
   return motor.resolution() * spool.gear * (spool.backlash / (2 * std::numbers::pi));
 }
 

@@ -66,7 +66,7 @@ struct Axis {
   /// Returns the microsteps per metre of cable; positive.
   [[nodiscard]] double microsteps_a_metre() const;
   /// Returns the backlash in microsteps; >= 0, rarely an integer.
-  [[nodiscard]] double play() const;
+  [[nodiscard]] double backlash_steps() const;
   /// Returns the motor's torque for a tension, N m; without losses.
   [[nodiscard]] double torque(double tension) const { return tension * spool.radius / spool.gear; }
   /// Returns the highest cable speed of the motor and its controller, m/s.

@@ -61,7 +61,7 @@ void check_positions(const Drive& drive, const ArmConfig& arm, const std::string
   const double turns = 2 * angle_range.max * static_cast<double>(arm.section.size());
   for (std::size_t i = 0; i < drive.axes.size(); ++i) {
     const double farthest = (length + turns * drive.tendons[i].radius) * drive.axes[i].microsteps_a_metre() +
-                            drive.axes[i].play();
+                            drive.axes[i].backlash_steps();
     if (farthest < max_position) continue;
     reader.problem_at(fmt::format("{}[{}]", path, i),
                       fmt::format("makes up to {:.1e} microsteps: expected less than {:.1e}, by a larger "

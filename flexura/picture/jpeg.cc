@@ -28,7 +28,7 @@ void give_up(j_common_ptr job) {
   std::longjmp(errors->back, 1);
 }
 
-void say_nothing(j_common_ptr /*job*/) {}
+void ignore_message(j_common_ptr /*job*/) {}
 
 struct Output {
   unsigned char* bytes = nullptr;  // Allocated by libjpeg with malloc.
@@ -74,7 +74,7 @@ std::string jpeg(const Image<std::uint8_t>& image, JpegConfig config) {
   Errors errors{};
   job.err = jpeg_std_error(&errors.manager);
   errors.manager.error_exit = give_up;
-  errors.manager.output_message = say_nothing;
+  errors.manager.output_message = ignore_message;
   Output out;
   const bool is_written = write(image, config.quality, &job, &errors, &out);
   jpeg_destroy_compress(&job);

@@ -38,7 +38,7 @@ CommandOutcome halt_camera(const CameraPorts& ports) {
   return head ? stage : head;
 }
 
-Outcome<CameraStance> said_stance(const CameraPorts& ports, const Camera& optics) {
+Outcome<CameraStance> measured_stance(const CameraPorts& ports, const Camera& optics) {
   CameraStance stance = optics.initial_stance();
   if (ports.head != nullptr) {
     const auto head = ports.head->read();

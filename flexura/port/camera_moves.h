@@ -24,7 +24,7 @@ namespace flexura {
 /// Returns the axis positions that head and stage report; missing ones are at their initial positions.
 /// Returns the first fault of the two. The positions are not checked, unlike those of read_camera()
 /// (port/rig_readings.h).
-[[nodiscard]] Outcome<CameraStance> said_stance(const CameraPorts& ports, const Camera& optics);
+[[nodiscard]] Outcome<CameraStance> measured_stance(const CameraPorts& ports, const Camera& optics);
 
 /// Returns the reason why a camera cannot pan, tilt and zoom, with its name, or "" if it has a head.
 [[nodiscard]] std::string missing_head(const CameraPorts& ports);

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "flexura/camera/camera_config.h"
-#include "tests/support/said_ports.h"
+#include "tests/support/stub_ports.h"
 
 namespace flexura {
 namespace {
@@ -18,7 +18,7 @@ TEST(CameraMoves, ACameraWithoutAHeadOrAStageStaysWhereItStands) {
   EXPECT_TRUE(command_head(bare, optics, optics.initial_head()));
   EXPECT_TRUE(command_stage(bare, optics, optics.initial_stage()));
   EXPECT_TRUE(halt_camera(bare));
-  EXPECT_EQ(said_stance(bare, optics).value(), optics.initial_stance());
+  EXPECT_EQ(measured_stance(bare, optics).value(), optics.initial_stance());
   EXPECT_EQ(text(*command_head(bare, optics, {0.2, 0, 1}).fault()),
             "refused: camera side has no head: it can be neither turned nor zoomed");
   EXPECT_EQ(text(*command_stage(bare, optics, {{0, 0, 0.1}}).fault()),
@@ -33,16 +33,17 @@ TEST(CameraMoves, ACameraWithoutAHeadOrAStageStaysWhereItStands) {
 TEST(CameraMoves, ACameraWithBothIsToldAndAskedAsItIs) {
   CameraConfig config;
   config.mount.look_at = {0, 0, 1};
-  SaidHead head;
-  SaidStage stage;
+  StubHead head;
+  StubStage stage;
   const CameraPorts ports{"side", nullptr, &head, &stage};
   const Camera optics(config);
   EXPECT_TRUE(command_head(ports, optics, {0.2, 0, 1}));
   EXPECT_TRUE(command_stage(ports, optics, {{0, 0, 0.1}}));
-  EXPECT_EQ(said_stance(ports, optics).value(), (CameraStance{head.says.state, stage.says.state}));
+  EXPECT_EQ(measured_stance(ports, optics).value(),
+            (CameraStance{head.next_reading.state, stage.next_reading.state}));
   EXPECT_EQ(missing_head(ports) + missing_stage(ports, optics), "");
   stage.fault = PortFault{FaultKind::link_lost, "gone"};
-  EXPECT_EQ(said_stance(ports, optics).fault()->what, "gone");
+  EXPECT_EQ(measured_stance(ports, optics).fault()->what, "gone");
   EXPECT_EQ(halt_camera(ports).fault()->what, "gone");
 }
 

@@ -154,16 +154,16 @@ bool DeviceClock::add(double device, double earliest, double latest) {
   if (!is_known()) start(device, latest);
   constexpr int patience = 3;
   const std::deque<Second> before = seconds_;
-  const bool is_odd = is_early(device, latest);
+  const bool is_outlier = is_early(device, latest);
   keep(device, earliest, latest);
   auto slopes = possible_slopes();
-  if (is_odd || !slopes) {
-    if (++odd_ < patience) {
+  if (is_outlier || !slopes) {
+    if (++outliers_ < patience) {
       seconds_ = before;
       return false;
     }
     // Only those earlier bounds remain that agree with these times.
-    if (is_odd) {
+    if (is_outlier) {
       start(device, latest);
       keep(device, earliest, latest);
     }
@@ -174,7 +174,7 @@ bool DeviceClock::add(double device, double earliest, double latest) {
       slopes = possible_slopes();
     }
   }
-  odd_ = 0;
+  outliers_ = 0;
   slopes_ = slopes.value_or(Slopes{-config_.drift, config_.drift});
   return true;
 }

@@ -82,7 +82,7 @@ class DeviceClock {
   double device_origin_ = 0, rig_origin_ = 0;
   std::deque<Second> seconds_;
   Slopes slopes_ = {0, 0};
-  int odd_ = 0;  // Outliers in a row.
+  int outliers_ = 0;  // Outliers in a row.
 };
 
 }  // namespace flexura

@@ -9,7 +9,7 @@
 
 #include "flexura/port/clocked_ports.h"
 #include "tests/support/random_cases.h"
-#include "tests/support/said_ports.h"
+#include "tests/support/stub_ports.h"
 
 namespace flexura {
 namespace {
@@ -38,14 +38,15 @@ TEST(DeviceClock, BoundsTheRigsTimeByWhenItAskedAndWhenItWasAnswered) {
     int count = 0;
     for (int i = 0; i < 600; ++i) {
       now += random.uniform(0.02, 0.2);
-      const double asked = now, said = now + random_delay(random), answered = said + random_delay(random);
-      ASSERT_TRUE(clock.add(own.shows(said), asked, answered));
+      const double asked = now, reported = now + random_delay(random),
+                   answered = reported + random_delay(random);
+      ASSERT_TRUE(clock.add(own.shows(reported), asked, answered));
       now = answered;
-      const double ago = random.uniform(0, 5), when = std::max(said - ago, asked - 5);
+      const double ago = random.uniform(0, 5), when = std::max(reported - ago, asked - 5);
       const double error = std::abs(clock.rig_time(own.shows(when)) - when);
       ASSERT_LE(error, clock.uncertainty(own.shows(when))) << "it is a bound";
       if (i < 300) continue;
-      ASSERT_LE(clock.uncertainty(own.shows(said)), 2e-3) << "the delays are 2 to 50 times as long";
+      ASSERT_LE(clock.uncertainty(own.shows(reported)), 2e-3) << "the delays are 2 to 50 times as long";
       sum += error * error, ++count;
     }
     EXPECT_LE(std::sqrt(sum / count), 3e-4);
@@ -149,14 +150,14 @@ class WaitedClock : public ClockPort {
   double time = 0;
 };
 
-class SlowHead : public SaidHead {
+class SlowHead : public StubHead {
  public:
   SlowHead(WaitedClock& rig, const OwnClock& own, TestRandom& random)
       : rig_(rig), own_(own), random_(random) {}
   Outcome<HeadReading> read() override {
     rig_.time += random_delay(random_);
-    says.time = own_.shows(truth = rig_.time);
-    auto reading = SaidHead::read();
+    next_reading.time = own_.shows(truth = rig_.time);
+    auto reading = StubHead::read();
     rig_.time += random_delay(random_);
     return reading;
   }
@@ -181,7 +182,7 @@ TEST(ClockedPorts, ReadingsOfADeviceWithItsOwnClockHaveTheRigsTime) {
       EXPECT_GE(reading.time, last);
       EXPECT_LE(reading.time, rig.time);
       EXPECT_NEAR(reading.time, slow.truth, i < 100 ? rig.time - asked : 4e-3);
-      EXPECT_EQ(reading.state, slow.says.state);
+      EXPECT_EQ(reading.state, slow.next_reading.state);
       last = reading.time;
       rig.time += 0.05;
     }
@@ -203,7 +204,7 @@ TEST(ClockedPorts, TimesDoNotGoBackWhereTheDevicesGoOn) {
 }
 
 // Frames arrive late, each with its own delay; their times are of the device's clock.
-class ToldCamera : public CameraPort {
+class StubCameraPort : public CameraPort {
  public:
   std::optional<Frame> next;
   Outcome<std::optional<Frame>> newest() override { return next; }
@@ -213,7 +214,7 @@ class ToldCamera : public CameraPort {
 TEST(ClockedPorts, FramesOfACameraWithItsOwnClockHaveTheRigsTime) {
   for_random_cases(10, [](TestRandom& random) {
     const OwnClock own = random_clock(random);
-    ToldCamera device;
+    StubCameraPort device;
     DeviceClock clock;
     ClockedCamera camera(device, clock, 0.04);
     EXPECT_FALSE(camera.newest().value());

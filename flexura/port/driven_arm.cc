@@ -36,7 +36,7 @@ std::string command_problem(const Arm& arm, const ArmState& state, double durati
   return "";
 }
 
-std::vector<std::int64_t> believed_positions(const Arm& arm, const Drive& drive, const ArmState& state) {
+std::vector<std::int64_t> nominal_positions(const Arm& arm, const Drive& drive, const ArmState& state) {
   return MotorCommander(drive, tendon_displacements(arm, drive, state)).positions();
 }
 
@@ -92,17 +92,17 @@ CommandOutcome DrivenArm::command(const ArmState& state, double duration) {
 }
 
 CommandOutcome DrivenArm::pull(const std::vector<double>& displacements, double duration) {
-  const TendonDisplacements wanted{displacements};
-  if (wanted.pulled.size() != drive_.axes.size() || !all_finite(wanted.pulled))
+  const TendonDisplacements desired{displacements};
+  if (desired.pulled.size() != drive_.axes.size() || !all_finite(desired.pulled))
     return arm_refuses(fmt::format("expected {} finite displacements of tendons", drive_.axes.size()));
-  if (!counts_motors()) return port_.command(wanted.pulled, duration);
+  if (!counts_motors()) return port_.command(desired.pulled, duration);
   constexpr double most_microsteps = 1e15;
-  for (std::size_t i = 0; i < wanted.pulled.size(); ++i)
-    if (!(std::abs(wanted.pulled[i]) * drive_.axes[i].microsteps_a_metre() < most_microsteps))
+  for (std::size_t i = 0; i < desired.pulled.size(); ++i)
+    if (!(std::abs(desired.pulled[i]) * drive_.axes[i].microsteps_a_metre() < most_microsteps))
       return arm_refuses("a motor cannot count so far");
   // If the controller refuses the command, the backlash stays on its side.
   MotorCommander next = commander_;
-  next.follow(wanted);
+  next.follow(desired);
   const std::vector<double> targets(next.positions().begin(), next.positions().end());
   auto outcome = port_.command(targets, duration);
   if (outcome) commander_ = std::move(next);
@@ -127,7 +127,7 @@ std::vector<double> DrivenArm::carried(const DriveReading& reading) {
   std::vector<double> result;
   for (std::size_t i = 0; i < drive_.axes.size(); ++i) {
     const double motor = sense_of(drive_.axes[i]) * reading.values[i];
-    followed_[i] = std::clamp(followed_[i], motor, motor + drive_.axes[i].play());
+    followed_[i] = std::clamp(followed_[i], motor, motor + drive_.axes[i].backlash_steps());
     result.push_back(sense_of(drive_.axes[i]) * followed_[i]);
   }
   return result;
@@ -136,17 +136,17 @@ std::vector<double> DrivenArm::carried(const DriveReading& reading) {
 Outcome<ArmReading> DrivenArm::read() {
   const auto outcome = port_.read();
   if (const auto fault = outcome.fault()) return *fault;
-  const DriveReading& said = outcome.value();
-  if (const std::string problem = problem_of(said); !problem.empty()) return arm_refuses(problem);
+  const DriveReading& reported = outcome.value();
+  if (const std::string problem = problem_of(reported); !problem.empty()) return arm_refuses(problem);
   ArmReading reading;
-  reading.time = said.time;
-  reading.moving = said.moving;
+  reading.time = reported.time;
+  reading.moving = reported.moving;
   if (!counts_motors()) {
-    reading.state = fit_state(arm_, drive_, {said.values}).state;
+    reading.state = fit_state(arm_, drive_, {reported.values}).state;
     return reading;
   }
-  reading.state = shape_carried(arm_, drive_, zero_, carried(said));
-  for (const double position : said.values) reading.positions.push_back(std::llround(position));
+  reading.state = shape_carried(arm_, drive_, zero_, carried(reported));
+  for (const double position : reported.values) reading.positions.push_back(std::llround(position));
   return reading;
 }
 

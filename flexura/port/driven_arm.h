@@ -19,8 +19,8 @@ namespace flexura {
 /// Returns the motor positions, microsteps, at which a drive holds an arm in a shape by the model, with the
 /// backlash compensated for pulling in. Throws std::invalid_argument if the shape or the drive is of another
 /// arm.
-[[nodiscard]] std::vector<std::int64_t> believed_positions(const Arm& arm, const Drive& drive,
-                                                           const ArmState& state);
+[[nodiscard]] std::vector<std::int64_t> nominal_positions(const Arm& arm, const Drive& drive,
+                                                          const ArmState& state);
 
 /// An arm behind a motion controller. The model of the arm and its drive converts shapes to targets, with
 /// backlash compensation, and the controller's readings to shapes. So a controller's driver needs neither
@@ -32,7 +32,7 @@ namespace flexura {
 /// backlash.
 class DrivenArm : public ArmPort {
  public:
-  /// The arm is in `initial`, its motors at believed_positions(). `port` must outlive this object. Throws
+  /// The arm is in `initial`, its motors at nominal_positions(). `port` must outlive this object. Throws
   /// std::invalid_argument if the controller takes tensions, has another number of axes than the drive, or
   /// the drive or shape is of another arm. Tensions need statics to make a shape, which the model does not
   /// have.
@@ -63,7 +63,7 @@ class DrivenArm : public ArmPort {
 };
 
 /// Returns the displacements, m, where the motors are at 0 if the motors at `positions`, microsteps, make
-/// this shape. They are 0 up to rounding. Throws like believed_positions().
+/// this shape. They are 0 up to rounding. Throws like nominal_positions().
 [[nodiscard]] std::vector<double> displacements_at_zero(const Arm& arm, const Drive& drive,
                                                         const ArmState& state,
                                                         const std::vector<std::int64_t>& positions);

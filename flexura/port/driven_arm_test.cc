@@ -69,8 +69,8 @@ Drive three_tendons(double backlash = 0) {
 
 ArmState bent(double x, double y) { return {{{x, y}}, {1}}; }
 
-double off(DrivenArm& arm, const ArmState& wanted) {
-  return (arm.read().value().state.bends[0] - wanted.bends[0]).norm();
+double off(DrivenArm& arm, const ArmState& desired) {
+  return (arm.read().value().state.bends[0] - desired.bends[0]).norm();
 }
 
 // Bend that half a microstep of each tendon makes, rad.
@@ -79,18 +79,18 @@ double half_step(const Drive& drive) {
 }
 
 TEST(DrivenArm, PullsEachTendonWhateverShapeThatMakes) {
-  const double play = 0.05;
+  const double backlash = 0.05;
   SentDrive drive;
-  DrivenArm arm(drive, one_section(), three_tendons(play), ArmState::straight(1));
-  const std::vector<double> wanted = {0.004, 0.001, -0.002};
-  ASSERT_TRUE(arm.pull(wanted, 2));
+  DrivenArm arm(drive, one_section(), three_tendons(backlash), ArmState::straight(1));
+  const std::vector<double> desired = {0.004, 0.001, -0.002};
+  ASSERT_TRUE(arm.pull(desired, 2));
   EXPECT_EQ(drive.lasts, 2);
-  const Drive believed = three_tendons(play);
+  const Drive nominal = three_tendons(backlash);
   for (std::size_t i = 0; i < 3; ++i) {
-    const double sense = believed.axes[i].reversed ? -1 : 1;
+    const double sense = nominal.axes[i].reversed ? -1 : 1;
     // A motor that pays out turns further by the backlash.
     const double motor =
-        wanted[i] * believed.axes[i].microsteps_a_metre() - (i == 2 ? believed.axes[i].play() : 0);
+        desired[i] * nominal.axes[i].microsteps_a_metre() - (i == 2 ? nominal.axes[i].backlash_steps() : 0);
     EXPECT_NEAR(sense * drive.at[i], motor, 1) << i;
   }
   const std::vector<double> before = drive.at;
@@ -107,13 +107,13 @@ TEST(DrivenArm, MakesMicrostepsOfShapesAndShapesOfMicrosteps) {
     SentDrive port;
     DrivenArm arm(port, one_section(), drive, ArmState::straight(1));
     EXPECT_EQ(arm.read().value().positions, std::vector<std::int64_t>(3, 0));
-    const ArmState wanted = bent(random.uniform(-1, 1), random.uniform(-1, 1));
-    ASSERT_TRUE(arm.command(wanted, 0.25));
+    const ArmState desired = bent(random.uniform(-1, 1), random.uniform(-1, 1));
+    ASSERT_TRUE(arm.command(desired, 0.25));
     EXPECT_EQ(port.lasts, 0.25);
-    const auto exact = motor_positions(drive, tendon_displacements(one_section(), drive, wanted));
+    const auto exact = motor_positions(drive, tendon_displacements(one_section(), drive, desired));
     for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(port.at[i], std::round(exact[i]));
     const ArmReading reading = arm.read().value();
-    EXPECT_LE(off(arm, wanted), half_step(drive));
+    EXPECT_LE(off(arm, desired), half_step(drive));
     EXPECT_EQ(reading.positions[1], std::llround(exact[1]));
     EXPECT_EQ(reading.time, 7);
     EXPECT_TRUE(reading.moving);
@@ -125,10 +125,10 @@ TEST(DrivenArm, SendsADriveOfDisplacementsWhatItsTendonsNeed) {
   SentDrive port;
   port.takes = DriveQuantity::tendon_displacements;
   DrivenArm arm(port, one_section(), drive, ArmState::straight(1));
-  for (const ArmState& wanted : {bent(0.4, -0.3), bent(-0.2, 0.1)}) {
-    ASSERT_TRUE(arm.command(wanted, 0));
-    EXPECT_EQ(port.at, tendon_displacements(one_section(), drive, wanted).pulled);
-    EXPECT_LE(off(arm, wanted), 1e-12);
+  for (const ArmState& desired : {bent(0.4, -0.3), bent(-0.2, 0.1)}) {
+    ASSERT_TRUE(arm.command(desired, 0));
+    EXPECT_EQ(port.at, tendon_displacements(one_section(), drive, desired).pulled);
+    EXPECT_LE(off(arm, desired), 1e-12);
     EXPECT_TRUE(arm.read().value().positions.empty());
   }
 }
@@ -153,14 +153,14 @@ TEST(DrivenArm, RefusesAControllerOfOtherAxes) {
 // The motors move through the backlash at reversals, and the readings give the tendons' positions.
 TEST(DrivenArm, TakesUpThePlayAndFollowsItInWhatIsRead) {
   const Drive drive = three_tendons(0.1);
-  ASSERT_GT(drive.axes[0].play(), 40);
+  ASSERT_GT(drive.axes[0].backlash_steps(), 40);
   for_random_cases(30, [&](TestRandom& random) {
     SentDrive port;
     DrivenArm arm(port, one_section(), drive, ArmState::straight(1));
     for (int i = 0; i < 8; ++i) {
-      const ArmState wanted = bent(random.uniform(-1, 1), random.uniform(-1, 1));
-      ASSERT_TRUE(arm.command(wanted, 0));
-      EXPECT_LE(off(arm, wanted), half_step(drive));
+      const ArmState desired = bent(random.uniform(-1, 1), random.uniform(-1, 1));
+      ASSERT_TRUE(arm.command(desired, 0));
+      EXPECT_LE(off(arm, desired), half_step(drive));
     }
   });
 }

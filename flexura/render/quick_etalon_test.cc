@@ -13,15 +13,15 @@
 namespace flexura {
 namespace {
 
-Sight etalon_sight(TestRandom& random) {
-  Sight sight;
-  Etalon& etalon = sight.scene.etalon.emplace();
+SceneView etalon_scene(TestRandom& random) {
+  SceneView scene_view;
+  Etalon& etalon = scene_view.scene.etalon.emplace();
   etalon.X_WE = {so3_exp(random.vector<3>(-1, 1)), random.vector<3>(-0.2, 0.2)};
   etalon.radius = random.uniform(0.03, 0.15), etalon.height = random.uniform(0.2, 0.8);
   etalon.line_width = random.integer(0, 4) == 0 ? 0 : random.uniform(0.002, 0.03);
   etalon.albedo = {0.1, 0.15, 0.2}, etalon.line_albedo = {0.9, 0.1, 0.1};
-  if (random.integer(0, 1) == 1) sight.pixels = PixelKind::color;
-  return sight;
+  if (random.integer(0, 1) == 1) scene_view.pixels = PixelKind::color;
+  return scene_view;
 }
 
 // From 1.5 to 4 m, the etalon anywhere in the picture, half of the lenses with distortion.
@@ -38,13 +38,13 @@ View view_of(TestRandom& random, const Scene& scene, int width, int height) {
 }
 
 // Screens beside the etalon, in front of it, behind it or through it.
-void add_screens(TestRandom& random, Sight& sight) {
-  const Eigen::Vector3d ahead = sight.view.X_WC.rotation.col(2);
+void add_screens(TestRandom& random, SceneView& scene_view) {
+  const Eigen::Vector3d ahead = scene_view.view.X_WC.rotation.col(2);
   for (int i = random.integer(0, 2); i > 0; --i) {
-    Screen& screen = sight.scene.screens.emplace_back();
+    Screen& screen = scene_view.scene.screens.emplace_back();
     screen.X_WS.rotation = rotation_from_z((-ahead + 0.6 * random.vector<3>(-1, 1)).normalized());
-    screen.X_WS.position =
-        sight.scene.etalon->X_WE.position + random.uniform(-0.5, 1.5) * ahead + random.vector<3>(-0.6, 0.6);
+    screen.X_WS.position = scene_view.scene.etalon->X_WE.position + random.uniform(-0.5, 1.5) * ahead +
+                           random.vector<3>(-0.6, 0.6);
     screen.size = {random.uniform(0.3, 3), random.uniform(0.3, 3)};
   }
 }
@@ -55,11 +55,11 @@ Eigen::Vector3d any_side(TestRandom& random, const Eigen::Vector3d& axis) {
 }
 
 TEST(QuickEtalon, AgreesWithTheExactWay) {
-  const Difference all = compare_ways_of("etalons", 150, 0.02, [](TestRandom& random) {
-    Sight sight = etalon_sight(random);
-    sight.view = view_of(random, sight.scene, 64, 48);
-    add_screens(random, sight);
-    return sight;
+  const Difference all = compare_paths_of("etalons", 150, 0.02, [](TestRandom& random) {
+    SceneView scene_view = etalon_scene(random);
+    scene_view.view = view_of(random, scene_view.scene, 64, 48);
+    add_screens(random, scene_view);
+    return scene_view;
   });
   EXPECT_EQ(all.bad_depths, 0);
 }
@@ -68,25 +68,25 @@ TEST(QuickEtalon, AgreesWithTheExactWay) {
 // pixels wide.
 TEST(QuickEtalon, AgreesWithTheExactWayWhateverItsSize) {
   const auto draw = [](TestRandom& random) {
-    Sight sight = etalon_sight(random);
-    sight.scene.etalon->albedo = Color::Constant(0.9), sight.scene.background = Color::Zero();
-    sight.scene.etalon->height = std::pow(10, random.uniform(-2.5, 0));
-    sight.view = view_of(random, sight.scene, 64, 48);
-    Intrinsics lens = sight.view.lens.intrinsics();
+    SceneView scene_view = etalon_scene(random);
+    scene_view.scene.etalon->albedo = Color::Constant(0.9), scene_view.scene.background = Color::Zero();
+    scene_view.scene.etalon->height = std::pow(10, random.uniform(-2.5, 0));
+    scene_view.view = view_of(random, scene_view.scene, 64, 48);
+    Intrinsics lens = scene_view.view.lens.intrinsics();
     const double longer = std::pow(10, random.uniform(0, 2.5));
     lens.fx *= longer, lens.fy *= longer, lens.distortion = {};
-    sight.view.lens = Lens(lens);
-    return sight;
+    scene_view.view.lens = Lens(lens);
+    return scene_view;
   };
-  compare_ways_of("etalons of all sizes", 150, 0.05, draw);
+  compare_paths_of("etalons of all sizes", 150, 0.05, draw);
 }
 
 // The images of such ends are ellipses of 0.5 to 10 px by 10 to 100 px; a pixel may see both sides.
 TEST(QuickEtalon, AgreesWithTheExactWayWhereAnEndIsSeenFromItsEdge) {
   constexpr int width = 96, height = 72;
-  compare_ways_of("ends from the edge", 300, 0.04, [](TestRandom& random) {
-    Sight sight = etalon_sight(random);
-    Etalon& etalon = *sight.scene.etalon;
+  compare_paths_of("ends from the edge", 300, 0.04, [](TestRandom& random) {
+    SceneView scene_view = etalon_scene(random);
+    Etalon& etalon = *scene_view.scene.etalon;
     etalon.albedo = Color::Constant(random.uniform(0, 1));
     const Eigen::Vector3d axis = etalon.X_WE.rotation.col(1);
     const Eigen::Vector3d end = etalon.X_WE.position + (random.integer(0, 1) - 0.5) * etalon.height * axis;
@@ -96,34 +96,34 @@ TEST(QuickEtalon, AgreesWithTheExactWayWhereAnEndIsSeenFromItsEdge) {
         std::min(0.5, thickness * far / (2 * etalon.radius * f)) * (random.integer(0, 1) - 0.5);
     const Eigen::Vector3d eye =
         end + far * (std::sqrt(1 - 4 * sine * sine) * any_side(random, axis) + 2 * sine * axis);
-    sight.view = pinhole_view(look_at(eye, end + 0.05 * random.vector<3>(-1, 1)), width, height, f);
-    return sight;
+    scene_view.view = pinhole_view(look_at(eye, end + 0.05 * random.vector<3>(-1, 1)), width, height, f);
+    return scene_view;
   });
 }
 
 // Upright or lying, with its lines towards the camera and its axis through the middles of pixels: image
 // derivatives of distances vanish there.
 TEST(QuickEtalon, AgreesWithTheExactWayWhereTheCameraIsAlignedWithIt) {
-  compare_ways_of("aligned etalons", 100, 0.05, [](TestRandom& random) {
-    Sight sight = etalon_sight(random);
-    Etalon& etalon = *sight.scene.etalon;
+  compare_paths_of("aligned etalons", 100, 0.05, [](TestRandom& random) {
+    SceneView scene_view = etalon_scene(random);
+    Etalon& etalon = *scene_view.scene.etalon;
     constexpr double far = 2;  // m
     const double f = random.uniform(2, 12) * far / etalon.radius;
     etalon.line_width = std::min(1.4 * etalon.radius, random.uniform(1.6, 8) * far / f);
     etalon.X_WE = {};
     if (random.integer(0, 1) == 1) etalon.X_WE.rotation << 0, 1, 0, -1, 0, 0, 0, 0, 1;
     const Eigen::Matrix3d R_WC = Eigen::Vector3d(1, -1, -1).asDiagonal();
-    sight.view = pinhole_view({R_WC, {0, 0, far}}, 65, 49, f);
-    return sight;
+    scene_view.view = pinhole_view({R_WC, {0, 0, far}}, 65, 49, f);
+    return scene_view;
   });
 }
 
 // Flat ones, so near that skin is visible along less than half of the rim. The pictures show where contour
 // and rim meet.
 TEST(QuickEtalon, AgreesWithTheExactWayWhereRimsAreNear) {
-  compare_ways_of("rims that are near", 300, 0.04, [](TestRandom& random) {
-    Sight sight = etalon_sight(random);
-    Etalon& etalon = *sight.scene.etalon;
+  compare_paths_of("rims that are near", 300, 0.04, [](TestRandom& random) {
+    SceneView scene_view = etalon_scene(random);
+    Etalon& etalon = *scene_view.scene.etalon;
     etalon.albedo = Color::Constant(random.uniform(0, 1));
     etalon.height = random.uniform(0.05, 0.35) * etalon.radius, etalon.line_width = 0;
     const Eigen::Vector3d middle = etalon.X_WE.position, axis = etalon.X_WE.rotation.col(1);
@@ -134,18 +134,18 @@ TEST(QuickEtalon, AgreesWithTheExactWayWhereRimsAreNear) {
     const Eigen::Vector3d eye = middle + far * (std::sqrt(1 - slant * slant) * aside + slant * axis);
     const Eigen::Vector3d aim = middle + 0.5 * etalon.height * random.uniform(-1.2, 1.2) * axis +
                                 etalon.radius * random.uniform(-1.1, 1.1) * aside.cross(axis);
-    sight.view = pinhole_view(look_at(eye, aim, random.vector<3>(-1, 1)), 64, 48, f);
-    return sight;
+    scene_view.view = pinhole_view(look_at(eye, aim, random.vector<3>(-1, 1)), 64, 48, f);
+    return scene_view;
   });
 }
 
 TEST(QuickEtalon, IsTheSameOnEveryPath) {
   for_random_cases(30, [&](TestRandom& random) {
-    Sight sight = etalon_sight(random);
-    sight.scene.etalon->height = std::pow(10, random.uniform(-2.5, 0));
-    sight.view = view_of(random, sight.scene, 61, 48);
-    add_screens(random, sight);
-    expect_same_on_every_path(sight);
+    SceneView scene_view = etalon_scene(random);
+    scene_view.scene.etalon->height = std::pow(10, random.uniform(-2.5, 0));
+    scene_view.view = view_of(random, scene_view.scene, 61, 48);
+    add_screens(random, scene_view);
+    expect_same_on_every_path(scene_view);
   });
 }
 

@@ -59,11 +59,11 @@ View some_view(TestRandom& random, const Backbone& backbone) {
 }
 
 TEST(QuickPicture, AgreesWithTheExactWay) {
-  const Difference all = compare_ways_of("busy scenes", 25, 0.015, [](TestRandom& random) {
+  const Difference all = compare_paths_of("busy scenes", 25, 0.015, [](TestRandom& random) {
     const BentArm bent = random_bent_arm(random, random.integer(0, 1) == 0 ? 0.003 : 0);
     const View view = some_view(random, bent.backbone());
     const Scene scene = busy_scene(random, bent.backbone(), view);
-    return Sight{scene, view, random.integer(0, 1) == 1 ? PixelKind::color : PixelKind::gray};
+    return SceneView{scene, view, random.integer(0, 1) == 1 ? PixelKind::color : PixelKind::gray};
   });
   // The few cases of a sanitized build do not determine the mean.
   if (one_case_of == 1) {
@@ -76,7 +76,7 @@ TEST(QuickPicture, AgreesWithTheExactWay) {
 // a long lens; with non-square pixels, with distortion, with bright rings on dark skin.
 TEST(QuickPicture, AgreesWithTheExactWayInAllKindsOfScenes) {
   // For light that differs by 0.8 between the sides of an edge.
-  const Difference all = compare_ways_of("all kinds of scenes", 150, 0.04, [](TestRandom& random) {
+  const Difference all = compare_paths_of("all kinds of scenes", 150, 0.04, [](TestRandom& random) {
     BentArm bent;
     bent.arm.kind = ArmKind::spatial;
     const int count = random.integer(1, 4);
@@ -101,7 +101,7 @@ TEST(QuickPicture, AgreesWithTheExactWayInAllKindsOfScenes) {
     view.lens = Lens(intrinsics);
     Scene scene = busy_scene(random, backbone, view);
     for (MarkerRing& ring : scene.arm.markers) ring.albedo = {0.9, 0.9, 0.9};
-    return Sight{scene, view};
+    return SceneView{scene, view};
   });
   EXPECT_EQ(all.bad_depths, 0);
 }

@@ -43,22 +43,22 @@ View view_of_place(TestRandom& random, const Pose& place, double distance, doubl
 }
 
 // With ambient and directional light, and rings.
-Sight sight_of(TestRandom& random, const BentArm& bent, const View& view) {
-  Sight sight{plain_scene(), view};
-  sight.scene.light.directional = 0.7;
-  sight.scene.background = {0.9, 0.9, 0.9};
-  sight.scene.arm.tube = tube_of(bent.backbone());
+SceneView scene_view_of(TestRandom& random, const BentArm& bent, const View& view) {
+  SceneView scene_view{plain_scene(), view};
+  scene_view.scene.light.directional = 0.7;
+  scene_view.scene.background = {0.9, 0.9, 0.9};
+  scene_view.scene.arm.tube = tube_of(bent.backbone());
   for (int i = random.integer(0, 8); i > 0; --i) {
     const double s = random.uniform(-0.02, bent.backbone().length());
-    sight.scene.arm.markers.push_back({s, s + random.uniform(0.003, 0.03), {0.9, 0.9, 0.9}});
+    scene_view.scene.arm.markers.push_back({s, s + random.uniform(0.003, 0.03), {0.9, 0.9, 0.9}});
   }
-  return sight;
+  return scene_view;
 }
 
 // A ray meets pieces that lean far towards the camera some radii from its point nearest to the axis: nothing
 // behind them may show through. Where tapers change, the contours of two pieces differ.
 TEST(QuickTaper, HasNoHolesAndAgreesWithTheExactWayWhereTapersChange) {
-  compare_ways_of("arms of changing taper", 200, 0.04, [](TestRandom& random) {
+  compare_paths_of("arms of changing taper", 200, 0.04, [](TestRandom& random) {
     const BentArm bent = random_tapered_arm(random, random.integer(0, 1) == 0 ? 0 : 0.0999);
     const Backbone backbone = bent.backbone();
     View view = random_view_of(random, backbone);
@@ -70,14 +70,14 @@ TEST(QuickTaper, HasNoHolesAndAgreesWithTheExactWayWhereTapersChange) {
     Intrinsics intrinsics = view.lens.intrinsics();
     if (random.integer(0, 2) == 0) intrinsics.distortion[0] = random.uniform(-0.2, 0.2);
     view.lens = Lens(intrinsics);
-    return sight_of(random, bent, view);
+    return scene_view_of(random, bent, view);
   });
 }
 
 // They differ by many radii where the joint is seen at a small angle to the axis, down to the limit of the
 // fast path.
 TEST(QuickTaper, AgreesWithTheExactWayWhereTapersChangeAndLean) {
-  compare_ways_of("joints that lean", 80, 0.04, [](TestRandom& random) {
+  compare_paths_of("joints that lean", 80, 0.04, [](TestRandom& random) {
     BentArm bent;
     bent.arm.kind = ArmKind::spatial;
     bent.state = ArmState::straight(2);
@@ -89,15 +89,15 @@ TEST(QuickTaper, AgreesWithTheExactWayWhereTapersChangeAndLean) {
       if (random.integer(0, 1) == 0) bent.state.bends[i] = random.vector<2>(-0.5, 0.5);
     }
     const double cosine = std::sqrt(random.uniform(0.75, 0.93)) * (random.integer(0, 1) == 0 ? 1 : -1);
-    return sight_of(random, bent,
-                    view_of_place(random, bent.backbone().pose(length), 3, std::acos(cosine),
-                                  random.uniform(10, 30) * 3 / radius));
+    return scene_view_of(random, bent,
+                         view_of_place(random, bent.backbone().pose(length), 3, std::acos(cosine),
+                                       random.uniform(10, 30) * 3 / radius));
   });
 }
 
 // From all sides that show an end's face, also near its axis; nothing continues at the ends.
 TEST(QuickTaper, AgreesWithTheExactWayAtTheEndsOfTheArm) {
-  compare_ways_of("ends of tapered arms", 120, 0.04, [](TestRandom& random) {
+  compare_paths_of("ends of tapered arms", 120, 0.04, [](TestRandom& random) {
     const BentArm bent = random_tapered_arm(random, random.integer(0, 1) == 0 ? 0.0999 : 0.02);
     const bool is_tip = random.integer(0, 1) == 1;
     const Pose end = bent.backbone().pose(is_tip ? bent.backbone().length() : 0);
@@ -108,8 +108,8 @@ TEST(QuickTaper, AgreesWithTheExactWayAtTheEndsOfTheArm) {
     const double distance = random.uniform(0.5, 2), radius = bent.arm.sections.front().radius[0];
     const Eigen::Vector3d from = end.position + distance * (std::cos(angle) * axis + std::sin(angle) * side);
     const Pose X_WC = look_at(from, end.position + random.vector<3>(-0.01, 0.01), {0.1, 1, 0.05});
-    return sight_of(random, bent,
-                    pinhole_view(X_WC, 64, 48, 64 * distance / (random.uniform(1.5, 6) * radius)));
+    return scene_view_of(random, bent,
+                         pinhole_view(X_WC, 64, 48, 64 * distance / (random.uniform(1.5, 6) * radius)));
   });
 }
 

@@ -73,22 +73,22 @@ template <bool is_tapered>
 void divide_pixels(const SpanPiece& piece, const SpanPlaces& places, BorderPixels& borders) {
   for (std::size_t i = 0; i < span_step; i += wide_lanes) {
     const Place place = place_of(places, i, piece.u0, piece.v0);
-    const Sight<is_tapered> sight = see<is_tapered>(piece, place, piece.centering + 2);
-    const Lowest& lowest = sight.lowest;
-    const SquarePart within = part_within(piece, sight.ray, place, lowest);
+    const PieceView<is_tapered> piece_view = see<is_tapered>(piece, place, piece.centering + 2);
+    const Lowest& lowest = piece_view.lowest;
+    const SquarePart within = part_within(piece, piece_view.ray, place, lowest);
     // At the centroid of the inner part.
     const WideMask is_some = within.area > 0, is_inside = lowest.value < 0;
     const Place inner_place =
         moved(place, choose(is_some, within.x, Wide(0)), choose(is_some, within.y, Wide(0)));
-    const Sight<is_tapered> inner = see<is_tapered>(piece, inner_place, piece.centering + 1);
+    const PieceView<is_tapered> inner = see<is_tapered>(piece, inner_place, piece.centering + 1);
     Wide light[3];
     skin_light(piece, inner_place, inner, light);
     store(borders.coverage + i, within.area);
     for (std::size_t c = 0; c < 3; ++c) store(borders.light + c * span_step + i, light[c]);
-    store(borders.depth + i, choose(is_inside, sight.depth, Wide(__builtin_inff())));
-    store(borders.contour + i, sight.ray.depth + lowest.t);
+    store(borders.depth + i, choose(is_inside, piece_view.depth, Wide(__builtin_inff())));
+    store(borders.contour + i, piece_view.ray.depth + lowest.t);
     store_flags(lowest.is_sure & is_far_from_edges(piece, inner.p), borders.is_simple + i);
-    store_flags(lowest.is_sure & inner.lowest.is_sure & (~is_inside | sight.is_settled) &
+    store_flags(lowest.is_sure & inner.lowest.is_sure & (~is_inside | piece_view.is_settled) &
                     (~is_some | inner.is_settled),
                 borders.is_sure + i);
   }
@@ -155,11 +155,11 @@ bool sample_skin(const Lattice<n>& points, const SpanPiece& piece, const Place& 
   const bool is_sure = sample_points(
       points, middle,
       [&](const Place& place) __attribute__((always_inline)) {
-        const Sight<is_tapered> sight = see<is_tapered>(piece, place, piece.centering + 1);
+        const PieceView<is_tapered> piece_view = see<is_tapered>(piece, place, piece.centering + 1);
         Seen seen;
-        seen.is_some = sight.lowest.value < 0;
-        seen.is_sure = sight.lowest.is_sure & (~seen.is_some | sight.is_settled);
-        skin_light(piece, place, sight, seen.light);
+        seen.is_some = piece_view.lowest.value < 0;
+        seen.is_sure = piece_view.lowest.is_sure & (~seen.is_some | piece_view.is_settled);
+        skin_light(piece, place, piece_view, seen.light);
         return seen;
       },
       sums, count);

@@ -218,7 +218,7 @@ constexpr float overlap = 1e-3f;
 
 // View of a ray on a piece, ignoring its ends, with the given number of steps to the deepest point.
 template <bool is_tapered>
-struct Sight {
+struct PieceView {
   RayLanes<is_tapered> ray;
   Lowest lowest;
   Entry entry;
@@ -227,15 +227,16 @@ struct Sight {
   WideMask is_settled;
 };
 template <bool is_tapered>
-[[gnu::always_inline]] inline Sight<is_tapered> see(const SpanPiece& piece, const Place& place, int steps) {
-  Sight<is_tapered> sight;
-  sight.ray = ray_of<is_tapered>(piece, place);
-  sight.lowest = lowest_of(piece, sight.ray, steps);
-  sight.entry = entry_of(piece, sight.ray, sight.lowest);
-  sight.p = along(sight.ray.point, sight.ray.direction, sight.entry.t);
-  sight.depth = sight.ray.depth + sight.entry.t;
-  sight.is_settled = size_of(sight.entry.move) < piece.settled;
-  return sight;
+[[gnu::always_inline]] inline PieceView<is_tapered> see(const SpanPiece& piece, const Place& place,
+                                                        int steps) {
+  PieceView<is_tapered> piece_view;
+  piece_view.ray = ray_of<is_tapered>(piece, place);
+  piece_view.lowest = lowest_of(piece, piece_view.ray, steps);
+  piece_view.entry = entry_of(piece, piece_view.ray, piece_view.lowest);
+  piece_view.p = along(piece_view.ray.point, piece_view.ray.direction, piece_view.entry.t);
+  piece_view.depth = piece_view.ray.depth + piece_view.entry.t;
+  piece_view.is_settled = size_of(piece_view.entry.move) < piece.settled;
+  return piece_view;
 }
 
 // Part of a pixel's square beyond a line: x . normal > offset, for a unit normal or a zero vector.
@@ -318,9 +319,9 @@ template <bool is_pixel, bool is_tapered>
 // At the point alone.
 template <bool is_tapered>
 [[gnu::always_inline]] inline void skin_light(const SpanPiece& piece, const Place& place,
-                                              const Sight<is_tapered>& sight, Wide (&light)[3]) {
-  skin_light<false>(piece, sight.ray, place, sight.depth, sight.p,
-                    normal_of(piece, sight.ray, sight.p, sight.entry.t), light);
+                                              const PieceView<is_tapered>& piece_view, Wide (&light)[3]) {
+  skin_light<false>(piece, piece_view.ray, place, piece_view.depth, piece_view.p,
+                    normal_of(piece, piece_view.ray, piece_view.p, piece_view.entry.t), light);
 }
 
 }  // namespace

@@ -26,8 +26,8 @@ void divide_plain(const SpanRim& rim, const SpanPiece& piece, const SpanPlaces& 
         part_beyond(-line.normal_u, -line.normal_v,
                     line.bending / (24 * larger_square(line.normal_u, line.normal_v)) - line.distance);
     const WideMask is_skin_side = is_skin_seen(rim, line.at), is_in_disc = line.at.value < 0;
-    const Sight<is_tapered> sight = see<is_tapered>(piece, place, piece.centering + 1);
-    const Lowest& lowest = sight.lowest;
+    const PieceView<is_tapered> piece_view = see<is_tapered>(piece, place, piece.centering + 1);
+    const Lowest& lowest = piece_view.lowest;
     // The skin is outside the rim of a visible end, and inside that of a hidden one. Its light is taken at
     // the centroid of its part of the pixel.
     const Wide outside = 1 - within.area, turn = -within.area / at_least(1e-6f, outside);
@@ -35,11 +35,11 @@ void divide_plain(const SpanRim& rim, const SpanPiece& piece, const SpanPlaces& 
     const WideMask is_some = rim.is_front ? outside > 1e-6f : within.area > 0;
     const Place part_place = moved(place, choose(is_some, factor * within.x, Wide(0)),
                                    choose(is_some, factor * within.y, Wide(0)));
-    const Sight<is_tapered> part = see<is_tapered>(piece, part_place, piece.centering + 1);
+    const PieceView<is_tapered> part = see<is_tapered>(piece, part_place, piece.centering + 1);
     Wide light[3];
     skin_light(piece, part_place, part, light);
     const WideMask is_simple = part.lowest.is_sure & part.is_settled & is_far_from_edges(piece, part.p);
-    const WideMask is_skin_known = ~is_some | (is_simple & sight.is_settled);
+    const WideMask is_skin_known = ~is_some | (is_simple & piece_view.is_settled);
     const WideMask is_known = rim.is_front ? is_skin_known | ~is_skin_side : is_skin_known & is_skin_side;
     const WideMask is_plain = is_known & lowest.is_sure & (lowest.value < -gap * (2 * lowest.radius - gap)) &
                               (size_of(line.bending) < sharpest) & (size_of(line.flatness) < flattest) &
@@ -51,7 +51,7 @@ void divide_plain(const SpanRim& rim, const SpanPiece& piece, const SpanPlaces& 
     for (std::size_t c = 0; c < 3; ++c)
       store(pixels.light + c * span_step + i, skin_area * light[c] + end_area * rim.light[c]);
     const WideMask is_skin = rim.is_front ? is_skin_side & ~is_in_disc : is_in_disc;
-    const Wide beside = choose(is_skin, sight.depth, Wide(__builtin_inff()));
+    const Wide beside = choose(is_skin, piece_view.depth, Wide(__builtin_inff()));
     store(pixels.depth + i, rim.is_front ? choose(is_in_disc, 1 / at(rim.nearness, on_rim), beside) : beside);
   }
 }
@@ -67,16 +67,16 @@ template <bool is_tapered>
   const Place on_rim = counted_from(pixel, rim.u0, rim.v0), place = counted_from(pixel, piece.u0, piece.v0);
   const RimPoint at_rim = rim_point(rim, on_rim);
   const WideMask is_disc = (at_rim.value < 0) & (at_rim.z > 0) & mask_of(rim.is_front);
-  const Sight<is_tapered> sight = see<is_tapered>(piece, place, piece.centering + 1);
-  const Vector& p = sight.p;
+  const PieceView<is_tapered> piece_view = see<is_tapered>(piece, place, piece.centering + 1);
+  const Vector& p = piece_view.p;
   const Wide beyond = piece.end_sine * p.x + piece.end_cosine * p.z - piece.end_offset;
-  const WideMask is_inside = sight.lowest.value < 0;
+  const WideMask is_inside = piece_view.lowest.value < 0;
   Seen seen;
-  skin_light(piece, place, sight, seen.light);
+  skin_light(piece, place, piece_view, seen.light);
   for (std::size_t c = 0; c < 3; ++c) seen.light[c] = choose(is_disc, Wide(rim.light[c]), seen.light[c]);
   seen.is_some = is_disc | (is_inside & (rim.state == state_base ? p.z >= 0 : beyond <= 0));
-  seen.is_sure = is_disc | (sight.lowest.is_sure & (~is_inside | sight.is_settled));
-  seen.depth = choose(is_disc, 1 / at(rim.nearness, on_rim), sight.depth);
+  seen.is_sure = is_disc | (piece_view.lowest.is_sure & (~is_inside | piece_view.is_settled));
+  seen.depth = choose(is_disc, 1 / at(rim.nearness, on_rim), piece_view.depth);
   return seen;
 }
 

@@ -21,7 +21,7 @@ constexpr double same_hit = 1e-9;
 
 // The three nearest surfaces and all borders near a ray. Where two bodies almost coincide and a third cuts
 // both, the third is the surface visible next to the first.
-struct Sights {
+struct NearSurfaces {
   static constexpr std::size_t most = 12;
   std::array<Border, most> borders;
   std::size_t count = 0;
@@ -77,64 +77,64 @@ void add_kink_miss(const Stage& stage, const TubePiece& piece, const Ray& ray, c
   misses.depths[static_cast<std::size_t>(misses.count++)] = range.to;
 }
 
-void meet_piece(const Stage& stage, Part part, const Ray& ray, Sights& sights) {
+void meet_piece(const Stage& stage, Part part, const Ray& ray, NearSurfaces& near_surfaces) {
   const TubePiece& piece = at(stage.pieces, part.index);
   const LocalRay local = local_ray(piece, ray);
   const DepthRange range = range_of(piece, local, piece.near_radius);
   if (range.is_empty()) return;
   NearMisses misses;
   const double entry = first_entry(piece, local, range, misses);
-  if (entry < infinity) sights.add_hit(entry, part);
+  if (entry < infinity) near_surfaces.add_hit(entry, part);
   if (entry == infinity) add_kink_miss(stage, piece, ray, local, range, misses);
   for (int i = 0; i < misses.count; ++i) {
-    sights.add(contour_at(piece, ray, misses.depths[static_cast<std::size_t>(i)]));
+    near_surfaces.add(contour_at(piece, ray, misses.depths[static_cast<std::size_t>(i)]));
   }
 }
 
-void meet_disc(const Stage& stage, Part part, const Ray& ray, Sights& sights) {
+void meet_disc(const Stage& stage, Part part, const Ray& ray, NearSurfaces& near_surfaces) {
   const Circle& circle = at(stage.discs, part.index).circle;
   const CircleView view = view_of(circle, ray);
   if (view.value < 0 && circle.normal.dot(circle.center) < 0) {
     const auto depth = meet_plane(circle.center, circle.normal, ray);
-    if (depth) sights.add_hit(*depth, part);
+    if (depth) near_surfaces.add_hit(*depth, part);
   }
-  sights.add_all(view.borders);
+  near_surfaces.add_all(view.borders);
 }
 
-void meet_face(const Stage& stage, Part part, const Ray& ray, Sights& sights) {
+void meet_face(const Stage& stage, Part part, const Ray& ray, NearSurfaces& near_surfaces) {
   const FacePart& face_part = at(stage.faces, part.index);
   if (!face_part.face.is_front && face_part.screen < 0) return;
   const FaceView view = view_of(face_part.face, ray);
   if (view.is_hit) {
     const auto depth = meet_plane(face_part.face.corners[0], face_part.face.normal, ray);
-    if (depth) sights.add_hit(*depth, part);
+    if (depth) near_surfaces.add_hit(*depth, part);
   }
-  sights.add_all(view.borders);
+  near_surfaces.add_all(view.borders);
 }
 
-void meet_half_space(const Stage& stage, Part part, const Ray& ray, Sights& sights) {
+void meet_half_space(const Stage& stage, Part part, const Ray& ray, NearSurfaces& near_surfaces) {
   const PlanePart& plane = at(stage.planes, part.index);
   if (!(plane.normal.dot(plane.point) < 0)) return;
   const double towards = plane.normal.dot(ray.direction);
   std::optional<double> depth;
   if (towards < 0) depth = meet_plane(plane.point, plane.normal, ray);
-  if (depth) sights.add_hit(*depth, part);
-  sights.add(border_of(towards, plane.normal.head<2>(), ray, depth.value_or(infinity)));
+  if (depth) near_surfaces.add_hit(*depth, part);
+  near_surfaces.add(border_of(towards, plane.normal.head<2>(), ray, depth.value_or(infinity)));
 }
 
-void meet(const Stage& stage, Part part, const Ray& ray, Sights& sights) {
+void meet(const Stage& stage, Part part, const Ray& ray, NearSurfaces& near_surfaces) {
   switch (part.kind) {
     case Part::Kind::piece:
-      meet_piece(stage, part, ray, sights);
+      meet_piece(stage, part, ray, near_surfaces);
       break;
     case Part::Kind::disc:
-      meet_disc(stage, part, ray, sights);
+      meet_disc(stage, part, ray, near_surfaces);
       break;
     case Part::Kind::face:
-      meet_face(stage, part, ray, sights);
+      meet_face(stage, part, ray, near_surfaces);
       break;
     case Part::Kind::plane:
-      meet_half_space(stage, part, ray, sights);
+      meet_half_space(stage, part, ray, near_surfaces);
       break;
   }
 }
@@ -267,21 +267,21 @@ Eigen::Vector2d surface_slope(const Hit& hit, const Ray& ray, const Eigen::Vecto
 // Adds the borders where tubes emerge from a flat surface that was hit; returns whether `other` is one of
 // their pieces.
 bool add_tube_borders(const Stage& stage, std::span<const Part> parts, const Ray& ray, const Hit& flat,
-                      const Hit& other, Sights& sights) {
+                      const Hit& other, NearSurfaces& near_surfaces) {
   const Eigen::Vector3d p = flat.depth * ray.direction;
   bool is_among = false;
   for (const Part part : parts) {
     if (part.kind != Part::Kind::piece || !comes_out_of(stage, part.index, flat, p)) continue;
     const TubePoint point = tube_point(at(stage.pieces, part.index), p);
-    sights.add(border_of(point.gap, surface_slope(flat, ray, point.normal), ray, flat.depth));
+    near_surfaces.add(border_of(point.gap, surface_slope(flat, ray, point.normal), ray, flat.depth));
     is_among = is_among || other.part == part;
   }
   return is_among;
 }
 
 // Adds colour edges on the tube near the hit.
-void add_color_edges(const Stage& stage, const Ray& ray, Sights& sights) {
-  const Hit& hit = sights.first;
+void add_color_edges(const Stage& stage, const Ray& ray, NearSurfaces& near_surfaces) {
+  const Hit& hit = near_surfaces.first;
   const TubePiece& piece = at(stage.pieces, hit.part.index);
   const Body& body = stage.bodies[static_cast<std::size_t>(piece.body)];
   if (body.is_arm) {
@@ -296,12 +296,12 @@ void add_color_edges(const Stage& stage, const Ray& ray, Sights& sights) {
       if (!edge.is_disk) {
         Border border = ring_border(edge, hit.s, slope, hit.depth, ray);
         border.is_ring = true;
-        sights.add(border);
+        near_surfaces.add(border);
         continue;
       }
       const Eigen::Vector3d off = hit.depth * ray.direction - edge.circle.center;
-      sights.add(border_of(edge.circle.normal.dot(off), surface_slope(hit, ray, edge.circle.normal), ray,
-                           hit.depth));
+      near_surfaces.add(border_of(edge.circle.normal.dot(off), surface_slope(hit, ray, edge.circle.normal),
+                                  ray, hit.depth));
     }
   }
   if (body.is_etalon) {
@@ -309,20 +309,20 @@ void add_color_edges(const Stage& stage, const Ray& ray, Sights& sights) {
     for (const LineEdge& edge : stage.line_edges) {
       const double apart = std::abs(edge.angle - angle);
       if (std::min(apart, 2 * std::numbers::pi - apart) < 1.2)
-        sights.add(line_border(edge.from, edge.to, ray));
+        near_surfaces.add(line_border(edge.from, edge.to, ray));
     }
   }
 }
 
 // Keeps the two nearest borders that the visible surface does not hide.
-void choose(const Sights& sights, const Ray& ray, Trace& trace) {
+void choose(const NearSurfaces& near_surfaces, const Ray& ray, Trace& trace) {
   const double slope =
       trace.hit.is_none() ? 0 : (ray.by_pixel.transpose() * depth_slope(trace.hit, ray)).norm();
   const auto is_same = [](const Border& a, const Border& b) {
     return std::abs(a.distance - b.distance) < 2e-3 && a.towards.dot(b.towards) > 0.999;
   };
-  for (std::size_t i = 0; i < sights.count; ++i) {
-    const Border& border = sights.borders[i];
+  for (std::size_t i = 0; i < near_surfaces.count; ++i) {
+    const Border& border = near_surfaces.borders[i];
     // The surface's depth changes differently at the border.
     const double margin = 1e-6 * trace.hit.depth + 4 * slope * (1 + border.distance);
     if (!(border.depth <= trace.hit.depth + margin)) continue;
@@ -338,43 +338,46 @@ void choose(const Sights& sights, const Ray& ray, Trace& trace) {
 
 // Adds the border between the first surface and the one behind it, if any, and the tubes that emerge from it.
 void add_meeting(const Stage& stage, std::span<const Part> parts, const Ray& ray, const Hit& first,
-                 const Hit& other, Sights& sights) {
+                 const Hit& other, NearSurfaces& near_surfaces) {
   // For a tube and a flat surface, uses the tube's gap on the flat surface: it is smoother over the image
   // than the difference of depths.
   const auto is_piece = [](const Hit& hit) { return hit.part.kind == Part::Kind::piece; };
   const Hit& flat = is_piece(first) ? other : first;
-  const bool is_known = !flat.is_none() && !is_piece(flat) &&
-                        add_tube_borders(stage, parts, ray, flat, is_piece(first) ? first : other, sights);
+  const bool is_known =
+      !flat.is_none() && !is_piece(flat) &&
+      add_tube_borders(stage, parts, ray, flat, is_piece(first) ? first : other, near_surfaces);
   if (is_known || other.is_none()) return;
   const Eigen::Vector2d slope = depth_slope(other, ray) - depth_slope(first, ray);
-  if (slope.allFinite()) sights.add(border_of(other.depth - first.depth, slope, ray, first.depth));
+  if (slope.allFinite()) near_surfaces.add(border_of(other.depth - first.depth, slope, ray, first.depth));
 }
 
 }  // namespace
 
 Hit Tracer::hit(const Ray& ray) const {
-  Sights sights;
-  for (const Part part : parts_) meet(stage_, part, ray, sights);
-  complete(stage_, ray, sights.first);
-  return sights.first;
+  NearSurfaces near_surfaces;
+  for (const Part part : parts_) meet(stage_, part, ray, near_surfaces);
+  complete(stage_, ray, near_surfaces.first);
+  return near_surfaces.first;
 }
 
 Trace Tracer::trace(const Ray& ray) const {
-  Sights sights;
-  for (const Part part : parts_) meet(stage_, part, ray, sights);
-  for (Hit* hit : {&sights.first, &sights.second, &sights.third}) complete(stage_, ray, *hit);
-  const Hit& first = sights.first;
-  add_meeting(stage_, parts_, ray, first, sights.second, sights);
-  if (!sights.third.is_none()) add_meeting(stage_, parts_, ray, first, sights.third, sights);
+  NearSurfaces near_surfaces;
+  for (const Part part : parts_) meet(stage_, part, ray, near_surfaces);
+  for (Hit* hit : {&near_surfaces.first, &near_surfaces.second, &near_surfaces.third})
+    complete(stage_, ray, *hit);
+  const Hit& first = near_surfaces.first;
+  add_meeting(stage_, parts_, ray, first, near_surfaces.second, near_surfaces);
+  if (!near_surfaces.third.is_none())
+    add_meeting(stage_, parts_, ray, first, near_surfaces.third, near_surfaces);
   if (!first.is_none() && first.part.kind == Part::Kind::piece) {
     Border contour = own_contour(stage_, ray, first);
     contour.depth = 0;  // The surface ends at the contour, however far behind the surface that is found.
-    sights.add(contour);
-    add_color_edges(stage_, ray, sights);
+    near_surfaces.add(contour);
+    add_color_edges(stage_, ray, near_surfaces);
   }
   Trace trace;
   trace.hit = first;
-  choose(sights, ray, trace);
+  choose(near_surfaces, ray, trace);
   return trace;
 }
 
@@ -382,16 +385,16 @@ int Tracer::entries_into_arm(const Ray& ray, double depth) const {
   int count = 0;
   double last = -1;
   for (const Part part : parts_) {
-    Sights sights;
+    NearSurfaces near_surfaces;
     const auto index = static_cast<int>(part.index);
     if (part.kind == Part::Kind::piece && index >= stage_.first_arm_piece && index <= stage_.last_arm_piece)
-      meet_piece(stage_, part, ray, sights);
+      meet_piece(stage_, part, ray, near_surfaces);
     const bool is_end =
         part.kind == Part::Kind::disc &&
         at(stage_.bodies, static_cast<std::uint32_t>(at(stage_.discs, part.index).body)).label.kind ==
             SurfaceKind::cap;
-    if (is_end) meet_disc(stage_, part, ray, sights);
-    const double entry = sights.first.depth;
+    if (is_end) meet_disc(stage_, part, ray, near_surfaces);
+    const double entry = near_surfaces.first.depth;
     if (!(entry < depth) || std::abs(entry - last) <= same_hit * entry) continue;
     last = entry;
     ++count;

@@ -45,10 +45,10 @@ void Interval::include(double value) {
 Interval padded(Interval range, double least, double margin) {
   const double noise =
       64 * std::numeric_limits<double>::epsilon() * std::max(std::abs(range.low), std::abs(range.high));
-  const double wanted = std::max({least, 1e3 * noise, 1e-9});
-  if (range.extent() < wanted) {
+  const double desired = std::max({least, 1e3 * noise, 1e-9});
+  if (range.extent() < desired) {
     const double middle = range.low + range.extent() / 2;
-    range = {middle - wanted / 2, middle + wanted / 2};
+    range = {middle - desired / 2, middle + desired / 2};
   }
   const double border = margin * range.extent();
   return {range.low - border, range.high + border};

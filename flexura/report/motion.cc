@@ -96,14 +96,14 @@ bool is_same(const ArmState& a, const ArmState& b) {
 
 }  // namespace
 
-std::vector<std::size_t> kept_indices(const std::vector<double>& times, const std::vector<double>& wanted,
+std::vector<std::size_t> kept_indices(const std::vector<double>& times, const std::vector<double>& desired,
                                       std::size_t most) {
   if (times.size() <= most) return evenly(times.size(), times.size());
   // Keeps the first and the last, and at most half of all for the requested times.
-  const std::size_t marks = std::min(wanted.size(), most / 2 - 1);
+  const std::size_t marks = std::min(desired.size(), most / 2 - 1);
   std::vector<std::size_t> kept = evenly(times.size(), most - marks);
   for (std::size_t i = 0; i < marks; ++i)
-    kept.push_back(nearest_index(times, wanted[i * wanted.size() / marks]));
+    kept.push_back(nearest_index(times, desired[i * desired.size() / marks]));
   keep_each_once(kept);
   return kept;
 }

@@ -17,10 +17,10 @@ inline constexpr std::size_t max_shown_states = 2000;
 inline constexpr std::size_t max_shown_numbers = 200'000;
 
 /// Returns indices of at most `most` (>= 2) of the increasing `times`. These are the first and the last,
-/// those nearest to the times in `wanted` (thinned evenly above half of all), and others evenly spaced. The
+/// those nearest to the times in `desired` (thinned evenly above half of all), and others evenly spaced. The
 /// result is increasing.
 [[nodiscard]] std::vector<std::size_t> kept_indices(const std::vector<double>& times,
-                                                    const std::vector<double>& wanted, std::size_t most);
+                                                    const std::vector<double>& desired, std::size_t most);
 
 /// Violations of one picture, at the moment when they are worst.
 struct UnsafeMoment {

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <utility>
 
-#include "flexura/model/arm_way.h"
+#include "flexura/model/arm_difference.h"
 
 namespace flexura {
 

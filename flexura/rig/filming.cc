@@ -47,7 +47,7 @@ Filming::Filming(const Setup& setup, std::size_t threads)
           static_cast<std::uint64_t>(setup.seed)),
       seed_(static_cast<std::uint64_t>(setup.seed)),
       stretch_(few_frames(cameras_)),
-      crew_(threads) {}
+      thread_pool_(threads) {}
 
 // Returns the new frames of all cameras, in the order of time and then of the cameras.
 std::vector<FilmedFrame> Filming::new_frames() {
@@ -55,7 +55,7 @@ std::vector<FilmedFrame> Filming::new_frames() {
   for (std::size_t i = 0; i < cameras_.size(); ++i)
     if (rig_.camera(i).camera().has_new()) due.push_back(i);
   std::vector<std::vector<FilmedFrame>> films(due.size());
-  crew_.run(due.size(), [&](std::size_t place) {
+  thread_pool_.run(due.size(), [&](std::size_t place) {
     const std::size_t camera = due[place];
     const std::string& name = cameras_[camera].name;
     for (const Frame& frame : rig_.camera(camera).camera().all_new())

@@ -9,8 +9,8 @@
 #include "flexura/rig/photographer.h"
 #include "flexura/rig/rig.h"
 #include "flexura/rig/truth_files.h"
-#include "flexura/sim/crew.h"
 #include "flexura/sim/simulated_rig.h"
+#include "flexura/sim/thread_pool.h"
 
 namespace flexura {
 
@@ -63,7 +63,7 @@ class Filming : public Rig, private RigTruth {
   SimulatedRig rig_;
   std::uint64_t seed_;
   double stretch_;  // Time filmed at once, s: a few frames of the fastest camera.
-  Crew crew_;
+  ThreadPool thread_pool_;
 };
 
 }  // namespace flexura

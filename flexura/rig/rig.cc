@@ -7,8 +7,8 @@ namespace flexura {
 std::vector<CameraReading> camera_readings(const RigPorts& ports, const std::vector<Camera>& optics) {
   std::vector<CameraReading> readings;
   for (std::size_t i = 0; i < ports.cameras.size(); ++i) {
-    const CameraStance said = said_stance(ports.cameras[i], optics.at(i)).value();
-    readings.push_back({said.head, said.stage});
+    const CameraStance measured = measured_stance(ports.cameras[i], optics.at(i)).value();
+    readings.push_back({measured.head, measured.stage});
   }
   return readings;
 }

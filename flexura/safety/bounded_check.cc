@@ -20,12 +20,12 @@ constexpr std::size_t limit_intervals = 200'000;
 constexpr std::size_t contact_intervals = 5'000;
 constexpr std::size_t intervals_of_step = 4;
 constexpr std::size_t all_contact_intervals = 20'000'000;
-// Relative precision of a worst value, and precision of a depth, m. The `doubtful` values are the largest
+// Relative precision of a worst value, and precision of a depth, m. The `uncertain` values are the largest
 // remaining errors, after too many intervals, that need no caveat.
 constexpr double worst_part = 1e-6;
-constexpr double doubtful_part = 1e-4;
+constexpr double uncertain_part = 1e-4;
 constexpr double worst_depth = 1e-5;
-constexpr double doubtful_depth = 1e-4;
+constexpr double uncertain_depth = 1e-4;
 // Most intervals for the worst values of one limit in all its spans, and for all worst depths. The least
 // number is for one span.
 constexpr std::size_t worst_intervals = 200'000;
@@ -86,15 +86,16 @@ class BoundedCheck {
     const FoundSpans found = spans_above(threshold, quantity, checked_.whole(),
                                          limit_search(std::abs(violation.limit) * limit_tolerance));
     const std::string what = fmt::format("section {}: {}", *violation.section + 1, name_of(violation.hazard));
-    if (found.undecided) say_undecided(what, *found.undecided, found.sampled_every, limit_intervals);
+    if (found.undecided) report_undecided(what, *found.undecided, found.sampled_every, limit_intervals);
     const WorstSearch search = worst_search(found.spans.size());
-    double doubt = 0;
+    double uncertainty = 0;
     for (const Span& span : found.spans) {
       const WorstValue worst = worst_in(quantity, span, search);
-      if (worst.doubt > doubtful_part * std::abs(worst.value)) doubt = std::max(doubt, worst.doubt);
+      if (worst.uncertainty > uncertain_part * std::abs(worst.value))
+        uncertainty = std::max(uncertainty, worst.uncertainty);
       checked_.add(violation, span, worst, sign);
     }
-    if (doubt > 0) say_doubtful(what, violation.hazard, doubt);
+    if (uncertainty > 0) report_uncertain(what, violation.hazard, uncertainty);
   }
 
   // Finds where a law with known rates is faster than anything that moves: between keyframes a moment apart.
@@ -131,7 +132,7 @@ class BoundedCheck {
                                                        .most_together = all_contact_intervals,
                                                        .go_on = searched});
     if (!checked_.report.is_complete) return;
-    say_undecided_contacts(depths, found);
+    report_undecided_contacts(depths, found);
     add_contacts(depths, found);
   }
 
@@ -139,22 +140,23 @@ class BoundedCheck {
     std::size_t all = 0;
     for (const FoundSpans& one : found) all += one.spans.size();
     const WorstSearch search = worst_depth_search(all);
-    std::vector<double> doubts(checked_.contacts.size());  // Per watch.
+    std::vector<double> uncertainties(checked_.contacts.size());  // Per watch.
     double done = 0;
     for (std::size_t i = 0; i < found.size(); ++i) {
       const auto& [watch, first, last] = depths.part(i);
       const ContactWatch& contact = checked_.contacts[watch];
       for (const Span& span : found[i].spans) {
         const WorstValue worst = worst_in(depths.depth(i), span, search);
-        doubts[watch] = std::max(doubts[watch], worst.doubt);
+        uncertainties[watch] = std::max(uncertainties[watch], worst.uncertainty);
         checked_.add(contact_violation(contact, contact.place_of(first, last)), span, worst);
         const double share = ++done / static_cast<double>(all);
         if (!checked_.go_on(contacts_share + (1 - contacts_share) * share)) return;
       }
     }
-    for (std::size_t watch = 0; watch < doubts.size(); ++watch) {
+    for (std::size_t watch = 0; watch < uncertainties.size(); ++watch) {
       const ContactWatch& contact = checked_.contacts[watch];
-      if (doubts[watch] > doubtful_depth) say_doubtful(what_of(contact), contact.hazard(), doubts[watch]);
+      if (uncertainties[watch] > uncertain_depth)
+        report_uncertain(what_of(contact), contact.hazard(), uncertainties[watch]);
     }
   }
 
@@ -163,7 +165,7 @@ class BoundedCheck {
   }
 
   // Adds one line for all contacts of the arm with the same object.
-  void say_undecided_contacts(const ContactDepths& depths, const std::vector<FoundSpans>& found) {
+  void report_undecided_contacts(const ContactDepths& depths, const std::vector<FoundSpans>& found) {
     std::vector<FoundSpans> of_watch(checked_.contacts.size());
     for (std::size_t i = 0; i < found.size(); ++i) {
       if (!found[i].undecided) continue;
@@ -176,20 +178,21 @@ class BoundedCheck {
     for (std::size_t watch = 0; watch < of_watch.size(); ++watch) {
       const auto& [spans, undecided, sampled_every] = of_watch[watch];
       if (undecided)
-        say_undecided(what_of(checked_.contacts[watch]), *undecided, sampled_every, contact_intervals);
+        report_undecided(what_of(checked_.contacts[watch]), *undecided, sampled_every, contact_intervals);
     }
   }
 
-  void say_undecided(const std::string& what, const Span& span, double sampled_every, std::size_t intervals) {
+  void report_undecided(const std::string& what, const Span& span, double sampled_every,
+                        std::size_t intervals) {
     checked_.report.caveats.push_back(
         fmt::format("{} undecided, {}: more than {} intervals to look into, sampled every {:.3g} s", what,
                     span_text(span, checked_.timed.start), most_intervals(intervals), sampled_every));
   }
 
-  void say_doubtful(const std::string& what, Hazard hazard, double doubt) {
+  void report_uncertain(const std::string& what, Hazard hazard, double uncertainty) {
     checked_.report.caveats.push_back(fmt::format("{}, {}: the worst values may be {} more", what,
                                                   span_text(checked_.whole(), checked_.timed.start),
-                                                  amount_text(hazard, doubt)));
+                                                  amount_text(hazard, uncertainty)));
   }
 
   [[nodiscard]] SpanSearch limit_search(double value) const {

@@ -91,12 +91,12 @@ std::vector<Contact> ContactWatch::contacts(const ArmState& state) const {
   return found;
 }
 
-double ContactWatch::clearance(const Chain& chain, const DistanceWish& wish) const {
-  if (obstacle_) return obstacle_distance(chain.grown(1, share_), ignored_[chain.last()], *obstacle_, wish);
+double ContactWatch::clearance(const Chain& chain, const DistanceQuery& query) const {
+  if (obstacle_) return obstacle_distance(chain.grown(1, share_), ignored_[chain.last()], *obstacle_, query);
   const PairRule rule = chain.rule(-1);
-  if (!chain.has_pairs(rule) || chain.apart() - chain.moved() >= wish.cap) return wish.cap;
+  if (!chain.has_pairs(rule) || chain.apart() - chain.moved() >= query.cap) return query.cap;
   const double least = deepest_pair(chain.first_tube(), chain.last_tube());
-  return std::max(least, tube_distance(chain.first_tube(), chain.grown(1), rule, wish));
+  return std::max(least, tube_distance(chain.first_tube(), chain.grown(1), rule, query));
 }
 
 QuantityBounds ContactWatch::bounds(const Chain& chain) const {

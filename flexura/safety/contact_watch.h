@@ -52,9 +52,9 @@ class ContactWatch {
   void for_each_chain(const std::function<void(std::size_t first, std::size_t last)>& visit) const;
   /// Returns the contact of a chain's last section, without clearance.
   [[nodiscard]] Contact place_of(std::size_t first, std::size_t last) const;
-  /// Returns the least possible clearance of the last section in the chain's swing, m, as precisely as `wish`
-  /// requires. For an arm at rest it is the clearance.
-  [[nodiscard]] double clearance(const Chain& chain, const DistanceWish& wish) const;
+  /// Returns the least possible clearance of the last section in the chain's swing, m, as precisely as
+  /// `query` requires. For an arm at rest it is the clearance.
+  [[nodiscard]] double clearance(const Chain& chain, const DistanceQuery& query) const;
   /// Returns bounds on the depth of the contact in the chain's swing, m (`contact_tolerance` without a deeper
   /// one). They only distinguish surely free, surely in contact and undecided. If undecided, the upper bound
   /// exceeds `contact_tolerance` by the section's possible motion.

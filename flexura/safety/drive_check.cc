@@ -58,14 +58,14 @@ class AxisLimit {
 struct MotorPlace {
   double position = 0;
   double target = 0;
-  double without_play = 0;
+  double without_backlash = 0;
 };
 
 // Facts for the caveats of an axis, in addition to its violations.
 struct AxisNotes {
   bool has_single_steps = false;       // Rows of one microstep were accepted.
   bool is_rounded_over = false;        // Only the rounding breaks a limit.
-  bool takes_up_play = false;          // The backlash compensation is too fast or too sudden.
+  bool takes_up_backlash = false;      // The backlash compensation is too fast or too sudden.
   bool is_over_while_steered = false;  // By backlash or rounding alone.
 };
 
@@ -76,7 +76,7 @@ class AxisCheck {
       : to_radians_(2 * std::numbers::pi / drive.axes[axis].motor.resolution()),
         most_(std::min(drive.axes[axis].motor.max_step_rate, drive.axes[axis].motor.max_speed / to_radians_) *
               (1 + limit_tolerance)),
-        play_(drive.axes[axis].play()),
+        backlash_(drive.axes[axis].backlash_steps()),
         speed_(Hazard::motor_speed, drive, axis, drive.axes[axis].motor.max_speed),
         step_rate_(Hazard::step_rate, drive, axis, drive.axes[axis].motor.max_step_rate),
         acceleration_(Hazard::motor_acceleration, drive, axis, drive.axes[axis].motor.max_acceleration),
@@ -91,20 +91,20 @@ class AxisCheck {
   // `last` and `now` are the steps before and up to this row; before the first step the motor rests.
   void row(Span last, Span now, const MotorPlace& place, const SteeredSpan* steered, SafetyReport& report) {
     if (steered != nullptr) {
-      steered_row(last, now, place, steered->is_foreseen, report);
+      steered_row(last, now, place, steered->is_planned, report);
       return;
     }
     const double time = now.end - now.start;
-    const double wanted = (place.target - last_.target) / time;
-    const double taken_up = (place.target - place.without_play) - (last_.target - last_.without_play);
-    const bool took_up = std::abs(taken_up) > std::max(play_ / 2, 1e-3);  // Smaller changes are rounding.
-    const double rate = judged_rate(place.position - last_.position, wanted, time);
+    const double desired = (place.target - last_.target) / time;
+    const double taken_up = (place.target - place.without_backlash) - (last_.target - last_.without_backlash);
+    const bool took_up = std::abs(taken_up) > std::max(backlash_ / 2, 1e-3);  // Smaller changes are rounding.
+    const double rate = judged_rate(place.position - last_.position, desired, time);
     const bool is_frequent = step_rate_.add(now, std::abs(rate), report);
     const bool is_fast = speed_.add(now, std::abs(rate) * to_radians_, report) || is_frequent;
-    const bool is_sudden = change_rate(now.start, (now.end - last.start) / 2, wanted, report);
-    last_wanted_ = wanted;
-    if (is_fast && std::abs(wanted) <= most_) notes_.is_rounded_over = true;
-    if ((is_fast && took_up) || (is_sudden && (took_up || took_up_))) notes_.takes_up_play = true;
+    const bool is_sudden = change_rate(now.start, (now.end - last.start) / 2, desired, report);
+    last_desired_ = desired;
+    if (is_fast && std::abs(desired) <= most_) notes_.is_rounded_over = true;
+    if ((is_fast && took_up) || (is_sudden && (took_up || took_up_))) notes_.takes_up_backlash = true;
     position_.add({now.end, now.end}, std::abs(place.position), report);
     last_ = place;
     took_up_ = took_up;
@@ -113,27 +113,27 @@ class AxisCheck {
   // least a whole step to stop.
   void stop(Span last, double step, SafetyReport& report) {
     const bool is_sudden = change_rate(last.end, std::max(last.end - last.start, step), 0, report);
-    if (is_sudden && took_up_) notes_.takes_up_play = true;
+    if (is_sudden && took_up_) notes_.takes_up_backlash = true;
     for (AxisLimit* limit : {&speed_, &step_rate_, &acceleration_, &position_}) limit->close(report);
   }
 
  private:
-  void steered_row(Span last, Span now, const MotorPlace& place, bool is_foreseen, SafetyReport& report) {
+  void steered_row(Span last, Span now, const MotorPlace& place, bool is_planned, SafetyReport& report) {
     const double time = now.end - now.start, turning = (now.end - last.start) / 2;
-    const double rate = (place.without_play - last_.without_play) / time,
-                 wanted = (place.target - last_.target) / time;
-    if (is_foreseen) {
+    const double rate = (place.without_backlash - last_.without_backlash) / time,
+                 desired = (place.target - last_.target) / time;
+    if (is_planned) {
       const bool is_fast = step_rate_.add(now, std::abs(rate), report) ||
                            speed_.add(now, std::abs(rate) * to_radians_, report);
       const bool is_sudden = change_rate(now.start, turning, rate, report);
       const bool is_list_fast = std::abs(place.position - last_.position) / time > most_,
                  is_list_sudden =
-                     acceleration_.is_beyond(std::abs(wanted - last_wanted_) * to_radians_ / turning);
+                     acceleration_.is_beyond(std::abs(desired - last_desired_) * to_radians_ / turning);
       if ((is_list_fast && !is_fast) || (is_list_sudden && !is_sudden)) notes_.is_over_while_steered = true;
-      last_wanted_ = wanted;
+      last_desired_ = desired;
     } else {
       // The rate is unknown, but the motion starts and ends at rest.
-      last_rate_ = last_wanted_ = 0;
+      last_rate_ = last_desired_ = 0;
       for (AxisLimit* limit : {&speed_, &step_rate_, &acceleration_}) limit->close(report);
     }
     position_.add({now.end, now.end}, std::abs(place.position), report);
@@ -142,10 +142,10 @@ class AxisCheck {
   }
   // Returns the rate of a row, microsteps/s. A motor cannot move by less than one microstep. If that is too
   // fast in a short row, the rate before rounding counts.
-  double judged_rate(double moved, double wanted, double time) {
+  double judged_rate(double moved, double desired, double time) {
     if (std::abs(moved) > 1 || 1 / time <= most_) return moved / time;
     if (moved != 0) notes_.has_single_steps = true;
-    return wanted;
+    return desired;
   }
   bool change_rate(double start, double time, double rate, SafetyReport& report) {
     const double acceleration = std::abs(rate - last_rate_) * to_radians_ / time;
@@ -155,11 +155,11 @@ class AxisCheck {
 
   double to_radians_;  // Radians per microstep of the motor.
   double most_;        // Lower of both limits, microsteps/s.
-  double play_;        // Backlash, microsteps.
+  double backlash_;    // Backlash, microsteps.
   AxisLimit speed_, step_rate_, acceleration_, position_;
   MotorPlace last_;
-  double last_rate_ = 0, last_wanted_ = 0;  // microsteps/s, before rounding; `last_wanted_` with backlash.
-  bool took_up_ = false;                    // The motor moved through the backlash in the last row.
+  double last_rate_ = 0, last_desired_ = 0;  // microsteps/s, before rounding; `last_desired_` with backlash.
+  bool took_up_ = false;                     // The motor moved through the backlash in the last row.
   AxisNotes notes_;
 };
 
@@ -167,17 +167,17 @@ class AxisCheck {
 std::optional<TendonDisplacements> displacements_in(const Arm& arm, const Drive& drive,
                                                     const ArmState& state) {
   if (!is_possible(state)) return std::nullopt;
-  TendonDisplacements wanted = tendon_displacements(arm, drive, state);
+  TendonDisplacements desired = tendon_displacements(arm, drive, state);
   for (std::size_t i = 0; i < drive.axes.size(); ++i) {
-    const double farthest = std::abs(wanted.pulled[i]) * drive.axes[i].microsteps_a_metre();
-    if (!(farthest + drive.axes[i].play() < max_countable)) return std::nullopt;
+    const double farthest = std::abs(desired.pulled[i]) * drive.axes[i].microsteps_a_metre();
+    if (!(farthest + drive.axes[i].backlash_steps() < max_countable)) return std::nullopt;
   }
-  return wanted;
+  return desired;
 }
 
 std::vector<MotorPlace> places_of(const MotorCommander& commander, const Drive& drive,
-                                  const TendonDisplacements& wanted) {
-  const std::vector<double> exact = motor_positions(drive, wanted);
+                                  const TendonDisplacements& desired) {
+  const std::vector<double> exact = motor_positions(drive, desired);
   std::vector<MotorPlace> places;
   places.reserve(exact.size());
   for (std::size_t i = 0; i < exact.size(); ++i)
@@ -232,8 +232,8 @@ std::string names_of(const std::vector<char>& is_meant, const Drive& drive) {
 }
 
 // Omits axes for which the rows have violations.
-void say_sampled(std::vector<char> is_unproven, const Drive& drive, std::size_t found_before, double step,
-                 SafetyReport& report) {
+void report_sampled(std::vector<char> is_unproven, const Drive& drive, std::size_t found_before, double step,
+                    SafetyReport& report) {
   for (std::size_t k = found_before; k < report.violations.size(); ++k) {
     const Violation& found = report.violations[k];
     if (found.hazard != Hazard::motor_speed && found.hazard != Hazard::step_rate) continue;
@@ -248,7 +248,7 @@ void say_sampled(std::vector<char> is_unproven, const Drive& drive, std::size_t 
       names, step));
 }
 
-void say_notes(const std::vector<AxisCheck>& axes, const Drive& drive, double step, SafetyReport& report) {
+void report_notes(const std::vector<AxisCheck>& axes, const Drive& drive, double step, SafetyReport& report) {
   const auto say = [&](bool AxisNotes::* note, const std::string& what) {
     std::vector<char> is_meant;
     is_meant.reserve(axes.size());
@@ -262,7 +262,7 @@ void say_notes(const std::vector<AxisCheck>& axes, const Drive& drive, double st
   say(&AxisNotes::is_rounded_over,
       "motor speed and step rate of {}: the motion keeps to the limit, rounded to microsteps it does not: up "
       "to one more in {:.6g} s");
-  say(&AxisNotes::takes_up_play,
+  say(&AxisNotes::takes_up_backlash,
       "motors of {}: where a tendon reverses its play is taken up within one step of the clock, {:.6g} s; "
       "the shorter that is, the more it asks");
   say(&AxisNotes::is_over_while_steered,
@@ -289,11 +289,11 @@ void check_drive(const Arm& arm, const Drive& drive, const std::function<ArmStat
   }
   Span last{2 * times[0] - times[1], times[0]};
   for (std::size_t k = 1; k < times.size(); ++k) {
-    const auto wanted = displacements_in(arm, drive, state_at(times[k]));
-    if (!wanted) break;
-    commander.follow(*wanted);
+    const auto desired = displacements_in(arm, drive, state_at(times[k]));
+    if (!desired) break;
+    commander.follow(*desired);
     const Span now{times[k - 1], times[k]};
-    places = places_of(commander, drive, *wanted);
+    places = places_of(commander, drive, *desired);
     while (!steered.empty() && steered.front().end <= now.start) steered = steered.subspan(1);
     const SteeredSpan* span =
         !steered.empty() && steered.front().start < now.end ? &steered.front() : nullptr;
@@ -302,8 +302,9 @@ void check_drive(const Arm& arm, const Drive& drive, const std::function<ArmStat
   }
   const double step = times[1] - times[0];
   for (AxisCheck& axis : axes) axis.stop(last, step, report);
-  say_sampled(unproven_axes(arm, drive, {times.front(), last.end}, rates), drive, found_before, step, report);
-  say_notes(axes, drive, step, report);
+  report_sampled(unproven_axes(arm, drive, {times.front(), last.end}, rates), drive, found_before, step,
+                 report);
+  report_notes(axes, drive, step, report);
   if (!std::ranges::any_of(report.violations, is_acceleration)) return;
   report.caveats.push_back(
       fmt::format("motor acceleration: from one step of the clock to the next, {:.6g} s; of a law that "

@@ -19,7 +19,7 @@ using RateBounds = std::function<std::optional<std::vector<SectionRates>>(double
 /// A time span in which the arm is servoed, s.
 struct SteeredSpan {
   double start = 0, end = 0;
-  bool is_foreseen = true;  ///< The commands in the span are known before the run.
+  bool is_planned = true;  ///< The commands in the span are known before the run.
 };
 
 /// Adds violations to `report` where the command list of a motion exceeds a motor's limits: speed, step rate,

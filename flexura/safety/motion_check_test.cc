@@ -88,14 +88,14 @@ class Impatient : public Progress {
     EXPECT_LE(fraction, 1);
     EXPECT_EQ(what, "check: curl");
     last_ = fraction;
-    ++told_;
+    ++reported_;
   }
-  [[nodiscard]] bool is_cancelled() const override { return told_ >= patience_; }
-  [[nodiscard]] int told() const { return told_; }
+  [[nodiscard]] bool is_cancelled() const override { return reported_ >= patience_; }
+  [[nodiscard]] int reported() const { return reported_; }
 
  private:
   int patience_;
-  int told_ = 0;
+  int reported_ = 0;
   double last_ = 0;
 };
 
@@ -113,10 +113,10 @@ TEST(MotionCheck, TellsHowFarItIsAndEndsWhenAsked) {
     Impatient patient(1'000'000);
     const SafetyReport whole = watched(patient);
     EXPECT_TRUE(whole.is_complete);
-    EXPECT_GT(patient.told(), 10);
+    EXPECT_GT(patient.reported(), 10);
     Impatient impatient(3);
     const SafetyReport part = watched(impatient);
-    EXPECT_EQ(impatient.told(), 3);
+    EXPECT_EQ(impatient.reported(), 3);
     EXPECT_FALSE(part.is_safe());
     EXPECT_THAT(part.caveats, testing::Contains(HasSubstr("cancelled")));
   }

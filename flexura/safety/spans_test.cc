@@ -133,15 +133,15 @@ TEST(Spans, AreFoundForEachOfSeveralQuantities) {
 }
 
 TEST(Spans, EndWhenAsked) {
-  std::vector<double> told;
+  std::vector<double> reported;
   const SpanSearch search{1e-7, 1e-7, 100'000, 100'000, [&](double decided) {
-                            told.push_back(decided);
-                            return told.size() < 3;
+                            reported.push_back(decided);
+                            return reported.size() < 3;
                           }};
   (void)spans_above(0, Moments{}, {0, 5}, search);
-  ASSERT_EQ(told.size(), 3u);
-  EXPECT_TRUE(std::ranges::is_sorted(told));
-  EXPECT_GT(told[0], 0.7) << "three of the four are decided soon";
+  ASSERT_EQ(reported.size(), 3u);
+  EXPECT_TRUE(std::ranges::is_sorted(reported));
+  EXPECT_GT(reported[0], 0.7) << "three of the four are decided soon";
 }
 
 }  // namespace

@@ -49,7 +49,7 @@ struct PairRule {
 
 /// Required precision of a least distance: values at or above `cap` do not matter, and any value below
 /// `enough` suffices.
-struct DistanceWish {
+struct DistanceQuery {
   double cap = no_distance;
   double enough = -no_distance;
 };
@@ -61,7 +61,7 @@ struct DistanceWish {
 /// Branch and bound: a piece of an arc of length l that turns by psi stays within l min(psi/8, 1/2) of its
 /// chord. So the distance of two chords bounds that of the pieces, more tightly as they get shorter.
 [[nodiscard]] double tube_distance(const SectionTube& a, const SectionTube& b, const PairRule& rule,
-                                   const DistanceWish& wish = {});
+                                   const DistanceQuery& query = {});
 
 /// Returns true if all these pairs are proved to be at least this far apart; false if the proof takes too
 /// long.
@@ -75,7 +75,7 @@ struct DistanceWish {
 /// Returns the least distance from the tube's surface to the obstacle, m, negative if they overlap, for the
 /// tube from the fraction `from` on. Exact for a plane.
 [[nodiscard]] double obstacle_distance(const SectionTube& tube, double from, const Obstacle& obstacle,
-                                       const DistanceWish& wish);
+                                       const DistanceQuery& query);
 
 /// Returns true if the tube is proved to stay at least this far from the obstacle; false if the proof takes
 /// too long.

@@ -75,8 +75,8 @@ struct ObstacleNode {
 
 class ObstacleSearch {
  public:
-  ObstacleSearch(const SectionTube& tube, const Obstacle& obstacle, const DistanceWish& wish)
-      : tube_(tube), obstacle_(obstacle), enough_(wish.enough), best_(wish.cap) {}
+  ObstacleSearch(const SectionTube& tube, const Obstacle& obstacle, const DistanceQuery& query)
+      : tube_(tube), obstacle_(obstacle), enough_(query.enough), best_(query.cap) {}
 
   // Like PairSearch::find.
   bool find(double from, int steps) {
@@ -139,8 +139,8 @@ class ObstacleSearch {
 }  // namespace
 
 double obstacle_distance(const SectionTube& tube, double from, const Obstacle& obstacle,
-                         const DistanceWish& wish) {
-  ObstacleSearch search(tube, obstacle, wish);
+                         const DistanceQuery& query) {
+  ObstacleSearch search(tube, obstacle, query);
   (void)search.find(from, most_steps);
   return search.best();
 }

@@ -67,8 +67,8 @@ struct PairNode {
 
 class PairSearch {
  public:
-  PairSearch(const SectionTube& a, const SectionTube& b, const PairRule& rule, const DistanceWish& wish)
-      : a_(a), b_(b), rule_(rule), enough_(wish.enough), best_(wish.cap) {}
+  PairSearch(const SectionTube& a, const SectionTube& b, const PairRule& rule, const DistanceQuery& query)
+      : a_(a), b_(b), rule_(rule), enough_(query.enough), best_(query.cap) {}
 
   // Returns true if the least distance, or one below `enough`, was found within this number of steps.
   bool find(int steps) {
@@ -165,8 +165,8 @@ class PairSearch {
 }  // namespace
 
 double tube_distance(const SectionTube& a, const SectionTube& b, const PairRule& rule,
-                     const DistanceWish& wish) {
-  PairSearch search(a, b, rule, wish);
+                     const DistanceQuery& query) {
+  PairSearch search(a, b, rule, query);
   (void)search.find(most_steps);
   return search.best();
 }

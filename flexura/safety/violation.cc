@@ -98,7 +98,7 @@ std::string Violation::what() const { return place() + finding(); }
 
 std::string Violation::text() const { return span_text({start, end}) + ": " + what(); }
 
-std::vector<std::size_t> most_telling(const SafetyReport& report, std::size_t most) {
+std::vector<std::size_t> most_relevant(const SafetyReport& report, std::size_t most) {
   const std::vector<Violation>& all = report.violations;
   const auto excess = [&](std::size_t i) { return std::abs(all[i].value - all[i].limit); };
   std::vector<std::size_t> order(all.size());
@@ -115,15 +115,15 @@ std::vector<std::size_t> most_telling(const SafetyReport& report, std::size_t mo
   }
   const auto is_of_section = [&](std::size_t i) { return all[i].section && !is_of_motor(all[i].hazard); };
   std::ranges::sort(order, {}, [&](std::size_t i) { return std::tuple(rank[i], !is_of_section(i), i); });
-  std::vector<std::size_t> told;
+  std::vector<std::size_t> reported;
   for (const std::size_t i : order) {
-    if (told.size() >= most) break;
+    if (reported.size() >= most) break;
     const bool is_new = std::ranges::none_of(
-        told, [&](std::size_t other) { return all[other].worst_time == all[i].worst_time; });
-    if (is_new) told.push_back(i);
+        reported, [&](std::size_t other) { return all[other].worst_time == all[i].worst_time; });
+    if (is_new) reported.push_back(i);
   }
-  std::ranges::sort(told);
-  return told;
+  std::ranges::sort(reported);
+  return reported;
 }
 
 void SafetyReport::sort() {

@@ -67,7 +67,7 @@ struct SafetyReport {
 /// Returns the most informative violations, at most `most`: the worst of every hazard, then that of every
 /// other obstacle, then the rest. Those of a section come before those of a motor or a task. The result has
 /// indices in `report.violations`, ascending. Of several with the same worst time only the first is included.
-[[nodiscard]] std::vector<std::size_t> most_telling(const SafetyReport& report, std::size_t most);
+[[nodiscard]] std::vector<std::size_t> most_relevant(const SafetyReport& report, std::size_t most);
 
 /// Returns true if the hazard is a motor's.
 [[nodiscard]] bool is_of_motor(Hazard hazard);

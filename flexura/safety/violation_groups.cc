@@ -63,8 +63,8 @@ std::vector<ViolationGroup> grouped(const SafetyReport& report) {
   return groups;
 }
 
-std::vector<ViolationGroup> most_telling(const SafetyReport& report, std::vector<ViolationGroup> groups,
-                                         std::size_t most) {
+std::vector<ViolationGroup> most_relevant(const SafetyReport& report, std::vector<ViolationGroup> groups,
+                                          std::size_t most) {
   if (groups.size() <= most) return groups;
   const auto worst = [&](std::size_t g) -> const Violation& { return report.violations[groups[g].worst]; };
   std::vector<std::size_t> order(groups.size());
@@ -95,7 +95,7 @@ std::vector<std::string> violation_lines(const SafetyReport& report) {
   const std::vector<ViolationGroup> groups = grouped(report);
   std::vector<std::string> lines;
   lines.reserve(max_violation_lines + 1);
-  for (const ViolationGroup& group : most_telling(report, groups, max_violation_lines))
+  for (const ViolationGroup& group : most_relevant(report, groups, max_violation_lines))
     lines.push_back(text_of(report, group));
   if (groups.size() > lines.size())
     lines.push_back(fmt::format("and {} more kinds, less bad ones", groups.size() - lines.size()));

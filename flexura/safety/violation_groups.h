@@ -21,8 +21,8 @@ struct ViolationGroup {
 
 /// Returns at most `most` of the groups, in their order: the worst of every hazard (of every obstacle) before
 /// others.
-[[nodiscard]] std::vector<ViolationGroup> most_telling(const SafetyReport& report,
-                                                       std::vector<ViolationGroup> groups, std::size_t most);
+[[nodiscard]] std::vector<ViolationGroup> most_relevant(const SafetyReport& report,
+                                                        std::vector<ViolationGroup> groups, std::size_t most);
 
 /// Returns "0.5 s to 2 s: section 1: bend 62 deg, limit 60 deg" for one violation. For several it is "0.5 s
 /// to 90 s, 90 times; worst at 1 s: section 1: bend 62 deg, limit 60 deg".

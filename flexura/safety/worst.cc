@@ -36,7 +36,7 @@ WorstValue worst_in(const WatchedQuantity& quantity, const Span& span, const Wor
   look_at(span.end);
   for (add(span); !open.empty() && is_higher(open.top().high);) {
     if (looked >= search.most_intervals) {
-      worst.doubt = open.top().high - worst.value;
+      worst.uncertainty = open.top().high - worst.value;
       break;
     }
     const Span part = open.top().span;

@@ -11,7 +11,7 @@ struct WorstValue {
   double time = 0;  ///< In s.
   double value = 0;
   /// By how much it may be larger elsewhere, if there were too many intervals; 0: as precise as required.
-  double doubt = 0;
+  double uncertainty = 0;
 };
 
 /// Required precision of a worst value.

@@ -21,7 +21,7 @@ TEST(Worst, IsFoundInANeedleThatNoGridWouldHit) {
     const WorstValue worst = worst_in(needle, {0, 100}, {.tolerance = 1e-3});
     EXPECT_NEAR(worst.value, 1 + height, 1e-3);
     EXPECT_NEAR(worst.time, at, width);
-    EXPECT_EQ(worst.doubt, 0);
+    EXPECT_EQ(worst.uncertainty, 0);
   });
 }
 
@@ -42,7 +42,7 @@ TEST(Worst, SaysWhatItCouldNotLookInto) {
   const WorstValue worst = worst_in(vague, {0, 3}, {.tolerance = 1e-3, .most_intervals = 50});
   EXPECT_LE(asked, 51u);
   EXPECT_NEAR(worst.value, 1, 0.1);
-  EXPECT_EQ(worst.doubt, 4 - worst.value);
+  EXPECT_EQ(worst.uncertainty, 4 - worst.value);
 }
 
 TEST(Worst, OfNoEndIsSoonFound) {

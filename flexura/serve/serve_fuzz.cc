@@ -46,27 +46,27 @@ bool ends_connection(const Answer& answer) {
 /// token.
 std::string conversation(std::string_view text, std::size_t piece, bool& authorised) {
   HttpSession session(site(), "127.0.0.1");
-  std::string told;
+  std::string reported;
   while (true) {
     const Step step = session.next();
     require(session.held() <= site().longest_header + std::max(piece, text.size()));
     if (const auto* answer = std::get_if<Answer>(&step)) {
-      told += answer->head.substr(9, 4);
-      if (ends_connection(*answer)) return told;
+      reported += answer->head.substr(9, 4);
+      if (ends_connection(*answer)) return reported;
     } else if (const auto* question = std::get_if<flexura::Question>(&step)) {
       require(question->target.starts_with('/') &&
               question->target.find_first_of("\r\n ") == std::string::npos);
-      told += "ask " + question->target;
+      reported += "ask " + question->target;
       authorised = true;
       if (ends_connection(session.format({.status = 200, .content_type = "a/b", .body = "c", .policy = {}})))
-        return told;
+        return reported;
     } else if (const auto* upgrade = std::get_if<flexura::Upgrade>(&step)) {
       require(upgrade->key.size() == 24);
       authorised = true;
-      return told + "upgrade";
+      return reported + "upgrade";
     } else {
       require(session.held() <= site().longest_header);
-      if (text.empty()) return told + "more";
+      if (text.empty()) return reported + "more";
       session.feed(text.substr(0, piece));
       text.remove_prefix(std::min(piece, text.size()));
     }
@@ -90,11 +90,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const std::string_view text(reinterpret_cast<const char*>(data) + 1, size - 1);
   const std::string whole = with_token(text);
   bool authorised = false;
-  const std::string told = conversation(whole, std::size_t{data[0]} + 1, authorised);
+  const std::string reported = conversation(whole, std::size_t{data[0]} + 1, authorised);
   const std::string slowly = conversation(whole, 1, authorised);
   // A WebSocket is refused if other bytes arrive with its request.
-  const bool socket = told.ends_with("upgrade") || slowly.ends_with("upgrade");
-  require(socket || told == slowly);
+  const bool socket = reported.ends_with("upgrade") || slowly.ends_with("upgrade");
+  require(socket || reported == slowly);
   require(!authorised || whole.find(token) != std::string::npos);
   return 0;
 }

@@ -55,7 +55,7 @@ class Host {
   virtual void opened(ClientId client) = 0;
   virtual void closed(ClientId client) = 0;
   /// Receives a text message of a client, at most `longest_message` bytes of UTF-8.
-  virtual void said(ClientId client, std::string text) = 0;
+  virtual void on_message(ClientId client, std::string text) = 0;
   /// Receives an authorised GET of something that is not an asset: path and query as received, unchecked.
   /// `answer` may be called once, later, from any thread.
   virtual void asked(std::string target, std::function<void(HttpAnswer)> answer) = 0;

@@ -92,7 +92,7 @@ void Server::Loop::Client::heard(const ErrorCode& error) {
     // Beast 1.74 checks texts too, but accepts half a character if an empty frame ends the message.
     close(websocket::close_code::bad_payload);
   } else {
-    loop_->host_->said(id_, std::string(message));
+    loop_->host_->on_message(id_, std::string(message));
     stream_->incoming.consume(stream_->incoming.size());
     read();
   }

@@ -141,7 +141,7 @@ TEST(ServerLoad, EndsWithClientsInItAndCallsNothingAfterwards) {
   ASSERT_TRUE(host.wait_for("opened 1"));
   server.reset();
   const auto lines = host.lines();
-  client.say("anyone?");
+  client.send_text("anyone?");
   EXPECT_EQ(client.read_frame().opcode, 0);
   EXPECT_EQ(visitor.read_to_end(), "");
   EXPECT_EQ(host.lines(), lines);
@@ -150,7 +150,7 @@ TEST(ServerLoad, EndsWithClientsInItAndCallsNothingAfterwards) {
 // Repeats each received text twice: sends more than it receives.
 class EchoingHost : public TestHost {
  public:
-  void said(ClientId client, std::string text) override {
+  void on_message(ClientId client, std::string text) override {
     ++heard;
     server.load()->send(client, text);
     server.load()->send(client, std::move(text));
@@ -166,7 +166,7 @@ TEST(ServerLoad, CutsNobodyOffWhoReads) {
   RawClient client = connected(server);
   constexpr int count = 20000;  // More than all buffers hold.
   std::thread asking([&] {
-    for (int i = 0; i < count; ++i) client.say(std::to_string(i));
+    for (int i = 0; i < count; ++i) client.send_text(std::to_string(i));
   });
   int i = 0;
   while (i < 2 * count && client.read_frame().payload == std::to_string(i / 2)) ++i;
@@ -182,7 +182,7 @@ TEST(ServerLoad, ListensToNobodyWhoDoesNotReadAndThenEndsIt) {
   host.server = &server;
   RawClient deaf = connected(server, 4096);
   const std::string text(10000, 't');
-  while (deaf.say(text)) {
+  while (deaf.send_text(text)) {
   }
   EXPECT_TRUE(host.wait_for("closed 1"));
   // A quarter of the limit, plus the system's buffers.
@@ -210,7 +210,7 @@ TEST(ServerLoad, ManyThreadsMaySendWhileClientsComeAndGo) {
   for (int i = 0; i < 30; ++i) {
     RawClient client = connected(server);
     for (int frame = 0; frame < 5; ++frame) EXPECT_NE(client.read_frame().opcode, 0);
-    client.say("bye");
+    client.send_text("bye");
     EXPECT_TRUE(host.wait_for(std::to_string(i + 1) + " said bye"));
   }
   enough = true;

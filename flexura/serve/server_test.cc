@@ -93,7 +93,7 @@ TEST_F(ServerTest, SpeaksWithAClientThatShowsTheToken) {
   const RawFrame bytes = client.read_frame();
   EXPECT_EQ(bytes.opcode, 2);
   EXPECT_EQ(bytes.payload, "\x01\x02");
-  client.say("halt");
+  client.send_text("halt");
   EXPECT_TRUE(host_.wait_for("1 said halt"));
   client.send_frame(0x88, "\x03\xe8");
   EXPECT_EQ(client.read_frame().close_code(), 1000);
@@ -201,10 +201,10 @@ TEST_F(ServerTest, EndsClientsThatBreakTheRulesWithTheReason) {
   start();
   const std::string most(std::size_t{64} * 1024, 'm');
   RawClient decent = connected();
-  EXPECT_TRUE(decent.say(most));
+  EXPECT_TRUE(decent.send_text(most));
   EXPECT_TRUE(host_.wait_for("1 said " + most));
   RawClient loud = connected();
-  loud.say(most + "x");
+  loud.send_text(most + "x");
   EXPECT_EQ(loud.read_frame().close_code(), 1009);
   RawClient piecewise = connected();
   piecewise.send_frame(0x01, most);
@@ -214,7 +214,7 @@ TEST_F(ServerTest, EndsClientsThatBreakTheRulesWithTheReason) {
   binary.send_frame(0x82, "bytes");
   EXPECT_EQ(binary.read_frame().close_code(), 1003);
   RawClient garbled = connected();
-  garbled.say("\xff\xfe");
+  garbled.send_text("\xff\xfe");
   EXPECT_EQ(garbled.read_frame().close_code(), 1007);
   RawClient halved = connected();
   halved.send_frame(0x01, "\xf0\x9f");
@@ -294,7 +294,7 @@ TEST_F(ServerTest, EndsConnectionsWithoutALifeSign) {
     lively.send_frame(0x8A, ping.payload);
   }
   EXPECT_TRUE(host_.wait_for("closed 2"));
-  lively.say("here");
+  lively.send_text("here");
   EXPECT_TRUE(host_.wait_for("1 said here"));
   RawClient pausing(server_->port());
   pausing.send(get("/"));

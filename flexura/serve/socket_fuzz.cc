@@ -35,7 +35,7 @@ class Echo : public flexura::Host {
     require(inside_ == client);
     inside_ = 0;
   }
-  void said(ClientId client, std::string text) override {
+  void on_message(ClientId client, std::string text) override {
     require(inside_ == client && text.size() <= longest && flexura::is_utf8(text));
     server->post(client, 1, std::make_shared<const std::string>(text));
     server->send(client, std::move(text));

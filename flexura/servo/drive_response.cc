@@ -10,7 +10,7 @@ namespace {
 // Dead zone, rad. Observations of smaller motions are as much noise as motion, so motions add up until they
 // exceed it.
 constexpr double least = 0.03;
-constexpr double share = 0.5, forgetting = 0.97, doubt = 300;
+constexpr double share = 0.5, forgetting = 0.97, max_variance = 300;
 // Largest residual learned per rad of motion, rad. It limits the effect of an outlier.
 constexpr double most_missed = 1;
 
@@ -19,7 +19,8 @@ constexpr double most_missed = 1;
 DriveResponse::DriveResponse(ServoJacobian how, Eigen::Index variables)
     : identity_(Eigen::MatrixXd::Identity(variables, variables)) {
   if (how == ServoJacobian::broyden) estimate_ = BroydenEstimate(identity_, share, least);
-  if (how == ServoJacobian::recursive) estimate_ = RecursiveEstimate(identity_, forgetting, doubt, least);
+  if (how == ServoJacobian::recursive)
+    estimate_ = RecursiveEstimate(identity_, forgetting, max_variance, least);
 }
 
 const Eigen::MatrixXd& DriveResponse::matrix() const {
@@ -34,13 +35,13 @@ void DriveResponse::learn(const Eigen::VectorXd& x, const Eigen::VectorXd& y) {
     dx_ = x - before_->x;
     const double motion = dx_.norm();
     if (motion < least) return;
-    foreseen_.noalias() = matrix() * dx_;
-    missed_ = y - before_->y - foreseen_;
+    predicted_.noalias() = matrix() * dx_;
+    missed_ = y - before_->y - predicted_;
     const double missed = missed_.norm();
     if (missed > most_missed * motion) missed_ *= most_missed * motion / missed;
-    foreseen_ += missed_;
-    if (auto* broyden = std::get_if<BroydenEstimate>(&estimate_)) (void)broyden->learn(dx_, foreseen_);
-    if (auto* recursive = std::get_if<RecursiveEstimate>(&estimate_)) (void)recursive->learn(dx_, foreseen_);
+    predicted_ += missed_;
+    if (auto* broyden = std::get_if<BroydenEstimate>(&estimate_)) (void)broyden->learn(dx_, predicted_);
+    if (auto* recursive = std::get_if<RecursiveEstimate>(&estimate_)) (void)recursive->learn(dx_, predicted_);
     before_->x = x, before_->y = y;
   } else {
     before_ = Seen{x, y};

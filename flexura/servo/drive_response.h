@@ -34,7 +34,7 @@ class DriveResponse {
   Eigen::MatrixXd identity_;
   std::variant<std::monostate, BroydenEstimate, RecursiveEstimate> estimate_;
   std::optional<Seen> before_;
-  Eigen::VectorXd dx_, foreseen_, missed_;
+  Eigen::VectorXd dx_, predicted_, missed_;
 };
 
 }  // namespace flexura

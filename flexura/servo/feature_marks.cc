@@ -49,14 +49,14 @@ FeatureMarker::FeatureMarker(ServoLawKind law, Arm arm, std::int64_t points)
       corners_(equal_shares(static_cast<int>(points))),
       features_(servo_features(law, arm_, points)) {}
 
-std::array<std::vector<FeatureMark>, 2> FeatureMarker::of(const ServoSight& sight) {
+std::array<std::vector<FeatureMark>, 2> FeatureMarker::of(const ServoObservation& observed) {
   std::array<std::vector<FeatureMark>, 2> marks;
-  if (law_ == ServoLawKind::shape || !sight.estimate.is_found) return marks;
-  const std::array<View, 2> views = {sight.seen[0].view, sight.seen[1].view};
-  if (!features_->measured(sight.estimate.shape.state, sight.seen, seen_) ||
-      !features_->foreseen(sight.desired, views, wanted_))
+  if (law_ == ServoLawKind::shape || !observed.estimate.is_found) return marks;
+  const std::array<View, 2> views = {observed.seen[0].view, observed.seen[1].view};
+  if (!features_->measured(observed.estimate.shape.state, observed.seen, seen_) ||
+      !features_->predict(observed.desired, views, desired_))
     return marks;
-  if (sight.desired_offset.size() == wanted_.size()) wanted_ += sight.desired_offset;
+  if (observed.desired_offset.size() == desired_.size()) desired_ += observed.desired_offset;
   for (std::size_t i = 0; i < 2; ++i) {
     switch (law_) {
       case ServoLawKind::shape:
@@ -72,7 +72,7 @@ std::array<std::vector<FeatureMark>, 2> FeatureMarker::of(const ServoSight& sigh
         break;
       case ServoLawKind::chords:
       case ServoLawKind::potential:
-        marks[i] = chords_in(i, sight);
+        marks[i] = chords_in(i, observed);
         break;
     }
   }
@@ -84,7 +84,7 @@ std::vector<FeatureMark> FeatureMarker::points_in(std::size_t camera) const {
   marks.reserve(static_cast<std::size_t>(points_));
   const Eigen::Index first = 2 * points_ * static_cast<Eigen::Index>(camera);
   for (Eigen::Index k = 0; k < points_; ++k)
-    marks.push_back({{seen_.segment<2>(first + 2 * k)}, {wanted_.segment<2>(first + 2 * k)}});
+    marks.push_back({{seen_.segment<2>(first + 2 * k)}, {desired_.segment<2>(first + 2 * k)}});
   return marks;
 }
 
@@ -93,28 +93,31 @@ std::vector<FeatureMark> FeatureMarker::edges_in(std::size_t camera) const {
   std::vector<FeatureMark> marks;
   const Eigen::Index count = 2 * points_, first = 4 * count * static_cast<Eigen::Index>(camera);
   for (Eigen::Index k = 0; k < count; ++k) {
-    const Eigen::Vector2d seen = seen_.segment<2>(first + 2 * k), wanted = wanted_.segment<2>(first + 2 * k);
-    if (seen.allFinite() && wanted.allFinite()) marks.push_back({{seen}, {wanted}});
+    const Eigen::Vector2d seen = seen_.segment<2>(first + 2 * k),
+                          desired = desired_.segment<2>(first + 2 * k);
+    if (seen.allFinite() && desired.allFinite()) marks.push_back({{seen}, {desired}});
   }
   return marks;
 }
 
 std::vector<FeatureMark> FeatureMarker::moments_in(std::size_t camera) const {
   const auto first = moment_count * static_cast<Eigen::Index>(camera);
-  return {{{seen_.segment<2>(first + 1)}, {wanted_.segment<2>(first + 1)}},
-          {ellipse_of(seen_.segment<moment_count>(first)), ellipse_of(wanted_.segment<moment_count>(first))}};
+  return {
+      {{seen_.segment<2>(first + 1)}, {desired_.segment<2>(first + 1)}},
+      {ellipse_of(seen_.segment<moment_count>(first)), ellipse_of(desired_.segment<moment_count>(first))}};
 }
 
-std::vector<FeatureMark> FeatureMarker::chords_in(std::size_t camera, const ServoSight& sight) const {
+std::vector<FeatureMark> FeatureMarker::chords_in(std::size_t camera,
+                                                  const ServoObservation& observed) const {
   std::vector<FeatureMark> marks;
-  const auto pixels = measured_pixels(arm_, sight.estimate.shape.state, sight.seen[camera], corners_);
+  const auto pixels = measured_pixels(arm_, observed.estimate.shape.state, observed.seen[camera], corners_);
   if (!pixels) return marks;
   const double weight = FeatureSet{}.angle_weight;
   for (Eigen::Index k = 0; k < points_; ++k) {
-    const double angle = wanted_[points_ * static_cast<Eigen::Index>(camera) + k];
+    const double angle = desired_[points_ * static_cast<Eigen::Index>(camera) + k];
     const Eigen::Vector2d way = law_ == ServoLawKind::chords
                                     ? Eigen::Vector2d(std::cos(angle / weight), std::sin(angle / weight))
-                                    : way_in_plane(sight.seen[camera].view, camera, angle);
+                                    : way_in_plane(observed.seen[camera].view, camera, angle);
     const Eigen::Vector2d from = pixels->col(k), to = pixels->col(k + 1), middle = 0.5 * (from + to),
                           half = 0.5 * (to - from).norm() * way.normalized();
     if (half.allFinite()) marks.push_back({{from, to}, {middle - half, middle + half}});

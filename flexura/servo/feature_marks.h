@@ -9,13 +9,13 @@
 #include "flexura/model/arm.h"
 #include "flexura/servo/servo_config.h"
 #include "flexura/servo/servo_features.h"
-#include "flexura/servo/servo_sight.h"
+#include "flexura/servo/servo_observation.h"
 
 namespace flexura {
 
-/// A pixel or polyline that a law compares in a picture: measured (`seen`) and target (`wanted`), px.
+/// A pixel or polyline that a law compares in a picture: measured (`seen`) and target (`desired`), px.
 struct FeatureMark {
-  std::vector<Eigen::Vector2d> seen, wanted;
+  std::vector<Eigen::Vector2d> seen, desired;
 };
 
 /// Draws what a law compares into the pictures:
@@ -30,20 +30,21 @@ class FeatureMarker {
 
   /// Returns the marks in both pictures of an observation, at its time; empty if it gives no shape. Chords
   /// are as measured in these pictures, even if the law carries their angles by optical flow.
-  [[nodiscard]] std::array<std::vector<FeatureMark>, 2> of(const ServoSight& sight);
+  [[nodiscard]] std::array<std::vector<FeatureMark>, 2> of(const ServoObservation& observed);
 
  private:
   [[nodiscard]] std::vector<FeatureMark> points_in(std::size_t camera) const;
   [[nodiscard]] std::vector<FeatureMark> edges_in(std::size_t camera) const;
   [[nodiscard]] std::vector<FeatureMark> moments_in(std::size_t camera) const;
-  [[nodiscard]] std::vector<FeatureMark> chords_in(std::size_t camera, const ServoSight& sight) const;
+  [[nodiscard]] std::vector<FeatureMark> chords_in(std::size_t camera,
+                                                   const ServoObservation& observed) const;
 
   ServoLawKind law_;
   Arm arm_;
   Eigen::Index points_;
   std::vector<double> corners_;  // Shares of the arm where chords meet.
   std::unique_ptr<ServoFeatures> features_;
-  Eigen::VectorXd seen_, wanted_;  // Features of both pictures.
+  Eigen::VectorXd seen_, desired_;  // Features of both pictures.
 };
 
 }  // namespace flexura

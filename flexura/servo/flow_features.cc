@@ -73,17 +73,18 @@ std::vector<double> FlowFeatures::turns(const Seen& before, const Image<std::uin
   return turns;
 }
 
-void FlowFeatures::look(const ServoSight& sight) {
+void FlowFeatures::look(const ServoObservation& observed) {
   std::array<Eigen::Matrix2Xd, 2> places;
   std::array<Image<std::uint8_t>, 2> grays;
   for (std::size_t i = 0; i < 2; ++i) {
-    const auto measured = measured_pixels(arm_, sight.estimate.shape.state, sight.seen[i], chords_->shares());
-    if (!measured || !sight.frames[i].picture) {
+    const auto measured =
+        measured_pixels(arm_, observed.estimate.shape.state, observed.seen[i], chords_->shares());
+    if (!measured || !observed.frames[i].picture) {
       begin_anew();
       return;
     }
     places[i] = *measured;
-    grays[i] = gray_of(sight.frames[i], whites_[i]);
+    grays[i] = gray_of(observed.frames[i], whites_[i]);
   }
   for (std::size_t i = 0; i < 2; ++i) {
     Seen& seen = seen_[i];
@@ -94,7 +95,7 @@ void FlowFeatures::look(const ServoSight& sight) {
         seen.gray.height() == grays[i].height()) {
       angles.turns = turns(seen, grays[i], places[i]);
       seen.integrator->add(angles.turns);
-      const double passed = std::max(0.0, sight.time - *time_);
+      const double passed = std::max(0.0, observed.time - *time_);
       (void)seen.integrator->anchor(angles.measured, 1 - std::exp(-passed / anchor_));
     } else {
       seen.integrator.emplace(angles.measured);
@@ -108,10 +109,10 @@ void FlowFeatures::look(const ServoSight& sight) {
     }
     seen.gray = std::move(grays[i]), seen.places = places[i];
   }
-  time_ = sight.time;
+  time_ = observed.time;
 }
 
-bool FlowFeatures::measured(const ArmState& estimate, const std::array<Sighting, 2>& seen,
+bool FlowFeatures::measured(const ArmState& estimate, const std::array<Observation, 2>& seen,
                             Eigen::VectorXd& values) {
   if (!time_) return chords_->measured(estimate, seen, values);
   return chords_->of_pixels(pixels_, estimate, {seen[0].view, seen[1].view}, values);

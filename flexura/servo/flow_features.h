@@ -9,7 +9,7 @@
 
 #include "flexura/base/image.h"
 #include "flexura/servo/servo_features.h"
-#include "flexura/servo/servo_sight.h"
+#include "flexura/servo/servo_observation.h"
 #include "flexura/vision/curve_flow.h"
 
 namespace flexura {
@@ -23,22 +23,23 @@ class FlowFeatures : public ServoFeatures {
   /// of the cameras' pictures.
   FlowFeatures(Arm arm, std::unique_ptr<ChordFeatures> chords, double anchor, std::array<int, 2> whites);
 
-  void look(const ServoSight& sight) override;
+  void look(const ServoObservation& observed) override;
   /// Uses the carried angles for the observation of the last look(), otherwise the angles that the chords
   /// measure.
-  [[nodiscard]] bool measured(const ArmState& estimate, const std::array<Sighting, 2>& seen,
+  [[nodiscard]] bool measured(const ArmState& estimate, const std::array<Observation, 2>& seen,
                               Eigen::VectorXd& values) override;
-  [[nodiscard]] bool foreseen(const ArmState& state, const std::array<View, 2>& views,
-                              Eigen::VectorXd& values) override {
-    return chords_->foreseen(state, views, values);
+  [[nodiscard]] bool predict(const ArmState& state, const std::array<View, 2>& views,
+                             Eigen::VectorXd& values) override {
+    return chords_->predict(state, views, values);
   }
   [[nodiscard]] bool error(const Eigen::VectorXd& seen, const Eigen::VectorXd& desired,
                            const ArmState& estimate, const std::array<View, 2>& views,
                            FeatureError& result) override {
     return chords_->error(seen, desired, estimate, views, result);
   }
-  [[nodiscard]] bool secant(const Eigen::VectorXd& seen, const Eigen::VectorXd& desired, const ShapeWay& way,
-                            const std::array<View, 2>& views, FeatureError& result) override {
+  [[nodiscard]] bool secant(const Eigen::VectorXd& seen, const Eigen::VectorXd& desired,
+                            const ShapeError& way, const std::array<View, 2>& views,
+                            FeatureError& result) override {
     return chords_->secant(seen, desired, way, views, result);
   }
 

@@ -11,14 +11,14 @@ class WithLengths : public ServoFeatures {
   WithLengths(std::unique_ptr<ServoFeatures> inner, Eigen::Index sections, double weight)
       : inner_(std::move(inner)), sections_(sections), weight_(weight) {}
 
-  void look(const ServoSight& sight) override { inner_->look(sight); }
-  [[nodiscard]] bool measured(const ArmState& estimate, const std::array<Sighting, 2>& seen,
+  void look(const ServoObservation& observed) override { inner_->look(observed); }
+  [[nodiscard]] bool measured(const ArmState& estimate, const std::array<Observation, 2>& seen,
                               Eigen::VectorXd& values) override {
     return inner_->measured(estimate, seen, part_) && append(estimate, values);
   }
-  [[nodiscard]] bool foreseen(const ArmState& state, const std::array<View, 2>& views,
-                              Eigen::VectorXd& values) override {
-    return inner_->foreseen(state, views, part_) && append(state, values);
+  [[nodiscard]] bool predict(const ArmState& state, const std::array<View, 2>& views,
+                             Eigen::VectorXd& values) override {
+    return inner_->predict(state, views, part_) && append(state, values);
   }
   [[nodiscard]] bool error(const Eigen::VectorXd& seen, const Eigen::VectorXd& desired,
                            const ArmState& estimate, const std::array<View, 2>& views,
@@ -26,8 +26,9 @@ class WithLengths : public ServoFeatures {
     split(seen, desired);
     return inner_->error(seen_, desired_, estimate, views, error_) && append(seen, desired, result);
   }
-  [[nodiscard]] bool secant(const Eigen::VectorXd& seen, const Eigen::VectorXd& desired, const ShapeWay& way,
-                            const std::array<View, 2>& views, FeatureError& result) override {
+  [[nodiscard]] bool secant(const Eigen::VectorXd& seen, const Eigen::VectorXd& desired,
+                            const ShapeError& way, const std::array<View, 2>& views,
+                            FeatureError& result) override {
     split(seen, desired);
     return inner_->secant(seen_, desired_, way, views, error_) && append(seen, desired, result);
   }

@@ -29,7 +29,7 @@ struct Place {
 
 // Returns the largest distance from the shape's image, px, at which a measurement counts as the arm. It is
 // smaller if view errors are estimated.
-double farthest_in(const Sighting& seen) { return seen.doubt.is_any() ? 3 : 20; }
+double farthest_in(const Observation& seen) { return seen.view_prior.is_any() ? 3 : 20; }
 
 // A measured curve in short pieces, so that a point searches only the pieces near it.
 class CurveStretches {
@@ -101,7 +101,7 @@ double offset_beside(const std::vector<std::optional<double>>& offsets, std::siz
 }  // namespace
 
 std::optional<Eigen::Matrix2Xd> measured_pixels(const Arm& arm, const ArmState& estimate,
-                                                const Sighting& seen, const std::vector<double>& shares) {
+                                                const Observation& seen, const std::vector<double>& shares) {
   const Backbone backbone(arm, estimate);
   std::vector<Place> places(shares.size());
   const CurveStretches axis(seen.points, farthest_in(seen), 0);
@@ -121,14 +121,15 @@ std::optional<Eigen::Matrix2Xd> measured_pixels(const Arm& arm, const ArmState& 
   }
   Eigen::Matrix2Xd pixels(2, static_cast<Eigen::Index>(shares.size()));
   for (std::size_t k = 0; k < shares.size(); ++k) {
-    const double unseen = seen.doubt.is_any() ? 0 : offset_near(places, shares, k);
+    const double unseen = seen.view_prior.is_any() ? 0 : offset_near(places, shares, k);
     const double offset = places[k].offset.value_or(unseen);
     pixels.col(static_cast<Eigen::Index>(k)) = places[k].pixel + offset * places[k].across;
   }
   return pixels;
 }
 
-void measured_edges(const ContourImage& contour, const Sighting& seen, Eigen::Ref<Eigen::Matrix2Xd> pixels) {
+void measured_edges(const ContourImage& contour, const Observation& seen,
+                    Eigen::Ref<Eigen::Matrix2Xd> pixels) {
   const double farthest = farthest_in(seen);
   const std::array<CurveStretches, 2> edges = {CurveStretches(seen.edges[0], farthest, 1),
                                                CurveStretches(seen.edges[1], farthest, -1)};
@@ -147,7 +148,7 @@ void measured_edges(const ContourImage& contour, const Sighting& seen, Eigen::Re
   offsets.reserve(static_cast<std::size_t>(count));
   for (Eigen::Index i = 0; i < count; ++i) offsets.push_back(offset_at(i));
   for (Eigen::Index i = 0; i < count; ++i) {
-    const double unseen = seen.doubt.is_any() ? 0 : offset_beside(offsets, static_cast<std::size_t>(i));
+    const double unseen = seen.view_prior.is_any() ? 0 : offset_beside(offsets, static_cast<std::size_t>(i));
     pixels.col(i) = contour.pixels.col(i) +
                     offsets[static_cast<std::size_t>(i)].value_or(unseen) * contour.normals.col(i);
   }

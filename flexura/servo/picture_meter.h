@@ -10,7 +10,7 @@
 #include "flexura/port/rig_model.h"
 #include "flexura/servo/rig_reader.h"
 #include "flexura/servo/servo_config.h"
-#include "flexura/servo/servo_sight.h"
+#include "flexura/servo/servo_observation.h"
 #include "flexura/vision/arm_finder.h"
 
 namespace flexura {
@@ -18,20 +18,20 @@ namespace flexura {
 /// Measures the arm in the pictures of two cameras.
 class PictureMeter {
  public:
-  PictureMeter(const RigModel& believed, const ServoConfig& config);
+  PictureMeter(const RigModel& nominal, const ServoConfig& config);
 
   /// Returns an observation without a shape: what each picture shows of the arm, or the reason why it shows
   /// no arm.
-  [[nodiscard]] ServoSight measure(const PicturePair& pair);
+  [[nodiscard]] ServoObservation measure(const PicturePair& pair);
 
  private:
-  [[nodiscard]] Sighting sighting(std::size_t i, const Picture& picture, const View& view,
-                                  std::string& reason);
+  [[nodiscard]] Observation observation(std::size_t i, const Picture& picture, const View& view,
+                                        std::string& reason);
 
   Eigen::Vector3d base_;            // p_WB
   std::array<int, 2> whites_ = {};  // Largest pixel value of each camera's pictures.
   bool has_markers_;
-  ViewDoubt doubt_;
+  ViewPrior view_prior_;
   struct Finder {
     Eigen::Vector2d base;
     ArmFinder finder;

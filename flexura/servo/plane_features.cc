@@ -33,7 +33,7 @@ class PlaneFeatures : public ChordFeatures {
  public:
   PlaneFeatures(Arm arm, int points) : arm_(std::move(arm)), shares_(equal_shares(points)) {}
 
-  [[nodiscard]] bool measured(const ArmState& estimate, const std::array<Sighting, 2>& seen,
+  [[nodiscard]] bool measured(const ArmState& estimate, const std::array<Observation, 2>& seen,
                               Eigen::VectorXd& values) override {
     std::array<Eigen::Matrix2Xd, 2> pixels;
     for (std::size_t i = 0; i < 2; ++i) {
@@ -49,9 +49,9 @@ class PlaneFeatures : public ChordFeatures {
     values = with_chords(plane_angles_of(views, pixels), estimate);
     return true;
   }
-  [[nodiscard]] bool foreseen(const ArmState& state, const std::array<View, 2>& views,
-                              Eigen::VectorXd& values) override {
-    return measured(state, {Sighting{views[0], {}, {}, {}}, Sighting{views[1], {}, {}, {}}}, values);
+  [[nodiscard]] bool predict(const ArmState& state, const std::array<View, 2>& views,
+                             Eigen::VectorXd& values) override {
+    return measured(state, {Observation{views[0], {}, {}, {}}, Observation{views[1], {}, {}, {}}}, values);
   }
   [[nodiscard]] bool error(const Eigen::VectorXd& seen, const Eigen::VectorXd& desired,
                            const ArmState& estimate, const std::array<View, 2>&,
@@ -97,7 +97,7 @@ class PlaneFeatures : public ChordFeatures {
     const double theta = seen[2 * chords + k], q = seen[3 * chords + k];
     const double theta_d = desired[2 * chords + k], q_d = desired[3 * chords + k];
     const PlaneView view{seen[k], seen[chords + k]};
-    if (!planes_contradict(view) && planes_tell({theta, q}, {nearest_turn(theta_d, theta), q_d}))
+    if (!planes_contradict(view) && planes_determine({theta, q}, {nearest_turn(theta_d, theta), q_d}))
       return plane_error(
           view, {nearest_turn(desired[k], seen[k]), nearest_turn(desired[chords + k], seen[chords + k])});
     PlaneError error;

@@ -7,7 +7,7 @@
 #include <utility>
 #include <variant>
 
-#include "flexura/model/arm_way.h"
+#include "flexura/model/arm_difference.h"
 #include "flexura/port/rig_readings.h"
 
 namespace flexura {
@@ -18,41 +18,41 @@ constexpr double ahead = 0.1;
 
 }  // namespace
 
-RigReader::RigReader(const RigPorts& ports, const RigModel& believed,
+RigReader::RigReader(const RigPorts& ports, const RigModel& nominal,
                      const std::array<std::size_t, 2>& cameras, const Times& times)
     : ports_(ports),
-      model_(believed),
+      model_(nominal),
       cameras_(cameras),
-      optics_{Camera(believed.cameras.at(cameras[0])), Camera(believed.cameras.at(cameras[1]))},
+      optics_{Camera(nominal.cameras.at(cameras[0])), Camera(nominal.cameras.at(cameras[1]))},
       times_(times),
       arm_(times.span, &interpolate),
       stances_{MotionHistory<CameraStance, StanceBlend>(times.span, &interpolate),
                MotionHistory<CameraStance, StanceBlend>(times.span, &interpolate)} {}
 
-RigReader::Trouble RigReader::read() {
+RigReader::Error RigReader::read() {
   auto arm = read_arm(*ports_.arm, model_.sections());
   if (auto* why = std::get_if<std::string>(&arm)) return std::move(*why);
-  const auto& said = std::get<ArmReading>(arm);
-  if (auto why = odd_time("the arm", said.time)) return why;
-  arm_.add(said.time, said.state);
+  const auto& measured = std::get<ArmReading>(arm);
+  if (auto why = invalid_time("the arm", measured.time)) return why;
+  arm_.add(measured.time, measured.state);
   for (std::size_t i = 0; i < 2; ++i) {
     auto stance = read_camera(ports_, cameras_[i], optics_[i]);
     if (auto* why = std::get_if<std::string>(&stance)) return std::move(*why);
     const auto& stands = std::get<StanceReading>(stance);
-    if (auto why = odd_time("the head of camera " + name(i), stands.time)) return why;
+    if (auto why = invalid_time("the head of camera " + name(i), stands.time)) return why;
     stances_[i].add(stands.time, stands.stance.stance());
   }
   return std::nullopt;
 }
 
-RigReader::Trouble RigReader::odd_time(const std::string& device, double time) const {
+RigReader::Error RigReader::invalid_time(const std::string& device, double time) const {
   const double age = now() - time;
   if (age < -ahead) return fmt::format("{} tells of a time that is {:.4g} s from now", device, -age);
   if (age > times_.silent) return fmt::format("{} tells of nothing since {:.4g} s ago", device, age);
   return std::nullopt;
 }
 
-std::string RigReader::odd_time(const Frame& frame, const std::deque<Frame>& before) const {
+std::string RigReader::invalid_time(const Frame& frame, const std::deque<Frame>& before) const {
   if (!std::isfinite(frame.time) || !std::isfinite(frame.received))
     return "its picture tells of no time: a number is none";
   if (frame.time > now() + ahead)
@@ -68,7 +68,7 @@ void RigReader::take_newest() {
     const auto frame = camera(i).camera->newest();
     silence_[i] = frame.fault() ? text(*frame.fault()) : "";
     if (frame.fault() || !frame.value()) continue;
-    silence_[i] = odd_time(*frame.value(), recent_[i]);
+    silence_[i] = invalid_time(*frame.value(), recent_[i]);
     if (!silence_[i].empty()) continue;
     recent_[i].push_back(*frame.value());
     if (recent_[i].size() > kept) recent_[i].pop_front();

@@ -32,14 +32,14 @@ class RigReader {
     double together = 0;  ///< Largest time between two pictures that count as simultaneous, s.
     double silent = 0;    ///< Older readings count as no answer, s.
   };
-  /// `believed` must outlive this object.
-  RigReader(const RigPorts& ports, const RigModel& believed, const std::array<std::size_t, 2>& cameras,
+  /// `nominal` must outlive this object.
+  RigReader(const RigPorts& ports, const RigModel& nominal, const std::array<std::size_t, 2>& cameras,
             const Times& times);
 
-  using Trouble = std::optional<std::string>;
+  using Error = std::optional<std::string>;
   /// Reads arm, heads and stages. Returns an error if one is unknown (rig_readings.h), or its time is in the
   /// future or too old.
-  [[nodiscard]] Trouble read();
+  [[nodiscard]] Error read();
   /// Requests pictures from the cameras. Returns a pair if there is a new one. A camera that does not answer
   /// has no picture, nor one whose timestamp is not finite, in the future, or out of order. silence() then
   /// returns the reason.
@@ -51,8 +51,8 @@ class RigReader {
   [[nodiscard]] std::string no_pair(double since) const;
 
   /// said() returns the drives' shape at a time; believed() the model's shape for it.
-  [[nodiscard]] ArmState said(double time) const { return *arm_.at(time); }
-  [[nodiscard]] ArmState believed(double time) const { return model_.bent(said(time)); }
+  [[nodiscard]] ArmState measured(double time) const { return *arm_.at(time); }
+  [[nodiscard]] ArmState nominal(double time) const { return model_.bent(measured(time)); }
   /// Returns the nominal views of the cameras at a time.
   [[nodiscard]] std::array<View, 2> views(double time) const { return {view(0, time), view(1, time)}; }
   /// Returns the axis positions that a camera's head and stage reported.
@@ -71,8 +71,8 @@ class RigReader {
   using StanceBlend = CameraStance (*)(const CameraStance&, const CameraStance&, double);
   [[nodiscard]] View view(std::size_t i, double time) const { return optics_[i].view(stance(i, time)); }
   // Check the time of a device's reading, and of a frame after the previous ones. Empty if the time is valid.
-  [[nodiscard]] Trouble odd_time(const std::string& device, double time) const;
-  [[nodiscard]] std::string odd_time(const Frame& frame, const std::deque<Frame>& before) const;
+  [[nodiscard]] Error invalid_time(const std::string& device, double time) const;
+  [[nodiscard]] std::string invalid_time(const Frame& frame, const std::deque<Frame>& before) const;
   // Requests a frame from both cameras.
   void take_newest();
 

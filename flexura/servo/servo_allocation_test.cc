@@ -22,18 +22,18 @@ TEST(ServoLaw, AllocatesNothingButItsAnswer) {
     config.jacobian = jacobian;
     const auto features = servo_features(config.law, arm, config.points);
     ServoLaw law(ArmModel(arm), config, *features);
-    ServoSight sight;
-    sight.seen[0].view = servo_views()[0], sight.seen[1].view = servo_views()[1];
-    sight.estimate.shape.state = {{{0.4, 0.1}, {-0.2, 0.5}, {0.1, 0.3}}, {1, 1, 1}};
-    const ArmState& state = sight.estimate.shape.state;
-    const WantedShape wanted{{{{0.5, 0.1}, {-0.2, 0.1}, {0.3, 0.3}}, {1, 1, 1}}, {}};
-    const ServoLaw::Input input{.sight = sight,
+    ServoObservation observed;
+    observed.seen[0].view = servo_views()[0], observed.seen[1].view = servo_views()[1];
+    observed.estimate.shape.state = {{{0.4, 0.1}, {-0.2, 0.5}, {0.1, 0.3}}, {1, 1, 1}};
+    const ArmState& state = observed.estimate.shape.state;
+    const TargetShape desired{{{{0.5, 0.1}, {-0.2, 0.1}, {0.3, 0.3}}, {1, 1, 1}}, {}};
+    const ServoLaw::Input input{.observed = observed,
                                 .is_fresh = false,
-                                .said = state,
+                                .measured = state,
                                 .sent = state,
-                                .then = wanted,
-                                .wanted = wanted,
-                                .next = wanted.state};
+                                .then = desired,
+                                .desired = desired,
+                                .next = desired.state};
     for (int i = 0; i < 2; ++i) EXPECT_FALSE(law.step(input).is_singular);
     const long before = mallocs;
     for (int i = 0; i < 10; ++i) (void)law.step(input);
@@ -52,12 +52,12 @@ TEST(ServoFeatures, AllocateNothingOnceTheyHaveServed) {
     const auto features = servo_features(law, arm, 12);
     Eigen::VectorXd values;
     FeatureError error;
-    const ArmState wanted = {{{0.5, 0.1}, {-0.2, 0.1}, {0.3, 0.3}}, {1, 1, 1}},
+    const ArmState desired = {{{0.5, 0.1}, {-0.2, 0.1}, {0.3, 0.3}}, {1, 1, 1}},
                    halfway = {{{0.45, 0.1}, {-0.2, 0.3}, {0.2, 0.3}}, {1, 1, 1}};
     const auto look = [&] {
-      return features->foreseen(state, views, values) &&
+      return features->predict(state, views, values) &&
              features->error(values, values, state, views, error) &&
-             features->secant(values, values, {state, wanted, halfway}, views, error);
+             features->secant(values, values, {state, desired, halfway}, views, error);
     };
     ASSERT_TRUE(look());
     const long before = mallocs;

@@ -14,16 +14,17 @@ void require(bool is_so, const char* what) {
 
 }  // namespace
 
-const Table<ServoDoubt>& fields_of(const ServoDoubt*) {
+const Table<ServoCameraPrior>& fields_of(const ServoCameraPrior*) {
   static const auto table =
-      Table<ServoDoubt>("camera_prior",
-                        "Prior standard deviations of the camera models. The servo estimates their errors "
-                        "with the arm's shape; 0: exact.")
-          .field("rotation_std", static_cast<double ServoDoubt::*>(&ServoDoubt::rotation_std),
+      Table<ServoCameraPrior>(
+          "camera_prior",
+          "Prior standard deviations of the camera models. The servo estimates their errors "
+          "with the arm's shape; 0: exact.")
+          .field("rotation_std", static_cast<double ServoCameraPrior::*>(&ServoCameraPrior::rotation_std),
                  {.meaning = "Standard deviation of a camera's orientation, about each axis of its view.",
                   .unit = Unit::radian,
                   .range = between(0, 1)})
-          .field("focal_std", static_cast<double ServoDoubt::*>(&ServoDoubt::focal_std),
+          .field("focal_std", static_cast<double ServoCameraPrior::*>(&ServoCameraPrior::focal_std),
                  {.meaning = "Relative standard deviation of the focal length.", .range = between(0, 1)})
           .renamed("turn", "rotation_std")
           .renamed("focal", "focal_std");

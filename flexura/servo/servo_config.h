@@ -61,9 +61,9 @@ struct ServoGoal {
 
 /// Default prior of the camera models: the images of the base and of the arm beyond it determine their
 /// errors.
-struct ServoDoubt : ViewDoubt {
+struct ServoCameraPrior : ViewPrior {
   /// 0.02 rad, and 2 % of the focal length.
-  ServoDoubt() : ViewDoubt{.rotation_std = 0.02, .focal_std = 0.02} {}
+  ServoCameraPrior() : ViewPrior{.rotation_std = 0.02, .focal_std = 0.02} {}
 };
 
 /// Settings of a servo that a user chooses, in a file or in code.
@@ -82,7 +82,7 @@ struct ServoSettings {
   double hold_after = 0.3;   ///< Time without an observation after which the arm stops and waits, s.
   double give_up_after = 3;  ///< Time without an observation after which the servo fails, s.
   bool follow = false;       ///< Heads turn so that the arm stays in the middle of the pictures.
-  ServoDoubt camera_prior;   ///< Of each camera model.
+  ServoCameraPrior camera_prior;  ///< Of each camera model.
 };
 
 /// Configuration of a servo: its settings, and data of the rig and the arm.
@@ -100,7 +100,7 @@ struct ServoConfig : ServoSettings {
   std::vector<Obstacle> obstacles = {};
 };
 
-const Table<ServoDoubt>& fields_of(const ServoDoubt*);
+const Table<ServoCameraPrior>& fields_of(const ServoCameraPrior*);
 
 const std::vector<std::string>& names_of(const ServoLawKind*);
 const std::vector<std::string>& names_of(const ServoMeasure*);

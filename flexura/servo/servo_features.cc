@@ -30,12 +30,12 @@ void all_of(const ArmState& state, Eigen::VectorXd& values) {
 // The estimated shape itself.
 class EstimatedShape : public ServoFeatures {
  public:
-  [[nodiscard]] bool measured(const ArmState& estimate, const std::array<Sighting, 2>&,
+  [[nodiscard]] bool measured(const ArmState& estimate, const std::array<Observation, 2>&,
                               Eigen::VectorXd& values) override {
     return all_of(estimate, values), true;
   }
-  [[nodiscard]] bool foreseen(const ArmState& state, const std::array<View, 2>&,
-                              Eigen::VectorXd& values) override {
+  [[nodiscard]] bool predict(const ArmState& state, const std::array<View, 2>&,
+                             Eigen::VectorXd& values) override {
     return all_of(state, values), true;
   }
   [[nodiscard]] bool error(const Eigen::VectorXd& seen, const Eigen::VectorXd& desired, const ArmState&,
@@ -54,7 +54,7 @@ class ImageFeatures : public ServoFeatures {
 
   [[nodiscard]] const FeatureSet& set() const { return set_; }
 
-  [[nodiscard]] bool measured(const ArmState& estimate, const std::array<Sighting, 2>& seen,
+  [[nodiscard]] bool measured(const ArmState& estimate, const std::array<Observation, 2>& seen,
                               Eigen::VectorXd& values) override {
     values.resize(2 * set_.rows());
     for (std::size_t i = 0; i < 2; ++i) {
@@ -65,8 +65,8 @@ class ImageFeatures : public ServoFeatures {
     }
     return true;
   }
-  [[nodiscard]] bool foreseen(const ArmState& state, const std::array<View, 2>& views,
-                              Eigen::VectorXd& values) override {
+  [[nodiscard]] bool predict(const ArmState& state, const std::array<View, 2>& views,
+                             Eigen::VectorXd& values) override {
     return images_.values(state, views, values);
   }
   [[nodiscard]] bool error(const Eigen::VectorXd& seen, const Eigen::VectorXd& desired,
@@ -76,8 +76,9 @@ class ImageFeatures : public ServoFeatures {
     return images_.derive(estimate, views, values_, result.by_state);
   }
   // If the arm half-way is outside the lens's view, uses the derivatives at the current shape.
-  [[nodiscard]] bool secant(const Eigen::VectorXd& seen, const Eigen::VectorXd& desired, const ShapeWay& way,
-                            const std::array<View, 2>& views, FeatureError& result) override {
+  [[nodiscard]] bool secant(const Eigen::VectorXd& seen, const Eigen::VectorXd& desired,
+                            const ShapeError& way, const std::array<View, 2>& views,
+                            FeatureError& result) override {
     return error(seen, desired, way.halfway, views, result) || error(seen, desired, way.seen, views, result);
   }
 
@@ -96,25 +97,26 @@ class ChordAngles : public ChordFeatures {
       : shares_(equal_shares(points)), inner_(arm, FeatureSet::of_chords(points)), ends_(arm, shares_) {}
 
   [[nodiscard]] const std::vector<double>& shares() const override { return shares_; }
-  [[nodiscard]] bool measured(const ArmState& estimate, const std::array<Sighting, 2>& seen,
+  [[nodiscard]] bool measured(const ArmState& estimate, const std::array<Observation, 2>& seen,
                               Eigen::VectorXd& values) override {
     return inner_.measured(estimate, seen, values);
   }
-  [[nodiscard]] bool foreseen(const ArmState& state, const std::array<View, 2>& views,
-                              Eigen::VectorXd& values) override {
-    return inner_.foreseen(state, views, values);
+  [[nodiscard]] bool predict(const ArmState& state, const std::array<View, 2>& views,
+                             Eigen::VectorXd& values) override {
+    return inner_.predict(state, views, values);
   }
   [[nodiscard]] bool error(const Eigen::VectorXd& seen, const Eigen::VectorXd& desired,
                            const ArmState& estimate, const std::array<View, 2>& views,
                            FeatureError& result) override {
     return inner_.error(seen, desired, estimate, views, result);
   }
-  [[nodiscard]] bool secant(const Eigen::VectorXd& seen, const Eigen::VectorXd& desired, const ShapeWay& way,
-                            const std::array<View, 2>& views, FeatureError& result) override {
+  [[nodiscard]] bool secant(const Eigen::VectorXd& seen, const Eigen::VectorXd& desired,
+                            const ShapeError& way, const std::array<View, 2>& views,
+                            FeatureError& result) override {
     if (!inner_.error(seen, desired, way.seen, views, result)) return false;
     for (std::size_t i = 0; i < 2; ++i) {
       by_[i].resize(2 * ends_.count(), ends_.columns());
-      const bool are_shown = see(way.seen, views[i], here_[i]) && see(way.wanted, views[i], there_[i]);
+      const bool are_shown = see(way.seen, views[i], here_[i]) && see(way.desired, views[i], there_[i]);
       ends_.set(way.halfway);
       if (!are_shown || !ends_.see(views[i], halfway_, by_[i])) return true;
     }
@@ -182,15 +184,15 @@ std::unique_ptr<ChordFeatures> chord_features(const Arm& arm, int points) {
   return std::make_unique<ChordAngles>(arm, points);
 }
 
-std::unique_ptr<ServoFeatures> servo_features(const ServoConfig& config, const RigModel& believed) {
-  if (config.measure == ServoMeasure::picture) return servo_features(config.law, believed.arm, config.points);
+std::unique_ptr<ServoFeatures> servo_features(const ServoConfig& config, const RigModel& nominal) {
+  if (config.measure == ServoMeasure::picture) return servo_features(config.law, nominal.arm, config.points);
   const int points = static_cast<int>(config.points);
-  auto chords = config.law == ServoLawKind::chords ? chord_features(believed.arm, points)
-                                                   : plane_features(believed.arm, points);
+  auto chords = config.law == ServoLawKind::chords ? chord_features(nominal.arm, points)
+                                                   : plane_features(nominal.arm, points);
   std::array<int, 2> whites{};
-  for (std::size_t i = 0; i < 2; ++i) whites[i] = believed.cameras.at(config.cameras[i]).sensor.white();
-  return with_lengths(std::make_unique<FlowFeatures>(believed.arm, std::move(chords), config.anchor, whites),
-                      believed.arm, config.law == ServoLawKind::chords ? stretch_px : stretch_rad);
+  for (std::size_t i = 0; i < 2; ++i) whites[i] = nominal.cameras.at(config.cameras[i]).sensor.white();
+  return with_lengths(std::make_unique<FlowFeatures>(nominal.arm, std::move(chords), config.anchor, whites),
+                      nominal.arm, config.law == ServoLawKind::chords ? stretch_px : stretch_rad);
 }
 
 std::unique_ptr<ServoFeatures> servo_features(ServoLawKind law, const Arm& arm, std::int64_t places) {

@@ -7,14 +7,14 @@
 #include <vector>
 
 #include "flexura/camera/view.h"
-#include "flexura/estimate/sighting.h"
+#include "flexura/estimate/observation.h"
 #include "flexura/model/arm.h"
 #include "flexura/port/rig_model.h"
 #include "flexura/servo/servo_config.h"
 
 namespace flexura {
 
-struct ServoSight;
+struct ServoObservation;
 
 /// Feature error (measured minus target) and its derivatives by the arm's state.
 struct FeatureError {
@@ -24,8 +24,8 @@ struct FeatureError {
 };
 
 /// Way that a law has to close, from the observed shape to the target shape. Both must outlive it.
-struct ShapeWay {
-  const ArmState &seen, &wanted;
+struct ShapeError {
+  const ArmState &seen, &desired;
   const ArmState& halfway;  ///< interpolate(seen, wanted, 0.5)
 };
 
@@ -39,14 +39,14 @@ class ServoFeatures {
   ServoFeatures& operator=(const ServoFeatures&) = delete;
 
   /// Receives new pictures before they are measured, for features that also use earlier pictures.
-  virtual void look(const ServoSight& /*sight*/) {}
+  virtual void look(const ServoObservation& /*observed*/) {}
   /// Computes the features measured in two observations, with the estimated shape `estimate`. Returns false
   /// if that is impossible.
-  [[nodiscard]] virtual bool measured(const ArmState& estimate, const std::array<Sighting, 2>& seen,
+  [[nodiscard]] virtual bool measured(const ArmState& estimate, const std::array<Observation, 2>& seen,
                                       Eigen::VectorXd& values) = 0;
   /// Computes the features that nominal cameras observe of an arm in this state.
-  [[nodiscard]] virtual bool foreseen(const ArmState& state, const std::array<View, 2>& views,
-                                      Eigen::VectorXd& values) = 0;
+  [[nodiscard]] virtual bool predict(const ArmState& state, const std::array<View, 2>& views,
+                                     Eigen::VectorXd& values) = 0;
   /// Computes the error between these features, for an arm in the state `estimate`.
   [[nodiscard]] virtual bool error(const Eigen::VectorXd& seen, const Eigen::VectorXd& desired,
                                    const ArmState& estimate, const std::array<View, 2>& views,
@@ -55,7 +55,7 @@ class ServoFeatures {
   /// The error is then by_state times the difference between the arm's state and the target state, to the
   /// precision of the arm half-way (docs/control.md, eq. 20a). By default uses the derivatives of error().
   [[nodiscard]] virtual bool secant(const Eigen::VectorXd& seen, const Eigen::VectorXd& desired,
-                                    const ShapeWay& way, const std::array<View, 2>& views,
+                                    const ShapeError& way, const std::array<View, 2>& views,
                                     FeatureError& result) {
     return error(seen, desired, way.seen, views, result);
   }
@@ -75,9 +75,9 @@ class ChordFeatures : public ServoFeatures {
 /// Returns `count` + 1 equally spaced values from 0 to 1.
 [[nodiscard]] std::vector<double> equal_shares(int count);
 
-/// Returns the features of a servo. Keeps no reference to `believed`.
+/// Returns the features of a servo. Keeps no reference to `nominal`.
 [[nodiscard]] std::unique_ptr<ServoFeatures> servo_features(const ServoConfig& config,
-                                                            const RigModel& believed);
+                                                            const RigModel& nominal);
 
 /// Returns the features of a law at `places` places along the arm model `arm`.
 [[nodiscard]] std::unique_ptr<ServoFeatures> servo_features(ServoLawKind law, const Arm& arm,

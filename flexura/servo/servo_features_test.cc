@@ -13,7 +13,7 @@
 #include <numbers>
 
 #include "flexura/control/plane_errors.h"
-#include "flexura/model/arm_way.h"
+#include "flexura/model/arm_difference.h"
 #include "tests/support/random_cases.h"
 #include "tests/support/servo_views.h"
 
@@ -21,29 +21,29 @@ namespace flexura {
 namespace {
 
 // A way of an arm, `size` long in each bend, and its features for a law.
-struct ShownWay {
-  ArmState seen, wanted, halfway;
-  Eigen::VectorXd way, seen_values, wanted_values;
+struct ShownDifference {
+  ArmState seen, desired, halfway;
+  Eigen::VectorXd way, seen_values, desired_values;
 
-  ShownWay(ServoFeatures& features, const std::array<View, 2>& views, const ArmState& from,
-           const ArmState& unit_way, double size)
-      : seen(from), wanted(from) {
-    for (std::size_t i = 0; i < from.bends.size(); ++i) wanted.bends[i] += size * unit_way.bends[i];
-    halfway = interpolate(seen, wanted, 0.5);
+  ShownDifference(ServoFeatures& features, const std::array<View, 2>& views, const ArmState& from,
+                  const ArmState& unit_difference, double size)
+      : seen(from), desired(from) {
+    for (std::size_t i = 0; i < from.bends.size(); ++i) desired.bends[i] += size * unit_difference.bends[i];
+    halfway = interpolate(seen, desired, 0.5);
     way.setZero(3 * static_cast<Eigen::Index>(from.bends.size()));
     for (std::size_t i = 0; i < from.bends.size(); ++i)
-      way.segment<2>(3 * static_cast<Eigen::Index>(i)) = -size * unit_way.bends[i];
-    EXPECT_TRUE(features.foreseen(seen, views, seen_values));
-    EXPECT_TRUE(features.foreseen(wanted, views, wanted_values));
+      way.segment<2>(3 * static_cast<Eigen::Index>(i)) = -size * unit_difference.bends[i];
+    EXPECT_TRUE(features.predict(seen, views, seen_values));
+    EXPECT_TRUE(features.predict(desired, views, desired_values));
   }
   [[nodiscard]] FeatureError secant(ServoFeatures& features, const std::array<View, 2>& views) const {
     FeatureError result;
-    EXPECT_TRUE(features.secant(seen_values, wanted_values, {seen, wanted, halfway}, views, result));
+    EXPECT_TRUE(features.secant(seen_values, desired_values, {seen, desired, halfway}, views, result));
     return result;
   }
   [[nodiscard]] FeatureError tangent(ServoFeatures& features, const std::array<View, 2>& views) const {
     FeatureError result;
-    EXPECT_TRUE(features.error(seen_values, wanted_values, seen, views, result));
+    EXPECT_TRUE(features.error(seen_values, desired_values, seen, views, result));
     return result;
   }
   // Returns the norm of the error that the derivatives do not explain.
@@ -62,9 +62,10 @@ TEST(ServoFeatures, TellTheWholeWayByTheArmHalfWay) {
       const std::array<View, 2> views = servo_views();
       const auto features = servo_features(law, arm, 8);
       const ArmState from = random_servo_state(random, arm, 0.6),
-                     unit_way = random_servo_state(random, arm, 1);
-      const ShownWay there(*features, views, from, unit_way, 0.2),
-          nearer(*features, views, from, unit_way, 0.1), none(*features, views, from, unit_way, 0);
+                     unit_difference = random_servo_state(random, arm, 1);
+      const ShownDifference there(*features, views, from, unit_difference, 0.2),
+          nearer(*features, views, from, unit_difference, 0.1),
+          none(*features, views, from, unit_difference, 0);
       const double rest = there.rest(there.secant(*features, views));
       rests += rest, tangents += there.rest(there.tangent(*features, views));
       worst_order = std::min(worst_order, rest / nearer.rest(nearer.secant(*features, views)));
@@ -94,7 +95,7 @@ TEST(ServoFeatures, OfSilhouettesTellTheWholeWayButForSlips) {
     const std::array<View, 2> views = servo_views();
     const auto features = servo_features(ServoLawKind::silhouettes, arm, 8);
     const ArmState from = random_servo_state(random, arm, 0.6), way = random_servo_state(random, arm, 1);
-    const ShownWay there(*features, views, from, way, 0.5), none(*features, views, from, way, 0);
+    const ShownDifference there(*features, views, from, way, 0.5), none(*features, views, from, way, 0);
     rests += there.rest(there.secant(*features, views));
     tangents += there.rest(there.tangent(*features, views));
     const Eigen::MatrixXd slopes = none.tangent(*features, views).by_state;
@@ -113,8 +114,8 @@ TEST(ServoFeatures, OfWaysThatHaveNoMiddleAreNumbersAllTheSame) {
                  over = {{{-4, 0}, {-4, 0}, {-4, 0}}, {1, 1, 1}};
   for (const ServoLawKind law : {ServoLawKind::points, ServoLawKind::chords, ServoLawKind::silhouettes}) {
     const auto features = servo_features(law, arm, 8);
-    const ShownWay opposite(*features, views, from, over, 1);
-    EXPECT_EQ(opposite.wanted.bends[2], Eigen::Vector2d(-2, 0));
+    const ShownDifference opposite(*features, views, from, over, 1);
+    EXPECT_EQ(opposite.desired.bends[2], Eigen::Vector2d(-2, 0));
     const FeatureError error = opposite.secant(*features, views);
     EXPECT_TRUE(error.error.allFinite());
     EXPECT_TRUE(error.by_state.allFinite());
@@ -151,7 +152,7 @@ TEST(ServoFeatures, OfWhatIsNoNumberTellNone) {
   for (const ServoLawKind law : {ServoLawKind::shape, ServoLawKind::points, ServoLawKind::chords,
                                  ServoLawKind::potential, ServoLawKind::silhouettes}) {
     const auto features = servo_features(law, arm, 8);
-    ShownWay there(*features, views, from, way, 1);
+    ShownDifference there(*features, views, from, way, 1);
     there.seen_values[0] = std::nan("");
     const FeatureError error = there.secant(*features, views);
     EXPECT_EQ(error.error.allFinite(), law == ServoLawKind::silhouettes) << static_cast<int>(law);

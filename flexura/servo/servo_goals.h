@@ -16,7 +16,7 @@
 namespace flexura {
 
 /// The target at one time.
-struct WantedShape {
+struct TargetShape {
   ArmState state;
   /// Difference between the recorded pictures' features and those of `state` for nominal cameras; empty:
   /// zero.
@@ -35,17 +35,17 @@ class ServoGoals {
   /// Returns the time of the last target, s from the servo's start.
   [[nodiscard]] double last() const { return times_.back(); }
   /// Returns the target, linearly interpolated between two given ones; the first one before all of them.
-  [[nodiscard]] WantedShape at(double time) const;
+  [[nodiscard]] TargetShape at(double time) const;
 
  private:
   void measure(const PicturePair& recorded, const Arm& arm, PictureMeter& meter, ShapeObserver& observer,
                ServoFeatures& features);
   // Returns the reason why pictures with these views have to be given in the other order, or "".
-  [[nodiscard]] std::string wrong_order(const ServoSight& sight, const PicturePair& recorded,
+  [[nodiscard]] std::string wrong_order(const ServoObservation& observed, const PicturePair& recorded,
                                         PictureMeter& meter, const ShapeObserver& observer) const;
 
   std::vector<double> times_;
-  std::vector<WantedShape> shapes_;
+  std::vector<TargetShape> shapes_;
   std::string problem_;
 };
 

@@ -21,15 +21,15 @@ void ServoJudge::add(const ServoStep& step) {
   } else if (step.time - seen_at_ > config_.hold_after) {
     below_since_.reset();  // Nobody knows where it was meanwhile.
   }
-  if (!is_done_ && !hopeless_ && step.time > goal_time_ + config_.timeout) hopeless_ = why_not();
+  if (!is_done_ && !failure_ && step.time > goal_time_ + config_.timeout) failure_ = why_not();
 }
 
 void ServoJudge::add_error(const ServoStep& step) {
   latest_ = step.error->rms;
   const double time = *step.seen_at;
   // A low-confidence observation does not count as arrival. Pending commands to another shape do not either.
-  const double doubtful = 2 * config_.tolerance;
-  const bool stays = step.sigma <= doubtful && (!step.ahead || step.ahead->rms <= doubtful);
+  const double uncertain = 2 * config_.tolerance;
+  const bool stays = step.sigma <= uncertain && (!step.ahead || step.ahead->rms <= uncertain);
   if (time < goal_time_ || !(latest_ <= config_.tolerance) || !stays) {
     below_since_.reset();
   } else if (!below_since_) {
@@ -47,10 +47,10 @@ void ServoJudge::add_error(const ServoStep& step) {
   } else if (!worse_since_) {
     worse_since_ = time;
   } else if (time - *worse_since_ > patience) {
-    hopeless_ =
+    failure_ =
         fmt::format("diverging: {:.2g} % of the length off, after {:.2g} %", 100 * latest_, 100 * best_);
     // If the arm may not turn as fast as the law requests, it passes the target again and again.
-    if (limited_for_ > 0) *hopeless_ += fmt::format("; held back by {}", limited_by_);
+    if (limited_for_ > 0) *failure_ += fmt::format("; held back by {}", limited_by_);
   }
 }
 

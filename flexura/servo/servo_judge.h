@@ -23,7 +23,7 @@ class ServoJudge {
 
   [[nodiscard]] bool is_done() const { return is_done_; }
   /// Returns the reason to end the servo; std::nullopt while it can still succeed.
-  [[nodiscard]] const std::optional<std::string>& hopeless() const { return hopeless_; }
+  [[nodiscard]] const std::optional<std::string>& failure() const { return failure_; }
 
  private:
   void add_error(const ServoStep& step);
@@ -32,7 +32,7 @@ class ServoJudge {
   const ServoConfig& config_;
   double goal_time_;
   bool is_done_ = false;
-  std::optional<std::string> hopeless_;
+  std::optional<std::string> failure_;
   std::optional<double> below_since_, worse_since_;
   double seen_at_ = -1e300;           // Time of the last new observation used, s.
   double best_ = 1e300, latest_ = 0;  // Shares of the length.

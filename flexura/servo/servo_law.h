@@ -10,7 +10,7 @@
 #include "flexura/servo/servo_config.h"
 #include "flexura/servo/servo_features.h"
 #include "flexura/servo/servo_goals.h"
-#include "flexura/servo/servo_sight.h"
+#include "flexura/servo/servo_observation.h"
 
 namespace flexura {
 
@@ -19,25 +19,25 @@ namespace flexura {
 class ServoLaw {
  public:
   /// `features` and `config` must outlive this object.
-  ServoLaw(const ArmModel& believed, const ServoConfig& config, ServoFeatures& features);
+  ServoLaw(const ArmModel& nominal, const ServoConfig& config, ServoFeatures& features);
 
   /// Input of a step.
   struct Input {
-    const ServoSight& sight;    ///< Last observation of the arm.
-    bool is_fresh = false;      ///< The observation is new since the last step.
-    const ArmState& said;       ///< Drives' reading at its time.
-    const ArmState& sent;       ///< The last command.
-    const WantedShape& then;    ///< Target at the time of the observation.
-    const WantedShape& wanted;  ///< Current target.
-    const ArmState& next;       ///< Target one step from now.
+    const ServoObservation& observed;  ///< Last observation of the arm.
+    bool is_fresh = false;             ///< The observation is new since the last step.
+    const ArmState& measured;          ///< Drives' reading at its time.
+    const ArmState& sent;              ///< The last command.
+    const TargetShape& then;           ///< Target at the time of the observation.
+    const TargetShape& desired;        ///< Current target.
+    const ArmState& next;              ///< Target one step from now.
   };
-  struct Wish {
+  struct Output {
     ArmState asked;
     double potential = 0;  ///< Half the squared error at the time of the observation.
     bool is_singular = false;
   };
   /// Returns the command. Keeps the current one if the observation gives no error.
-  [[nodiscard]] Wish step(const Input& input);
+  [[nodiscard]] Output step(const Input& input);
 
  private:
   // Converts derivatives by the shape to derivatives by the law's variables at a command.
@@ -45,9 +45,9 @@ class ServoLaw {
   // Packs the variables of a command, within the limits or not.
   void pack(const ArmState& state, Eigen::VectorXd& x) const;
   // Computes the error of the measured features, which it writes to seen_.
-  [[nodiscard]] bool find_error(const Input& input, const WantedShape& wanted, FeatureError& result);
+  [[nodiscard]] bool find_error(const Input& input, const TargetShape& desired, FeatureError& result);
   // Adds the motion of the drives that follows the target's motion.
-  void go_along(const ArmState& wanted, const ArmState& next, ArmState& asked);
+  void go_along(const ArmState& desired, const ArmState& next, ArmState& asked);
 
   const ServoConfig& config_;
   ServoFeatures& features_;

@@ -49,7 +49,7 @@ TEST(ServoFeatures, AreWhatTheirDerivativesSay) {
       const ArmState state = random_servo_state(random, arm, 0.6);
       Eigen::VectorXd desired, seen;
       FeatureError at, off;
-      ASSERT_TRUE(features->foreseen(state, views, desired));
+      ASSERT_TRUE(features->predict(state, views, desired));
       ASSERT_TRUE(features->error(desired, desired, state, views, at));
       EXPECT_NEAR(at.error.norm(), 0, 1e-12);
       for (std::size_t i = 0; i < state.bends.size(); ++i) {
@@ -57,7 +57,7 @@ TEST(ServoFeatures, AreWhatTheirDerivativesSay) {
           constexpr double step = 1e-4;
           ArmState moved = state;
           moved.bends[i][axis] += step;
-          ASSERT_TRUE(features->foreseen(moved, views, seen));
+          ASSERT_TRUE(features->predict(moved, views, seen));
           ASSERT_TRUE(features->error(seen, desired, state, views, off));
           const Eigen::VectorXd by = off.error / step;
           const Eigen::VectorXd column = at.by_state.col(3 * static_cast<Eigen::Index>(i) + axis);
@@ -79,7 +79,7 @@ TEST(MeasuredPixels, MissNoPieceOfTheAxis) {
     const View view = servo_views()[1];
     const ArmState state = random_servo_state(random, arm, 1.5);
     const Backbone backbone(arm, state);
-    Sighting seen{.view = view, .points = {}, .ends = {}, .markers = {}};
+    Observation seen{.view = view, .points = {}, .ends = {}, .markers = {}};
     const int count = random.integer(2, 300);
     const Eigen::Vector2d aside = random.vector<2>(-12, 12);
     for (int k = 0; k <= count; ++k)
@@ -204,15 +204,15 @@ TEST(ServoJudge, KnowsTheEnd) {
   config.tolerance = 0.01, config.settle = 0.5, config.timeout = 3;
   {
     // An imprecise observation, or one with commands pending to another shape, does not count as arrival.
-    ServoJudge doubtful(config, 0, 0), leaving(config, 0, 0);
+    ServoJudge uncertain(config, 0, 0), leaving(config, 0, 0);
     for (int k = 0; k < 60; ++k) {
       ServoStep step = step_at(k / 30.0, 0.001);
       step.sigma = 0.05;
-      doubtful.add(step);
+      uncertain.add(step);
       step.sigma = 0, step.ahead = ServoError{0.1, 0.1, 0.1};
       leaving.add(step);
     }
-    EXPECT_FALSE(doubtful.is_done());
+    EXPECT_FALSE(uncertain.is_done());
     EXPECT_FALSE(leaving.is_done());
   }
   {
@@ -225,37 +225,37 @@ TEST(ServoJudge, KnowsTheEnd) {
   {
     ServoJudge judge(config, 0, 0);
     int k = 0;
-    for (; k < 300 && !judge.hopeless(); ++k) judge.add(step_at(k / 30.0, 0.02));
-    ASSERT_TRUE(judge.hopeless());
-    EXPECT_TRUE(judge.hopeless()->starts_with("not settled")) << *judge.hopeless();
+    for (; k < 300 && !judge.failure(); ++k) judge.add(step_at(k / 30.0, 0.02));
+    ASSERT_TRUE(judge.failure());
+    EXPECT_TRUE(judge.failure()->starts_with("not settled")) << *judge.failure();
     EXPECT_NEAR(k / 30.0, 3, 0.1);
   }
   {
     ServoJudge judge(config, 0, 0);
-    for (int k = 0; k < 300 && !judge.hopeless(); ++k) judge.add(step_at(k / 30.0, 0.02 + 0.1 * k / 30.0));
-    ASSERT_TRUE(judge.hopeless());
-    EXPECT_TRUE(judge.hopeless()->starts_with("diverging")) << *judge.hopeless();
-    EXPECT_EQ(judge.hopeless()->find("held back"), std::string::npos) << *judge.hopeless();
+    for (int k = 0; k < 300 && !judge.failure(); ++k) judge.add(step_at(k / 30.0, 0.02 + 0.1 * k / 30.0));
+    ASSERT_TRUE(judge.failure());
+    EXPECT_TRUE(judge.failure()->starts_with("diverging")) << *judge.failure();
+    EXPECT_EQ(judge.failure()->find("held back"), std::string::npos) << *judge.failure();
   }
   {
     ServoJudge judge(config, 0, 0);
-    for (int k = 0; k < 300 && !judge.hopeless(); ++k) {
+    for (int k = 0; k < 300 && !judge.failure(); ++k) {
       ServoStep step = step_at(k / 30.0, 0.02 + 0.1 * k / 30.0);
       step.limited = "motor A: acceleration";
       judge.add(step);
     }
-    ASSERT_TRUE(judge.hopeless());
-    EXPECT_TRUE(judge.hopeless()->starts_with("diverging")) << *judge.hopeless();
-    EXPECT_TRUE(judge.hopeless()->ends_with("; held back by motor A: acceleration")) << *judge.hopeless();
+    ASSERT_TRUE(judge.failure());
+    EXPECT_TRUE(judge.failure()->starts_with("diverging")) << *judge.failure();
+    EXPECT_TRUE(judge.failure()->ends_with("; held back by motor A: acceleration")) << *judge.failure();
   }
   {
     ServoJudge judge(config, 0, 0);
     ServoStep step;
-    for (int k = 0; k < 300 && !judge.hopeless(); ++k) {
+    for (int k = 0; k < 300 && !judge.failure(); ++k) {
       step = step_at(k / 30.0, 0.02), step.is_singular = true;
       judge.add(step);
     }
-    EXPECT_TRUE(judge.hopeless()->starts_with("singular")) << *judge.hopeless();
+    EXPECT_TRUE(judge.failure()->starts_with("singular")) << *judge.failure();
   }
 }
 

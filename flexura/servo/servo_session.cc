@@ -24,35 +24,35 @@
 namespace flexura {
 namespace {
 
-void check(const RigPorts& ports, const RigModel& believed, const ServoConfig& config) {
+void check(const RigPorts& ports, const RigModel& nominal, const ServoConfig& config) {
   check_servo(config);
-  if (ports.cameras.size() != believed.cameras.size() || config.cameras[0] == config.cameras[1] ||
-      config.cameras[0] >= believed.cameras.size() || config.cameras[1] >= believed.cameras.size())
+  if (ports.cameras.size() != nominal.cameras.size() || config.cameras[0] == config.cameras[1] ||
+      config.cameras[0] >= nominal.cameras.size() || config.cameras[1] >= nominal.cameras.size())
     throw std::invalid_argument("a servo needs the ports of two cameras of the model");
 }
 
 class Session {
  public:
-  Session(const RigPorts& ports, const RigModel& believed, const ServoConfig& config,
+  Session(const RigPorts& ports, const RigModel& nominal, const ServoConfig& config,
           ServoSessionWatcher& watcher)
-      : model_(believed),
-        believed_arm_(believed.arm_model()),
+      : model_(nominal),
+        nominal_arm_(nominal.arm_model()),
         config_(config),
         watcher_(watcher),
-        rig_(ports, believed, config.cameras,
+        rig_(ports, nominal, config.cameras,
              {.span = longest_delay,
-              .together = 0.6 * (1 / slower_frame_rate(believed.cameras, config.cameras)),
+              .together = 0.6 * (1 / slower_frame_rate(nominal.cameras, config.cameras)),
               .silent = config.hold_after}),
-        meter_(believed, config),
-        observer_(rig_, believed, config),
-        features_(servo_features(config, believed)),
-        law_(believed_arm_, config, *features_),
-        keeper_(believed, config.cameras) {}
+        meter_(nominal, config),
+        observer_(rig_, nominal, config),
+        features_(servo_features(config, nominal)),
+        law_(nominal_arm_, config, *features_),
+        keeper_(nominal, config.cameras) {}
 
   ServoResult run() {
     result_.start = rig_.now();
-    if (auto trouble = begin()) {
-      result_.reason = std::move(*trouble);
+    if (auto error = begin()) {
+      result_.reason = std::move(*error);
       return std::move(result_);
     }
     std::exception_ptr first;
@@ -64,7 +64,7 @@ class Session {
       keep(error.what());
     }
     try {
-      if (first) watcher_.told(rig_.now(), limiter_->fault()->reason);
+      if (first) watcher_.reported(rig_.now(), limiter_->fault()->reason);
       come_to_rest();
     } catch (...) {
       // The watcher fails, for example with a full log. The first error is the reason.
@@ -77,8 +77,8 @@ class Session {
     result_.fault = kept_;
     result_.first = observer_.first(), result_.last = observer_.last();
     if (result_.missed_steps > 0)
-      watcher_.told(rig_.now(),
-                    fmt::format("{} steps of {:.4g} s were missed", result_.missed_steps, config_.step));
+      watcher_.reported(rig_.now(),
+                        fmt::format("{} steps of {:.4g} s were missed", result_.missed_steps, config_.step));
     tally_->finish(result_);
     return std::move(result_);
   }
@@ -94,11 +94,11 @@ class Session {
     return true;
   }
 
-  RigReader::Trouble begin() {
+  RigReader::Error begin() {
     for (std::size_t i = 0; config_.follow && i < 2; ++i)
       if (const std::string why = missing_head(rig_.camera(i)); !why.empty())
         return why + ", and this servo follows the arm with both cameras";
-    if (auto trouble = rig_.read()) return trouble;
+    if (auto error = rig_.read()) return error;
     std::size_t farthest = 0;
     for (std::size_t i = 0; i < config_.goals.size(); ++i) {
       const double missed = config_.goals[i].missed;
@@ -113,12 +113,12 @@ class Session {
     // The time to measure pictures of targets does not count as the loop's.
     if (rig_.now() > result_.start) {
       result_.start = rig_.now();
-      if (auto trouble = rig_.read()) return trouble;
+      if (auto error = rig_.read()) return error;
     }
-    sent_ = rig_.said(result_.start);
+    sent_ = rig_.measured(result_.start);
     if (config_.sent && is_near(*config_.sent, sent_)) sent_ = *config_.sent;
     try {
-      limiter_.emplace(believed_arm_, limiter_config(config_), sent_);
+      limiter_.emplace(nominal_arm_, limiter_config(config_), sent_);
     } catch (const std::invalid_argument& error) {
       return fmt::format("the arm cannot be steered from where it is: {}", error.what());
     }
@@ -132,7 +132,7 @@ class Session {
     if (result_.reason.empty()) {
       if (judge_->is_done() && !limiter_->fault()) return true;
       if (watcher_.is_cancelled()) result_.reason = "cancelled";
-      if (const auto& why = judge_->hopeless()) result_.reason = *why;
+      if (const auto& why = judge_->failure()) result_.reason = *why;
       if (limiter_->fault()) result_.reason = limiter_->fault()->reason;
     }
     if (!result_.reason.empty()) keep(result_.reason);
@@ -155,17 +155,17 @@ class Session {
     if (!(passed < most)) passed = 0, fault("the clock tells of no time that a servo lasts for");
     const long next = std::max(ticks_ + 1, static_cast<long>(passed));
     if (next > ticks_ + 1 && result_.missed_steps == 0)
-      watcher_.told(rig_.now(),
-                    fmt::format("a step took longer than its {:.4g} s: those that it missed are left out",
-                                config_.step));
+      watcher_.reported(rig_.now(),
+                        fmt::format("a step took longer than its {:.4g} s: those that it missed are left out",
+                                    config_.step));
     result_.missed_steps += next - ticks_ - 1;
     ticks_ = next;
     rig_.ports().clock->wait_until(result_.start + config_.step * static_cast<double>(ticks_));
-    if (auto trouble = rig_.read()) fault(*trouble);
+    if (auto error = rig_.read()) fault(*error);
   }
 
   void fault(const std::string& what) {
-    if (!limiter_->fault()) watcher_.told(rig_.now(), what);
+    if (!limiter_->fault()) watcher_.reported(rig_.now(), what);
     limiter_->fault(what);
     keep(what);
   }
@@ -176,20 +176,20 @@ class Session {
     if (!pair) {
       std::string why = rig_.silence();
       if (why.empty() && is_blind(now)) why = rig_.no_pair(observer_.seen_since());
-      if (!why.empty()) tell_unseen(now, std::move(why));
+      if (!why.empty()) report_unseen(now, std::move(why));
       return false;
     }
     const bool was_seen = observer_.last() != nullptr;
-    const auto sight = std::make_shared<ServoSight>(meter_.measure(*pair));
-    WantedShape wanted = goals_->at(sight->time - result_.start);
-    sight->desired = std::move(wanted.state), sight->desired_offset = std::move(wanted.offset);
-    const bool is_found = observer_.observe(sight, now);
-    watcher_.seen(*sight);
+    const auto observed = std::make_shared<ServoObservation>(meter_.measure(*pair));
+    TargetShape desired = goals_->at(observed->time - result_.start);
+    observed->desired = std::move(desired.state), observed->desired_offset = std::move(desired.offset);
+    const bool is_found = observer_.observe(observed, now);
+    watcher_.seen(*observed);
     if (!is_found) {
-      tell_unseen(now, no_shape(*sight));
+      report_unseen(now, no_shape(*observed));
       return false;
     }
-    if (!unseen_because_.empty() && was_seen) watcher_.told(now, "the arm is seen again");
+    if (!unseen_because_.empty() && was_seen) watcher_.reported(now, "the arm is seen again");
     unseen_because_.clear();
     return true;
   }
@@ -197,15 +197,15 @@ class Session {
   [[nodiscard]] bool is_blind(double now) const { return observer_.blind_for(now) > config_.hold_after; }
 
   // Returns the reason why the pictures give no shape.
-  [[nodiscard]] std::string no_shape(const ServoSight& sight) const {
+  [[nodiscard]] std::string no_shape(const ServoObservation& observed) const {
     for (std::size_t i = 0; i < 2; ++i)
-      if (!sight.reasons[i].empty())
-        return fmt::format("camera {} does not see the arm: {}", rig_.name(i), sight.reasons[i]);
-    return rig_.by_name(sight.estimate.reason);
+      if (!observed.reasons[i].empty())
+        return fmt::format("camera {} does not see the arm: {}", rig_.name(i), observed.reasons[i]);
+    return rig_.by_name(observed.estimate.reason);
   }
 
-  void tell_unseen(double now, std::string why) {
-    if (unseen_because_.empty()) watcher_.told(now, why);
+  void report_unseen(double now, std::string why) {
+    if (unseen_because_.empty()) watcher_.reported(now, why);
     unseen_because_ = std::move(why);
   }
 
@@ -223,10 +223,10 @@ class Session {
     if (!observer_.last() || is_blind(now) || limiter_->fault()) {
       command = limiter_->brake();
     } else {
-      const ArmState wish = asked(now, step), slow = limiter_->within_braking(wish, config_.rate);
+      const ArmState output = asked(now, step), slow = limiter_->within_braking(output, config_.rate);
       command = limiter_->next(slow);
-      if (command.reason.empty()) command.reason = at_its_limit(wish);
-      if (command.reason.empty() && slow.bends != wish.bends) command.reason = "the motors' acceleration";
+      if (command.reason.empty()) command.reason = at_its_limit(output);
+      if (command.reason.empty() && slow.bends != output.bends) command.reason = "the motors' acceleration";
     }
     if (observer_.blind_for(now) > config_.give_up_after)
       result_.reason = "out of view: " +
@@ -237,31 +237,31 @@ class Session {
 
   // Returns the law's command for the last observation.
   [[nodiscard]] ArmState asked(double now, ServoStep& step) {
-    const ServoSight& sight = *observer_.last();
-    const ArmState& seen = sight.estimate.shape.state;
-    step.seen_at = sight.time, step.seen = seen;
-    step.desired = goals_->at(sight.time - result_.start).state;
+    const ServoObservation& observed = *observer_.last();
+    const ArmState& seen = observed.estimate.shape.state;
+    step.seen_at = observed.time, step.seen = seen;
+    step.desired = goals_->at(observed.time - result_.start).state;
     step.error = servo_error(model_.arm, seen, step.desired);
     step.sigma = observer_.sigma();
     const double since = now - result_.start;
     step.ahead = servo_error(model_.arm, observer_.expected(model_.bent(sent_)), goals_->at(since).state);
-    const ArmState said = rig_.said(sight.time);
-    const ServoLaw::Wish wish = law_.step({.sight = sight,
-                                           .is_fresh = step.is_fresh,
-                                           .said = said,
-                                           .sent = sent_,
-                                           .then = goals_->at(sight.time - result_.start),
-                                           .wanted = goals_->at(since),
-                                           .next = goals_->at(since + config_.step).state});
-    step.is_singular = wish.is_singular, step.potential = wish.potential;
-    return wish.asked;
+    const ArmState measured = rig_.measured(observed.time);
+    const ServoLaw::Output output = law_.step({.observed = observed,
+                                               .is_fresh = step.is_fresh,
+                                               .measured = measured,
+                                               .sent = sent_,
+                                               .then = goals_->at(observed.time - result_.start),
+                                               .desired = goals_->at(since),
+                                               .next = goals_->at(since + config_.step).state});
+    step.is_singular = output.is_singular, step.potential = output.potential;
+    return output.asked;
   }
 
   // Returns a text that names the section at its limit of bend or stretch.
   [[nodiscard]] std::string at_its_limit(const ArmState& state) const {
     constexpr double nearly = 1 - 1e-6;
     for (std::size_t i = 0; i < state.bends.size(); ++i) {
-      const Section& section = believed_arm_.driven().sections[i];
+      const Section& section = nominal_arm_.driven().sections[i];
       if (state.bends[i].norm() >= nearly * section.max_bend)
         return fmt::format("section {} is bent as far as it goes", i + 1);
       const auto& [least, most] = section.stretch_limits;
@@ -272,10 +272,10 @@ class Session {
   }
 
   void follow(ServoStep& step) {
-    const ServoSight& sight = *observer_.last();
+    const ServoObservation& observed = *observer_.last();
     for (std::size_t i = 0; i < 2; ++i) {
-      const auto head =
-          keeper_.turned(i, sight.estimate.shape.state, rig_.stance(i, sight.time).head, sight.seen[i].view);
+      const auto head = keeper_.turned(i, observed.estimate.shape.state, rig_.stance(i, observed.time).head,
+                                       observed.seen[i].view);
       if (!head) continue;
       const auto taken = rig_.camera(i).head->command(*head);
       if (const auto refused = taken.fault()) {
@@ -286,7 +286,7 @@ class Session {
     }
   }
 
-  void tell_arm(double now, const ArmState& state) {
+  void report_arm(double now, const ArmState& state) {
     const auto taken = rig_.ports().arm->command(state, config_.step);
     if (const auto refused = taken.fault()) {
       // A device that refuses commands may still stop. From then on it is not where the limiter assumes.
@@ -300,7 +300,7 @@ class Session {
   }
 
   void send(double now, ArmState state, ServoStep step) {
-    if (!is_deaf_) tell_arm(now, state);
+    if (!is_deaf_) report_arm(now, state);
     if (step.desired.bends.empty()) step.desired = goals_->at(now - result_.start).state;
     step.sent = std::move(state);
     for (const Section& section : model_.arm.sections) step.lengths.push_back(section.length);
@@ -327,7 +327,7 @@ class Session {
   }
 
   const RigModel& model_;
-  ArmModel believed_arm_;
+  ArmModel nominal_arm_;
   const ServoConfig& config_;
   ServoSessionWatcher& watcher_;
   RigReader rig_;
@@ -350,10 +350,10 @@ class Session {
 
 }  // namespace
 
-ServoResult servo_in_session(const RigPorts& ports, const RigModel& believed, const ServoConfig& config,
+ServoResult servo_in_session(const RigPorts& ports, const RigModel& nominal, const ServoConfig& config,
                              ServoSessionWatcher& watcher) {
-  check(ports, believed, config);
-  return Session(ports, believed, config, watcher).run();
+  check(ports, nominal, config);
+  return Session(ports, nominal, config, watcher).run();
 }
 
 }  // namespace flexura

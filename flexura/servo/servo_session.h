@@ -10,7 +10,7 @@
 #include "flexura/port/rig_ports.h"
 #include "flexura/servo/servo_config.h"
 #include "flexura/servo/servo_error.h"
-#include "flexura/servo/servo_sight.h"
+#include "flexura/servo/servo_observation.h"
 #include "flexura/servo/servo_step.h"
 
 namespace flexura {
@@ -34,7 +34,7 @@ struct ServoResult {
   /// start.
   std::optional<LimiterFault> fault;
   /// First observation, and newest one with a shape; null if missing.
-  std::shared_ptr<const ServoSight> first, last;
+  std::shared_ptr<const ServoObservation> first, last;
 };
 
 /// Receives the events of a session. Does not influence it.
@@ -49,11 +49,11 @@ class ServoSessionWatcher {
   /// called for refused commands.
   virtual void arm_sent(double time, const ArmState& state, double duration) = 0;
   /// Two simultaneous pictures were measured.
-  virtual void seen(const ServoSight& /*sight*/) {}
+  virtual void seen(const ServoObservation& /*observed*/) {}
   /// A step was done.
   virtual void stepped(const ServoStep& /*step*/) {}
   /// An event for the log: "camera side does not see the arm: ...".
-  virtual void told(double /*time*/, const std::string& /*what*/) {}
+  virtual void reported(double /*time*/, const std::string& /*what*/) {}
   /// Returns true if the servo has to end early.
   virtual bool is_cancelled() { return false; }
 };
@@ -64,7 +64,7 @@ class ServoSessionWatcher {
 /// Skips steps whose time has passed, to the next whole step. Equal rigs, readings and pictures give equal
 /// results. Throws std::invalid_argument if there are no targets, their times do not increase from 0, or a
 /// number is out of range. Also throws it if the ports and the model have different cameras.
-[[nodiscard]] ServoResult servo_in_session(const RigPorts& ports, const RigModel& believed,
+[[nodiscard]] ServoResult servo_in_session(const RigPorts& ports, const RigModel& nominal,
                                            const ServoConfig& config, ServoSessionWatcher& watcher);
 
 }  // namespace flexura

@@ -26,9 +26,9 @@ class StepTable : public Table<ServoStep> {
   StepTable& part(std::string name, Spec spec) {
     using Value = decltype(Part::get(ServoStep{}));
     static constexpr ValueCodec codec = {
-        [](const Node& node, const Spec& said, Reader& reader, void* step) {
+        [](const Node& node, const Spec& measured, Reader& reader, void* step) {
           Value value{};
-          if (!Codec<Value>::read(node, said, reader, value)) return false;
+          if (!Codec<Value>::read(node, measured, reader, value)) return false;
           Part::set(*static_cast<ServoStep*>(step), std::move(value));
           return true;
         },

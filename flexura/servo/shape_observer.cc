@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "flexura/model/arm_way.h"
+#include "flexura/model/arm_difference.h"
 
 namespace flexura {
 namespace {
@@ -19,98 +19,100 @@ ShapePrior prior_of(const Arm& arm, const std::vector<double>& markers) {
 
 // A camera that is wrong by one degree shifts the arm's image by many pixels. If view errors are not
 // estimated, the nearest shape is still the best one to use.
-EstimatorConfig patient_estimator(const ViewDoubt& doubt) {
+EstimatorConfig patient_estimator(const ViewPrior& view_prior) {
   EstimatorConfig config;
-  config.most_rms = doubt.is_any() ? 5 : 20;
+  config.most_rms = view_prior.is_any() ? 5 : 20;
   return config;
 }
 
 // With such offsets no measurement is rejected as another object's.
-constexpr double believed_off = 2;  // px
+constexpr double nominal_view_error = 2;  // px
 
-void believe(Sighting& seen) {
-  for (CurvePoint& point : seen.points) point.sigma = std::max(point.sigma, believed_off);
-  for (SeenBorder& border : seen.borders) border.sigma = std::max(border.sigma, believed_off);
+void tolerate_view_error(Observation& seen) {
+  for (CurvePoint& point : seen.points) point.sigma = std::max(point.sigma, nominal_view_error);
+  for (SeenBorder& border : seen.borders) border.sigma = std::max(border.sigma, nominal_view_error);
   for (auto& end : seen.ends)
-    if (end) end->sigma = std::max(end->sigma, believed_off);
+    if (end) end->sigma = std::max(end->sigma, nominal_view_error);
 }
 
 // Returns the mean noise of the pictures, px.
-double noise_of(const std::array<Sighting, 2>& seen) {
+double noise_of(const std::array<Observation, 2>& seen) {
   double sum = 0, count = 0;
-  for (const Sighting& one : seen)
+  for (const Observation& one : seen)
     for (const CurvePoint& point : one.points) sum += point.sigma, ++count;
   return count > 0 ? sum / count : 0;
 }
 
 }  // namespace
 
-ShapeObserver::ShapeObserver(const RigReader& rig, const RigModel& believed, const ServoConfig& config)
+ShapeObserver::ShapeObserver(const RigReader& rig, const RigModel& nominal, const ServoConfig& config)
     : rig_(rig),
-      length_(believed.arm.length()),
-      doubt_(config.camera_prior),
-      prior_(prior_of(believed.arm, config.markers)),
-      tracker_(prior_, patient_estimator(doubt_)) {}
+      length_(nominal.arm.length()),
+      view_prior_(config.camera_prior),
+      prior_(prior_of(nominal.arm, config.markers)),
+      tracker_(prior_, patient_estimator(view_prior_)) {}
 
-bool ShapeObserver::observe(const std::shared_ptr<ServoSight>& sight, double now) {
-  estimate(*sight, expected(rig_.believed(sight->time)));
-  if (!first_) first_ = sight;
-  if (!sight->estimate.is_found) return false;
-  seen_since_ = now, last_ = sight;
+bool ShapeObserver::observe(const std::shared_ptr<ServoObservation>& observed, double now) {
+  estimate(*observed, expected(rig_.nominal(observed->time)));
+  if (!first_) first_ = observed;
+  if (!observed->estimate.is_found) return false;
+  seen_since_ = now, last_ = observed;
   return true;
 }
 
-void ShapeObserver::estimate_alone(ServoSight& sight) {
+void ShapeObserver::estimate_alone(ServoObservation& observed) {
   forget();
-  estimate(sight, std::nullopt);
+  estimate(observed, std::nullopt);
   forget();
 }
 
-void ShapeObserver::estimate(ServoSight& sight, const std::optional<ArmState>& expected) {
-  if (!are_enough(sight.seen)) {
-    sight.estimate.reason = "the arm is not seen in every image";
+void ShapeObserver::estimate(ServoObservation& observed, const std::optional<ArmState>& expected) {
+  if (!are_enough(observed.seen)) {
+    observed.estimate.reason = "the arm is not seen in every image";
     return;
   }
-  sight.estimate = shape_of(sight, expected);
-  if (!sight.estimate.is_found) return;
-  const std::vector<ViewError>& errors = sight.estimate.shape.views;
+  observed.estimate = shape_of(observed, expected);
+  if (!observed.estimate.is_found) return;
+  const std::vector<ViewError>& errors = observed.estimate.shape.views;
   for (std::size_t i = 0; i < errors.size(); ++i)
-    sight.seen[i].view = corrected(sight.seen[i].view, errors[i]);
+    observed.seen[i].view = corrected(observed.seen[i].view, errors[i]);
 }
 
 // Fallback for cameras without a prior that fit no shape within the pictures' noise: estimates the nearest
 // shape. Stays in this mode until forget().
-ShapeEstimate ShapeObserver::shape_of(const ServoSight& sight, const std::optional<ArmState>& expected) {
+ShapeEstimate ShapeObserver::shape_of(const ServoObservation& observed,
+                                      const std::optional<ArmState>& expected) {
   ShapeEstimate found;
-  if (!is_believing_) found = tracker_.look(sight.seen, sight.time, expected);
-  if (found.is_found || doubt_.is_any()) return found;
-  std::array<Sighting, 2> seen = sight.seen;
-  for (Sighting& one : seen) believe(one);
-  if (!is_believing_) tracker_.forget();
-  ShapeEstimate nearest = tracker_.look(seen, sight.time, expected);
-  if (!nearest.is_found && !is_believing_) {
+  if (!uses_nominal_views_) found = tracker_.look(observed.seen, observed.time, expected);
+  if (found.is_found || view_prior_.is_any()) return found;
+  std::array<Observation, 2> seen = observed.seen;
+  for (Observation& one : seen) tolerate_view_error(one);
+  if (!uses_nominal_views_) tracker_.forget();
+  ShapeEstimate nearest = tracker_.look(seen, observed.time, expected);
+  if (!nearest.is_found && !uses_nominal_views_) {
     tracker_.forget();
     return found;
   }
-  is_believing_ = true;
-  for (double& sigma : nearest.sigma) sigma *= std::min(1.0, noise_of(sight.seen) / believed_off);
+  uses_nominal_views_ = true;
+  for (double& sigma : nearest.sigma) sigma *= std::min(1.0, noise_of(observed.seen) / nominal_view_error);
   return nearest;
 }
 
-ShapeEstimate ShapeObserver::as_believed(const ServoSight& sight, const std::array<View, 2>& views) const {
-  std::array<Sighting, 2> seen = sight.seen;
-  for (std::size_t i = 0; i < 2; ++i) seen[i].view = views[i], seen[i].doubt = {};
+ShapeEstimate ShapeObserver::with_nominal_views(const ServoObservation& observed,
+                                                const std::array<View, 2>& views) const {
+  std::array<Observation, 2> seen = observed.seen;
+  for (std::size_t i = 0; i < 2; ++i) seen[i].view = views[i], seen[i].view_prior = {};
   return ShapeEstimator(prior_, patient_estimator({})).estimate(seen);
 }
 
 ArmState ShapeObserver::expected(ArmState driven) const {
-  return last_ ? plus(std::move(driven), minus(last_->estimate.shape.state, rig_.believed(last_->time)))
+  return last_ ? plus(std::move(driven), minus(last_->estimate.shape.state, rig_.nominal(last_->time)))
                : driven;
 }
 
 double ShapeObserver::sigma() const {
   const ShapeEstimate& estimate = last_->estimate;
-  const double common = doubt_.is_any() ? 1 : estimate.scale;
+  const double common = view_prior_.is_any() ? 1 : estimate.scale;
   return estimate.rms_sigma() / (common * length_);
 }
 

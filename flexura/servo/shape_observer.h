@@ -10,7 +10,7 @@
 #include "flexura/port/rig_model.h"
 #include "flexura/servo/rig_reader.h"
 #include "flexura/servo/servo_config.h"
-#include "flexura/servo/servo_sight.h"
+#include "flexura/servo/servo_observation.h"
 
 namespace flexura {
 
@@ -19,22 +19,23 @@ namespace flexura {
 class ShapeObserver {
  public:
   /// `rig`, which gives the drives' motion, must outlive this object.
-  ShapeObserver(const RigReader& rig, const RigModel& believed, const ServoConfig& config);
+  ShapeObserver(const RigReader& rig, const RigModel& nominal, const ServoConfig& config);
 
   /// The time without observations counts from `time`, s of the rig's clock.
   void begin(double time) { seen_since_ = time; }
   /// Estimates the arm's shape at the observation's time, at `now`, s of the rig's clock. Returns true and
   /// sets `last` to this observation if the shape is found. Returns false if a picture shows no arm. The
   /// views of a found observation are corrected by the errors estimated with it.
-  bool observe(const std::shared_ptr<ServoSight>& sight, double now);
+  bool observe(const std::shared_ptr<ServoObservation>& observed, double now);
   /// Estimates the shape from these pictures alone, of an arm in any shape. Keeps nothing of it.
-  void estimate_alone(ServoSight& sight);
+  void estimate_alone(ServoObservation& observed);
   /// Returns the shape estimated from the measurements with these views taken as exact.
-  [[nodiscard]] ShapeEstimate as_believed(const ServoSight& sight, const std::array<View, 2>& views) const;
+  [[nodiscard]] ShapeEstimate with_nominal_views(const ServoObservation& observed,
+                                                 const std::array<View, 2>& views) const;
 
   /// First observation, and newest one with a shape; null before.
-  [[nodiscard]] const std::shared_ptr<const ServoSight>& first() const { return first_; }
-  [[nodiscard]] const std::shared_ptr<const ServoSight>& last() const { return last_; }
+  [[nodiscard]] const std::shared_ptr<const ServoObservation>& first() const { return first_; }
+  [[nodiscard]] const std::shared_ptr<const ServoObservation>& last() const { return last_; }
   /// Returns the time since an observation last gave a shape, s.
   [[nodiscard]] double blind_for(double now) const { return now - seen_since_; }
   [[nodiscard]] double seen_since() const { return seen_since_; }
@@ -48,19 +49,20 @@ class ShapeObserver {
   [[nodiscard]] double sigma() const;
 
  private:
-  void estimate(ServoSight& sight, const std::optional<ArmState>& expected);
-  [[nodiscard]] ShapeEstimate shape_of(const ServoSight& sight, const std::optional<ArmState>& expected);
+  void estimate(ServoObservation& observed, const std::optional<ArmState>& expected);
+  [[nodiscard]] ShapeEstimate shape_of(const ServoObservation& observed,
+                                       const std::optional<ArmState>& expected);
 
-  void forget() { tracker_.forget(), is_believing_ = false; }
+  void forget() { tracker_.forget(), uses_nominal_views_ = false; }
 
   const RigReader& rig_;
   double length_;  // m
-  ViewDoubt doubt_;
+  ViewPrior view_prior_;
   ShapePrior prior_;
   ShapeTracker tracker_;
-  bool is_believing_ = false;
+  bool uses_nominal_views_ = false;
   double seen_since_ = 0;
-  std::shared_ptr<const ServoSight> first_, last_;
+  std::shared_ptr<const ServoObservation> first_, last_;
 };
 
 }  // namespace flexura

@@ -17,15 +17,15 @@ class SilhouetteFeatures : public ServoFeatures {
  public:
   SilhouetteFeatures(const Arm& arm, int points) : contours_(arm, FeatureSet::of_points(points).points) {}
 
-  [[nodiscard]] bool measured(const ArmState& estimate, const std::array<Sighting, 2>& seen,
+  [[nodiscard]] bool measured(const ArmState& estimate, const std::array<Observation, 2>& seen,
                               Eigen::VectorXd& values) override {
     if (!see(estimate, {seen[0].view, seen[1].view}, values)) return false;
     for (const std::size_t i : {std::size_t{0}, std::size_t{1}})
       measured_edges(images_[i], seen[i], edges_in(values, i));
     return true;
   }
-  [[nodiscard]] bool foreseen(const ArmState& state, const std::array<View, 2>& views,
-                              Eigen::VectorXd& values) override {
+  [[nodiscard]] bool predict(const ArmState& state, const std::array<View, 2>& views,
+                             Eigen::VectorXd& values) override {
     return see(state, views, values);
   }
   [[nodiscard]] bool error(const Eigen::VectorXd& seen, const Eigen::VectorXd& desired,
@@ -46,8 +46,9 @@ class SilhouetteFeatures : public ServoFeatures {
     return true;
   }
   // If the arm half-way is outside the lens's view, the derivatives at the current shape remain.
-  [[nodiscard]] bool secant(const Eigen::VectorXd& seen, const Eigen::VectorXd& desired, const ShapeWay& way,
-                            const std::array<View, 2>& views, FeatureError& result) override {
+  [[nodiscard]] bool secant(const Eigen::VectorXd& seen, const Eigen::VectorXd& desired,
+                            const ShapeError& way, const std::array<View, 2>& views,
+                            FeatureError& result) override {
     if (!error(seen, desired, way.seen, views, result)) return false;
     const Eigen::Index rows = contours_.count();
     contours_.set(way.halfway);

@@ -26,9 +26,9 @@ std::optional<Eigen::AlignedBox2d> seen_box(const Arm& arm, const ArmState& stat
 
 }  // namespace
 
-ViewKeeper::ViewKeeper(const RigModel& believed, const std::array<std::size_t, 2>& cameras)
-    : arm_(believed.arm) {
-  for (const std::size_t camera : cameras) cameras_.emplace_back(believed.cameras.at(camera));
+ViewKeeper::ViewKeeper(const RigModel& nominal, const std::array<std::size_t, 2>& cameras)
+    : arm_(nominal.arm) {
+  for (const std::size_t camera : cameras) cameras_.emplace_back(nominal.cameras.at(camera));
 }
 
 std::optional<HeadState> ViewKeeper::turned(std::size_t i, const ArmState& state, const HeadState& stands,
@@ -52,11 +52,11 @@ std::optional<HeadState> ViewKeeper::turned(std::size_t i, const ArmState& state
   if (filled > full) {
     // Of a hundred zooms, takes the one nearest to the required focal length.
     constexpr int tries = 100;
-    const double wanted = lens.fx * full / filled;
-    double best = std::abs(cameras_[i].lens().at(head.zoom).fx - wanted);
+    const double desired = lens.fx * full / filled;
+    double best = std::abs(cameras_[i].lens().at(head.zoom).fx - desired);
     for (int k = 0; k <= tries; ++k) {
       const double zoom = axes[2].limits[0] + (axes[2].limits[1] - axes[2].limits[0]) * k / tries;
-      const double miss = std::abs(cameras_[i].lens().at(zoom).fx - wanted);
+      const double miss = std::abs(cameras_[i].lens().at(zoom).fx - desired);
       if (miss < best) best = miss, head.zoom = zoom;
     }
   }

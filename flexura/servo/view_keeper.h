@@ -14,7 +14,7 @@ namespace flexura {
 /// Keeps an arm in two cameras' pictures by turning their heads.
 class ViewKeeper {
  public:
-  ViewKeeper(const RigModel& believed, const std::array<std::size_t, 2>& cameras);
+  ViewKeeper(const RigModel& nominal, const std::array<std::size_t, 2>& cameras);
 
   /// Returns the command for the head of the first or second camera, which is at `stands` and observes the
   /// arm in `state` by `view`. It brings the middle of the arm's image to the picture's middle, with a zoom

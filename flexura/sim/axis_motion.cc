@@ -27,8 +27,9 @@ void AxisMotion::Plan::add(double duration, double rate, double acceleration) {
   target += duration * (rate + 0.5 * duration * acceleration);
 }
 
-AxisMotion::AxisMotion(const AxisConfig& axis, const Play& play, double start, double delay, double horizon)
-    : axis_(axis), play_(play), delay_(delay), horizon_(horizon) {
+AxisMotion::AxisMotion(const AxisConfig& axis, const Backlash& backlash, double start, double delay,
+                       double horizon)
+    : axis_(axis), backlash_(backlash), delay_(delay), horizon_(horizon) {
   Plan& rest = plans_.emplace_back();
   rest.start = rest.end = rest.turn = -std::numeric_limits<double>::infinity();
   rest.target = rest.carried = start;
@@ -109,7 +110,7 @@ const AxisMotion::Plan& AxisMotion::plan_at(double time) const {
 
 double AxisMotion::carried(const Plan& plan, double time) const {
   const auto follow = [&](double position, double motor) {
-    return std::clamp(position, motor + play_.low, motor + play_.high);
+    return std::clamp(position, motor + backlash_.low, motor + backlash_.high);
   };
   double position = plan.carried;
   if (plan.turn > plan.start && plan.turn < time) position = follow(position, plan.at(plan.turn).position);

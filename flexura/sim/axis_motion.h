@@ -15,13 +15,13 @@ namespace flexura {
 class AxisMotion {
  public:
   /// What is carried lies within motor + [low, high]: it stays while the motor moves through the play.
-  struct Play {
+  struct Backlash {
     double low = 0, high = 0;  ///< low <= 0 <= high
   };
 
   /// At rest at `start` (motor and what it carries). A command takes effect `delay` s after it was given. The
   /// axis can be asked for times back to `horizon` s before the last command.
-  AxisMotion(const AxisConfig& axis, const Play& play, double start, double delay, double horizon);
+  AxisMotion(const AxisConfig& axis, const Backlash& backlash, double start, double delay, double horizon);
 
   /// To the nearest position that can be commanded, from `time` + delay on; never before the last command,
   /// else std::invalid_argument. It takes `duration` s, or as long as it must.
@@ -62,7 +62,7 @@ class AxisMotion {
   [[nodiscard]] double peak_rate(double way, double rate, double duration) const;
 
   AxisConfig axis_;
-  Play play_;
+  Backlash backlash_;
   double delay_, horizon_;
   std::deque<Plan> plans_;  // by their start; never empty
 };

@@ -24,7 +24,7 @@ struct Command {
 // An axis with limits of any size, and commands at any times, often while it still moves.
 struct RandomCase {
   AxisConfig axis;
-  AxisMotion::Play play;
+  AxisMotion::Backlash backlash;
   double delay = 0, start = 0;
   std::vector<Command> commands;
 
@@ -33,7 +33,7 @@ struct RandomCase {
     axis.max_rate = random.integer(0, 5) == 0 ? infinity : std::pow(10.0, random.uniform(-1, 1));
     axis.max_acceleration = random.integer(0, 3) == 0 ? infinity : std::pow(10.0, random.uniform(-1, 2));
     axis.resolution = random.integer(0, 1) == 0 ? 0 : random.uniform(0.001, 0.2);
-    play = {-random.uniform(0, 0.05), random.uniform(0, 0.05)};
+    backlash = {-random.uniform(0, 0.05), random.uniform(0, 0.05)};
     delay = random.integer(0, 1) == 0 ? 0 : random.uniform(0, 0.5);
     start = random.uniform(axis.limits[0], axis.limits[1]);
     double time = 0;
@@ -45,7 +45,7 @@ struct RandomCase {
   }
 
   [[nodiscard]] AxisMotion motion(double horizon = forever) const {
-    return {axis, play, start, delay, horizon};
+    return {axis, backlash, start, delay, horizon};
   }
   [[nodiscard]] AxisMotion commanded() const {
     AxisMotion result = motion();
@@ -134,7 +134,7 @@ TEST(AxisMotion, CarriesThroughItsPlay) {
     const double missed = std::min(one.axis.max_acceleration * step * step, one.axis.max_rate * step) + 1e-12;
     for (double t = 0; t < one.end(); t += step) {
       const double motor = motion.motor(t);
-      carried = std::clamp(carried, motor + one.play.low, motor + one.play.high);
+      carried = std::clamp(carried, motor + one.backlash.low, motor + one.backlash.high);
       ASSERT_NEAR(motion.position(t), carried, missed) << t;
     }
   });

@@ -24,7 +24,7 @@ DriveMotors::DriveMotors(const Drive& drive, const Drive& real, const std::vecto
     const Axis& axis = drive.axes[i];
     senses_.push_back(axis.reversed ? -1 : 1);
     // Play is taken up for pulling in at the start.
-    motions_.emplace_back(axis_config(real.axes.at(i).motor), AxisMotion::Play{0, axis.play()},
+    motions_.emplace_back(axis_config(real.axes.at(i).motor), AxisMotion::Backlash{0, axis.backlash_steps()},
                           senses_[i] * static_cast<double>(start.at(i)), 0.0, horizon);
   }
 }

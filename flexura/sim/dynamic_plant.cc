@@ -254,27 +254,27 @@ std::vector<char> DynamicPlant::carried_at(double time) const {
 }
 
 // The rod gets the masses of these payloads, whatever its state.
-void DynamicPlant::carry(const std::vector<char>& wanted) const {
-  if (carried_ == wanted) return;
+void DynamicPlant::carry(const std::vector<char>& desired) const {
+  if (carried_ == desired) return;
   const RodState any = dynamics_.rest();
-  for (std::size_t i = 0; i < wanted.size(); ++i)
+  for (std::size_t i = 0; i < desired.size(); ++i)
     if (carried_[i] != 0) (void)dynamics_.drop(any, rod_.payloads[i].payload.place, {}, {});
-  for (std::size_t i = 0; i < wanted.size(); ++i)
-    if (wanted[i] != 0) (void)dynamics_.pick_up(any, rod_.payloads[i].payload, {}, {});
-  carried_ = wanted;
+  for (std::size_t i = 0; i < desired.size(); ++i)
+    if (desired[i] != 0) (void)dynamics_.pick_up(any, rod_.payloads[i].payload, {}, {});
+  carried_ = desired;
 }
 
 // Payloads are picked up and dropped: a state of what was carried becomes one of what is from now on.
 void DynamicPlant::hand_over(Snapshot& at, double time) const {
-  const std::vector<char> wanted = carried_at(time);
-  if (at.carried == wanted) return;
+  const std::vector<char> desired = carried_at(time);
+  if (at.carried == desired) return;
   const TendonInput input{.displacements = inputs().displacements(time, at.rotors.behind)};
   const RodLoads& loads = inputs().loads(time);
   set_lengths(time);
   std::vector<char> left = at.carried;
-  for (std::size_t i = 0; i < wanted.size(); ++i) {
+  for (std::size_t i = 0; i < desired.size(); ++i) {
     const RodPlace& place = rod_.payloads[i].payload.place;
-    if (left[i] == 0 || wanted[i] != 0) continue;
+    if (left[i] == 0 || desired[i] != 0) continue;
     at.state = dynamics_.drop(at.state, place, input, loads);
     // All that was carried there is dropped.
     for (std::size_t k = 0; k < left.size(); ++k) {
@@ -282,8 +282,8 @@ void DynamicPlant::hand_over(Snapshot& at, double time) const {
       if (other.section == place.section && std::abs(other.at - place.at) <= one_place) left[k] = 0;
     }
   }
-  for (std::size_t i = 0; i < wanted.size(); ++i) {
-    if (wanted[i] == 0 || left[i] != 0) continue;
+  for (std::size_t i = 0; i < desired.size(); ++i) {
+    if (desired[i] == 0 || left[i] != 0) continue;
     RodPayload payload = rod_.payloads[i].payload;
     if (at.carried[i] != 0) {
       // It is held on, and moves as its place does.
@@ -293,7 +293,7 @@ void DynamicPlant::hand_over(Snapshot& at, double time) const {
     }
     at.state = dynamics_.pick_up(at.state, payload, input, loads);
   }
-  at.carried = carried_ = wanted;
+  at.carried = carried_ = desired;
 }
 
 // A time is asked for twice, for what is recorded and for the warning: they are searched once.

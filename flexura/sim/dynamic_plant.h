@@ -61,7 +61,7 @@ class DynamicPlant : public RodPlant {
   void hand_over(Snapshot& at, double time) const;
   void set_lengths(double time) const;
   [[nodiscard]] std::vector<double> events(double from, double to) const;
-  void carry(const std::vector<char>& wanted) const;
+  void carry(const std::vector<char>& desired) const;
   void grab(const std::optional<RodPlace>& place) const;
   void surround() const;
   [[nodiscard]] std::optional<RodPlace> grabbed_at(double time) const;

@@ -29,8 +29,8 @@ Eigen::Vector3d moving_tip(SimulatedRig& rig, double time) { return rig.arm().ba
 
 TEST(DynamicPlant, StaysWhereItIsAtRest) {
   const RigConfig config = moving_rig(9.81), still = elastic_rig(9.81);
-  SimulatedRig rig(config, config, numbers_renderer, 1), witness(still, still, numbers_renderer, 1);
-  const Eigen::Vector3d rest = moving_tip(witness, 0);
+  SimulatedRig rig(config, config, numbers_renderer, 1), run_recorder(still, still, numbers_renderer, 1);
+  const Eigen::Vector3d rest = moving_tip(run_recorder, 0);
   EXPECT_LE((moving_tip(rig, 0) - rest).norm(), 1e-9);
   rig.clock().wait_until(0.5);
   EXPECT_LE((moving_tip(rig, 0.5) - rest).norm(), 1e-8);
@@ -39,12 +39,12 @@ TEST(DynamicPlant, StaysWhereItIsAtRest) {
 
 TEST(DynamicPlant, SwingsAndSettlesWhereTheArmIsAtRest) {
   const RigConfig config = moving_rig(9.81), still = elastic_rig(9.81);
-  SimulatedRig rig(config, config, numbers_renderer, 1), witness(still, still, numbers_renderer, 1);
-  for (SimulatedRig* each : {&rig, &witness}) {
+  SimulatedRig rig(config, config, numbers_renderer, 1), run_recorder(still, still, numbers_renderer, 1);
+  for (SimulatedRig* each : {&rig, &run_recorder}) {
     ASSERT_TRUE(each->ports().arm->command(bent_state(), 0));
     each->clock().wait_until(12);
   }
-  EXPECT_LE((moving_tip(rig, 12) - moving_tip(witness, 12)).norm(), 1e-4);
+  EXPECT_LE((moving_tip(rig, 12) - moving_tip(run_recorder, 12)).norm(), 1e-4);
   EXPECT_EQ(moving_plant(rig).tensions(12).size(), 6U);
 }
 
@@ -255,8 +255,8 @@ TEST(DynamicPlant, IsDrivenLonger) {
   const RigConfig moving = rig_of(moving_rig(9.81, 0.2)), still = rig_of(elastic_rig(9.81));
   ArmState longer = bent_state();
   longer.stretches = {1.2, 1.1};
-  SimulatedRig rig(moving, moving, numbers_renderer, 1), witness(still, still, numbers_renderer, 1);
-  for (SimulatedRig* each : {&rig, &witness}) {
+  SimulatedRig rig(moving, moving, numbers_renderer, 1), run_recorder(still, still, numbers_renderer, 1);
+  for (SimulatedRig* each : {&rig, &run_recorder}) {
     ASSERT_TRUE(each->ports().arm->command(longer, 0));
     each->clock().wait_until(0.2);
     if (each == &rig) {
@@ -264,9 +264,9 @@ TEST(DynamicPlant, IsDrivenLonger) {
     }
     each->clock().wait_until(6);
   }
-  EXPECT_NEAR(rig.arm().backbone(6).tip().position.norm(), witness.arm().backbone(6).tip().position.norm(),
-              1e-3);
-  EXPECT_LE((moving_tip(rig, 6) - moving_tip(witness, 6)).norm(), 1e-3);
+  EXPECT_NEAR(rig.arm().backbone(6).tip().position.norm(),
+              run_recorder.arm().backbone(6).tip().position.norm(), 1e-3);
+  EXPECT_LE((moving_tip(rig, 6) - moving_tip(run_recorder, 6)).norm(), 1e-3);
 }
 
 TEST(DynamicPlant, RefusesToBeginWhereThereIsNoRest) {

@@ -164,9 +164,9 @@ TEST(SimulatedDrive, RefusesWhatAreNoTargetsOfItsAxes) {
   EXPECT_EQ(reading.time, 10);
   EXPECT_FALSE(reading.moving);
   // A reversed motor has let cable out, and turned through its play before.
-  const double play = ArmSetup(two_section_rig()).drive->axes[1].play();
+  const double backlash = ArmSetup(two_section_rig()).drive->axes[1].backlash_steps();
   EXPECT_EQ(reading.carried[0], 100);
-  EXPECT_NEAR(reading.carried[1], 100 - play, 1e-9);
+  EXPECT_NEAR(reading.carried[1], 100 - backlash, 1e-9);
 }
 
 }  // namespace

@@ -76,7 +76,7 @@ SimulatedArm::SimulatedArm(const ArmSetup& model, const ArmSetup& truth, const C
     port_ = &bends_.emplace(model, truth, *plant_, clock, horizon);
     return;
   }
-  const std::vector<std::int64_t> start = believed_positions(model.arm, *model.drive, model.initial);
+  const std::vector<std::int64_t> start = nominal_positions(model.arm, *model.drive, model.initial);
   Eigen::VectorXd u(static_cast<Eigen::Index>(start.size()));
   for (std::size_t i = 0; i < start.size(); ++i)
     u[static_cast<Eigen::Index>(i)] = static_cast<double>(start[i]);

@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "flexura/model/arm_way.h"
+#include "flexura/model/arm_difference.h"
 #include "flexura/model/backbone.h"
 #include "flexura/port/driven_arm.h"
 #include "flexura/port/motion_ports.h"
@@ -35,7 +35,7 @@ class SimulatedBends : public ArmPort {
   SimulatedLink link_;
   Arm arm_;
   BendMotion bends_;
-  ArmWay offset_;  // true bends and stretches less believed ones
+  ArmDifference offset_;  // true bends and stretches less believed ones
   Plant& plant_;
 };
 

@@ -66,7 +66,7 @@ TEST(SimulatedArm, StartsBentWithItsMotorsWhereTheModelHasThem) {
   const ArmReading reading = arm.read().value();
   EXPECT_LE(difference(reading.state, ArmSetup{rig}.initial), 1e-12);
   const ArmSetup setup(rig);
-  EXPECT_EQ(reading.positions, believed_positions(setup.arm, *setup.drive, setup.initial));
+  EXPECT_EQ(reading.positions, nominal_positions(setup.arm, *setup.drive, setup.initial));
   EXPECT_GT(std::abs(reading.positions[0]), 100);
   ASSERT_TRUE(arm.command(ArmState::straight(2), 0));
   clock.wait_until(20);

@@ -8,10 +8,10 @@
 
 namespace flexura {
 
-SimulatedDrive::SimulatedDrive(const Drive& believed, const Drive& real,
+SimulatedDrive::SimulatedDrive(const Drive& nominal, const Drive& real,
                                const std::vector<std::int64_t>& start, Plant& plant, const ClockPort& clock,
                                double horizon)
-    : link_("the arm", clock), motors_(believed, real, start, horizon), plant_(plant) {}
+    : link_("the arm", clock), motors_(nominal, real, start, horizon), plant_(plant) {}
 
 CommandOutcome SimulatedDrive::command(std::span<const double> targets, double duration) {
   if (auto fault = link_.fault()) return *fault;

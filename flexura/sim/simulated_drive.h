@@ -18,7 +18,7 @@ namespace flexura {
 class SimulatedDrive : public DrivePort {
  public:
   /// At rest at `start`, microsteps. Its motors obey the limits of `real`'s. The plant outlives it.
-  SimulatedDrive(const Drive& believed, const Drive& real, const std::vector<std::int64_t>& start,
+  SimulatedDrive(const Drive& nominal, const Drive& real, const std::vector<std::int64_t>& start,
                  Plant& plant, const ClockPort& clock, double horizon);
 
   [[nodiscard]] DriveQuantity quantity() const override { return DriveQuantity::motor_positions; }

@@ -17,9 +17,9 @@ ThreeAxes::ThreeAxes(SimulatedLink link, const std::array<AxisConfig, 3>& axes,
                      double horizon)
     : link_(std::move(link)), configs_(axes), offset_(start - counted) {
   for (std::size_t i = 0; i < 3; ++i) {
-    const double play = 0.5 * axes[i].backlash;
-    axes_.emplace_back(axes[i], AxisMotion::Play{-play, play}, counted[static_cast<Eigen::Index>(i)], delay,
-                       horizon);
+    const double half_backlash = 0.5 * axes[i].backlash;
+    axes_.emplace_back(axes[i], AxisMotion::Backlash{-half_backlash, half_backlash},
+                       counted[static_cast<Eigen::Index>(i)], delay, horizon);
   }
 }
 

@@ -108,8 +108,8 @@ TEST(SimulatedHead, ReadsItsMotorsInStepsOfTheirResolution) {
 }
 
 // From below what is carried hangs half the play behind its motor, from above half of it before.
-void expect_play(const Eigen::Vector3d& carried, const Eigen::Vector3d& motors,
-                 const std::array<AxisConfig, 3>& axes, double side) {
+void expect_backlash(const Eigen::Vector3d& carried, const Eigen::Vector3d& motors,
+                     const std::array<AxisConfig, 3>& axes, double side) {
   for (int i = 0; i < 3; ++i)
     EXPECT_NEAR(carried[i], motors[i] + side * 0.5 * axes[static_cast<std::size_t>(i)].backlash, 1e-9) << i;
 }
@@ -131,10 +131,10 @@ TEST(SimulatedHead, HangsHalfItsBacklashBehindWhereItCameFrom) {
       clock.wait_until(clock.now() + 100);
     };
     const auto expect_side = [&](double side) {
-      expect_play(vector(head.truth(clock.now())), vector(head.read().value().state), camera.head_axes(),
-                  side);
-      expect_play(stage.truth(clock.now()).offset, stage.read().value().state.offset, camera.stage_axes(),
-                  side);
+      expect_backlash(vector(head.truth(clock.now())), vector(head.read().value().state), camera.head_axes(),
+                      side);
+      expect_backlash(stage.truth(clock.now()).offset, stage.read().value().state.offset, camera.stage_axes(),
+                      side);
     };
     go(-0.5, -0.3, 0.2, -0.1);
     go(0.5, 0.6, 0.8, 0.1);

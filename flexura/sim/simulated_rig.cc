@@ -30,11 +30,11 @@ Shot with_view(Shot shot, std::function<View(double)> view) {
 
 }  // namespace
 
-SimulatedView::SimulatedView(const CameraConfig& believed, const CameraConfig& config, Shot shot,
+SimulatedView::SimulatedView(const CameraConfig& nominal, const CameraConfig& config, Shot shot,
                              const TakePicture& take_picture, SimulatedClock& clock, double horizon)
     : description_(config),
-      head_(description_, Camera(believed).initial_head(), clock, horizon),
-      stage_(description_, Camera(believed).initial_stage(), clock, horizon),
+      head_(description_, Camera(nominal).initial_head(), clock, horizon),
+      stage_(description_, Camera(nominal).initial_stage(), clock, horizon),
       camera_(description_, with_view(std::move(shot), [this](double time) { return view(time); }),
               take_picture, clock) {}
 

@@ -19,9 +19,9 @@ namespace flexura {
 /// A camera of the simulated world with what moves it.
 class SimulatedView {
  public:
-  /// The camera as it is `believed` to be, whose start its head and stage count, and as it truly is. `shot`
+  /// The camera as it is `nominal` to be, whose start its head and stage count, and as it truly is. `shot`
   /// and `take_picture` as SimulatedCamera takes them; the shot's view is filled in.
-  SimulatedView(const CameraConfig& believed, const CameraConfig& config, Shot shot,
+  SimulatedView(const CameraConfig& nominal, const CameraConfig& config, Shot shot,
                 const TakePicture& take_picture, SimulatedClock& clock, double horizon);
 
   /// The camera as it truly is.

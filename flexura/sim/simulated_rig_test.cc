@@ -9,7 +9,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "flexura/sim/crew.h"
+#include "flexura/sim/thread_pool.h"
 #include "tests/support/random_cases.h"
 #include "tests/support/rigs.h"
 
@@ -97,8 +97,8 @@ TEST(SimulatedRig, ShowsTheTrueWorldAndNotTheModel) {
   truth.cameras[0].lens.fx = 88;  // a tenth longer
   truth.cameras[0].mount.position[0] += 0.1;
   truth.cameras[0].mount.look_at = {{0.1, 0, 0}};
-  SimulatedRig believed(model, model, numbers_renderer, 1), real(model, truth, numbers_renderer, 1);
-  const auto a = numbers_of(*believed.ports().cameras[0].camera->newest().value());
+  SimulatedRig nominal(model, model, numbers_renderer, 1), real(model, truth, numbers_renderer, 1);
+  const auto a = numbers_of(*nominal.ports().cameras[0].camera->newest().value());
   const auto b = numbers_of(*real.ports().cameras[0].camera->newest().value());
   const double distance = model.cameras[0].mount.position[2];
   EXPECT_NEAR(b[8], 31.5 - 88 * 0.1 / distance, 1e-9);  // the tip
@@ -127,7 +127,7 @@ TEST(SimulatedRig, ShowsTheSameToThreadsThatAskItsCamerasAtOnce) {
   const auto films_by = [&](std::size_t threads) {
     SimulatedRig rig(config, config, numbers_renderer, 5);
     const RigPorts ports = rig.ports();
-    Crew crew(threads);
+    ThreadPool thread_pool(threads);
     TestRandom random(7);
     std::vector<std::vector<Frame>> films(ports.cameras.size());
     for (int step = 1; step < 100; ++step) {
@@ -135,7 +135,7 @@ TEST(SimulatedRig, ShowsTheSameToThreadsThatAskItsCamerasAtOnce) {
       for (Eigen::Vector2d& bend : state.bends) bend = random.vector<2>(-1, 1);
       EXPECT_TRUE(ports.arm->command(state, 0.05));
       ports.clock->wait_until(0.05 * step);
-      crew.run(films.size(), [&](std::size_t i) {
+      thread_pool.run(films.size(), [&](std::size_t i) {
         if (const auto frame = ports.cameras[i].camera->newest().value()) films[i].push_back(*frame);
         (void)ports.cameras[i].head->read();
       });

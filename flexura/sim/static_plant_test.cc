@@ -31,17 +31,17 @@ TEST(StaticPlant, WithoutWeightIsTheArcsThatAreBelieved) {
   rig.clock().wait_until(8);
   const ArmState read = rig.ports().arm->read().value().state;
   EXPECT_NEAR(read.bends[0].x(), 0.5, 1e-3);
-  const Backbone believed = ArmModel(config.arm.arm()).backbone(read), truth = rig.arm().backbone(8);
-  EXPECT_LE((believed.tip().position - truth.tip().position).norm(), 1e-3);
+  const Backbone nominal = ArmModel(config.arm.arm()).backbone(read), truth = rig.arm().backbone(8);
+  EXPECT_LE((nominal.tip().position - truth.tip().position).norm(), 1e-3);
   EXPECT_NEAR(truth.rest_length(), 0.5, 1e-12);
 }
 
 TEST(StaticPlant, SagsUnderItsWeightWhereThePortSaysThatItDoesNot) {
-  const RigConfig believed = elastic_rig(), heavy = elastic_rig(9.81);
-  SimulatedRig rig(believed, heavy, numbers_renderer, 1);
+  const RigConfig nominal = elastic_rig(), heavy = elastic_rig(9.81);
+  SimulatedRig rig(nominal, heavy, numbers_renderer, 1);
   ASSERT_TRUE(rig.ports().arm->command(bent_state(), 0));
   rig.clock().wait_until(8);
-  const Backbone arcs = ArmModel(believed.arm.arm()).backbone(rig.ports().arm->read().value().state);
+  const Backbone arcs = ArmModel(nominal.arm.arm()).backbone(rig.ports().arm->read().value().state);
   const Eigen::Vector3d sag = rig.arm().backbone(8).tip().position - arcs.tip().position;
   EXPECT_GT(sag.x(), 2e-3);
   const Equilibrium at = plant_of(rig).equilibrium(8);
@@ -85,8 +85,8 @@ TEST(StaticPlant, WithoutADriveIsPulledAsArcsWouldBe) {
   SimulatedRig rig(config, config, numbers_renderer, 1);
   ASSERT_TRUE(rig.ports().arm->command(bent_state(), 0));
   rig.clock().wait_until(8);
-  const Backbone believed = ArmModel(config.arm.arm()).backbone(bent_state()), truth = rig.arm().backbone(8);
-  EXPECT_LE((believed.tip().position - truth.tip().position).norm(), 1e-3);
+  const Backbone nominal = ArmModel(config.arm.arm()).backbone(bent_state()), truth = rig.arm().backbone(8);
+  EXPECT_LE((nominal.tip().position - truth.tip().position).norm(), 1e-3);
 }
 
 // At rest and straight each tendon pulls by the pretension, and bending by little leaves none slack.
@@ -155,17 +155,17 @@ TEST(StaticPlant, PullsTendonsWhateverBendsWereCommanded) {
   SimulatedRig rig(config, config, numbers_renderer, 1);
   ASSERT_TRUE(rig.ports().arm->command(bent_state(), 0));
   rig.clock().wait_until(2);
-  const std::vector<double> wanted = {0.004, -0.001, -0.002, 0.001, 0.0005, 0.002};
-  ASSERT_TRUE(rig.arm().pull(wanted, 0.5));
+  const std::vector<double> desired = {0.004, -0.001, -0.002, 0.001, 0.0005, 0.002};
+  ASSERT_TRUE(rig.arm().pull(desired, 0.5));
   EXPECT_TRUE(rig.ports().arm->read().value().moving);
   rig.clock().wait_until(4);
   EXPECT_FALSE(rig.ports().arm->read().value().moving);
-  expect_near(plant_of(rig).pulled(4), wanted, 1e-12);
+  expect_near(plant_of(rig).pulled(4), desired, 1e-12);
   const Equilibrium at = plant_of(rig).equilibrium(4);
-  for (std::size_t i = 0; i < wanted.size(); ++i)
-    EXPECT_TRUE(at.tensions[i] == 0 || std::abs(at.displacements[i] - wanted[i]) < 1e-9) << i;
+  for (std::size_t i = 0; i < desired.size(); ++i)
+    EXPECT_TRUE(at.tensions[i] == 0 || std::abs(at.displacements[i] - desired[i]) < 1e-9) << i;
   // What is believed are the nearest arcs, and bends take over again.
-  const ArmState nearest = nearest_arcs(ArmSetup(config).rod->rod, config.arm.arm(), wanted);
+  const ArmState nearest = nearest_arcs(ArmSetup(config).rod->rod, config.arm.arm(), desired);
   EXPECT_LT((rig.ports().arm->read().value().state.bends[0] - nearest.bends[0]).norm(), 1e-9);
   ASSERT_TRUE(rig.ports().arm->command(bent_state(), 0));
   rig.clock().wait_until(8);
@@ -188,12 +188,12 @@ TEST(StaticPlant, StopsATendonOnItsWay) {
 TEST(StaticPlant, PullsTendonsByTheirAxes) {
   RigConfig config = elastic_rig();
   SimulatedRig rig(config, config, numbers_renderer, 1);
-  const std::vector<double> wanted = {0.004, -0.002, -0.002, 0.002, 0, 0.001};
-  ASSERT_TRUE(rig.arm().pull(wanted, 0));
+  const std::vector<double> desired = {0.004, -0.002, -0.002, 0.002, 0, 0.001};
+  ASSERT_TRUE(rig.arm().pull(desired, 0));
   EXPECT_TRUE(rig.ports().arm->read().value().moving);
   rig.clock().wait_until(8);
   const double microstep = 1 / config.drive->drive().axes[0].microsteps_a_metre();
-  expect_near(plant_of(rig).pulled(8), wanted, microstep);
+  expect_near(plant_of(rig).pulled(8), desired, microstep);
   ASSERT_TRUE(rig.ports().arm->command(ArmState::straight(2), 0));
   rig.clock().wait_until(16);
   expect_near(plant_of(rig).pulled(16), std::vector<double>(6, 0.0), microstep);

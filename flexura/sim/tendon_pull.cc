@@ -108,12 +108,12 @@ std::vector<std::array<double, 3>> route_of(const TendonRoute& tendon, const Rod
   return route;
 }
 
-// The least step that meets `wanted` best, but for ways of which it says next to nothing.
-Eigen::VectorXd least_step(const Eigen::MatrixXd& J, const Eigen::VectorXd& wanted) {
+// The least step that meets `desired` best, but for ways of which it says next to nothing.
+Eigen::VectorXd least_step(const Eigen::MatrixXd& J, const Eigen::VectorXd& desired) {
   constexpr double next_to_nothing = 0.01;
   const SymmetricEigen normal = symmetric_eigen(J.transpose() * J);
   const double least = next_to_nothing * next_to_nothing * normal.values[normal.values.size() - 1];
-  Eigen::VectorXd along = normal.vectors.transpose() * (J.transpose() * wanted);
+  Eigen::VectorXd along = normal.vectors.transpose() * (J.transpose() * desired);
   for (Eigen::Index i = 0; i < along.size(); ++i)
     along[i] = normal.values[i] > least ? along[i] / normal.values[i] : 0;
   return normal.vectors * along;
@@ -128,14 +128,14 @@ ArmState nearest_arcs(const Rod& rod, const Arm& arm, const std::vector<double>&
       !std::ranges::all_of(displacements, [](double each) { return std::isfinite(each); }))
     throw std::invalid_argument(
         fmt::format("expected {} finite displacements of tendons", rod.tendons.size()));
-  const Eigen::Map<const Eigen::VectorXd> wanted(displacements.data(),
-                                                 static_cast<Eigen::Index>(displacements.size()));
+  const Eigen::Map<const Eigen::VectorXd> desired(displacements.data(),
+                                                  static_cast<Eigen::Index>(displacements.size()));
   const Variables variables(arm);
   const Eigen::VectorXd units = variables.units(rod, arm);
   ArmState state = ArmState::straight(arm.sections.size());
   for (int turn = 0; turn < most_steps; ++turn) {
     const Eigen::MatrixXd J = slopes(rod, state, variables) * units.asDiagonal();
-    const Eigen::VectorXd change = units.cwiseProduct(least_step(J, wanted - pulled_by(rod, state)));
+    const Eigen::VectorXd change = units.cwiseProduct(least_step(J, desired - pulled_by(rod, state)));
     if (!change.allFinite()) break;
     for (Eigen::Index k = 0; k < variables.count(); ++k) variables.at(state, k) += change[k];
     if (change.cwiseAbs().maxCoeff() < rounding) break;

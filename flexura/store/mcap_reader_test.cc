@@ -82,7 +82,7 @@ std::vector<std::size_t> chunk_ends(const std::string& log) {
 
 TEST(McapReader, ReadsEveryTruncationUpToItsLastCompleteChunk) {
   const std::string whole = small_log();
-  const auto all = told(McapReader(as_log(whole), "whole"));
+  const auto all = reported(McapReader(as_log(whole), "whole"));
   const auto ends = chunk_ends(whole);
   ASSERT_THAT(ends, SizeIs(4));
   for (std::size_t length = 0; length < whole.size(); ++length) {
@@ -92,7 +92,7 @@ TEST(McapReader, ReadsEveryTruncationUpToItsLastCompleteChunk) {
     EXPECT_TRUE(log.truncated());
     const auto chunks = std::ranges::count_if(ends, [&](std::size_t end) { return end <= length; });
     const std::size_t messages = std::min<std::size_t>(2 * static_cast<std::size_t>(chunks), 7);
-    EXPECT_EQ(told(log), std::vector(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(messages)));
+    EXPECT_EQ(reported(log), std::vector(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(messages)));
   }
 }
 
@@ -104,8 +104,8 @@ TEST(McapReader, NoticesEveryChangedByte) {
       std::string bytes = whole;
       bytes[at] = static_cast<char>(bytes[at] ^ change);
       const bool in_last_magic = at >= whole.size() - mcap_magic.size();
-      const std::string said = refusal(bytes);
-      EXPECT_THAT(said, HasSubstr(in_last_magic ? "last bytes are wrong" : "a.mcap: byte "));
+      const std::string reported = refusal(bytes);
+      EXPECT_THAT(reported, HasSubstr(in_last_magic ? "last bytes are wrong" : "a.mcap: byte "));
     }
   }
 }
@@ -172,7 +172,7 @@ TEST(McapReader, ReadsMessagesOutsideChunksAndSkipsUnknownRecords) {
     put_channel(out, 9, {{.topic = "/t"}, 0, 0});
     put_message(out, 9, "plain");
   });
-  EXPECT_THAT(told(McapReader(as_log(log), "a.mcap")), testing::ElementsAre("/t 7 0 plain"));
+  EXPECT_THAT(reported(McapReader(as_log(log), "a.mcap")), testing::ElementsAre("/t 7 0 plain"));
 }
 
 TEST(McapReader, KeepsItsMessagesWhenMoved) {

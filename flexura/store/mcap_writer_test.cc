@@ -27,7 +27,7 @@ TEST(McapWriter, WritesWhatTheReaderReads) {
   const McapReader log(folder / "log.mcap");
   EXPECT_FALSE(log.truncated());
   EXPECT_THAT(log.library(), testing::StartsWith("flexura 0."));
-  EXPECT_THAT(told(log),
+  EXPECT_THAT(reported(log),
               ElementsAre(R"(/arm 0 0 {"i":0})", R"(/arm 1000 1 {"i":1})", R"(/events 2000 0 {"i":2})",
                           R"(/arm 3000 2 {"i":3})", R"(/arm 4000 3 {"i":4})", R"(/events 5000 1 {"i":5})",
                           R"(/arm 6000 4 {"i":6})"));
@@ -128,7 +128,7 @@ TEST(McapWriter, KeepsTheOrderOfWritingWhateverTheTimes) {
     for (const std::uint64_t time : {5U, 1U, 9U, 1U}) log.write(channel, time, "m");
     log.write(channel, UINT64_MAX, "last");
   }
-  EXPECT_THAT(told(McapReader(folder / "log.mcap")),
+  EXPECT_THAT(reported(McapReader(folder / "log.mcap")),
               ElementsAre("/arm 5 0 m", "/arm 1 1 m", "/arm 9 2 m", "/arm 1 3 m",
                           "/arm 18446744073709551615 4 last"));
 }
@@ -162,7 +162,7 @@ TEST(McapWriter, RefusesUnknownChannelsAndTakenTopics) {
   EXPECT_THROW(log.write(channel, 0, "m"), std::logic_error);
   EXPECT_THROW(log.add_channel(json_channel("/late")), std::logic_error);
   EXPECT_THROW(log.flush(), std::logic_error);
-  EXPECT_THAT(told(McapReader(folder / "log.mcap")), IsEmpty());
+  EXPECT_THAT(reported(McapReader(folder / "log.mcap")), IsEmpty());
 }
 
 TEST(McapWriter, NeverOverwrites) {

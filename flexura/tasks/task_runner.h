@@ -41,12 +41,12 @@ struct MissedTarget {
 struct TaskPlan {
   MotionPtr motion;         ///< Never null; its times count from the task's start.
   bool is_steered = false;  ///< By cameras: a limiter decides the commands during the run.
-  bool is_foreseen = true;  ///< The motion is known before the run; a servo's only afterwards.
+  bool is_planned = true;   ///< The motion is known before the run; a servo's only afterwards.
   std::vector<MissedTarget> missed = {};
 };
 
 /// Model of a rig in the course of a run.
-struct BelievedRig {
+struct NominalRig {
   RigModel model;         ///< From the file, or from calibrations.
   bool is_found = false;  ///< Calibrated by the default method, with mounts and lenses.
 };
@@ -54,7 +54,7 @@ struct BelievedRig {
 /// Resources of a task that the rig performs.
 struct TaskStage {
   Rig& rig;
-  BelievedRig& believed;
+  NominalRig& nominal;
   RunLog& log;
   Progress& progress;
   const RecordSteps& record_steps;
@@ -78,7 +78,7 @@ struct TaskWork {
 };
 
 /// Time at which a task's motion is known.
-enum class TaskWay : std::uint8_t {
+enum class TaskMotionSource : std::uint8_t {
   known,      ///< From the state at its start.
   simulated,  ///< After its simulation from the state at its start (TaskRunner::simulate).
   by_rig,     ///< After the rig has performed it (TaskRunner::perform).
@@ -95,7 +95,7 @@ class TaskRunner {
   TaskRunner& operator=(const TaskRunner&) = delete;
 
   [[nodiscard]] const std::string& name() const { return label_.name; }
-  [[nodiscard]] virtual TaskWay way() const { return TaskWay::known; }
+  [[nodiscard]] virtual TaskMotionSource motion_source() const { return TaskMotionSource::known; }
   /// Returns an estimate of its work.
   [[nodiscard]] virtual TaskWork work() const = 0;
 
@@ -118,7 +118,7 @@ class TaskRunner {
                            SafetyReport& /*report*/) const {}
 
   /// For simulated tasks: logs its results up to `time` s, when the run has played up to there.
-  virtual void tell_up_to(double /*time*/, RunLog& /*log*/) {}
+  virtual void publish_up_to(double /*time*/, RunLog& /*log*/) {}
 
   /// Writes its files into the results. `is_cancelled`: the run was cancelled, and computations still open
   /// are skipped.

@@ -62,10 +62,10 @@ TEST_F(PulledRod, SaysWhatCanBePulledAndSwitched) {
 
 TEST_F(PulledRod, GoesWhereItsTendonsArePulled) {
   const StateMessage before = pass(0.1);
-  const std::vector<double> wanted = {0.006, -0.003, -0.003, 0.0046, -0.0010, -0.0036};
-  EXPECT_EQ(ask(tendons(wanted)).error, "");
+  const std::vector<double> desired = {0.006, -0.003, -0.003, 0.0046, -0.0010, -0.0036};
+  EXPECT_EQ(ask(tendons(desired)).error, "");
   const StateMessage state = pass(3);
-  expect_near(values(state), wanted, 1e-7);
+  expect_near(values(state), desired, 1e-7);
   EXPECT_GT((tip(state) - tip(before)).norm(), 0.05);
   EXPECT_GT(state.actuators[0].force, 1);
   // Bends that are moved afterwards take over again.
@@ -194,10 +194,10 @@ TEST_F(TallColumn, SaysThatItSnapsWhenItIsPulledOver) {
   ASSERT_FALSE(event.empty());
   EXPECT_TRUE(*event.find("notice")->as<bool>());
   EXPECT_THAT(last_event(), HasSubstr("the arm snaps"));
-  const std::size_t told = messenger_.texts[me].size();
+  const std::size_t reported = messenger_.texts[me].size();
   EXPECT_EQ(ask(WeightRequest{false}).error, "");
   EXPECT_NEAR(tip(pass(0.5)).x(), -0.245, 0.01) << "as its tendon has it";
-  EXPECT_EQ(messenger_.texts[me].size(), told) << "it is told once, and no switch is a snap";
+  EXPECT_EQ(messenger_.texts[me].size(), reported) << "it is told once, and no switch is a snap";
 }
 
 // With motors, spools and their play, on a rod.
@@ -219,13 +219,13 @@ TEST_F(DrivenRod, PullsItsTendonsByTheirMotors) {
   ASSERT_EQ(rig_->actuators.size(), 9U);
   EXPECT_TRUE(
       *session_.hello().controls.find("actuators")->as<Node::Array>()->front().find("motor")->as<bool>());
-  std::vector<double> wanted;
-  for (const double each : rig_->actuators[0].together) wanted.push_back(0.004 * each);
-  EXPECT_EQ(ask(tendons(wanted)).error, "");
+  std::vector<double> desired;
+  for (const double each : rig_->actuators[0].together) desired.push_back(0.004 * each);
+  EXPECT_EQ(ask(tendons(desired)).error, "");
   EXPECT_TRUE(pass(0.1).is_moving) << "as fast as its motors can";
   const StateMessage state = pass(5);
   EXPECT_FALSE(state.is_moving);
-  expect_near(values(state), wanted, 2e-5);
+  expect_near(values(state), desired, 2e-5);
   EXPECT_GT(state.arm.bends[0].norm(), 0.05) << "its bends follow";
   // What its bends ask shows in its tendons, too.
   EXPECT_EQ(ask(bends({{0, 0}, {0, 0}, {0, 0}})).error, "");
@@ -241,10 +241,10 @@ TEST(WatchedRod, LiesAsTheRunSaysThatItTrulyDoes) {
   const auto run = std::make_shared<RunLink>();
   LiveSession session(rig, messenger, background, {.start = 0, .results = {}, .run = run});
   session.opened(me);
-  EXPECT_FALSE(run->wants_truth()) << "nobody has looked yet";
+  EXPECT_FALSE(run->needs_truth()) << "nobody has looked yet";
   session.advance(0.1);
-  EXPECT_TRUE(run->wants_truth());
-  EXPECT_FALSE(run->wants_truth()) << "once";
+  EXPECT_TRUE(run->needs_truth());
+  EXPECT_FALSE(run->needs_truth()) << "once";
   const ArmState leaning{{{-0.6, 0}, {-0.6, 0}}, {1, 1}};
   const Backbone lies = LiveRig(rig, 0).at_rest(leaning);
   run->state(0.5, leaning, {});
@@ -263,7 +263,7 @@ TEST(WatchedRod, OfATrueRunIsTold) {
   const Experiment experiment = parse_experiment(viewed_rod(), "x.toml");
   class WantsAll : public RunLink {
    public:
-    bool wants_truth() override { return true; }
+    bool needs_truth() override { return true; }
     void truth(double time, const TrueArm& arm) override {
       times.push_back(time);
       last = std::make_shared<const TrueArm>(arm);

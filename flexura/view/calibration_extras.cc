@@ -31,21 +31,21 @@ Curve circle_of(const CircleMessage& circle) {
 }
 
 PictureLayers layers_of(const CalibrationPicture& picture) {
-  const CalibrationSightingMessage& sighting = picture.sighting;
-  PictureLayers overlay{sighting.camera, picture.number, sighting.reason.value_or(""), {}};
+  const CalibrationObservationMessage& observation = picture.observation;
+  PictureLayers overlay{observation.camera, picture.number, observation.reason.value_or(""), {}};
   Curve seen_at, marks_at, ideal_at;
-  for (const AxisPointMessage& point : sighting.points) seen_at.emplace_back(point.u, point.v);
-  for (const MarkerMessage& marker : sighting.markers) marks_at.emplace_back(marker.u, marker.v);
-  if (sighting.ideal)
-    for (const auto& pixel : *sighting.ideal) ideal_at.emplace_back(pixel[0], pixel[1]);
-  if (sighting.circle) overlay.layers.push_back(lines_layer(fitted, {circle_of(*sighting.circle)}));
+  for (const AxisPointMessage& point : observation.points) seen_at.emplace_back(point.u, point.v);
+  for (const MarkerMessage& marker : observation.markers) marks_at.emplace_back(marker.u, marker.v);
+  if (observation.ideal)
+    for (const auto& pixel : *observation.ideal) ideal_at.emplace_back(pixel[0], pixel[1]);
+  if (observation.circle) overlay.layers.push_back(lines_layer(fitted, {circle_of(*observation.circle)}));
   if (!seen_at.empty()) overlay.layers.push_back(points_layer(measured, seen_at));
   if (!marks_at.empty()) overlay.layers.push_back(points_layer(marks, marks_at));
   if (!ideal_at.empty()) overlay.layers.push_back(lines_layer(ideal_arc, {ideal_at}, true));
   return overlay;
 }
 
-std::string said(const CalibrationDecisionMessage& decision) {
+std::string caption(const CalibrationDecisionMessage& decision) {
   if (decision.step)
     return fmt::format("{} of {}: {:.4g} {} off; {}", *decision.step, decision.camera.value_or(""),
                        decision.offset.value_or(0), decision.unit.value_or(""), decision.next);
@@ -63,9 +63,9 @@ Extras calibration_extras(const ShownCalibration& calibration) {
   Extras extras;
   extras.title = "Calibration", extras.text = "looks for the first time";
   if (calibration.decision)
-    extras.time = calibration.decision->time, extras.text = said(*calibration.decision);
+    extras.time = calibration.decision->time, extras.text = caption(*calibration.decision);
   for (const CalibrationPicture& picture : calibration.pictures) {
-    extras.time = std::max(extras.time, picture.sighting.time);
+    extras.time = std::max(extras.time, picture.observation.time);
     extras.overlays.push_back(layers_of(picture));
   }
   return extras;

@@ -11,7 +11,7 @@ namespace flexura {
 
 /// What a calibration measured in one picture, as the log has it.
 struct CalibrationPicture {
-  CalibrationSightingMessage sighting;
+  CalibrationObservationMessage observation;
   std::optional<std::int64_t> number =
       {};  ///< Of the picture for clients; none: of no picture that they get.
 };

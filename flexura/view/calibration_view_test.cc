@@ -37,7 +37,7 @@ class SeenCalibration : public RunLink {
   std::function<void()> look = [] {};
   void logged(const LoggedMessage& message) override {
     RunLink::logged(message);
-    if (message.as<CalibrationSightingMessage>() != nullptr ||
+    if (message.as<CalibrationObservationMessage>() != nullptr ||
         message.as<CalibrationDecisionMessage>() != nullptr)
       look();
   }
@@ -77,12 +77,12 @@ class CalibrationView : public ::testing::Test {
 };
 
 TEST_F(CalibrationView, ShowsWhatIsMeasuredAndDecidedWhileARunGoesOn) {
-  std::vector<std::string> said;
+  std::vector<std::string> reported;
   std::size_t both = 0;
   Node last;
   for (const auto& message : seen->live.posts[{me, extras_stream}]) {
     last = extras_in(*message);
-    said.push_back(text_in(last, "text"));
+    reported.push_back(text_in(last, "text"));
     if (overlays_of(last).size() < 2) continue;
     ++both;
     for (const Node& overlay : overlays_of(last)) {
@@ -90,8 +90,8 @@ TEST_F(CalibrationView, ShowsWhatIsMeasuredAndDecidedWhileARunGoesOn) {
       EXPECT_EQ(layers_of(overlay), (std::set<std::string>{"Seen", "Markers"}));
     }
   }
-  EXPECT_THAT(said, Contains(HasSubstr("horizontal orientation of front: ")));
-  EXPECT_THAT(said, Contains(HasSubstr("px off; pan by ")));
+  EXPECT_THAT(reported, Contains(HasSubstr("horizontal orientation of front: ")));
+  EXPECT_THAT(reported, Contains(HasSubstr("px off; pan by ")));
   EXPECT_GT(both, 3U);
   EXPECT_THAT(overlays_of(last), IsEmpty()) << "with the calibration its measurements are gone";
   EXPECT_EQ(text_in(last, "title"), "");
@@ -112,18 +112,18 @@ TEST_F(CalibrationView, IsInTheRecordingUponThePicturesThatItMeasured) {
   for (const McapMessage& message : log.messages()) {
     const double time = time_of(message);
     // The rig's clock stands while the last picture is judged.
-    if (message.channel->topic == calibration_sightings_topic && time < *ended) {
-      const Node sighting = parse_json(message.text(), "sighting");
+    if (message.channel->topic == calibration_observations_topic && time < *ended) {
+      const Node observation = parse_json(message.text(), "sighting");
       const Node extras = extras_at(session, messenger, time);
       EXPECT_EQ(text_in(extras, "title"), "Calibration");
       for (const Node& overlay : overlays_of(extras)) {
-        if (text_in(overlay, "camera") != text_in(sighting, "camera")) continue;
+        if (text_in(overlay, "camera") != text_in(observation, "camera")) continue;
         ++compared;
         ASSERT_NE(overlay.find("number"), nullptr);
         const Node::Array& layers = *overlay.find("layers")->as<Node::Array>();
         ASSERT_FALSE(layers.empty());
         EXPECT_THAT(*layers[0].find("points")->as<Node::Array>(),
-                    SizeIs(sighting.find("points")->as<Node::Array>()->size()));
+                    SizeIs(observation.find("points")->as<Node::Array>()->size()));
       }
     }
   }

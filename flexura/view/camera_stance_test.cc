@@ -104,7 +104,7 @@ TEST_F(SlidingCamera, IsKnownByItsReadingsAlone) {
   EXPECT_NEAR(again.head.tilt, read.head.tilt, 1e-12);
   EXPECT_NEAR(again.head.zoom, read.head.zoom, 1e-12);
   EXPECT_NEAR((again.stage.offset - read.stage.offset).norm(), 0, 1e-12);
-  EXPECT_FALSE(rig_->believed_view(1, read).X_WC.rotation.isApprox(
+  EXPECT_FALSE(rig_->nominal_view(1, read).X_WC.rotation.isApprox(
       rig_->cameras[1].view({rig_->stance(1, read).head, read.stage}).X_WC.rotation));
   // Whoever wrote the log.
   EXPECT_LE(std::abs(rig_->stance(1, {{1e300, 0, 1e9}, {{0, -1e300, 0}}}).stage.offset.y()), 0.3);

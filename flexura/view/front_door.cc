@@ -53,7 +53,7 @@ void FrontDoor::closed(ClientId client) {
   waiting_.erase(client);
 }
 
-void FrontDoor::said(ClientId client, std::string text) {
+void FrontDoor::on_message(ClientId client, std::string text) {
   const std::lock_guard lock(mutex_);
   if (is_over_) return;
   Counter& waiting = waiting_[client];
@@ -67,7 +67,7 @@ void FrontDoor::said(ClientId client, std::string text) {
   // Whoever is to answer holds it; where nobody does any more the request has its answer, or gets none.
   std::shared_ptr<const void> debt(waiting.get(), [waiting](const void*) { --*waiting; });
   items_.push_back({[client, text = std::move(text), debt = std::move(debt)](Viewer& viewer) {
-                      viewer.said(client, text, debt);
+                      viewer.on_message(client, text, debt);
                     },
                     client, true});
   filled_.notify_one();

@@ -43,7 +43,7 @@ class FrontDoor : public Host {
 
   void opened(ClientId client) override;
   void closed(ClientId client) override;
-  void said(ClientId client, std::string text) override;
+  void on_message(ClientId client, std::string text) override;
   void asked(std::string target, std::function<void(HttpAnswer)> answer) override;
 
  private:

@@ -112,13 +112,13 @@ TEST_F(FrontDoorTest, TakesEverythingAtOnceFromSeveralThreads) {
   for (ClientId client = 1; client <= 3; ++client) {
     threads.emplace_back([&, client] {
       door.opened(client);
-      door.said(client, R"({"id":1,"do":"images","camera":"front","rate":30})");
+      door.on_message(client, R"({"id":1,"do":"images","camera":"front","rate":30})");
       for (int i = 0; i < 20; ++i) {
-        door.said(client, R"({"id":2,"do":"tip","position":[-0.2,0.8,0.1]})");
-        door.said(client, R"({"id":3,"do":"pixel","camera":"front","u":3,"v":4})");
+        door.on_message(client, R"({"id":2,"do":"tip","position":[-0.2,0.8,0.1]})");
+        door.on_message(client, R"({"id":3,"do":"pixel","camera":"front","u":3,"v":4})");
         door.asked("/image/side.png", [&](const HttpAnswer&) { ++documents; });
       }
-      door.said(client, R"({"id":4,"do":"run"})");
+      door.on_message(client, R"({"id":4,"do":"run"})");
     });
   }
   for (std::thread& thread : threads) thread.join();
@@ -135,7 +135,7 @@ TEST_F(FrontDoorTest, RefusesWhatOneClientHeapsUp) {
   int refused = 0;
   // Nobody works yet.
   for (int i = 0; i < 5; ++i) {
-    door.said(1, R"({"id":1,"do":"ping"})");
+    door.on_message(1, R"({"id":1,"do":"ping"})");
     door.asked("/report", [&](const HttpAnswer& answer) { refused += answer.status == 503 ? 1 : 0; });
   }
   EXPECT_EQ(refused, 3);
@@ -152,16 +152,16 @@ TEST_F(FrontDoorTest, TellsAClientWhichOfItsRequestsAreTooMany) {
   messenger_.slow = 1;
   door.opened(1);
   door.opened(2);
-  for (int i = 0; i < 5; ++i) door.said(1, R"({"id":1,"do":"ping"})");
+  for (int i = 0; i < 5; ++i) door.on_message(1, R"({"id":1,"do":"ping"})");
   EXPECT_EQ(messenger_.count(too_many), 3);
-  door.said(2, R"({"id":7,"do":"ping"})");
+  door.on_message(2, R"({"id":7,"do":"ping"})");
   EXPECT_TRUE(soon([&] { return messenger_.count(R"("id":7,"result")") == 1; }));
   EXPECT_EQ(messenger_.count(R"("id":1,)"), 0) << "whoever does not read is asked for nothing more";
   messenger_.slow = 0;
   EXPECT_TRUE(soon([&] { return messenger_.count(R"("id":1,"result")") == 2; }));
   // What has its answer waits no more.
   EXPECT_TRUE(soon([&] {
-    door.said(1, R"({"id":3,"do":"ping"})");
+    door.on_message(1, R"({"id":3,"do":"ping"})");
     return messenger_.count(R"("id":3,"result")") > 10;
   }));
 }
@@ -172,7 +172,7 @@ TEST_F(FrontDoorTest, KeepsTheOrderOfWhatASlowClientAsks) {
   messenger_.slow = 1;
   door.opened(1);
   for (int i = 10; i < 60; ++i) {
-    door.said(1, R"({"do":"ping","id":)" + std::to_string(i) + '}');
+    door.on_message(1, R"({"do":"ping","id":)" + std::to_string(i) + '}');
     if (i == 35) messenger_.slow = 0;
   }
   EXPECT_TRUE(soon([&] { return messenger_.count("\"result\"") == 50; }));
@@ -189,15 +189,15 @@ TEST_F(FrontDoorTest, CountsRequestsUntilTheyAreAnswered) {
   std::promise<void> go;
   // Who takes this picture and then answers for the pixel is kept from it.
   door.asked("/image/front.png", [gone = go.get_future().share()](const HttpAnswer&) { gone.wait(); });
-  door.said(1, R"({"id":2,"do":"pixel","camera":"front","u":3,"v":4})");
-  door.said(2, R"({"id":9,"do":"ping"})");
+  door.on_message(1, R"({"id":2,"do":"pixel","camera":"front","u":3,"v":4})");
+  door.on_message(2, R"({"id":9,"do":"ping"})");
   EXPECT_TRUE(soon([&] { return messenger_.count(R"("id":9,"result")") == 1; })) << "so the pixel is begun";
-  door.said(1, R"({"id":3,"do":"ping"})");
+  door.on_message(1, R"({"id":3,"do":"ping"})");
   EXPECT_EQ(messenger_.count(too_many), 1);
   go.set_value();
   EXPECT_TRUE(soon([&] { return messenger_.count(R"("id":2,"result")") == 1; }));
   EXPECT_TRUE(soon([&] {
-    door.said(1, R"({"id":4,"do":"ping"})");
+    door.on_message(1, R"({"id":4,"do":"ping"})");
     return messenger_.count(R"("id":4,"result")") > 0;
   }));
 }
@@ -214,7 +214,7 @@ TEST_F(FrontDoorTest, TellsWhatFailsAndGoesOn) {
   const int before = messenger_.posts(1, 0);
   EXPECT_TRUE(soon([&] { return messenger_.posts(1, 0) > before + 5; })) << "time goes on";
   EXPECT_EQ(messenger_.count(failure), 1) << "the same is said once, not 60 times a second";
-  door.said(1, R"({"id":4,"do":"ping"})");
+  door.on_message(1, R"({"id":4,"do":"ping"})");
   EXPECT_TRUE(soon([&] { return messenger_.count(R"("id":4,"result")") == 1; }));
 }
 
@@ -224,16 +224,16 @@ TEST_F(FrontDoorTest, SaysWhatKeepsTheViewerFromBeingMade) {
 }
 
 TEST(Workers, HandBackWhatAJobThrows) {
-  std::promise<std::string> told;
+  std::promise<std::string> reported;
   Workers workers([&](const Background::After& after) {
     try {
       after();
     } catch (const std::exception& error) {
-      told.set_value(error.what());
+      reported.set_value(error.what());
     }
   });
   workers.run(Lane::checks, []() -> Background::After { throw std::runtime_error("too much"); });
-  EXPECT_EQ(told.get_future().get(), "too much");
+  EXPECT_EQ(reported.get_future().get(), "too much");
 }
 
 TEST_F(FrontDoorTest, EndsInTheMiddleOfARun) {
@@ -243,11 +243,11 @@ TEST_F(FrontDoorTest, EndsInTheMiddleOfARun) {
               .results = folder_.path() / "run"},
              messenger_);
   door.opened(1);
-  door.said(1, R"({"id":1,"do":"run"})");
+  door.on_message(1, R"({"id":1,"do":"run"})");
   EXPECT_TRUE(soon([&] { return messenger_.last().find("progress") != std::string::npos; }));
   door.stop();
   const int posts = messenger_.posts(1, 0);
-  door.said(1, R"({"id":2,"do":"ping"})");
+  door.on_message(1, R"({"id":2,"do":"ping"})");
   EXPECT_EQ(messenger_.posts(1, 0), posts);
 }
 

@@ -10,7 +10,7 @@
 
 #include "flexura/kinematics/motors.h"
 #include "flexura/kinematics/tendons.h"
-#include "flexura/model/arm_way.h"
+#include "flexura/model/arm_difference.h"
 #include "flexura/sim/arm_setup.h"
 #include "flexura/sim/plant.h"
 #include "flexura/sim/rig_config.h"
@@ -30,7 +30,7 @@ Picture no_picture(const Shot& /*shot*/) {
 // But for what a client's numbers are rounded to.
 bool are_alike(const ArmState& a, const ArmState& b) {
   constexpr double rounding = 1e-6;  // rad, and of a length
-  const ArmWay way = minus(a, b);
+  const ArmDifference way = minus(a, b);
   return std::ranges::all_of(way.bends, [](const auto& bend) { return bend.norm() <= rounding; }) &&
          std::ranges::all_of(way.stretches, [](double stretch) { return std::abs(stretch) <= rounding; });
 }
@@ -102,7 +102,7 @@ std::optional<double> LiveRig::pace() const {
 }
 
 // The simulated rig has no links that are lost: a fault here is a fault of the program.
-ArmState LiveRig::believed() { return simulated_->arm().read().value().state; }
+ArmState LiveRig::nominal() { return simulated_->arm().read().value().state; }
 bool LiveRig::is_arm_moving() { return simulated_->arm().read().value().moving; }
 
 // How a rod lies may depend on how it came there.

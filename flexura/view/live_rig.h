@@ -39,7 +39,7 @@ class LiveRig {
   [[nodiscard]] std::optional<double> pace() const;
 
   /// The shape that the arm is believed to be in.
-  [[nodiscard]] ArmState believed();
+  [[nodiscard]] ArmState nominal();
   /// What its drives truly bend it to, and how it lies: now, or in what is to come as far as it was
   /// commanded, s.
   [[nodiscard]] ArmState truth(double time) { return simulated_->arm().truth(rig_time(time)); }

@@ -36,9 +36,9 @@ struct LiveSession::Taker : PictureSession::Taker {
     session.require_free();
     const ViewedRig& rig = *session.viewed();
     if (arm.tendons && !rig.actuators.empty()) {
-      session.move({pull_wanted(rig.actuators, *arm.tendons), arm.duration, std::move(reply)});
+      session.move({requested_pull(rig.actuators, *arm.tendons), arm.duration, std::move(reply)});
     } else {
-      session.move({shape_wanted(rig.model.driven(), rig.drive, arm), arm.duration, std::move(reply)});
+      session.move({requested_shape(rig.model.driven(), rig.drive, arm), arm.duration, std::move(reply)});
     }
   }
   void operator()(const TipRequest& tip) const {
@@ -116,7 +116,7 @@ struct LiveSession::Taker : PictureSession::Taker {
   }
   void operator()(const PointRequest& point) const { done(point_answer(session.shown_backbone(), point.s)); }
   void operator()(const BackboneRequest& backbone) const {
-    done(backbone_answer(session.rig_.at_rest(shape_wanted(session.viewed()->truth.driven(), backbone))));
+    done(backbone_answer(session.rig_.at_rest(requested_shape(session.viewed()->truth.driven(), backbone))));
   }
 };
 
@@ -126,7 +126,7 @@ LiveSession::LiveSession(const ViewedRigPtr& rig, Messenger& messenger, Backgrou
       clock_(config_.start),
       rig_(rig, 0),
       run_(config_.run),
-      teller_(rig, messenger) {
+      reporter_(rig, messenger) {
   reset();
 }
 
@@ -146,13 +146,13 @@ Hello LiveSession::hello() const {
 
 void LiveSession::opened(ClientId client) {
   clients_.insert(client);
-  teller_.repeat();
+  reporter_.repeat();
 }
 
 void LiveSession::closed(ClientId client) {
   clients_.erase(client);
   // Nobody holds the arm any more.
-  if (hand_ == client) release();
+  if (pushing_client_ == client) release();
   PictureSession::closed(client);
 }
 
@@ -191,7 +191,7 @@ void LiveSession::start_run(const RunRequest& request, const Reply& reply) {
   release();
   run_ = std::make_shared<RunLink>();
   news_ = {};
-  teller_.begin();
+  reporter_.begin();
   background().run(Lane::tasks,
                    [experiment = std::move(experiment), folder, run = run_]() -> Background::After {
                      run_linked(experiment, folder, *run);
@@ -203,13 +203,13 @@ void LiveSession::start_run(const RunRequest& request, const Reply& reply) {
 void LiveSession::follow_run() {
   if (run_ == nullptr) return;
   const bool was_shown = news_.time.has_value();
-  if (viewed()->is_rod) run_->want_truth();
+  if (viewed()->is_rod) run_->request_truth();
   news_ = run_->news();
   // From the rig to the run's start, and from its end to the rig.
   if (news_.time && (!was_shown || news_.end)) ++leaps_;
   // A page's time goes on, that of a watched run is its own: as that of states.
   const std::optional<double> now = is_watched_run() ? std::nullopt : std::optional(rig_.now());
-  teller_.tell(*run_, news_, clock_, now, clients_);
+  reporter_.report(*run_, news_, clock_, now, clients_);
   if (!news_.end) return;
   if (!news_.end->folder.empty()) results_ = news_.end->folder;
   run_.reset();
@@ -219,8 +219,8 @@ void LiveSession::advance(double now) {
   clock_ = std::max(clock_, now);
   const double next = clock_ - config_.start;
   move_on(next);
-  tell_warning();
-  tell_pace();
+  report_warning();
+  report_pace();
   follow_run();
   if (clients_.empty()) return;
   send_states();
@@ -288,17 +288,17 @@ void LiveSession::send_images() {
 }
 
 void LiveSession::event(const char* level, const std::string& name, const std::string& text) {
-  tell_all({event_table(rig_.now(), level, name, text), {}});
+  broadcast({event_table(rig_.now(), level, name, text), {}});
 }
 
 // Nobody asked for what it tells of, and so it is shown at once.
 void LiveSession::notice(const char* level, const std::string& name, const std::string& text) {
   Node::Table table = event_table(rig_.now(), level, name, text);
   table.push_back({"notice", {}, {true, {}}});
-  tell_all({std::move(table), {}});
+  broadcast({std::move(table), {}});
 }
 
-void LiveSession::tell_all(const Node& message) {
+void LiveSession::broadcast(const Node& message) {
   const std::string text = write_json(message);
   for (const ClientId client : clients_) messenger().send(client, text);
 }

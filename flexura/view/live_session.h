@@ -16,7 +16,7 @@
 #include "flexura/view/moves.h"
 #include "flexura/view/picture_session.h"
 #include "flexura/view/run_link.h"
-#include "flexura/view/run_teller.h"
+#include "flexura/view/run_reporter.h"
 #include "flexura/view/session.h"
 
 namespace flexura {
@@ -80,10 +80,10 @@ class LiveSession : public PictureSession {
   void push(ClientId client, const PushRequest& request);
   void release();
   void watch_yielding();
-  void tell_pace();
+  void report_pace();
   void keep_clear(double next);
   void move_on(double next);
-  void tell_warning();
+  void report_warning();
   void send_states();
   void send_images();
   [[nodiscard]] bool is_run_shown() const { return run_ != nullptr && news_.time; }
@@ -94,7 +94,7 @@ class LiveSession : public PictureSession {
   void event(const char* level, const std::string& name, const std::string& text);
   void notice(const char* level, const std::string& name, const std::string& text);
   void warn(const std::string& text);
-  void tell_all(const Node& message);
+  void broadcast(const Node& message);
 
   Config config_;
   double clock_ = 0;  // of advance(), s
@@ -108,13 +108,13 @@ class LiveSession : public PictureSession {
   std::optional<Move> waiting_;
   std::uint64_t generation_ = 0;  // Moves of an older one are forgotten.
   bool is_touching_ = false;
-  std::optional<ClientId> hand_;  // Whose push it is.
+  std::optional<ClientId> pushing_client_;  // Whose push it is.
   bool is_slow_ = false;
   double warned_ = -1;   // s
   std::string warning_;  // of the arm's rest, as told
   std::shared_ptr<RunLink> run_;
   RunLink::News news_;  // of the run
-  RunTeller teller_;
+  RunReporter reporter_;
   std::optional<std::filesystem::path> results_;
 };
 

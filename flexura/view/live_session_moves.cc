@@ -36,14 +36,14 @@ LiveSession::Judged LiveSession::judge(const ViewedRig& rig, const ArmState& fro
   } else {
     judged.state = std::get<ArmState>(move.target);
   }
-  judged.danger = danger_on_way(rig.model, rig.forbidden, from, judged.state);
+  judged.danger = danger_on_path(rig.model, rig.forbidden, from, judged.state);
   return judged;
 }
 
 void LiveSession::look_at(Move move) {
   is_looking_ = true;
   background().run(Lane::checks,
-                   [this, rig = viewed(), from = rig_.believed(), move = std::move(move),
+                   [this, rig = viewed(), from = rig_.nominal(), move = std::move(move),
                     generation = generation_, alive = this->alive()]() -> Background::After {
                      Judged judged;
                      try {
@@ -75,7 +75,7 @@ void LiveSession::finish(const Move& move, const Judged& judged) {
   if (judged.found) {
     // Follows a hand at once, and swings over where it has to go far.
     constexpr double shortest = 0.05, rate = 4;  // s, rad/s
-    const ArmState from = rig_.believed();
+    const ArmState from = rig_.nominal();
     duration = shortest;
     for (std::size_t i = 0; i < from.bends.size(); ++i)
       duration = std::max(duration, (judged.state.bends[i] - from.bends[i]).norm() / rate);
@@ -105,14 +105,14 @@ void LiveSession::halt() {
   (void)ports.arm->halt().value();
   for (std::size_t i = 0; i < ports.cameras.size(); ++i) {
     (void)halt_camera(ports.cameras[i]).value();
-    const CameraStance stands = said_stance(ports.cameras[i], viewed()->cameras[i]).value();
+    const CameraStance stands = measured_stance(ports.cameras[i], viewed()->cameras[i]).value();
     head_targets_[i] = stands.head, stage_targets_[i] = stands.stage;
   }
 }
 
 void LiveSession::reset() {
   ++generation_;
-  hand_.reset();
+  pushing_client_.reset();
   warning_.clear();
   if (waiting_) std::exchange(waiting_, std::nullopt)->reply({nothing(), "something else has stopped it"});
   ++leaps_;
@@ -166,11 +166,11 @@ void LiveSession::push(ClientId client, const PushRequest& request) {
   } catch (const std::exception& error) {
     throw ViewRefusal(fmt::format("push: the arm stays as it is: {}", error.what()));
   }
-  hand_ = client;
+  pushing_client_ = client;
 }
 
 void LiveSession::release() {
-  hand_.reset();
+  pushing_client_.reset();
   if (!rig_.is_pushed()) return;
   try {
     rig_.push(std::nullopt);
@@ -189,7 +189,7 @@ void LiveSession::watch_yielding() {
 }
 
 // Once, when it becomes so.
-void LiveSession::tell_pace() {
+void LiveSession::report_pace() {
   const std::optional<double> pace = rig_.pace();
   if (pace && !is_slow_)
     event("warning", "clock",
@@ -198,7 +198,7 @@ void LiveSession::tell_pace() {
 }
 
 // Once, when it becomes so.
-void LiveSession::tell_warning() {
+void LiveSession::report_warning() {
   if (!viewed()->is_rod) return;
   std::string warning = rig_.warning();
   if (!warning.empty() && warning != warning_) notice("warning", "statics", warning);

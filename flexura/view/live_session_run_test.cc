@@ -54,10 +54,10 @@ TEST_F(LiveSessionTest, RunsOneTaskFromTheStart) {
   session.take(other, RunRequest{1}, [](const ViewAnswer& answer) { EXPECT_EQ(answer.error, ""); });
   session.advance(0.1);
   const auto summary = folder_.path() / "one" / "summary.json";
-  const Node said = parse_json(read_text_file(summary, 1 << 20), "summary");
-  ASSERT_EQ(said.find("tasks")->as<Node::Array>()->size(), 1);
-  EXPECT_EQ(*said.find("tasks")->as<Node::Array>()->front().find("kind")->as<std::string>(), "hold");
-  EXPECT_EQ(*said.find("duration")->as<double>(), 0.5);
+  const Node reported = parse_json(read_text_file(summary, 1 << 20), "summary");
+  ASSERT_EQ(reported.find("tasks")->as<Node::Array>()->size(), 1);
+  EXPECT_EQ(*reported.find("tasks")->as<Node::Array>()->front().find("kind")->as<std::string>(), "hold");
+  EXPECT_EQ(*reported.find("duration")->as<double>(), 0.5);
   EXPECT_EQ(ask(RunRequest{1}).error, "task = 1: expected 0 to 0");
   EXPECT_THAT(messenger_.last(me, "progress").find("what"), nullptr) << "that was refused";
 }

@@ -57,8 +57,8 @@ TEST_F(LiveSessionTest, RefusesAWayIntoAnObstacle) {
 }
 
 TEST_F(LiveSessionTest, BringsTheTipToAPlace) {
-  const ArmState wanted{{{0.3, 0.6}, {-0.8, 0.1}}, {1, 1}};
-  const Eigen::Vector3d place = tip_pose(rig_->truth.driven(), wanted).position;
+  const ArmState desired{{{0.3, 0.6}, {-0.8, 0.1}}, {1, 1}};
+  const Eigen::Vector3d place = tip_pose(rig_->truth.driven(), desired).position;
   const ViewAnswer answer = ask(TipRequest{{place.x(), place.y(), place.z()}, {}});
   ASSERT_EQ(answer.error, "");
   EXPECT_TRUE(*answer.result.find("converged")->as<bool>());

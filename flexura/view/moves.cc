@@ -37,8 +37,8 @@ bool was_there(const Violation& violation, const std::vector<Violation>& at_star
   });
 }
 
-SafetyReport check_way(const ArmModel& arm, const std::vector<Obstacle>& obstacles, const ArmState& from,
-                       const MotionPtr& motion) {
+SafetyReport check_path(const ArmModel& arm, const std::vector<Obstacle>& obstacles, const ArmState& from,
+                        const MotionPtr& motion) {
   constexpr double step = 0.02;
   return check_motions(arm, obstacles, from, {{motion, 0, ""}}, step);
 }
@@ -77,13 +77,13 @@ std::string contact_text(const ContactWatch& watch, const Contact& contact) {
 
 void require_travel(const Camera& camera, const StageRequest& request) {
   constexpr std::array<const char*, 3> names = {"x", "y", "z"};
-  const std::array<const std::optional<double>*, 3> wanted = {&request.x, &request.y, &request.z};
+  const std::array<const std::optional<double>*, 3> desired = {&request.x, &request.y, &request.z};
   const auto travels = [](const AxisConfig& axis) { return axis.limits[1] > axis.limits[0]; };
   const std::string name = Node{camera.config().name, {}}.brief();
   if (std::ranges::none_of(camera.stage_axes(), travels))
     throw ViewRefusal(fmt::format("the camera {} has no stage", name));
   for (std::size_t i = 0; i < names.size(); ++i)
-    if (*wanted[i] && !travels(camera.stage_axes()[i]))
+    if (*desired[i] && !travels(camera.stage_axes()[i]))
       throw ViewRefusal(fmt::format("the stage of camera {} does not move along {}", name, names[i]));
 }
 
@@ -97,7 +97,7 @@ ArmState within_limits(const Arm& arm, ArmState state) {
   return state;
 }
 
-ArmState shape_wanted(const Arm& arm, const ShapeConfig& shape) {
+ArmState requested_shape(const Arm& arm, const ShapeConfig& shape) {
   Reader reader;
   check_shape(shape, arm.kind, arm.sections.size(), "", reader);
   if (reader.problems().empty()) check_bends(arm, shape, "", reader);
@@ -105,16 +105,17 @@ ArmState shape_wanted(const Arm& arm, const ShapeConfig& shape) {
   return arm_state(arm, shape);
 }
 
-ArmState shape_wanted(const Arm& arm, const std::optional<Drive>& drive, const ArmRequest& request) {
+ArmState requested_shape(const Arm& arm, const std::optional<Drive>& drive, const ArmRequest& request) {
   if (!request.tendons)
-    return within_limits(arm, shape_wanted(arm, static_cast<const ShapeConfig&>(request)));
+    return within_limits(arm, requested_shape(arm, static_cast<const ShapeConfig&>(request)));
   if (!drive) throw ViewRefusal("tendons: the arm has no drive");
   if (request.tendons->size() != drive->tendons.size())
     throw ViewRefusal(fmt::format("tendons: expected {} displacements", drive->tendons.size()));
   return within_limits(arm, fit_state(arm, *drive, {*request.tendons}).state);
 }
 
-TendonPull pull_wanted(const std::vector<PulledTendon>& actuators, const std::vector<double>& displacements) {
+TendonPull requested_pull(const std::vector<PulledTendon>& actuators,
+                          const std::vector<double>& displacements) {
   if (displacements.size() != actuators.size())
     throw ViewRefusal(fmt::format("tendons: expected {} displacements", actuators.size()));
   // A page's numbers are rounded.
@@ -146,12 +147,12 @@ InverseResult shape_for_tip(const ArmModel& arm, const ArmState& from, const Tip
   return far.converged() ? far : near;
 }
 
-std::string danger_on_way(const ArmModel& arm, const std::vector<Obstacle>& obstacles, const ArmState& from,
-                          const ArmState& to) {
+std::string danger_on_path(const ArmModel& arm, const std::vector<Obstacle>& obstacles, const ArmState& from,
+                           const ArmState& to) {
   const std::vector<Profile> profiles(arm.driven().sections.size(), Profile::linear(1));
-  const SafetyReport way = check_way(arm, obstacles, from, point_to_point_motion(from, to, profiles));
+  const SafetyReport way = check_path(arm, obstacles, from, point_to_point_motion(from, to, profiles));
   if (way.is_safe()) return {};
-  const SafetyReport start = check_way(arm, obstacles, from, hold_motion(from, 0));
+  const SafetyReport start = check_path(arm, obstacles, from, hold_motion(from, 0));
   for (const Violation& violation : way.violations) {
     // How fast it goes is the rig's own affair.
     constexpr std::array speeds = {Hazard::bend_rate, Hazard::stretch_rate, Hazard::jump};

@@ -17,9 +17,9 @@ namespace flexura {
 
 /// The shape that a client asks for, drawn to the arm's limits. Throws a ViewRefusal when it is none of this
 /// arm, with the reason.
-[[nodiscard]] ArmState shape_wanted(const Arm& arm, const std::optional<Drive>& drive,
-                                    const ArmRequest& request);
-[[nodiscard]] ArmState shape_wanted(const Arm& arm, const ShapeConfig& shape);
+[[nodiscard]] ArmState requested_shape(const Arm& arm, const std::optional<Drive>& drive,
+                                       const ArmRequest& request);
+[[nodiscard]] ArmState requested_shape(const Arm& arm, const ShapeConfig& shape);
 
 /// Tendons that are pulled in one by one.
 struct TendonPull {
@@ -27,8 +27,8 @@ struct TendonPull {
 };
 /// What a client asks of a rig's actuators; a ViewRefusal where these are not as many, or one is beyond its
 /// range.
-[[nodiscard]] TendonPull pull_wanted(const std::vector<PulledTendon>& actuators,
-                                     const std::vector<double>& displacements);
+[[nodiscard]] TendonPull requested_pull(const std::vector<PulledTendon>& actuators,
+                                        const std::vector<double>& displacements);
 
 /// A ViewRefusal where the camera has no stage, or one that does not move along what is asked for.
 void require_travel(const Camera& camera, const StageRequest& request);
@@ -42,8 +42,8 @@ void require_travel(const Camera& camera, const StageRequest& request);
 
 /// Why the arm must not go straight from one command to another, one line; "" when nothing is in the way.
 /// What is wrong already at the start, and gets no worse, is no reason to stay.
-[[nodiscard]] std::string danger_on_way(const ArmModel& arm, const std::vector<Obstacle>& obstacles,
-                                        const ArmState& from, const ArmState& to);
+[[nodiscard]] std::string danger_on_path(const ArmModel& arm, const std::vector<Obstacle>& obstacles,
+                                         const ArmState& from, const ArmState& to);
 
 /// What an arm touches that lies so, one line; "" when nothing.
 [[nodiscard]] std::string touched(const Backbone& backbone, const std::vector<Obstacle>& obstacles);

@@ -20,7 +20,7 @@ constexpr int most_waiting = 32;
 
 // What is used on the pictures' lane alone.
 struct PictureRoom::Tools {
-  explicit Tools(const ViewedRigPtr& rig) : photographer(rig->experiment), eye(rig) {}
+  explicit Tools(const ViewedRigPtr& rig) : photographer(rig->experiment), probe(rig) {}
 
   // The last picture of a camera, and its files by quality.
   struct Taken {
@@ -51,11 +51,11 @@ struct PictureRoom::Tools {
       return pixel_node(*picture, shot.sensor->bits, u, v, shot.frame, seen);
     };
     (void)answer(std::nullopt);  // Refuses what is outside of the picture.
-    return {answer(eye.look(shot, u, v)), ""};
+    return {answer(probe.look(shot, u, v)), ""};
   }
 
   Photographer photographer;
-  PixelEye eye;
+  PixelProbe probe;
   std::map<std::size_t, Taken> taken;  // by camera
 };
 

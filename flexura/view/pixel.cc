@@ -18,12 +18,12 @@ Node optional_number(const std::optional<double>& value) { return value ? Node{*
 
 }  // namespace
 
-PixelEye::PixelEye(ViewedRigPtr rig)
+PixelProbe::PixelProbe(ViewedRigPtr rig)
     : rig_(std::move(rig)),
       maker_(rig_->truth.driven(), rig_->experiment.true_rig().arm.look, rig_->experiment.true_stand(),
              rig_->experiment.obstacle) {}
 
-SeenPixel PixelEye::look(const Shot& shot, int u, int v) {
+SeenPixel PixelProbe::look(const Shot& shot, int u, int v) {
   const double time = times_of_frame_at(*shot.sensor, shot.start).middle;
   const Backbone backbone = shot.backbone(time);
   const Scene scene = maker_.scene(backbone);
@@ -36,7 +36,7 @@ SeenPixel PixelEye::look(const Shot& shot, int u, int v) {
 }
 
 // Things are counted from 1, as people count them.
-std::string PixelEye::label(const SurfaceLabel& label) const {
+std::string PixelProbe::label(const SurfaceLabel& label) const {
   const int number = label.index + 1;
   switch (label.kind) {
     case SurfaceKind::background:

@@ -22,9 +22,9 @@ struct SeenPixel {
 };
 
 /// Looks through a camera's pixels. One thread at a time uses it.
-class PixelEye {
+class PixelProbe {
  public:
-  explicit PixelEye(ViewedRigPtr rig);
+  explicit PixelProbe(ViewedRigPtr rig);
 
   /// What is seen in the middle of a pixel, which is in the image, in the middle of a frame's exposure.
   [[nodiscard]] SeenPixel look(const Shot& shot, int u, int v);

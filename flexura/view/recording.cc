@@ -31,10 +31,10 @@ M message_of(const McapMessage& message) {
 }
 
 // Whose picture a sighting is of; none of a damaged one.
-template <class Sighting>
+template <class Observation>
 std::optional<std::size_t> camera_of(const ViewedRig& rig, const McapMessage& message) {
   try {
-    return rig.camera(message_of<Sighting>(message).camera);
+    return rig.camera(message_of<Observation>(message).camera);
   } catch (const InputError&) {
     return std::nullopt;
   }
@@ -65,8 +65,8 @@ void Recording::index() {
   images_.resize(rig_->cameras.size());
   heads_.resize(rig_->cameras.size());
   stages_.resize(rig_->cameras.size());
-  servo_sightings_.resize(rig_->cameras.size());
-  calibration_sightings_.resize(rig_->cameras.size());
+  servo_observations_.resize(rig_->cameras.size());
+  calibration_observations_.resize(rig_->cameras.size());
   for (const McapMessage& message : log_.messages()) {
     const std::string& topic = message.channel->topic;
     const Entry entry{message.log_time, &message};
@@ -77,12 +77,12 @@ void Recording::index() {
     if (topic == arm_contacts_topic) contacts_.push_back(entry);
     if (topic == servo_steps_topic) servo_steps_.push_back(entry);
     if (topic == calibration_decisions_topic) decisions_.push_back(entry);
-    const bool is_servo = topic == servo_sightings_topic,
-               is_calibration = topic == calibration_sightings_topic;
+    const bool is_servo = topic == servo_observations_topic,
+               is_calibration = topic == calibration_observations_topic;
     if (is_servo || is_calibration) {
-      const auto camera = is_servo ? camera_of<ServoSightingMessage>(*rig_, message)
-                                   : camera_of<CalibrationSightingMessage>(*rig_, message);
-      if (camera) (is_servo ? servo_sightings_ : calibration_sightings_)[*camera].push_back(entry);
+      const auto camera = is_servo ? camera_of<ServoObservationMessage>(*rig_, message)
+                                   : camera_of<CalibrationObservationMessage>(*rig_, message);
+      if (camera) (is_servo ? servo_observations_ : calibration_observations_)[*camera].push_back(entry);
     }
     for (std::size_t i = 0; i < rig_->cameras.size(); ++i) {
       const std::string& name = rig_->cameras[i].config().name;
@@ -99,8 +99,8 @@ void Recording::index() {
   for (Entries* entries : {&truths_, &energies_, &tensions_, &contacts_}) sort(*entries);
   sort(servo_steps_);
   sort(decisions_);
-  std::ranges::for_each(servo_sightings_, sort);
-  std::ranges::for_each(calibration_sightings_, sort);
+  std::ranges::for_each(servo_observations_, sort);
+  std::ranges::for_each(calibration_observations_, sort);
   servo_interval_ = interval_of(servo_steps_);
 }
 
@@ -146,8 +146,8 @@ double Recording::seconds(std::uint64_t nanoseconds) { return static_cast<double
 
 std::size_t Recording::place_at(const Entries& entries, double time) {
   constexpr double latest = 1e9;  // s; what is asked for may be anything
-  const std::uint64_t wanted = nanoseconds(std::clamp(time, 0.0, latest));
-  const auto after = std::ranges::upper_bound(entries, wanted, {}, &Entry::time);
+  const std::uint64_t desired = nanoseconds(std::clamp(time, 0.0, latest));
+  const auto after = std::ranges::upper_bound(entries, desired, {}, &Entry::time);
   return after == entries.begin() ? 0 : static_cast<std::size_t>(after - entries.begin()) - 1;
 }
 
@@ -205,18 +205,18 @@ std::optional<ServoStep> Recording::servo_step(double time) const {
 }
 
 // Of the picture that is shown then.
-std::optional<Recording::PictureEntry> Recording::sighting_at(const Entries& sightings, std::size_t camera,
-                                                              double time) const {
-  if (sightings.empty()) return std::nullopt;
+std::optional<Recording::PictureEntry> Recording::observation_at(const Entries& observations,
+                                                                 std::size_t camera, double time) const {
+  if (observations.empty()) return std::nullopt;
   if (images_[camera].empty()) {
-    const Entry& entry = sightings[place_at(sightings, time)];
+    const Entry& entry = observations[place_at(observations, time)];
     if (seconds(entry.time) > time) return std::nullopt;
     return PictureEntry{entry.message, {}};
   }
   // Both stand in the log at the time when the picture came.
   const std::size_t place = image_at(camera, time);
   const auto [first, last] =
-      std::ranges::equal_range(sightings, images_[camera][place].time, {}, &Entry::time);
+      std::ranges::equal_range(observations, images_[camera][place].time, {}, &Entry::time);
   if (first == last) return std::nullopt;
   return PictureEntry{first->message, static_cast<std::int64_t>(place)};
 }
@@ -226,8 +226,8 @@ std::optional<ShownServo> Recording::servo(double time) const {
   if (!step) return std::nullopt;
   ShownServo shown{std::move(*step), {}};
   for (std::size_t camera = 0; camera < rig_->cameras.size(); ++camera)
-    if (const auto entry = sighting_at(servo_sightings_[camera], camera, time))
-      shown.pictures.push_back({message_of<ServoSightingMessage>(*entry->message), entry->number});
+    if (const auto entry = observation_at(servo_observations_[camera], camera, time))
+      shown.pictures.push_back({message_of<ServoObservationMessage>(*entry->message), entry->number});
   return shown;
 }
 
@@ -246,10 +246,10 @@ std::optional<ShownCalibration> Recording::calibration(double time) const {
     }
   }
   for (std::size_t camera = 0; camera < rig_->cameras.size(); ++camera) {
-    const Entries& all = calibration_sightings_[camera];
-    const auto entry = sighting_at(all, camera, time);
+    const Entries& all = calibration_observations_[camera];
+    const auto entry = observation_at(all, camera, time);
     if (!entry || all[place_at(all, time)].time < begun || !has_begun(all[place_at(all, time)])) continue;
-    shown.pictures.push_back({message_of<CalibrationSightingMessage>(*entry->message), entry->number});
+    shown.pictures.push_back({message_of<CalibrationObservationMessage>(*entry->message), entry->number});
   }
   if (!shown.decision && shown.pictures.empty()) return std::nullopt;
   return shown;

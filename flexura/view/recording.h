@@ -95,8 +95,8 @@ class Recording {
     const McapMessage* message = nullptr;
     std::optional<std::int64_t> number;  // of the picture
   };
-  [[nodiscard]] std::optional<PictureEntry> sighting_at(const Entries& sightings, std::size_t camera,
-                                                        double time) const;
+  [[nodiscard]] std::optional<PictureEntry> observation_at(const Entries& observations, std::size_t camera,
+                                                           double time) const;
   void read_marks();
   void mark_violations();
 
@@ -109,8 +109,8 @@ class Recording {
   [[nodiscard]] static std::optional<M> newest(const Entries& entries, double time);
   Entries truths_, energies_, tensions_, contacts_;
   Entries servo_steps_;
-  std::vector<Entries> servo_sightings_, calibration_sightings_;  // by camera
-  Entries decisions_;                                             // of calibrations
+  std::vector<Entries> servo_observations_, calibration_observations_;  // by camera
+  Entries decisions_;                                                   // of calibrations
   double servo_interval_ = 0;  // from one command of a servo to the next, s
   std::vector<Mark> marks_;
 };

@@ -78,8 +78,8 @@ struct RecordingSession::Taker : PictureSession::Taker {
     done({Node::Table{{"time", {}, {shown, {}}}}, {}});
   }
   void operator()(const PixelRequest& pixel) const {
-    session.tell_pixel({client, session.place_of(pixel.camera)}, static_cast<int>(pixel.u),
-                       static_cast<int>(pixel.v), std::move(reply));
+    session.report_pixel({client, session.place_of(pixel.camera)}, static_cast<int>(pixel.u),
+                         static_cast<int>(pixel.v), std::move(reply));
   }
   void operator()(const PointRequest& point) const {
     const Recording& recording = *session.recording_;
@@ -88,7 +88,7 @@ struct RecordingSession::Taker : PictureSession::Taker {
   }
   void operator()(const BackboneRequest& backbone) const {
     done(backbone_answer(
-        session.viewed()->model.backbone(shape_wanted(session.viewed()->model.driven(), backbone))));
+        session.viewed()->model.backbone(requested_shape(session.viewed()->model.driven(), backbone))));
   }
   void operator()(const CancelRequest&) const { throw ViewRefusal("no run is going on"); }
   void operator()(const OpenRequest&) const { throw ViewRefusal("this is the recording"); }
@@ -247,7 +247,7 @@ void RecordingSession::send_image(const ImageStreams::Key& key, std::int64_t pla
                    });
 }
 
-void RecordingSession::tell_pixel(const ImageStreams::Key& key, int u, int v, Reply reply) {
+void RecordingSession::report_pixel(const ImageStreams::Key& key, int u, int v, Reply reply) {
   const double time = times_.at(key.client);
   const std::int64_t place = image_place(key.camera, time);
   if (!is_filmed(key.camera)) {

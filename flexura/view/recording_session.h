@@ -37,7 +37,7 @@ class RecordingSession : public PictureSession {
   void send_state(ClientId client);
   void show_state(const ImageStreams::Key& key, std::int64_t place);
   void send_image(const ImageStreams::Key& key, std::int64_t place);
-  void tell_pixel(const ImageStreams::Key& key, int u, int v, Reply reply);
+  void report_pixel(const ImageStreams::Key& key, int u, int v, Reply reply);
   /// The place of the image to be shown at a time, s: among the logged ones, or where there are none of this
   /// camera among the states.
   [[nodiscard]] std::int64_t image_place(std::size_t camera, double time) const;

@@ -111,10 +111,10 @@ TEST(RodShot, ShowsTheRodWhileARunGoesOn) {
     return std::pair(file, messenger.state(me));
   };
   const auto [rod, state] = shown_in(viewed_rod());
-  const auto [arcs, told] = shown_in(viewed_text);
+  const auto [arcs, reported] = shown_in(viewed_text);
   EXPECT_EQ(rod.substr(1, 3), "PNG");
   EXPECT_NE(rod, arcs);
-  EXPECT_LT((state.samples.back().X_WS.position - told.samples.back().X_WS.position).norm(), 1e-9);
+  EXPECT_LT((state.samples.back().X_WS.position - reported.samples.back().X_WS.position).norm(), 1e-9);
 }
 
 TEST(RodShot, ShowsHowTheRodLayBetweenTwoInstants) {

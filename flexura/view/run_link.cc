@@ -12,14 +12,14 @@ namespace flexura {
 namespace {
 
 // In the place of what the same camera saw before.
-template <class Picture, class Sighting>
-void keep(std::vector<Picture>& pictures, const Sighting& sighting) {
+template <class Picture, class Observation>
+void keep(std::vector<Picture>& pictures, const Observation& observation) {
   const auto same = std::ranges::find_if(
-      pictures, [&](const Picture& picture) { return picture.sighting.camera == sighting.camera; });
+      pictures, [&](const Picture& picture) { return picture.observation.camera == observation.camera; });
   if (same == pictures.end()) {
-    pictures.push_back({sighting, {}});
+    pictures.push_back({observation, {}});
   } else {
-    same->sighting = sighting;
+    same->observation = observation;
   }
 }
 
@@ -40,9 +40,9 @@ void RunLink::state(double time, const ArmState& state, std::span<const CameraRe
 }
 
 void RunLink::truth(double /*time*/, const TrueArm& arm) {
-  auto told = std::make_shared<const TrueArm>(arm);
+  auto reported = std::make_shared<const TrueArm>(arm);
   const std::lock_guard lock(mutex_);
-  news_.truth = std::move(told);
+  news_.truth = std::move(reported);
 }
 
 void RunLink::happened(double time, const std::string& level, const std::string& name,
@@ -72,13 +72,13 @@ void RunLink::decided(const CalibrationDecisionMessage& decision) {
 
 void RunLink::logged(const LoggedMessage& message) {
   const std::lock_guard lock(mutex_);
-  if (const auto* sighting = message.as<ServoSightingMessage>()) {
-    keep(pictures_, *sighting);
+  if (const auto* observation = message.as<ServoObservationMessage>()) {
+    keep(pictures_, *observation);
     return;
   }
   if (const auto* step = message.as<ServoStep>()) {
     news_.servo = ShownServo{*step, pictures_};
-  } else if (const auto* seen = message.as<CalibrationSightingMessage>()) {
+  } else if (const auto* seen = message.as<CalibrationObservationMessage>()) {
     if (!news_.calibration) news_.calibration.emplace();
     keep(news_.calibration->pictures, *seen);
   } else if (const auto* decision = message.as<CalibrationDecisionMessage>()) {

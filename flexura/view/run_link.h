@@ -56,7 +56,7 @@ class RunLink : public Progress, public RunWatcher {
   [[nodiscard]] bool is_cancelled() const override { return cancelled_; }
   void state(double time, const ArmState& state, std::span<const CameraReading> cameras) override;
 
-  [[nodiscard]] bool wants_truth() override { return is_truth_wanted_.exchange(false); }
+  [[nodiscard]] bool needs_truth() override { return is_truth_requested_.exchange(false); }
   void truth(double time, const TrueArm& arm) override;
   void happened(double time, const std::string& level, const std::string& name,
                 const std::string& text) override;
@@ -65,7 +65,7 @@ class RunLink : public Progress, public RunWatcher {
 
   void cancel() { cancelled_ = true; }
   /// The next news is to have how the arm truly stands: once, for each call.
-  void want_truth() { is_truth_wanted_ = true; }
+  void request_truth() { is_truth_requested_ = true; }
   void finish(End end);
   [[nodiscard]] News news() const;
   /// The oldest events that nobody took yet, so many at most. Of a great many the last are kept.
@@ -75,7 +75,7 @@ class RunLink : public Progress, public RunWatcher {
   void decided(const CalibrationDecisionMessage& decision);
 
   Progress* also_;
-  std::atomic<bool> cancelled_ = false, is_truth_wanted_ = false;
+  std::atomic<bool> cancelled_ = false, is_truth_requested_ = false;
   mutable std::mutex mutex_;
   News news_;
   std::vector<ServoPicture> pictures_;  // of a servo, the newest of each camera

@@ -12,7 +12,7 @@
 
 #include "flexura/base/image.h"
 #include "flexura/base/node.h"
-#include "flexura/estimate/picture_sighting.h"
+#include "flexura/estimate/picture_observation.h"
 #include "flexura/estimate/shape_estimator.h"
 #include "flexura/estimate/shape_hint.h"
 #include "flexura/view/answers.h"
@@ -39,11 +39,11 @@ constexpr std::array<std::string_view, 5> names = {"mask", "silhouette", "axis",
 struct FoundArm {
   Image<std::uint8_t> bytes;
   View view;
-  ArmSighting arm;
+  ArmObservation arm;
 };
 
 FoundArm find_arm(const ViewedRig& rig, const SeenPicture& seen) {
-  FoundArm found{eight_bits(*seen.picture, seen.white), rig.believed_view(seen.camera, seen.reading), {}};
+  FoundArm found{eight_bits(*seen.picture, seen.white), rig.nominal_view(seen.camera, seen.reading), {}};
   ArmFinderConfig config;
   config.base = found.view.project(rig.model.driven().X_WB.position);
   ArmFinder finder(config);
@@ -69,7 +69,7 @@ Node line(const char* id, const Points& points) {
 }
 
 // The component that most of the axis lies in.
-std::optional<std::uint32_t> component_of(const Components& components, const ArmSighting& arm) {
+std::optional<std::uint32_t> component_of(const Components& components, const ArmObservation& arm) {
   std::vector<std::size_t> votes(components.list.size());
   for (const AxisSample& sample : arm.axis) {
     const Run* run = components.run_at(static_cast<int>(std::lround(sample.pixel.x())),
@@ -97,7 +97,7 @@ void add_mask(const FoundArm& found, Node::Array& layers) {
 }
 
 // Both borders, as far as they are seen without a gap.
-void add_silhouette(const ArmSighting& arm, Node::Array& layers) {
+void add_silhouette(const ArmObservation& arm, Node::Array& layers) {
   for (const double side : {0.5, -0.5}) {
     Points points;
     const auto finish = [&] {
@@ -116,12 +116,12 @@ void add_silhouette(const ArmSighting& arm, Node::Array& layers) {
 
 void add_markers(const FoundArm& found, const std::vector<AxisSample>& axis, Node::Array& layers,
                  std::vector<std::string>& notes) {
-  ArmSighting corrected = found.arm;
+  ArmObservation corrected = found.arm;
   corrected.axis = axis;
-  const MarkerSightings markers = find_markers(found.bytes, corrected);
+  const MarkerObservations markers = find_markers(found.bytes, corrected);
   notes.insert(notes.end(), markers.notes.begin(), markers.notes.end());
   Node::Array points;
-  for (const MarkerSighting& marker : markers.markers) points.push_back(shown(marker.pixel));
+  for (const MarkerObservation& marker : markers.markers) points.push_back(shown(marker.pixel));
   layers.push_back(layer("markers", "points", {{"points", {}, {std::move(points), {}}}}));
 }
 
@@ -159,7 +159,7 @@ std::span<const std::string_view> layer_names() { return names; }
 
 Node measure_answer(const ViewedRig& rig, const SeenPicture& seen, const std::vector<std::string>& layers) {
   const FoundArm found = find_arm(rig, seen);
-  const auto is_wanted = [&](std::string_view name) { return std::ranges::count(layers, name) > 0; };
+  const auto is_requested = [&](std::string_view name) { return std::ranges::count(layers, name) > 0; };
   Node::Array drawn;
   std::vector<std::string> notes = found.arm.notes;
   if (found.arm.is_found()) {
@@ -168,11 +168,11 @@ Node measure_answer(const ViewedRig& rig, const SeenPicture& seen, const std::ve
     if (!backbone.is_whole()) notes.emplace_back(middle_in_places);
     Points points;
     for (const AxisSample& sample : axis) points.push_back(sample.pixel);
-    if (is_wanted("mask")) add_mask(found, drawn);
-    if (is_wanted("silhouette")) add_silhouette(found.arm, drawn);
-    if (is_wanted("axis")) drawn.push_back(line("axis", points));
-    if (is_wanted("circle")) add_circle(found, backbone, drawn);
-    if (is_wanted("markers")) add_markers(found, axis, drawn, notes);
+    if (is_requested("mask")) add_mask(found, drawn);
+    if (is_requested("silhouette")) add_silhouette(found.arm, drawn);
+    if (is_requested("axis")) drawn.push_back(line("axis", points));
+    if (is_requested("circle")) add_circle(found, backbone, drawn);
+    if (is_requested("markers")) add_markers(found, axis, drawn, notes);
   }
   Node::Table answer = outcome(found.arm.is_found(), found.arm.reason, notes);
   answer.push_back({"number", {}, {seen.number, {}}});
@@ -181,24 +181,24 @@ Node measure_answer(const ViewedRig& rig, const SeenPicture& seen, const std::ve
 }
 
 Node shape_answer(const ViewedRig& rig, std::span<const SeenPicture> seen) {
-  std::vector<Sighting> sightings;
+  std::vector<Observation> observations;
   Node::Array numbers;
   std::vector<std::string> notes;
   for (const SeenPicture& picture : seen) {
     const FoundArm found = find_arm(rig, picture);
-    sightings.push_back(sighting_of(found.arm, found.view, found.bytes));
-    const auto tell = [&](std::string_view what) {
+    observations.push_back(observation_of(found.arm, found.view, found.bytes));
+    const auto report = [&](std::string_view what) {
       notes.push_back(fmt::format("camera {}: {}", rig.cameras[picture.camera].config().name, what));
     };
-    if (!found.arm.is_found()) tell(found.arm.reason);
-    for (const std::string& note : found.arm.notes) tell(note);
-    if (sightings.back().leaves_out) tell(rays_lacking);
+    if (!found.arm.is_found()) report(found.arm.reason);
+    for (const std::string& note : found.arm.notes) report(note);
+    if (observations.back().leaves_out) report(rays_lacking);
     numbers.push_back({picture.number, {}});
   }
   const ShapePrior prior = prior_of(rig);
-  const ShapeEstimate estimate = ShapeEstimator(prior).estimate(sightings);
+  const ShapeEstimate estimate = ShapeEstimator(prior).estimate(observations);
   notes.insert(notes.end(), estimate.notes.begin(), estimate.notes.end());
-  if (auto hint = hint_of(prior, sightings, estimate)) notes.push_back(std::move(*hint));
+  if (auto hint = hint_of(prior, observations, estimate)) notes.push_back(std::move(*hint));
   Node::Table answer = outcome(estimate.is_found, estimate.reason, notes);
   answer.push_back({"numbers", {}, {std::move(numbers), {}}});
   if (estimate.is_found) {

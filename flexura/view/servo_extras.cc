@@ -16,7 +16,7 @@
 namespace flexura {
 namespace {
 
-constexpr ExtraName wanted{"wanted", "Wanted", "#ff922b"};
+constexpr ExtraName desired{"wanted", "Wanted", "#ff922b"};
 constexpr ExtraName seen{"seen", "Seen", "#22b8cf"};
 constexpr ExtraName features{"features", "Features", "#da77f2"};
 
@@ -43,7 +43,7 @@ Shape shape_of(const Arm& base, const std::vector<double>& lengths, const ArmSta
 }
 
 struct Shapes {
-  Shape wanted;
+  Shape desired;
   std::optional<Shape> seen, truth;
 };
 
@@ -88,38 +88,38 @@ void add_features(const std::vector<FeatureMarkMessage>& marks, Node::Array& lay
     for (const auto& pixel : list) pixels.emplace_back(pixel[0], pixel[1]);
     return pixels;
   };
-  Pixels seen_at, wanted_at;
-  std::vector<Pixels> between, seen_lines, wanted_lines;
+  Pixels seen_at, desired_at;
+  std::vector<Pixels> between, seen_lines, desired_lines;
   for (const FeatureMarkMessage& mark : marks) {
-    const Pixels is = pixels_of(mark.seen), shall = pixels_of(mark.wanted);
+    const Pixels is = pixels_of(mark.seen), shall = pixels_of(mark.desired);
     if (is.size() == 1 && shall.size() == 1) {
-      seen_at.push_back(is[0]), wanted_at.push_back(shall[0]), between.push_back({is[0], shall[0]});
+      seen_at.push_back(is[0]), desired_at.push_back(shall[0]), between.push_back({is[0], shall[0]});
     } else {
-      seen_lines.push_back(is), wanted_lines.push_back(shall);
+      seen_lines.push_back(is), desired_lines.push_back(shall);
     }
   }
   if (!between.empty())
     layers.push_back(lines_layer({features.id, features.label, features.color, ""}, between));
   add_marks(seen, false, seen_at, seen_lines, layers);
-  add_marks(wanted, true, wanted_at, wanted_lines, layers);
+  add_marks(desired, true, desired_at, desired_lines, layers);
 }
 
 PictureLayers layers_of(const ServoPicture& picture) {
-  const ServoSightingMessage& sighting = picture.sighting;
-  PictureLayers overlay{sighting.camera, picture.number, sighting.reason.value_or(""), {}};
+  const ServoObservationMessage& observation = picture.observation;
+  PictureLayers overlay{observation.camera, picture.number, observation.reason.value_or(""), {}};
   std::vector<Eigen::Vector2d> line;
-  line.reserve(std::max(sighting.points.size(), sighting.wanted.size()));
-  for (const AxisPointMessage& point : sighting.points) line.emplace_back(point.u, point.v);
+  line.reserve(std::max(observation.points.size(), observation.desired.size()));
+  for (const AxisPointMessage& point : observation.points) line.emplace_back(point.u, point.v);
   if (!line.empty()) overlay.layers.push_back(line_layer(seen.id, seen.color, line));
   line.clear();
   // Upon that, dashed: both are seen where they are one.
-  for (const auto& pixel : sighting.wanted) line.emplace_back(pixel[0], pixel[1]);
-  if (!line.empty()) overlay.layers.push_back(line_layer(wanted.id, wanted.color, line, true));
-  if (sighting.features) add_features(*sighting.features, overlay.layers);
+  for (const auto& pixel : observation.desired) line.emplace_back(pixel[0], pixel[1]);
+  if (!line.empty()) overlay.layers.push_back(line_layer(desired.id, desired.color, line, true));
+  if (observation.features) add_features(*observation.features, overlay.layers);
   return overlay;
 }
 
-std::string said(const ServoStep& step) {
+std::string caption(const ServoStep& step) {
   std::string line = step.error ? fmt::format("{:.2f} % of the length off, the tip {:.2f} %",
                                               100 * step.error->rms, 100 * step.error->tip)
                                 : "the arm is not seen";
@@ -133,17 +133,17 @@ Extras servo_extras(const ViewedRig& rig, const ShownServo& servo) {
   const ServoStep& step = servo.step;
   const Shapes shapes = shapes_of(rig, step);
   Extras extras;
-  extras.time = step.time, extras.title = "Servo", extras.text = said(step);
-  extras.ghosts.push_back(ghost_of(wanted, shapes.wanted));
+  extras.time = step.time, extras.title = "Servo", extras.text = caption(step);
+  extras.ghosts.push_back(ghost_of(desired, shapes.desired));
   extras.along_label = "Distance from wanted", extras.along_unit = "mm",
-  extras.length = shapes.wanted.arm.length();
+  extras.length = shapes.desired.arm.length();
   if (shapes.seen) {
     extras.ghosts.push_back(ghost_of(seen, *shapes.seen));
-    extras.along.push_back(distances(seen, *shapes.seen, shapes.wanted));
+    extras.along.push_back(distances(seen, *shapes.seen, shapes.desired));
   }
   if (shapes.truth) {
     extras.ghosts.push_back(ghost_of(true_arm, *shapes.truth));
-    extras.along.push_back(distances(true_arm, *shapes.truth, shapes.wanted));
+    extras.along.push_back(distances(true_arm, *shapes.truth, shapes.desired));
   }
   for (const ServoPicture& picture : servo.pictures) extras.overlays.push_back(layers_of(picture));
   const auto names = servo_quantities();

@@ -16,7 +16,7 @@ namespace flexura {
 
 /// What a servo sees in one picture, as the log has it.
 struct ServoPicture {
-  ServoSightingMessage sighting;
+  ServoObservationMessage observation;
   std::optional<std::int64_t> number =
       {};  ///< Of the picture for clients; none: of no picture that they get.
 };

@@ -46,7 +46,7 @@ std::string filmed_servo() {
   return servo_file("name = \"bow\"\n" + servo_target + "[[task]]\nkind = \"hold\"\nduration = 1\n", setup);
 }
 
-const ArmState wanted_shape = {{{0.8, 0.3}, {-0.7, 0.9}, {1.0, -0.6}}, {1, 1, 1}};
+const ArmState desired_shape = {{{0.8, 0.3}, {-0.7, 0.9}, {1.0, -0.6}}, {1, 1, 1}};
 
 const Node::Array& list_in(const Node& node, const char* key) { return *node.find(key)->as<Node::Array>(); }
 
@@ -108,7 +108,7 @@ TEST_F(ServoView, ShowsWantedSeenAndTrueShapesWhileARunGoesOn) {
   const Node::Array& ghosts = list_in(extras, "ghosts");
   ASSERT_THAT(ids_of(ghosts), ElementsAre("wanted", "seen", "truth"));
   const ViewedRig& rig = *seen->rig;
-  EXPECT_LT((tip_of(ghosts[0]) - tip_pose(rig.model.driven(), wanted_shape).position).norm(), 1e-9);
+  EXPECT_LT((tip_of(ghosts[0]) - tip_pose(rig.model.driven(), desired_shape).position).norm(), 1e-9);
   const double off = (tip_of(ghosts[2]) - tip_of(ghosts[0])).norm();
   EXPECT_NEAR(off, number_in(*extras.find("values"), "servo_true_tip") / 100 * rig.model.driven().length(),
               1e-9);
@@ -278,12 +278,12 @@ TEST(ServoExtras, DrawWhatTheLawComparesWithLinesBetween) {
   TestRandom random(case_seed(0));
   Arm arm = rig->model.driven();
   ArmState desired, seen;
-  ServoSightingMessage sighting;
-  sighting.camera = "front";
-  sighting.features.emplace();
-  sighting.features->push_back({{{1, 2}}, {{3, 4}}});
-  sighting.features->push_back({{{5, 6}, {7, 8}}, {{5, 8}, {7, 6}}});
-  const Extras extras = servo_extras(*rig, {random_step(random, desired, seen, arm), {{sighting, 1}}});
+  ServoObservationMessage observation;
+  observation.camera = "front";
+  observation.features.emplace();
+  observation.features->push_back({{{1, 2}}, {{3, 4}}});
+  observation.features->push_back({{{5, 6}, {7, 8}}, {{5, 8}, {7, 6}}});
+  const Extras extras = servo_extras(*rig, {random_step(random, desired, seen, arm), {{observation, 1}}});
   std::string drawn;
   for (const Node& layer : extras.overlays.at(0).layers) drawn += write_json(layer) + "\n";
   const std::string id = R"({"id":"features","label":"Features","kind":)";

@@ -26,12 +26,12 @@ class UnevenView : public LiveSessionTest {
 TEST_F(UnevenView, DrawsTheArmAsItIsAndSaysWhatItsDrivesSay) {
   EXPECT_EQ(ask(bends({{0.8, 0.5}, {-0.4, 0.7}}, 1)).error, "");
   const StateMessage state = pass(1.5);
-  const ArmState told{{{0.8, 0.5}, {-0.4, 0.7}}, {1, 1}};
-  for (std::size_t i = 0; i < 2; ++i) EXPECT_TRUE(state.arm.bends[i].isApprox(told.bends[i], 1e-6));
-  const Eigen::Vector3d truth = rig_->experiment.true_rig().arm.model().backbone(told).tip().position;
-  const Eigen::Vector3d believed = rig_->experiment.arm.model().backbone(told).tip().position;
+  const ArmState given{{{0.8, 0.5}, {-0.4, 0.7}}, {1, 1}};
+  for (std::size_t i = 0; i < 2; ++i) EXPECT_TRUE(state.arm.bends[i].isApprox(given.bends[i], 1e-6));
+  const Eigen::Vector3d truth = rig_->experiment.true_rig().arm.model().backbone(given).tip().position;
+  const Eigen::Vector3d nominal = rig_->experiment.arm.model().backbone(given).tip().position;
   EXPECT_LT((tip_of(state) - truth).norm(), 1e-5);
-  EXPECT_GT((truth - believed).norm(), 0.02);
+  EXPECT_GT((truth - nominal).norm(), 0.02);
   EXPECT_GE(state.samples.size(), 7U) << "the ends of six arcs";
 }
 

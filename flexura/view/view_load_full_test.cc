@@ -35,7 +35,8 @@ std::size_t resident_bytes() {
 RawClient watching(const ViewServer& server, int receive_buffer = 0) {
   RawClient client = connected(server, receive_buffer);
   for (const char* camera : {"front", "side"})
-    client.say(std::string(R"({"id":1,"do":"images","rate":30,"quality":95,"camera":")") + camera + "\"}");
+    client.send_text(std::string(R"({"id":1,"do":"images","rate":30,"quality":95,"camera":")") + camera +
+                     "\"}");
   return client;
 }
 
@@ -47,7 +48,7 @@ class DeafClient {
 
   // Its pictures are those of all others, but may be a little ahead of them or behind.
   void acknowledge_around(const char* camera, int number) const {
-    for (int near = std::max(0, number - 2); near <= number + 1; ++near) client_.say(ack(camera, near));
+    for (int near = std::max(0, number - 2); near <= number + 1; ++near) client_.send_text(ack(camera, near));
   }
 
   static std::string ack(const std::string& camera, int number) {
@@ -90,7 +91,7 @@ Seen watch(const ViewServer& server, RawClient& client, double seconds,
       const char* camera = frame.payload[1] == 0 ? "front" : "side";
       const int number =
           static_cast<unsigned char>(frame.payload[4]) + 256 * static_cast<unsigned char>(frame.payload[5]);
-      client.say(DeafClient::ack(camera, number));
+      client.send_text(DeafClient::ack(camera, number));
       for (const DeafClient& other : deaf) other.acknowledge_around(camera, number);
     }
   }
@@ -131,7 +132,7 @@ TEST(ViewLoad, FourClientsThatNeverReadSlowNothingDownAndTakeNoMemory) {
   constexpr int rounds = 9;
   ViewServer server({.session = "1", .rig = rig_with_large_pictures()}, {}, {});
   RawClient good = watching(server);
-  good.say(R"({"id":2,"do":"arm","bends":[[-0.8,0.3],[0.4,0.5]],"duration":60})");
+  good.send_text(R"({"id":2,"do":"arm","bends":[[-0.8,0.3],[0.4,0.5]],"duration":60})");
   (void)watch(server, good, seconds);
   const std::size_t before = resident_bytes();
   std::size_t most = 0, most_waiting = 0;

@@ -26,9 +26,9 @@ class Talk {
  public:
   explicit Talk(RawClient client) : client_(std::move(client)) {}
 
-  void say(const std::string& request) {
+  void send_text(const std::string& request) {
     const std::lock_guard lock(sending_);
-    client_.say(request);
+    client_.send_text(request);
   }
   // The next frame but pings, which are answered; where a request is on its way, that is answer enough.
   RawFrame read_frame() {
@@ -62,7 +62,7 @@ Replies answers_in(Talk& client, int count) {
 Replies replies_to(const ViewServer& server, const std::string& request, int count) {
   Talk client(connected(server));
   std::thread asking([&] {
-    for (int i = 0; i < count; ++i) client.say(request);
+    for (int i = 0; i < count; ++i) client.send_text(request);
   });
   const Replies replies = answers_in(client, count);
   asking.join();
@@ -100,7 +100,7 @@ TEST(ViewServer, HoldsLittleForAClientThatReadsLateAndAnswersAllTheSame) {
   Talk late(connected(server, 4096));
   constexpr int count = 250;  // so that none is refused
   std::thread asking([&] {
-    for (int i = 0; i < count; ++i) late.say(long_request());
+    for (int i = 0; i < count; ++i) late.send_text(long_request());
   });
   constexpr std::size_t room = std::size_t{1} << 20;
   constexpr int patience = 3000;

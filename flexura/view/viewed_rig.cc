@@ -11,7 +11,7 @@
 #include "flexura/math/so3.h"
 #include "flexura/mechanics/arm_rod.h"
 #include "flexura/mechanics/statics.h"
-#include "flexura/model/arm_way.h"
+#include "flexura/model/arm_difference.h"
 #include "flexura/model/backbone.h"
 #include "flexura/sim/arm_setup.h"
 #include "flexura/sim/rig_config.h"
@@ -159,7 +159,7 @@ ViewedRig::ViewedRig(Experiment read)
     cameras.emplace_back(config);
     sensors.push_back(config.sensor);
   }
-  for (const CameraConfig& config : experiment.model_rig().cameras) believed.emplace_back(config);
+  for (const CameraConfig& config : experiment.model_rig().cameras) nominal.emplace_back(config);
 }
 
 std::optional<std::size_t> ViewedRig::camera(std::string_view name) const {
@@ -169,7 +169,7 @@ std::optional<std::size_t> ViewedRig::camera(std::string_view name) const {
 }
 
 CameraReading ViewedRig::first_reading(std::size_t camera) const {
-  return {believed.at(camera).initial_head(), believed.at(camera).initial_stage()};
+  return {nominal.at(camera).initial_head(), nominal.at(camera).initial_stage()};
 }
 
 CameraStance ViewedRig::first_stance(std::size_t camera) const { return cameras.at(camera).initial_stance(); }
@@ -190,8 +190,8 @@ CameraReading ViewedRig::reading(std::size_t camera, const CameraStance& stance)
           {first.stage.offset + stance.stage.offset - start.stage.offset}};
 }
 
-View ViewedRig::believed_view(std::size_t camera, const CameraReading& reading) const {
-  const Camera& described = believed.at(camera);
+View ViewedRig::nominal_view(std::size_t camera, const CameraReading& reading) const {
+  const Camera& described = nominal.at(camera);
   HeadState head = reading.head;
   head.zoom = on_lens(described, head.zoom);
   return described.view({head, reading.stage});

@@ -57,7 +57,7 @@ class ViewedRig {
   std::vector<Obstacle> forbidden;  ///< Those that the arm must not touch.
   std::optional<Drive> drive;       ///< As it is believed to be.
   std::vector<Camera> cameras;      ///< As they are.
-  std::vector<Camera> believed;     ///< As they are believed to be.
+  std::vector<Camera> nominal;      ///< As they are believed to be.
   std::vector<SensorConfig> sensors;
 
   /// The place of the camera of this name; none when there is none.
@@ -71,7 +71,7 @@ class ViewedRig {
   [[nodiscard]] CameraStance stance(std::size_t camera, const CameraReading& reading) const;
   [[nodiscard]] CameraReading reading(std::size_t camera, const CameraStance& stance) const;
   /// What the camera sees, as far as one knows who has its readings.
-  [[nodiscard]] View believed_view(std::size_t camera, const CameraReading& reading) const;
+  [[nodiscard]] View nominal_view(std::size_t camera, const CameraReading& reading) const;
 };
 
 using ViewedRigPtr = std::shared_ptr<const ViewedRig>;

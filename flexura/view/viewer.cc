@@ -88,9 +88,10 @@ Reply Viewer::reply_to(ClientId client, std::int64_t id, std::shared_ptr<const v
   };
 }
 
-void Viewer::said(ClientId client, const std::string& said_text, const std::shared_ptr<const void>& debt) {
+void Viewer::on_message(ClientId client, const std::string& message_text,
+                        const std::shared_ptr<const void>& debt) {
   if (!clients_.contains(client)) return;
-  const Request request = read_request(said_text);
+  const Request request = read_request(message_text);
   std::string error = request.error;
   try {
     if (error.empty()) take(client, request, debt);
@@ -221,8 +222,8 @@ void Viewer::advance(double now) {
 void Viewer::failed(std::optional<ClientId> client, std::string why) {
   std::ranges::replace_if(why, [](char c) { return c >= 0 && c < ' '; }, ' ');
   const std::string text = reply_text(std::nullopt, {{}, why});
-  for (const ClientId told : client ? std::set{*client} : clients_) {
-    if (std::exchange(failures_[told], why) != why) messenger_.send(told, text);
+  for (const ClientId receiver : client ? std::set{*client} : clients_) {
+    if (std::exchange(failures_[receiver], why) != why) messenger_.send(receiver, text);
   }
 }
 

@@ -45,7 +45,8 @@ class Viewer {
   void opened(ClientId client);
   void closed(ClientId client);
   /// `debt`: is let go of when the client has its answer, or none can come any more.
-  void said(ClientId client, const std::string& text, const std::shared_ptr<const void>& debt = nullptr);
+  void on_message(ClientId client, const std::string& text,
+                  const std::shared_ptr<const void>& debt = nullptr);
   void asked(const std::string& target, const std::function<void(HttpAnswer)>& answer);
   void advance(double now);
 

@@ -35,8 +35,8 @@ class ViewerTest : public ::testing::Test {
     viewer_.opened(me);
   }
   // The reply to a message.
-  Node say(const std::string& text) {
-    viewer_.said(me, text);
+  Node send_text(const std::string& text) {
+    viewer_.on_message(me, text);
     return messenger_.last(me, "reply");
   }
   [[nodiscard]] std::string mode() { return *messenger_.last(me, "hello").find("mode")->as<std::string>(); }
@@ -90,51 +90,52 @@ lens = { zoom = [{ ratio = 1, count = 12 }, { ratio = 2, count = 300 }] }
 }
 
 TEST_F(ViewerTest, RepliesToEverythingUnderItsNumber) {
-  const Node pong = say(R"({"id":3,"do":"ping"})");
+  const Node pong = send_text(R"({"id":3,"do":"ping"})");
   EXPECT_EQ(*pong.find("id")->as<std::int64_t>(), 3);
   EXPECT_NE(pong.find("result"), nullptr);
-  const Node bad = say(R"({"id":4,"do":"fly"})");
+  const Node bad = send_text(R"({"id":4,"do":"fly"})");
   EXPECT_EQ(*bad.find("id")->as<std::int64_t>(), 4);
   EXPECT_THAT(error_of(bad), HasSubstr("expected one of"));
-  EXPECT_TRUE(say("nonsense").find("id")->empty());
+  EXPECT_TRUE(send_text("nonsense").find("id")->empty());
   EXPECT_THAT(
-      error_of(say(R"({"id":5,"do":"head","camera":"back","pan":0})")),
+      error_of(send_text(R"({"id":5,"do":"head","camera":"back","pan":0})")),
       StrEq("camera = \"back\": there is no camera of that name; expected one of \"front\", \"side\""));
-  EXPECT_THAT(error_of(say("{\"id\":6,\"do\":\"\xff\"}")), HasSubstr("UTF-8"));
+  EXPECT_THAT(error_of(send_text("{\"id\":6,\"do\":\"\xff\"}")), HasSubstr("UTF-8"));
 }
 
 TEST_F(ViewerTest, DoesNotReplyToAnAcknowledgement) {
   const std::size_t texts = messenger_.texts[me].size();
-  viewer_.said(me, R"({"do":"ack","camera":"front","number":0})");
-  viewer_.said(me, R"({"id":1,"do":"ack","camera":"front","number":0})");
+  viewer_.on_message(me, R"({"do":"ack","camera":"front","number":0})");
+  viewer_.on_message(me, R"({"id":1,"do":"ack","camera":"front","number":0})");
   EXPECT_EQ(messenger_.texts[me].size(), texts);
-  EXPECT_THAT(error_of(say(R"({"do":"ack","camera":"back","number":0})")), HasSubstr("there is no camera"));
+  EXPECT_THAT(error_of(send_text(R"({"do":"ack","camera":"back","number":0})")),
+              HasSubstr("there is no camera"));
 }
 
 TEST_F(ViewerTest, SaysNothingToOneWhoHasLeft) {
   viewer_.opened(other);
   background_.is_prompt = false;
-  viewer_.said(other, R"({"id":1,"do":"tip","position":[0,0.9,0.1]})");
+  viewer_.on_message(other, R"({"id":1,"do":"tip","position":[0,0.9,0.1]})");
   viewer_.closed(other);
   const std::size_t texts = messenger_.texts[other].size();
   background_.work();
-  viewer_.said(other, R"({"id":1,"do":"ping"})");
+  viewer_.on_message(other, R"({"id":1,"do":"ping"})");
   viewer_.advance(1);
   EXPECT_EQ(messenger_.texts[other].size(), texts);
   EXPECT_EQ(messenger_.count(other, 0), 0);
 }
 
 TEST_F(ViewerTest, GoesFromTheRigToTheLastRunAndBack) {
-  EXPECT_THAT(error_of(say(R"({"id":1,"do":"open"})")), HasSubstr("there is no recording yet"));
-  viewer_.said(me, R"({"id":2,"do":"arm","bends":[[-0.5,0],[0,0]]})");
-  viewer_.said(me, R"({"id":3,"do":"run"})");
+  EXPECT_THAT(error_of(send_text(R"({"id":1,"do":"open"})")), HasSubstr("there is no recording yet"));
+  viewer_.on_message(me, R"({"id":2,"do":"arm","bends":[[-0.5,0],[0,0]]})");
+  viewer_.on_message(me, R"({"id":3,"do":"run"})");
   viewer_.advance(1);
   EXPECT_EQ(mode(), "live");
-  EXPECT_EQ(error_of(say(R"({"id":4,"do":"open"})")), "");
+  EXPECT_EQ(error_of(send_text(R"({"id":4,"do":"open"})")), "");
   EXPECT_EQ(mode(), "recording");
   EXPECT_TRUE(messenger_.state(me).is_recording);
   EXPECT_EQ(*messenger_.last(me, "hello").find("duration")->as<double>(), 1);
-  say(R"({"id":5,"do":"live"})");
+  send_text(R"({"id":5,"do":"live"})");
   EXPECT_EQ(mode(), "live");
   viewer_.advance(2);
   EXPECT_NEAR(messenger_.state(me).arm.bends[0].x(), -0.5, 1e-6) << "as it was left";
@@ -142,7 +143,7 @@ TEST_F(ViewerTest, GoesFromTheRigToTheLastRunAndBack) {
 
 TEST_F(ViewerTest, SaysWhetherThereIsARecordingToOpen) {
   EXPECT_FALSE(says("recording"));
-  viewer_.said(me, R"({"id":1,"do":"run"})");
+  viewer_.on_message(me, R"({"id":1,"do":"run"})");
   viewer_.advance(1);
   viewer_.closed(me);
   viewer_.opened(me);
@@ -169,14 +170,14 @@ TEST(ViewerOfARig, ShowsARecordingToAllWhereItFailsForOne) {
                 background, 0);
   viewer.opened(me);
   viewer.opened(other);
-  viewer.said(me, R"({"id":1,"do":"run"})");
+  viewer.on_message(me, R"({"id":1,"do":"run"})");
   viewer.advance(1);
   messenger.is_broken = true;
-  viewer.said(other, R"({"id":2,"do":"open"})");
+  viewer.on_message(other, R"({"id":2,"do":"open"})");
   EXPECT_EQ(messenger.texts[me].back(), R"({"type":"reply","id":null,"error":"nothing goes there"})");
   EXPECT_EQ(*messenger.last(other, "hello").find("mode")->as<std::string>(), "recording");
   EXPECT_TRUE(messenger.state(other).is_recording);
-  viewer.said(other, R"({"id":3,"do":"at","time":0.5})");
+  viewer.on_message(other, R"({"id":3,"do":"at","time":0.5})");
   EXPECT_EQ(messenger.state(other).time, 0.5);
   viewer.advance(2);
 }
@@ -202,7 +203,7 @@ TEST(ViewerOfARig, StaysAsItIsWhateverIsGot) {
     Viewer viewer({.session = "0815", .rig = viewed_rig(), .results = folder.path() / "run"}, messenger,
                   background, 0);
     viewer.opened(me);
-    viewer.said(me, R"({"id":1,"do":"arm","bends":[[0.5,0.2],[0,0]],"duration":1})");
+    viewer.on_message(me, R"({"id":1,"do":"arm","bends":[[0.5,0.2],[0,0]],"duration":1})");
     for (int i = 1; i < 50; ++i) {
       for (const char* target :
            {"/image/front.png", "/image/side.png?time=3", "/series?names=tip_x", "/report", "/reset", "/halt",
@@ -229,14 +230,14 @@ TEST(ViewerOfARun, OpensItsRecordingAtItsEnd) {
   viewer.opened(me);
   viewer.advance(0.1);
   EXPECT_TRUE(*messenger.last(me, "hello").find("rig")->as<bool>());
-  viewer.said(me, R"({"id":1,"do":"halt"})");
+  viewer.on_message(me, R"({"id":1,"do":"halt"})");
   EXPECT_THAT(*messenger.last(me, "reply").find("error")->as<std::string>(), HasSubstr("cannot halt"));
   run_linked(rig->experiment, folder.path(), *run);
   viewer.advance(0.2);
   const Node hello = messenger.last(me, "hello");
   EXPECT_EQ(*hello.find("mode")->as<std::string>(), "recording");
   EXPECT_FALSE(*hello.find("rig")->as<bool>());
-  viewer.said(me, R"({"id":1,"do":"live"})");
+  viewer.on_message(me, R"({"id":1,"do":"live"})");
   EXPECT_NE(messenger.last(me, "reply").find("error"), nullptr);
 }
 
@@ -251,10 +252,10 @@ TEST(ViewerOfARecording, HasItsRigToGoTo) {
   viewer.opened(me);
   EXPECT_TRUE(messenger.state(me).is_recording);
   EXPECT_TRUE(*messenger.last(me, "hello").find("rig")->as<bool>());
-  viewer.said(me, R"({"id":1,"do":"live"})");
+  viewer.on_message(me, R"({"id":1,"do":"live"})");
   viewer.advance(1);
   EXPECT_FALSE(messenger.state(me).is_recording);
-  viewer.said(me, R"({"id":1,"do":"open"})");
+  viewer.on_message(me, R"({"id":1,"do":"open"})");
   EXPECT_TRUE(messenger.state(me).is_recording);
 }
 
@@ -280,15 +281,15 @@ TEST(ViewerExamples, AreOfferedAndOpenedOneAfterAnother) {
   };
   for (const char* name : {"wave", "bow", "wave"}) {
     const auto before = hellos();
-    viewer.said(me, fmt::format(R"({{"id":1,"do":"open","example":"{}"}})", name));
+    viewer.on_message(me, fmt::format(R"({{"id":1,"do":"open","example":"{}"}})", name));
     EXPECT_EQ(messenger.last(me, "reply").find("error"), nullptr) << name;
     EXPECT_EQ(hellos(), before + 1) << "everybody is greeted by the new rig";
     viewer.advance(1);
   }
-  viewer.said(me, R"({"id":2,"do":"open","example":"spider"})");
+  viewer.on_message(me, R"({"id":2,"do":"open","example":"spider"})");
   EXPECT_THAT(*messenger.last(me, "reply").find("error")->as<std::string>(),
               HasSubstr(R"(no example "spider")"));
-  viewer.said(me, R"({"id":3,"do":"open"})");
+  viewer.on_message(me, R"({"id":3,"do":"open"})");
   EXPECT_THAT(*messenger.last(me, "reply").find("error")->as<std::string>(), HasSubstr("no recording yet"));
 }
 

@@ -60,13 +60,13 @@ bool is_explained(const BorderPoint& point, const std::vector<AxisSample>& axis)
 }
 
 // Score of an axis: the covered share of the figure and the number of known ends.
-double merit(const ArmSighting& seen) {
+double merit(const ArmObservation& seen) {
   const auto is_known = [](const AxisEnd& end) { return end.kind != AxisEndKind::lost; };
   return std::min(seen.covered, 1.0) + 0.2 * static_cast<double>(std::ranges::count_if(seen.ends, is_known));
 }
 
 // Returns whether no other seed would show more.
-bool shows_all(const ArmSighting& seen) {
+bool shows_all(const ArmObservation& seen) {
   constexpr double whole = 0.85;
   const auto is_lost = [](const AxisEnd& end) { return end.kind == AxisEndKind::lost; };
   return seen.covered > whole && (seen.is_closed || std::ranges::none_of(seen.ends, is_lost));
@@ -84,7 +84,7 @@ const std::vector<std::string>& names_of(const AxisEndKind*) {
 
 struct ArmFinder::Work {
   ArmFinderConfig config;
-  ArmSighting seen, best;
+  ArmObservation seen, best;
   Components components;
   BlockThresholds blocks;
   Image<std::uint8_t> bytes;  // Of a picture with more bits.
@@ -333,14 +333,14 @@ void ArmFinder::Work::add_unexplained(const Image<std::uint8_t>& gray) {
   std::erase_if(seen.unexplained, [&](const BorderPoint& point) { return is_explained(point, seen.axis); });
 }
 
-const ArmSighting& ArmFinder::find(const Image<std::uint8_t>& gray) {
+const ArmObservation& ArmFinder::find(const Image<std::uint8_t>& gray) {
   work_->segment(gray);
   if (work_->seen.reason.empty()) work_->find_axis(gray, scale_of(gray, 255));
   work_->add_unexplained(gray);
   return work_->seen;
 }
 
-const ArmSighting& ArmFinder::find(const Image<std::uint16_t>& gray, int white) {
+const ArmObservation& ArmFinder::find(const Image<std::uint16_t>& gray, int white) {
   Work& work = *work_;
   work.bytes = eight_bits(gray, white);
   work.segment(work.bytes);
@@ -349,7 +349,7 @@ const ArmSighting& ArmFinder::find(const Image<std::uint16_t>& gray, int white) 
   return work.seen;
 }
 
-const ArmSighting& ArmFinder::find(const Picture& picture, int white) {
+const ArmObservation& ArmFinder::find(const Picture& picture, int white) {
   const auto* words = std::get_if<Image<std::uint16_t>>(&picture);
   if (words != nullptr)
     return words->channels() == 1 ? find(*words, white) : find(gray_picture(*words), white);
@@ -358,12 +358,12 @@ const ArmSighting& ArmFinder::find(const Picture& picture, int white) {
   return bytes.channels() == 1 ? find(bytes) : find(gray_picture(bytes));
 }
 
-const ArmSighting& ArmFinder::find(const Photograph& photograph) {
+const ArmObservation& ArmFinder::find(const Photograph& photograph) {
   const ArmFinderConfig asked = work_->config;
   if (photograph.is_mask) work_->config.least_sigma = std::max(asked.least_sigma, mask_sigma);
   const bool has_words = !photograph.words.values().empty();
-  const ArmSighting& seen = has_words ? find(gray_picture(photograph.words), photograph.white)
-                                      : find(gray_picture(photograph.bytes));
+  const ArmObservation& seen = has_words ? find(gray_picture(photograph.words), photograph.white)
+                                         : find(gray_picture(photograph.bytes));
   work_->config = asked;
   return seen;
 }

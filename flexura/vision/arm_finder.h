@@ -55,7 +55,7 @@ struct AxisEnd {
 };
 
 /// Observation of an arm in one picture.
-struct ArmSighting {
+struct ArmObservation {
   Threshold threshold;
   std::string reason;              ///< Why there is no axis; "" if there is one.
   std::vector<std::string> notes;  ///< Further messages about the picture.
@@ -92,15 +92,15 @@ class ArmFinder {
 
   /// Finds the arm in a gray picture; the result is valid until the next call. Throws std::invalid_argument
   /// for more than one channel.
-  const ArmSighting& find(const Image<std::uint8_t>& gray);
+  const ArmObservation& find(const Image<std::uint8_t>& gray);
   /// Finds the arm in a picture with more than 8 bits; brightness counts from 0 to `white`.
-  const ArmSighting& find(const Image<std::uint16_t>& gray, int white = 65535);
+  const ArmObservation& find(const Image<std::uint16_t>& gray, int white = 65535);
   /// Finds the arm in any picture, gray or in colour, with the largest value `white`. Throws
   /// std::invalid_argument if `white` is below 1.
-  const ArmSighting& find(const Picture& picture, int white);
+  const ArmObservation& find(const Picture& picture, int white);
   /// Finds the arm in a picture from a file, with all its bits. In a mask, `mask_sigma` is a lower bound on
   /// standard deviations.
-  const ArmSighting& find(const Photograph& photograph);
+  const ArmObservation& find(const Photograph& photograph);
 
  private:
   struct Work;

@@ -35,7 +35,7 @@ TEST(ArmFinder, FindsTheBackboneToAFiftiethOfAPixelInNoise) {
       seen.picture = photograph(seen.scene, seen.view, {}, 7);
       seen.truth = true_axis(seen.scene, seen.view, 601);
     }
-    const ArmSighting& found = finder.find(seen.picture);
+    const ArmObservation& found = finder.find(seen.picture);
     ASSERT_TRUE(found.is_found()) << found.reason;
     auto axis = found.axis;
     to_backbone_image(seen.view.lens, axis);
@@ -54,14 +54,14 @@ TEST(ArmFinder, FindsTheBackboneToAFiftiethOfAPixelInNoise) {
 TEST(ArmFinder, OrdersTheAxisFromTheBaseAndEndsItWhereTheBackboneDoes) {
   const SeenArm seen = plain_arm(0.9);
   ArmFinder finder;
-  const ArmSighting& found = finder.find(seen.picture);
+  const ArmObservation& found = finder.find(seen.picture);
   ASSERT_TRUE(found.is_found()) << found.reason;
   EXPECT_LT((found.axis.front().pixel - *seen.truth.front().pixel).norm(), 0.5);
   EXPECT_LT((found.axis.back().pixel - *seen.truth.back().pixel).norm(), 0.5);
   EXPECT_EQ(found.ends[0].kind, AxisEndKind::free);
   const auto first = found.axis;
   ArmFinder other({.threshold = {}, .base = seen.truth.back().pixel});
-  const ArmSighting& reversed = other.find(seen.picture);
+  const ArmObservation& reversed = other.find(seen.picture);
   ASSERT_EQ(reversed.axis.size(), first.size());
   EXPECT_EQ(reversed.axis.front().pixel, first.back().pixel);
   EXPECT_EQ(reversed.axis.front().normal, -first.back().normal);
@@ -71,7 +71,7 @@ TEST(ArmFinder, SeesABrightArmBeforeADarkScreenAsWell) {
   SeenArm seen = plain_arm(0.7);
   for (std::uint8_t& value : seen.picture.values()) value = static_cast<std::uint8_t>(255 - value);
   ArmFinder finder;
-  const ArmSighting& found = finder.find(seen.picture);
+  const ArmObservation& found = finder.find(seen.picture);
   ASSERT_TRUE(found.is_found()) << found.reason;
   EXPECT_EQ(found.threshold.figure, Figure::bright);
   EXPECT_LT(rms_error(seen, found.axis), 0.1);
@@ -83,7 +83,7 @@ TEST(ArmFinder, SaysThatTheBorderCutsTheArm) {
   Image<std::uint8_t> cut(seen.picture.width(), seen.picture.height() - 100);
   std::ranges::copy(seen.picture.values().first(cut.values().size()), cut.values().begin());
   ArmFinder finder;
-  const ArmSighting& found = finder.find(cut);
+  const ArmObservation& found = finder.find(cut);
   ASSERT_TRUE(found.is_found()) << found.reason;
   EXPECT_EQ(found.ends[0].kind, AxisEndKind::border);
   EXPECT_EQ(found.ends[1].kind, AxisEndKind::free);
@@ -96,7 +96,7 @@ TEST(ArmFinder, DoesNotCareWhatItSawBefore) {
   const SeenArm first = random_seen_arm(random, {}), second = random_seen_arm(random, {});
   ArmFinder fresh, used;
   (void)used.find(second.picture);
-  const ArmSighting &a = fresh.find(first.picture), &b = used.find(first.picture);
+  const ArmObservation &a = fresh.find(first.picture), &b = used.find(first.picture);
   ASSERT_EQ(a.axis.size(), b.axis.size());
   for (std::size_t i = 0; i < a.axis.size(); ++i) EXPECT_EQ(a.axis[i].pixel, b.axis[i].pixel);
   EXPECT_EQ(a.blur, b.blur);
@@ -143,7 +143,7 @@ TEST(ArmFinder, MeasuresAMaskToAnEighthOfAPixel) {
     const Photograph mask = decode_picture(bytes_of(file), "mask.pgm");
     EXPECT_TRUE(mask.is_mask);
     ArmFinder finder;
-    const ArmSighting& found = finder.find(mask.bytes);
+    const ArmObservation& found = finder.find(mask.bytes);
     ASSERT_TRUE(found.is_found()) << found.reason;
     EXPECT_EQ(found.ends[0].kind, AxisEndKind::free);
     EXPECT_EQ(found.ends[1].kind, AxisEndKind::free);
@@ -160,7 +160,7 @@ TEST(ArmFinder, TakesAMaskInColourForOneAndKnowsItNoBetter) {
   EXPECT_TRUE(mask.is_mask);
   EXPECT_EQ(mask.bytes.channels(), 1);
   ArmFinder finder;
-  const ArmSighting& found = finder.find(mask);
+  const ArmObservation& found = finder.find(mask);
   ASSERT_TRUE(found.is_found()) << found.reason;
   EXPECT_LT(rms_error(seen, found.axis), 0.125);
   const auto is_of_mask = [](const AxisSample& sample) { return sample.sigma >= mask_sigma; };

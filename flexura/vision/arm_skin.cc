@@ -50,7 +50,7 @@ std::vector<Stretch> stretches(const std::vector<Vector3d>& colors, const Vector
   return result;
 }
 
-ArmSkin::ArmSkin(const Image<std::uint8_t>& picture, const ArmSighting& arm) {
+ArmSkin::ArmSkin(const Image<std::uint8_t>& picture, const ArmObservation& arm) {
   double way = 0, next = 0;
   for (std::size_t i = 0; i + 1 < arm.axis.size(); ++i) {
     const AxisSample &a = arm.axis[i], &b = arm.axis[i + 1];

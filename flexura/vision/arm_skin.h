@@ -37,7 +37,7 @@ struct ArmSkin {
   std::vector<bool> is_seen;  ///< Whether both borders are visible; otherwise the axis is extrapolated here.
   std::array<std::vector<Eigen::Vector3d>, lines.size()> colors;
 
-  ArmSkin(const Image<std::uint8_t>& picture, const ArmSighting& arm);
+  ArmSkin(const Image<std::uint8_t>& picture, const ArmObservation& arm);
 
   [[nodiscard]] std::size_t size() const { return axis.size(); }
   /// Returns the axis point at the sample position `along`.

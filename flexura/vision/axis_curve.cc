@@ -106,18 +106,18 @@ void AxisCurve::take(std::span<const CrossSection> sections, double step, double
   }
 }
 
-void AxisCurve::doubt_neighbours(std::vector<AxisSample>& axis) {
-  doubtful_.clear();
+void AxisCurve::flag_neighbours(std::vector<AxisSample>& axis) {
+  unreliable_.clear();
   for (std::size_t i = 0; i < axis.size(); ++i)
-    if (!axis[i].is_seen) doubtful_.push_back(i);
-  for (const std::size_t i : doubtful_)
+    if (!axis[i].is_seen) unreliable_.push_back(i);
+  for (const std::size_t i : unreliable_)
     for (std::size_t j = i - std::min(i, spread); j <= std::min(i + spread, axis.size() - 1); ++j)
       axis[j].is_seen = false;
 }
 
 template <typename Value>
 bool AxisCurve::fit(TubeTracker<Value>& tracker, const std::array<TrackEnd, 2>& stops,
-                    std::vector<CrossSection>& sections, ArmSighting& seen) {
+                    std::vector<CrossSection>& sections, ArmObservation& seen) {
   if (sections.size() < 8) return false;
   tracker.measure_blur(sections);
   load(sections);
@@ -143,14 +143,14 @@ bool AxisCurve::fit(TubeTracker<Value>& tracker, const std::array<TrackEnd, 2>& 
   const double sigma = tracker.sigma() / std::numbers::sqrt2;
   smooth_by_noise(sections, tracker.step(), sigma);
   take(sections, tracker.step(), tracker.blur(), sigma, seen.axis);
-  doubt_neighbours(seen.axis);
+  flag_neighbours(seen.axis);
   find_ends(tracker, stops, seen);
   return true;
 }
 
 template bool AxisCurve::fit(TubeTracker<std::uint8_t>&, const std::array<TrackEnd, 2>&,
-                             std::vector<CrossSection>&, ArmSighting&);
+                             std::vector<CrossSection>&, ArmObservation&);
 template bool AxisCurve::fit(TubeTracker<std::uint16_t>&, const std::array<TrackEnd, 2>&,
-                             std::vector<CrossSection>&, ArmSighting&);
+                             std::vector<CrossSection>&, ArmObservation&);
 
 }  // namespace flexura

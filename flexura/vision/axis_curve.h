@@ -22,24 +22,24 @@ class AxisCurve {
   /// why the sections end, at the first and the last one.
   template <typename Value>
   bool fit(TubeTracker<Value>& tracker, const std::array<TrackEnd, 2>& stops,
-           std::vector<CrossSection>& sections, ArmSighting& seen);
+           std::vector<CrossSection>& sections, ArmObservation& seen);
 
  private:
   void load(std::span<const CrossSection> sections);
   void smooth_by_noise(std::span<const CrossSection> sections, double step, double sigma);
   void take(std::span<const CrossSection> sections, double step, double blur, double sigma,
             std::vector<AxisSample>& axis);
-  void doubt_neighbours(std::vector<AxisSample>& axis);
+  void flag_neighbours(std::vector<AxisSample>& axis);
 
   CurveSmoother smoother_;
   std::vector<CurveSmoother::Values> smooth_;
   std::vector<double> weights_, strengths_;
-  std::vector<std::size_t> doubtful_;
+  std::vector<std::size_t> unreliable_;
 };
 
 extern template bool AxisCurve::fit(TubeTracker<std::uint8_t>&, const std::array<TrackEnd, 2>&,
-                                    std::vector<CrossSection>&, ArmSighting&);
+                                    std::vector<CrossSection>&, ArmObservation&);
 extern template bool AxisCurve::fit(TubeTracker<std::uint16_t>&, const std::array<TrackEnd, 2>&,
-                                    std::vector<CrossSection>&, ArmSighting&);
+                                    std::vector<CrossSection>&, ArmObservation&);
 
 }  // namespace flexura

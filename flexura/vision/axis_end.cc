@@ -215,7 +215,7 @@ double end_sigma(const Shape& shape, double half_width, double blur) {
 }
 
 // The last samples before a lost end may already belong to another border.
-void doubt_end(bool is_last, std::vector<AxisSample>& axis) {
+void flag_end(bool is_last, std::vector<AxisSample>& axis) {
   const auto at = [&](std::size_t i) -> AxisSample& { return axis[is_last ? axis.size() - 1 - i : i]; };
   const Vector2d end = at(0).pixel;
   for (std::size_t i = 0; i < axis.size() && (at(i).pixel - end).norm() <= 0.5 * at(0).width; ++i)
@@ -225,7 +225,8 @@ void doubt_end(bool is_last, std::vector<AxisSample>& axis) {
 }  // namespace
 
 template <typename Value>
-void find_ends(const TubeTracker<Value>& tracker, const std::array<TrackEnd, 2>& stops, ArmSighting& seen) {
+void find_ends(const TubeTracker<Value>& tracker, const std::array<TrackEnd, 2>& stops,
+               ArmObservation& seen) {
   for (std::size_t i = 0; i < 2; ++i) {
     const bool is_last = i == 1;
     AxisEnd& end = seen.ends[i];
@@ -238,7 +239,7 @@ void find_ends(const TubeTracker<Value>& tracker, const std::array<TrackEnd, 2>&
     std::optional<Shape> shape;
     if (stops[i] != TrackEnd::lost) shape = shape_of_end(tracker, way);
     if (!shape) {
-      if (end.kind == AxisEndKind::lost) doubt_end(is_last, seen.axis);
+      if (end.kind == AxisEndKind::lost) flag_end(is_last, seen.axis);
       continue;
     }
     end = {AxisEndKind::free, way.at(shape->x, 0), shape->bulge,
@@ -247,7 +248,7 @@ void find_ends(const TubeTracker<Value>& tracker, const std::array<TrackEnd, 2>&
   }
 }
 
-template void find_ends(const TubeTracker<std::uint8_t>&, const std::array<TrackEnd, 2>&, ArmSighting&);
-template void find_ends(const TubeTracker<std::uint16_t>&, const std::array<TrackEnd, 2>&, ArmSighting&);
+template void find_ends(const TubeTracker<std::uint8_t>&, const std::array<TrackEnd, 2>&, ArmObservation&);
+template void find_ends(const TubeTracker<std::uint16_t>&, const std::array<TrackEnd, 2>&, ArmObservation&);
 
 }  // namespace flexura

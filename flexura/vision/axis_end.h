@@ -13,11 +13,11 @@ namespace flexura {
 ///   reach(y) = x + bulge sqrt(1 - (y/h)^2).
 /// The sides, and hence the backbone, end at x. The axis is extended along its arc to there.
 template <typename Value>
-void find_ends(const TubeTracker<Value>& tracker, const std::array<TrackEnd, 2>& stops, ArmSighting& seen);
+void find_ends(const TubeTracker<Value>& tracker, const std::array<TrackEnd, 2>& stops, ArmObservation& seen);
 
 extern template void find_ends(const TubeTracker<std::uint8_t>&, const std::array<TrackEnd, 2>&,
-                               ArmSighting&);
+                               ArmObservation&);
 extern template void find_ends(const TubeTracker<std::uint16_t>&, const std::array<TrackEnd, 2>&,
-                               ArmSighting&);
+                               ArmObservation&);
 
 }  // namespace flexura

@@ -47,13 +47,13 @@ bool to_backbone_image(const Lens& lens, std::vector<AxisSample>& axis) {
     const Vector3d chord = here[0] - here[1];
     // Where both borders belong to one arc length, their angles from the tangent's direction are equal. So
     // slide along them until the chord is perpendicular to the axis.
-    const double wanted = chord.dot(tangent) / tangent.squaredNorm();
+    const double desired = chord.dot(tangent) / tangent.squaredNorm();
     const double most = 0.2 * chord.norm() / std::max(first.norm(), second.norm());
     // Without a measured width this is unknown.
     const bool is_measured =
-        std::isfinite(wanted) && axis[last].is_seen && axis[i].is_seen && axis[next].is_seen;
+        std::isfinite(desired) && axis[last].is_seen && axis[i].is_seen && axis[next].is_seen;
     Vector3d middle = here[0] + here[1];
-    if (is_measured) middle += std::clamp(wanted, -most, most) * (second - first);
+    if (is_measured) middle += std::clamp(desired, -most, most) * (second - first);
     const auto pixel = middle.allFinite() ? lens.project(middle) : std::nullopt;
     if (pixel) axis[i].pixel = *pixel;
     is_whole = is_whole && pixel.has_value();

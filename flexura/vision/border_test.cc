@@ -64,7 +64,7 @@ TEST(EtalonSides, AreFoundWhereTheyAreHoweverBlurred) {
     const auto picture = blurred_figure(blur, 50, 220, ++seed, [](int u, int v) {
       return std::max(std::abs(u - 0.02 * (v - 90) - 100.3) - 40.4, std::abs(v - 90.2) - 70);
     });
-    const EtalonSighting seen = find_etalon(picture, picture);
+    const EtalonObservation seen = find_etalon(picture, picture);
     ASSERT_EQ(seen.reason, "");
     const double at = 0.02 * (seen.middle_row - 90) + 100.3;
     EXPECT_NEAR(seen.left.at, at - 40.4, blur < 1.2 ? 0.012 : 0.04) << blur << ", seed " << seed;

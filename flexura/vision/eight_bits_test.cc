@@ -63,10 +63,10 @@ TEST(EightBits, ArmsAreSeenAtTheSamePlaceInPicturesOfAnyDepth) {
         dark.at(u, v) = static_cast<std::uint8_t>(gray.at(u, v) / 2);
       }
     ArmFinder finder;
-    const ArmSighting by_gray = finder.find(gray);
+    const ArmObservation by_gray = finder.find(gray);
     if (!by_gray.is_found()) return;  // One in a hundred points at the camera.
     const auto expect_same = [&](const Picture& picture, int white, double within) {
-      const ArmSighting seen = finder.find(picture, white);
+      const ArmObservation seen = finder.find(picture, white);
       ASSERT_EQ(seen.reason, "");
       for (const auto& [one, other] : {std::pair{seen.axis.front(), by_gray.axis.front()},
                                        std::pair{seen.axis.back(), by_gray.axis.back()}})

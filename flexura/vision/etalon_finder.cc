@@ -129,7 +129,7 @@ std::optional<Vector2d> side_of(const EdgeFinder<std::uint8_t>& edges, double u,
 // Finds the border of an upright figure's end, `way` 1 for the lower one. It is the mean of the columns a
 // quarter of the width beside the middle, where there is no line if one is in the middle.
 std::optional<double> end_edge(const EdgeFinder<std::uint8_t>& edges, const Image<std::uint8_t>& gray,
-                               const EtalonSighting& seen, int way) {
+                               const EtalonObservation& seen, int way) {
   const double end = way > 0 ? seen.bottom : seen.top, room = 0.25 * (seen.bottom - seen.top);
   const double quarter =
       0.25 * (seen.right.at - seen.left.at + (seen.right.slope - seen.left.slope) * (end - seen.middle_row));
@@ -165,10 +165,10 @@ std::optional<double> side_blur(const BlurSeries& series, std::size_t count,
                                 const EdgeFinder<std::uint8_t>& edges,
                                 const std::vector<std::array<int, 2>>& spans, int top, int inset,
                                 double least_contrast) {
-  constexpr std::size_t wanted = 24;
+  constexpr std::size_t desired = 24;
   std::vector<double> sum(count), left(count);
   const std::size_t rows = spans.size() - std::min(spans.size(), 2 * static_cast<std::size_t>(inset));
-  for (std::size_t row = 0; row < rows; row += std::max<std::size_t>(1, rows / wanted)) {
+  for (std::size_t row = 0; row < rows; row += std::max<std::size_t>(1, rows / desired)) {
     const auto [first, last] = spans[row + static_cast<std::size_t>(inset)];
     const int v = top + inset + static_cast<int>(row);
     for (const double way : {-1.0, 1.0}) {
@@ -216,9 +216,9 @@ Crossings crossings_of(const Image<std::uint8_t>& picture, const Image<std::uint
 
 }  // namespace
 
-EtalonSighting find_etalon(const Image<std::uint8_t>& picture, const Image<std::uint8_t>& gray,
-                           const ThresholdConfig& config) {
-  EtalonSighting seen;
+EtalonObservation find_etalon(const Image<std::uint8_t>& picture, const Image<std::uint8_t>& gray,
+                              const ThresholdConfig& config) {
+  EtalonObservation seen;
   Components components;
   BlockThresholds blocks;
   seen.threshold = segment(gray, config, components, blocks);

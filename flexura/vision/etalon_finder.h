@@ -20,7 +20,7 @@ struct UprightLine {
 };
 
 /// Observation of the calibration cylinder (section 3.4): dark, upright, with red lines along it.
-struct EtalonSighting {
+struct EtalonObservation {
   Threshold threshold;      ///< Includes the reason if it separates nothing.
   std::string reason;       ///< Why no cylinder was found; "" if one was.
   int top = 0, bottom = 0;  ///< First and last row of the silhouette.
@@ -40,7 +40,8 @@ struct EtalonSighting {
 
 /// Finds the cylinder in a picture, gray or red, green, blue; `gray` is the same picture in gray
 /// (gray_picture()). In a gray picture the lines are found by their brightness.
-[[nodiscard]] EtalonSighting find_etalon(const Image<std::uint8_t>& picture, const Image<std::uint8_t>& gray,
-                                         const ThresholdConfig& config = {});
+[[nodiscard]] EtalonObservation find_etalon(const Image<std::uint8_t>& picture,
+                                            const Image<std::uint8_t>& gray,
+                                            const ThresholdConfig& config = {});
 
 }  // namespace flexura

@@ -45,7 +45,7 @@ TEST(FindEtalon, HasSidesAndLinesWhereTheRendererDrawsThem) {
                  aside = random.uniform(-0.15, 0.15);
     const SeenEtalon seen =
         seen_etalon(turned, distance, aside, static_cast<std::uint64_t>(random.integer(0, 1 << 30)));
-    const EtalonSighting found = find_etalon(seen.picture, gray_picture(seen.picture));
+    const EtalonObservation found = find_etalon(seen.picture, gray_picture(seen.picture));
     ASSERT_EQ(found.reason, "");
     // Tangents from the camera to the cylinder.
     const double bearing = std::atan2(aside, distance),
@@ -77,7 +77,7 @@ TEST(FindEtalon, HasSidesAndLinesWhereTheRendererDrawsThem) {
 
 TEST(FindEtalon, SaysThatThePicturesBorderCutsIt) {
   const SeenEtalon seen = seen_etalon(0.1, 1.3, 0.5, 1);
-  const EtalonSighting found = find_etalon(seen.picture, gray_picture(seen.picture));
+  const EtalonObservation found = find_etalon(seen.picture, gray_picture(seen.picture));
   EXPECT_TRUE(found.touches_border || !found.reason.empty());
 }
 

@@ -36,7 +36,7 @@ TEST(HardArms, GoesOnUnderHairs) {
       for (int u = hair.from; u < hair.to; ++u)
         for (int k = 0; k < 2; ++k) seen.picture.at(u, static_cast<int>(hair.v + hair.slope * u) + k) = 30;
     ArmFinder finder;
-    const ArmSighting& found = finder.find(seen.picture);
+    const ArmObservation& found = finder.find(seen.picture);
     ASSERT_TRUE(found.is_found()) << found.reason;
     EXPECT_LT(rms_error(seen, found.axis), 0.1) << hairs.front().slope;
     if (hairs.front().from == 0) continue;
@@ -52,7 +52,7 @@ TEST(HardArms, SeesAnArmUpsideDown) {
   std::ranges::reverse(turned.values());
   ArmFinder finder;
   const auto upright = finder.find(seen.picture).axis;
-  const ArmSighting& found = finder.find(turned);
+  const ArmObservation& found = finder.find(turned);
   ASSERT_TRUE(found.is_found()) << found.reason;
   // The base is the lower end in a picture.
   const Eigen::Vector2d corner(seen.picture.width() - 1, seen.picture.height() - 1);
@@ -86,7 +86,7 @@ TEST(HardArms, ByBlockSeesAnArmBeforeAnUnevenScreen) {
         // The darkest part, 30 of 255, has a third of the local screen brightness.
         seen.picture.at(u, v) =
             static_cast<std::uint8_t>(std::lround((60 + 0.65 * seen.picture.at(u, v)) * light(u, v)));
-    const ArmSighting& found = by_block.find(seen.picture);
+    const ArmObservation& found = by_block.find(seen.picture);
     ASSERT_TRUE(found.is_found()) << found.reason;
     EXPECT_EQ(found.threshold.figure, Figure::dark);
     EXPECT_LT((found.axis.back().pixel - *seen.truth.back().pixel).norm(), 1.5);
@@ -111,7 +111,7 @@ TEST(HardArms, MeasuresTheLargerOfTwoArmsAndSaysSo) {
     for (int u = 0; u + 150 < both.width(); ++u)
       both.at(u + 150, v) = std::min(both.at(u + 150, v), one.picture.at(u, v));
   ArmFinder finder;
-  const ArmSighting& found = finder.find(both);
+  const ArmObservation& found = finder.find(both);
   ASSERT_TRUE(found.is_found()) << found.reason;
   EXPECT_LT(rms_error(one, found.axis), 0.1);
   EXPECT_THAT(found.notes, testing::Contains(HasSubstr("1 other figure of a like size")));
@@ -122,7 +122,7 @@ TEST(HardArms, FollowsAnArmAcrossItself) {
   const SeenArm seen =
       bent_arm_in_view({{0.4, 0}, {4.6, 0.5}, {0.4, 0}}, 0.008, {-0.03, 0.35, 1.6}, {-0.03, 0.35, 0}, 800);
   ArmFinder finder;
-  const ArmSighting& found = finder.find(seen.picture);
+  const ArmObservation& found = finder.find(seen.picture);
   ASSERT_TRUE(found.is_found()) << found.reason;
   EXPECT_LT((found.axis.back().pixel - *seen.truth.back().pixel).norm(), 2);
   EXPECT_LT((found.axis.front().pixel - *seen.truth.front().pixel).norm(), 2);
@@ -133,7 +133,7 @@ TEST(HardArms, SaysWhereAnArmPointsAtTheCamera) {
   // The last section turns towards the camera on Z.
   const SeenArm seen = bent_arm_in_view({{0, 0}, {0, 0}, {0, 1.5}}, 0.02, {0, 0.45, 1.8}, {0, 0.45, 0}, 800);
   ArmFinder finder;
-  const ArmSighting& found = finder.find(seen.picture);
+  const ArmObservation& found = finder.find(seen.picture);
   ASSERT_TRUE(found.is_found()) << found.reason;
   // The reported axis is correct and extends to where the arm turns.
   EXPECT_LT(rms_error(seen, found.axis), 1);
@@ -163,7 +163,7 @@ TEST(HardArms, HaveNoFreeEndsWhereTheyGoOn) {
     options.most_bend = 1.8;
     options.psf = random.uniform(0.7, 2);
     const SeenArm seen = random_seen_arm(random, options);
-    const ArmSighting& found = finder.find(seen.picture);
+    const ArmObservation& found = finder.find(seen.picture);
     if (!found.is_found()) return;
     for (const AxisEnd& end : found.ends) {
       if (end.kind != AxisEndKind::free) continue;

@@ -82,7 +82,7 @@ TEST(LinearLight, ShowsTheAxisWhereItIs) {
     picture.bytes = encoded<std::uint8_t>(seen.picture, 2.2, 255);
     const auto off = [&](const Photograph& shown) {
       ArmFinder finder;
-      const ArmSighting& found = finder.find(shown);
+      const ArmObservation& found = finder.find(shown);
       if (!found.is_found()) return -1.0;
       std::vector<AxisSample> axis = found.axis;
       EXPECT_TRUE(to_backbone_image(seen.view.lens, axis));

@@ -172,7 +172,7 @@ BandFit fitted(const Parts& parts, double half_width) {
 }
 
 // Combines the parts of a band. Omits the outermost part of one side if that belongs to something else.
-MarkerSighting band_of(Parts parts, double half_width) {
+MarkerObservation band_of(Parts parts, double half_width) {
   BandFit fit = fitted(parts, half_width);
   if (fit.misfit > 2 * fit.part_sigma &&
       std::ranges::count_if(parts, [](const auto& part) { return part.has_value(); }) > 5) {
@@ -186,7 +186,7 @@ MarkerSighting band_of(Parts parts, double half_width) {
       if (other.misfit < 0.4 * whole.misfit && other.misfit < fit.misfit) fit = other, parts = fewer;
     }
   }
-  MarkerSighting band;
+  MarkerObservation band;
   double count = 0;
   for (const auto& part : parts)
     if (part) band.length += part->length, ++count;
@@ -218,23 +218,23 @@ bool has_dip(const std::vector<Vector3d>& colors, const Stretch& stretch, const 
   return deepest > std::max(0.3 * most, 8 * noise);
 }
 
-void look_for_merged(std::vector<MarkerSighting>& markers) {
+void look_for_merged(std::vector<MarkerObservation>& markers) {
   for (const bool are_bands : {true, false}) {
     std::vector<double> lengths;
     lengths.reserve(markers.size());
-    for (const MarkerSighting& marker : markers)
+    for (const MarkerObservation& marker : markers)
       if (marker.is_band == are_bands) lengths.push_back(marker.length);
     if (lengths.size() < 2) continue;
     std::ranges::sort(lengths);
     // Of two, the shorter one counts as single.
     const double usual = lengths[lengths.size() < 4 ? (lengths.size() - 1) / 2 : lengths.size() / 2];
-    for (MarkerSighting& marker : markers)
+    for (MarkerObservation& marker : markers)
       if (marker.is_band == are_bands && marker.length > 1.8 * usual) marker.may_be_merged = true;
   }
 }
 
-void look_for_gaps(MarkerSightings& found) {
-  const std::vector<MarkerSighting>& markers = found.markers;
+void look_for_gaps(MarkerObservations& found) {
+  const std::vector<MarkerObservation>& markers = found.markers;
   // The markers behind the gaps; markers side by side have no gap between them.
   std::vector<std::size_t> ends;
   std::vector<double> gaps;
@@ -256,10 +256,10 @@ void look_for_gaps(MarkerSightings& found) {
 }
 
 // Adds notes on stretches of another colour that are neither bands nor among the spots.
-void note_left_out(const std::vector<Stretch>& others, const std::vector<MarkerSighting>& spots,
+void note_left_out(const std::vector<Stretch>& others, const std::vector<MarkerObservation>& spots,
                    std::vector<std::string>& notes) {
   const auto is_spot = [&](const Stretch& stretch) {
-    return std::ranges::any_of(spots, [&](const MarkerSighting& spot) {
+    return std::ranges::any_of(spots, [&](const MarkerObservation& spot) {
       return spot.along + spot.length > static_cast<double>(stretch.first) &&
              spot.along - spot.length < static_cast<double>(stretch.last);
     });
@@ -274,8 +274,9 @@ void note_left_out(const std::vector<Stretch>& others, const std::vector<MarkerS
 
 }  // namespace
 
-MarkerSightings find_markers(const Image<std::uint8_t>& picture, const ArmSighting& arm, bool with_spots) {
-  MarkerSightings found;
+MarkerObservations find_markers(const Image<std::uint8_t>& picture, const ArmObservation& arm,
+                                bool with_spots) {
+  MarkerObservations found;
   if (arm.axis.size() < 8) return found;
   const ArmSkin skin(picture, arm);
   if (skin.size() < 12) return found;
@@ -300,7 +301,7 @@ MarkerSightings find_markers(const Image<std::uint8_t>& picture, const ArmSighti
       others.push_back(stretch);
       continue;
     }
-    MarkerSighting band = band_of(parts, skin.half_widths[middle]);
+    MarkerObservation band = band_of(parts, skin.half_widths[middle]);
     if (!std::isfinite(band.sigma)) continue;  // On an arm that is no wider than a line there.
     band.pixel = skin.at(band.along);
     band.color = color;
@@ -308,11 +309,11 @@ MarkerSightings find_markers(const Image<std::uint8_t>& picture, const ArmSighti
     found.markers.push_back(band);
     bands.push_back(stretch);
   }
-  std::vector<MarkerSighting> spots;
+  std::vector<MarkerObservation> spots;
   if (with_spots) spots = find_spots(picture, arm, skin, bands, bound);
   found.markers.insert(found.markers.end(), spots.begin(), spots.end());
   if (with_spots) note_left_out(others, spots, found.notes);
-  std::ranges::stable_sort(found.markers, {}, &MarkerSighting::along);
+  std::ranges::stable_sort(found.markers, {}, &MarkerObservation::along);
   look_for_merged(found.markers);
   look_for_gaps(found);
   return found;

@@ -11,7 +11,7 @@
 namespace flexura {
 
 /// A coloured band around the arm, or a spot on it.
-struct MarkerSighting {
+struct MarkerObservation {
   /// Band: image of the backbone in its middle. Spot: centre of its visible part, anywhere on the skin; it
   /// gives no backbone position.
   Eigen::Vector2d pixel = {0, 0};
@@ -29,12 +29,12 @@ struct MarkerSighting {
   bool may_be_merged = false;
 
   /// Returns whether it gives a position on the backbone: spots do not, nor do possibly merged markers.
-  [[nodiscard]] bool tells_place() const { return is_band && !may_be_merged; }
+  [[nodiscard]] bool determines_place() const { return is_band && !may_be_merged; }
 };
 
 /// All observed markers of an arm.
-struct MarkerSightings {
-  std::vector<MarkerSighting> markers;  ///< Markers from the base on.
+struct MarkerObservations {
+  std::vector<MarkerObservation> markers;  ///< Markers from the base on.
   std::vector<std::string> notes;  ///< About gaps where one may be missing, and about omitted candidates.
 };
 
@@ -43,7 +43,7 @@ struct MarkerSightings {
 /// skin and takes several times as long as bands alone. Without it, possible spots are not in the notes.
 /// `arm` must be from this very picture. Empty for an axis of fewer than 8 samples, and (with a note) for an
 /// arm thinner than 4 px.
-[[nodiscard]] MarkerSightings find_markers(const Image<std::uint8_t>& picture, const ArmSighting& arm,
-                                           bool with_spots = true);
+[[nodiscard]] MarkerObservations find_markers(const Image<std::uint8_t>& picture, const ArmObservation& arm,
+                                              bool with_spots = true);
 
 }  // namespace flexura

@@ -48,9 +48,9 @@ class BandedPicture {
     picture = photograph(scene, view, options, 1);
   }
 
-  [[nodiscard]] MarkerSightings found() const {
+  [[nodiscard]] MarkerObservations found() const {
     ArmFinder finder;
-    ArmSighting arm = finder.find(gray_picture(picture));
+    ArmObservation arm = finder.find(gray_picture(picture));
     EXPECT_TRUE(arm.is_found()) << arm.reason;
     to_backbone_image(view.lens, arm.axis);
     return find_markers(picture, arm);
@@ -72,7 +72,7 @@ class BandedPicture {
 
 TEST(Markers, AreFoundInOrderToAFewTenthsOfAPixel) {
   const BandedPicture seen(even_bands(0.09));
-  const MarkerSightings found = seen.found();
+  const MarkerObservations found = seen.found();
   ASSERT_EQ(found.markers.size(), seen.scene.arm.markers.size());
   EXPECT_TRUE(found.notes.empty());
   for (std::size_t i = 0; i < found.markers.size(); ++i) {
@@ -86,7 +86,7 @@ TEST(Markers, AreFoundInOrderToAFewTenthsOfAPixel) {
 TEST(Markers, AMissingOneIsNotedWhereItIsMissing) {
   std::vector<MarkerRing> bands = even_bands(0.09);
   bands.erase(bands.begin() + 3);
-  const MarkerSightings found = BandedPicture(bands).found();
+  const MarkerObservations found = BandedPicture(bands).found();
   ASSERT_EQ(found.markers.size(), bands.size());
   ASSERT_EQ(found.notes.size(), 1U);
   EXPECT_THAT(found.notes.front(), HasSubstr("between markers 3 and 4"));
@@ -95,7 +95,7 @@ TEST(Markers, AMissingOneIsNotedWhereItIsMissing) {
 TEST(Markers, TwoThatRunTogetherAreOneThatIsMarked) {
   std::vector<MarkerRing> bands = even_bands(0.09);
   bands.insert(bands.begin() + 5, {bands[4].s_to, bands[4].s_to + 0.024, red});
-  const MarkerSightings found = BandedPicture(bands).found();
+  const MarkerObservations found = BandedPicture(bands).found();
   ASSERT_EQ(found.markers.size(), bands.size() - 1);
   for (std::size_t i = 0; i < found.markers.size(); ++i)
     EXPECT_EQ(found.markers[i].may_be_merged, i == 4) << i;
@@ -107,7 +107,7 @@ TEST(Markers, TwoThatRunTogetherAmongThreeAreMarked) {
     bands.resize(3);
     const double next = bands[1].s_to + gap;
     bands.insert(bands.begin() + 2, {next, next + 0.024, red});
-    const MarkerSightings found = BandedPicture(bands).found();
+    const MarkerObservations found = BandedPicture(bands).found();
     ASSERT_EQ(found.markers.size(), 3U);
     for (std::size_t i = 0; i < found.markers.size(); ++i)
       EXPECT_EQ(found.markers[i].may_be_merged, i == 1) << i << ' ' << gap;
@@ -117,7 +117,7 @@ TEST(Markers, TwoThatRunTogetherAmongThreeAreMarked) {
 TEST(Markers, TwoOfOtherColoursThatTouchAreNotMixed) {
   std::vector<MarkerRing> bands = even_bands(0.18);
   bands[2].albedo = green;
-  const MarkerSightings found = BandedPicture(bands).found();
+  const MarkerObservations found = BandedPicture(bands).found();
   ASSERT_EQ(found.markers.size(), bands.size());
   for (std::size_t i = 0; i < bands.size(); ++i) {
     const Eigen::Vector3d& color = found.markers[i].color;
@@ -136,9 +136,9 @@ TEST(Markers, SpeckOnTheArmIsNoBand) {
   BandedPicture seen(even_bands(0.18));
   // Between the second and the third band; half as wide as the arm.
   paint(seen.picture, 0.5 * (seen.middle(1) + seen.middle(2)), 4);
-  const MarkerSightings found = seen.found();
+  const MarkerObservations found = seen.found();
   std::size_t bands = 0;
-  for (const MarkerSighting& marker : found.markers) bands += marker.is_band ? 1 : 0;
+  for (const MarkerObservation& marker : found.markers) bands += marker.is_band ? 1 : 0;
   EXPECT_EQ(bands, seen.scene.arm.markers.size());
 }
 
@@ -166,9 +166,9 @@ struct SpottedPicture {
       }
     }
   }
-  [[nodiscard]] MarkerSightings found() const {
+  [[nodiscard]] MarkerObservations found() const {
     ArmFinder finder;
-    const ArmSighting& arm = finder.find(gray_picture(picture));
+    const ArmObservation& arm = finder.find(gray_picture(picture));
     EXPECT_TRUE(arm.is_found()) << arm.reason;
     return find_markers(picture, arm);
   }
@@ -188,10 +188,10 @@ TEST(Markers, SpotsAreFoundWhereverOnTheSkinTheyLie) {
       discs.emplace_back(40 + 70 * i + random.uniform(-15, 15), random.uniform(-aside, aside), radius);
     }
     const SpottedPicture seen(discs, random);
-    const MarkerSightings found = seen.found();
+    const MarkerObservations found = seen.found();
     ASSERT_EQ(found.markers.size(), discs.size());
     for (std::size_t i = 0; i < discs.size(); ++i) {
-      const MarkerSighting& spot = found.markers[i];
+      const MarkerObservation& spot = found.markers[i];
       const Eigen::Vector2d miss = spot.pixel - seen.centers[i];
       EXPECT_FALSE(spot.is_band) << i;
       EXPECT_LT(miss.norm(), 0.3) << i << ": aside " << discs[i][1] << ", radius " << discs[i][2];
@@ -211,11 +211,11 @@ TEST(Markers, TwoSpotsSideBySideAreTwo) {
   for_random_cases(10, [](TestRandom& random) {
     const double radius = random.uniform(2.5, 4), along = random.uniform(100, 110);
     const SpottedPicture seen({{along, -6, radius}, {along + 0.5, 6, radius}, {200, 0, radius}}, random);
-    const MarkerSightings found = seen.found();
+    const MarkerObservations found = seen.found();
     ASSERT_EQ(found.markers.size(), 3U);
     for (const Eigen::Vector2d& center : seen.centers) {
       double nearest = 1e9;
-      for (const MarkerSighting& spot : found.markers)
+      for (const MarkerObservation& spot : found.markers)
         nearest = std::min(nearest, (spot.pixel - center).norm());
       EXPECT_LT(nearest, 0.2);
     }
@@ -230,13 +230,13 @@ TEST(Markers, BandsAreAsFarOffAsTheirSigmaSays) {
     options.bands = options.color = true;
     const SeenArm seen = random_seen_arm(random, options);
     ArmFinder finder;
-    ArmSighting arm = finder.find(gray_picture(seen.picture));
+    ArmObservation arm = finder.find(gray_picture(seen.picture));
     if (!arm.is_found()) return;
     to_backbone_image(seen.view.lens, arm.axis);
     Renderer renderer;
     renderer.prepare(seen.scene, seen.view);
     const std::vector<MarkerView> views = marker_views(renderer);
-    for (const MarkerSighting& marker : find_markers(seen.picture, arm).markers) {
+    for (const MarkerObservation& marker : find_markers(seen.picture, arm).markers) {
       if (!marker.is_band) {
         ++spots;
         continue;
@@ -257,7 +257,7 @@ TEST(Markers, BandsAreAsFarOffAsTheirSigmaSays) {
 TEST(Markers, WhatIsBesideTheArmIsNone) {
   BandedPicture seen(even_bands(0.18));
   for (std::size_t i = 0; i < 2; ++i) paint(seen.picture, seen.middle(i) + Eigen::Vector2d(45, 5), 6);
-  const MarkerSightings found = seen.found();
+  const MarkerObservations found = seen.found();
   EXPECT_EQ(found.markers.size(), seen.scene.arm.markers.size());
 }
 
@@ -269,7 +269,7 @@ TEST(Markers, TheGroundBehindAnEndIsNoSpotOfAnotherColour) {
   for (int v = 40; v < 200; ++v)
     for (int u = 150; u < 166; ++u) picture.at(u, v) = 20;
   ArmFinder finder;
-  const ArmSighting& arm = finder.find(picture);
+  const ArmObservation& arm = finder.find(picture);
   ASSERT_TRUE(arm.is_found()) << arm.reason;
   EXPECT_THAT(find_markers(picture, arm).notes, testing::IsEmpty());
   // A spot on the arm is reported.

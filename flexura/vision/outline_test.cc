@@ -64,7 +64,7 @@ TEST(Outline, IsOpenCVsContourToAPixel) {
     EXPECT_LT(static_cast<double>(alone), 0.05 * static_cast<double>(contour.size()));
     // The same holds for the arm's sides where both are visible.
     ArmFinder finder;
-    const ArmSighting& arm = finder.find(seen.picture);
+    const ArmObservation& arm = finder.find(seen.picture);
     ASSERT_TRUE(arm.is_found()) << arm.reason;
     std::size_t near = 0, count = 0;
     for (const AxisSample& sample : arm.axis) {

@@ -86,7 +86,7 @@ TEST(RealPictures, AStripInAPhotographHasAStraightAxis) {
   SKIP_WITHOUT(visp);
   ArmFinder finder;
   for (const char* name : {"image.0028.pgm", "image.0029.pgm"}) {
-    const ArmSighting& found = finder.find(gray_file(visp / "line" / name));
+    const ArmObservation& found = finder.find(gray_file(visp / "line" / name));
     ASSERT_TRUE(found.is_found()) << name << found.reason;
     std::vector<Eigen::Vector2d> points;
     for (const AxisSample& sample : found.axis)
@@ -104,7 +104,7 @@ TEST(RealPictures, AStripInAPhotographHasAStraightAxis) {
 TEST(RealPictures, APencilIsATube) {
   SKIP_WITHOUT(opencv);
   ArmFinder finder;
-  const ArmSighting& found = finder.find(gray_file(opencv / "stuff.jpg"));
+  const ArmObservation& found = finder.find(gray_file(opencv / "stuff.jpg"));
   ASSERT_TRUE(found.is_found()) << found.reason;
   EXPECT_GT(found.axis.size(), 100U);
   EXPECT_NEAR(found.axis[found.axis.size() / 2].width, 13.5, 1.5);
@@ -161,7 +161,7 @@ TEST(RealPictures, WithoutAnArmHaveNone) {
   SKIP_WITHOUT(opencv);
   ArmFinder finder;
   for (const char* name : {"left01.jpg", "notes.png", "baboon.jpg", "detect_blob.png", "pic1.png"}) {
-    const ArmSighting& found = finder.find(gray_file(opencv / name));
+    const ArmObservation& found = finder.find(gray_file(opencv / name));
     EXPECT_FALSE(found.is_found()) << name;
     EXPECT_NE(found.reason, "") << name;
   }

@@ -43,14 +43,14 @@ struct BrightBits {
 };
 
 // Adds the runs of a row, from its bits.
-void add_runs(const std::uint8_t* pixels, int width, int v, const BrightBits& bright, bool is_dark_wanted,
+void add_runs(const std::uint8_t* pixels, int width, int v, const BrightBits& bright, bool is_dark_desired,
               std::vector<Run>& runs) {
   bool is_inside = false;
   for (int first = 0; first < width; first += word_pixels) {
     const int count = std::min(word_pixels, width - first);
     const std::uint64_t all = count == word_pixels ? ~std::uint64_t{0} : (std::uint64_t{1} << count) - 1;
     std::uint64_t bits = bright.of(pixels, first, count);
-    if (is_dark_wanted) bits = ~bits & all;
+    if (is_dark_desired) bits = ~bits & all;
     // Where a bit differs from the one before it.
     std::uint64_t changes = (bits ^ (bits << 1 | (is_inside ? 1U : 0U))) & all;
     for (; changes != 0; changes &= changes - 1) {

@@ -31,7 +31,7 @@ double spread_of(double sum, double first, double second) {
 // The unrolled skin, about a pixel apart also across the arm: sample i * lines_ + line.
 class SpotFinder {
  public:
-  SpotFinder(const Image<std::uint8_t>& picture, const ArmSighting& arm, const ArmSkin& skin)
+  SpotFinder(const Image<std::uint8_t>& picture, const ArmObservation& arm, const ArmSkin& skin)
       : picture_(picture), skin_(skin), noise_(arm.noise) {
     to_side_ = static_cast<std::size_t>(std::ceil(std::ranges::max(skin.half_widths)));
     lines_ = 2 * to_side_ + 1;
@@ -51,14 +51,14 @@ class SpotFinder {
     }
   }
 
-  std::vector<MarkerSighting> find(std::span<const Stretch> bands, double bound) {
+  std::vector<MarkerObservation> find(std::span<const Stretch> bands, double bound) {
     for (const Stretch& band : bands) {
       for (std::size_t i = band.first; i < band.last; ++i) {
         const std::size_t sample = i * lines_ + to_side_;
         if (states_[sample] == State::skin) fill(sample, bound, State::done);
       }
     }
-    std::vector<MarkerSighting> spots;
+    std::vector<MarkerObservation> spots;
     std::vector<std::size_t> whole;
     for (std::size_t start = 0; start < states_.size(); ++start) {
       if (states_[start] != State::skin || differences_[start] <= bound) continue;
@@ -108,7 +108,7 @@ class SpotFinder {
   }
 
   // Makes a spot of region_: its centre is weighted by the height above `bound` and the area in the picture.
-  [[nodiscard]] std::optional<MarkerSighting> spot_of(double bound) const {
+  [[nodiscard]] std::optional<MarkerObservation> spot_of(double bound) const {
     double sum = 0, area = 0, first = 0, second = 0, across = 0, across_second = 0;
     Vector2d center = Vector2d::Zero();
     std::array<double, 2> edges = {0, 0};  // Length of its outline on the border of the visible skin, px.
@@ -137,7 +137,7 @@ class SpotFinder {
     const bool touches = edges[0] > 0 || edges[1] > 0, is_cut = std::max(edges[0], edges[1]) > 2 * spread;
     if (edges[0] > 0 && edges[1] > 0) return std::nullopt;
     if (((touches || is_hidden) && ratio > 1.2) || (is_cut && ratio < 0.4)) return std::nullopt;
-    MarkerSighting spot;
+    MarkerObservation spot;
     spot.is_band = false;
     spot.pixel = center / sum;
     spot.color = color_at(picture_, spot.pixel);
@@ -163,8 +163,8 @@ class SpotFinder {
 
 }  // namespace
 
-std::vector<MarkerSighting> find_spots(const Image<std::uint8_t>& picture, const ArmSighting& arm,
-                                       const ArmSkin& skin, std::span<const Stretch> bands, double bound) {
+std::vector<MarkerObservation> find_spots(const Image<std::uint8_t>& picture, const ArmObservation& arm,
+                                          const ArmSkin& skin, std::span<const Stretch> bands, double bound) {
   return SpotFinder(picture, arm, skin).find(bands, bound);
 }
 

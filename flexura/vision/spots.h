@@ -15,8 +15,8 @@ namespace flexura {
 
 /// Finds spots anywhere on the visible skin. Excludes those that reach one of the `bands` (stretches of the
 /// middle line) or both sides of the arm. Also excludes colours within `bound` of the adjacent skin.
-[[nodiscard]] std::vector<MarkerSighting> find_spots(const Image<std::uint8_t>& picture,
-                                                     const ArmSighting& arm, const ArmSkin& skin,
-                                                     std::span<const Stretch> bands, double bound);
+[[nodiscard]] std::vector<MarkerObservation> find_spots(const Image<std::uint8_t>& picture,
+                                                        const ArmObservation& arm, const ArmSkin& skin,
+                                                        std::span<const Stretch> bands, double bound);
 
 }  // namespace flexura

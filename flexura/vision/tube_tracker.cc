@@ -126,12 +126,12 @@ void TubeTracker<Value>::guess_blur(const CrossSection& section) {
 
 template <typename Value>
 void TubeTracker<Value>::measure_blur(std::span<const CrossSection> sections) {
-  constexpr std::size_t wanted = 10;
+  constexpr std::size_t desired = 10;
   constexpr std::size_t count = 5;
   const BlurSeries series{blur_ / (1.25 * 1.25), 1.25};
   // Residuals of the model by blur, around the known value.
   std::array<double, count> left{};
-  for (std::size_t i = 0; i < sections.size(); i += std::max<std::size_t>(1, sections.size() / wanted)) {
+  for (std::size_t i = 0; i < sections.size(); i += std::max<std::size_t>(1, sections.size() / desired)) {
     const CrossSection& section = sections[i];
     if (!section.is_whole()) continue;
     for (const double side : {1.0, -1.0}) {

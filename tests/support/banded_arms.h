@@ -32,6 +32,6 @@ inline std::vector<ArmState> some_poses() {
 }
 
 /// Of rough guesses: 10 degrees, 20 % of the distance, 10 % of the focal length.
-inline constexpr SightDoubt rough = {.sideways = 0.26, .roll = 0.17, .scale = 0.22};
+inline constexpr PointingPrior rough = {.sideways = 0.26, .roll = 0.17, .scale = 0.22};
 
 }  // namespace flexura

@@ -12,7 +12,7 @@
 #include "flexura/experiment/experiment.h"
 #include "flexura/rig/ideal_picture.h"
 #include "flexura/tasks/calibrate/calibrate_config.h"
-#include "tests/support/odd_ports.h"
+#include "tests/support/altered_ports.h"
 #include "tests/support/rig_bench.h"
 
 namespace flexura {
@@ -21,7 +21,7 @@ class NobodyWatches : public RigSessionWatcher {
  public:
   void arm_sent(double, const ArmState&, double) override {}
   void camera_sent(double, const RigStance&) override {}
-  void seen(const RigSight&) override {}
+  void seen(const CameraObservation&) override {}
   void known(const RigStep&) override {}
 };
 
@@ -39,7 +39,7 @@ class CalibrationBench : public RigBench {
     const auto& task = std::get<CalibrateTask>(experiment().task.front());
     LoopConfig config = loop_config(task, experiment().arm, experiment().cameras(), experiment().stand);
     config.draw = ideal_pictures(experiment());
-    return calibrate_by_loop(ports, believed(), config, watcher);
+    return calibrate_by_loop(ports, nominal(), config, watcher);
   }
   RigSessionResult calibrate_bundle(const RigPorts& ports) {
     NobodyWatches nobody;
@@ -48,15 +48,13 @@ class CalibrationBench : public RigBench {
   RigSessionResult calibrate_bundle(const RigPorts& ports, RigSessionWatcher& watcher) {
     const auto& task = std::get<CalibrateTask>(experiment().task.front());
     return calibrate_rig_in_session(
-        ports, believed(), prior(),
+        ports, nominal(), prior(),
         session_config(task, experiment().arm, experiment().cameras(), experiment().stand), watcher);
   }
-  [[nodiscard]] RigModel believed() const {
-    return rig_model(experiment().arm.arm(), experiment().cameras());
-  }
+  [[nodiscard]] RigModel nominal() const { return rig_model(experiment().arm.arm(), experiment().cameras()); }
   /// Of a bundle.
   [[nodiscard]] RigPrior prior() const {
-    return session_prior(std::get<CalibrateTask>(experiment().task.front()), believed(), experiment().stand);
+    return session_prior(std::get<CalibrateTask>(experiment().task.front()), nominal(), experiment().stand);
   }
   /// What truly remains where the cameras stand.
   RigRemainder truth(const LoopResult& result) { return truth(result.target); }
@@ -96,10 +94,10 @@ class CalibrationBench : public RigBench {
 };
 
 /// An arm whose sections bend by other shares of what they are sent, and do not know it.
-class WrongArm : public OddArm {
+class WrongArm : public AlteredArm {
  public:
   WrongArm(ArmPort& arm, const std::vector<double>& gains)
-      : OddArm(
+      : AlteredArm(
             arm,
             [=](ArmReading reading) {
               for (std::size_t i = 0; i < gains.size(); ++i) reading.state.bends[i] /= gains[i];
@@ -112,10 +110,10 @@ class WrongArm : public OddArm {
 };
 
 /// A head whose pan motor takes commands and does not turn.
-class StuckPan : public OddHead {
+class StuckPan : public AlteredHead {
  public:
   explicit StuckPan(HeadPort& head)
-      : OddHead(
+      : AlteredHead(
             head, [](HeadReading reading) { return reading; },
             [](HeadState state) {
               state.pan = 0;
@@ -142,9 +140,9 @@ class SlippedPan : public HeadPort {
   Outcome<HeadReading> read() override {
     auto reading = head_.read();
     if (reading.fault() || !is_slipped_) return reading;
-    HeadReading told = reading.value();
-    told.state.pan -= slip_;
-    return told;
+    HeadReading reported = reading.value();
+    reported.state.pan -= slip_;
+    return reported;
   }
 
  private:

@@ -71,7 +71,7 @@ inline BundleFigures bundle_figures(CalibrationBench& bench, const RigSessionRes
   const std::array<RigStance, 2> stands = bench.true_stances();
   const RigModel truth = bench.true_model();
   // The session's variables, counted from how it found that arm and heads stood.
-  const RigVariables variables(bench.believed(), bench.prior(), {found.poses, found.stances, {}});
+  const RigVariables variables(bench.nominal(), bench.prior(), {found.poses, found.stances, {}});
   Eigen::VectorXd x = found.x;
   x.tail(x.size() - variables.globals()).setZero();
   BundleFigures figures;

@@ -174,7 +174,7 @@ class Own {
     return summary;
   }
 
-  void tell(double bound, CeresBundle& result) {
+  void report(double bound, CeresBundle& result) {
     ceres::Problem problem;
     add_all(problem, bound);
     ceres::Covariance::Options options;
@@ -283,7 +283,7 @@ CeresBundle ceres_bundle(const RigModel& guess, const RigPrior& prior, const Rig
   const ceres::Solver::Summary summary = own.solve(bound);
   result.is_settled = summary.termination_type == ceres::CONVERGENCE;
   result.cost = summary.final_cost;
-  own.tell(bound, result);
+  own.report(bound, result);
   return result;
 }
 

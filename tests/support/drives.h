@@ -47,14 +47,15 @@ inline Drive random_scanty_drive(TestRandom& random, const Arm& arm) {
 
 /// What the mechanism makes of commands: each spool follows its motor within the play, and stays where it is
 /// while the motor turns through it. At first the play is taken up for pulling in.
-class PlayModel {
+class BacklashModel {
  public:
-  PlayModel(const Drive& drive, const std::vector<std::int64_t>& positions) : axes_(drive.axes) {
+  BacklashModel(const Drive& drive, const std::vector<std::int64_t>& positions) : axes_(drive.axes) {
     for (std::size_t i = 0; i < axes_.size(); ++i) spools_.push_back(motor(i, positions));
   }
   void follow(const std::vector<std::int64_t>& positions) {
     for (std::size_t i = 0; i < axes_.size(); ++i)
-      spools_[i] = std::clamp(spools_[i], motor(i, positions), motor(i, positions) + axes_[i].play());
+      spools_[i] =
+          std::clamp(spools_[i], motor(i, positions), motor(i, positions) + axes_[i].backlash_steps());
   }
   [[nodiscard]] TendonDisplacements displacements() const {
     TendonDisplacements made;

@@ -27,13 +27,13 @@ namespace flexura {
 class WithoutSecants : public ServoFeatures {
  public:
   explicit WithoutSecants(std::unique_ptr<ServoFeatures> features) : features_(std::move(features)) {}
-  [[nodiscard]] bool measured(const ArmState& estimate, const std::array<Sighting, 2>& seen,
+  [[nodiscard]] bool measured(const ArmState& estimate, const std::array<Observation, 2>& seen,
                               Eigen::VectorXd& values) override {
     return features_->measured(estimate, seen, values);
   }
-  [[nodiscard]] bool foreseen(const ArmState& state, const std::array<View, 2>& views,
-                              Eigen::VectorXd& values) override {
-    return features_->foreseen(state, views, values);
+  [[nodiscard]] bool predict(const ArmState& state, const std::array<View, 2>& views,
+                             Eigen::VectorXd& values) override {
+    return features_->predict(state, views, values);
   }
   [[nodiscard]] bool error(const Eigen::VectorXd& seen, const Eigen::VectorXd& desired,
                            const ArmState& estimate, const std::array<View, 2>& views,
@@ -69,26 +69,26 @@ struct ExactLoop {
     ServoLaw law(ArmModel(arm), config, *features);
     CommandLimiter limiter(arm, {.step = config.step, .looks_ahead = false}, start);
     std::deque<ArmState> sent(late + 1, start);
-    const WantedShape wanted{target, {}};
+    const TargetShape desired{target, {}};
     const std::vector<double> slips = noises(random);
     End end;
     int settled = -1, below = -1;
     for (int k = 0; k < steps && !end.is_done; ++k) {
-      const ServoSight sight = seen(sent.front(), slips);
+      const ServoObservation observed = seen(sent.front(), slips);
       const double off = servo_error(arm, sent.front(), target).rms;
       if (off > near) settled = -1;
       if (off > there) below = -1;
       if (off <= near && settled < 0) settled = k;
       if (off <= there && below < 0) below = k;
       end.is_done = below >= 0 && (k - below) * config.step >= 1;
-      const ServoLaw::Wish wish = law.step({.sight = sight,
-                                            .is_fresh = true,
-                                            .said = sent.front(),
-                                            .sent = limiter.sent(),
-                                            .then = wanted,
-                                            .wanted = wanted,
-                                            .next = target});
-      sent.push_back(limiter.next(wish.asked).state);
+      const ServoLaw::Output output = law.step({.observed = observed,
+                                                .is_fresh = true,
+                                                .measured = sent.front(),
+                                                .sent = limiter.sent(),
+                                                .then = desired,
+                                                .desired = desired,
+                                                .next = target});
+      sent.push_back(limiter.next(output.asked).state);
       sent.pop_front();
     }
     end.settled = settled * config.step;
@@ -103,12 +103,12 @@ struct ExactLoop {
     for (double& slip : slips) slip = noise * normal_number(random);
     return slips;
   }
-  [[nodiscard]] ServoSight seen(const ArmState& state, const std::vector<double>& slips) const {
-    ServoSight sight;
-    sight.estimate.is_found = true, sight.estimate.shape.state = state;
+  [[nodiscard]] ServoObservation seen(const ArmState& state, const std::vector<double>& slips) const {
+    ServoObservation observed;
+    observed.estimate.is_found = true, observed.estimate.shape.state = state;
     const Backbone backbone(arm, state);
     for (std::size_t i = 0; i < 2; ++i) {
-      sight.seen[i].view = views[i];
+      observed.seen[i].view = views[i];
       for (int k = 0; noise > 0 && k <= places; ++k) {
         const double s = backbone.length() * k / places;
         const Pose X_WS = backbone.pose(s);
@@ -116,10 +116,10 @@ struct ExactLoop {
                               next = views[i].project(X_WS.position + 1e-4 * X_WS.rotation.col(2)).value();
         const Eigen::Vector2d way = (next - at).normalized(), across(-way.y(), way.x());
         const auto number = i * (places + 1) + static_cast<std::size_t>(k);
-        sight.seen[i].points.push_back({at + slips[number] * across, 0.1});
+        observed.seen[i].points.push_back({at + slips[number] * across, 0.1});
       }
     }
-    return sight;
+    return observed;
   }
 };
 

@@ -7,7 +7,7 @@
 #include "flexura/camera/sensor.h"
 #include "flexura/port/clocked_ports.h"
 #include "flexura/port/rig_ports.h"
-#include "tests/support/odd_ports.h"
+#include "tests/support/altered_ports.h"
 
 namespace flexura {
 
@@ -19,9 +19,9 @@ class OwnClocks {
     double offset = 0;
     const auto shown = [&offset, ahead, drift] {
       offset += ahead;
-      return [offset, drift](auto said) {
-        said.time = offset + (1 + drift) * said.time;
-        return said;
+      return [offset, drift](auto reading) {
+        reading.time = offset + (1 + drift) * reading.time;
+        return reading;
       };
     };
     own_.arm = &arms_.emplace_back(*rig.arm, shown());
@@ -50,13 +50,13 @@ class OwnClocks {
   }
 
  private:
-  using OddStage = OddDevice<StagePort, StageState, StageReading>;
+  using AlteredStage = AlteredDevice<StagePort, StageState, StageReading>;
 
   RigPorts rig_, own_;
-  std::deque<OddArm> arms_;
-  std::deque<OddHead> heads_;
-  std::deque<OddStage> stages_;
-  std::deque<OddCamera> cameras_;
+  std::deque<AlteredArm> arms_;
+  std::deque<AlteredHead> heads_;
+  std::deque<AlteredStage> stages_;
+  std::deque<AlteredCamera> cameras_;
   std::deque<DeviceClock> clocks_;
   std::deque<ClockedArm> mapped_arms_;
   std::deque<ClockedHead> mapped_heads_;

@@ -55,7 +55,7 @@ inline Difference compare(const LightImage& exact, const LightImage& quick) {
 }
 
 /// How a scene drawn the quick way differs from the same drawn exactly.
-inline Difference compare_ways(const Scene& scene, const View& view, PixelKind pixels = PixelKind::gray) {
+inline Difference compare_paths(const Scene& scene, const View& view, PixelKind pixels = PixelKind::gray) {
   Renderer renderer;
   LightImage exact, quick;
   renderer.render(scene, view, pixels, exact, true);
@@ -64,7 +64,7 @@ inline Difference compare_ways(const Scene& scene, const View& view, PixelKind p
 }
 
 /// A scene and who sees it.
-struct Sight {
+struct SceneView {
   Scene scene;
   View view;
   PixelKind pixels = PixelKind::gray;
@@ -73,11 +73,11 @@ struct Sight {
 /// How the two ways differ in `count` sights, as draw(random) makes them: in light by less than `most`, in
 /// depth by less than `deepest` of it.
 template <typename Draw>
-Difference compare_ways_of(const char* name, int count, double most, Draw&& draw, double deepest = 1e-5) {
+Difference compare_paths_of(const char* name, int count, double most, Draw&& draw, double deepest = 1e-5) {
   Difference all;
   for_random_cases(count, [&](TestRandom& random) {
-    const Sight sight = draw(random);
-    const Difference off = compare_ways(sight.scene, sight.view, sight.pixels);
+    const SceneView scene_view = draw(random);
+    const Difference off = compare_paths(scene_view.scene, scene_view.view, scene_view.pixels);
     EXPECT_LT(off.worst, most);
     EXPECT_LT(off.depth, deepest);
     all.add(off);
@@ -86,11 +86,11 @@ Difference compare_ways_of(const char* name, int count, double most, Draw&& draw
   return all;
 }
 
-inline void expect_same_on_every_path(const Sight& sight) {
+inline void expect_same_on_every_path(const SceneView& scene_view) {
   LightImage expected, picture;
-  Renderer(SimdPath::baseline).render(sight.scene, sight.view, sight.pixels, expected);
+  Renderer(SimdPath::baseline).render(scene_view.scene, scene_view.view, scene_view.pixels, expected);
   for (const SimdPath path : available_simd_paths()) {
-    Renderer(path).render(sight.scene, sight.view, sight.pixels, picture);
+    Renderer(path).render(scene_view.scene, scene_view.view, scene_view.pixels, picture);
     EXPECT_EQ(picture.light, expected.light) << name_of(path);
     EXPECT_EQ(picture.depth, expected.depth) << name_of(path);
   }

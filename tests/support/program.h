@@ -58,7 +58,7 @@ class Program : public ::testing::Test {
 };
 
 /// What a file says once it says something.
-inline std::string told_in(const std::string& file) {
+inline std::string reported_in(const std::string& file) {
   for (int i = 0; i < 3000; ++i) {
     if (std::filesystem::exists(file)) {
       std::string text = read_text_file(file, 1 << 24);

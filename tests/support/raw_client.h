@@ -49,7 +49,7 @@ class RawClient {
   /// A masked frame; `first` as in the protocol: 0x81 a whole text, 0x82 whole bytes, 0x01 a text's beginning
   /// ...
   bool send_frame(std::uint8_t first, std::string_view payload) const;
-  bool say(std::string_view text) const { return send_frame(0x81, text); }
+  bool send_text(std::string_view text) const { return send_frame(0x81, text); }
 
  private:
   /// More bytes into buffer_; false at the end.

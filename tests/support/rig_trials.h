@@ -13,8 +13,8 @@
 #include "flexura/math/arrays.h"
 #include "flexura/math/so3.h"
 #include "flexura/model/backbone.h"
+#include "tests/support/observations.h"
 #include "tests/support/random_cases.h"
-#include "tests/support/sightings.h"
 
 namespace flexura {
 
@@ -36,7 +36,7 @@ struct RigTrialConfig {
 
 /// Two cameras, 2.5 m in front of and beside an arm of three sections and 1 m, with stages and heads that
 /// count in steps of 0.075 degrees.
-inline RigModel believed_rig() {
+inline RigModel nominal_rig() {
   std::vector<CameraConfig> cameras = cameras_at({2.5, 2.5}, {0, 0.5, 0});
   for (CameraConfig& camera : cameras) {
     camera.head.pan.resolution = camera.head.tilt.resolution = 0.075 * degree;
@@ -47,8 +47,8 @@ inline RigModel believed_rig() {
 }
 
 /// A rig as it is while another is believed.
-inline RigModel true_rig(const RigModel& believed, const RigTrialConfig& config, TestRandom& random) {
-  RigModel rig = believed;
+inline RigModel true_rig(const RigModel& nominal, const RigTrialConfig& config, TestRandom& random) {
+  RigModel rig = nominal;
   for (std::size_t i = 0; i < rig.arm.sections.size(); ++i) {
     rig.arm.sections[i].length *= 1 + config.length * random.uniform(-1, 1);
     rig.bend_gains[i] += config.bend * random.uniform(-1, 1);
@@ -116,12 +116,12 @@ class RigTrial {
     RigImage image{.stance = stance, .pose = pose};
     for (std::size_t i = 0; i < config_.markers; ++i) {
       const double f = static_cast<double>(i) / static_cast<double>(config_.markers - 1);
-      const auto [section, fraction] = material_point(believed_rig().arm, f * believed_rig().arm.length());
+      const auto [section, fraction] = material_point(nominal_rig().arm, f * nominal_rig().arm.length());
       const Arc& arc = backbone.arcs()[section];
       const auto pixel = view.project(arc.pose(fraction * arc.length).position);
       const Eigen::Vector2d noise(normal_number(random_), normal_number(random_));
       if (pixel && is_inside(view, *pixel))
-        image.markers.push_back({*pixel + config_.noise * noise, f * believed_rig().arm.length(), sigma});
+        image.markers.push_back({*pixel + config_.noise * noise, f * nominal_rig().arm.length(), sigma});
     }
     for (std::size_t i = 0; i < config_.points; ++i) {
       const double f = (static_cast<double>(i) + 0.5) / static_cast<double>(config_.points);

@@ -38,7 +38,7 @@ struct SampledComparison {
   std::size_t contacts_missed = 0;  ///< Of these, outside every reported span.
   std::size_t refuted = 0;          ///< Reported spans, longer than two samples, without one.
   std::size_t understated = 0;      ///< Reported spans with a sample worse than their worst value,
-  std::size_t doubted = 0;          ///< and those of them of which the check says so itself.
+  std::size_t flagged = 0;          ///< and those of them of which the check says so itself.
   double most_understated = 0;      ///< Of the others: of contacts, m; of limits, share of the value.
   std::size_t overstated = 0;       ///< Reported spans whose worst value is not there at their worst time.
 };
@@ -204,10 +204,10 @@ class SampledCheck {
   // What all samples said of a reported span.
   void compare(const Key& key, const Reported& one, double long_span, double tolerance) {
     if (!one.confirmed && one.span.end - one.span.start > long_span) ++result_.refuted;
-    const bool is_doubted = is_worse_by_its_own_words(key);
-    if (one.sampled_excess > tolerance) ++(is_doubted ? result_.doubted : result_.understated);
+    const bool is_flagged = is_worse_by_its_own_words(key);
+    if (one.sampled_excess > tolerance) ++(is_flagged ? result_.flagged : result_.understated);
     const double scale = is_contact(key) ? 1 : std::abs(one.worst.value);
-    if (!is_doubted && one.sampled_excess > 0)
+    if (!is_flagged && one.sampled_excess > 0)
       result_.most_understated = std::max(result_.most_understated, one.sampled_excess / scale);
   }
   [[nodiscard]] bool is_worse_by_its_own_words(const Key& key) const {
@@ -226,8 +226,8 @@ class SampledCheck {
   // Takes a value above (sign -1: below) its limit, which occurs somewhere in the time `within` before.
   void above(Hazard hazard, std::size_t section, double time, double value, double limit, double sign = 1,
              double within = 0) {
-    constexpr double doubtful = 1e-8;  // neither above nor below, by rounding
-    constexpr double slack = 1e-6;     // s; reported spans are right to 1e-7
+    constexpr double negligible = 1e-8;  // neither above nor below, by rounding
+    constexpr double slack = 1e-6;       // s; reported spans are right to 1e-7
     const double excess = sign * (value - limit);
     if (!(excess > 0)) return;
     bool is_reported = false;
@@ -237,7 +237,7 @@ class SampledCheck {
       // By rounding the sample may lie just outside the span.
       one.sampled_excess = std::max(one.sampled_excess, sign * (value - one.worst.value));
     }
-    if (excess <= doubtful) return;
+    if (excess <= negligible) return;
     ++result_.above;
     if (!is_reported) ++result_.missed;
   }

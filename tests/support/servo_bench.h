@@ -10,7 +10,7 @@
 
 #include "flexura/servo/servo_session.h"
 #include "flexura/tasks/servo/servo_run.h"
-#include "tests/support/odd_ports.h"
+#include "tests/support/altered_ports.h"
 #include "tests/support/rig_bench.h"
 #include "tests/support/servo_files.h"
 
@@ -24,7 +24,7 @@ class ServoNotes : public ServoSessionWatcher {
   std::function<bool()> cancelled = [] { return false; };
 
   void arm_sent(double time, const ArmState& state, double) override { sent.emplace_back(time, state); }
-  void told(double time, const std::string& what) override { lines.emplace_back(time, what); }
+  void reported(double time, const std::string& what) override { lines.emplace_back(time, what); }
   bool is_cancelled() override { return cancelled(); }
   [[nodiscard]] bool has(const std::string& part) const {
     for (const auto& [time, line] : lines)
@@ -40,11 +40,9 @@ class ServoBench : public RigBench {
 
   [[nodiscard]] ServoConfig config() {
     const auto& task = std::get<ServoTask>(experiment().task.front());
-    return servo_config(experiment(), task, believed(), ports().arm->read().value().state);
+    return servo_config(experiment(), task, nominal(), ports().arm->read().value().state);
   }
-  [[nodiscard]] RigModel believed() const {
-    return rig_model(experiment().arm.arm(), experiment().cameras());
-  }
+  [[nodiscard]] RigModel nominal() const { return rig_model(experiment().arm.arm(), experiment().cameras()); }
 
   ServoResult servo() { return servo(ports()); }
   ServoResult servo(const RigPorts& ports) {
@@ -52,13 +50,13 @@ class ServoBench : public RigBench {
     return servo(ports, notes);
   }
   ServoResult servo(const RigPorts& ports, ServoNotes& notes) {
-    const RigModel model = believed();
+    const RigModel model = nominal();
     return servo_in_session(ports, model, config(), notes);
   }
   /// How far the arm truly is from a state now.
-  [[nodiscard]] ServoError truth(const ArmState& wanted) {
+  [[nodiscard]] ServoError truth(const ArmState& desired) {
     const Arm arm = experiment().arm.arm();
-    return servo_error(rig().arm().backbone(rig().clock().now()), Backbone(arm, wanted), arm.length());
+    return servo_error(rig().arm().backbone(rig().clock().now()), Backbone(arm, desired), arm.length());
   }
 };
 
@@ -93,10 +91,10 @@ class BrokenArm : public ArmPort {
 
 /// An arm whose drives are not mounted as the model has them: it bends into `share` of what it is told,
 /// turned by `angle` rad about its sections' axes. What it says of itself is what its drives know.
-class TurnedArm : public OddArm {
+class TurnedArm : public AlteredArm {
  public:
   TurnedArm(ArmPort& arm, double angle, double share)
-      : OddArm(
+      : AlteredArm(
             arm,
             [=](ArmReading reading) {
               reading.state = turned(reading.state, -angle, 1 / share);

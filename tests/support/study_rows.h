@@ -19,7 +19,7 @@ struct Arrival {
   std::string reason;
   double settled = 0, overshoot = 0, rms = 0, most = 0, tip = 0, limit = 0;
   // Of those who believe their cameras, and of those who doubt them as the servo does.
-  double believing = 0, doubting = 0;
+  double without_prior = 0, with_prior = 0;
 };
 
 // "-" where there is none.
@@ -43,8 +43,10 @@ inline void print_row(const std::string& name, const std::vector<Arrival>& arriv
                             most = of_done(arrivals, [](const Arrival& a) { return 100 * a.most; }),
                             tip = of_done(arrivals, [](const Arrival& a) { return 100 * a.tip; }),
                             limit = of_done(arrivals, [](const Arrival& a) { return a.limit; }),
-                            believing = of_done(arrivals, [](const Arrival& a) { return 100 * a.believing; }),
-                            doubting = of_done(arrivals, [](const Arrival& a) { return 100 * a.doubting; });
+                            without_prior =
+                                of_done(arrivals, [](const Arrival& a) { return 100 * a.without_prior; }),
+                            with_prior =
+                                of_done(arrivals, [](const Arrival& a) { return 100 * a.with_prior; });
   const auto pair = [&](const std::vector<double>& values) {
     return has_floor ? number(quantile(values, 0.5), 3) + " / " + number(quantile(values, 0.95), 3) : "-";
   };
@@ -52,7 +54,7 @@ inline void print_row(const std::string& name, const std::vector<Arrival>& arriv
              arrivals.size(), number(quantile(settled, 0.5), 2), number(quantile(settled, 0.95), 2),
              number(quantile(over, 0.95), 1), number(quantile(rms, 0.5), 3), number(quantile(rms, 0.95), 3),
              number(quantile(most, 1), 3), number(quantile(tip, 0.95), 3), number(quantile(limit, 0), 2),
-             pair(believing), pair(doubting));
+             pair(without_prior), pair(with_prior));
 }
 
 // Its numbers left out: reasons that differ in these are one.

@@ -18,7 +18,9 @@ class TestHost : public Host {
  public:
   void opened(ClientId client) override { note("opened " + std::to_string(client)); }
   void closed(ClientId client) override { note("closed " + std::to_string(client)); }
-  void said(ClientId client, std::string text) override { note(std::to_string(client) + " said " + text); }
+  void on_message(ClientId client, std::string text) override {
+    note(std::to_string(client) + " said " + text);
+  }
   void asked(std::string target, std::function<void(HttpAnswer)> answer) override {
     note("asked " + target);
     answer({.status = 200, .content_type = "text/plain", .body = target, .policy = {}});

@@ -20,15 +20,16 @@ struct VispServo::Kept {
   vpServo task;
 };
 
-VispServo::VispServo(const std::vector<VispPoint>& wanted, double gain) : kept_(std::make_unique<Kept>()) {
-  for (const VispPoint& point : wanted) {
+VispServo::VispServo(const std::vector<VispPoint>& desired, double gain) : kept_(std::make_unique<Kept>()) {
+  for (const VispPoint& point : desired) {
     kept_->features.push_back(feature_of(point));
     kept_->goals.push_back(feature_of(point));
   }
   kept_->task.setServo(vpServo::EYEINHAND_CAMERA);
   kept_->task.setInteractionMatrixType(vpServo::CURRENT);
   kept_->task.setLambda(gain);
-  for (std::size_t i = 0; i < wanted.size(); ++i) kept_->task.addFeature(kept_->features[i], kept_->goals[i]);
+  for (std::size_t i = 0; i < desired.size(); ++i)
+    kept_->task.addFeature(kept_->features[i], kept_->goals[i]);
 }
 
 VispServo::~VispServo() = default;

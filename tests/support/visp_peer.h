@@ -15,7 +15,7 @@ struct VispPoint {
 /// A vpServo of a camera that moves freely, with the current interaction matrix, kept from step to step.
 class VispServo {
  public:
-  VispServo(const std::vector<VispPoint>& wanted, double gain);
+  VispServo(const std::vector<VispPoint>& desired, double gain);
   ~VispServo();
   VispServo(const VispServo&) = delete;
   VispServo& operator=(const VispServo&) = delete;

@@ -51,7 +51,7 @@ ReportFigure offsets(const CalibrationRun& run, std::size_t number) {
   LineChart chart = step_chart(run, "what would have remained, if sent then");
   const auto add = [&](const char* name, const auto& value) {
     const auto of = [&](const auto& left) { return left ? value(*left) : nothing; };
-    add_line(chart, run, name, of(run.result.believed_remainder),
+    add_line(chart, run, name, of(run.result.nominal_remainder),
              [&](const RigStep& step) { return of(step.remainder); });
   };
   add("angle (deg)", [](const RigRemainder& left) { return left.angle / degree; });
@@ -75,12 +75,12 @@ ReportFigure sigmas(const CalibrationRun& run, std::size_t number) {
 // Includes the optical axis as found.
 ReportFigure calibration_photograph(const CalibrationRun& run, std::size_t camera, bool is_after,
                                     std::size_t number) {
-  const RigSight& sight = is_after ? *run.result.after[camera] : *run.result.before[camera];
+  const CameraObservation& observed = is_after ? *run.result.after[camera] : *run.result.before[camera];
   const char* when = is_after ? "after" : "before";
-  ImagePlot plot = sight_picture(run, sight, fmt::format("camera {}, {}", run.cameras[camera], when));
+  ImagePlot plot = observed_picture(run, observed, fmt::format("camera {}, {}", run.cameras[camera], when));
   if (run.result.is_done) {
     const Intrinsics lens =
-        Camera(run.result.found.model.cameras[sight.stance.camera]).lens().at(sight.stance.head.zoom);
+        Camera(run.result.found.model.cameras[observed.stance.camera]).lens().at(observed.stance.head.zoom);
     plot.outlines.push_back({"optical axis", "s5", {cross({lens.cx, lens.cy}, 0.036 * plot.width)}});
   }
   return {fmt::format("calibration-{}-{}-{}", number + 1, run.cameras[camera], when), image_picture(plot)};
@@ -115,7 +115,7 @@ std::string text_of(const CalibrationRun& run) {
 // Returns what the pictures do not determine.
 std::vector<std::string> unknowns_of(const CalibrationRun& run) {
   std::vector<std::string> points;
-  for (const RigBlindness& blind : run.result.observability.blindness)
+  for (const UnobservableDirection& blind : run.result.observability.unobservable)
     points.push_back(
         fmt::format("{:.0f} % of the prior uncertainty is left: {}", 100 * blind.share, blind.words));
   return points;
@@ -123,19 +123,21 @@ std::vector<std::string> unknowns_of(const CalibrationRun& run) {
 
 }  // namespace
 
-ImagePlot sight_picture(const CalibrationRun& run, const RigSight& sight, std::string heading) {
-  ImagePlot plot =
-      photograph(*sight.frame.picture, run.believed.cameras[sight.stance.camera].sensor, std::move(heading));
+ImagePlot observed_picture(const CalibrationRun& run, const CameraObservation& observed,
+                           std::string heading) {
+  ImagePlot plot = photograph(*observed.frame.picture, run.nominal.cameras[observed.stance.camera].sensor,
+                              std::move(heading));
   const bool is_arm = !run.is_before_etalon;
   ImageOutline line{is_arm ? "backbone" : "silhouette", "s2", {{}}},
       markers{is_arm ? "markers" : "red lines", "s1", {}};
-  for (const CurvePoint& point : sight.seen.points) line.lines[0].points.push_back(point.pixel);
-  if (!is_arm && !sight.seen.points.empty()) line.lines[0].points.push_back(sight.seen.points.front().pixel);
-  for (const SeenMarker& marker : sight.seen.markers)
+  for (const CurvePoint& point : observed.seen.points) line.lines[0].points.push_back(point.pixel);
+  if (!is_arm && !observed.seen.points.empty())
+    line.lines[0].points.push_back(observed.seen.points.front().pixel);
+  for (const SeenMarker& marker : observed.seen.markers)
     markers.lines.push_back(cross(marker.pixel, 0.012 * plot.width));
   plot.outlines = {line, markers};
-  if (sight.circle) plot.outlines.push_back({"circle", "s4", {circle_line(*sight.circle)}});
-  if (const auto ideal = ideal_axis(run, sight); !ideal.empty())
+  if (observed.circle) plot.outlines.push_back({"circle", "s4", {circle_line(*observed.circle)}});
+  if (const auto ideal = ideal_axis(run, observed); !ideal.empty())
     plot.outlines.push_back({"ideal axis", "s3", {{ideal, "dash1"}}});
   return plot;
 }
@@ -146,7 +148,7 @@ Chapter calibration_chapter(const CalibrationRun& run, std::size_t number) {
       .heading = "Calibration: " + run.name, .text = text_of(run), .figures = {}, .is_first_tall = false};
   if (run.result.is_done) {
     chapter.table = calibration_table(run);
-    chapter.points = run.result.wanted.notes;
+    chapter.points = run.result.desired.notes;
     chapter.details = {"What these pictures do not determine", unknowns_of(run)};
   }
   for (std::size_t i = 0; i < 2; ++i) {

@@ -72,8 +72,8 @@ void check_arcs(const CalibrateTask& task, const ArmConfig& arm, const std::stri
 
 // Refuses keys of other methods, which would have no effect.
 void check_idle_keys(const CalibrateTask& task, const std::string& path, Reader& reader) {
-  const auto refuse = [&](const char* key, bool is_told, const char* whose) {
-    if (is_told)
+  const auto refuse = [&](const char* key, bool is_given, const char* whose) {
+    if (is_given)
       reader.problem_at(path + key, fmt::format("counts with {} alone: expected no such key", whose));
   };
   const CalibrateTask usual;

@@ -275,9 +275,9 @@ RigSessionConfig session_config(const CalibrateTask& task, const ArmConfig& arm,
     // Once from where the heads stand, for nothing there moves; a red line is seen at two places.
     config.first = 1, config.fewest = 2;
   }
-  config.wanted = {task.required_std.angle,
-                   {task.required_std.focal, task.required_std.focal},
-                   task.required_std.zoom_ratio};
+  config.desired = {task.required_std.angle,
+                    {task.required_std.focal, task.required_std.focal},
+                    task.required_std.zoom_ratio};
   if (task.target) config.target = vector(*task.target);
   config.may_use_stages = task.stages;
   config.zooms = task.zooms;
@@ -310,10 +310,10 @@ LoopConfig loop_config(const CalibrateTask& task, const ArmConfig& arm,
   return config;
 }
 
-RigPrior session_prior(const CalibrateTask& task, const RigModel& believed, const StandConfig& stand) {
+RigPrior session_prior(const CalibrateTask& task, const RigModel& nominal, const StandConfig& stand) {
   std::optional<Eigen::Vector3d> seen;
   if (is_before_etalon(task)) seen = EtalonFigure(stand.etalon.value_or(EtalonConfig{})).middle();
-  RigPrior prior = rough_prior(believed, task.camera_prior.position_std, seen);
+  RigPrior prior = rough_prior(nominal, task.camera_prior.position_std, seen);
   // The cylinder tells nothing of the arm.
   if (is_before_etalon(task)) prior.arm = {.length = 0, .bend_gain = 0, .bend_share = 0, .bend = 0};
   for (CameraPrior& camera : prior.cameras) {

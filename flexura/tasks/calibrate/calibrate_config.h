@@ -10,7 +10,7 @@
 
 #include "flexura/base/fields.h"
 #include "flexura/calibrate/loop_session.h"
-#include "flexura/calibrate/rig_hands.h"
+#include "flexura/calibrate/rig_commander.h"
 #include "flexura/calibrate/rig_prior.h"
 #include "flexura/calibrate/rig_session.h"
 #include "flexura/camera/camera_config.h"
@@ -110,7 +110,7 @@ const Table<CalibrateTask>& fields_of(const CalibrateTask*);
                                               const std::vector<CameraConfig>& cameras,
                                               const StandConfig& stand);
 /// How wrong the task takes the rig to be, at most.
-[[nodiscard]] RigPrior session_prior(const CalibrateTask& task, const RigModel& believed,
+[[nodiscard]] RigPrior session_prior(const CalibrateTask& task, const RigModel& nominal,
                                      const StandConfig& stand);
 
 /// What a task by one of the paper's methods asks of its loop; the simulator's pictures are left out.

@@ -53,9 +53,9 @@ Node step_nodes(const std::vector<RigStep>& steps) {
   return {std::move(list), {}};
 }
 
-Node untold_nodes(const RigObservability& seen) {
+Node undetermined_nodes(const RigObservability& seen) {
   Node::Array list;
-  for (const RigBlindness& blind : seen.blindness)
+  for (const UnobservableDirection& blind : seen.unobservable)
     list.push_back(
         {Node::Table{{"share_left", {}, number_node(blind.share)}, {"what", {}, {blind.words, {}}}}, {}});
   return {std::move(list), {}};
@@ -75,7 +75,7 @@ Node decision_nodes(const LoopResult& result, const CalibrationRun& run) {
   for (const LoopDecision& step : result.steps)
     list.push_back({Node::Table{{"time", {}, number_node(step.time)},
                                 {"looks", {}, whole(step.looks)},
-                                {"camera", {}, {run.believed.cameras[step.camera].name, {}}},
+                                {"camera", {}, {run.nominal.cameras[step.camera].name, {}}},
                                 {"step", {}, {step.step, {}}},
                                 {"offset", {}, number_node(step.offset)},
                                 {"accepted", {}, number_node(step.accepted)},
@@ -90,7 +90,7 @@ Node arc_nodes(const CalibrationRun& run) {
   for (const CommandedArc& arc : run.arcs) {
     Node::Array rotations, positions;
     for (const double rotation : arc.rotations) rotations.push_back(number_node(rotation));
-    Node::Table entry{{"camera", {}, {run.believed.cameras[arc.ideal.camera].name, {}}},
+    Node::Table entry{{"camera", {}, {run.nominal.cameras[arc.ideal.camera].name, {}}},
                       {"plane", {}, {arc.ideal.plane, {}}},
                       {"bends", {}, bends_node(arc.ideal.state)},
                       {"rotations", {}, {std::move(rotations), {}}}};
@@ -157,15 +157,15 @@ Node::Table run_members(const CalibrationRun& run) {
   add("remainder", remainder_node(result.remainder));
   if (run.truth) add("remainder_in_truth", remainder_node(*run.truth));
   add("verified_px", {Node::Array{number_node(result.verified[0]), number_node(result.verified[1])}, {}});
-  add("commanded", {Node::Array{stance_node(run.cameras[0], result.wanted.stances[0]),
-                                stance_node(run.cameras[1], result.wanted.stances[1])},
+  add("commanded", {Node::Array{stance_node(run.cameras[0], result.desired.stances[0]),
+                                stance_node(run.cameras[1], result.desired.stances[1])},
                     {}});
   Node::Array notes, gains;
-  for (const std::string& note : result.wanted.notes) notes.push_back({note, {}});
+  for (const std::string& note : result.desired.notes) notes.push_back({note, {}});
   for (const double gain : result.found.model.bend_gains) gains.push_back(number_node(gain));
   add("notes", {std::move(notes), {}});
   add("bend_gains", {std::move(gains), {}});
-  add("untold", untold_nodes(result.observability));
+  add("untold", undetermined_nodes(result.observability));
   return members;
 }
 
@@ -279,16 +279,16 @@ std::string found_rig_toml(const Setup& setup, const CalibrationRun& run) {
   file.arm = setup.arm;
   const RigModel& found = run.result.found.model;
   // Markers keep their position on each section, whose length differs from the nominal one.
-  const Arm believed = setup.arm_model().shaped();
+  const Arm nominal = setup.arm_model().shaped();
   const auto moved = [&](double s) {
     const ArmState straight = ArmState::straight(found.arm.sections.size());
-    return arc_length_of(found.arm, straight, material_point(believed, s));
+    return arc_length_of(found.arm, straight, material_point(nominal, s));
   };
   for (Marker& marker : file.arm.look.marker) marker.at = moved(marker.at);
   for (Disk& disk : file.arm.look.disk) disk.at = moved(disk.at);
   set_sections(found, file.arm.section);
   for (const CameraConfig& camera : found.cameras) file.camera.push_back(camera);
-  start_at(run.result.wanted.stances, file);
+  start_at(run.result.desired.stances, file);
   const RigSigmas& sigmas = run.result.steps.back().sigmas;
   return fmt::format(
              "# Found by a calibration with {} pictures: angle between the axes known within {:.3g} deg, "

@@ -39,7 +39,8 @@ void write_rig_file(const Setup& setup, const CalibrationRun& run, const std::st
 [[nodiscard]] Node calibration_node(const CalibrationRun& run);
 
 /// Returns a picture with the measurements in it, and the axis as the ideal camera observes it.
-[[nodiscard]] ImagePlot sight_picture(const CalibrationRun& run, const RigSight& sight, std::string heading);
+[[nodiscard]] ImagePlot observed_picture(const CalibrationRun& run, const CameraObservation& observed,
+                                         std::string heading);
 
 /// Returns the calibration's chapter of a report: a table of the rig's errors before and after, charts,
 /// pictures before and after. `number` from 0, for the names of figures.

@@ -34,7 +34,7 @@ CalibrationDecisionMessage decision_message(const RigStep& step) {
   message.time = step.time, message.looks = static_cast<std::int64_t>(step.looks);
   message.found = step.is_found, message.rms = step.rms, message.next = step.next;
   if (!step.is_found) message.reason = step.reason;
-  message.doubts = static_cast<std::int64_t>(step.doubts);
+  message.outliers = static_cast<std::int64_t>(step.outliers);
   message.angle = step.angle, message.angle_sigma = step.sigmas.angle;
   message.focal = step.focal, message.focal_sigma = step.sigmas.focal;
   message.zoom_ratio_sigma = step.sigmas.zoom_ratio;
@@ -51,14 +51,14 @@ class LoggedSession : public RigSessionWatcher {
     motion_.send(time, state, duration);
     CalibrationMoveMessage message;
     message.time = time, message.device = "arm", message.bends = bends_of(state), message.duration = duration;
-    log_.tell({calibration_moves_topic, message.time, message});
+    log_.publish({calibration_moves_topic, message.time, message});
   }
   void camera_sent(double time, const RigStance& stance) override {
     CalibrationMoveMessage message;
     message.time = time, message.device = name_of(stance.camera);
     message.pan = stance.head.pan, message.tilt = stance.head.tilt, message.zoom = stance.head.zoom;
     message.stage = array_of(stance.stage.offset);
-    log_.tell({calibration_moves_topic, message.time, message});
+    log_.publish({calibration_moves_topic, message.time, message});
   }
   void planned(const IdealArc& arc) override {
     // From arc to arc via the arm's current state.
@@ -70,29 +70,29 @@ class LoggedSession : public RigSessionWatcher {
     message.bends = bends_of(arc.state), message.rotations = commanded.rotations;
     message.positions = commanded.positions;
     message.pose = pose_message(arc.view.X_WC), message.focal = arc.view.lens.intrinsics().fx;
-    log_.tell({calibration_arcs_topic, message.time, message});
+    log_.publish({calibration_arcs_topic, message.time, message});
     const std::string topic = ideal_image_topic(message.camera);
     log_.recorder().picture(topic, message.time, arc.picture);
   }
-  void seen(const RigSight& sight) override {
+  void seen(const CameraObservation& observed) override {
     // Independent of record.cameras: the decisions of a calibration depend on its pictures.
-    const std::string& camera = name_of(sight.stance.camera);
-    log_.image(camera, sight.frame, logged_image(camera, sight.frame));
-    CalibrationSightingMessage message;
-    message.time = sight.frame.time, message.look = static_cast<std::int64_t>(sight.look);
-    message.camera = camera, message.frame = sight.frame.number;
-    message.pan = sight.stance.head.pan, message.tilt = sight.stance.head.tilt;
-    message.zoom = sight.stance.head.zoom, message.stage = array_of(sight.stance.stage.offset);
-    message.bends = bends_of(sight.pose);
-    add_seen(sight, message);
-    log_.tell({calibration_sightings_topic, sight.frame.received, message});
+    const std::string& camera = name_of(observed.stance.camera);
+    log_.image(camera, observed.frame, logged_image(camera, observed.frame));
+    CalibrationObservationMessage message;
+    message.time = observed.frame.time, message.look = static_cast<std::int64_t>(observed.look);
+    message.camera = camera, message.frame = observed.frame.number;
+    message.pan = observed.stance.head.pan, message.tilt = observed.stance.head.tilt;
+    message.zoom = observed.stance.head.zoom, message.stage = array_of(observed.stance.stage.offset);
+    message.bends = bends_of(observed.pose);
+    add_seen(observed, message);
+    log_.publish({calibration_observations_topic, observed.frame.received, message});
     ++pictures_;
     stage_.progress.update(std::min(0.99, static_cast<double>(pictures_) / static_cast<double>(2 * images_)),
                            fmt::format("{}, picture {}", run_.name, pictures_));
   }
   void known(const RigStep& step) override {
     const CalibrationDecisionMessage message = decision_message(step);
-    log_.tell({calibration_decisions_topic, message.time, message});
+    log_.publish({calibration_decisions_topic, message.time, message});
     constexpr double most = 90;  // In deg; beyond, nothing is known of an angle.
     const double sigma = step.sigmas.angle / degree;
     std::string what = step.reason;
@@ -108,7 +108,7 @@ class LoggedSession : public RigSessionWatcher {
     message.camera = name_of(decision.camera), message.step = decision.step;
     message.offset = decision.offset, message.accepted = decision.accepted, message.unit = decision.unit;
     message.next = decision.next;
-    log_.tell({calibration_decisions_topic, message.time, message});
+    log_.publish({calibration_decisions_topic, message.time, message});
     log_.event(decision.time, Recorder::Level::info, run_.name,
                fmt::format("{} of {}: {:.4g} {} off; {}", decision.step, name_of(decision.camera),
                            decision.offset, decision.unit, decision.next));
@@ -125,30 +125,30 @@ class LoggedSession : public RigSessionWatcher {
                                                         : run_.result.looks);
     if (!run_.is_done()) message.reason = run_.reason();
     message.next = run_.is_done() ? "calibrated" : run_.reason();
-    log_.tell({calibration_decisions_topic, message.time, message});
+    log_.publish({calibration_decisions_topic, message.time, message});
     log_.event(time, run_.is_done() ? Recorder::Level::info : Recorder::Level::error, run_.name,
                message.next);
   }
 
  private:
   [[nodiscard]] const std::string& name_of(std::size_t camera) const {
-    return run_.believed.cameras.at(camera).name;
+    return run_.nominal.cameras.at(camera).name;
   }
 
-  void add_seen(const RigSight& sight, CalibrationSightingMessage& message) const {
-    for (const SeenMarker& marker : sight.seen.markers)
+  void add_seen(const CameraObservation& observed, CalibrationObservationMessage& message) const {
+    for (const SeenMarker& marker : observed.seen.markers)
       message.markers.push_back({marker.s, marker.pixel.x(), marker.pixel.y(), marker.sigma});
-    for (const CurvePoint& point : sight.seen.points)
+    for (const CurvePoint& point : observed.seen.points)
       message.points.push_back({point.pixel.x(), point.pixel.y(), point.sigma});
-    message.unknown = static_cast<std::int64_t>(sight.seen.unknown);
-    if (!sight.seen.reason.empty()) message.reason = sight.seen.reason;
-    for (const SeenValue& value : sight.values) {
+    message.unknown = static_cast<std::int64_t>(observed.seen.unknown);
+    if (!observed.seen.reason.empty()) message.reason = observed.seen.reason;
+    for (const SeenValue& value : observed.values) {
       if (!message.values) message.values.emplace();
       message.values->push_back({value.name, value.value});
     }
-    if (const auto& circle = sight.circle)
+    if (const auto& circle = observed.circle)
       message.circle = {circle->center.x(), circle->center.y(), circle->radius, circle->is_verified};
-    const std::vector<Eigen::Vector2d> ideal = ideal_axis(run_, sight);
+    const std::vector<Eigen::Vector2d> ideal = ideal_axis(run_, observed);
     if (ideal.empty()) return;
     message.ideal.emplace();
     for (const Eigen::Vector2d& pixel : ideal) message.ideal->push_back({pixel.x(), pixel.y()});
@@ -167,7 +167,7 @@ class LoggedSession : public RigSessionWatcher {
 
 RigModel CalibrationRun::found() const {
   if (!loop) return result.found.model;
-  RigModel model = believed;
+  RigModel model = nominal;
   for (std::size_t i = 0; i < 2; ++i) {
     CameraConfig& camera = model.cameras[loop->stances[i].camera];
     if (const auto& by = loop->principal_point[i]) camera = with_principal_point_moved(camera, *by);
@@ -175,12 +175,12 @@ RigModel CalibrationRun::found() const {
   return model;
 }
 
-std::vector<Eigen::Vector2d> ideal_axis(const CalibrationRun& run, const RigSight& sight) {
+std::vector<Eigen::Vector2d> ideal_axis(const CalibrationRun& run, const CameraObservation& observed) {
   constexpr int count = 40;
-  const auto arc = std::ranges::find(run.arcs, sight.stance.camera,
+  const auto arc = std::ranges::find(run.arcs, observed.stance.camera,
                                      [](const CommandedArc& commanded) { return commanded.ideal.camera; });
   if (arc == run.arcs.end()) return {};
-  return backbone_pixels(run.believed.arm, sight.pose, arc->ideal.view, count);
+  return backbone_pixels(run.nominal.arm, observed.pose, arc->ideal.view, count);
 }
 
 CalibrationRun run_calibration(const CalibrateTask& task, const std::string& name, const Setup& setup,
@@ -190,8 +190,8 @@ CalibrationRun run_calibration(const CalibrateTask& task, const std::string& nam
   CalibrationRun run;
   run.name = name;
   run.is_before_etalon = is_before_etalon(task);
-  run.required = session.wanted;
-  run.believed = rig_model(setup.arm_model(), cameras);
+  run.required = session.desired;
+  run.nominal = rig_model(setup.arm_model(), cameras);
   for (std::size_t i = 0; i < 2; ++i) run.cameras[i] = cameras[session.cameras[i]].name;
   RecordedPorts recorded(stage.rig.ports(), from, stage.record_steps);
   LoggedSession log(run, most_images(task), stage, recorded.motion());
@@ -199,10 +199,10 @@ CalibrationRun run_calibration(const CalibrateTask& task, const std::string& nam
     LoopConfig loop = loop_config(task, setup.arm, cameras, setup.stand);
     loop.draw = ideal_pictures(setup);
     run.accepted = loop.accepted;
-    run.loop = calibrate_by_loop(recorded.ports(), run.believed, loop, log);
+    run.loop = calibrate_by_loop(recorded.ports(), run.nominal, loop, log);
   } else {
-    const RigPrior prior = session_prior(task, run.believed, setup.stand);
-    run.result = calibrate_rig_in_session(recorded.ports(), run.believed, prior, session, log);
+    const RigPrior prior = session_prior(task, run.nominal, setup.stand);
+    run.result = calibrate_rig_in_session(recorded.ports(), run.nominal, prior, session, log);
   }
   const double end = recorded.finish();
   run.motion = recorded.motion().motion(end);

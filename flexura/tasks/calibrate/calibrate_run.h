@@ -30,7 +30,7 @@ struct CalibrationRun {
   std::array<std::string, 2> cameras;  ///< Names of the cameras.
   RigSigmas required = {};             ///< Required standard deviations, of the method "bundle".
   double accepted = 0;                 ///< Tolerance of offsets in pictures, px, of the paper's methods.
-  RigModel believed;                   ///< Model before the calibration.
+  RigModel nominal;                    ///< Model before the calibration.
   RigSessionResult result;             ///< Result of the method "bundle".
   std::optional<LoopResult> loop;      ///< Result of one of the paper's methods, instead.
   std::vector<CommandedArc> arcs;      ///< For methods with arcs: one per camera.
@@ -47,7 +47,8 @@ struct CalibrationRun {
 
 /// Returns where the ideal camera observes the axis in a picture, from base to tip, px; empty for methods
 /// without arcs.
-[[nodiscard]] std::vector<Eigen::Vector2d> ideal_axis(const CalibrationRun& run, const RigSight& sight);
+[[nodiscard]] std::vector<Eigen::Vector2d> ideal_axis(const CalibrationRun& run,
+                                                      const CameraObservation& observed);
 
 /// Runs the task on the rig and logs its actions, observations and decisions. `from`: last commanded state of
 /// the arm.

@@ -51,10 +51,10 @@ void add_tolerance(double sigma, double required, const char* unit, ChapterTable
 double focal_of(const CameraConfig& camera, double zoom) { return Camera(camera).lens().at(zoom).fx; }
 
 void add_focal(const CalibrationRun& run, std::size_t i, ChapterTable& table) {
-  const RigStance& stance = run.result.wanted.stances[i];
+  const RigStance& stance = run.result.desired.stances[i];
   const double zoom = stance.head.zoom;
   table.rows.push_back({fmt::format("focal length of {} (px)", run.cameras[i]),
-                        decimals(focal_of(run.believed.cameras[stance.camera], zoom), 1),
+                        decimals(focal_of(run.nominal.cameras[stance.camera], zoom), 1),
                         decimals(focal_of(run.result.found.model.cameras[stance.camera], zoom), 1),
                         run.true_focal ? decimals((*run.true_focal)[i], 1) : "", "", ""});
   add_tolerance(100 * run.result.steps.back().sigmas.focal[i], 100 * run.required.focal[i], " %", table);
@@ -120,7 +120,7 @@ std::vector<LoopOffset> loop_offsets(const CalibrationRun& run) {
   for (const LoopDecision& step : run.loop->steps) {
     if (step.looks == 0) continue;
     const std::string quantity =
-        fmt::format("{} of {} ({})", step.step, run.believed.cameras[step.camera].name, step.unit);
+        fmt::format("{} of {} ({})", step.step, run.nominal.cameras[step.camera].name, step.unit);
     auto found = std::ranges::find(offsets, quantity, &LoopOffset::quantity);
     if (found == offsets.end()) found = offsets.insert(found, LoopOffset{quantity, &step, nullptr});
     found->last = &step;

@@ -30,12 +30,12 @@ MotionPtr tour_of(const CalibrateTask& task, const ArmModel& arm, const ArmState
 
 // Updates the model with a rig, or with principal points only from a loop. Those replace the file's, but not
 // those of a calibrated rig.
-void learn(const CalibrationRun& run, BelievedRig& believed) {
+void learn(const CalibrationRun& run, NominalRig& nominal) {
   const RigModel found = run.found();
-  if (!run.loop) believed.model = found, believed.is_found = true;
-  for (std::size_t i = 0; run.loop && !believed.is_found && i < 2; ++i) {
+  if (!run.loop) nominal.model = found, nominal.is_found = true;
+  for (std::size_t i = 0; run.loop && !nominal.is_found && i < 2; ++i) {
     const std::size_t camera = run.loop->stances[i].camera;
-    if (run.loop->principal_point[i]) believed.model.cameras[camera] = found.cameras[camera];
+    if (run.loop->principal_point[i]) nominal.model.cameras[camera] = found.cameras[camera];
   }
 }
 
@@ -44,7 +44,7 @@ class CalibrateRunner : public TaskRunner {
   CalibrateRunner(const CalibrateTask& task, const Setup& setup, TaskLabel label)
       : TaskRunner(setup, std::move(label)), task_(task) {}
 
-  [[nodiscard]] TaskWay way() const override { return TaskWay::by_rig; }
+  [[nodiscard]] TaskMotionSource motion_source() const override { return TaskMotionSource::by_rig; }
   [[nodiscard]] TaskWork work() const override {
     constexpr double of_look = 2;  // In s.
     return {.performing = of_look * static_cast<double>(most_images(task_))};
@@ -54,7 +54,7 @@ class CalibrateRunner : public TaskRunner {
   }
   [[nodiscard]] TaskEnd perform(const ArmState& from, TaskStage& stage) override {
     run_ = run_calibration(task_, name(), setup(), from, stage);
-    if (run_->is_done()) learn(*run_, stage.believed);
+    if (run_->is_done()) learn(*run_, stage.nominal);
     return {run_->motion, run_->is_done() ? std::nullopt : std::optional(run_->reason())};
   }
 

@@ -65,8 +65,8 @@ const Table<SeenValueMessage>& fields_of(const SeenValueMessage*) {
   return table;
 }
 
-const Table<CalibrationSightingMessage>& fields_of(const CalibrationSightingMessage*) {
-  using M = CalibrationSightingMessage;
+const Table<CalibrationObservationMessage>& fields_of(const CalibrationObservationMessage*) {
+  using M = CalibrationObservationMessage;
   static const auto table =
       Table<M>("flexura.CalibrationSighting", "What a calibration measured in one picture.")
           .field("time", &M::time, {.meaning = "Middle of the exposure, since the experiment's start, s."})
@@ -99,7 +99,7 @@ const Table<CalibrationDecisionMessage>& fields_of(const CalibrationDecisionMess
           .field("found", &M::found, {.meaning = "Whether a rig explains what was seen."})
           .field("reason", &M::reason, {.meaning = "Why none does."})
           .field("rms", &M::rms, {.meaning = "Root mean square of the residuals, in standard deviations."})
-          .field("doubts", &M::doubts, {.meaning = "Things seen that were left out."})
+          .field("doubts", &M::outliers, {.meaning = "Things seen that were left out."})
           .field("angle", &M::angle,
                  {.meaning = "Between the optical axes where the cameras would be sent now, rad."})
           .field("angle_sigma", &M::angle_sigma, {.meaning = "Its standard deviation, rad."})

@@ -58,7 +58,7 @@ struct CircleMessage {
 };
 
 /// flexura.CalibrationSighting, on /calibration/sightings: measurements in one picture.
-struct CalibrationSightingMessage {
+struct CalibrationObservationMessage {
   double time = 0;        ///< Middle of the exposure, s.
   std::int64_t look = 0;  ///< From 1; 0 during the search for the arm.
   std::string camera;
@@ -84,7 +84,7 @@ struct CalibrationDecisionMessage {
   bool found = false;                 ///< A rig was found.
   std::optional<std::string> reason;  ///< Why no rig was found, or why the calibration ended early.
   double rms = 0;                     ///< RMS of the residuals, in standard deviations.
-  std::int64_t doubts = 0;            ///< Number of outliers.
+  std::int64_t outliers = 0;          ///< Number of outliers.
   double angle = 0;        ///< Angle between the axes at the positions where the cameras would be sent, rad.
   double angle_sigma = 0;  ///< In rad.
   std::array<double, 2> focal = {0, 0};        ///< In px.
@@ -99,7 +99,7 @@ struct CalibrationDecisionMessage {
 
 inline constexpr std::string_view calibration_moves_topic = "/calibration/moves";
 inline constexpr std::string_view calibration_arcs_topic = "/calibration/arcs";
-inline constexpr std::string_view calibration_sightings_topic = "/calibration/sightings";
+inline constexpr std::string_view calibration_observations_topic = "/calibration/sightings";
 inline constexpr std::string_view calibration_decisions_topic = "/calibration/decisions";
 
 const Table<CalibrationMoveMessage>& fields_of(const CalibrationMoveMessage*);
@@ -107,7 +107,7 @@ const Table<CalibrationArcMessage>& fields_of(const CalibrationArcMessage*);
 const Table<CircleMessage>& fields_of(const CircleMessage*);
 const Table<MarkerMessage>& fields_of(const MarkerMessage*);
 const Table<SeenValueMessage>& fields_of(const SeenValueMessage*);
-const Table<CalibrationSightingMessage>& fields_of(const CalibrationSightingMessage*);
+const Table<CalibrationObservationMessage>& fields_of(const CalibrationObservationMessage*);
 const Table<CalibrationDecisionMessage>& fields_of(const CalibrationDecisionMessage*);
 
 /// Returns the topic of images that the simulator has in place of a camera's.

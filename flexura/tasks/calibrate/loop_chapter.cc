@@ -29,7 +29,7 @@ ReportFigure falling_offsets(const CalibrationRun& run, std::size_t i, std::size
   std::vector<const LoopDecision*> steps;
   std::vector<double>& looks = chart.x;
   for (const LoopDecision& step : run.loop->steps) {
-    if (run.cameras[i] != run.believed.cameras[step.camera].name || step.looks == 0) continue;
+    if (run.cameras[i] != run.nominal.cameras[step.camera].name || step.looks == 0) continue;
     steps.push_back(&step);
     const auto at = static_cast<double>(step.looks);
     if (looks.empty() || looks.back() < at) looks.push_back(at);
@@ -65,8 +65,8 @@ ReportFigure loop_drawing(const CalibrationRun& run, std::size_t i, const char* 
 ReportFigure loop_photograph(const CalibrationRun& run, std::size_t i, bool is_after, std::size_t number) {
   const char* when = is_after ? "after" : "before";
   return loop_drawing(run, i, when, number,
-                      sight_picture(run, is_after ? *run.loop->after[i] : *run.loop->before[i],
-                                    fmt::format("camera {}, {}", run.cameras[i], when)));
+                      observed_picture(run, is_after ? *run.loop->after[i] : *run.loop->before[i],
+                                       fmt::format("camera {}, {}", run.cameras[i], when)));
 }
 
 // Returns a drawing of the simulated arc of a camera.
@@ -76,7 +76,7 @@ ReportFigure ideal_drawing(const CalibrationRun& run, std::size_t i, std::size_t
   ImagePlot plot = photograph(ideal.picture, {},
                               fmt::format("camera {}, ideal: the arc in {}", run.cameras[i], ideal.plane));
   plot.outlines = {
-      {"ideal axis", "s3", {{backbone_pixels(run.believed.arm, ideal.state, ideal.view, count), "dash1"}}}};
+      {"ideal axis", "s3", {{backbone_pixels(run.nominal.arm, ideal.state, ideal.view, count), "dash1"}}}};
   return loop_drawing(run, i, "ideal", number, std::move(plot));
 }
 
@@ -132,7 +132,7 @@ Chapter loop_chapter(const CalibrationRun& run, std::size_t number) {
   for (std::size_t i = 0; i < run.arcs.size(); ++i) chapter.figures.push_back(ideal_drawing(run, i, number));
   for (std::size_t i = 0; i < 2; ++i) {
     const bool has_steps = std::ranges::any_of(result.steps, [&](const LoopDecision& step) {
-      return step.looks > 0 && run.believed.cameras[step.camera].name == run.cameras[i];
+      return step.looks > 0 && run.nominal.cameras[step.camera].name == run.cameras[i];
     });
     if (has_steps) chapter.figures.push_back(falling_offsets(run, i, number));
   }

@@ -19,16 +19,16 @@ namespace {
 // power, and with the second.
 constexpr std::size_t most_sections = 40, most_of_polynomial = 200;
 
-bool says_bends(const DynamicsTargetConfig& target) {
+bool gives_bends(const DynamicsTargetConfig& target) {
   return target.cord_angles || target.archings || target.bends;
 }
 
 void check_ways(const DynamicsTask& task, const std::string& path, Reader& reader) {
   const DynamicsTargetConfig& target = task.target;
   const bool has_angles = target.azimuths || target.elevations;
-  if (says_bends(target) && has_angles)
+  if (gives_bends(target) && has_angles)
     reader.problem_at(path, "says a shape in more than one way: expected bends, or azimuths and elevations");
-  if (!says_bends(target) && !has_angles && !target.stretches)
+  if (!gives_bends(target) && !has_angles && !target.stretches)
     reader.problem_at(path, "says nothing: expected a shape, as bends, or azimuths and elevations");
   if (target.azimuths.has_value() != target.elevations.has_value() ||
       (target.azimuths && target.azimuths->size() != target.elevations->size()))

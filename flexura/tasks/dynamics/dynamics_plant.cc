@@ -23,7 +23,7 @@ std::vector<double> continued(double base, std::vector<double> azimuths) {
 }
 
 // Returns the distance of the origin from the segment between two points.
-double distance_to_way(const Eigen::Vector2d& from, const Eigen::Vector2d& to) {
+double distance_to_path(const Eigen::Vector2d& from, const Eigen::Vector2d& to) {
   const Eigen::Vector2d way = to - from;
   const double length = way.squaredNorm();
   const double share = length > 0 ? std::clamp(-from.dot(way) / length, 0.0, 1.0) : 0;
@@ -83,7 +83,7 @@ AnglesAlongArm::AnglesAlongArm(const Arm& arm, const ArmState& state) : backbone
       const Eigen::Vector3d direction = arc.pose(arc.length * i / count).rotation.col(2);
       before = nearest_turn(angles_of_direction(direction)[0], before);
       azimuths.push_back(before);
-      least_level = std::min(least_level, distance_to_way(level, direction.head<2>()));
+      least_level = std::min(least_level, distance_to_path(level, direction.head<2>()));
       level = direction.head<2>();
     }
   }

@@ -22,7 +22,7 @@ namespace flexura {
 namespace {
 
 // Returns the expected motion before the simulation: straight to its target.
-MotionPtr straight_way(const DynamicsTask& task, const Arm& arm, const ArmState& from) {
+MotionPtr straight_path(const DynamicsTask& task, const Arm& arm, const ArmState& from) {
   if (!is_possible(from)) return hold_motion(from, task.duration);
   const DynamicsPlant plant(task, arm, from);
   return keyframe_motion({0, task.duration}, {from, plant.state(plant.target(), from)},
@@ -42,13 +42,13 @@ class DynamicsRunner : public TaskRunner {
   DynamicsRunner(const DynamicsTask& task, const Setup& setup, TaskLabel label)
       : TaskRunner(setup, std::move(label)), task_(task) {}
 
-  [[nodiscard]] TaskWay way() const override { return TaskWay::simulated; }
+  [[nodiscard]] TaskMotionSource motion_source() const override { return TaskMotionSource::simulated; }
   [[nodiscard]] TaskWork work() const override {
     constexpr double of_second = 0.1;  // In s.
     return {.duration = task_.duration, .simulating = of_second * task_.duration};
   }
   [[nodiscard]] TaskPlan plan(const ArmState& from, const MotionPtr& done) const override {
-    return {.motion = done ? done : straight_way(task_, setup().arm.arm(), from)};
+    return {.motion = done ? done : straight_path(task_, setup().arm.arm(), from)};
   }
   [[nodiscard]] TaskEnd simulate(const ArmState& from, double start, Progress& progress) override {
     run_ = run_dynamics(task_, label(), setup(), from, start, progress);
@@ -78,18 +78,18 @@ class DynamicsRunner : public TaskRunner {
   }
 
   // Logs the first and the last sample, and the current one at each time of the log.
-  void tell_up_to(double time, RunLog& log) override {
+  void publish_up_to(double time, RunLog& log) override {
     if (!run_) return;
     const std::size_t count = run_->samples.size();
     const auto is_past = [&](std::size_t i) {
       constexpr double same_time = 1e-9;  // In s.
       return run_->start + run_->samples[i].energies.time <= time + same_time;
     };
-    for (; told_ < count && is_past(told_); ++told_) {
-      const bool is_end = told_ == 0 || told_ + 1 == count;
-      if (!is_end && is_past(told_ + 1)) continue;
-      const DynamicsSampleMessage message = run_->message(run_->samples[told_]);
-      log.tell({dynamics_samples_topic, message.time, message});
+    for (; reported_ < count && is_past(reported_); ++reported_) {
+      const bool is_end = reported_ == 0 || reported_ + 1 == count;
+      if (!is_end && is_past(reported_ + 1)) continue;
+      const DynamicsSampleMessage message = run_->message(run_->samples[reported_]);
+      log.publish({dynamics_samples_topic, message.time, message});
     }
   }
 
@@ -107,7 +107,7 @@ class DynamicsRunner : public TaskRunner {
  private:
   const DynamicsTask& task_;
   std::optional<DynamicsRun> run_;
-  std::size_t told_ = 0;  // Number of samples logged.
+  std::size_t reported_ = 0;  // Number of samples logged.
 };
 
 // Omits the positions along the arm, which the log has.

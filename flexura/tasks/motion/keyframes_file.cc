@@ -49,10 +49,10 @@ void read_keyframes(KeyframesTask& task, const ArmConfig& arm, const std::filesy
   CellPlaces places(text);
   for (const KeyframeProblem& problem : keyframe_problems(task, arm.kind, arm.section.size())) {
     const int line = problem.row < 0 ? table.header_line : table.lines[static_cast<std::size_t>(problem.row)];
-    Problem& told = problems.emplace_back();
-    told.where = {source, line, problem.row == all_rows ? 1 : places.column(line, problem.column)};
-    if (problem.row >= 0) told.what = fmt::format("column {}: ", task.columns[problem.column]);
-    told.what += problem.what;
+    Problem& reported = problems.emplace_back();
+    reported.where = {source, line, problem.row == all_rows ? 1 : places.column(line, problem.column)};
+    if (problem.row >= 0) reported.what = fmt::format("column {}: ", task.columns[problem.column]);
+    reported.what += problem.what;
   }
   if (!problems.empty()) throw InputError(std::move(problems));
 }

@@ -10,19 +10,19 @@ const Table<FeatureMarkMessage>& fields_of(const FeatureMarkMessage*) {
       Table<M>("flexura.FeatureMark",
                "Something that a law compares in a picture: a pixel, or a line of some.")
           .field("seen", &M::seen, {.meaning = "As measured, px."})
-          .field("wanted", &M::wanted, {.meaning = "As wanted, px."});
+          .field("wanted", &M::desired, {.meaning = "As wanted, px."});
   return table;
 }
 
-const Table<ServoSightingMessage>& fields_of(const ServoSightingMessage*) {
-  using M = ServoSightingMessage;
+const Table<ServoObservationMessage>& fields_of(const ServoObservationMessage*) {
+  using M = ServoObservationMessage;
   static const auto table =
       Table<M>("flexura.ServoSighting", "What a servo measured in one picture.")
           .field("time", &M::time, {.meaning = "Middle of the exposure, since the experiment's start, s."})
           .field("camera", &M::camera, {.meaning = "The camera's name."})
           .field("frame", &M::frame, {.meaning = "The frame's number."})
           .field("points", &M::points, {.meaning = "Points of the median axis, base to tip."})
-          .field("wanted", &M::wanted,
+          .field("wanted", &M::desired,
                  {.meaning = "Where the camera, as it is believed to be, would see the wanted shape, base to "
                              "tip, px."})
           .field("features", &M::features,

@@ -16,25 +16,25 @@ namespace flexura {
 
 /// A pixel or polyline that a servo's law compares in a picture, px.
 struct FeatureMarkMessage {
-  std::vector<std::array<double, 2>> seen, wanted;
+  std::vector<std::array<double, 2>> seen, desired;
 };
 
 /// flexura.ServoSighting, on /servo/sightings: measurements of a servo in one picture.
-struct ServoSightingMessage {
+struct ServoObservationMessage {
   double time = 0;  ///< Middle of the exposure, s.
   std::string camera;
   std::int64_t frame = 0;                ///< Its number.
   std::vector<AxisPointMessage> points;  ///< Of the centerline, from base to tip.
   /// Image of the target shape from base to tip, px, in the nominal camera.
-  std::vector<std::array<double, 2>> wanted;
+  std::vector<std::array<double, 2>> desired;
   std::optional<std::vector<FeatureMarkMessage>> features;  ///< Features that the law compares.
   std::optional<std::string> reason;                        ///< Why the picture shows no arm.
 };
 
 inline constexpr std::string_view servo_steps_topic = "/servo/steps";
-inline constexpr std::string_view servo_sightings_topic = "/servo/sightings";
+inline constexpr std::string_view servo_observations_topic = "/servo/sightings";
 
 const Table<FeatureMarkMessage>& fields_of(const FeatureMarkMessage*);
-const Table<ServoSightingMessage>& fields_of(const ServoSightingMessage*);
+const Table<ServoObservationMessage>& fields_of(const ServoObservationMessage*);
 
 }  // namespace flexura

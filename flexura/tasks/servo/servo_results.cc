@@ -79,19 +79,19 @@ std::array<ReportFigure, 2> falling_errors(const ServoRun& run, std::size_t numb
 
 // Returns a picture with the measured axis and the image of the target shape.
 ReportFigure servo_photograph(const ServoRun& run, std::size_t i, bool is_last, std::size_t number) {
-  const ServoSight& sight = is_last ? *run.result.last : *run.result.first;
+  const ServoObservation& observed = is_last ? *run.result.last : *run.result.first;
   const char* when = is_last ? "last" : "first";
   const auto found = std::ranges::find_if(
-      run.believed.cameras, [&](const CameraConfig& camera) { return camera.name == run.cameras[i]; });
-  ImagePlot plot =
-      photograph(*sight.frames[i].picture, found->sensor, fmt::format("camera {}, {}", run.cameras[i], when));
-  ImageOutline seen{"seen", "s2", {}}, wanted{"wanted", "s1", {}};
+      run.nominal.cameras, [&](const CameraConfig& camera) { return camera.name == run.cameras[i]; });
+  ImagePlot plot = photograph(*observed.frames[i].picture, found->sensor,
+                              fmt::format("camera {}, {}", run.cameras[i], when));
+  ImageOutline seen{"seen", "s2", {}}, desired{"wanted", "s1", {}};
   auto& axis = seen.lines.emplace_back();
-  for (const CurvePoint& point : sight.seen[i].points) axis.points.push_back(point.pixel);
+  for (const CurvePoint& point : observed.seen[i].points) axis.points.push_back(point.pixel);
   constexpr int count = 60;
-  wanted.lines.emplace_back().points =
-      backbone_pixels(run.believed.arm, sight.desired, sight.seen[i].view, count);
-  plot.outlines = {seen, wanted};
+  desired.lines.emplace_back().points =
+      backbone_pixels(run.nominal.arm, observed.desired, observed.seen[i].view, count);
+  plot.outlines = {seen, desired};
   return {fmt::format("servo-{}-{}-{}", number + 1, run.cameras[i], when), image_picture(plot)};
 }
 

@@ -31,36 +31,36 @@ class LoggedServo : public ServoSessionWatcher {
         stage_(stage),
         log_(stage.log),
         motion_(motion),
-        marker_(session.law, run.believed.arm, session.points) {}
+        marker_(session.law, run.nominal.arm, session.points) {}
 
   void arm_sent(double time, const ArmState& state, double duration) override {
     motion_.send(time, state, duration);
   }
-  void seen(const ServoSight& sight) override {
-    const auto marks = marker_.of(sight);
+  void seen(const ServoObservation& observed) override {
+    const auto marks = marker_.of(observed);
     for (std::size_t i = 0; i < 2; ++i) {
       if (keeps_images_)
-        log_.image(run_.cameras[i], sight.frames[i], logged_image(run_.cameras[i], sight.frames[i]));
-      ServoSightingMessage message;
-      message.time = sight.frames[i].time, message.camera = run_.cameras[i];
-      message.frame = sight.frames[i].number;
-      if (!sight.estimate.is_found && !sight.reasons[i].empty()) message.reason = sight.reasons[i];
-      for (const CurvePoint& point : thinned(sight.seen[i].points, most_points))
+        log_.image(run_.cameras[i], observed.frames[i], logged_image(run_.cameras[i], observed.frames[i]));
+      ServoObservationMessage message;
+      message.time = observed.frames[i].time, message.camera = run_.cameras[i];
+      message.frame = observed.frames[i].number;
+      if (!observed.estimate.is_found && !observed.reasons[i].empty()) message.reason = observed.reasons[i];
+      for (const CurvePoint& point : thinned(observed.seen[i].points, most_points))
         message.points.push_back({point.pixel.x(), point.pixel.y(), point.sigma});
       for (const Eigen::Vector2d& pixel :
-           backbone_pixels(run_.believed.arm, sight.desired, sight.seen[i].view, wanted_points))
-        message.wanted.push_back(to_hundredths(pixel));
+           backbone_pixels(run_.nominal.arm, observed.desired, observed.seen[i].view, desired_points))
+        message.desired.push_back(to_hundredths(pixel));
       if (!marks[i].empty()) message.features.emplace();
       for (const FeatureMark& mark : marks[i])
-        message.features->push_back({to_hundredths(mark.seen), to_hundredths(mark.wanted)});
-      log_.tell({servo_sightings_topic, sight.frames[i].received, message});
+        message.features->push_back({to_hundredths(mark.seen), to_hundredths(mark.desired)});
+      log_.publish({servo_observations_topic, observed.frames[i].received, message});
     }
   }
   void stepped(const ServoStep& step) override {
     ServoStep logged = step;
     if (RigTruth* truth = stage_.rig.truth(); truth != nullptr && step.seen_at)
       logged.truth = true_shape(step, *truth);
-    log_.tell({servo_steps_topic, logged.time, logged});
+    log_.publish({servo_steps_topic, logged.time, logged});
     truth_.push_back(std::move(logged.truth));
     if (!begun_) begun_ = step.time;
     stage_.progress.update(
@@ -68,7 +68,7 @@ class LoggedServo : public ServoSessionWatcher {
         step.error ? fmt::format("{}: {:.2f} % of the length off", run_.name, 100 * step.error->rms)
                    : run_.name);
   }
-  void told(double time, const std::string& what) override {
+  void reported(double time, const std::string& what) override {
     log_.event(time, Recorder::Level::warning, run_.name, what);
   }
   bool is_cancelled() override { return stage_.progress.is_cancelled(); }
@@ -80,7 +80,7 @@ class LoggedServo : public ServoSessionWatcher {
 
  private:
   static constexpr std::size_t most_points = 60;  // Points of an axis in the log.
-  static constexpr int wanted_points = 40;        // Points of the target shape's image.
+  static constexpr int desired_points = 40;       // Points of the target shape's image.
 
   static std::array<double, 2> to_hundredths(const Eigen::Vector2d& pixel) {
     return {std::round(100 * pixel.x()) / 100, std::round(100 * pixel.y()) / 100};
@@ -94,7 +94,7 @@ class LoggedServo : public ServoSessionWatcher {
 
   // At the time of the step's pictures.
   [[nodiscard]] TrueShape true_shape(const ServoStep& step, RigTruth& truth) const {
-    const Arm& arm = run_.believed.arm;
+    const Arm& arm = run_.nominal.arm;
     const Backbone shape = truth.backbone(*step.seen_at);
     TrueShape found;
     for (const Arc& arc : shape.arcs()) found.bends.push_back(arc.bend), found.lengths.push_back(arc.length);
@@ -122,13 +122,13 @@ void add_true_remaining(ServoRun& run) {
 
 }  // namespace
 
-std::vector<double> band_places(const Setup& setup, const Arm& believed) {
+std::vector<double> band_places(const Setup& setup, const Arm& nominal) {
   const ArmModel model = setup.arm_model();
   const Arm& arm = model.shaped();
   std::vector<double> places;
   for (const Marker& marker : setup.arm.look.markers(model.driven())) {
-    const ArmState straight = ArmState::straight(believed.sections.size());
-    places.push_back(arc_length_of(believed, straight, material_point(arm, marker.at)));
+    const ArmState straight = ArmState::straight(nominal.sections.size());
+    places.push_back(arc_length_of(nominal, straight, material_point(arm, marker.at)));
   }
   return places;
 }
@@ -138,14 +138,14 @@ double expected_duration(const ServoTask& task) {
   return to_settle + (task.target.empty() ? 0 : task.target.back().time);
 }
 
-ServoConfig servo_config(const Setup& setup, const ServoTask& task, const RigModel& believed,
+ServoConfig servo_config(const Setup& setup, const ServoTask& task, const RigModel& nominal,
                          const ArmState& from) {
   const std::vector<CameraConfig> cameras = setup.cameras();
   ServoConfig config;
   static_cast<ServoSettings&>(config) = servo_settings(task, cameras);
   config.cameras = servo_cameras(task, cameras);
   const CameraConfig &first = cameras[config.cameras[0]], &second = cameras[config.cameras[1]];
-  const ArmModel arm = believed.arm_model();
+  const ArmModel arm = nominal.arm_model();
   ArmState state = from;
   for (const ServoTargetConfig& target : task.target) {
     if (!target.pictures.empty()) {
@@ -157,7 +157,7 @@ ServoConfig servo_config(const Setup& setup, const ServoTask& task, const RigMod
     config.goals.push_back({target.time, arm.actuation().shape(shape.state), shape.missed});
   }
   const bool is_colored = first.sensor.pixels == PixelKind::color && second.sensor.pixels == PixelKind::color;
-  if (is_colored) config.markers = band_places(setup, believed.arm);
+  if (is_colored) config.markers = band_places(setup, nominal.arm);
   config.step = task.step.value_or(1 / slower_frame_rate(cameras, config.cameras));
   if (setup.drive) config.drive = setup.drive->drive();
   config.list_step = setup.clock.step;
@@ -169,13 +169,13 @@ ServoRun run_servo(const ServoTask& task, const std::string& name, const Setup& 
                    TaskStage& stage) {
   RecordedPorts recorded(stage.rig.ports(), from, stage.record_steps);
   ServoRun run;
-  run.name = name, run.believed = stage.believed.model;
-  ServoConfig session = servo_config(setup, task, run.believed, from);
+  run.name = name, run.nominal = stage.nominal.model;
+  ServoConfig session = servo_config(setup, task, run.nominal, from);
   session.sent = from;
   run.settle = task.settle;
   for (std::size_t i = 0; i < 2; ++i) run.cameras[i] = recorded.ports().cameras[session.cameras[i]].name;
   LoggedServo log(setup, session, expected_duration(task), run, stage, recorded.motion());
-  run.result = servo_in_session(recorded.ports(), run.believed, session, log);
+  run.result = servo_in_session(recorded.ports(), run.nominal, session, log);
   log.add_truth(run.result.steps);
   const double end = recorded.finish();
   run.motion = recorded.motion().motion(end);

@@ -18,7 +18,7 @@ namespace flexura {
 struct ServoRun {
   std::string name;
   std::array<std::string, 2> cameras;  ///< Names of the cameras.
-  RigModel believed;
+  RigModel nominal;
   double settle = 0;  ///< From the task, s.
   /// The session's result, whose steps have the simulated truth, unknown to the session. For targets from
   /// pictures, the truth is compared with the shape estimated from them.
@@ -29,16 +29,16 @@ struct ServoRun {
 
 /// Returns the middles of the bands, m along the arm model, increasing. If calibrated lengths differ from the
 /// file's, a band keeps its share of its section.
-[[nodiscard]] std::vector<double> band_places(const Setup& setup, const Arm& believed);
+[[nodiscard]] std::vector<double> band_places(const Setup& setup, const Arm& nominal);
 
 /// Returns how long a servo to these targets takes, about, s.
 [[nodiscard]] double expected_duration(const ServoTask& task);
 
 /// Returns the configuration of a session for the task, with the arm in the state `from`.
-[[nodiscard]] ServoConfig servo_config(const Setup& setup, const ServoTask& task, const RigModel& believed,
+[[nodiscard]] ServoConfig servo_config(const Setup& setup, const ServoTask& task, const RigModel& nominal,
                                        const ArmState& from);
 
-/// Runs the task on the rig with its model `believed`, and logs its actions and observations. `from`: last
+/// Runs the task on the rig with its model `nominal`, and logs its actions and observations. `from`: last
 /// commanded state of the arm.
 [[nodiscard]] ServoRun run_servo(const ServoTask& task, const std::string& name, const Setup& setup,
                                  const ArmState& from, TaskStage& stage);

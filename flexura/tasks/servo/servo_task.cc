@@ -55,7 +55,7 @@ class ServoRunner : public TaskRunner {
   ServoRunner(const ServoTask& task, const Setup& setup, TaskLabel label)
       : TaskRunner(setup, std::move(label)), task_(task) {}
 
-  [[nodiscard]] TaskWay way() const override { return TaskWay::by_rig; }
+  [[nodiscard]] TaskMotionSource motion_source() const override { return TaskMotionSource::by_rig; }
   [[nodiscard]] TaskWork work() const override {
     constexpr double of_second = 5;  // In s.
     return {.performing = of_second * expected_duration(task_)};
@@ -67,7 +67,7 @@ class ServoRunner : public TaskRunner {
     const auto shapes = servo_target_shapes(task_, arm, from);
     TaskPlan plan{.motion = done ? done : way_to(shapes, arm.driven(), from),
                   .is_steered = true,
-                  .is_foreseen = done != nullptr};
+                  .is_planned = done != nullptr};
     const double length = arm.driven().length();
     for (std::size_t i = 0; i < shapes.size(); ++i) {
       if (!shapes[i] || shapes[i]->missed <= task_.tolerance) continue;

@@ -59,10 +59,10 @@ std::string study_csv(const ImageStudy& study) {
 void write_study_table(ImageStudy& study, const std::filesystem::path& folder) {
   const std::filesystem::path tables = folder / tables_folder_name;
   std::filesystem::create_directory(tables);
-  const std::string wanted = file_name_of(study.name);
-  study.name = wanted;
+  const std::string desired = file_name_of(study.name);
+  study.name = desired;
   for (int i = 2; std::filesystem::exists(tables / (study.name + ".csv")); ++i)
-    study.name = fmt::format("{}-{}", wanted, i);
+    study.name = fmt::format("{}-{}", desired, i);
   write_new_file(tables / (study.name + ".csv"), study_csv(study));
 }
 

@@ -28,7 +28,7 @@ export function Slider(props: SliderProps) {
   const part = (x: number): number => (100 * (Math.min(high, Math.max(low, x)) - low)) / (high - low);
   const [from, to] = [part(reach[0]), part(reach[1])];
   const limited = reach[0] > low || reach[1] < high;
-  const input = (wish: number): void => change(Math.min(reach[1], Math.max(reach[0], wish)));
+  const input = (target: number): void => change(Math.min(reach[1], Math.max(reach[0], target)));
   return (
     <div class="slider">
       <label for={id}>{label}</label>

@@ -25,10 +25,10 @@ export function actuators_of({ actuators }: State): ActuatorState[] {
 
 /** All of them when the one at i goes to `value`: alone, or together with the others, as far as all of these can. */
 export function moved(actuators: ActuatorControl[], values: number[], i: number, value: number, together: boolean): number[] {
-  const clamp = ([low, high]: Range, wish: number): number => Math.min(high, Math.max(low, wish));
-  const wish = clamp(actuators[i].range, value);
-  if (!together) return values.map((old, j) => (j === i ? wish : old));
-  const way = wish - values[i];
+  const clamp = ([low, high]: Range, target: number): number => Math.min(high, Math.max(low, target));
+  const target = clamp(actuators[i].range, value);
+  if (!together) return values.map((old, j) => (j === i ? target : old));
+  const way = target - values[i];
   const share = actuators[i].together.reduce((least, part, j) => {
     const step = part * way;
     if (Math.abs(step) < 1e-12) return least;

@@ -119,9 +119,9 @@ export function changed(
   mode: Exclude<ArmMode, 'tendons'>, kind: 'planar' | 'spatial', controls: Controls, values: number[], i: number, value: number, start = Math.PI / 2,
 ): number[] {
   const next = [...values];
-  const draw = (j: number, wish: number): void => {
+  const draw = (j: number, target: number): void => {
     const [low, high] = reach_of(mode, kind, controls, next, j, start);
-    next[j] = Math.min(high, Math.max(low, wish));
+    next[j] = Math.min(high, Math.max(low, target));
   };
   draw(i, value);
   // Cord angles lean on those before them.

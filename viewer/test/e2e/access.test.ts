@@ -149,8 +149,8 @@ for (const dark of [true, false]) {
       await page.locator('.picture canvas').first().hover();
       await until(async () => /section 2 at s/.test((await page.locator('.pixel').textContent())!));
       expect(await hidden_of(page, '.right')).toBe(0);
-      server.tell_all({ type: 'event', time: 1, level: 'error', name: 'safety', text: 'stopped before section 2: contact with ball' });
-      server.tell_all({ type: 'progress', what: 'a task with a name that is rather long', fraction: 0.4 });
+      server.broadcast({ type: 'event', time: 1, level: 'error', name: 'safety', text: 'stopped before section 2: contact with ball' });
+      server.broadcast({ type: 'progress', what: 'a task with a name that is rather long', fraction: 0.4 });
       await page.waitForTimeout(300);
       await expect_usable(page, 'with everything');
     }));

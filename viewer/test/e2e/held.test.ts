@@ -123,7 +123,7 @@ test('every key that is bound stands in the help', async () => {
 });
 
 test('what is told lies upon neither the inspector nor the plots', async () => {
-  server.tell_all({ type: 'progress', done: true, outcome: 'unsafe', text: 'section 1: bend 130 degrees, limit 120 degrees, at 2.5 s' });
+  server.broadcast({ type: 'progress', done: true, outcome: 'unsafe', text: 'section 1: bend 130 degrees, limit 120 degrees, at 2.5 s' });
   await page.waitForSelector('.notice');
   for (const [width, height] of [[1280, 720], [1440, 900], [853, 480]]) {
     await page.setViewportSize({ width, height });

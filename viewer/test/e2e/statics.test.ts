@@ -13,8 +13,8 @@ test('what nobody asked for is told at once', async () => {
   const server = await faked();
   const { page } = await visit(server.url);
   await page.waitForSelector('.badge[data-kind="live"]');
-  server.tell_all({ type: 'event', time: 1, level: 'info', name: 'reach', text: 'of the log alone' });
-  server.tell_all({ type: 'event', time: 1, level: 'warning', name: 'statics', text: 'the arm snaps', notice: true });
+  server.broadcast({ type: 'event', time: 1, level: 'info', name: 'reach', text: 'of the log alone' });
+  server.broadcast({ type: 'event', time: 1, level: 'warning', name: 'statics', text: 'the arm snaps', notice: true });
   await page.waitForSelector('.notice');
   expect(await page.locator('.notice').allTextContents()).toEqual(['The arm snaps']);
   await server.stop();

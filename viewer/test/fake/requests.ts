@@ -29,7 +29,7 @@ type Answer = Record<string, unknown> | Promise<Record<string, unknown>>;
 export interface Hub {
   session: FakeSession;
   greet_all(): void;
-  tell_all(message: Record<string, unknown>): void;
+  broadcast(message: Record<string, unknown>): void;
 }
 
 const moving = ['arm', 'tip', 'head', 'stage', 'halt', 'reset', 'run'];
@@ -99,15 +99,15 @@ const handlers: Record<string, (hub: Hub, request: Request, client: Client) => A
     const timer = setInterval(() => {
       if (!session.running) {
         clearInterval(timer);
-        return hub.tell_all({ type: 'progress', done: true, outcome: 'cancelled', text: 'it was told to stop at 1 s' });
+        return hub.broadcast({ type: 'progress', done: true, outcome: 'cancelled', text: 'it was told to stop at 1 s' });
       }
-      hub.tell_all({ type: 'progress', what: session.rig.controls.tasks[0].name, fraction: session.share() });
+      hub.broadcast({ type: 'progress', what: session.rig.controls.tasks[0].name, fraction: session.share() });
       if (session.share() < 1) return;
       clearInterval(timer);
       session.running = 0;
       session.has_recording = true;
-      hub.tell_all({ type: 'event', time: session.time, level: 'info', name: 'done', text: 'the tasks are done' });
-      hub.tell_all({ type: 'progress', done: true, outcome: 'done', text: 'The tasks are done.' });
+      hub.broadcast({ type: 'event', time: session.time, level: 'info', name: 'done', text: 'the tasks are done' });
+      hub.broadcast({ type: 'progress', done: true, outcome: 'done', text: 'The tasks are done.' });
     }, 100);
     return { folder: 'results/0001' };
   },

@@ -100,7 +100,7 @@ export class FakeServer {
     return this.clients.size;
   }
 
-  tell_all(message: Record<string, unknown>): void {
+  broadcast(message: Record<string, unknown>): void {
     for (const client of this.clients) client.send(JSON.stringify(message));
   }
 
@@ -109,7 +109,7 @@ export class FakeServer {
   }
 
   greet_all(): void {
-    this.tell_all(this.session.hello(this.id));
+    this.broadcast(this.session.hello(this.id));
   }
 
   private may(request: IncomingMessage): boolean {
@@ -159,11 +159,11 @@ export class FakeServer {
     };
     this.clients.add(client);
     socket.on('close', () => this.clients.delete(client));
-    socket.on('message', (data) => this.said(client, JSON.parse(String(data))));
+    socket.on('message', (data) => this.on_message(client, JSON.parse(String(data))));
     client.send(JSON.stringify(this.session.hello(this.id)));
   }
 
-  private said(client: Connected, request: Record<string, unknown> & { do: string; id: number }): void {
+  private on_message(client: Connected, request: Record<string, unknown> & { do: string; id: number }): void {
     if (request.do === 'ack') return void client.open_pictures.delete(request.camera as string);
     this.log.push(request);
     let reply: Record<string, unknown>;

@@ -101,10 +101,10 @@ test.each([0, 4, 8])('tendon %i takes the others along: what is asked for is one
 test('a tendon goes as far as its section may bend', () => {
   const limit = spatial.controls.sections[1].bend!;
   const { pulled } = bent([[0.5, -0.2], [0.1, 0.6], [-0.4, 0.3]]);
-  for (const wish of [-1, 1]) {
-    const next = pull('spatial', spatial.controls, pulled, 4, wish);
+  for (const target of [-1, 1]) {
+    const next = pull('spatial', spatial.controls, pulled, 4, target);
     expect(Math.hypot(next.bends[2], next.bends[3])).toBeCloseTo(limit, 9);
-    expect(tendon_reach('spatial', spatial.controls, pulled, 4)[wish < 0 ? 0 : 1]).toBeCloseTo(next.displacements[4], 12);
+    expect(tendon_reach('spatial', spatial.controls, pulled, 4)[target < 0 ? 0 : 1]).toBeCloseTo(next.displacements[4], 12);
   }
 });
 

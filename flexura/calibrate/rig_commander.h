@@ -1,0 +1,65 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "flexura/camera/camera.h"
+#include "flexura/port/rig_model.h"
+#include "flexura/port/rig_ports.h"
+
+namespace flexura {
+
+/// Time limits and tolerances for moves and frames.
+struct RigPatience {
+  double settle = 20;  ///< Time limit for motions to end, s.
+  double frame = 3;    ///< Time limit for a frame, s.
+  double poll = 0.02;  ///< Interval between checks for motion, s.
+  /// Largest deviation between measured and commanded bend of a section, rad.
+  double bend = 0.02;
+};
+
+/// Commander of a rig: moves it through its ports, waits for rest, checks that commands were carried out, and
+/// takes frames at rest. Errors are returned as a sentence.
+class RigCommander {
+ public:
+  using Error = std::optional<std::string>;
+
+  /// `nominal` gives ranges and resolutions of heads and stages; its cameras are those of the ports.
+  RigCommander(const RigPorts& ports, const RigModel& nominal, const RigPatience& patience);
+
+  /// Return the present positions.
+  [[nodiscard]] std::variant<ArmState, std::string> arm() const;
+  [[nodiscard]] std::variant<RigStance, std::string> stance(std::size_t camera) const;
+
+  /// Returns why a camera cannot be moved as modelled: it has no head, or no stage.
+  [[nodiscard]] Error must_move(std::size_t camera) const;
+
+  /// Commands; these return at once.
+  [[nodiscard]] Error bend(const ArmState& state, double duration);
+  [[nodiscard]] Error go(const RigStance& stance);
+  /// Waits until nothing moves. Returns an error if anything is not at its commanded position or does not
+  /// come to rest.
+  [[nodiscard]] Error settle();
+
+  /// Returns the next frame whose exposure begins at `time` s or later.
+  [[nodiscard]] std::variant<Frame, std::string> frame(std::size_t camera, double time) const;
+  [[nodiscard]] double now() const { return ports_.clock->now(); }
+
+ private:
+  [[nodiscard]] std::variant<bool, std::string> is_moving() const;
+  [[nodiscard]] Error arm_elsewhere() const;
+  [[nodiscard]] Error camera_elsewhere(std::size_t camera) const;
+  [[nodiscard]] const std::string& name(std::size_t camera) const { return ports_.cameras[camera].name; }
+
+  RigPorts ports_;
+  std::size_t sections_;
+  std::vector<Camera> cameras_;  // As modelled.
+  RigPatience patience_;
+  std::optional<ArmState> sent_arm_;
+  std::vector<std::optional<RigStance>> sent_;  // By camera.
+};
+
+}  // namespace flexura

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <vector>
+
+#include "flexura/model/arm.h"
+
+namespace flexura {
+
+/// Difference between two states of an arm: the change of each section's bend (rad) and stretch.
+struct ArmDifference {
+  std::vector<Eigen::Vector2d> bends;
+  std::vector<double> stretches;
+};
+
+/// Returns the difference from `from` to `to`; both of one arm.
+[[nodiscard]] inline ArmDifference minus(const ArmState& to, const ArmState& from) {
+  ArmDifference way{to.bends, to.stretches};
+  for (std::size_t i = 0; i < way.bends.size(); ++i) {
+    way.bends[i] -= from.bends[i];
+    way.stretches[i] -= from.stretches[i];
+  }
+  return way;
+}
+
+/// Returns `state` plus a share of a difference; both of one arm.
+[[nodiscard]] inline ArmState plus(ArmState state, const ArmDifference& way, double share = 1) {
+  for (std::size_t i = 0; i < state.bends.size(); ++i) {
+    state.bends[i] += share * way.bends[i];
+    state.stretches[i] += share * way.stretches[i];
+  }
+  return state;
+}
+
+/// Computes the state at `fraction` in [0, 1] between two states, with bends and stretches linear: the
+/// paper's "linear interpolation algorithm" (section 4). It is exactly `from` at 0 and `to` at 1, unlike
+/// plus(from, minus(to, from), fraction). `between` must be a different object than both.
+inline void interpolate(const ArmState& from, const ArmState& to, double fraction, ArmState& between) {
+  between = fraction >= 1 ? to : from;
+  if (fraction <= 0 || fraction >= 1) return;
+  for (std::size_t i = 0; i < between.bends.size(); ++i) {
+    between.bends[i] = (1 - fraction) * from.bends[i] + fraction * to.bends[i];
+    between.stretches[i] = (1 - fraction) * from.stretches[i] + fraction * to.stretches[i];
+  }
+}
+[[nodiscard]] inline ArmState interpolate(const ArmState& from, const ArmState& to, double fraction) {
+  ArmState between;
+  interpolate(from, to, fraction, between);
+  return between;
+}
+
+}  // namespace flexura

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <set>
+#include <string>
+#include <utility>
+
+#include "flexura/base/node.h"
+#include "flexura/view/messenger.h"
+#include "flexura/view/run_link.h"
+#include "flexura/view/viewed_rig.h"
+
+namespace flexura {
+
+/// Tells clients how a run of tasks goes: how far it is, what happens, what a calibration or a servo sees,
+/// how it ends.
+class RunReporter {
+ public:
+  RunReporter(ViewedRigPtr rig, Messenger& messenger) : rig_(std::move(rig)), messenger_(messenger) {}
+
+  /// Another run begins: nothing was told of it.
+  void begin();
+  /// Somebody has come who knows nothing yet.
+  void repeat() { are_extras_known_ = false; }
+  /// Tells the clients what is new at `clock` s. Events bear the time `now`, s, or where there is none their
+  /// own.
+  void report(RunLink& run, const RunLink::News& news, double clock, std::optional<double> now,
+              const std::set<ClientId>& clients);
+
+ private:
+  void report_progress(const RunLink::News& news, double clock, const std::set<ClientId>& clients);
+  void report_extras(const RunLink::News& news, double clock, std::optional<double> now,
+                     const std::set<ClientId>& clients);
+  void send(const Node& message, const std::set<ClientId>& clients);
+
+  ViewedRigPtr rig_;
+  Messenger& messenger_;
+  double reported_fraction_ = -1;
+  std::string reported_what_;
+  double reported_at_ = -1;  // s, of the clock
+  bool are_extras_known_ = true;
+  std::uint64_t changes_ = 0;
+  double drawn_at_ = -1;  // s, of the clock
+};
+
+}  // namespace flexura

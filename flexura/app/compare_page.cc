@@ -150,7 +150,7 @@ std::vector<ReportFigure> comparison_figures(const std::string& a, const std::st
       draw(fmt::format("bend-{}-{}", k + 1, axes[i]), fmt::format("section {}", k + 1),
            fmt::format("bend_{} (deg)", axes[i]), 0.1, k < first.bends.size() ? first.bends[k][i] : none[i],
            k < second.bends.size() ? second.bends[k][i] : none[i], figures);
-  draw("servo-error", "servo: distance from the wanted shape, rms", "share of the length", 1, first.error,
+  draw("servo-error", "servo: distance from the target shape, rms", "share of the length", 1, first.error,
        second.error, figures);
   if (!figures.empty() && figures.back().name == "servo-error")
     std::get<LineChart>(figures.back().content).is_log = true;

@@ -66,7 +66,7 @@ void add_notes(std::span<const PictureFile> pictures, std::span<const Observatio
   if (found.is_found && !config.prior.is_base_position_known)
     found.notes.emplace_back(
         "which end is the base is guessed: the one that the border of the first picture cuts, or the lower "
-        "one; --base tells");
+        "one; choose with --base");
   for (std::size_t i = 0; i < pictures.size(); ++i) {
     const auto same = std::ranges::find_if(
         pictures.first(i), [&](const PictureFile& other) { return other.bytes == pictures[i].bytes; });

@@ -67,7 +67,7 @@ std::optional<Eigen::Vector3d> base_of(const EstimateArguments& arguments) {
 
 // Of an arm that may stretch, how long it is: its sections stretch alike, as far as all of them do.
 void hold_length(double length, ShapePrior& prior) {
-  if (prior.is_length_known) throw input_error("--length", "--arm says how long the arm is");
+  if (prior.is_length_known) throw input_error("--length", "--arm already gives the arm's length");
   double shortest = 0, longest = std::numeric_limits<double>::infinity();
   for (const Section& section : prior.arm.sections) {
     shortest = std::max(shortest, section.stretch_limits[0] * prior.arm.length());

@@ -71,7 +71,7 @@ ForwardRequest read_forward_request(const ArmModel& model, std::string_view line
     const ShapeConfig shape = request.shape();
     check_shape(shape, arm.kind, arm.sections.size(), "", reader);
     if (!shape.cord_angles && !shape.archings && !shape.bends && !shape.stretches) {
-      reader.problem("says no shape: expected cord_angles, archings, bends or stretches");
+      reader.problem("has no shape: expected cord_angles, archings, bends or stretches");
     }
     if (reader.problems().empty()) check_bends(arm, shape, "", reader);
   }

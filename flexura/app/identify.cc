@@ -157,7 +157,7 @@ void print_table(const IdentifiedArm& found, std::ostream& out) {
     const std::string of = value.section ? fmt::format("section {}: ", *value.section) : "";
     out << fmt::format("{:<34}", of + words_of(value.name));
     out << (value.is_determined ? fmt::format("{:>12.5g}{:>12.2g}", value.value, value.sigma)
-                                : fmt::format("{:>24}", "not told by this motion"));
+                                : fmt::format("{:>24}", "not observable in this motion"));
     out << fmt::format("{:>12.5g}\n", value.nominal);
   }
   out << fmt::format("{} places at {} times, which the rod's shapes meet within {} (rms); misfit {:.2f}\n",

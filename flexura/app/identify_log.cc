@@ -64,7 +64,7 @@ MeasuredMotion motion_of(const Logged& logged, const std::string& name, const Ex
                          const Rod& rod, bool is_cut) {
   if (logged.truth.empty())
     throw input_error(name,
-                      "has no states of a true arm (/arm/truth): expected the log of a run whose arm has "
+                      "has no true arm states (/arm/truth): expected the log of a run of an arm with "
                       "model = \"dynamic\"");
   const Pose X_BW = experiment.arm.arm().X_WB.inverse();
   MeasuredMotion motion{.places = tube_places(rod), .samples = {}, .is_logged = true, .is_cut = is_cut};
@@ -90,8 +90,9 @@ MeasuredMotion motion_of(const Logged& logged, const std::string& name, const Ex
     // Every second arc begins at a place of the rod.
     for (std::size_t i = 0; i < poses; i += 2) sample.positions.push_back(X_BW * position_of(truth.poses[i]));
     if (!(sample.positions[0].norm() <= same_base * rod.length()))
-      throw input_error(name, fmt::format("has an arm whose base stands {:.3g} m from the experiment's arm",
-                                          sample.positions[0].norm()));
+      throw input_error(name,
+                        fmt::format("has an arm with its base {:.3g} m from the base of the experiment's arm",
+                                    sample.positions[0].norm()));
     motion.samples.push_back(std::move(sample));
   }
   // The base stands where it stands.

@@ -147,8 +147,9 @@ std::vector<std::string> notes_of(const std::vector<BoardPictures>& cameras, con
     const auto& undetermined = fit.cameras[i].undetermined;
     if (!undetermined.empty() && undetermined.front() >= 4)
       notes.push_back(
-          fmt::format("the views do not tell {} of a lens: fewer coefficients with --distortion, or boards "
-                      "that reach the image's corners, would",
+          fmt::format("{} of the lens is not observable in these views: use fewer coefficients with "
+                      "--distortion, or boards "
+                      "that reach the image's corners",
                       parameter_names[static_cast<std::size_t>(undetermined.front())]));
   }
   return notes;

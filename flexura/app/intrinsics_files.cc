@@ -145,7 +145,7 @@ void write_files(const IntrinsicsArguments& arguments, const std::vector<Calibra
                  const FitRemarks& fit, Node::Table& answer) {
   const std::string remark = fmt::format(
       "Measured by flexura intrinsics: rms {:.4g} px over {} points of a board.", fit.rms, fit.points);
-  std::string details = "\n# What the pictures tell, as JSON:\n";
+  std::string details = "\n# The estimates, as JSON:\n";
   for (const Node& one : fit.of_each) details += fmt::format("# {}\n", write_json(one));
   // All of it is made before any of it is written.
   const std::string measured = arguments.out.empty() ? "" : measured_cameras_toml(cameras, remark) + details,

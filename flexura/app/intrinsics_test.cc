@@ -122,7 +122,7 @@ TEST_F(IntrinsicsCommand, MeasuresACameraAndKeepsEarlierFiles) {
   EXPECT_NEAR(written[0].prior.focal_std, std::max(three_sigmas("fx"), three_sigmas("fy")), 1e-5);
   EXPECT_NEAR(written[0].prior.rotation_std, std::max(three_sigmas("cx"), three_sigmas("cy")), 1e-4);
   // Residuals and covariance are kept with it.
-  const std::string head = "\n# What the pictures tell, as JSON:\n# ";
+  const std::string head = "\n# The estimates, as JSON:\n# ";
   const std::size_t at = first.find(head);
   ASSERT_NE(at, std::string::npos);
   const Node kept = parse_json(first.substr(at + head.size()), "the remark");

@@ -63,9 +63,10 @@ std::vector<std::string> notes_on_ratios(const std::vector<MeasuredZoom>& zooms)
     const double reported = *zoom.group.ratio / *first.group.ratio,
                  seen = zoom.focal_length() / first.focal_length();
     if (!(std::abs(std::log(reported / seen)) <= far))
-      notes.push_back(fmt::format(
-          "{}: its ratio is said to be {:.4g} times that of {}, and its focal length is {:.4g} times as long",
-          zoom.group.folder, reported, first.group.folder, seen));
+      notes.push_back(
+          fmt::format("{}: its stated zoom ratio is {:.4g} times that of {}, but its measured focal length "
+                      "is {:.4g} times as long",
+                      zoom.group.folder, reported, first.group.folder, seen));
   }
   return notes;
 }

@@ -43,7 +43,7 @@ const Table<InverseRequest>& fields_of(const InverseRequest*) {
   // Wider than the largest arm; keeps sums of squares finite.
   constexpr double farthest = 1e10;
   static const auto table =
-      Table<InverseRequest>("ik request", "Where the tip or the whole arm shall be.")
+      Table<InverseRequest>("ik request", "Target of the tip or of the whole arm.")
           .field(
               "position", &InverseRequest::position,
               {.meaning = "the tip's position", .unit = Unit::metre, .range = between(-farthest, farthest)})
@@ -60,7 +60,7 @@ const Table<InverseRequest>& fields_of(const InverseRequest*) {
                   .unit = Unit::metre,
                   .range = above_up_to(0, farthest)})
           .field("wish", &InverseRequest::objective, {.meaning = "what to do with freedom that is left"})
-          .field("all", &InverseRequest::all, {.meaning = "whether all distinct solutions are wanted"})
+          .field("all", &InverseRequest::all, {.meaning = "whether to return all distinct solutions"})
           .field("start", &InverseRequest::start, {.meaning = "the shape from which the search begins"});
   return table;
 }
@@ -81,7 +81,7 @@ void check_target(const InverseRequest& request, Reader& reader) {
   }
   if (request.tolerance && !request.curve) reader.problem_at("tolerance", "is for a curve");
   if (request.direction && request.rotation) {
-    reader.problem("says the orientation twice: expected direction or rotation, not both");
+    reader.problem("gives the orientation twice: expected direction or rotation, not both");
   }
   if (request.direction && vector(*request.direction).isZero(0.0)) {
     reader.problem_at("direction", "is zero: expected a direction");

@@ -60,7 +60,7 @@ TEST_F(StoppedProgram, EndsEarlyAndLeavesWhatItHas) {
     const auto& reasons = *reported.find("reasons")->as<Node::Array>();
     ASSERT_EQ(reasons.size(), 1U);
     EXPECT_EQ(*reasons[0].as<std::string>(),
-              fmt::format("it was told to stop at {:.6g} s", *reported.find("duration")->as<double>()));
+              fmt::format("it was stopped at {:.6g} s", *reported.find("duration")->as<double>()));
     EXPECT_EQ(ended.err, "cancelled: " + *reasons[0].as<std::string>() + "\n");
     const McapReader log(path("long/log.mcap"));
     EXPECT_FALSE(log.truncated());

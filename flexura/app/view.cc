@@ -127,7 +127,7 @@ OpenViewer::OpenViewer(ViewStart start, const ViewerArguments& arguments, std::o
   // Nobody could learn where it is.
   if (!out) throw std::runtime_error("cannot write to the standard output");
   if (listens_everywhere(arguments.address))
-    out << "it can be called by every address of this machine; by a name of it once --name says so\n"
+    out << "it answers at every address of this machine, and at a host name given with --name\n"
         << std::flush;
   if (arguments.browser) parts_->page.emplace(parts_->server->url());
 }

@@ -31,7 +31,8 @@ using Eigen::VectorXd;
 using Size = std::array<int, 2>;
 
 constexpr const char* untilted =
-    "the views do not tell focal length and principal point apart from where the board was: expected boards "
+    "focal length and principal point are not observable: they cannot be separated from the board's poses; "
+    "expected boards "
     "tilted to different sides";
 
 // Undetermined unknowns diverge although the views are explained.

@@ -64,7 +64,7 @@ std::optional<std::string> plan_arcs(LookLoop& loop, bool aims_at_centers, ArcPl
     distances[i] = (vector(loop.model(i).mount.position) - plan.centers[i]).dot(plan.normals[i]);
     if (distances[i] < 2 * plan.radius)
       return fmt::format(
-          "camera {} is believed to stand {:.3g} m from the plane {}: expected twice the arc's radius at "
+          "camera {} is nominally {:.3g} m from the plane {}: expected at least twice the arc's radius"
           "least",
           loop.name(i), distances[i], name_of_plane(i));
     depths[i] = distances[i] - (plan.target - plan.centers[i]).dot(plan.normals[i]);

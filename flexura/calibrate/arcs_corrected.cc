@@ -143,7 +143,7 @@ class ArcsCorrected : public ArcsLoop {
     if (off <= farthest * predicted_->sigma) return std::nullopt;
     return fmt::format(
         "the last pictures do not agree with those before: the angle between the axes is {:.3f} deg, "
-        "foretold were {:.3f} deg with a standard deviation of {:.3f} deg",
+        "the prediction is {:.3f} deg with a standard deviation of {:.3f} deg",
         angle_.value / degree, predicted_->value / degree, predicted_->sigma / degree);
   }
 
@@ -223,7 +223,7 @@ class ArcsCorrected : public ArcsLoop {
     if (off <= loop_.config().accepted || is_there)
       what = "holds, or nothing finer can be commanded";
     else if (off > 0.5 * last && !is_far)
-      what = "holds: the pictures tell nothing finer";
+      what = "holds: the pictures resolve nothing finer";
     else
       next = desired_[i];
     if (next)

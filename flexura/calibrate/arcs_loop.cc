@@ -76,7 +76,7 @@ LookLoop::Error ArcsLoop::equalize_zooms() {
       else if (loop_.stands_there(i, next))
         end = "nothing nearer can be commanded";
       else if (round == rounds)
-        end = fmt::format("it is left there after {} looks: correlation hardly tells zooms closer", rounds);
+        end = fmt::format("stopped after {} observations: correlation hardly resolves a finer zoom", rounds);
       loop_.decide(i, "zoom", seen.ratio - 1, accepted, "share",
                    end.empty()
                        ? fmt::format("zoom to {:.5g}, for a correlation of {:.3f}", next.head.zoom, seen.peak)

@@ -178,7 +178,7 @@ class EtalonAsPrinted : public EtalonLoop {
     if (counts_[i].above != 0 || counts_[i].below != 0) return std::nullopt;
     return fmt::format(
         "vertical calibration of camera {} stops, but the cylinder touches the upper and the lower border of "
-        "its picture: that it is as far from both tells nothing",
+        "its picture: equal distances from both borders mean nothing there",
         loop_.name(i));
   }
 

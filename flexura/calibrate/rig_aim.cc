@@ -51,7 +51,7 @@ class Seeker {
         models_{&model.cameras.at(rig_goal.now[0].camera), &model.cameras.at(rig_goal.now[1].camera)},
         cameras_{Camera(*models_[0]), Camera(*models_[1])} {
     if (rig_goal.now[0].camera == rig_goal.now[1].camera)
-      throw std::invalid_argument("a wanted configuration of one camera with itself");
+      throw std::invalid_argument("a target configuration of one camera with itself");
   }
 
   DesiredRig seek(const RigModel& model) {
@@ -191,7 +191,7 @@ class Seeker {
       for (std::size_t j = 0; j < 2; ++j) {
         const AxisConfig& axis = cameras_[i].head_axes()[j];
         if (std::abs(is[j] - should[j]) > axis.resolution * (1 + 1e-9) + 1e-12)
-          result.notes.push_back(fmt::format("{}: {} ends at {:.4f} rad, wanted {:.4f}", models_[i]->name,
+          result.notes.push_back(fmt::format("{}: {} ends at {:.4f} rad, target {:.4f}", models_[i]->name,
                                              names[j], is[j], should[j]));
       }
     }

@@ -97,9 +97,8 @@ RigCommander::Error RigCommander::arm_elsewhere() const {
   for (std::size_t i = 0; i < bends.size(); ++i) {
     const double off = (bends[i] - sent_arm_->bends[i]).norm();
     if (off > patience_.bend)
-      return fmt::format(
-          "the arm does not follow: section {} says that it is {:.3g} rad from where it was sent", i + 1,
-          off);
+      return fmt::format("the arm does not follow: section {} reads {:.3g} rad from its commanded bend",
+                         i + 1, off);
   }
   return std::nullopt;
 }

@@ -76,7 +76,7 @@ class Session {
     if (const double sigma = result_.steps.back().sigmas.angle; !(sigma < unrecoverable))
       return fmt::format(
           "the pictures tell the angle between the axes to {} deg only: more images, other poses or "
-          "turns of the heads tell more",
+          "turns of the heads",
           bounded_text(sigma / degree, most_degrees));
     result_.is_done = true;
     return std::nullopt;
@@ -265,7 +265,7 @@ class Session {
       if (!(prediction.sigmas <= most))
         return fmt::format(
             "camera {} sees the {} {} px from where it was foretold after the move, which is {} "
-            "times what is not known: a head with play, or one that was pushed{}",
+            "standard deviations: a head with backlash, or one that was pushed{}",
             name(i), what_, bounded_text(prediction.px, 1000, 3), bounded_text(prediction.sigmas, 1000, 3),
             config_.etalon ? "" : ", or an arm that bends otherwise each time");
     }
@@ -312,8 +312,8 @@ class Session {
     constexpr double suspicious_rms = 1.2;
     if (result_.found.rms > suspicious_rms)
       result_.desired.notes.push_back(fmt::format(
-          "the pictures differ from the best rig by {:.2g} standard deviations (root mean square): the "
-          "arm may bend otherwise than is believed, and shapes that are seen may be wrong by more than "
+          "the residuals of the best rig are {:.2g} standard deviations (root mean square): the "
+          "arm may bend differently from its model, and estimated shapes may be wrong by more than "
           "is stated",
           result_.found.rms));
   }

@@ -76,7 +76,7 @@ struct RigStep {
   double time = 0;           ///< Time, s.
   std::size_t looks = 0;     ///< Looks so far.
   bool is_found = false;     ///< Whether a rig explains the observations so far.
-  std::string reason;        ///< Why none does.
+  std::string reason;        ///< Why there is no rig.
   double rms = 0;            ///< Root mean square of the residuals, in standard deviations.
   std::size_t outliers = 0;  ///< Number of excluded outliers (RigCalibration::outliers).
   double angle = 0;          ///< Estimated angle between the axes in the `desired` positions, rad.

@@ -207,7 +207,7 @@ std::pair<std::optional<ViewCandidate>, std::string> RigSessionPlan::next(
       std::ranges::find_if(config_.poses, [&](const ArmState& one) { return one.bends == best.pose.bends; });
   const HeadState &a = best.stances[0].head, &b = best.stances[1].head;
   return {best,
-          fmt::format("pose {}, of {} views the one that tells most: pan, tilt and zoom {:.2f} deg, {:.2f} "
+          fmt::format("pose {}, the most informative of {} views: pan, tilt and zoom {:.2f} deg, {:.2f} "
                       "deg, {:.3g} and {:.2f} deg, {:.2f} deg, {:.3g}; the angle's sigma will be {:.4f} deg",
                       pose - config_.poses.begin() + 1, candidates.size(), a.pan / degree, a.tilt / degree,
                       a.zoom, b.pan / degree, b.tilt / degree, b.zoom, choice->sigmas[0] / degree)};
@@ -253,7 +253,7 @@ RigCommander::Error RigSessionPlan::error_with(const RigModel& model, const Desi
   }
   for (const RigStance& stance : desired.stances)
     if (!is_in_view(model, stance, config_.poses.empty() ? home : config_.poses.front()))
-      return fmt::format("camera {} would not see the {} in the wanted configuration{}",
+      return fmt::format("camera {} would not see the {} in the target configuration{}",
                          model.cameras[stance.camera].name, config_.etalon ? "cylinder" : "arm", why);
   return std::nullopt;
 }

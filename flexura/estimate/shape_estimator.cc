@@ -292,7 +292,7 @@ ShapeEstimate ShapeEstimator::answer(const ShapeProblem& problem, ShapeFit fit) 
   const double sigma = result.rms_sigma();
   constexpr double unrecoverable = 0.05;
   if (!(sigma < unrecoverable * length)) {
-    result.reason = "the images do not tell the shape";
+    result.reason = "the shape is not observable in the images";
     return result;
   }
   if (std::string reason = bent_beyond_arms(fit.shape); !reason.empty()) {
@@ -303,7 +303,7 @@ ShapeEstimate ShapeEstimator::answer(const ShapeProblem& problem, ShapeFit fit) 
     result.is_elsewhere = indicates_cameras(fit);
     result.reason = result.is_elsewhere
                         ? elsewhere(*view, fit.shape.views[*view])
-                        : "the cameras would have to stand otherwise by far more than is doubted";
+                        : "the cameras would have to be elsewhere, by far more than their priors allow";
     return result;
   }
   if (const auto picture = picture_of_another(problem.observations(), fit)) {

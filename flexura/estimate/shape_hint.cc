@@ -84,9 +84,9 @@ std::optional<std::string> hint_of_radius(std::span<const Observation> observati
   });
   if (is_one)
     return fmt::format(
-        "the pictures show an arm of {:.3g} m radius, its file has {:.3g} m ({:.3g} m where it says none)",
+        "the pictures show an arm of {:.3g} m radius, its file has {:.3g} m ({:.3g} m is the default)",
         ratio * first, first, Section{}.radius[0]);
-  return fmt::format("the pictures show an arm {:.2f} times as thick as it is described", ratio);
+  return fmt::format("the pictures show an arm {:.2f} times as thick as in its file", ratio);
 }
 
 // Returns a hint if the base, p_WB, would not be near the observed points.

@@ -14,7 +14,7 @@ ShapeTracker::ShapeTracker(ShapePrior prior, const EstimatorConfig& estimator, c
       variables_(prior),
       estimator_(std::move(prior), estimator) {
   if (variables_.of_shape() != variables_.bends_a_section() * static_cast<Eigen::Index>(arm_.sections.size()))
-    throw std::invalid_argument("a tracker needs an arm whose base and length are known");
+    throw std::invalid_argument("a tracker needs an arm of known base and length");
 }
 
 ShapePrediction ShapeTracker::gone_on(std::span<const Observation> observations, double time,

@@ -21,7 +21,7 @@ TEST(BadDynamics, EachIsOneClearLineAtItsPlace) {
   for (
       const Bad& bad : {
           Bad{"", "task[0].target: missing"},
-          Bad{"target = {}\n", "task[0].target: says nothing: expected a shape"},
+          Bad{"target = {}\n", "task[0].target: is empty: expected a shape"},
           Bad{"target = 3\n", "task[0].target = 3: expected a table"},
           Bad{bent_target + angles, "says a shape in more than one way"},
           Bad{"target.azimuths = [0, 1]\n", "azimuths and elevations that do not belong together"},
@@ -31,7 +31,8 @@ TEST(BadDynamics, EachIsOneClearLineAtItsPlace) {
           Bad{"target.azimuths = [0, inf]\ntarget.elevations = [0, 0]\n", "inf: expected"},
           Bad{"target.azimuths = [0, 1e9]\ntarget.elevations = [0, 0]\n", "from -50 rad to 50 rad"},
           Bad{"target.azimuths_deg = [0, 10]\ntarget.elevations_deg = [0, 90]\n",
-              "task[0].target.elevations[1]: 90 deg: expected less than 90 deg, where the azimuth is none"},
+              "task[0].target.elevations[1]: 90 deg: expected less than 90 deg, where the azimuth is "
+              "undefined"},
           Bad{"target.azimuths_deg = [10, 10]\ntarget.elevations_deg = [0, 0]\n",
               "task[0].target.azimuths[0]: 10 deg: expected that of the arm's base, which is clamped, 0 deg"},
           Bad{"target.azimuths_deg = [0, 200]\ntarget.elevations_deg = [0, 0]\n",
@@ -95,7 +96,7 @@ TEST(BadDynamics, ATargetIsTheCurveThatThePolynomialMakesOfIt) {
   EXPECT_THAT(error(angles, "polynomial", 4),
               MatchesRegex(
                   "x.toml:[0-9]+:[0-9]+: task\\[0\\].target: leads, as a polynomial \\(nodes = 4\\), through "
-                  "an elevation of [0-9.]+ deg: expected less than 90 deg, where the azimuth is none"));
+                  "an elevation of [0-9.]+ deg: expected less than 90 deg, where the azimuth is undefined"));
   EXPECT_EQ(error(angles, "polynomial", 5), "no error");
   // With bends too.
   const std::string bends = "target.bends = [[0, -1.5], [0, 0], [0, 0]]\n";

@@ -62,7 +62,7 @@ TEST(BadMaterialFiles, EachGetsALineWithPlaceValueAndExpectation) {
       {"stiffness that is no number", rods_with("youngs_modulus = 54e9", "youngs_modulus = nan"),
        "arm.section[0].material.youngs_modulus = nan: expected a number above 0"},
       {"nothing elastic", rods_with("youngs_modulus = 54e9\n", ""),
-       "x.toml:8:14: arm.section[0].material: says no stiffness: expected youngs_modulus, or stiffness"},
+       "x.toml:8:14: arm.section[0].material: has no stiffness: expected youngs_modulus, or stiffness"},
       {"Poisson's ratio above a half", rods_with("poisson = 0.3", "poisson = 0.6"),
        "x.toml:10:11: arm.section[0].material.poisson = 0.6: expected a number from 0 to 0.5"},
       {"both moduli and Poisson's ratio", rods_with("poisson = 0.3", "poisson = 0.3\nshear_modulus = 2e10"),

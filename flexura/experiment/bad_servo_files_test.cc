@@ -36,7 +36,7 @@ TEST(BadServo, EachIsOneClearLine) {
   for (const auto& [task, words] : {
            std::pair<std::string, std::string>{"", "task[0].target: missing"},
            {"target = []\n", "empty array: expected an array of 1 to"},
-           {"target = [{}]\n", "target[0]: says nothing: expected a shape in one way"},
+           {"target = [{}]\n", "target[0]: is empty: expected a shape in one way"},
            {"target = [{" + bends + ", position = [0, 0, 1]}]\n", "in more than one way"},
            {"target = [{azimuths = [0, 1]}]\n", "azimuths and elevations that do not belong together"},
            {"target = [{azimuths = [0, 1], elevations = [0]}]\n", "expected an array of 2 to"},

@@ -279,7 +279,7 @@ TEST(CalibrateTask, LeavesALogASummaryAReportAndARigToInclude) {
   const auto states = logged<ArmStateMessage>(result, arm_state_topic);
   EXPECT_TRUE(std::ranges::is_sorted(states, {}, &ArmStateMessage::time));
   EXPECT_GT(counts["/calibration/moves"], 6U);
-  EXPECT_EQ(counts["/calibration/sightings"], 8U);
+  EXPECT_EQ(counts["/calibration/observations"], 8U);
   EXPECT_EQ(counts["/calibration/decisions"], 3U);
   EXPECT_GE(counts["/camera/front"], 4U);
   EXPECT_NEAR(states.back().time, *result.summary.find("duration")->as<double>(), 1e-6);

@@ -213,7 +213,7 @@ TEST_F(Dynamics, CannotStartWhereAnAngleIsNone) {
           dynamics_task("target.bends = [[0.3, 0]]\n"));
   EXPECT_EQ(result.outcome, RunOutcome::failed);
   EXPECT_THAT(result.reasons,
-              ElementsAre("dynamics: it starts with an elevation of 90 deg, where the azimuth is none"));
+              ElementsAre("dynamics: it starts with an elevation of 90 deg, where the azimuth is undefined"));
   EXPECT_EQ(number(result.summary, "duration"), 0);
 }
 

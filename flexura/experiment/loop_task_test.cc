@@ -149,7 +149,7 @@ TEST(EtalonLoop, LeavesALogASummaryAndAReportTheSameEachTime) {
   EXPECT_NE(calibration.find("remainder_in_truth"), nullptr);
   auto counts = logged_counts(result);
   const auto& pictures = *calibration.find("pictures")->as<Node::Array>();
-  EXPECT_EQ(counts["/calibration/sightings"],
+  EXPECT_EQ(counts["/calibration/observations"],
             static_cast<std::size_t>(*pictures[0].as<std::int64_t>() + *pictures[1].as<std::int64_t>()));
   EXPECT_EQ(counts["/calibration/decisions"], calibration.find("steps")->as<Node::Array>()->size() + 1)
       << "the last one says how it ended";

@@ -91,7 +91,7 @@ const Table<ArmReadingMessage>& fields_of(const ArmReadingMessage*) {
           .field("bends", &ArmReadingMessage::bends,
                  {.meaning = "Each section's bend as the model makes it of the motors, rad."})
           .field("stretches", &ArmReadingMessage::stretches,
-                 {.meaning = "The factor on each section's length, likewise."})
+                 {.meaning = "The factor on each section's length as the model makes it of the motors."})
           .field("positions", &ArmReadingMessage::positions,
                  {.meaning = "Each axis's position, microsteps; arms with drives."})
           .field("moving", &ArmReadingMessage::moving, {.meaning = "Whether a motion is under way."});
@@ -146,7 +146,7 @@ const Table<ContactsMessage>& fields_of(const ContactsMessage*) {
 
 const Table<HeadReadingMessage>& fields_of(const HeadReadingMessage*) {
   static const auto table =
-      Table<HeadReadingMessage>("flexura.HeadReading", "Where a camera's head says that it stands.")
+      Table<HeadReadingMessage>("flexura.HeadReading", "Measured pan, tilt and zoom of a camera's head.")
           .field("time", &HeadReadingMessage::time, {.meaning = "Time since the experiment's start, s."})
           .field("pan", &HeadReadingMessage::pan, {.meaning = "rad, to the camera's left."})
           .field("tilt", &HeadReadingMessage::tilt, {.meaning = "rad, upwards."})
@@ -157,7 +157,7 @@ const Table<HeadReadingMessage>& fields_of(const HeadReadingMessage*) {
 
 const Table<StageReadingMessage>& fields_of(const StageReadingMessage*) {
   static const auto table =
-      Table<StageReadingMessage>("flexura.StageReading", "Where a camera's stage says that it stands.")
+      Table<StageReadingMessage>("flexura.StageReading", "Measured position of a camera's stage.")
           .field("time", &StageReadingMessage::time, {.meaning = "Time since the experiment's start, s."})
           .field("offset", &StageReadingMessage::offset, {.meaning = "Right, down, forward, m."})
           .field("moving", &StageReadingMessage::moving, {.meaning = "Whether a motion is under way."});

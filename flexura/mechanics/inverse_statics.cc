@@ -57,7 +57,7 @@ std::string input_problem(const RodStatics& statics, const RodTarget& target, co
                        config.start->q.size() != statics.chain().size()))
     return "a start that is no equilibrium of this rod";
   if (config.start && std::ranges::any_of(config.start->tensions, [](double t) { return !std::isfinite(t); }))
-    return "a start whose tensions are not finite";
+    return "a start with tensions that are not finite";
   return "";
 }
 

@@ -39,9 +39,9 @@ class PlaceFit {
         if (nodes_[i].element == nodes_[k].element && nodes_[i].node == nodes_[k].node)
           throw std::invalid_argument(fmt::format("places {} and {} are the same", k + 1, i + 1));
     if (rows_ <= chain_.size())
-      throw std::invalid_argument(
-          fmt::format("{} places do not tell {} strain modes: expected at least {}, or a rod of fewer modes",
-                      places.size(), chain_.size(), chain_.size() / 3 + 1));
+      throw std::invalid_argument(fmt::format(
+          "{} places do not determine {} strain modes: expected at least {}, or a rod of fewer modes",
+          places.size(), chain_.size(), chain_.size() / 3 + 1));
   }
 
   [[nodiscard]] const RodChain& chain() const { return chain_; }

@@ -34,7 +34,7 @@ EquilibriumSlopes RodStatics::slopes() {
   const Eigen::Index n = chain_.size(), count = static_cast<Eigen::Index>(pulls_.size());
   chain_.balance(at_, pulls_, loads_, 1);
   chain_.place_with_columns(at_);
-  if (!chain_.factor()) throw std::runtime_error("an equilibrium whose derivative has no inverse");
+  if (!chain_.factor()) throw std::runtime_error("an equilibrium with a singular derivative");
   const Eigen::MatrixXd lengths_by_q = chain_.length_slopes().transpose();
   const std::vector<RodElement>& elements = chain_.elements();
   RodElement::Columns J(6, n);

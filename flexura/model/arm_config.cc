@@ -204,7 +204,7 @@ void check_shape(const ShapeConfig& shape, ArmKind kind, std::size_t sections, c
   const int ways = (shape.cord_angles ? 1 : 0) + (shape.archings ? 1 : 0) + (shape.bends ? 1 : 0);
   if (ways > 1) {
     reader.problem_at(path,
-                      "says the bends in more than one way: expected one of cord_angles, archings, bends");
+                      "gives the bends in more than one way: expected one of cord_angles, archings, bends");
   }
   for (const auto& [name, values] :
        {std::pair{"cord_angles", &shape.cord_angles}, std::pair{"archings", &shape.archings}}) {

@@ -96,7 +96,7 @@ const Table<TendonRouteConfig>& fields_of(const TendonRouteConfig*) {
                                "Route of a tendon in the tube, from the arm's base to the end of one "
                                "section: parallel to the backbone, converging, helical or polynomial.")
           .field("section", &TendonRouteConfig::section,
-                 {.meaning = "Section at whose end the tendon ends, counted from 1 at the base.",
+                 {.meaning = "Section at the end of which the tendon ends, counted from 1 at the base.",
                   .range = between(1, 1e6),
                   .required = true})
           .field("radius", &TendonRouteConfig::radius,
@@ -138,7 +138,7 @@ const Table<LoadConfig>& fields_of(const LoadConfig*) {
   static const auto table =
       Table<LoadConfig>("load", "A force and a moment at the end of a section.")
           .field("section", &LoadConfig::section,
-                 {.meaning = "Section whose end is loaded, counted from 1 at the base.",
+                 {.meaning = "Section with the loaded end, counted from 1 at the base.",
                   .range = between(1, 1e6),
                   .required = true})
           .field("force", &LoadConfig::force,

@@ -149,7 +149,7 @@ const Table<TendonConfig>& fields_of(const TendonConfig*) {
                           "A cable parallel to the backbone, from the arm's base to the end of one section, "
                           "and its motor axis.")
           .field("section", &TendonConfig::section,
-                 {.meaning = "Section at whose end the tendon ends, counted from 1 at the base.",
+                 {.meaning = "Section at the end of which the tendon ends, counted from 1 at the base.",
                   .range = between(1, 1e6),
                   .required = true})
           .field("angle", &TendonConfig::angle,

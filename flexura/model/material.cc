@@ -30,7 +30,7 @@ void check_ways(const MaterialConfig& material, Reader& reader) {
           std::pair{"shear_modulus", &material.shear_modulus}, std::pair{"poisson", &material.poisson}})
       if (*modulus) reader.problem_at(name, "is given beside stiffness: expected one of them");
   } else if (!material.youngs_modulus) {
-    reader.problem("says no stiffness: expected youngs_modulus, or stiffness");
+    reader.problem("has no stiffness: expected youngs_modulus, or stiffness");
   }
   if (material.shear_modulus && material.poisson)
     reader.problem_at("poisson", "is given beside shear_modulus: expected one of them");

@@ -77,7 +77,7 @@ PnmHeader read_header(std::uint8_t kind, PnmText& text, std::size_t most_pixels)
   header.most = text.number();
   if (header.most < 1 || header.most > most_value)
     throw std::runtime_error(
-        fmt::format("the PNM file says {} for white: expected 1 to {}", header.most, most_value));
+        fmt::format("the PNM file has {} for white: expected 1 to {}", header.most, most_value));
   return header;
 }
 

@@ -112,13 +112,13 @@ CommandOutcome DrivenArm::pull(const std::vector<double>& displacements, double 
 std::string DrivenArm::problem_of(const DriveReading& reading) const {
   if (reading.values.size() != drive_.axes.size() ||
       (!reading.carried.empty() && reading.carried.size() != drive_.axes.size()))
-    return fmt::format("its drive tells of {} axes and {} behind their play, it has {}",
+    return fmt::format("its drive reports {} axes and {} behind their backlash: expected {}",
                        reading.values.size(), reading.carried.size(), drive_.axes.size());
   // Larger values do not fit into an integer of 64 bits.
   const auto is_counted = [](double value) { return std::abs(value) < 9e18; };
   if (!all_finite(reading.values) || !all_finite(reading.carried) ||
       !std::ranges::all_of(reading.values, is_counted))
-    return "its drive tells of positions that are no numbers";
+    return "its drive reports positions that are not finite or too large";
   return "";
 }
 

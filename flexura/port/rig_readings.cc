@@ -38,10 +38,10 @@ std::variant<ArmReading, std::string> read_arm(ArmPort& arm, std::size_t section
   auto outcome = arm.read();
   if (const auto fault = outcome.fault()) return "the arm: " + text(*fault);
   const ArmReading& reading = outcome.value();
-  if (!std::isfinite(reading.time)) return "the arm tells of no time: a number is none";
-  if (!is_finite(reading)) return "the arm's drives tell of no shape: some of their numbers are none";
+  if (!std::isfinite(reading.time)) return "the arm's timestamp is not finite";
+  if (!is_finite(reading)) return "the arm's readings are not finite";
   if (reading.state.bends.size() != sections || reading.state.stretches.size() != sections)
-    return fmt::format("the arm's drives tell of {} sections and {} stretches, the arm has {}",
+    return fmt::format("the arm's drives report {} sections and {} stretches: expected {}",
                        reading.state.bends.size(), reading.state.stretches.size(), sections);
   return reading;
 }
@@ -57,7 +57,7 @@ std::variant<StanceReading, std::string> read_camera(const RigPorts& rig, std::s
     return fmt::format("the stage of camera {}: {}", ports.name, text(*fault));
   if (!is_finite(head.value()) || !std::isfinite(stage.value().time) ||
       !stage.value().state.offset.allFinite())
-    return fmt::format("camera {} does not tell how it stands: some of its numbers are none", ports.name);
+    return fmt::format("camera {}: the readings of its head or stage are not finite", ports.name);
   HeadState state = head.value().state;
   const ZoomTable& lens = optics.lens();
   if (lens.is_linear() && !(state.zoom > 0))

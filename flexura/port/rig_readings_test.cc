@@ -60,11 +60,11 @@ TEST(RigReadings, AnArmThatIsInNoStateIsToldInWords) {
   for (double* number : {&arm.next_reading.state.bends[1].y(), &arm.next_reading.state.stretches[1]}) {
     const double before = *number;
     *number = none;
-    EXPECT_EQ(error_of_read(arm), "the arm's drives tell of no shape: some of their numbers are none");
+    EXPECT_EQ(error_of_read(arm), "the arm's readings are not finite");
     *number = before;
   }
   arm.next_reading.time = none;
-  EXPECT_EQ(error_of_read(arm), "the arm tells of no time: a number is none");
+  EXPECT_EQ(error_of_read(arm), "the arm's timestamp is not finite");
   arm.next_reading.time = 0;
   arm.next_reading.state.stretches.pop_back();
   EXPECT_EQ(error_of_read(arm), "the arm's drives tell of 2 sections and 1 stretches, the arm has 2");

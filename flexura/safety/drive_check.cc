@@ -263,10 +263,12 @@ void report_notes(const std::vector<AxisCheck>& axes, const Drive& drive, double
       "motor speed and step rate of {}: the motion keeps to the limit, rounded to microsteps it does not: up "
       "to one more in {:.6g} s");
   say(&AxisNotes::takes_up_backlash,
-      "motors of {}: where a tendon reverses its play is taken up within one step of the clock, {:.6g} s; "
+      "motors of {}: where a tendon reverses, its backlash is taken up within one step of the clock, {:.6g} "
+      "s; "
       "the shorter that is, the more it asks");
   say(&AxisNotes::is_over_while_steered,
-      "motors of {}: while the arm is steered speeds and accelerations count without play and rounding, as "
+      "motors of {}: while the arm is steered, speeds and accelerations count without backlash and rounding, "
+      "as "
       "its limiter counts them; with these the list asks for more than a limit within one step of the clock, "
       "{:.6g} s");
 }

@@ -47,16 +47,16 @@ RigReader::Error RigReader::read() {
 
 RigReader::Error RigReader::invalid_time(const std::string& device, double time) const {
   const double age = now() - time;
-  if (age < -ahead) return fmt::format("{} tells of a time that is {:.4g} s from now", device, -age);
-  if (age > times_.silent) return fmt::format("{} tells of nothing since {:.4g} s ago", device, age);
+  if (age < -ahead) return fmt::format("{}: its timestamp is {:.4g} s in the future", device, -age);
+  if (age > times_.silent) return fmt::format("{}: no reading for {:.4g} s", device, age);
   return std::nullopt;
 }
 
 std::string RigReader::invalid_time(const Frame& frame, const std::deque<Frame>& before) const {
   if (!std::isfinite(frame.time) || !std::isfinite(frame.received))
-    return "its picture tells of no time: a number is none";
+    return "its picture's timestamp is not finite";
   if (frame.time > now() + ahead)
-    return fmt::format("its picture tells of a time that is {:.4g} s from now", frame.time - now());
+    return fmt::format("its picture's timestamp is {:.4g} s in the future", frame.time - now());
   if (!before.empty() && frame.time < before.back().time)
     return fmt::format("its picture is {:.4g} s older than the one before", before.back().time - frame.time);
   return "";

@@ -152,7 +152,7 @@ class Session {
     constexpr double rounding = 1e-6;
     double passed = std::ceil((rig_.now() - result_.start) / config_.step - rounding);
     constexpr double most = 1e15;
-    if (!(passed < most)) passed = 0, fault("the clock tells of no time that a servo lasts for");
+    if (!(passed < most)) passed = 0, fault("the clock's time is out of range for a servo");
     const long next = std::max(ticks_ + 1, static_cast<long>(passed));
     if (next > ticks_ + 1 && result_.missed_steps == 0)
       watcher_.reported(rig_.now(),

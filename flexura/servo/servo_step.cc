@@ -158,17 +158,16 @@ const Table<ServoStep>& fields_of(const ServoStep*) {
           .field("time", &S::time, {.meaning = "When it was sent, since the experiment's start, s."})
           .field("seen_at", &S::seen_at, {.meaning = "Middle of the exposure of the pictures it goes by, s."})
           .part<BendsOf<&S::desired>>("desired",
-                                      {.meaning = "Each section's bend wanted at their time, rad."})
+                                      {.meaning = "Target bend of each section at their time, rad."})
           .part<StretchesOf<&S::desired>>("desired_stretches",
-                                          {.meaning = "Each section's stretch wanted then."})
+                                          {.meaning = "Target stretch of each section then."})
           .part<SeenBends>("seen", {.meaning = "Each section's bend as seen in them, rad."})
           .part<SeenStretches>("seen_stretches", {.meaning = "Each section's stretch as seen."})
           .part<BendsOf<&S::sent>>("sent", {.meaning = "Each section's bend as commanded, rad."})
           .part<StretchesOf<&S::sent>>("sent_stretches", {.meaning = "Each section's stretch as commanded."})
           .part<Heads>("heads",
                        {.meaning = "Where heads that follow the arm were sent to with this command."})
-          .field("lengths", &S::lengths,
-                 {.meaning = "Each section's length without stretch, as it is believed to be, m."})
+          .field("lengths", &S::lengths, {.meaning = "Model length of each section without stretch, m."})
           .part<TrueBends>(
               "truth",
               {.meaning = "Each section's bend in the simulated truth, at the time of the pictures, rad."})
@@ -179,11 +178,17 @@ const Table<ServoStep>& fields_of(const ServoStep*) {
               "rms",
               {.meaning =
                    "Distance along the arm from seen to desired, root mean square, share of its length."})
-          .part<SeenError<&E::most>>("most", {.meaning = "Likewise, the largest."})
-          .part<SeenError<&E::tip>>("tip", {.meaning = "Likewise, of the tip."})
+          .part<SeenError<&E::most>>(
+              "most",
+              {.meaning = "Distance along the arm from seen to desired, largest, share of its length."})
+          .part<SeenError<&E::tip>>(
+              "tip", {.meaning = "Distance of the tip from seen to desired, share of the length."})
           .part<TrueError<&E::rms>>("true_rms", {.meaning = "As rms, from the simulated truth to desired."})
-          .part<TrueError<&E::most>>("true_most", {.meaning = "Likewise, the largest."})
-          .part<TrueError<&E::tip>>("true_tip", {.meaning = "Likewise, of the tip."})
+          .part<TrueError<&E::most>>(
+              "true_most",
+              {.meaning = "Distance along the arm from the simulated truth to desired, largest."})
+          .part<TrueError<&E::tip>>("true_tip",
+                                    {.meaning = "Distance of the tip from the simulated truth to desired."})
           .field("potential", &S::potential,
                  {.meaning =
                       "Half the square of the law's error: rad^2 for shape and potential, px^2 otherwise."})

@@ -109,9 +109,9 @@ const Table<ArmRequest>& fields_of(const ArmRequest*) {
           .field("duration", &ArmRequest::duration, {.meaning = "s", .range = between(0, 1e6)})
           .check([](const ArmRequest& arm, Reader& reader) {
             if (arm.tendons && (arm.bends || arm.cord_angles || arm.archings || arm.stretches))
-              reader.problem_at("tendons", "stand alone: expected no other shape beside them");
+              reader.problem_at("tendons", "are given beside another shape: expected tendons alone");
             if (!arm.tendons && !arm.bends && !arm.cord_angles && !arm.archings && !arm.stretches)
-              reader.problem("says no shape: expected bends, cord_angles, archings, tendons or stretches");
+              reader.problem("has no shape: expected bends, cord_angles, archings, tendons or stretches");
           });
   return table;
 }

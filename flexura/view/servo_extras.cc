@@ -16,7 +16,7 @@
 namespace flexura {
 namespace {
 
-constexpr ExtraName desired{"wanted", "Wanted", "#ff922b"};
+constexpr ExtraName desired{"wanted", "Target", "#ff922b"};
 constexpr ExtraName seen{"seen", "Seen", "#22b8cf"};
 constexpr ExtraName features{"features", "Features", "#da77f2"};
 
@@ -135,7 +135,7 @@ Extras servo_extras(const ViewedRig& rig, const ShownServo& servo) {
   Extras extras;
   extras.time = step.time, extras.title = "Servo", extras.text = caption(step);
   extras.ghosts.push_back(ghost_of(desired, shapes.desired));
-  extras.along_label = "Distance from wanted", extras.along_unit = "mm",
+  extras.along_label = "Distance from target", extras.along_unit = "mm",
   extras.length = shapes.desired.arm.length();
   if (shapes.seen) {
     extras.ghosts.push_back(ghost_of(seen, *shapes.seen));

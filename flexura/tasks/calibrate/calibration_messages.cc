@@ -73,17 +73,18 @@ const Table<CalibrationObservationMessage>& fields_of(const CalibrationObservati
           .field("look", &M::look, {.meaning = "Number of the look, from 1; 0: the arm is looked for."})
           .field("camera", &M::camera, {.meaning = "The camera's name."})
           .field("frame", &M::frame, {.meaning = "The frame's number."})
-          .field("pan", &M::pan, {.meaning = "As the head says, rad."})
-          .field("tilt", &M::tilt, {.meaning = "Likewise, rad."})
-          .field("zoom", &M::zoom, {.meaning = "Likewise."})
-          .field("stage", &M::stage, {.meaning = "As the stage says, m."})
-          .field("bends", &M::bends, {.meaning = "Each section's bend as the drives say, rad."})
+          .field("pan", &M::pan, {.meaning = "Measured pan of the head, rad."})
+          .field("tilt", &M::tilt, {.meaning = "Measured tilt of the head, rad."})
+          .field("zoom", &M::zoom, {.meaning = "Measured zoom of the head."})
+          .field("stage", &M::stage, {.meaning = "Measured position of the stage, m."})
+          .field("bends", &M::bends, {.meaning = "Measured bend of each section by the drives, rad."})
           .field("markers", &M::markers, {.meaning = "The markers that were recognised."})
           .field("points", &M::points, {.meaning = "Independent points of the median axis, base to tip."})
           .field("unknown", &M::unknown, {.meaning = "How many markers were not recognised."})
           .field("reason", &M::reason, {.meaning = "Why the picture is of no use."})
           .field("values", &M::values, {.meaning = "What the paper's methods measured."})
-          .field("circle", &M::circle, {.meaning = "Likewise: the circle through the points."})
+          .field("circle", &M::circle,
+                 {.meaning = "The circle through the points, as the paper's methods measured it."})
           .field(
               "ideal", &M::ideal,
               {.meaning = "Methods with arcs: where the ideal camera would see the axis, base to tip, px."});
@@ -97,9 +98,9 @@ const Table<CalibrationDecisionMessage>& fields_of(const CalibrationDecisionMess
           .field("time", &M::time, {.meaning = "Time since the experiment's start, s."})
           .field("looks", &M::looks, {.meaning = "Looks up to now."})
           .field("found", &M::found, {.meaning = "Whether a rig explains what was seen."})
-          .field("reason", &M::reason, {.meaning = "Why none does."})
+          .field("reason", &M::reason, {.meaning = "Why there is no rig."})
           .field("rms", &M::rms, {.meaning = "Root mean square of the residuals, in standard deviations."})
-          .field("doubts", &M::outliers, {.meaning = "Things seen that were left out."})
+          .field("doubts", &M::outliers, {.meaning = "Observations that were left out as outliers."})
           .field("angle", &M::angle,
                  {.meaning = "Between the optical axes where the cameras would be sent now, rad."})
           .field("angle_sigma", &M::angle_sigma, {.meaning = "Its standard deviation, rad."})
@@ -108,13 +109,12 @@ const Table<CalibrationDecisionMessage>& fields_of(const CalibrationDecisionMess
           .field("zoom_ratio_sigma", &M::zoom_ratio_sigma,
                  {.meaning = "Of how much larger one camera shows the arm than the other, a share."})
           .field("next", &M::next, {.meaning = "What is done next, and why."})
-          .field("camera", &M::camera,
-                 {.meaning = "The paper's methods, which find no rig: the camera that they move."})
-          .field("step", &M::step, {.meaning = "Likewise: the step that they are in."})
-          .field("offset", &M::offset, {.meaning = "Likewise: how far off it is."})
-          .field("accepted", &M::accepted, {.meaning = "Likewise: how far off it may be."})
-          .field("unit", &M::unit, {.meaning = "Of the last two."})
-          .field("ended", &M::ended, {.meaning = "Whether it is over, as \"next\" says."});
+          .field("camera", &M::camera, {.meaning = "The paper's methods only: the camera that they move."})
+          .field("step", &M::step, {.meaning = "The paper's methods only: the current step."})
+          .field("offset", &M::offset, {.meaning = "The paper's methods only: the remaining error."})
+          .field("accepted", &M::accepted, {.meaning = "The paper's methods only: the accepted error."})
+          .field("unit", &M::unit, {.meaning = "Unit of offset and accepted."})
+          .field("ended", &M::ended, {.meaning = "Whether the step is over (see next)."});
   return table;
 }
 

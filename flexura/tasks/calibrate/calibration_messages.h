@@ -57,7 +57,7 @@ struct CircleMessage {
   bool verified = false;
 };
 
-/// flexura.CalibrationSighting, on /calibration/sightings: measurements in one picture.
+/// flexura.CalibrationSighting, on /calibration/observations: measurements in one picture.
 struct CalibrationObservationMessage {
   double time = 0;        ///< Middle of the exposure, s.
   std::int64_t look = 0;  ///< From 1; 0 during the search for the arm.
@@ -99,7 +99,7 @@ struct CalibrationDecisionMessage {
 
 inline constexpr std::string_view calibration_moves_topic = "/calibration/moves";
 inline constexpr std::string_view calibration_arcs_topic = "/calibration/arcs";
-inline constexpr std::string_view calibration_observations_topic = "/calibration/sightings";
+inline constexpr std::string_view calibration_observations_topic = "/calibration/observations";
 inline constexpr std::string_view calibration_decisions_topic = "/calibration/decisions";
 
 const Table<CalibrationMoveMessage>& fields_of(const CalibrationMoveMessage*);

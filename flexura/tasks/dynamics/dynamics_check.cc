@@ -27,9 +27,9 @@ void check_ways(const DynamicsTask& task, const std::string& path, Reader& reade
   const DynamicsTargetConfig& target = task.target;
   const bool has_angles = target.azimuths || target.elevations;
   if (gives_bends(target) && has_angles)
-    reader.problem_at(path, "says a shape in more than one way: expected bends, or azimuths and elevations");
+    reader.problem_at(path, "gives a shape in more than one way: expected bends, or azimuths and elevations");
   if (!gives_bends(target) && !has_angles && !target.stretches)
-    reader.problem_at(path, "says nothing: expected a shape, as bends, or azimuths and elevations");
+    reader.problem_at(path, "is empty: expected a shape, as bends, or azimuths and elevations");
   if (target.azimuths.has_value() != target.elevations.has_value() ||
       (target.azimuths && target.azimuths->size() != target.elevations->size()))
     reader.problem_at(path,
@@ -53,7 +53,7 @@ void check_angles(const DynamicsTask& task, const Arm& arm, const std::string& p
   for (std::size_t i = 0; i < elevations.size(); ++i) {
     if (std::abs(elevations[i]) > most_elevation)
       reader.problem_at(fmt::format("{}.elevations[{}]", path, i),
-                        fmt::format("{:.6g} deg: expected less than 90 deg, where the azimuth is none",
+                        fmt::format("{:.6g} deg: expected less than 90 deg, where the azimuth is undefined",
                                     elevations[i] / degree));
     if (arm.kind == ArmKind::planar && elevations[i] != 0)
       reader.problem_at(fmt::format("{}.elevations[{}]", path, i),
@@ -102,14 +102,14 @@ void check_keys(const DynamicsTask& task, const Setup& setup, const std::string&
   if (straight.largest_elevation() > most_elevation) {
     reader.problem_at(path,
                       "the arm's base points along Z: expected an elevation below 90 deg, where the "
-                      "azimuth is none");
+                      "azimuth is undefined");
   } else if (task.target.azimuths) {
     check_angles(task, arm, target, reader);
   } else if (const double q = AnglesAlongArm(arm, arm_state(arm, task.target)).largest_elevation();
              q > most_elevation) {
     reader.problem_at(
         target, fmt::format("leads through an elevation of {:.4g} deg: expected less than 90 deg, where "
-                            "the azimuth is none",
+                            "the azimuth is undefined",
                             q / degree));
   }
   if (reader.problems().size() > before) return;
@@ -119,7 +119,7 @@ void check_keys(const DynamicsTask& task, const Setup& setup, const std::string&
     reader.problem_at(
         target,
         fmt::format("leads, as a polynomial (nodes = {}), through an elevation of {:.4g} deg: expected "
-                    "less than 90 deg, where the azimuth is none",
+                    "less than 90 deg, where the azimuth is undefined",
                     task.nodes, q / degree));
 }
 

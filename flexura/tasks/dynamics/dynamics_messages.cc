@@ -21,7 +21,8 @@ const Table<DynamicsSampleMessage>& fields_of(const DynamicsSampleMessage*) {
           .field("taken_by_medium", &M::taken_by_medium, {.meaning = "What the arm's own took, J."})
           .field("azimuth_error", &M::azimuth_error,
                  {.meaning = "theta less that of the target, root mean square along the arm, rad."})
-          .field("elevation_error", &M::elevation_error, {.meaning = "q likewise, rad."})
+          .field("elevation_error", &M::elevation_error,
+                 {.meaning = "q less that of the target, root mean square along the arm, rad."})
           .field("spatial_error", &M::spatial_error,
                  {.meaning = "Both together: of cos q times theta's and of q's, rad."})
           .field("tip_error", &M::tip_error, {.meaning = "The tip's distance from that of the target, m."})

@@ -104,7 +104,7 @@ std::vector<std::string> findings_of(const DynamicsRun& run) {
           "exact ones, so what it finds missing here is theirs.");
     } else {
       for (const std::string& reason : verdict.reasons)
-        points.push_back("The energies tell: " + reason + ".");
+        points.push_back("The energies show: " + reason + ".");
     }
   }
   if (run.triangulated > 0)
@@ -126,7 +126,7 @@ std::vector<std::string> findings_of(const DynamicsRun& run) {
   if (off > shows)
     points.push_back(fmt::format(
         "The angles that the basis can have are {:.3g} deg off where the arm started and {:.3g} deg off the "
-        "target as it was said, root mean square along the arm.",
+        "requested target, root mean square along the arm.",
         run.plant.start_off() / degree, run.plant.target_off() / degree));
   points.push_back(fmt::format(
       "The arm is shown by arcs that have its directions at the sections' ends; its tip is never more than "

@@ -221,7 +221,7 @@ DynamicsRun run_dynamics(const DynamicsTask& task, const TaskLabel& label, const
                         tolerance, drives_of(plant.distributed(), task.law.drives));
     follow(run, motion, sample_times(start, task.duration, setup.clock.step), task.tolerance, progress);
   } else {
-    run.stopped = "it starts with an elevation of 90 deg, where the azimuth is none";
+    run.stopped = "it starts with an elevation of 90 deg, where the azimuth is undefined";
     run.samples.push_back({plant.start(), {}});
   }
   show_as_arcs(run, arm, from, progress);

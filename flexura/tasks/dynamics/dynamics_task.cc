@@ -62,8 +62,8 @@ class DynamicsRunner : public TaskRunner {
     if (run_) {
       if (run_->apart > thickness_of(arm))
         report.caveats.push_back(
-            fmt::format("{}: judged by arcs whose tip is up to {:.3g} m from the arm's: sections that bend "
-                        "so far out of a plane are no arcs",
+            fmt::format("{}: judged by arcs with a tip up to {:.3g} m from the arm's: sections that bend "
+                        "so far out of a plane are not arcs",
                         name(), run_->apart));
       return;
     }

@@ -90,7 +90,7 @@ void check_columns(const std::vector<std::string>& names, const std::vector<Colu
       std::ranges::count_if(ways, [&](const auto& way) { return has_any(columns, way.front()); });
   if (used > 1)
     problems.push_back(
-        {header_row, 0, "says the bends in more than one way: expected one of cord_angle, arching, bend_x"});
+        {header_row, 0, "gives the bends in more than one way: expected one of cord_angle, arching, bend_x"});
   for (const auto& way : ways) {
     if (used == 1 && !has_any(columns, way.front())) continue;
     for (const std::string_view quantity : way) {

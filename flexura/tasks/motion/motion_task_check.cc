@@ -25,7 +25,7 @@ void check_one(const MoveTask& task, ArmKind kind, std::size_t sections, const s
   const MoveTarget& to = task.to;
   const bool has_shape = to.cord_angles || to.archings || to.bends || to.stretches;
   if (!to.position && !has_shape)
-    reader.problem_at(path + ".to", "says nothing: expected a shape, as archings or bends, or position");
+    reader.problem_at(path + ".to", "is empty: expected a shape, as archings or bends, or position");
   if (to.position && has_shape)
     reader.problem_at(path + ".to.position",
                       "stands beside a shape: expected a place for the tip or a shape");
@@ -65,7 +65,7 @@ void check_one(const KeyframesTask& task, ArmKind kind, std::size_t sections, co
     return;  // Checked after the file is read.
   }
   if (task.columns.empty() && task.rows.empty()) {
-    reader.problem_at(path, "says nothing: expected file, or columns and rows");
+    reader.problem_at(path, "is empty: expected file, or columns and rows");
     return;
   }
   for (const KeyframeProblem& problem : keyframe_problems(task, kind, sections)) {
@@ -129,9 +129,9 @@ void check_one(const ExpressionTask& task, ArmKind kind, std::size_t sections, c
   const int ways = (task.cord_angles ? 1 : 0) + (task.archings ? 1 : 0) + (task.bends ? 1 : 0);
   if (ways > 1)
     reader.problem_at(path,
-                      "says the bends in more than one way: expected one of cord_angles, archings, bends");
+                      "gives the bends in more than one way: expected one of cord_angles, archings, bends");
   if (ways == 0 && !task.stretches)
-    reader.problem_at(path, "says nothing: expected cord_angles, archings, bends or stretches");
+    reader.problem_at(path, "is empty: expected cord_angles, archings, bends or stretches");
   if (kind == ArmKind::spatial && (task.cord_angles || task.archings)) {
     reader.problem_at(path, "cord_angles and archings are for planar arms: expected bends for a spatial one");
   }

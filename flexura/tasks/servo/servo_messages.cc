@@ -10,7 +10,7 @@ const Table<FeatureMarkMessage>& fields_of(const FeatureMarkMessage*) {
       Table<M>("flexura.FeatureMark",
                "Something that a law compares in a picture: a pixel, or a line of some.")
           .field("seen", &M::seen, {.meaning = "As measured, px."})
-          .field("wanted", &M::desired, {.meaning = "As wanted, px."});
+          .field("wanted", &M::desired, {.meaning = "Target, px."});
   return table;
 }
 
@@ -23,11 +23,11 @@ const Table<ServoObservationMessage>& fields_of(const ServoObservationMessage*) 
           .field("frame", &M::frame, {.meaning = "The frame's number."})
           .field("points", &M::points, {.meaning = "Points of the median axis, base to tip."})
           .field("wanted", &M::desired,
-                 {.meaning = "Where the camera, as it is believed to be, would see the wanted shape, base to "
+                 {.meaning = "The target shape in the picture of the camera's model, base to "
                              "tip, px."})
           .field("features", &M::features,
                  {.meaning = "What the law compares in the picture: pixels of points and silhouettes; chords "
-                             "of chords and potential, the wanted ones turned about the middles of the "
+                             "of chords and potential, the target ones turned about the middles of the "
                              "measured ones; of moments the middle, and the ellipse of the second moments."})
           .field("reason", &M::reason, {.meaning = "Why the picture shows no arm."});
   return table;

@@ -19,7 +19,7 @@ struct FeatureMarkMessage {
   std::vector<std::array<double, 2>> seen, desired;
 };
 
-/// flexura.ServoSighting, on /servo/sightings: measurements of a servo in one picture.
+/// flexura.ServoSighting, on /servo/observations: measurements of a servo in one picture.
 struct ServoObservationMessage {
   double time = 0;  ///< Middle of the exposure, s.
   std::string camera;
@@ -32,7 +32,7 @@ struct ServoObservationMessage {
 };
 
 inline constexpr std::string_view servo_steps_topic = "/servo/steps";
-inline constexpr std::string_view servo_observations_topic = "/servo/sightings";
+inline constexpr std::string_view servo_observations_topic = "/servo/observations";
 
 const Table<FeatureMarkMessage>& fields_of(const FeatureMarkMessage*);
 const Table<ServoObservationMessage>& fields_of(const ServoObservationMessage*);

@@ -53,7 +53,7 @@ Node fault_node(const LimiterFault& fault, double start) {
 std::array<ReportFigure, 2> falling_errors(const ServoRun& run, std::size_t number) {
   const auto power = [](double value, double least) { return std::log10(std::max(value, least)); };
   constexpr double least_share = 1e-7, least_potential = 1e-12;
-  LineChart errors{.heading = "distance from the wanted shape",
+  LineChart errors{.heading = "distance from the target shape",
                    .x_label = "time in the task (s)",
                    .value_label = "share of the length",
                    .series = {{"seen", {}}, {"tip", {}}, {"truth", {}}},
@@ -146,9 +146,9 @@ Chapter servo_chapter(const ServoRun& run, std::size_t number) {
   const double took = result.steps.empty() ? 0 : result.steps.back().time - result.start;
   Chapter chapter{"Servo: " + run.name,
                   result.is_done
-                      ? fmt::format("The arm came to the wanted shape in {:.2f} s, {} commands.", took,
+                      ? fmt::format("The arm reached the target shape in {:.2f} s with {} commands.", took,
                                     result.steps.size())
-                      : fmt::format("The arm did not come to the wanted shape: {}.", result.reason),
+                      : fmt::format("The arm did not reach the target shape: {}.", result.reason),
                   {},
                   {},
                   false};
@@ -165,8 +165,8 @@ Chapter servo_chapter(const ServoRun& run, std::size_t number) {
                                          run.settle, error_text(*run.true_remaining)));
   if (result.missed > hardly)
     chapter.points.push_back(
-        fmt::format("The nearest shape that the arm can take, which is the wanted one here, is {:.3f} % of "
-                    "its length away from what was asked for.",
+        fmt::format("The nearest shape that the arm can take, which is the target here, is {:.3f} % of "
+                    "its length away from the requested one.",
                     100 * result.missed));
   if (result.missed_steps > 0)
     chapter.points.push_back(fmt::format(

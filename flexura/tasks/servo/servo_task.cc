@@ -88,10 +88,10 @@ class ServoRunner : public TaskRunner {
   void add_caveats(const ArmState& /*from*/, const std::string& /*ended_by*/,
                    SafetyReport& report) const override {
     if (!run_)
-      report.caveats.push_back(fmt::format(
-          "{}: judged by a slow and straight way to the shapes that it is told: which way it goes is decided "
-          "while it is steered, within all limits, and judged then",
-          name()));
+      report.caveats.push_back(
+          fmt::format("{}: judged by a slow straight path to its targets: the actual path is decided "
+                      "while the arm is steered, within all limits, and judged then",
+                      name()));
   }
 
   [[nodiscard]] TaskOutcome outcome(const Motion& /*motion*/) const override {

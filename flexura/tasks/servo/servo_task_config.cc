@@ -38,7 +38,7 @@ void check_curve(const std::vector<std::array<double, 3>>& curve, const ArmConfi
     reader.problem_at(path, "has no length: expected points that differ");
   else if (length < (1 - about) * least || length > (1 + about) * most)
     reader.problem_at(path,
-                      fmt::format("is {:.4g} m long: expected the length of the arm, {}, but for 5 %", length,
+                      fmt::format("is {:.4g} m long: expected the length of the arm within 5 %, {}", length,
                                   least < most ? fmt::format("{:.4g} m to {:.4g} m", least, most)
                                                : fmt::format("{:.4g} m", most)));
 }
@@ -245,9 +245,9 @@ void check_target(const ServoTargetConfig& target, const ArmConfig& arm, const s
                    (target.azimuths || target.elevations ? 1 : 0) + (target.pictures.empty() ? 0 : 1);
   if (ways != 1)
     reader.problem_at(path,
-                      fmt::format("says {}: expected a shape in one way, as bends, position, curve, azimuths "
+                      fmt::format("has {}: expected a shape in one way, as bends, position, curve, azimuths "
                                   "and elevations, or pictures",
-                                  ways == 0 ? "nothing" : "a shape in more than one way"));
+                                  ways == 0 ? "no shape" : "a shape in more than one way"));
   if (target.azimuths.has_value() != target.elevations.has_value() ||
       (target.azimuths && target.azimuths->size() != target.elevations->size()))
     reader.problem_at(path,

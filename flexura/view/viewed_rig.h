@@ -76,8 +76,9 @@ class ViewedRig {
 
 using ViewedRigPtr = std::shared_ptr<const ViewedRig>;
 
-/// How a camera of the rig stands.
-[[nodiscard]] CameraSample camera_sample(const Camera& camera, const CameraStance& stance);
+/// How a camera of the rig stands; as what it says of itself, its readings there.
+[[nodiscard]] CameraSample camera_sample(const ViewedRig& rig, std::size_t camera,
+                                         const CameraStance& stance);
 
 /// A frame that can be taken without anything else that stays.
 struct ValueShot {

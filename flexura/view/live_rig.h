@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -28,10 +29,18 @@ class LiveRig {
   /// Puts everything back to how the experiment starts.
   void restart(double now);
 
+  /// Goes on with another simulated rig of the same experiment, as it stands, at `now` s.
+  void take_over(std::unique_ptr<SimulatedRig> rig, double now);
+  /// Puts everything back to how the experiment starts, but the arm into `state`, as its drives believe it to
+  /// be.
+  void restart(double now, const ArmState& state);
+
   [[nodiscard]] RigPorts ports() { return simulated_->ports(); }
   [[nodiscard]] double now() { return start_ + simulated_->clock().now(); }
   /// Goes on to a time, not before the last one.
   void go_to(double now) { simulated_->clock().wait_until(rig_time(now)); }
+  /// Lets time pass without it, up to `now` s: nobody looks at it.
+  void rest_until(double now) { start_ += std::max(0.0, now - this->now()); }
   /// Before it goes on to a time: a rod is followed step by step, and has no time to make up for what nobody
   /// saw. All but the last 0.1 s up to then pass without it.
   void skip_to(double next);

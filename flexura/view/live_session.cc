@@ -25,6 +25,11 @@ Node::Table event_table(double time, const std::string& level, const std::string
           {"text", {}, {text, {}}}};
 }
 
+// Where an axis is commanded to that cannot go beyond its ends.
+double within(const AxisConfig& axis, double position) {
+  return std::clamp(position, axis.limits[0], axis.limits[1]);
+}
+
 }  // namespace
 
 // What is done with each request.
@@ -51,8 +56,10 @@ struct LiveSession::Taker : PictureSession::Taker {
     HeadState target = session.head_targets_.at(place);
     target = {head.pan.value_or(target.pan), head.tilt.value_or(target.tilt),
               head.zoom.value_or(target.zoom)};
+    const auto& axes = session.viewed()->believed[place].head_axes();
+    target = {within(axes[0], target.pan), within(axes[1], target.tilt), within(axes[2], target.zoom)};
     const CameraPorts camera = session.rig_.ports().cameras.at(place);
-    if (const auto fault = command_head(camera, session.viewed()->cameras[place], target).fault())
+    if (const auto fault = command_head(camera, session.viewed()->believed[place], target).fault())
       throw ViewRefusal(text(*fault));
     session.head_targets_.at(place) = target;
     done();
@@ -64,8 +71,13 @@ struct LiveSession::Taker : PictureSession::Taker {
     StageState target = session.stage_targets_.at(place);
     target.offset = {stage.x.value_or(target.offset.x()), stage.y.value_or(target.offset.y()),
                      stage.z.value_or(target.offset.z())};
+    const auto& axes = session.viewed()->believed[place].stage_axes();
+    for (std::size_t i = 0; i < axes.size(); ++i) {
+      double& offset = target.offset[static_cast<Eigen::Index>(i)];
+      offset = within(axes[i], offset);
+    }
     const CameraPorts camera = session.rig_.ports().cameras.at(place);
-    if (const auto fault = command_stage(camera, session.viewed()->cameras[place], target).fault())
+    if (const auto fault = command_stage(camera, session.viewed()->believed[place], target).fault())
       throw ViewRefusal(text(*fault));
     session.stage_targets_.at(place) = target;
     done();
@@ -99,6 +111,13 @@ struct LiveSession::Taker : PictureSession::Taker {
   void operator()(const RunRequest& run) const {
     session.require_free();
     session.start_run(run, reply);
+  }
+  void operator()(const SpeedRequest& request) const {
+    if (session.is_watched_run())
+      throw ViewRefusal("the run belongs to the terminal that started it: it plays as fast as possible");
+    if (session.run_ == nullptr) throw ViewRefusal("no run is going on");
+    session.pace_->set_speed(request.speed);
+    done();
   }
   void operator()(const CancelRequest&) const {
     if (session.is_watched_run()) throw ViewRefusal("the run belongs to the terminal that started it");
@@ -191,6 +210,9 @@ void LiveSession::start_run(const RunRequest& request, const Reply& reply) {
   release();
   run_ = std::make_shared<RunLink>();
   news_ = {};
+  pace_.emplace(request.speed, experiment.clock.step);
+  paced_at_ = clock_;
+  run_->pace_to(pace_->next(0, 0));
   teller_.begin();
   background().run(Lane::tasks,
                    [experiment = std::move(experiment), folder, run = run_]() -> Background::After {
@@ -205,14 +227,38 @@ void LiveSession::follow_run() {
   const bool was_shown = news_.time.has_value();
   if (viewed()->is_rod) run_->want_truth();
   news_ = run_->news();
-  // From the rig to the run's start, and from its end to the rig.
-  if (news_.time && (!was_shown || news_.end)) ++leaps_;
+  if (pace_) run_->pace_to(pace_->next(clock_ - paced_at_, news_.time.value_or(0)));
+  paced_at_ = clock_;
+  // From the rig to the run's start.
+  if (news_.time && !was_shown) ++leaps_;
   // A page's time goes on, that of a watched run is its own: as that of states.
   const std::optional<double> now = is_watched_run() ? std::nullopt : std::optional(rig_.now());
+  if (news_.end && !is_watched_run()) stay_where_it_ended();
   teller_.tell(*run_, news_, clock_, now, clients_);
   if (!news_.end) return;
   if (!news_.end->folder.empty()) results_ = news_.end->folder;
   run_.reset();
+  pace_.reset();
+}
+
+// What tasks have done stays done: the arm lies as they leave it, and cameras stand where they were moved.
+void LiveSession::stay_where_it_ended() {
+  if (!news_.time) return;  // It never began.
+  ++generation_;
+  warning_.clear();
+  try {
+    if (auto rig = run_->take_rig()) {
+      rig_.take_over(std::move(rig), rig_.now());
+      (void)rig_.ports().arm->halt().value();
+    } else {
+      rig_.restart(rig_.now(), news_.state);
+    }
+    aim_at_readings();
+    is_touching_ = !touched(rig_.backbone(rig_.now()), viewed()->forbidden).empty();
+  } catch (const std::exception& error) {
+    notice("error", "safety", std::string("everything is put back: ") + error.what());
+    reset();
+  }
 }
 
 void LiveSession::advance(double now) {
@@ -250,7 +296,12 @@ void LiveSession::send_states() {
   StateMessage state = is_running && news_.time
                            ? still_state(*viewed(), *news_.time, news_.state, run_stances(), run_truth())
                            : rig_.state();
-  if (is_running) state.pace.reset();
+  // At rest steps of a motor lie between that and what it reports.
+  for (std::size_t i = 0; i < state.cameras.size() && !is_run_shown(); ++i) {
+    state.cameras[i].commanded_head = head_targets_.at(i);
+    state.cameras[i].commanded_stage = stage_targets_.at(i).offset;
+  }
+  if (is_running) state.pace = pace_ ? pace_->slowness() : std::nullopt;
   // A page's time goes on; that of a run which it watches from the start to the end is the run's.
   if (!is_watched_run()) state.time = rig_.now();
   state.is_running = is_running;

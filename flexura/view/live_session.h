@@ -16,6 +16,7 @@
 #include "flexura/view/moves.h"
 #include "flexura/view/picture_session.h"
 #include "flexura/view/run_link.h"
+#include "flexura/view/run_pace.h"
 #include "flexura/view/run_teller.h"
 #include "flexura/view/session.h"
 
@@ -74,6 +75,8 @@ class LiveSession : public PictureSession {
   void finish(const Move& move, const Judged& judged);
   void start_run(const RunRequest& request, const Reply& reply);
   void follow_run();
+  void stay_where_it_ended();
+  void aim_at_readings();
   void halt();
   void reset();
   void weigh(bool on);
@@ -113,7 +116,9 @@ class LiveSession : public PictureSession {
   double warned_ = -1;   // s
   std::string warning_;  // of the arm's rest, as told
   std::shared_ptr<RunLink> run_;
-  RunLink::News news_;  // of the run
+  RunLink::News news_;           // of the run
+  std::optional<RunPace> pace_;  // of one that is started here
+  double paced_at_ = 0;          // s, of advance()
   RunTeller teller_;
   std::optional<std::filesystem::path> results_;
 };

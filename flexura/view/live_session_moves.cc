@@ -103,10 +103,19 @@ void LiveSession::halt() {
   const RigPorts ports = rig_.ports();
   // The simulated rig has no links that are lost: a fault here is a fault of the program.
   (void)ports.arm->halt().value();
+  for (const CameraPorts& camera : ports.cameras) (void)halt_camera(camera).value();
+  aim_at_readings();
+}
+
+// What cameras say of themselves is what they are to do from now on: what commands add to.
+void LiveSession::aim_at_readings() {
+  head_targets_.clear();
+  stage_targets_.clear();
+  const RigPorts ports = rig_.ports();
   for (std::size_t i = 0; i < ports.cameras.size(); ++i) {
-    (void)halt_camera(ports.cameras[i]).value();
-    const CameraStance stands = said_stance(ports.cameras[i], viewed()->cameras[i]).value();
-    head_targets_[i] = stands.head, stage_targets_[i] = stands.stage;
+    const CameraStance stands = said_stance(ports.cameras[i], viewed()->believed[i]).value();
+    head_targets_.push_back(stands.head);
+    stage_targets_.push_back(stands.stage);
   }
 }
 
@@ -117,12 +126,7 @@ void LiveSession::reset() {
   if (waiting_) std::exchange(waiting_, std::nullopt)->reply({nothing(), "something else has stopped it"});
   ++leaps_;
   rig_.restart(clock_ - config_.start);
-  head_targets_.clear();
-  stage_targets_.clear();
-  for (const Camera& camera : viewed()->cameras) {
-    head_targets_.push_back(camera.initial_head());
-    stage_targets_.push_back(camera.initial_stage());
-  }
+  aim_at_readings();
   is_touching_ = !touched(rig_.backbone(rig_.now()), viewed()->forbidden).empty();
 }
 
@@ -219,6 +223,11 @@ void LiveSession::keep_clear(double next) {
 
 // A rod may come to where it finds no rest.
 void LiveSession::move_on(double next) {
+  // A run has a rig of its own, and takes what the machine can give.
+  if (is_run_shown()) {
+    rig_.rest_until(next);
+    return;
+  }
   rig_.skip_to(next);
   try {
     keep_clear(next);

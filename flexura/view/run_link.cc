@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "flexura/log/logged_message.h"
+#include "flexura/rig/filming.h"
 #include "flexura/tasks/calibrate/calibration_messages.h"
 #include "flexura/tasks/servo/servo_messages.h"
 
@@ -23,6 +24,28 @@ void keep(std::vector<Picture>& pictures, const Sighting& sighting) {
   }
 }
 
+// The usual simulated rig, which stays when the run is over.
+class LeftRig : public Rig {
+ public:
+  LeftRig(const Setup& setup, RunLink& link) : filming_(setup), link_(link) {}
+  ~LeftRig() override { link_.leave(filming_.give_away()); }
+  LeftRig(const LeftRig&) = delete;
+  LeftRig& operator=(const LeftRig&) = delete;
+
+  [[nodiscard]] RigPorts ports() override { return filming_.ports(); }
+  [[nodiscard]] RigTruth* truth() override { return filming_.truth(); }
+  [[nodiscard]] bool is_simulated() const override { return filming_.is_simulated(); }
+  void play_to(double time, const ArmState& state, const TakeFrame& take) override {
+    filming_.play_to(time, state, take);
+  }
+  void pass_to(double time, const ArmState& state) override { filming_.pass_to(time, state); }
+  void skip_to_now() override { filming_.skip_to_now(); }
+
+ private:
+  Filming filming_;
+  RunLink& link_;
+};
+
 }  // namespace
 
 void RunLink::update(double fraction, std::string_view what) {
@@ -33,7 +56,9 @@ void RunLink::update(double fraction, std::string_view what) {
 }
 
 void RunLink::state(double time, const ArmState& state, std::span<const CameraReading> cameras) {
-  const std::lock_guard lock(mutex_);
+  constexpr double rounding = 1e-9;  // s
+  std::unique_lock lock(mutex_);
+  may_go_.wait(lock, [&] { return cancelled_ || time <= allowed_ + rounding; });
   news_.time = time;
   news_.state = state;
   news_.cameras.assign(cameras.begin(), cameras.end());
@@ -97,6 +122,28 @@ void RunLink::task_ended() {
   ++news_.changes;
 }
 
+void RunLink::cancel() {
+  const std::lock_guard lock(mutex_);
+  cancelled_ = true;
+  may_go_.notify_all();
+}
+
+void RunLink::pace_to(double time) {
+  const std::lock_guard lock(mutex_);
+  allowed_ = time;
+  may_go_.notify_all();
+}
+
+void RunLink::leave(std::unique_ptr<SimulatedRig> rig) {
+  const std::lock_guard lock(mutex_);
+  rig_ = std::move(rig);
+}
+
+std::unique_ptr<SimulatedRig> RunLink::take_rig() {
+  const std::lock_guard lock(mutex_);
+  return std::move(rig_);
+}
+
 void RunLink::finish(End end) {
   const std::lock_guard lock(mutex_);
   news_.end = std::move(end);
@@ -110,7 +157,9 @@ RunLink::News RunLink::news() const {
 void run_linked(const Experiment& experiment, const std::filesystem::path& folder, RunLink& link) {
   RunLink::End end{"failed", "", {}};
   try {
-    const RunResult result = run_experiment(experiment, folder, link, &link);
+    const RunResult result = run_experiment(experiment, folder, link, &link, [&](const Setup& setup) {
+      return std::make_unique<LeftRig>(setup, link);
+    });
     end.outcome = name_of(result.outcome);
     end.folder = folder;
     if (!result.reasons.empty()) end.text = result.reasons.front();

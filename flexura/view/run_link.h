@@ -1,10 +1,12 @@
 #pragma once
 
 #include <atomic>
+#include <condition_variable>
 #include <cstddef>
 #include <cstdint>
 #include <deque>
 #include <filesystem>
+#include <limits>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -15,13 +17,14 @@
 
 #include "flexura/base/progress.h"
 #include "flexura/experiment/run.h"
+#include "flexura/sim/simulated_rig.h"
 #include "flexura/view/calibration_extras.h"
 #include "flexura/view/servo_extras.h"
 
 namespace flexura {
 
-/// What connects a run on its own thread with those who watch: the run tells, they ask when they have time,
-/// and neither waits for the other. All methods can be called from any thread.
+/// What connects a run on its own thread with those who watch: the run reports, they ask when they have time.
+/// The run waits for nobody, unless it is paced (pace_to). All methods can be called from any thread.
 class RunLink : public Progress, public RunWatcher {
  public:
   /// How a run ended.
@@ -63,7 +66,13 @@ class RunLink : public Progress, public RunWatcher {
   void logged(const LoggedMessage& message) override;
   void task_ended() override;
 
-  void cancel() { cancelled_ = true; }
+  void cancel();
+  /// From now on the run waits before each state that is later than `time` s.
+  void pace_to(double time);
+  /// Keeps the simulated rig of the run as it stands at its end; a run without one leaves none.
+  void leave(std::unique_ptr<SimulatedRig> rig);
+  /// Returns that rig once; null if there is none, or before the end.
+  [[nodiscard]] std::unique_ptr<SimulatedRig> take_rig();
   /// The next news is to have how the arm truly stands: once, for each call.
   void want_truth() { is_truth_wanted_ = true; }
   void finish(End end);
@@ -77,6 +86,9 @@ class RunLink : public Progress, public RunWatcher {
   Progress* also_;
   std::atomic<bool> cancelled_ = false, is_truth_wanted_ = false;
   mutable std::mutex mutex_;
+  std::condition_variable may_go_;
+  double allowed_ = std::numeric_limits<double>::infinity();  // s
+  std::unique_ptr<SimulatedRig> rig_;
   News news_;
   std::vector<ServoPicture> pictures_;  // of a servo, the newest of each camera
   std::deque<Event> events_;

@@ -5,6 +5,7 @@ import type { Link } from '../connection/link';
 import type { TipResult, Vector3 } from '../protocol/types';
 import type { Notices } from './notices';
 import type { Playback } from './playback';
+import { preferences } from './preferences';
 
 export type ArmCommand = Record<string, unknown>;
 
@@ -100,10 +101,18 @@ export class Commander {
     return what === 'run' ? this.run() : this.ask(what);
   }
 
-  /** All tasks, or the one at that place from the experiment's start. */
+  /** All tasks, or the one at that place from the experiment's start, as fast as is preferred. */
   run(task?: number): Promise<boolean> {
+    this.playback.go_live();
     this.forget_tip();
-    return this.ask('run', task === undefined ? {} : { task });
+    const speed = preferences.run_speed.value;
+    return this.ask('run', task === undefined ? { speed } : { task, speed });
+  }
+
+  /** Tasks play so fast from now on: those that run, too. */
+  run_speed(speed: number, is_running: boolean): void {
+    preferences.run_speed.value = speed;
+    if (is_running) void this.ask('speed', { speed });
   }
 
   /** Leaves the present rig for that of one of the hello's examples. */

@@ -67,6 +67,8 @@ export class Viewer implements LinkListener {
   readonly picture_listeners = new Set<(camera: string, picture: Picture) => void>();
   private readonly stateless = signal(false);
   private last_state = 0;
+  /** The next recording plays at once. */
+  private plays_next = false;
   private tick_timer: ReturnType<typeof setTimeout> | undefined;
 
   constructor(entry: Entry) {
@@ -124,6 +126,12 @@ export class Viewer implements LinkListener {
     }
   }
 
+  /** The recording of the last run, from its start on. */
+  async replay(): Promise<void> {
+    this.plays_next = true;
+    if (!(await this.commander.plain('open'))) this.plays_next = false;
+  }
+
   failed(why: string): void {
     this.notices.error(why);
   }
@@ -159,6 +167,8 @@ export class Viewer implements LinkListener {
     } else {
       this.playback.again();
     }
+    if (hello.mode === 'recording' && this.plays_next) this.playback.play();
+    this.plays_next = false;
     for (const { name } of hello.scene.cameras) {
       // A recording without pictures refuses; the page then shows none.
       this.link.request('images', { camera: name, rate: image_rate }).catch(() => {});

@@ -1,6 +1,6 @@
 import { useSignal } from '@preact/signals';
 import { flag_pace, flag_unsafe, flag_weightless } from '../protocol/state';
-import { theme_now, toggle_theme } from '../state/preferences';
+import { preferences, theme_now, toggle_theme } from '../state/preferences';
 import { use_app } from './app';
 import { fixed } from './format';
 import { Icon } from './Icon';
@@ -72,6 +72,23 @@ function Pace() {
   );
 }
 
+/** How fast tasks play: those that run, and the next. */
+function RunSpeed({ running, disabled }: { running: boolean; disabled: boolean }) {
+  const { viewer } = use_app();
+  return (
+    <select aria-label="Speed of the tasks" title="How fast tasks play, compared with real time" disabled={disabled}
+      value={preferences.run_speed.value}
+      onChange={({ currentTarget: { value } }) => viewer.commander.run_speed(Number(value), running)}>
+      {run_speeds.map(({ speed, label }) => <option key={speed} value={speed}>{label}</option>)}
+    </select>
+  );
+}
+
+const run_speeds = [
+  { speed: 0.25, label: '0.25 ×' }, { speed: 1, label: '1 × real time' }, { speed: 4, label: '4 ×' },
+  { speed: 0, label: 'As fast as possible' },
+];
+
 /** Tasks and what belongs to them. */
 function Rig() {
   const { viewer } = use_app();
@@ -126,7 +143,11 @@ function Rig() {
           <Icon name="run" />Run tasks
         </button>
       )}
-      {recorded && !running && <button type="button" class="button" disabled={!connected} onClick={ask('open')}><Icon name="film" />Recording</button>}
+      {tasks.length > 0 && !hello.readonly && <RunSpeed running={running} disabled={!connected || viewer.blind} />}
+      {recorded && !running && (
+        <button type="button" class="button" disabled={!connected} onClick={() => void viewer.replay()}
+          title="Opens the recording of the last run and plays it"><Icon name="film" />Replay</button>
+      )}
       {report}
       {/* To stop is worth a try also when nothing is heard of the rig. */}
       <button type="button" class="button danger" disabled={!connected || viewer.readonly} onClick={ask('halt')}

@@ -257,7 +257,7 @@ describe.skipIf(!program)('the program’s rig, its refusals and its run', () =>
 
   test('its tasks run, and what they leave can be opened and left', async () => {
     await page.keyboard.press('r');
-    await page.getByRole('button', { name: 'Recording' }).click({ timeout: 25000 });
+    await page.getByRole('button', { name: 'Replay' }).click({ timeout: 25000 });
     await page.waitForSelector('.badge[data-kind="recording"]');
     await slide(page, '#scrub', 4);
     await until(async () => Math.abs((await shown_time()) - 4) < 0.02);

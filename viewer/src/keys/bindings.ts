@@ -100,7 +100,7 @@ function rig(app: App): Binding[] {
   const ask = (what: string) => () => void viewer.commander.plain(what);
   return [
     { group, keys: ['Backspace'], what: 'Reset: everything back to the start', run: () => (viewer.readonly ? viewer.playback.seek(0) : viewer.blind || ask('reset')()) },
-    { group, keys: ['h'], what: 'Halt: everything stops', run: ask('halt') },
+    { group, keys: ['h', 'F8'], what: 'Halt: everything stops; from any field, too', anywhere: true, run: ask('halt') },
     { group, keys: ['g'], what: 'Push an elastic arm by dragging it, on or off', run: () => toggle_push(app) },
     { group, keys: ['r'], what: 'Run the tasks', run: () => viewer.blind || ask('run')() },
     { group, keys: ['c'], what: 'Cancel the run', run: () => viewer.readonly || ask('cancel')() },

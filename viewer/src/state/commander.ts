@@ -98,7 +98,15 @@ export class Commander {
   /** A request without values: halt, reset, run, cancel, open, live. True when it was taken. */
   plain(what: string): Promise<boolean> {
     if (what === 'reset') this.forget_tip();
+    if (what === 'halt') return this.halt();
     return what === 'run' ? this.run() : this.ask(what);
+  }
+
+  /** Everything stops, and that is confirmed. */
+  async halt(): Promise<boolean> {
+    const is_done = await this.ask('halt');
+    if (is_done) this.notices.info('Halted: everything has stopped.');
+    return is_done;
   }
 
   /** All tasks, or the one at that place from the experiment's start, as fast as is preferred. */

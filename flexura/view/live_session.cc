@@ -313,9 +313,38 @@ void LiveSession::send_states() {
   for (const ClientId client : clients_) messenger().post(client, state_stream, message);
 }
 
+// The picture of a camera in which a servo or a calibration has measured what is drawn; null: none is.
+const RunLink::Measured* LiveSession::measured(std::size_t camera) const {
+  if (!is_run_shown()) return nullptr;
+  const std::string& name = viewed()->cameras.at(camera).config().name;
+  const auto found = std::ranges::find(teller_.measured(), name, &RunLink::Measured::camera);
+  return found == teller_.measured().end() ? nullptr : &*found;
+}
+
+ValueShot LiveSession::measured_shot(std::size_t camera, const RunLink::Measured& seen) {
+  const SensorConfig& sensor = viewed()->sensors[camera];
+  CameraStance stance = viewed()->first_stance(camera);
+  if (seen.reading) {
+    stance = viewed()->stance(camera, *seen.reading);
+  } else if (camera < seen.readings.size()) {
+    stance = viewed()->stance(camera, seen.readings[camera]);
+  }
+  // So long ago, by the time that states have.
+  const double speed = pace_ ? pace_->speed() : 1;
+  const double ago = std::max(0.0, *news_.time - seen.time) / (speed > 0 ? speed : 1);
+  const double shown = is_watched_run() ? seen.time : rig_.now() - ago;
+  const double start = shown - times_of_frame_at(sensor, 0).middle;
+  Instant instant{start, seen.state, stance, {}};
+  instant.shape = viewed()->is_rod && seen.truth
+                      ? std::shared_ptr<const Backbone>(seen.truth, &seen.truth->backbone)
+                      : rig_.rod_at_rest(seen.state);
+  return with_covers(value_shot(viewed(), camera, seen.frame, start, {std::move(instant)}), seen.time);
+}
+
 ValueShot LiveSession::newest_shot(std::size_t camera) {
   const std::int64_t number = std::max<std::int64_t>(rig_.newest_frame(camera), 0);
   if (!is_run_shown()) return rig_.shot(camera, number);
+  if (const RunLink::Measured* seen = measured(camera)) return measured_shot(camera, *seen);
   const CameraStance stance = run_stances().at(camera);
   const SensorConfig& sensor = viewed()->sensors[camera];
   // As the states: the time is the page's own, or that of a run which it watches from the start to the end.
@@ -331,7 +360,8 @@ ValueShot LiveSession::newest_shot(std::size_t camera) {
 
 void LiveSession::send_images() {
   for (std::size_t camera = 0; camera < viewed()->cameras.size(); ++camera) {
-    const std::int64_t number = rig_.newest_frame(camera);
+    const RunLink::Measured* seen = measured(camera);
+    const std::int64_t number = seen != nullptr ? seen->frame : rig_.newest_frame(camera);
     if (number < 0 || room().is_busy(camera)) continue;
     const auto due = streams().due(camera, number, clock_);
     if (!due.empty()) room().show(newest_shot(camera), due, clock_);

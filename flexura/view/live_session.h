@@ -93,6 +93,8 @@ class LiveSession : public PictureSession {
   [[nodiscard]] Backbone shown_backbone();
   [[nodiscard]] std::vector<CameraStance> run_stances() const;
   [[nodiscard]] ValueShot newest_shot(std::size_t camera);
+  [[nodiscard]] const RunLink::Measured* measured(std::size_t camera) const;
+  [[nodiscard]] ValueShot measured_shot(std::size_t camera, const RunLink::Measured& seen);
   [[nodiscard]] const TrueArm* run_truth() const;
   void event(const char* level, const std::string& name, const std::string& text);
   void notice(const char* level, const std::string& name, const std::string& text);

@@ -183,8 +183,11 @@ bool Recording::is_unsafe(double time) const {
   });
 }
 
-std::size_t Recording::image_at(std::size_t camera, double time) const {
-  return place_at(images_.at(camera), time);
+std::optional<std::size_t> Recording::image_at(std::size_t camera, double time) const {
+  constexpr double rounding = 1e-6;  // s
+  const Entries& images = images_.at(camera);
+  if (images.empty() || seconds(images.front().time) > time + rounding) return std::nullopt;
+  return place_at(images, time + rounding);
 }
 
 Recording::LoggedImage Recording::image(std::size_t camera, std::size_t place) const {
@@ -205,20 +208,41 @@ std::optional<ServoStep> Recording::servo_step(double time) const {
 }
 
 // Of the picture that is shown then.
+template <class Sighting>
 std::optional<Recording::PictureEntry> Recording::sighting_at(const Entries& sightings, std::size_t camera,
                                                               double time) const {
   if (sightings.empty()) return std::nullopt;
   if (images_[camera].empty()) {
     const Entry& entry = sightings[place_at(sightings, time)];
     if (seconds(entry.time) > time) return std::nullopt;
-    return PictureEntry{entry.message, {}};
+    // Without film it is the picture of the state at its exposure.
+    const double exposed = message_of<Sighting>(*entry.message).time;
+    return PictureEntry{entry.message, static_cast<std::int64_t>(state_at(exposed))};
   }
   // Both stand in the log at the time when the picture came.
-  const std::size_t place = image_at(camera, time);
+  const auto place = image_at(camera, time);
+  if (!place) return std::nullopt;
   const auto [first, last] =
-      std::ranges::equal_range(sightings, images_[camera][place].time, {}, &Entry::time);
+      std::ranges::equal_range(sightings, images_[camera][*place].time, {}, &Entry::time);
   if (first == last) return std::nullopt;
-  return PictureEntry{first->message, static_cast<std::int64_t>(place)};
+  return PictureEntry{first->message, static_cast<std::int64_t>(*place)};
+}
+
+std::optional<std::size_t> Recording::measured_state(std::size_t camera, double time) const {
+  if (!images_.at(camera).empty()) return std::nullopt;
+  const std::string& name = rig_->cameras[camera].config().name;
+  const auto number_in = [&](const auto& pictures) -> std::optional<std::size_t> {
+    for (const auto& picture : pictures)
+      if (picture.sighting.camera == name && picture.number) return static_cast<std::size_t>(*picture.number);
+    return std::nullopt;
+  };
+  try {
+    if (const auto shown = servo(time)) return number_in(shown->pictures);
+    if (const auto shown = calibration(time)) return number_in(shown->pictures);
+  } catch (const InputError&) {
+    return std::nullopt;  // What is damaged measures nothing.
+  }
+  return std::nullopt;
 }
 
 std::optional<ShownServo> Recording::servo(double time) const {
@@ -226,7 +250,7 @@ std::optional<ShownServo> Recording::servo(double time) const {
   if (!step) return std::nullopt;
   ShownServo shown{std::move(*step), {}};
   for (std::size_t camera = 0; camera < rig_->cameras.size(); ++camera)
-    if (const auto entry = sighting_at(servo_sightings_[camera], camera, time))
+    if (const auto entry = sighting_at<ServoSightingMessage>(servo_sightings_[camera], camera, time))
       shown.pictures.push_back({message_of<ServoSightingMessage>(*entry->message), entry->number});
   return shown;
 }
@@ -247,7 +271,7 @@ std::optional<ShownCalibration> Recording::calibration(double time) const {
   }
   for (std::size_t camera = 0; camera < rig_->cameras.size(); ++camera) {
     const Entries& all = calibration_sightings_[camera];
-    const auto entry = sighting_at(all, camera, time);
+    const auto entry = sighting_at<CalibrationSightingMessage>(all, camera, time);
     if (!entry || all[place_at(all, time)].time < begun || !has_begun(all[place_at(all, time)])) continue;
     shown.pictures.push_back({message_of<CalibrationSightingMessage>(*entry->message), entry->number});
   }

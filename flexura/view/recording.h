@@ -42,9 +42,10 @@ class Recording {
   /// Whether a limit was broken at a time, s.
   [[nodiscard]] bool is_unsafe(double time) const;
 
-  /// How many images the log has of a camera; the place of the one at or just before `time` s, or the first.
+  /// How many images the log has of a camera; the place of the one that came at or just before `time` s; none
+  /// before the first.
   [[nodiscard]] std::size_t images(std::size_t camera) const { return images_.at(camera).size(); }
-  [[nodiscard]] std::size_t image_at(std::size_t camera, double time) const;
+  [[nodiscard]] std::optional<std::size_t> image_at(std::size_t camera, double time) const;
   struct LoggedImage {
     double time = 0;  ///< Middle of its exposure, s.
     std::string png;
@@ -57,6 +58,9 @@ class Recording {
   [[nodiscard]] std::optional<ServoStep> servo_step(double time) const;
   /// With what it sees in the pictures that are shown then.
   [[nodiscard]] std::optional<ShownServo> servo(double time) const;
+  /// The place of the state that a camera without film saw when a servo or a calibration, while one goes on,
+  /// measured what is drawn at a time, s; none at other times.
+  [[nodiscard]] std::optional<std::size_t> measured_state(std::size_t camera, double time) const;
   /// Whether the log has a calibration; and what it had decided at a time, s, and measured in the pictures
   /// that are shown then, while one goes on. InputError likewise.
   [[nodiscard]] bool has_calibration() const { return !decisions_.empty(); }
@@ -93,8 +97,10 @@ class Recording {
   [[nodiscard]] static double interval_of(const Entries& entries);
   struct PictureEntry {
     const McapMessage* message = nullptr;
-    std::optional<std::int64_t> number;  // of the picture
+    std::int64_t number =
+        0;  // of the picture: its place among the camera's, or of an unfilmed one the state's
   };
+  template <class Sighting>
   [[nodiscard]] std::optional<PictureEntry> sighting_at(const Entries& sightings, std::size_t camera,
                                                         double time) const;
   void read_marks();

@@ -1,6 +1,7 @@
 #include "flexura/view/run_link.h"
 
 #include <algorithm>
+#include <cmath>
 #include <exception>
 #include <utility>
 
@@ -14,13 +15,13 @@ namespace {
 
 // In the place of what the same camera saw before.
 template <class Picture, class Sighting>
-void keep(std::vector<Picture>& pictures, const Sighting& sighting) {
+void keep(std::vector<Picture>& pictures, const Sighting& sighting, std::int64_t frame) {
   const auto same = std::ranges::find_if(
       pictures, [&](const Picture& picture) { return picture.sighting.camera == sighting.camera; });
   if (same == pictures.end()) {
-    pictures.push_back({sighting, {}});
+    pictures.push_back({sighting, frame});
   } else {
-    same->sighting = sighting;
+    same->sighting = sighting, same->number = frame;
   }
 }
 
@@ -62,12 +63,41 @@ void RunLink::state(double time, const ArmState& state, std::span<const CameraRe
   news_.time = time;
   news_.state = state;
   news_.cameras.assign(cameras.begin(), cameras.end());
+  // What is measured was seen a while ago.
+  constexpr double remembered = 3, between = 1e-3;  // s
+  if (!steps_.empty() && time - steps_.back().time < between) steps_.pop_back();
+  steps_.push_back({time, state, news_.cameras});
+  while (steps_.front().time < time - remembered) steps_.pop_front();
+  while (!truths_.empty() && truths_.front().first < time - remembered) truths_.pop_front();
 }
 
-void RunLink::truth(double /*time*/, const TrueArm& arm) {
+const RunLink::Step* RunLink::step_at(double time) const {
+  if (steps_.empty()) return nullptr;
+  const auto after = std::ranges::lower_bound(steps_, time, {}, &Step::time);
+  if (after == steps_.end()) return &steps_.back();
+  if (after == steps_.begin() || after->time - time < time - (after - 1)->time) return &*after;
+  return &*(after - 1);
+}
+
+// `seen` has what its sighting says; the rest is as it was then.
+void RunLink::measured(Measured seen) {
+  const Step* step = step_at(seen.time);
+  if (step == nullptr) return;
+  if (seen.state.bends.size() != step->state.bends.size()) seen.state = step->state;
+  const auto of_camera = [&](const Measured& other) { return other.camera == seen.camera; };
+  double nearest = 0.1;  // s
+  for (const auto& [time, truth] : truths_)
+    if (const double off = std::abs(time - seen.time); off < nearest) nearest = off, seen.truth = truth;
+  if (!seen.reading) seen.readings = step->cameras;
+  std::erase_if(news_.measured, of_camera);
+  news_.measured.push_back(std::move(seen));
+}
+
+void RunLink::truth(double time, const TrueArm& arm) {
   auto told = std::make_shared<const TrueArm>(arm);
   const std::lock_guard lock(mutex_);
-  news_.truth = std::move(told);
+  news_.truth = told;
+  truths_.emplace_back(time, std::move(told));
 }
 
 void RunLink::happened(double time, const std::string& level, const std::string& name,
@@ -89,6 +119,7 @@ std::vector<RunLink::Event> RunLink::take_events(std::size_t most) {
 void RunLink::decided(const CalibrationDecisionMessage& decision) {
   if (decision.ended.value_or(false)) {
     news_.calibration.reset();
+    news_.measured.clear();
   } else {
     if (!news_.calibration) news_.calibration.emplace();
     news_.calibration->decision = decision;
@@ -98,14 +129,32 @@ void RunLink::decided(const CalibrationDecisionMessage& decision) {
 void RunLink::logged(const LoggedMessage& message) {
   const std::lock_guard lock(mutex_);
   if (const auto* sighting = message.as<ServoSightingMessage>()) {
-    keep(pictures_, *sighting);
+    keep(pictures_, *sighting, sighting->frame);
+    measured({.camera = sighting->camera,
+              .frame = sighting->frame,
+              .time = sighting->time,
+              .state = {},
+              .reading = {},
+              .readings = {},
+              .truth = {}});
     return;
   }
   if (const auto* step = message.as<ServoStep>()) {
     news_.servo = ShownServo{*step, pictures_};
   } else if (const auto* seen = message.as<CalibrationSightingMessage>()) {
     if (!news_.calibration) news_.calibration.emplace();
-    keep(news_.calibration->pictures, *seen);
+    keep(news_.calibration->pictures, *seen, seen->frame);
+    ArmState state = ArmState::straight(seen->bends.size());
+    for (std::size_t i = 0; i < seen->bends.size(); ++i)
+      state.bends[i] = {seen->bends[i][0], seen->bends[i][1]};
+    measured({.camera = seen->camera,
+              .frame = seen->frame,
+              .time = seen->time,
+              .state = std::move(state),
+              .reading = CameraReading{{seen->pan, seen->tilt, seen->zoom},
+                                       {{seen->stage[0], seen->stage[1], seen->stage[2]}}},
+              .readings = {},
+              .truth = {}});
   } else if (const auto* decision = message.as<CalibrationDecisionMessage>()) {
     decided(*decision);
   } else {
@@ -117,6 +166,7 @@ void RunLink::logged(const LoggedMessage& message) {
 void RunLink::task_ended() {
   const std::lock_guard lock(mutex_);
   pictures_.clear();
+  news_.measured.clear();
   news_.servo.reset();
   news_.calibration.reset();
   ++news_.changes;

@@ -13,6 +13,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "flexura/base/progress.h"
@@ -38,6 +39,16 @@ class RunLink : public Progress, public RunWatcher {
     double time = 0;  ///< s
     std::string level, name, text;
   };
+  /// What a camera saw in the picture that was measured last.
+  struct Measured {
+    std::string camera;
+    std::int64_t frame = 0;                ///< Its number.
+    double time = 0;                       ///< Middle of its exposure, s.
+    ArmState state;                        ///< As commanded then.
+    std::optional<CameraReading> reading;  ///< Of the camera then, as the measurement says; may be missing.
+    std::vector<CameraReading> readings;   ///< Else of all cameras; empty: they stood as at the start.
+    std::shared_ptr<const TrueArm> truth;  ///< Near that time; null: not known.
+  };
   /// The newest of everything.
   struct News {
     double fraction = 0;
@@ -48,6 +59,7 @@ class RunLink : public Progress, public RunWatcher {
     std::vector<CameraReading> cameras;  ///< As read then, by camera; empty where they stand as at the start.
     std::optional<ShownServo> servo;     ///< While one steers the arm.
     std::optional<ShownCalibration> calibration;  ///< While one goes on.
+    std::vector<Measured> measured;               ///< While one of them goes on, of each camera one.
     std::uint64_t changes = 0;                    ///< Counts what came of both.
     std::optional<End> end;
   };
@@ -82,6 +94,14 @@ class RunLink : public Progress, public RunWatcher {
 
  private:
   void decided(const CalibrationDecisionMessage& decision);
+  // What stood then, as far as it is remembered; null: nothing is.
+  struct Step {
+    double time = 0;  // s
+    ArmState state;
+    std::vector<CameraReading> cameras;
+  };
+  [[nodiscard]] const Step* step_at(double time) const;
+  void measured(Measured seen);
 
   Progress* also_;
   std::atomic<bool> cancelled_ = false, is_truth_wanted_ = false;
@@ -92,6 +112,8 @@ class RunLink : public Progress, public RunWatcher {
   News news_;
   std::vector<ServoPicture> pictures_;  // of a servo, the newest of each camera
   std::deque<Event> events_;
+  std::deque<Step> steps_;  // of the last seconds
+  std::deque<std::pair<double, std::shared_ptr<const TrueArm>>> truths_;
 };
 
 /// Runs an experiment into a folder that exists and is empty, and tells `link` how it ends. Never throws.

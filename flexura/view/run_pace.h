@@ -11,6 +11,7 @@ class RunPace {
   /// `speed` in run seconds per second of the clock; 0: as fast as it can. `step`: of the run's clock, s.
   RunPace(double speed, double step) : speed_(speed), step_(step) {}
 
+  [[nodiscard]] double speed() const { return speed_; }
   /// From now on at another speed.
   void set_speed(double speed);
   /// Returns the run's time, s, up to which it may go, `passed` s of the clock after the last call;

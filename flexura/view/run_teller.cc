@@ -14,6 +14,7 @@ namespace flexura {
 void RunTeller::begin() {
   told_fraction_ = told_at_ = drawn_at_ = -1;
   told_what_.clear();
+  measured_.clear();
   changes_ = 0, are_extras_known_ = true;
 }
 
@@ -74,6 +75,7 @@ void RunTeller::tell_extras(const RunLink::News& news, double clock, std::option
   } catch (const InputError&) {
     extras = {};  // Of an arm that cannot be drawn nothing is.
   }
+  measured_ = is_over ? std::vector<RunLink::Measured>() : news.measured;
   if (now) extras.time = *now;
   const auto message = std::make_shared<const std::string>(extras_message(extras));
   for (const ClientId client : clients) messenger_.post(client, extras_stream, message);

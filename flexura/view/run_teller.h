@@ -5,6 +5,7 @@
 #include <set>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "flexura/base/node.h"
 #include "flexura/view/messenger.h"
@@ -19,6 +20,8 @@ class RunTeller {
  public:
   RunTeller(ViewedRigPtr rig, Messenger& messenger) : rig_(std::move(rig)), messenger_(messenger) {}
 
+  /// The pictures in which that was measured which was told last: what is drawn belongs to them.
+  [[nodiscard]] const std::vector<RunLink::Measured>& measured() const { return measured_; }
   /// Another run begins: nothing was told of it.
   void begin();
   /// Somebody has come who knows nothing yet.
@@ -39,6 +42,7 @@ class RunTeller {
   double told_fraction_ = -1;
   std::string told_what_;
   double told_at_ = -1;  // s, of the clock
+  std::vector<RunLink::Measured> measured_;
   bool are_extras_known_ = true;
   std::uint64_t changes_ = 0;
   double drawn_at_ = -1;  // s, of the clock

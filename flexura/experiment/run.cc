@@ -180,6 +180,8 @@ RunResult run_experiment(const Experiment& as_read, const std::filesystem::path&
   write_new_file(folder / summary_file_name, write_json(result.summary, 2) + "\n");
   if (experiment.record.report && !played.is_cancelled) {
     ReportData data = std::move(witness).report_data(experiment, player.schedule(), player.safety());
+    data.condition = name_of(result.outcome);
+    if (!result.reasons.empty()) data.reason = result.reasons.front();
     add_chapters(experiment, player.tasks(), data.chapters);
     write_report(folder, data);
   }

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cctype>
 #include <cmath>
 
 #include "embedded/figure_css.h"
@@ -75,6 +77,15 @@ std::string events_html(const ReportData& data) {
                         max_listed_events, data.events.size());
   }
   return html;
+}
+
+// As the viewer shows it: viewer/src/ui/ConditionBadge.tsx.
+std::string badge_html(const ReportData& data) {
+  if (data.condition.empty()) return "";
+  std::string word = data.condition;
+  std::ranges::transform(word, word.begin(), [](char c) { return static_cast<char>(std::toupper(c)); });
+  return fmt::format("<p class=\"condition\"><span class=\"badge\" data-kind=\"{}\">{}</span> {}</p>\n",
+                     xml_escape(data.condition), xml_escape(word), xml_escape(data.reason));
 }
 
 std::string safety_html(const ReportData& data) {
@@ -203,6 +214,7 @@ std::string report_html(const ReportData& data) {
     arms.push_back(std::move(path));
   }
   return filled(embedded::report_html, {{"title", xml_escape(data.title)},
+                                        {"condition", badge_html(data)},
                                         {"version", xml_escape(data.version)},
                                         {"policy", policy()},
                                         {"figure_css", std::string(embedded::figure_css)},

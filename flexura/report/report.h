@@ -54,6 +54,8 @@ struct ReportData {
   };
 
   std::string title;            ///< Any text.
+  std::string condition = {};   ///< "done", "unsafe" or "failed", shown as a badge; "": none.
+  std::string reason = {};      ///< Why it is not done; any text.
   std::string version;          ///< Version of Flexura.
   std::string experiment_text;  ///< The experiment file as run, shown unchanged.
   Arm arm;

@@ -61,6 +61,7 @@ struct LiveSession::Taker : PictureSession::Taker {
     const CameraPorts camera = session.rig_.ports().cameras.at(place);
     if (const auto fault = command_head(camera, session.viewed()->believed[place], target).fault())
       throw ViewRefusal(text(*fault));
+    session.left_.reset();
     session.head_targets_.at(place) = target;
     done();
   }
@@ -79,6 +80,7 @@ struct LiveSession::Taker : PictureSession::Taker {
     const CameraPorts camera = session.rig_.ports().cameras.at(place);
     if (const auto fault = command_stage(camera, session.viewed()->believed[place], target).fault())
       throw ViewRefusal(text(*fault));
+    session.left_.reset();
     session.stage_targets_.at(place) = target;
     done();
   }
@@ -166,6 +168,7 @@ Hello LiveSession::hello() const {
 void LiveSession::opened(ClientId client) {
   clients_.insert(client);
   teller_.repeat();
+  messenger().send(client, condition_message(told_));
 }
 
 void LiveSession::closed(ClientId client) {
@@ -208,6 +211,7 @@ void LiveSession::start_run(const RunRequest& request, const Reply& reply) {
     throw ViewRefusal(error.what());
   }
   release();
+  left_.reset();
   run_ = std::make_shared<RunLink>();
   news_ = {};
   pace_.emplace(request.speed, experiment.clock.step);
@@ -237,6 +241,7 @@ void LiveSession::follow_run() {
   teller_.tell(*run_, news_, clock_, now, clients_);
   if (!news_.end) return;
   if (!news_.end->folder.empty()) results_ = news_.end->folder;
+  left_ = {condition_after(news_.end->outcome), news_.end->text};
   run_.reset();
   pace_.reset();
 }
@@ -261,6 +266,34 @@ void LiveSession::stay_where_it_ended() {
   }
 }
 
+// What of a run is unsafe where it is now; "": nothing.
+std::string LiveSession::run_danger() {
+  const std::string limit = beyond_limits(viewed()->model.driven(), news_.state);
+  return limit.empty() ? touched(shown_backbone(), viewed()->forbidden) : limit;
+}
+
+Conditioned LiveSession::condition() {
+  if (run_ != nullptr) {
+    const std::string danger = news_.time ? run_danger() : "";
+    return danger.empty() ? Conditioned{Condition::running, news_.what}
+                          : Conditioned{Condition::unsafe, danger};
+  }
+  if (is_touching_) return {Condition::unsafe, touched(rig_.backbone(rig_.now()), viewed()->forbidden)};
+  if (left_) return *left_;
+  return {rig_.is_arm_moving() || rig_.is_yielding() ? Condition::moving : Condition::idle, ""};
+}
+
+// When it changes, and not each word of a run's progress.
+void LiveSession::tell_condition() {
+  const Conditioned now = condition();
+  const bool is_new =
+      now.condition != told_.condition || (now.condition != Condition::running && now.text != told_.text);
+  if (!is_new) return;
+  told_ = now;
+  const std::string text = condition_message(told_);
+  for (const ClientId client : clients_) messenger().send(client, text);
+}
+
 void LiveSession::advance(double now) {
   clock_ = std::max(clock_, now);
   const double next = clock_ - config_.start;
@@ -268,6 +301,7 @@ void LiveSession::advance(double now) {
   tell_warning();
   tell_pace();
   follow_run();
+  tell_condition();
   if (clients_.empty()) return;
   send_states();
   send_images();
@@ -306,7 +340,7 @@ void LiveSession::send_states() {
   if (!is_watched_run()) state.time = rig_.now();
   state.is_running = is_running;
   state.is_moving = state.is_moving || is_running;
-  state.is_unsafe = !is_running && is_touching_;
+  state.is_unsafe = told_.condition == Condition::unsafe;
   state.leaps = leaps_;
   state.sequence = sequence_++;
   const auto message = std::make_shared<const std::string>(state_message(state));

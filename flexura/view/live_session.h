@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "flexura/view/background.h"
+#include "flexura/view/condition.h"
 #include "flexura/view/live_rig.h"
 #include "flexura/view/messenger.h"
 #include "flexura/view/moves.h"
@@ -84,6 +85,9 @@ class LiveSession : public PictureSession {
   void release();
   void watch_yielding();
   void tell_pace();
+  [[nodiscard]] Conditioned condition();
+  [[nodiscard]] std::string run_danger();
+  void tell_condition();
   void keep_clear(double next);
   void move_on(double next);
   void tell_warning();
@@ -123,6 +127,9 @@ class LiveSession : public PictureSession {
   double paced_at_ = 0;          // s, of advance()
   RunTeller teller_;
   std::optional<std::filesystem::path> results_;
+  // What tasks or a halt have left, until somebody moves something; and what clients know.
+  std::optional<Conditioned> left_;
+  Conditioned told_;
 };
 
 }  // namespace flexura

@@ -84,6 +84,7 @@ void LiveSession::finish(const Move& move, const Judged& judged) {
   const CommandOutcome sent =
       pull != nullptr ? rig_.pull(*pull, duration) : rig_.ports().arm->command(judged.state, duration);
   const auto fault = sent.fault();
+  if (!fault) left_.reset();
   move.reply({judged.found ? tip_answer(*judged.found, "") : nothing(), fault ? text(*fault) : ""});
 }
 
@@ -105,6 +106,7 @@ void LiveSession::halt() {
   (void)ports.arm->halt().value();
   for (const CameraPorts& camera : ports.cameras) (void)halt_camera(camera).value();
   aim_at_readings();
+  left_ = {Condition::halted, "everything was stopped"};
 }
 
 // What cameras say of themselves is what they are to do from now on: what commands add to.
@@ -127,6 +129,7 @@ void LiveSession::reset() {
   ++leaps_;
   rig_.restart(clock_ - config_.start);
   aim_at_readings();
+  left_.reset();
   is_touching_ = !touched(rig_.backbone(rig_.now()), viewed()->forbidden).empty();
 }
 
@@ -171,6 +174,7 @@ void LiveSession::push(ClientId client, const PushRequest& request) {
     throw ViewRefusal(fmt::format("push: the arm stays as it is: {}", error.what()));
   }
   hand_ = client;
+  left_.reset();
 }
 
 void LiveSession::release() {
@@ -218,7 +222,8 @@ void LiveSession::keep_clear(double next) {
   ++generation_;
   (void)rig_.ports().arm->halt().value();
   is_touching_ = false;
-  event("error", "safety", "stopped before " + text);
+  left_ = {Condition::halted, "stopped before " + text};
+  event("error", "safety", left_->text);
 }
 
 // A rod may come to where it finds no rest.

@@ -12,6 +12,7 @@
 
 #include "flexura/store/text_file.h"
 #include "flexura/view/live_session.h"
+#include "tests/support/experiment_files.h"
 #include "tests/support/live_sessions.h"
 #include "tests/support/view_fakes.h"
 
@@ -127,6 +128,57 @@ TEST_F(RunningSessionTest, HaltsTasksWhereTheyAre) {
   EXPECT_NEAR(pass(1).arm.bends[0].x(), halted, 1e-6);
   EXPECT_EQ(ask(bends({{0.1, 0}, {0, 0}})).error, "");
   EXPECT_NEAR(pass(5).arm.bends[0].x(), 0.1, 1e-6) << "it goes on from there";
+}
+
+// One condition, which every client knows.
+TEST_F(RunningSessionTest, SaysInWhichConditionItIs) {
+  const auto condition = [&](ClientId client = me) {
+    const Node said = messenger_.last(client, "condition");
+    return said.empty() ? "" : *said.find("condition")->as<std::string>();
+  };
+  EXPECT_EQ(condition(), "idle") << "as it comes";
+  ask(bends({{0.1, 0}, {0.5, 0}}));
+  pass(0.1);
+  EXPECT_EQ(condition(), "moving");
+  pass(3);
+  EXPECT_EQ(condition(), "idle");
+  start(1);
+  pass_run(0.2);
+  EXPECT_EQ(condition(), "running");
+  session_.opened(other);
+  EXPECT_EQ(condition(other), "running") << "who comes later knows it too";
+  wait_for_end();
+  EXPECT_EQ(condition(), "done");
+  ask(bends({{0.1, 0}, {0.5, 0}}));
+  pass(0.1);
+  EXPECT_EQ(condition(), "moving");
+  ask(HaltRequest{});
+  pass(0.1);
+  EXPECT_EQ(condition(), "halted");
+  ask(ResetRequest{});
+  pass(0.1);
+  EXPECT_EQ(condition(), "idle");
+}
+
+// The task leads beyond the limit of a section.
+class UnsafeSessionTest : public RunningSessionTest {
+ protected:
+  UnsafeSessionTest()
+      : RunningSessionTest(replaced(viewed_text, "bends = [[0.8, 0.5]", "bends = [[2.5, 0]")) {}
+};
+
+TEST_F(UnsafeSessionTest, SaysThatItIsUnsafeAndWas) {
+  start(1);
+  pass_run(0.1);
+  EXPECT_EQ(*messenger_.last(me, "condition").find("condition")->as<std::string>(), "running");
+  EXPECT_FALSE(messenger_.state(me).is_unsafe);
+  wait_for_end();
+  const Node said = messenger_.last(me, "condition");
+  EXPECT_EQ(*said.find("condition")->as<std::string>(), "unsafe");
+  EXPECT_THAT(*said.find("text")->as<std::string>(), HasSubstr("section"));
+  EXPECT_TRUE(pass(0.1).is_unsafe);
+  ask(ResetRequest{});
+  EXPECT_FALSE(pass(0.1).is_unsafe);
 }
 
 TEST_F(RunningSessionTest, PlaysOnFasterWhenThatIsAsked) {

@@ -111,14 +111,14 @@ void Recording::read_marks() {
     const double time = seconds(message.log_time);
     marks_.push_back({time, time, level_name(event.level), event.name, event.message});
   }
-  mark_violations();
+  read_summary();
   if (log_.truncated())
     marks_.push_back({duration(), duration(), "warning", "log", "the run was cut short: its log ends here"});
 }
 
 // The log says when something begins to be unsafe, the summary how long it lasts. One that is damaged (a disk
 // was full, say) keeps nobody from looking at the log.
-void Recording::mark_violations() {
+void Recording::read_summary() {
   if (is_missing(folder_ / summary_file_name)) return;
   const auto file = file_of_results(folder_, summary_file_name);
   Node summary;
@@ -128,6 +128,18 @@ void Recording::mark_violations() {
     marks_.push_back({0, 0, "warning", "summary", error.what()});
     return;
   }
+  const Node* said = summary.find("outcome");
+  if (const auto* outcome = said == nullptr ? nullptr : said->as<std::string>()) {
+    end_ = {condition_after(*outcome), ""};
+    const Node* reasons = summary.find("reasons");
+    const auto* lines = reasons == nullptr ? nullptr : reasons->as<Node::Array>();
+    const auto* first = lines == nullptr || lines->empty() ? nullptr : lines->front().as<std::string>();
+    if (first != nullptr) end_.text = *first;
+  }
+  mark_violations(summary);
+}
+
+void Recording::mark_violations(const Node& summary) {
   const Node* list = summary.find("violations");
   const auto* violations = list == nullptr ? nullptr : list->as<Node::Array>();
   if (violations == nullptr) return;
@@ -177,10 +189,14 @@ ArmState Recording::state(std::size_t place) const {
   return state;
 }
 
-bool Recording::is_unsafe(double time) const {
-  return std::ranges::any_of(marks_, [&](const Mark& mark) {
+Conditioned Recording::condition(double time) const {
+  const auto broken = std::ranges::find_if(marks_, [&](const Mark& mark) {
     return mark.name == "unsafe" && mark.level == "error" && time >= mark.time && time <= mark.end;
   });
+  if (broken != marks_.end()) return {Condition::unsafe, broken->text};
+  // The last state is shown from its time on.
+  if (state_at(time) + 1 == states()) return end_;
+  return {Condition::running, ""};
 }
 
 std::optional<std::size_t> Recording::image_at(std::size_t camera, double time) const {

@@ -12,6 +12,7 @@
 #include "flexura/store/mcap_reader.h"
 #include "flexura/tasks/servo/servo_messages.h"
 #include "flexura/view/calibration_extras.h"
+#include "flexura/view/condition.h"
 #include "flexura/view/describe.h"
 #include "flexura/view/servo_extras.h"
 #include "flexura/view/viewed_rig.h"
@@ -39,8 +40,9 @@ class Recording {
   /// When it was, s; and the arm's shape. InputError where the log holds none that fits the arm.
   [[nodiscard]] double time_of_state(std::size_t place) const { return seconds(states_.at(place).time); }
   [[nodiscard]] ArmState state(std::size_t place) const;
-  /// Whether a limit was broken at a time, s.
-  [[nodiscard]] bool is_unsafe(double time) const;
+  /// The run's condition at a time, s: unsafe while a limit is broken, at its end as its results say, else
+  /// running.
+  [[nodiscard]] Conditioned condition(double time) const;
 
   /// How many images the log has of a camera; the place of the one that came at or just before `time` s; none
   /// before the first.
@@ -104,7 +106,8 @@ class Recording {
   [[nodiscard]] std::optional<PictureEntry> sighting_at(const Entries& sightings, std::size_t camera,
                                                         double time) const;
   void read_marks();
-  void mark_violations();
+  void read_summary();
+  void mark_violations(const Node& summary);
 
   std::filesystem::path folder_;
   ViewedRigPtr rig_;
@@ -119,6 +122,7 @@ class Recording {
   Entries decisions_;                                             // of calibrations
   double servo_interval_ = 0;  // from one command of a servo to the next, s
   std::vector<Mark> marks_;
+  Conditioned end_ = {Condition::halted, "the results do not say how the run ended"};
 };
 
 using RecordingPtr = std::shared_ptr<const Recording>;

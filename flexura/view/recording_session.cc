@@ -124,11 +124,13 @@ Hello RecordingSession::hello() const {
 
 void RecordingSession::opened(ClientId client) {
   times_[client] = 0;
+  told_.erase(client);
   send_state(client);
 }
 
 void RecordingSession::closed(ClientId client) {
   times_.erase(client);
+  told_.erase(client);
   PictureSession::closed(client);
 }
 
@@ -186,7 +188,10 @@ void RecordingSession::send_state(ClientId client) {
   StateMessage state = still_state(*viewed(), time, recording_->state(place), stances);
   add_forces(*viewed(), recording_->forces(time), state);
   state.is_recording = true;
-  state.is_unsafe = recording_->is_unsafe(time);
+  const Conditioned condition = recording_->condition(time);
+  state.is_unsafe = condition.condition == Condition::unsafe;
+  if (told_[client] != condition) messenger().send(client, condition_message(condition));
+  told_[client] = condition;
   state.sequence = sequence_++;
   messenger().post(client, state_stream, std::make_shared<const std::string>(state_message(state)));
 }

@@ -53,6 +53,7 @@ class RecordingSession : public PictureSession {
   RecordingPtr recording_;
   std::shared_ptr<Table> table_;
   std::map<ClientId, double> times_;  // at which clients are, s
+  std::map<ClientId, std::optional<Conditioned>> told_;
   std::uint32_t sequence_ = 0;
   double clock_ = 0;  // of advance(), s
 };

@@ -112,6 +112,18 @@ TEST_F(RecordingSessionTest, MovesNothing) {
     EXPECT_THAT(ask(request).error, HasSubstr("this is a recording"));
 }
 
+TEST_F(RecordingSessionTest, SaysInWhichConditionTheRunWas) {
+  record();
+  open();
+  const auto condition = [&](double time) {
+    ask(AtRequest{time});
+    return *messenger_.last(me, "condition").find("condition")->as<std::string>();
+  };
+  for (const auto& [time, said] : std::vector<std::pair<double, std::string>>{
+           {0, "running"}, {0.5, "running"}, {1, "done"}, {0.9, "running"}})
+    EXPECT_EQ(condition(time), said) << time;
+}
+
 // Not the first one before it has come, which is of the future.
 TEST_F(RecordingSessionTest, HasNoPictureBeforeTheFirstHasCome) {
   record(replaced(replaced(viewed_text, "bits = 12", "bits = 12, delay = 0.3"), "[arm]",

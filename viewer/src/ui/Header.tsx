@@ -1,7 +1,8 @@
 import { useSignal } from '@preact/signals';
-import { flag_pace, flag_unsafe, flag_weightless } from '../protocol/state';
+import { flag_pace, flag_weightless } from '../protocol/state';
 import { preferences, theme_now, toggle_theme } from '../state/preferences';
 import { use_app } from './app';
+import { ConditionBadge } from './ConditionBadge';
 import { fixed } from './format';
 import { Icon } from './Icon';
 
@@ -30,7 +31,7 @@ export function Header() {
       </a>
       <h1 class="title">{teaching ? 'The planar arm, by its equations' : (hello?.title ?? '')}</h1>
       {!teaching && <span class="badge" data-kind={freshness} role="status" title={meaning}>{badge}</span>}
-      {!teaching && (viewer.flags.value & flag_unsafe) !== 0 && <span class="badge" data-kind="unsafe" role="status">UNSAFE</span>}
+      {!teaching && <ConditionBadge />}
       {!teaching && (viewer.flags.value & flag_weightless) !== 0 && (
         <span class="badge" data-kind="weightless" role="status" title="Weight and loads are switched off in this simulation.">NO WEIGHT</span>
       )}

@@ -111,7 +111,7 @@ test.each([
   [['Home'], 'time seek 0'],
   [['End'], 'time go_live'],
   [['Backspace'], 'rig plain reset'],
-  [['h'], 'rig halt'],
+  [['h'], 'rig plain halt'],
   [['r'], 'rig plain run'],
   [['c'], 'rig plain cancel'],
 ])('%s: %s', (keys, what) => {

@@ -118,6 +118,7 @@ function page(app: App): Binding[] {
 
 function escape(app: App): void {
   if (app.dialog.value) app.dialog.value = null;
+  else if (app.enlarged.value !== null) app.enlarged.value = null;
   else if (app.route.value !== 'viewer') return;
   else if (app.push_tool.value) app.push_tool.value = false;
   else if (app.views.current.value !== null) app.views.free();

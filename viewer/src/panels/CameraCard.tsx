@@ -1,5 +1,5 @@
 import { useEffect, useRef } from 'preact/hooks';
-import { effect, type Signal } from '@preact/signals';
+import { effect, useSignal, type Signal } from '@preact/signals';
 import { extra_layers } from '../overlays/extras';
 import { color_of } from '../overlays/measures';
 import { draw_layers } from '../overlays/registry';
@@ -24,9 +24,17 @@ const late_s = 1;
 const live_lag_s = 0.25;
 
 export function CameraCard({ camera, pixel }: Props) {
-  const { viewer } = use_app();
+  const { viewer, enlarged } = use_app();
   const canvas = useRef<HTMLCanvasElement>(null);
+  // Lines are as thick on the screen as before when the picture is shown larger.
+  const width = useSignal(0);
+  useEffect(() => {
+    const observer = new ResizeObserver(([{ contentRect }]) => (width.value = contentRect.width));
+    observer.observe(canvas.current!);
+    return () => observer.disconnect();
+  }, []);
   useEffect(() => effect(() => {
+    width.value;
     viewer.picture_tick.value;
     const layers = [
       ...(viewer.layers.value[camera.name] ?? []), ...measured_layers(viewer, camera.name),
@@ -48,7 +56,12 @@ export function CameraCard({ camera, pixel }: Props) {
     const v = Math.floor((event.offsetY / clientHeight) * camera.height);
     pixel.value = { camera: camera.name, ...inside(camera, u, v) };
   };
+  const is_enlarged = enlarged.value === camera.name;
+  const toggle = (): void => {
+    enlarged.value = is_enlarged ? null : camera.name;
+  };
   const step = (event: KeyboardEvent): void => {
+    if (event.key === 'Enter') toggle();
     const [du, dv] = { ArrowRight: [1, 0], ArrowLeft: [-1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] }[event.key] ?? [0, 0];
     if ((!du && !dv) || event.altKey) return;
     event.preventDefault();
@@ -57,11 +70,12 @@ export function CameraCard({ camera, pixel }: Props) {
     pixel.value = { camera: camera.name, ...inside(camera, from.u + far * du, from.v + far * dv) };
   };
   return (
-    <figure class="camera" data-old={old !== null}>
+    <figure class="camera" data-old={old !== null} data-enlarged={is_enlarged} style={{ '--aspect': camera.width / camera.height }}>
       <div class="picture">
         <canvas ref={canvas} width={camera.width} height={camera.height} tabIndex={0} role="img"
-          aria-label={`What the camera ${camera.name} sees; arrow keys move the inspected pixel`}
-          onPointerMove={point} onPointerDown={point} onKeyDown={step} />
+          aria-label={`What the camera ${camera.name} sees; arrow keys move the inspected pixel, Enter enlarges`}
+          title={is_enlarged ? 'A click makes it small again (Esc)' : 'A click enlarges it'}
+          onPointerMove={point} onPointerDown={point} onKeyDown={step} onClick={toggle} />
         {!picture && <span class="none">{viewer.freshness.value === 'recording' ? 'No picture yet at this time' : 'No picture'}</span>}
         {picture && old && <span class="old">{old}</span>}
         {picture && !old && unfound && <span class="unfound">{unfound}</span>}
@@ -73,6 +87,8 @@ export function CameraCard({ camera, pixel }: Props) {
           {picture ? format_time(picture.time) : ''}
           {picture && lag && <em>, {lag}</em>}
         </span>
+        <button type="button" class="icon-button" onClick={toggle} aria-label={`${is_enlarged ? 'Make small' : 'Enlarge'}: ${camera.name}`}
+          title={is_enlarged ? 'Make it small again (Esc)' : 'Enlarge this picture'}><Icon name={is_enlarged ? 'close' : 'enlarge'} /></button>
         {picture && (
           <a href={exact(camera.name, viewer)} download={`${camera.name}.png`} title="Save the exact picture (PNG)"
             aria-label={`Save the exact picture of ${camera.name}`}><Icon name="save" /></a>

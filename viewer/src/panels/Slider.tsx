@@ -57,6 +57,7 @@ export function Slider(props: SliderProps) {
           value={value}
           disabled={disabled}
           aria-label={title}
+          title={`${title}: ${said(reach[0])} to ${said(reach[1])}`}
           aria-valuetext={`${(value * scale).toFixed(places)} ${unit}`}
           onInput={(event) => input(event.currentTarget.valueAsNumber)}
           onKeyDown={(event) => {

@@ -25,7 +25,7 @@ export function Header() {
   const teaching = app.route.value === 'teach';
   return (
     <header class="header">
-      <a class="brand" href="#/" aria-label="Flexura, the viewer">
+      <a class="brand" href="#/" aria-label="Flexura, the viewer" title="The viewer">
         <svg viewBox="0 0 32 32" aria-hidden="true"><path d="M8 27V18C8 9 14 5 19 5s7 4 7 7-2 5-5 5-4-2-4-4" /></svg>
         <span>Flexura</span>
       </a>
@@ -40,14 +40,14 @@ export function Header() {
       {!teaching && hello && <Rig />}
       <nav class="tools" aria-label="Page">
         {!teaching && (hello?.examples?.length ?? 0) > 0 && (
-          <button type="button" class="button quiet" onClick={() => (app.dialog.value = 'examples')}>
+          <button type="button" class="button quiet" title="Opens an example" onClick={() => (app.dialog.value = 'examples')}>
             <Icon name="folder" />Examples
           </button>
         )}
         {teaching ? (
-          <a class="button" href="#/"><Icon name="back" />Viewer</a>
+          <a class="button" href="#/" title="Back to the viewer"><Icon name="back" />Viewer</a>
         ) : (
-          <a class="button quiet" href="#/teach"><Icon name="teach" />Learn</a>
+          <a class="button quiet" href="#/teach" title="The planar arm, by its equations"><Icon name="teach" />Learn</a>
         )}
         <button type="button" class="button quiet square" onClick={toggle_theme}
           aria-label={theme_now() === 'dark' ? 'Light colours' : 'Dark colours'} title="Light or dark (L)">
@@ -101,14 +101,14 @@ function Rig() {
   const ask = (what: string) => () => void viewer.commander.plain(what);
   const connected = viewer.link.status.value.kind === 'open';
   const report = hello.report && (
-    <a class="button quiet" href="report" target="_blank" rel="noopener"><Icon name="report" />Report</a>
+    <a class="button quiet" href="report" target="_blank" rel="noopener" title="The report of this run, in a tab of its own"><Icon name="report" />Report</a>
   );
   if (hello.mode === 'recording') {
     return (
       <div class="tools">
         {report}
         {hello.rig && (
-          <button type="button" class="button" disabled={!connected} onClick={ask('live')}><Icon name="live" />To the rig</button>
+          <button type="button" class="button" disabled={!connected} onClick={ask('live')} title="Back from the recording to the live rig"><Icon name="live" />To the rig</button>
         )}
       </div>
     );
@@ -132,7 +132,7 @@ function Rig() {
         </span>
       )}
       {!running && tasks.length > 1 && (
-        <select aria-label="Which tasks run" value={only.value ?? ''} disabled={!connected || viewer.readonly || viewer.blind}
+        <select aria-label="Which tasks run" title="All tasks, or one alone" value={only.value ?? ''} disabled={!connected || viewer.readonly || viewer.blind}
           onChange={({ currentTarget: { value } }) => (only.value = value === '' ? null : Number(value))}>
           <option value="">All tasks</option>
           {tasks.map(({ name, kind }, i) => <option key={i} value={i}>{`${i + 1}: ${name === kind ? name : `${name} (${kind})`}`}</option>)}
@@ -152,7 +152,7 @@ function Rig() {
       {report}
       {/* To stop is worth a try also when nothing is heard of the rig. */}
       <button type="button" class="button danger" disabled={!connected || viewer.readonly} onClick={ask('halt')}
-        title="Everything stops (H)"><Icon name="halt" />Halt</button>
+        title="Everything stops (H or F8, from any field)"><Icon name="halt" />Halt</button>
       <button type="button" class="button quiet" disabled={!connected || viewer.still} onClick={ask('reset')}
         title="Everything back to the start (Backspace)"><Icon name="reset" />Reset</button>
     </div>

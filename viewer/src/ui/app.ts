@@ -9,6 +9,8 @@ import { Views } from '../state/views';
 
 export type Dialog = 'help' | 'examples' | null;
 
+export type NarrowTab = 'view' | 'controls' | 'cameras' | 'plots';
+
 export interface App {
   viewer: Viewer;
   views: Views;
@@ -19,6 +21,10 @@ export interface App {
   route: Signal<'viewer' | 'teach'>;
   /** The left button pushes the arm where it is dragged. */
   push_tool: Signal<boolean>;
+  /** The camera whose picture fills the page. */
+  enlarged: Signal<string | null>;
+  /** On narrow screens one panel is shown at a time. */
+  narrow_tab: Signal<NarrowTab>;
   /** The time under the pointer in a plot or on the timeline, which all of them show. */
   cursor: Signal<number | null>;
   keys: KeyMap;
@@ -35,6 +41,8 @@ export function make_app(viewer: Viewer, keys: KeyMap): App {
     dialog: signal(null),
     route: signal('viewer'),
     push_tool: signal(false),
+    enlarged: signal(null),
+    narrow_tab: signal('view'),
     cursor: signal(null),
     keys,
     use_token: () => false,

@@ -266,34 +266,6 @@ void LiveSession::stay_where_it_ended() {
   }
 }
 
-// What of a run is unsafe where it is now; "": nothing.
-std::string LiveSession::run_danger() {
-  const std::string limit = beyond_limits(viewed()->model.driven(), news_.state);
-  return limit.empty() ? touched(shown_backbone(), viewed()->forbidden) : limit;
-}
-
-Conditioned LiveSession::condition() {
-  if (run_ != nullptr) {
-    const std::string danger = news_.time ? run_danger() : "";
-    return danger.empty() ? Conditioned{Condition::running, news_.what}
-                          : Conditioned{Condition::unsafe, danger};
-  }
-  if (is_touching_) return {Condition::unsafe, touched(rig_.backbone(rig_.now()), viewed()->forbidden)};
-  if (left_) return *left_;
-  return {rig_.is_arm_moving() || rig_.is_yielding() ? Condition::moving : Condition::idle, ""};
-}
-
-// When it changes, and not each word of a run's progress.
-void LiveSession::tell_condition() {
-  const Conditioned now = condition();
-  const bool is_new =
-      now.condition != told_.condition || (now.condition != Condition::running && now.text != told_.text);
-  if (!is_new) return;
-  told_ = now;
-  const std::string text = condition_message(told_);
-  for (const ClientId client : clients_) messenger().send(client, text);
-}
-
 void LiveSession::advance(double now) {
   clock_ = std::max(clock_, now);
   const double next = clock_ - config_.start;

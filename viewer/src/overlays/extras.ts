@@ -32,7 +32,8 @@ export function eyes_of(extras: Extras): { id: string; label: string; color: str
   return eyes;
 }
 
-const remembered = 100;
+/** Of a camera: on a slow machine a picture comes seconds after that. */
+const remembered = 500;
 
 /** What was drawn upon the last pictures, by their numbers: a picture may come after what was measured in it, and in the next. */
 export class OverlayMemory {

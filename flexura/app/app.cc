@@ -17,6 +17,7 @@
 
 #include "flexura/app/command_line.h"
 #include "flexura/app/commands.h"
+#include "flexura/app/compare.h"
 #include "flexura/app/identify.h"
 #include "flexura/app/new_experiment.h"
 #include "flexura/app/view.h"
@@ -185,6 +186,23 @@ void add_export(CLI::App& app, Command& chosen) {
   });
 }
 
+void add_compare(CLI::App& app, Command& chosen) {
+  auto arguments = std::make_shared<CompareArguments>();
+  CLI::App* compare = add_command(app, "compare", command_group::experiments,
+                                  "List what differs between the results of two runs",
+                                  "flexura compare results/experiment results/experiment-2\n"
+                                  "flexura compare results/a results/b --out page.html");
+  compare->add_option("RESULTS_A", arguments->a, "A folder made by `flexura run`")->type_name("")->required();
+  compare->add_option("RESULTS_B", arguments->b, "Another one")->type_name("")->required();
+  compare->add_option("--out", arguments->out, "Write a page with plots of both runs (default: none)")
+      ->type_name("FILE");
+  compare->add_flag("--all", arguments->all, "List values that are equal too");
+  compare->add_flag("--json", arguments->json, "Print one JSON document");
+  compare->callback([&chosen, arguments] {
+    chosen = [arguments] { return compare_command(*arguments, std::cout, std::cerr); };
+  });
+}
+
 void add_schema(CLI::App& app, Command& chosen) {
   auto format = std::make_shared<std::string>("json");
   CLI::App* command = add_command(app, "schema", command_group::program,
@@ -266,6 +284,7 @@ int parse_and_run(int argc, const char* const* argv) {
   add_view(app, chosen);
   add_check(app, chosen);
   add_run(app, chosen);
+  add_compare(app, chosen);
   add_export(app, chosen);
   add_answers(app, chosen, "fk", "Forward kinematics: from bends to the tip and the backbone",
               R"(echo '{"bends":[[0.5,0],[0,0.5]]}' | flexura fk arm.toml)", forward_command);

@@ -3,7 +3,9 @@
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
+#include <cstddef>
 #include <cstdlib>
 #include <memory>
 #include <optional>
@@ -21,6 +23,7 @@
 #include "flexura/app/view.h"
 #include "flexura/app/words.h"
 #include "flexura/base/table.h"
+#include "flexura/base/work_progress.h"
 #include "flexura/experiment/experiment.h"
 #include "flexura/experiment/run.h"
 #include "flexura/experiment/safety_nodes.h"
@@ -31,6 +34,7 @@
 #include "flexura/log/results.h"
 #include "flexura/log/results_log.h"
 #include "flexura/safety/violation_groups.h"
+#include "flexura/store/child_process.h"
 #include "flexura/store/json.h"
 #include "flexura/store/schema.h"
 #include "flexura/store/text_file.h"
@@ -63,6 +67,13 @@ void print_result(const Experiment& experiment, const RunResult& result, std::os
     out << fmt::format("end effector: ({:.3f}, {:.3f}{})\n", coordinate(0), coordinate(1), z);
   }
   print_line(out, "results", result.folder.string());
+  // What came of each task, if there are several, and last of the run.
+  constexpr std::size_t most_lines = 30;
+  const std::size_t count = result.outcomes.size() > 1 ? result.outcomes.size() : 0;
+  for (std::size_t i = 0; i < std::min(count, most_lines); ++i)
+    out << one_line(result.outcomes[i].line()) << '\n';
+  if (count > most_lines) out << fmt::format("and {} more, in {}\n", count - most_lines, summary_file_name);
+  print_line(out, "outcome", result.headline);
 }
 
 // A run with a viewer, which stays open until the program is stopped. Stopping during the run cancels it.
@@ -97,12 +108,12 @@ class UnwatchedRun {
   StopSignal stop_;
 };
 
-// Exports the films of a run's cameras.
-ExportResult export_as(const std::string& format, const std::filesystem::path& results) {
-  if (format == "csv") return export_csv(results, task_tables());
+// Exports a run's log as tables, or the films of its cameras.
+ExportResult export_as(const std::string& format, const std::filesystem::path& results, Progress& progress) {
+  if (format == "csv") return export_csv(results, task_tables(), &progress);
   const Experiment experiment = load_experiment(file_of_results(results, experiment_file_name));
   const std::vector<CameraConfig> cameras = experiment.true_rig().cameras;
-  return format == "mp4" ? export_mp4(results, cameras) : export_png(results, cameras);
+  return format == "mp4" ? export_mp4(results, cameras, &progress) : export_png(results, cameras, &progress);
 }
 
 // Answers lines about the elastic arm in a file with an `Answers` object. Throws InputError if the arm does
@@ -131,7 +142,10 @@ int run_command(const RunArguments& arguments, std::ostream& out, std::ostream& 
   const auto folder = make_new_folder(arguments.out.empty() ? default_results_folder(arguments.experiment)
                                                             : std::filesystem::path(arguments.out));
   TerminalProgress progress(err);
-  const auto link = std::make_shared<RunLink>(&progress);
+  // A film takes about a tenth of the work of its pictures.
+  const bool has_films = experiment.record.cameras && has_program(film_program);
+  WorkProgress work(progress, {0.9, has_films ? 0.1 : 0.0});
+  const auto link = std::make_shared<RunLink>(&work.piece(0));
   std::optional<WatchedRun> watched;
   std::optional<UnwatchedRun> unwatched;
   if (arguments.viewer) {
@@ -140,15 +154,23 @@ int run_command(const RunArguments& arguments, std::ostream& out, std::ostream& 
     unwatched.emplace(link);
   }
   const RunResult result = run_experiment(experiment, folder, *link, link.get());
-  progress.clear();
   // The film is optional: the run succeeds without ffmpeg, and a cancelled run does not wait for it.
-  if (experiment.record.cameras && result.outcome != RunOutcome::cancelled) {
+  std::string no_film;
+  if (has_films && result.outcome != RunOutcome::cancelled) {
     try {
-      (void)export_as("mp4", folder);
+      (void)export_as("mp4", folder, work.piece(1));
     } catch (const std::exception& error) {
-      print_line(err, "no film", error.what());
+      no_film = error.what();
     }
   }
+  progress.clear();
+  if (!no_film.empty()) print_line(err, "no film", no_film);
+  const auto is_recorded = [](const TaskOutcome& outcome) { return outcome.kind == "record"; };
+  if (experiment.record.cameras && !has_films && std::ranges::any_of(result.outcomes, is_recorded))
+    print_line(
+        err, "note",
+        fmt::format("the log has all pictures; for a film install {0} and run: flexura export {1} --to mp4",
+                    film_program, folder.string()));
   write_timing(folder, started, std::chrono::duration<double>(Clock::now() - start).count(), result.summary);
   for (std::size_t i = 0; i < result.reasons.size(); ++i) {
     // After the reason of a cancellation come the reasons why the run was unsafe.
@@ -211,7 +233,9 @@ int export_command(const std::string& results, const std::string& format, std::o
                    std::ostream& err) {
   if (format != "csv" && format != "mp4" && format != "png")
     throw input_error("--to", fmt::format("\"{}\": expected csv, mp4 or png", format));
-  const ExportResult result = export_as(format, results);
+  TerminalProgress progress(err);
+  const ExportResult result = export_as(format, results, progress);
+  progress.clear();
   if (result.truncated)
     err << "note: the run was cut short; exported up to the last complete chunk of its log\n";
   print_line(out, format == "csv" ? "tables" : "films", result.folder.string());

@@ -150,7 +150,8 @@ std::string words_of(const std::string& name) {
 }
 
 std::string distance_words(double metres) {
-  return std::isfinite(metres) ? fmt::format("{:.2f} mm", 1e3 * metres) : "farther than can be computed";
+  constexpr double most = 100;  // In m; beyond, the computed motion has blown up.
+  return metres < most ? fmt::format("{:.2f} mm", 1e3 * metres) : "farther than can be computed";
 }
 
 void print_table(const IdentifiedArm& found, std::ostream& out) {

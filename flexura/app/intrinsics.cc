@@ -15,8 +15,11 @@
 #include "flexura/app/intrinsics_answer.h"
 #include "flexura/app/intrinsics_files.h"
 #include "flexura/app/intrinsics_pictures.h"
+#include "flexura/app/intrinsics_table.h"
 #include "flexura/app/intrinsics_zoom.h"
+#include "flexura/app/terminal_progress.h"
 #include "flexura/base/source.h"
+#include "flexura/base/work_progress.h"
 #include "flexura/math/arrays.h"
 #include "flexura/store/json.h"
 
@@ -72,7 +75,7 @@ void check(const IntrinsicsArguments& arguments) {
 }
 
 // Calibrates one camera, or two with a fixed pose relative to each other.
-int cameras_command(const IntrinsicsArguments& arguments, const BoardTarget& board, std::ostream& out) {
+Node cameras_answer(const IntrinsicsArguments& arguments, const BoardTarget& board, Progress& progress) {
   const bool is_pair = arguments.images.empty();
   const auto names = names_of_cameras(
       arguments, is_pair ? std::vector<std::string>{"left", "right"} : std::vector<std::string>{"camera"});
@@ -82,10 +85,14 @@ int cameras_command(const IntrinsicsArguments& arguments, const BoardTarget& boa
                                   "different corners for the first: expected one even and one odd number "
                                   "of a chessboard, or an odd number of rows of asymmetric circles",
                                   board.columns, board.rows));
+  const std::vector<std::string>& first = is_pair ? arguments.left : arguments.images;
+  // The fit takes about as long as the search in half of the pictures.
+  WorkProgress work(progress, {static_cast<double>(first.size()), static_cast<double>(arguments.right.size()),
+                               0.5 * static_cast<double>(first.size())});
   std::vector<BoardPictures> pictures;
-  pictures.push_back(
-      look_for_board(is_pair ? arguments.left : arguments.images, board, is_pair ? "--left" : "IMAGE"));
-  if (is_pair) pictures.push_back(look_for_board(arguments.right, board, "--right"));
+  pictures.push_back(look_for_board(first, board, is_pair ? "--left" : "IMAGE", work.piece(0)));
+  if (is_pair) pictures.push_back(look_for_board(arguments.right, board, "--right", work.piece(1)));
+  work.piece(2).update(0, "fitting the cameras");
   const IntrinsicsFit fit = fit_pictures(arguments, board, pictures);
   Node::Table answer{{"found", {}, {fit.is_found, {}}}};
   if (!fit.is_found) answer.push_back({"reason", {}, text_node(fit.reason)});
@@ -109,17 +116,33 @@ int cameras_command(const IntrinsicsArguments& arguments, const BoardTarget& boa
     if (is_pair) answer.push_back({"pair", {}, pair_node(fit)});
   }
   answer.push_back({"cameras", {}, {std::move(entries), {}}});
-  out << write_json({std::move(answer), {}}, 2) << '\n';
-  return fit.is_found ? exit_done : exit_missed;
+  return {std::move(answer), {}};
+}
+
+// A glob without a match stays as it is written: then the file is missing, not a picture.
+void check_are_there(const IntrinsicsArguments& arguments) {
+  for (const auto* files : {&arguments.images, &arguments.left, &arguments.right})
+    for (const std::string& file : *files)
+      if (std::error_code error; !std::filesystem::exists(file, error))
+        throw input_error(file, "no such file");
 }
 
 }  // namespace
 
-int intrinsics_command(const IntrinsicsArguments& arguments, std::ostream& out) {
+int intrinsics_command(const IntrinsicsArguments& arguments, std::ostream& out, std::ostream& err) {
+  check_are_there(arguments);
   check(arguments);
   const BoardTarget board = board_of(arguments);
-  return arguments.zooms.empty() ? cameras_command(arguments, board, out)
-                                 : zoom_command(arguments, board, out);
+  TerminalProgress progress(err);
+  const Node answer = arguments.zooms.empty() ? cameras_answer(arguments, board, progress)
+                                              : zoom_answer(arguments, board, progress);
+  progress.clear();
+  if (arguments.json) {
+    out << write_json(answer, 2) << '\n';
+  } else {
+    print_intrinsics(answer, out);
+  }
+  return *answer.find("found")->as<bool>() ? exit_done : exit_missed;
 }
 
 }  // namespace flexura

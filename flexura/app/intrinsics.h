@@ -25,11 +25,13 @@ struct IntrinsicsArguments {
   std::string out;               ///< File of measured cameras to write; "": no file.
   std::string rig;               ///< File for experiments to include; "": no file.
   std::string rig_from;          ///< Experiment whose cameras the rig file takes; "": no experiment.
+  bool json = false;             ///< Print one JSON document with everything, not a table.
 };
 
-/// Calibrates cameras from pictures of a board and prints the result as one JSON document
-/// (docs/intrinsics.md). Returns exit_missed if the pictures do not determine the cameras. Throws InputError
-/// for bad input, and std::runtime_error if the system refuses a file.
-int intrinsics_command(const IntrinsicsArguments& arguments, std::ostream& out);
+/// Calibrates cameras from pictures of a board and prints the result as a table, or with `json` as one JSON
+/// document (docs/intrinsics.md). Shows its progress on `err`. Returns exit_missed if the pictures do not
+/// determine the cameras. Throws InputError for bad input, and std::runtime_error if the system refuses a
+/// file.
+int intrinsics_command(const IntrinsicsArguments& arguments, std::ostream& out, std::ostream& err);
 
 }  // namespace flexura

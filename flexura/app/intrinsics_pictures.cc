@@ -142,14 +142,16 @@ BoardTarget board_of(const IntrinsicsArguments& arguments) {
 }
 
 BoardPictures look_for_board(const std::vector<std::string>& files, const BoardTarget& board,
-                             const std::string& option) {
+                             const std::string& option, Progress& progress) {
   if (files.size() < 2)
     throw input_error(option,
                       fmt::format("{} picture{}: expected two at least, of the board from different sides",
                                   files.size(), files.size() == 1 ? "" : "s"));
   BoardPictures pictures;
   pictures.names = files;
+  std::size_t done = 0;
   for (const std::string& name : files) {
+    progress.update(static_cast<double>(done++) / static_cast<double>(files.size()), name);
     const std::string file = read_text_file(name, most_picture_bytes);
     const Photograph photograph = decode_picture(bytes_of(file), name);
     const std::array<int, 2> size = {photograph.bytes.width(), photograph.bytes.height()};
@@ -159,6 +161,7 @@ BoardPictures look_for_board(const std::vector<std::string>& files, const BoardT
                                           pictures.size[0], pictures.size[1], files.front()));
     pictures.observations.push_back(find_board(gray_picture(photograph.bytes), board));
   }
+  progress.update(1, files.back());
   refuse_larger(pictures, board);
   return pictures;
 }

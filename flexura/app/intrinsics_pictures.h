@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "flexura/app/intrinsics.h"
+#include "flexura/base/progress.h"
 #include "flexura/board/board_finder.h"
 #include "flexura/board/board_target.h"
 #include "flexura/board/intrinsics_fit.h"
@@ -32,7 +33,7 @@ struct ZoomGroup {
 /// ones, and differing sizes. Also throws it if more pictures show parts of a larger board than boards of
 /// this size.
 [[nodiscard]] BoardPictures look_for_board(const std::vector<std::string>& files, const BoardTarget& board,
-                                           const std::string& option);
+                                           const std::string& option, Progress& progress);
 
 /// Parses the values of `--zoom`, in the order given. Throws InputError for malformed values, and if only
 /// some of the groups have ratios (or counts).

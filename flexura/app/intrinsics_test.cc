@@ -51,6 +51,7 @@ class IntrinsicsCommand : public testing::Test {
     arguments_.board = "6x5";
     arguments_.square = board.square;
     arguments_.distortion = 0;
+    arguments_.json = true;
   }
   [[nodiscard]] std::string path(const std::string& name) const { return (folder_.path() / name).string(); }
   std::string write(const std::string& name, const Image<std::uint8_t>& picture) {
@@ -71,14 +72,14 @@ class IntrinsicsCommand : public testing::Test {
     return files;
   }
   Node answer(int status) {
-    std::ostringstream out;
-    EXPECT_EQ(intrinsics_command(arguments_, out), status) << out.str();
+    std::ostringstream out, err;
+    EXPECT_EQ(intrinsics_command(arguments_, out, err), status) << out.str();
     return parse_json(out.str(), "answer");
   }
   std::string refusal() {
-    std::ostringstream out;
+    std::ostringstream out, err;
     try {
-      (void)intrinsics_command(arguments_, out);
+      (void)intrinsics_command(arguments_, out, err);
     } catch (const InputError& error) {
       EXPECT_EQ(out.str(), "");
       EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos);
@@ -285,8 +286,8 @@ TEST_F(IntrinsicsCommand, WritesBothFilesOrNone) {
   EXPECT_FALSE(std::filesystem::exists(path("cameras.toml")));
   // A file name that is too long for the file system fails only when it is written.
   arguments_.rig = path(std::string(300, 'r') + ".toml");
-  std::ostringstream out;
-  EXPECT_THROW((void)intrinsics_command(arguments_, out), std::runtime_error);
+  std::ostringstream out, err;
+  EXPECT_THROW((void)intrinsics_command(arguments_, out, err), std::runtime_error);
   EXPECT_FALSE(std::filesystem::exists(path("cameras.toml")));
 }
 
@@ -340,6 +341,27 @@ TEST_F(IntrinsicsCommand, RefusesNumbersThatItCannotUse) {
     refuses("--zoom", [&](auto& a) { a.images = {}, a.zooms = {zoom, "2=b"}; });
   refuses("--zoom", [](auto& a) { a.images = {}, a.zooms = {"1=a", "2@5=b"}; });
   refuses("no folder", [](auto& a) { a.images = {}, a.zooms = {"1=a", "2=b"}; });
+}
+
+TEST_F(IntrinsicsCommand, PrintsAShortTableUnlessAskedForJson) {
+  arguments_.images = photograph("a", 260);
+  arguments_.images.push_back(write("blank.png", Image<std::uint8_t>(width, height, 1, 200)));
+  arguments_.out = path("cameras.toml");
+  arguments_.json = false;
+  std::ostringstream out, err;
+  EXPECT_EQ(intrinsics_command(arguments_, out, err), exit_done);
+  EXPECT_THAT(out.str(), HasSubstr("fx (px)         26"));
+  EXPECT_THAT(out.str(), HasSubstr(" +- "));
+  EXPECT_THAT(out.str(), HasSubstr("pictures used   5 of 6\n"));
+  EXPECT_THAT(out.str(), HasSubstr("blank.png: no board"));
+  EXPECT_THAT(out.str(), HasSubstr("file: " + path("cameras.toml")));
+  EXPECT_LT(std::ranges::count(out.str(), '\n'), 15);
+  EXPECT_EQ(err.str(), "") << "no terminal";
+}
+
+TEST_F(IntrinsicsCommand, SaysOfAGlobWithoutAMatchThatTheFileIsMissing) {
+  arguments_.images = {path("left*.jpg")};
+  EXPECT_THAT(refusal(), HasSubstr("left*.jpg: no such file"));
 }
 
 }  // namespace

@@ -5,18 +5,16 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <ostream>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "flexura/app/commands.h"
 #include "flexura/app/intrinsics_answer.h"
 #include "flexura/app/intrinsics_files.h"
 #include "flexura/app/intrinsics_pictures.h"
 #include "flexura/base/source.h"
+#include "flexura/base/work_progress.h"
 #include "flexura/camera/zoom.h"
-#include "flexura/store/json.h"
 
 namespace flexura {
 namespace {
@@ -90,15 +88,17 @@ Node zoom_node(const IntrinsicsArguments& arguments, const std::string& name, co
 
 }  // namespace
 
-int zoom_command(const IntrinsicsArguments& arguments, const BoardTarget& board, std::ostream& out) {
+Node zoom_answer(const IntrinsicsArguments& arguments, const BoardTarget& board, Progress& progress) {
   const std::string name = names_of_cameras(arguments, {"camera"}).front();
   std::vector<MeasuredZoom> zooms;
   std::string reason;
-  for (const ZoomGroup& group : zoom_groups(arguments.zooms)) {
+  const std::vector<ZoomGroup> groups = zoom_groups(arguments.zooms);
+  WorkProgress work(progress, std::vector<double>(groups.size(), 1));
+  for (const ZoomGroup& group : groups) {
     MeasuredZoom& zoom = zooms.emplace_back();
     zoom.group = group;
     const auto files = pictures_in(group.folder);
-    zoom.pictures = look_for_board(files, board, group.folder);
+    zoom.pictures = look_for_board(files, board, group.folder, work.piece(zooms.size() - 1));
     if (zoom.pictures.size != zooms.front().pictures.size)
       throw input_error(group.folder,
                         fmt::format("pictures of another size than in {}", zooms.front().group.folder));
@@ -130,8 +130,7 @@ int zoom_command(const IntrinsicsArguments& arguments, const BoardTarget& board,
   }
   if (!notes.empty()) answer.push_back({"notes", {}, texts_node(notes)});
   answer.push_back({"zoom", {}, {std::move(entries), {}}});
-  out << write_json({std::move(answer), {}}, 2) << '\n';
-  return reason.empty() ? exit_done : exit_missed;
+  return {std::move(answer), {}};
 }
 
 }  // namespace flexura

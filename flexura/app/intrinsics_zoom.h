@@ -1,14 +1,15 @@
 #pragma once
 
-#include <iosfwd>
-
 #include "flexura/app/intrinsics.h"
+#include "flexura/base/node.h"
+#include "flexura/base/progress.h"
 #include "flexura/board/board_target.h"
 
 namespace flexura {
 
-/// Runs `flexura intrinsics --zoom ...`, which calibrates a lens at several zoom positions. Return value and
-/// errors as for intrinsics_command().
-int zoom_command(const IntrinsicsArguments& arguments, const BoardTarget& board, std::ostream& out);
+/// Calibrates a lens at several zoom positions (`flexura intrinsics --zoom ...`). Errors as for
+/// intrinsics_command().
+[[nodiscard]] Node zoom_answer(const IntrinsicsArguments& arguments, const BoardTarget& board,
+                               Progress& progress);
 
 }  // namespace flexura

@@ -172,8 +172,11 @@ void add_intrinsics(CLI::App& app, Command& chosen) {
       ->type_name("FILE");
   intrinsics->add_option("--rig-from", arguments->rig_from, "Experiment whose cameras the rig file takes")
       ->type_name("EXPERIMENT");
-  intrinsics->callback(
-      [&chosen, arguments] { chosen = [arguments] { return intrinsics_command(*arguments, std::cout); }; });
+  intrinsics->add_flag("--json", arguments->json,
+                       "Print one JSON document with covariances and all pictures");
+  intrinsics->callback([&chosen, arguments] {
+    chosen = [arguments] { return intrinsics_command(*arguments, std::cout, std::cerr); };
+  });
 }
 
 }  // namespace

@@ -54,7 +54,7 @@ TEST_F(StoppedProgram, EndsEarlyAndLeavesWhatItHas) {
     kill(child, signal);
     const Ended ended = wait(child);
     EXPECT_EQ(ended.status, 128 + signal);
-    EXPECT_EQ(ended.out, "results: long\n");
+    EXPECT_THAT(ended.out, testing::StartsWith("results: long\noutcome: cancelled at "));
     const Node reported = parse_json(summary(), "summary");
     EXPECT_EQ(*reported.find("outcome")->as<std::string>(), "cancelled");
     const auto& reasons = *reported.find("reasons")->as<Node::Array>();

@@ -15,6 +15,7 @@
 #include <utility>
 #include <vector>
 
+#include "flexura/base/bounded_text.h"
 #include "flexura/base/degree.h"
 #include "flexura/board/board_alone.h"
 #include "flexura/board/board_certainty.h"
@@ -158,11 +159,11 @@ class Calibration {
     }
     return fmt::format(
         "{}its pictures do not belong to those of camera 1: the cameras fit to {} px alone and {} together, "
-        "and view {} puts it {:.0f} degrees and {:.2g} m elsewhere than most do: expected pictures taken "
+        "and view {} puts it {:.0f} degrees and {} m elsewhere than most do: expected pictures taken "
         "together, in the same order, by cameras that stand still to each other",
         camera_text(camera), fmt::join(rms_alone, " and "),
         fit.points > 0 ? fmt::format("to {:.3g} px", rms) : "not at all", numbers_[spread.view] + 1,
-        spread.turn / degree, spread.distance);
+        spread.turn / degree, bounded_text(spread.distance, 100));
   }
 
   // The unknowns' order is that of BundleFit::information.

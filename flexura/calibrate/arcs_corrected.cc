@@ -7,6 +7,7 @@
 #include <numbers>
 #include <utility>
 
+#include "flexura/base/bounded_text.h"
 #include "flexura/base/degree.h"
 #include "flexura/calibrate/arcs_loop.h"
 #include "flexura/calibrate/etalon_view.h"
@@ -64,10 +65,10 @@ class ArcsCorrected : public ArcsLoop {
       if (auto error = settle({0, 1})) return error;
       if (auto error = disagreement()) return error;
     }
-    loop_.result().notes.push_back(fmt::format(
-        "the angle between the axes is known within {:.3f} deg (standard deviation); residuals are "
-        "{:.2f} times their noise",
-        angle_.sigma / degree, reading_->found.rms));
+    loop_.result().notes.push_back(
+        fmt::format("the angle between the axes is known within {} deg (standard deviation); residuals are "
+                    "{:.2f} times their noise",
+                    bounded_text(angle_.sigma / degree, 90, 3), reading_->found.rms));
     for (std::size_t i = 0; i < 2; ++i) {
       if (!is_centered_[i]) continue;
       const Intrinsics was = loop_.lens(i), is = Camera(found(i)).lens().at(loop_.stance(i).head.zoom);
@@ -227,10 +228,10 @@ class ArcsCorrected : public ArcsLoop {
       next = desired_[i];
     if (next)
       what = fmt::format(
-          "residuals are {:.2f} times their noise, the angle between the axes is known within {:.3f} deg; "
+          "residuals are {:.2f} times their noise, the angle between the axes is known within {} deg; "
           "pan to {:.5g} rad, tilt to {:.5g} rad, stage to {:.4g}, {:.4g}, {:.4g} m",
-          reading_->found.rms, angle_.sigma / degree, next->head.pan, next->head.tilt, next->stage.offset.x(),
-          next->stage.offset.y(), next->stage.offset.z());
+          reading_->found.rms, bounded_text(angle_.sigma / degree, 90, 3), next->head.pan, next->head.tilt,
+          next->stage.offset.x(), next->stage.offset.y(), next->stage.offset.z());
     loop_.decide(i, "orientation and positioning", off, loop_.config().accepted, "px", what);
     return std::nullopt;
   }

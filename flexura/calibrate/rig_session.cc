@@ -9,6 +9,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "flexura/base/bounded_text.h"
 #include "flexura/base/degree.h"
 #include "flexura/calibrate/rig_excursion.h"
 #include "flexura/calibrate/rig_observer.h"
@@ -18,6 +19,10 @@
 
 namespace flexura {
 namespace {
+
+// Larger standard deviations in messages are no numbers any more: nothing is known of an angle, or of a
+// length of which there is as much uncertainty, %.
+constexpr double most_degrees = 90;
 
 using Error = RigCommander::Error;
 
@@ -70,10 +75,9 @@ class Session {
     constexpr double unrecoverable = 3 * degree;
     if (const double sigma = result_.steps.back().sigmas.angle; !(sigma < unrecoverable))
       return fmt::format(
-          "the standard deviation of the angle between the axes is still {:.2g} deg: take more images, other "
-          "poses or "
-          "turns of the heads",
-          sigma / degree);
+          "the standard deviation of the angle between the axes is still {} deg: take more images, other "
+          "poses or turns of the heads",
+          bounded_text(sigma / degree, most_degrees));
     result_.is_done = true;
     return std::nullopt;
   }
@@ -260,9 +264,9 @@ class Session {
       result_.verified[i] = prediction.px;
       if (!(prediction.sigmas <= most))
         return fmt::format(
-            "after the move camera {} sees the {} {:.1f} px from its predicted place, {:.1f} "
+            "after the move camera {} sees the {} {} px from its predicted place, {} "
             "standard deviations: a head with backlash, or one that was pushed{}",
-            name(i), what_, prediction.px, prediction.sigmas,
+            name(i), what_, bounded_text(prediction.px, 1000, 3), bounded_text(prediction.sigmas, 1000, 3),
             config_.etalon ? "" : ", or an arm that bends otherwise each time");
     }
     return std::nullopt;
@@ -296,8 +300,8 @@ class Session {
     const auto note = [&](const std::string& what, double known, double asked, const char* unit) {
       if (known > asked)
         result_.desired.notes.push_back(
-            fmt::format("standard deviation of {}: {:.2g}{}, required {:.2g}: take more pictures", what,
-                        known, unit, asked));
+            fmt::format("standard deviation of {}: {}{}, required {:.2g}: take more pictures", what,
+                        bounded_text(known, most_degrees), unit, asked));
     };
     note("the angle between the axes is", is.angle / degree, desired.angle / degree, " degrees");
     for (std::size_t i = 0; i < 2; ++i)

@@ -111,7 +111,7 @@ std::string PotentialRun::reason() const {
   if (arm.stretch().minCoeff() < least_stretch / near)
     return fmt::format("a section's length came to nothing at {:.3f} s", motion_.time());
   if (arm.theta().cwiseAbs().maxCoeff() > near * most_theta)
-    return fmt::format("the arm runs away: it turned by {:.0f} rad until {:.3f} s", most_theta,
+    return fmt::format("the arm runs away: at {:.3f} s it had wound up farther than any arm can",
                        motion_.time());
   return fmt::format("beyond {:.3f} s the motion is too fast to be followed", motion_.time());
 }

@@ -112,7 +112,7 @@ TEST(PotentialRun, EndsWhereTheArmRunsAway) {
   const PotentialLaw wild(arm, evenly_bent(arm, 0.3, 0), {.damping = -2 * Eigen::Matrix2d::Identity()});
   PotentialRun run(arm, wild, evenly_bent(arm, 0.6, 0));
   (void)watched(run, 60);
-  EXPECT_THAT(run.stopped(), HasSubstr("the arm runs away: it turned by 100 rad until "));
+  EXPECT_THAT(run.stopped(), HasSubstr("the arm runs away: at "));
   EXPECT_GT(run.motion().arm().theta().cwiseAbs().maxCoeff(), 99);
 }
 

@@ -12,6 +12,7 @@
 #include <string>
 #include <utility>
 
+#include "flexura/base/bounded_text.h"
 #include "flexura/base/degree.h"
 #include "flexura/estimate/axis_beginning.h"
 #include "flexura/estimate/band_match.h"
@@ -113,8 +114,11 @@ std::string bent_beyond_arms(const Shape& shape) {
   const auto most =
       std::ranges::max_element(bends, {}, [](const Eigen::Vector2d& bend) { return bend.norm(); });
   if (most->norm() <= most_bend) return "";
-  return fmt::format("the shape that fits best bends section {} by {:.0f} degrees: no arm does",
-                     most - bends.begin() + 1, most->norm() / degree);
+  return fmt::format(
+      "no shape of this arm explains the pictures: section {} would have to bend by more than a full turn. "
+      "Expected pictures of the arm as it is described, by cameras as they are described, with most of that "
+      "section in them",
+      most - bends.begin() + 1);
 }
 
 // Returns whether the fit is good enough to give information on the cameras.
@@ -125,10 +129,10 @@ bool indicates_cameras(const ShapeFit& fit) {
 
 std::string elsewhere(std::size_t picture, const ViewError& error) {
   return fmt::format(
-      "picture {} would need its camera turned by {:.2g} degrees and {:.3g} % {} in focal length, far more "
-      "than its prior allows",
-      picture + 1, error.turn.norm() / degree, 100 * std::abs(std::expm1(error.focal)),
-      error.focal < 0 ? "shorter" : "longer");
+      "picture {} would need its camera turned by {} degrees and {} % {} in focal length, far more than its "
+      "prior allows",
+      picture + 1, bounded_text(error.turn.norm() / degree, 180),
+      bounded_text(100 * std::abs(std::expm1(error.focal)), 100, 3), error.focal < 0 ? "shorter" : "longer");
 }
 
 // Returns the first picture in which most points are outliers; a few points do not count.
@@ -150,8 +154,8 @@ std::optional<std::size_t> picture_of_another(std::span<const Observation> obser
 void add_fit_warnings(const ShapeFit& fit, ShapeEstimate& result) {
   constexpr double poor = 3, max_outlier_share = 0.1;
   if (fit.scale > poor)
-    result.notes.push_back(
-        fmt::format("the images are {:.0f} times farther off than their noise explains", fit.scale));
+    result.notes.push_back(fmt::format("the images are {} times farther off than their noise explains",
+                                       bounded_text(std::round(fit.scale), 1000, 4)));
   if (!fit.is_settled) result.notes.emplace_back("the fit did not settle");
   if (fit.outlier_share > max_outlier_share)
     result.notes.push_back(fmt::format("{:.0f} % of the points are not the arm's", 100 * fit.outlier_share));
@@ -310,8 +314,8 @@ ShapeEstimate ShapeEstimator::answer(const ShapeProblem& problem, ShapeFit fit) 
       fit.outlier_share < 0.5 && (fit.rms < config_.most_rms || fit.scale < ShapeFit::most_scale);
   if (!result.is_found) {
     result.reason = fmt::format(
-        "no shape explains the images: {:.0f} % of the points lie elsewhere, the rest {:.2f} px off",
-        100 * fit.outlier_share, fit.rms);
+        "no shape explains the images: {:.0f} % of the points lie elsewhere, the rest {} px off",
+        100 * fit.outlier_share, fit.rms < 100 ? fmt::format("{:.2f}", fit.rms) : bounded_text(fit.rms, 100));
   }
   add_fit_warnings(fit, result);
   if (const auto section = bent_too_far(fit.shape))
@@ -323,7 +327,7 @@ ShapeEstimate ShapeEstimator::answer(const ShapeProblem& problem, ShapeFit fit) 
     result.notes.push_back(std::move(warning));
   if (sigma > config_.uncertain * length)
     result.notes.push_back(fmt::format(
-        "uncertain to {:.2g} m{}", sigma,
+        "uncertain to {} m{}", bounded_text(sigma, length),
         prior_.is_length_known ? ""
                                : ", if it is this shape: of unknown length another one may fit as well"));
   return result;

@@ -13,19 +13,17 @@ namespace {
 
 constexpr double same_time = 1e-9;  // In s.
 
-// Progress of work between two steps of a run, in words, because nothing is played meanwhile.
+// Progress of work between two steps of a run, when nothing is played.
 class Aside : public Progress {
  public:
-  // `played`: progress of the run, up to 1.
-  Aside(Progress& run, double played, std::string_view verb) : run_(run), played_(played), verb_(verb) {}
+  Aside(Progress& run, std::string_view verb) : run_(run), verb_(verb) {}
   void update(double fraction, std::string_view what) override {
-    run_.update(played_, fmt::format("{} {}, {:.0f} %", verb_, what, 100 * fraction));
+    run_.update(fraction, fmt::format("{} {}", verb_, what));
   }
   [[nodiscard]] bool is_cancelled() const override { return run_.is_cancelled(); }
 
  private:
   Progress& run_;
-  double played_;
   std::string_view verb_;
 };
 
@@ -35,10 +33,11 @@ Player::Player(const Experiment& experiment, RunRecorder& run_recorder, Progress
                RunWatcher* watcher, const RigFactory& make_rig)
     : experiment_(experiment),
       run_recorder_(run_recorder),
-      progress_(progress),
+      whole_(progress),
       watcher_(watcher),
       tasks_(task_runners(experiment)),
-      schedule_(scheduled(0)),
+      progress_(progress, experiment, tasks_),
+      schedule_(scheduled()),
       safety_(judged()),
       nominal_{.model = rig_model(experiment.arm_model(), experiment.cameras())},
       played_{0, 0, schedule_.initial(), false, ""} {
@@ -56,14 +55,17 @@ Player::Player(const Experiment& experiment, RunRecorder& run_recorder, Progress
 }
 
 // Includes simulated tasks with a known start.
-Schedule Player::scheduled(double played) {
-  Aside progress(progress_, played, "simulating");
-  if (auto ended = simulate_tasks(experiment_, tasks_, done_, progress)) ended_by_ = std::move(ended);
+Schedule Player::scheduled() {
+  std::optional<Aside> progress;
+  auto ended = simulate_tasks(experiment_, tasks_, done_, [&](std::size_t task) -> Progress& {
+    return progress.emplace(progress_.simulation(task), "simulating");
+  });
+  if (ended) ended_by_ = std::move(ended);
   return {experiment_, tasks_, done_};
 }
 
 SafetyReport Player::judged() {
-  Aside progress(progress_, 0, "checking");
+  Aside progress(progress_.checks(), "checking");
   return checked(schedule_, tasks_, ended_by_, &progress);
 }
 
@@ -95,7 +97,7 @@ void Player::publish_up_to(double time) {
 
 Played Player::play() {
   while (step_ <= schedule_.steps()) {
-    played_.is_cancelled = progress_.is_cancelled();
+    played_.is_cancelled = whole_.is_cancelled();
     if (played_.is_cancelled) break;
     const double time = schedule_.time_of_step(step_);
     if (const auto task = rig_task_due(time)) {
@@ -108,11 +110,23 @@ Played Player::play() {
     if (!is_possible(state)) break;
     play_to(time, state);
     step(time, state);
-    progress_.update(schedule_.duration() > 0 ? time / schedule_.duration() : 1.0,
-                     schedule_.legs()[schedule_.leg_at(time)].name);
+    report_progress(time);
   }
   if (played_.states == 0) run_recorder_.state(0, 0, played_.last);
   return played_;
+}
+
+// Everything before the leg at `time` is done.
+void Player::report_progress(double time) {
+  const std::size_t now = schedule_.leg_at(time);
+  const Leg& leg = schedule_.legs()[now];
+  for (; finished_ < now; ++finished_) {
+    progress_.simulation(finished_).update(1, leg.name);
+    progress_.task(finished_).update(1, leg.name);
+  }
+  if (now >= tasks_.size()) return;
+  const double duration = leg.motion->duration();
+  progress_.task(now).update(duration > 0 ? std::min(1.0, (time - leg.start) / duration) : 1.0, leg.name);
 }
 
 // Unsafe motions are only simulated.
@@ -175,7 +189,7 @@ bool Player::ends_with_simulated(double time) {
 
 // Ends the run with the state at the task's end, which belongs to no step.
 void Player::stop_after(const Leg& leg, const std::string& failure) {
-  played_ = {step_, leg.end(), leg.motion->at(leg.motion->duration()), progress_.is_cancelled(), failure};
+  played_ = {step_, leg.end(), leg.motion->at(leg.motion->duration()), whole_.is_cancelled(), failure};
   run_recorder_.expect(step_);
   run_recorder_.state(step_, leg.end(), played_.last);
   report_tasks(leg.end());
@@ -208,14 +222,14 @@ bool Player::perform(std::size_t task) {
       .rig = *rig_,
       .nominal = nominal_,
       .log = run_recorder_.log(),
-      .progress = progress_,
+      .progress = progress_.task(task),
       .record_steps = record_steps,
       .motors_after = [this](std::span<const ArmState> way) { return run_recorder_.motors_after(way); }};
   const TaskEnd end = tasks_[task]->perform(from, stage);
   run_recorder_.log().task_ended();
   done_[task] = end.motion;
-  const double played = schedule_.duration() > 0 ? leg.start / schedule_.duration() : 0;
-  schedule_ = !end.failure ? scheduled(played) : Schedule(experiment_, tasks_, done_);
+  progress_.task(task).update(1, leg.name);
+  schedule_ = !end.failure ? scheduled() : Schedule(experiment_, tasks_, done_);
   safety_ = checked(schedule_, tasks_, ended_by_);
   plan(schedule_.legs()[task].end());
   rig_->skip_to_now();

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "flexura/base/progress.h"
+#include "flexura/experiment/run_progress.h"
 #include "flexura/experiment/run_recorder.h"
 #include "flexura/experiment/schedule.h"
 #include "flexura/log/run_watcher.h"
@@ -39,6 +40,9 @@ class Player {
   /// Returns the tasks with their results.
   [[nodiscard]] const TaskRunners& tasks() const { return tasks_; }
 
+  /// Returns the progress of the run.
+  [[nodiscard]] RunProgress& progress() { return progress_; }
+
   /// Plays every step, or those before the first impossible state, or until the run ends with a task or is
   /// cancelled.
   Played play();
@@ -49,7 +53,8 @@ class Player {
     Recorder::Level level;
     std::string name, text;
   };
-  [[nodiscard]] Schedule scheduled(double played);
+  [[nodiscard]] Schedule scheduled();
+  void report_progress(double time);
   [[nodiscard]] SafetyReport judged();
   void plan(double from);
   void publish_up_to(double time);
@@ -65,9 +70,11 @@ class Player {
 
   const Experiment& experiment_;
   RunRecorder& run_recorder_;
-  Progress& progress_;
+  Progress& whole_;
   RunWatcher* watcher_;
   TaskRunners tasks_;
+  RunProgress progress_;
+  std::size_t finished_ = 0;             // Tasks whose progress is complete.
   std::vector<TaskRunner*> publishing_;  // Those of tasks_ that log during the run.
   DoneTasks done_;
   std::optional<EndedBy> ended_by_;  // A simulated task.

@@ -14,6 +14,7 @@
 #include "flexura/base/version.h"
 #include "flexura/camera/camera.h"
 #include "flexura/experiment/player.h"
+#include "flexura/experiment/run_outcomes.h"
 #include "flexura/experiment/run_recorder.h"
 #include "flexura/experiment/safety_nodes.h"
 #include "flexura/experiment/schedule.h"
@@ -69,6 +70,8 @@ Node summary_of(const Experiment& experiment, const ArmModel& arm, const Player&
       {"title", {}, {experiment.title, {}}},
       {"outcome", {}, {std::string(name_of(result.outcome)), {}}},
       {"reasons", {}, texts_node(result.reasons)},
+      {"headline", {}, {result.headline, {}}},
+      {"outcomes", {}, outcomes_node(result.outcomes)},
       {"seed", {}, {experiment.seed, {}}},
       {"duration", {}, {played.time, {}}},
       {"steps", {}, {static_cast<std::int64_t>(std::max<std::size_t>(played.states, 1) - 1), {}}},
@@ -171,7 +174,13 @@ RunResult run_experiment(const Experiment& as_read, const std::filesystem::path&
   run_recorder.close();
   if (became_unsafe) std::filesystem::remove(folder / commands_file_name);
 
-  for (const auto& task : player.tasks()) task->finish(folder, played.is_cancelled);
+  for (std::size_t i = 0; i < player.tasks().size(); ++i) {
+    TaskRunner& task = *player.tasks()[i];
+    task.finish(folder, played.is_cancelled, player.progress().results(i));
+    player.progress().results(i).update(1, task.name());
+  }
+  result.outcomes = run_outcomes(player, played, run_recorder.true_tip_off(), run_recorder.log().frames());
+  result.headline = headline_of(result.outcome, played.time, result.outcomes);
   result.summary = summary_of(experiment, arm, player, played, result);
   auto& summary = *result.summary.as<Node::Table>();
   if (experiment.record.cameras || !experiment.camera.empty())
@@ -179,9 +188,16 @@ RunResult run_experiment(const Experiment& as_read, const std::filesystem::path&
   add_results(experiment, player.tasks(), summary);
   write_new_file(folder / summary_file_name, write_json(result.summary, 2) + "\n");
   if (experiment.record.report && !played.is_cancelled) {
+    player.progress().report().update(0, "writing the report");
     ReportData data = std::move(run_recorder).report_data(experiment, player.schedule(), player.safety());
+    data.headline = result.headline;
+    for (const TaskOutcome& outcome : result.outcomes)
+      data.outcomes.push_back({outcome.task, outcome.text, outcome.is_reached});
+    data.condition = name_of(result.outcome);
+    if (!result.reasons.empty()) data.reason = result.reasons.front();
     add_chapters(experiment, player.tasks(), data.chapters);
     write_report(folder, data);
+    player.progress().report().update(1, "writing the report");
   }
   return result;
 }

@@ -9,6 +9,7 @@
 #include "flexura/experiment/experiment.h"
 #include "flexura/log/run_watcher.h"
 #include "flexura/rig/rig.h"
+#include "flexura/tasks/task_outcome.h"
 
 namespace flexura {
 
@@ -26,9 +27,11 @@ enum class RunOutcome {
 /// Result of a run.
 struct RunResult {
   RunOutcome outcome = RunOutcome::done;
-  std::vector<std::string> reasons;  ///< Why it is not done, one line each.
-  std::filesystem::path folder;      ///< As given: all files are in it.
-  Node summary;                      ///< As in summary.json.
+  std::vector<std::string> reasons;   ///< Why it is not done, one line each.
+  std::string headline;               ///< What came of it, in one line.
+  std::vector<TaskOutcome> outcomes;  ///< What came of each task.
+  std::filesystem::path folder;       ///< As given: all files are in it.
+  Node summary;                       ///< As in summary.json.
 };
 
 /// Runs an experiment and writes its results into `folder`, which must exist and be empty: the experiment as

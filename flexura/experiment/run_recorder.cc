@@ -188,6 +188,7 @@ void RunRecorder::readings(Rig& rig) {
   if (RigTruth* truth = rig.truth()) {
     const Backbone backbone = truth->backbone(now);
     recorder.truth(now, backbone);
+    true_tip_off_ = (backbone.tip().position - commanded_tip_).norm();
     rod_readings(*truth, now, backbone);
   }
   recorder.reading(ports.arm->read().value());

@@ -62,6 +62,9 @@ class RunRecorder {
   /// Returns the log of tasks' messages and events.
   [[nodiscard]] RunLog& log() { return log_; }
   void close();
+  /// Returns the distance of the true tip from the commanded one at the last readings, m; std::nullopt
+  /// without a known truth.
+  [[nodiscard]] std::optional<double> true_tip_off() const { return true_tip_off_; }
 
   [[nodiscard]] ReportData report_data(const Experiment& experiment, const Schedule& schedule,
                                        const SafetyReport& safety) &&;
@@ -86,6 +89,7 @@ class RunRecorder {
   std::vector<double> times_;
   std::vector<ArmState> states_;
   Eigen::Vector3d commanded_tip_ = Eigen::Vector3d::Zero();
+  std::optional<double> true_tip_off_;
   RodRecord rod_;
   std::vector<double> lost_;             // Microsteps of each axis, as last reported by events.
   std::vector<std::string> axis_names_;  // As in the command list.

@@ -114,7 +114,7 @@ SafetyReport Schedule::check(Progress* progress) const {
 }
 
 std::optional<EndedBy> simulate_tasks(const Experiment& experiment, const TaskRunners& tasks, DoneTasks& done,
-                                      Progress& progress) {
+                                      const std::function<Progress&(std::size_t task)>& progress_of) {
   for (std::size_t i = 0; i < tasks.size(); ++i) {
     if (done.contains(i)) continue;
     if (tasks[i]->motion_source() == TaskMotionSource::by_rig) return std::nullopt;
@@ -122,7 +122,7 @@ std::optional<EndedBy> simulate_tasks(const Experiment& experiment, const TaskRu
     const Leg leg = Schedule(experiment, tasks, done).legs()[i];
     const ArmState from = leg.motion->at(0);
     if (!is_possible(from)) return std::nullopt;  // The run ends before.
-    TaskEnd end = tasks[i]->simulate(from, leg.start, progress);
+    TaskEnd end = tasks[i]->simulate(from, leg.start, progress_of(i));
     done[i] = end.motion;
     if (end.failure) return EndedBy{i, std::move(*end.failure)};
   }
@@ -141,7 +141,8 @@ SafetyReport checked(const Schedule& schedule, const TaskRunners& tasks,
 SafetyReport check_experiment_safety(const Experiment& experiment, Progress& progress) {
   const TaskRunners tasks = task_runners(experiment);
   DoneTasks done;
-  const auto ended_by = simulate_tasks(experiment, tasks, done, progress);
+  const auto ended_by =
+      simulate_tasks(experiment, tasks, done, [&](std::size_t /*task*/) -> Progress& { return progress; });
   const Schedule schedule(experiment, tasks, done);
   SafetyReport report = checked(schedule, tasks, ended_by, &progress);
   if (ended_by)

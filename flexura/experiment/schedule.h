@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -89,8 +90,10 @@ struct EndedBy {
 };
 /// Simulates every simulated task whose start is known: those before the first task that the rig still has to
 /// do, or up to one that ends the run, which is returned. Adds their motions to `done`.
-[[nodiscard]] std::optional<EndedBy> simulate_tasks(const Experiment& experiment, const TaskRunners& tasks,
-                                                    DoneTasks& done, Progress& progress);
+/// `progress_of` returns the progress of one.
+[[nodiscard]] std::optional<EndedBy> simulate_tasks(
+    const Experiment& experiment, const TaskRunners& tasks, DoneTasks& done,
+    const std::function<Progress&(std::size_t task)>& progress_of);
 
 /// Returns the hazards of this schedule of these tasks (Schedule::check), with additions of each task.
 [[nodiscard]] SafetyReport checked(const Schedule& schedule, const TaskRunners& tasks,

@@ -203,8 +203,11 @@ class EventsTable : public LogTable {
 };
 
 // Fills the tables from the log.
-void fill(LogTables& tables, const McapReader& log, const std::string& name) {
+void fill(LogTables& tables, const McapReader& log, const std::string& name, Progress* progress) {
+  std::size_t done = 0;
   for (const McapMessage& message : log.messages()) {
+    if (progress != nullptr)
+      progress->update(static_cast<double>(done++) / static_cast<double>(log.messages().size()), "tables");
     const std::string& topic = message.channel->topic;
     for (const auto& table : tables)
       if (table->takes(topic))
@@ -214,7 +217,7 @@ void fill(LogTables& tables, const McapReader& log, const std::string& name) {
 
 }  // namespace
 
-ExportResult export_csv(const std::filesystem::path& results, LogTables more) {
+ExportResult export_csv(const std::filesystem::path& results, LogTables more, Progress* progress) {
   const McapReader log = open_log(results);
   LogTables tables;
   tables.push_back(std::make_unique<StatesTable>());
@@ -223,7 +226,7 @@ ExportResult export_csv(const std::filesystem::path& results, LogTables more) {
   tables.push_back(std::make_unique<EnergyTable>());
   tables.push_back(std::make_unique<EventsTable>());
   std::ranges::move(more, std::back_inserter(tables));
-  from_log([&] { fill(tables, log, (results / log_file_name).string()); });
+  from_log([&] { fill(tables, log, (results / log_file_name).string(), progress); });
   ExportResult result{make_new_folder(results / "csv"), log.truncated()};
   for (const auto& table : tables)
     if (const std::string text = table->text(); !text.empty())

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <string>
 
+#include "flexura/base/progress.h"
 #include "flexura/log/log_table.h"
 
 namespace flexura {
@@ -21,8 +22,8 @@ struct ExportResult {
 /// - tensions.csv: for arms that are rods,
 /// - energy.csv: for rods in motion,
 /// - tables of `more` with messages in the log (task_tables).
-/// Throws InputError if `results` has no log, std::runtime_error if the log is corrupt or a file is not
-/// writable.
-ExportResult export_csv(const std::filesystem::path& results, LogTables more);
+/// `progress` may be null; it cannot end the export. Throws InputError if `results` has no log,
+/// std::runtime_error if the log is corrupt or a file is not writable.
+ExportResult export_csv(const std::filesystem::path& results, LogTables more, Progress* progress = nullptr);
 
 }  // namespace flexura

@@ -102,17 +102,21 @@ class Film {
 }  // namespace
 
 ExportResult export_films(const std::filesystem::path& results, const std::string& folder,
-                          const std::vector<CameraConfig>& cameras, const NewFilm& new_film) {
+                          const std::vector<CameraConfig>& cameras, const NewFilm& new_film,
+                          Progress* progress) {
   const McapReader log = open_log(results);
   const auto sensors = from_log([&] { return sensors_of(log, cameras, results); });
   ExportResult result{make_new_folder(results / folder), log.truncated()};
   std::map<std::string, Film> films;
   for (const auto& [camera, sensor] : sensors)
     films.try_emplace(camera, new_film(result.folder / camera, sensor), sensor);
+  const double end = end_of(log);
   for_each_image(log, [&](const std::string& camera, const ImageMessage& image) {
+    if (progress != nullptr)
+      progress->update(end > 0 ? std::clamp(seconds(image.timestamp) / end, 0.0, 1.0) : 0, "films");
     if (const auto film = films.find(camera); film != films.end()) film->second.show(image);
   });
-  for (auto& [camera, film] : films) film.finish(end_of(log));
+  for (auto& [camera, film] : films) film.finish(end);
   return result;
 }
 

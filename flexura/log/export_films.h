@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "flexura/base/progress.h"
 #include "flexura/camera/camera_config.h"
 #include "flexura/camera/sensor.h"
 #include "flexura/log/export_csv.h"
@@ -35,9 +36,10 @@ using NewFilm =
 
 /// Makes a film of each camera's images in a run's log, in the new folder RESULTS/FOLDER (FOLDER-2, ... if it
 /// exists). A film has the camera's frame rate, and every frame from time 0 to the run's end. Lost frames
-/// repeat the previous one, or the first one. `cameras` are the run's true cameras. Throws InputError if
-/// `results` has no log or no images.
+/// repeat the previous one, or the first one. `cameras` are the run's true cameras. `progress` may be null.
+/// Throws InputError if `results` has no log or no images.
 ExportResult export_films(const std::filesystem::path& results, const std::string& folder,
-                          const std::vector<CameraConfig>& cameras, const NewFilm& new_film);
+                          const std::vector<CameraConfig>& cameras, const NewFilm& new_film,
+                          Progress* progress = nullptr);
 
 }  // namespace flexura

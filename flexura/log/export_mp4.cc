@@ -46,14 +46,17 @@ class Mp4Writer : public FilmWriter {
 
 }  // namespace
 
-ExportResult export_mp4(const std::filesystem::path& results, const std::vector<CameraConfig>& cameras) {
+ExportResult export_mp4(const std::filesystem::path& results, const std::vector<CameraConfig>& cameras,
+                        Progress* progress) {
   if (!has_program(film_program))
-    throw std::runtime_error(
-        fmt::format("there is no program {} on the PATH: films are made by it", film_program));
-  return export_films(results, "mp4", cameras,
-                      [](const std::filesystem::path& stem, const SensorConfig& sensor) {
-                        return std::make_unique<Mp4Writer>(stem.string() + ".mp4", sensor.frame_rate);
-                      });
+    throw std::runtime_error(fmt::format(
+        "there is no program {0} on the PATH, which makes films: install the package {0}", film_program));
+  return export_films(
+      results, "mp4", cameras,
+      [](const std::filesystem::path& stem, const SensorConfig& sensor) {
+        return std::make_unique<Mp4Writer>(stem.string() + ".mp4", sensor.frame_rate);
+      },
+      progress);
 }
 
 }  // namespace flexura

@@ -13,6 +13,7 @@ inline constexpr const char* film_program = "ffmpeg";
 
 /// Makes films (export_films) with the program ffmpeg on the PATH: RESULTS/mp4/NAME.mp4 (H.264). Throws also
 /// std::runtime_error if ffmpeg is missing or fails.
-ExportResult export_mp4(const std::filesystem::path& results, const std::vector<CameraConfig>& cameras);
+ExportResult export_mp4(const std::filesystem::path& results, const std::vector<CameraConfig>& cameras,
+                        Progress* progress = nullptr);
 
 }  // namespace flexura

@@ -123,11 +123,14 @@ class AnimatedPngWriter : public FilmWriter {
 
 }  // namespace
 
-ExportResult export_png(const std::filesystem::path& results, const std::vector<CameraConfig>& cameras) {
-  return export_films(results, "png", cameras,
-                      [](const std::filesystem::path& stem, const SensorConfig& sensor) {
-                        return std::make_unique<AnimatedPngWriter>(stem.string() + ".png", sensor.frame_rate);
-                      });
+ExportResult export_png(const std::filesystem::path& results, const std::vector<CameraConfig>& cameras,
+                        Progress* progress) {
+  return export_films(
+      results, "png", cameras,
+      [](const std::filesystem::path& stem, const SensorConfig& sensor) {
+        return std::make_unique<AnimatedPngWriter>(stem.string() + ".png", sensor.frame_rate);
+      },
+      progress);
 }
 
 }  // namespace flexura

@@ -11,6 +11,7 @@ namespace flexura {
 /// Makes films (export_films) as animated PNG pictures, which browsers play: RESULTS/png/NAME.png. They are
 /// lossless, repeat for ever, and need no other program. (W3C, Portable Network Graphics, third edition,
 /// 2025: chunks acTL, fcTL and fdAT.)
-ExportResult export_png(const std::filesystem::path& results, const std::vector<CameraConfig>& cameras);
+ExportResult export_png(const std::filesystem::path& results, const std::vector<CameraConfig>& cameras,
+                        Progress* progress = nullptr);
 
 }  // namespace flexura

@@ -62,6 +62,26 @@ TEST(ImageFile, KeepsEveryValueOfAPng) {
   });
 }
 
+TEST(ImageFile, QuicklyWrittenIsSmallWithNoiseAndWithout) {
+  constexpr int width = 200, height = 100;
+  TestRandom random(1);
+  Image<std::uint8_t> noisy(width, height, 3, 0), flat(width, height, 3, 77);
+  Image<std::uint16_t> deep(width, height, 1, 0);
+  for (int v = 0; v < height; ++v) {
+    for (std::uint8_t& value : noisy.row(v)) value = static_cast<std::uint8_t>(100 + random.uniform(-6, 6));
+    for (std::uint16_t& value : deep.row(v))
+      value = static_cast<std::uint16_t>(3000 + random.uniform(-90, 90));
+  }
+  const std::string noisy_file = png(noisy, {.level = 1}), flat_file = png(flat, {.level = 1}),
+                    deep_file = png(deep, {.level = 1});
+  EXPECT_LT(noisy_file.size(), noisy.values().size() / 2) << "3.6 bits of 8 are noise";
+  EXPECT_LT(flat_file.size(), 1000U);
+  EXPECT_EQ(read_png<std::uint8_t>(noisy_file), noisy);
+  EXPECT_EQ(read_png<std::uint8_t>(flat_file), flat);
+  EXPECT_EQ(read_png<std::uint16_t>(deep_file), deep);
+  EXPECT_EQ(png(noisy, {.level = 1}), noisy_file) << "equal pictures, equal bytes";
+}
+
 TEST(ImageFile, ReadsBackEveryValueOfAPng) {
   for_random_cases(40, [](TestRandom& random) {
     for (const int channels : {1, 3}) {

@@ -26,6 +26,10 @@ std::string tick_label(double value, double step, double largest) {
   return fixed(value, std::max(0, -power_of_ten(step)));
 }
 
+Ticks value_ticks(Interval range, int most, bool is_log) {
+  return is_log ? power_ticks(range, most) : nice_ticks(range, most);
+}
+
 }  // namespace
 
 Interval grown_to(Interval range, double extent) {
@@ -76,14 +80,26 @@ Ticks nice_ticks(Interval range, int most) {
   return ticks;
 }
 
+Ticks power_ticks(Interval range, int most) {
+  const int whole = static_cast<int>(std::floor(range.extent()));
+  Ticks ticks = nice_ticks(range, whole < 2 ? most : std::min(most, whole + 1));
+  for (std::size_t i = 0; i < ticks.values.size(); ++i) {
+    const double power = ticks.values[i];
+    ticks.labels[i] = fmt::format("{:.2g}", std::pow(10.0, power));
+    if (power == std::round(power) && power >= 0 && power < 5)
+      ticks.labels[i] = fmt::format("{:.0f}", std::pow(10.0, power));
+  }
+  return ticks;
+}
+
 Eigen::Vector2d PlotFrame::page(const Eigen::Vector2d& data) const {
   const double along = (data.y() - y.low) * scale().y();
   return {corner.x() + (data.x() - x.low) * scale().x(), y_down ? corner.y() + along : bottom() - along};
 }
 
-double left_of_axes(Interval y, double height) {
+double left_of_axes(Interval y, double height, bool y_log) {
   std::size_t longest = 1;
-  for (const std::string& label : nice_ticks(y, most_ticks(height, tick_pitch_y)).labels) {
+  for (const std::string& label : value_ticks(y, most_ticks(height, tick_pitch_y), y_log).labels) {
     longest = std::max(longest, label.size());
   }
   return 32.0 + tick_character_width * static_cast<double>(longest);
@@ -91,7 +107,7 @@ double left_of_axes(Interval y, double height) {
 
 void draw_axes(XmlWriter& svg, const PlotFrame& frame, std::string_view x_name, std::string_view y_name) {
   const Ticks x_ticks = nice_ticks(frame.x, most_ticks(frame.size.x(), tick_pitch_x));
-  const Ticks y_ticks = nice_ticks(frame.y, most_ticks(frame.size.y(), tick_pitch_y));
+  const Ticks y_ticks = value_ticks(frame.y, most_ticks(frame.size.y(), tick_pitch_y), frame.y_log);
   std::string grid;
   for (const double value : x_ticks.values) {
     const double x = frame.page({value, frame.y.low}).x();
@@ -114,7 +130,7 @@ void draw_axes(XmlWriter& svg, const PlotFrame& frame, std::string_view x_name, 
     svg.label({frame.corner.x() - 7, y + 4.5}, "tick end", y_ticks.labels[i]);
   }
   svg.label({frame.corner.x() + frame.size.x() / 2, frame.bottom() + 37}, "middle", x_name);
-  const Eigen::Vector2d side = {frame.corner.x() - left_of_axes(frame.y, frame.size.y()) + 15,
+  const Eigen::Vector2d side = {frame.corner.x() - left_of_axes(frame.y, frame.size.y(), frame.y_log) + 15,
                                 frame.corner.y() + frame.size.y() / 2};
   svg.leaf("text",
            {{"class", "middle"}, {"transform", fmt::format("translate({}) rotate(-90)", page_point(side))}},

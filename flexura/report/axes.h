@@ -39,6 +39,10 @@ struct Ticks {
 /// Returns at most `most` (>= 2) ticks for a range of positive extent, and as many as the steps allow.
 [[nodiscard]] Ticks nice_ticks(Interval range, int most);
 
+/// Returns ticks for a range of powers of ten, whose labels are the numbers: "0.01". Whole powers if the
+/// range has two.
+[[nodiscard]] Ticks power_ticks(Interval range, int most);
+
 /// Position of a plot on the page and its range. Data's y goes up unless y_down is set; the page's goes down.
 struct PlotFrame {
   Interval x;
@@ -46,6 +50,7 @@ struct PlotFrame {
   Eigen::Vector2d corner;  ///< Top left, page units.
   Eigen::Vector2d size;    ///< Page units.
   bool y_down = false;     ///< Data's y goes down.
+  bool y_log = false;      ///< Data's y are powers of ten; the axis has the numbers themselves.
 
   [[nodiscard]] Eigen::Vector2d scale() const { return {size.x() / x.extent(), size.y() / y.extent()}; }
   /// Returns the page point of a data point.
@@ -57,8 +62,9 @@ struct PlotFrame {
 /// Height below the plot of the axes from draw_axes, page units.
 inline constexpr double space_below_axes = 44.0;
 
-/// Returns their width to the left of a plot with a height of `height` page units that shows `y`.
-[[nodiscard]] double left_of_axes(Interval y, double height);
+/// Returns their width to the left of a plot with a height of `height` page units that shows `y`. `y_log`: as
+/// in PlotFrame.
+[[nodiscard]] double left_of_axes(Interval y, double height, bool y_log = false);
 
 /// Draws the plot's border, grid, ticks and the names of its axes.
 void draw_axes(XmlWriter& svg, const PlotFrame& frame, std::string_view x_name, std::string_view y_name);

@@ -68,5 +68,13 @@ TEST(LineClass, IsAnotherForEachOf32Lines) {
   EXPECT_EQ(classes.size(), 32U);
 }
 
+TEST(PowerTicks, AreLabelledByTheNumbers) {
+  const Ticks ticks = power_ticks({-3.2, 1.1}, 6);
+  EXPECT_EQ(ticks.labels, (std::vector<std::string>{"0.001", "0.01", "0.1", "1", "10"}));
+  EXPECT_EQ(power_ticks({-6, -4}, 6).labels, (std::vector<std::string>{"1e-06", "1e-05", "0.0001"}));
+  for (const std::string& label : power_ticks({2.9, 3.4}, 6).labels)
+    EXPECT_NE(label.find_first_of("0123456789"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace flexura

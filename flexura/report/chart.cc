@@ -59,15 +59,14 @@ std::string LineChart::class_of(const ChartSeries& one) const {
 
 Drawing chart_picture(const LineChart& chart) {
   const Interval values = padded(range_of(chart.series), chart.least, 0.05);
-  const double left = left_of_axes(values, chart_plot_height);
+  const double left = left_of_axes(values, chart_plot_height, chart.is_log);
   const Interval across = {chart.x.front(), chart.x.back()};
-  const PlotFrame frame = {padded(across, across.extent() > 0 ? 0.0 : 1.0, 0.0),
-                           values,
-                           {left, heading_space},
-                           {chart_width - left - right_space, chart_plot_height}};
+  const PlotFrame frame = {
+      padded(across, across.extent() > 0 ? 0.0 : 1.0, 0.0),  values, {left, heading_space},
+      {chart_width - left - right_space, chart_plot_height}, false,  chart.is_log};
   XmlWriter svg;
   svg.label({left, 22.0}, "heading", chart.heading);
-  draw_axes(svg, frame, chart.x_label, chart.value_label);
+  draw_axes(svg, frame, chart.x_label, chart.axis_label());
   std::string marks;
   for (const double mark : chart.marks)
     marks += polyline_path({frame.page({mark, values.low}), frame.page({mark, values.high})});
@@ -81,7 +80,7 @@ Drawing chart_picture(const LineChart& chart) {
   if (entries.size() > 1 || !chart.legend.empty())
     height += draw_legend(svg, chart.legend, entries, {left, height}, chart_width - 4.0);
   return {chart_width, height,
-          fmt::format("Chart over {}: {}, {}", chart.x_label, chart.heading, chart.value_label), svg.text()};
+          fmt::format("Chart over {}: {}, {}", chart.x_label, chart.heading, chart.axis_label()), svg.text()};
 }
 
 }  // namespace flexura

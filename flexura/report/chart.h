@@ -28,6 +28,10 @@ struct LineChart {
   std::string legend = {};         ///< Name of the series' variable: "section"; may be empty.
   bool is_of_run = false;          ///< Over the run's times: the page's player marks its time.
   std::vector<double> marks = {};  ///< Positions of fine vertical lines.
+  bool is_log = false;  ///< Values are powers of ten; a logarithmic axis shows the numbers themselves.
+
+  /// Returns the label of the value axis, which says whether it is logarithmic.
+  [[nodiscard]] std::string axis_label() const { return value_label + (is_log ? ", log scale" : ""); }
 
   /// Returns the style classes of a series.
   [[nodiscard]] std::string class_of(const ChartSeries& one) const;

@@ -85,6 +85,15 @@ std::vector<UnsafeMoment> unsafe_moments(const ReportMotion& motion) {
   return moments;
 }
 
+// Returns true if nobody sees a difference.
+bool is_same(const ArmState& a, const ArmState& b) {
+  constexpr double invisible = 1e-12;
+  for (std::size_t i = 0; i < a.bends.size(); ++i)
+    if ((a.bends[i] - b.bends[i]).norm() > invisible || std::abs(a.stretches[i] - b.stretches[i]) > invisible)
+      return false;
+  return true;
+}
+
 }  // namespace
 
 std::vector<std::size_t> kept_indices(const std::vector<double>& times, const std::vector<double>& desired,
@@ -144,6 +153,8 @@ ReportMotion motion_of(const ReportData& data) {
     motion.backbones.push_back(model.backbone(data.states[i]));
     for (const double stretch : data.states[i].stretches) motion.stretches_change |= stretch != 1.0;
   }
+  motion.is_still = std::ranges::all_of(
+      motion.states, [&](const ArmState& state) { return is_same(state, motion.states.front()); });
   motion.unsafe_moments = unsafe_moments(motion);
   motion.middle = nearest_index(motion.times, (motion.times.front() + motion.times.back()) / 2);
   return motion;

@@ -50,11 +50,11 @@ std::string chart_html(const LineChart& chart) {
   }
   return fmt::format(
       "<figcaption>{0}</figcaption>\n<div class=\"chart\" role=\"group\" aria-label=\"Chart: {0}\" "
-      "data-x=\"{1}\" data-y=\"{2}\" data-least=\"{3}\" data-legend=\"{4}\">\n<ul>\n{5}</ul>\n"
+      "data-x=\"{1}\" data-y=\"{2}\" data-least=\"{3}\" data-legend=\"{4}\"{9}>\n<ul>\n{5}</ul>\n"
       "<script type=\"application/json\">{{\"x\":{6},\"marks\":{7},\"series\":[{8}]}}</script>\n</div>\n",
-      xml_escape(chart.heading), xml_escape(chart.x_label), xml_escape(chart.value_label), chart.least,
+      xml_escape(chart.heading), xml_escape(chart.x_label), xml_escape(chart.axis_label()), chart.least,
       xml_escape(chart.legend), names, chart.is_of_run ? "null" : json_array(chart.x),
-      json_array(chart.marks), values);
+      json_array(chart.marks), values, chart.is_log ? " data-log=\"yes\"" : "");
 }
 
 }  // namespace
@@ -96,6 +96,21 @@ std::string figure_html(const ReportFigure& figure) {
       drawing != nullptr ? inline_svg(*drawing) : chart_html(std::get<LineChart>(figure.content)));
 }
 
+std::string table_html(const ChapterTable& table) {
+  std::string html =
+      "<div class=\"scroll whole\" tabindex=\"0\" role=\"region\" aria-label=\"Results\">\n<table "
+      "class=\"results\">\n<thead><tr>";
+  for (const std::string& column : table.columns)
+    html += fmt::format("<th scope=\"col\">{}</th>", xml_escape(column));
+  html += "</tr></thead>\n<tbody>\n";
+  for (const auto& row : table.rows) {
+    html += "<tr>";
+    for (const std::string& cell : row) html += fmt::format("<td>{}</td>", xml_escape(cell));
+    html += "</tr>\n";
+  }
+  return html + "</tbody>\n</table>\n</div>\n";
+}
+
 std::string motion_json(const ReportMotion& motion) {
   const Pose& X_WB = motion.arm.X_WB;
   std::vector<double> lengths, radii, states;
@@ -110,10 +125,10 @@ std::string motion_json(const ReportMotion& motion) {
       states.insert(states.end(), {state.bends[k].x(), state.bends[k].y(), state.stretches[k]});
   }
   return fmt::format(
-      R"({{"coordinates":{},"axes":{},"origin":{},"lengths":{},"radii":{},"times":{},"unsafe":{},"states":{}}})",
+      R"({{"coordinates":{},"axes":{},"origin":{},"lengths":{},"radii":{},"times":{},"unsafe":{},"still":{},"states":{}}})",
       motion.tip_coordinates(), json_array({X_WB.rotation.data(), X_WB.rotation.data() + 9}),
       json_array({X_WB.position.data(), X_WB.position.data() + 3}), json_array(lengths), json_array(radii),
-      json_array(motion.times), unsafe_json(motion), json_array(states));
+      json_array(motion.times), unsafe_json(motion), motion.is_still, json_array(states));
 }
 
 }  // namespace flexura

@@ -20,6 +20,9 @@ namespace flexura {
 /// as JSON, which the page's script plots.
 [[nodiscard]] std::string figure_html(const ReportFigure& figure);
 
+/// Returns a table's element, in a frame that scrolls if the page is narrower.
+[[nodiscard]] std::string table_html(const ChapterTable& table);
+
 /// Returns the motion as JSON for the page's script: only numbers, so that it is valid inside a script
 /// element.
 [[nodiscard]] std::string motion_json(const ReportMotion& motion);

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cctype>
 #include <cmath>
 
 #include "embedded/figure_css.h"
@@ -55,7 +57,27 @@ std::string summary_html(const ReportMotion& motion) {
          moment("middle", motion.middle) + moment("end", motion.end());
 }
 
-std::string events_html(const ReportData& data) {
+// Returns what came of the run, and of its tasks if there are several.
+std::string outcome_html(const ReportData& data) {
+  if (data.headline.empty()) return "";
+  std::string html = fmt::format("<p class=\"outcome\">{}</p>\n", xml_escape(data.headline));
+  if (data.outcomes.size() < 2) return html;
+  html += "<ul class=\"outcomes\">\n";
+  for (const ReportData::Outcome& outcome : data.outcomes)
+    html += fmt::format("<li{}><strong>{}</strong> {}</li>\n", outcome.is_reached ? "" : " class=\"missed\"",
+                        xml_escape(outcome.task), xml_escape(outcome.text));
+  return html + "</ul>\n";
+}
+
+// Returns a time that moves the player there; plain text if there is no player.
+std::string jump_html(double time, bool has_player) {
+  const std::string text = fixed(time, 3);
+  return has_player ? fmt::format("<button type=\"button\" class=\"jump\" data-time=\"{:.9g}\">{}</button>",
+                                  time, text)
+                    : text;
+}
+
+std::string events_html(const ReportData& data, bool has_player) {
   if (data.events.empty()) return "<p>None.</p>\n";
   std::string html =
       "<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"Events\">\n<table>\n<thead><tr>"
@@ -64,10 +86,8 @@ std::string events_html(const ReportData& data) {
       "<tbody>\n";
   for (std::size_t i = 0; i < std::min(data.events.size(), max_listed_events); ++i) {
     const ReportData::Mark& event = data.events[i];
-    html += fmt::format(
-        "<tr><td><button type=\"button\" class=\"jump\" data-time=\"{0:.9g}\">{1}</button></td>"
-        "<td>{2}</td><td>{3}</td></tr>\n",
-        event.time, fixed(event.time, 3), xml_escape(event.kind), xml_escape(event.text));
+    html += fmt::format("<tr><td>{}</td><td>{}</td><td>{}</td></tr>\n", jump_html(event.time, has_player),
+                        xml_escape(event.kind), xml_escape(event.text));
   }
   html += "</tbody>\n</table>\n</div>\n";
   if (data.events.size() > max_listed_events) {
@@ -77,7 +97,16 @@ std::string events_html(const ReportData& data) {
   return html;
 }
 
-std::string safety_html(const ReportData& data) {
+// As the viewer shows it: viewer/src/ui/ConditionBadge.tsx.
+std::string badge_html(const ReportData& data) {
+  if (data.condition.empty()) return "";
+  std::string word = data.condition;
+  std::ranges::transform(word, word.begin(), [](char c) { return static_cast<char>(std::toupper(c)); });
+  return fmt::format("<p class=\"condition\"><span class=\"badge\" data-kind=\"{}\">{}</span> {}</p>\n",
+                     xml_escape(data.condition), xml_escape(word), xml_escape(data.reason));
+}
+
+std::string safety_html(const ReportData& data, bool has_player) {
   if (!data.safety) return "";
   const auto& [violations, lines, remarks] = *data.safety;
   std::string html =
@@ -85,10 +114,8 @@ std::string safety_html(const ReportData& data) {
   if (violations.empty()) html += "<p>The motion keeps to its limits and touches nothing.</p>\n";
   if (!violations.empty() || !remarks.empty()) html += "<ul>\n";
   for (std::size_t i = 0; i < std::min(lines.size(), max_listed_events); ++i) {
-    html += fmt::format(
-        "<li><button type=\"button\" class=\"jump\" data-time=\"{:.9g}\">{}</button> <span "
-        "class=\"unsafe\">unsafe:</span> {}</li>\n",
-        lines[i].start, fixed(lines[i].start, 3), xml_escape(lines[i].text));
+    html += fmt::format("<li>{} <span class=\"unsafe\">unsafe:</span> {}</li>\n",
+                        jump_html(lines[i].start, has_player), xml_escape(lines[i].text));
   }
   if (lines.size() > max_listed_events)
     html += fmt::format("<li>and {} more</li>\n", lines.size() - max_listed_events);
@@ -107,29 +134,103 @@ std::string unsafe_html(const ReportMotion& motion, const PlotScene& scene) {
   for (std::size_t k = 0; k < motion.unsafe_moments.size(); ++k) {
     const UnsafeMoment& moment = motion.unsafe_moments[k];
     const double time = motion.times[moment.state];
-    html += fmt::format(
-        "<figure id=\"picture-{}\">\n{}<figcaption><button type=\"button\" class=\"jump\" "
-        "data-time=\"{:.9g}\">{}</button> {}</figcaption>\n</figure>\n",
-        unsafe_name(k), inline_svg(unsafe_picture(motion, scene, moment)), time, fixed(time, 3),
-        xml_escape(moment_text(motion, moment)));
+    html += fmt::format("<figure id=\"picture-{}\">\n{}<figcaption>{} {}</figcaption>\n</figure>\n",
+                        unsafe_name(k), inline_svg(unsafe_picture(motion, scene, moment)),
+                        jump_html(time, !motion.is_still), xml_escape(moment_text(motion, moment)));
   }
   return html + "</div>\n</section>\n";
+}
+
+std::string list_html(const std::vector<std::string>& points) {
+  if (points.empty()) return "";
+  std::string html = "<ul>\n";
+  for (const std::string& point : points) html += fmt::format("<li>{}</li>\n", xml_escape(point));
+  return html + "</ul>\n";
+}
+
+std::string details_html(const Chapter::Details& details) {
+  if (details.points.empty()) return "";
+  return fmt::format("<details><summary>{}</summary>\n{}</details>\n", xml_escape(details.heading),
+                     list_html(details.points));
 }
 
 std::string chapters_html(const ReportData& data) {
   std::string html;
   for (std::size_t i = 0; i < data.chapters.size(); ++i) {
     const Chapter& chapter = data.chapters[i];
-    std::string points;
-    for (const std::string& point : chapter.points) points += fmt::format("<li>{}</li>\n", xml_escape(point));
-    if (!points.empty()) points = fmt::format("<ul>\n{}</ul>\n", points);
     html += fmt::format(
         "<section aria-labelledby=\"chapter-{0}\">\n<h2 id=\"chapter-{0}\">{1}</h2>\n<p>{2}</p>\n{3}<div "
         "class=\"charts{4}\">\n{5}</div>\n</section>\n",
-        i + 1, xml_escape(chapter.heading), xml_escape(chapter.text), points,
+        i + 1, xml_escape(chapter.heading), xml_escape(chapter.text),
+        (chapter.table ? table_html(*chapter.table) : "") + list_html(chapter.points) +
+            details_html(chapter.details),
         chapter.is_first_tall ? " chapter" : "", figures_html(chapter.figures));
   }
   return html;
+}
+
+// Returns links to the report's parts.
+std::string contents_html(const ReportData& data, const ReportMotion& motion) {
+  std::string html = "<nav class=\"contents\" aria-label=\"Contents\">\n";
+  const auto add = [&](const std::string& id, const std::string& heading) {
+    html += fmt::format("<a href=\"#{}\">{}</a>\n", id, xml_escape(heading));
+  };
+  if (!motion.is_still) add("player", "Motion");
+  if (data.safety) add("safety-title", "Safety");
+  if (!motion.unsafe_moments.empty()) add("worst-title", "The worst moments");
+  add("arms-title", "The arm");
+  if (!motion.is_still) add("charts-title", "Over time");
+  for (std::size_t i = 0; i < data.chapters.size(); ++i)
+    add(fmt::format("chapter-{}", i + 1), data.chapters[i].heading);
+  add("events-title", "Events");
+  add("file-title", "The experiment");
+  return html + "</nav>\n";
+}
+
+// Returns the section of pictures of the arm: an arm that never moves has one.
+std::string arms_html(const ReportMotion& motion, const PlotScene& scene) {
+  std::vector<ReportFigure> arms = arm_figures(motion, scene);
+  if (motion.is_still) {
+    arms.resize(1);
+  } else if (!motion.in_plane) {
+    arms.push_back({"tip-path", tip_path_picture(motion)});
+  }
+  return fmt::format(
+      "<section aria-labelledby=\"arms-title\">\n<h2 id=\"arms-title\">{}</h2>\n<div class=\"pictures "
+      "{}\">\n{}</div>\n</section>\n",
+      motion.is_still ? "The arm, which does not move" : "The arm at start, middle and end",
+      motion.in_plane ? "one" : "two", figures_html(arms));
+}
+
+// Returns true if no line of the chart ever changes visibly.
+bool is_constant(const ReportFigure& figure) {
+  return std::ranges::all_of(std::get<LineChart>(figure.content).series, [](const ChartSeries& one) {
+    constexpr double invisible = 1e-9;
+    const auto [least, most] = std::ranges::minmax(one.values);
+    return most - least < invisible;
+  });
+}
+
+// Returns the section of charts over time, without those that never change.
+std::string charts_html(const ReportMotion& motion) {
+  if (motion.is_still) return "";
+  std::vector<ReportFigure> charts = charts_of(motion);
+  std::string hidden;
+  for (const ReportFigure& figure : charts)
+    if (is_constant(figure))
+      hidden += (hidden.empty() ? "" : ", ") + std::get<LineChart>(figure.content).heading;
+  std::erase_if(charts, is_constant);
+  // Beside the last two, as high as both.
+  if (motion.in_plane)
+    charts.insert(charts.empty() ? charts.end() : charts.end() - 1, {"tip-path", tip_path_picture(motion)});
+  const std::string note =
+      hidden.empty() ? ""
+                     : fmt::format("<p class=\"note\">Not shown, because it does not change: {}.</p>\n",
+                                   xml_escape(hidden));
+  return fmt::format(
+      "<section aria-labelledby=\"charts-title\">\n<h2 id=\"charts-title\">Over time</h2>\n{}<div "
+      "class=\"charts {}\">\n{}</div>\n</section>\n",
+      note, motion.in_plane ? "one" : "two", figures_html(charts));
 }
 
 std::string thinned_html(const ReportMotion& motion) {
@@ -191,37 +292,30 @@ std::vector<FigureFile> report_figures(const ReportData& data) {
 std::string report_html(const ReportData& data) {
   const ReportMotion motion = motion_of(data);
   const PlotScene scene = motion_scene(motion);
-  // Layout. For an arm in XOY, three narrow pictures fill a row, and its tip's path, as high as two charts,
-  // is beside the last two. For a spatial arm, two wide pictures fill a row, and the path has the fourth
-  // place.
-  std::vector<ReportFigure> arms = arm_figures(motion, scene);
-  std::vector<ReportFigure> charts = charts_of(motion);
-  ReportFigure path = {"tip-path", tip_path_picture(motion)};
-  if (motion.in_plane) {
-    charts.insert(charts.end() - 1, std::move(path));
-  } else {
-    arms.push_back(std::move(path));
-  }
-  return filled(embedded::report_html, {{"title", xml_escape(data.title)},
-                                        {"version", xml_escape(data.version)},
-                                        {"policy", policy()},
-                                        {"figure_css", std::string(embedded::figure_css)},
-                                        {"report_css", std::string(embedded::report_css)},
-                                        {"report_js", std::string(embedded::report_js)},
-                                        {"uplot_license", std::string(embedded::license)},
-                                        {"uplot_css", std::string(embedded::uplot_min_css)},
-                                        {"uplot_js", std::string(embedded::uplot_iife_min_js)},
-                                        {"summary", summary_html(motion)},
-                                        {"thinned", curve_html(motion) + thinned_html(motion)},
-                                        {"safety", safety_html(data) + unsafe_html(motion, scene)},
-                                        {"views", motion.in_plane ? "one" : "two"},
-                                        {"arms", figures_html(arms)},
-                                        {"player", inline_svg(player_picture(motion, scene))},
-                                        {"charts", figures_html(charts)},
-                                        {"chapters", chapters_html(data)},
-                                        {"events", events_html(data)},
-                                        {"experiment", xml_escape(data.experiment_text)},
-                                        {"data", motion_json(motion)}});
+  return filled(embedded::report_html,
+                {{"title", xml_escape(data.title)},
+                 {"condition", badge_html(data)},
+                 {"version", xml_escape(data.version)},
+                 {"policy", policy()},
+                 {"outcome", outcome_html(data)},
+                 {"contents", contents_html(data, motion)},
+                 {"figure_css", std::string(embedded::figure_css)},
+                 {"report_css", std::string(embedded::report_css)},
+                 {"report_js", std::string(embedded::report_js)},
+                 {"uplot_license", std::string(embedded::license)},
+                 {"uplot_css", std::string(embedded::uplot_min_css)},
+                 {"uplot_js", std::string(embedded::uplot_iife_min_js)},
+                 {"summary", summary_html(motion)},
+                 {"thinned", curve_html(motion) + thinned_html(motion)},
+                 {"safety", safety_html(data, !motion.is_still) + unsafe_html(motion, scene)},
+                 {"views", motion.in_plane ? "one" : "two"},
+                 {"arms", arms_html(motion, scene)},
+                 {"player", inline_svg(player_picture(motion, scene))},
+                 {"charts", charts_html(motion)},
+                 {"chapters", chapters_html(data)},
+                 {"events", events_html(data, !motion.is_still)},
+                 {"experiment", xml_escape(data.experiment_text)},
+                 {"data", motion_json(motion)}});
 }
 
 }  // namespace flexura

@@ -14,13 +14,26 @@
 
 namespace flexura {
 
+/// A table in a chapter. Any texts.
+struct ChapterTable {
+  std::vector<std::string> columns;            ///< Headings.
+  std::vector<std::vector<std::string>> rows;  ///< A cell per column.
+};
+
 /// A part of a report for measurements other than the motion.
 struct Chapter {
-  std::string heading;                   ///< Any text.
-  std::string text;                      ///< Any text: a paragraph.
-  std::vector<ReportFigure> figures;     ///< Names that are valid file names and unique in the report.
-  std::vector<std::string> points = {};  ///< Any text: a list below the paragraph.
-  bool is_first_tall = true;             ///< The first figure is as high as two.
+  std::string heading;                     ///< Any text.
+  std::string text;                        ///< Any text: a paragraph.
+  std::vector<ReportFigure> figures;       ///< Names that are valid file names and unique in the report.
+  std::vector<std::string> points = {};    ///< Any text: a list below the paragraph.
+  bool is_first_tall = true;               ///< The first figure is as high as two.
+  std::optional<ChapterTable> table = {};  ///< Below the paragraph, above the list.
+  /// A list that is folded in below the other one; shown if it has items.
+  struct Details {
+    std::string heading;
+    std::vector<std::string> points;
+  };
+  Details details = {};
 };
 
 /// Data of a finished run for its report.
@@ -53,7 +66,16 @@ struct ReportData {
     std::vector<std::string> remarks;
   };
 
+  /// What came of a task.
+  struct Outcome {
+    std::string task;        ///< Any text: its name.
+    std::string text;        ///< Any text: one line.
+    bool is_reached = true;  ///< Otherwise marked.
+  };
+
   std::string title;            ///< Any text.
+  std::string condition = {};   ///< "done", "unsafe" or "failed", shown as a badge; "": none.
+  std::string reason = {};      ///< Why it is not done; any text.
   std::string version;          ///< Version of Flexura.
   std::string experiment_text;  ///< The experiment file as run, shown unchanged.
   Arm arm;
@@ -67,6 +89,8 @@ struct ReportData {
   CurveKind curve = CurveKind::arcs;  ///< Drawn as a line along the arm; the arm itself is drawn as its arcs.
   double tension = 0.5;               ///< Of CurveKind::catmull_rom.
   std::vector<Chapter> chapters = {};
+  std::string headline = {};           ///< Any text: what came of the run, below the title. "": not shown.
+  std::vector<Outcome> outcomes = {};  ///< Listed below it if there are several.
 };
 
 /// A picture as a file.

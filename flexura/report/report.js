@@ -147,6 +147,7 @@
 
   const fixed = (value, decimals) => value.toFixed(decimals).replace(/^-(?=[0.]*$)/, "");
   const shown = (_, value) => (value === null ? "" : String(Number(value.toPrecision(4))));
+  const shownPower = (_, value) => (value === null ? "" : String(Number((10 ** value).toPrecision(3))));
   const color = (name) => () => getComputedStyle(document.body).getPropertyValue(name);
   let now = first;
 
@@ -157,7 +158,7 @@
     const series = [{ label: host.dataset.x, value: shown }];
     host.querySelectorAll("li").forEach((item, i) => {
       const look = getComputedStyle(item);
-      const line = { label: item.textContent, stroke: () => look.color, width: 2, value: shown };
+      const line = { label: item.textContent, stroke: () => look.color, width: 2, value: host.dataset.log ? shownPower : shown };
       const dash = look.strokeDasharray.split(",").map(parseFloat).filter((length) => length > 0);
       const [values, dots, rings] = given.series[i];
       const points = (name, more) => ({ ...line, label: `${line.label}, ${name}`, paths: () => null, points: { show: true, ...more } });
@@ -168,6 +169,8 @@
     });
     const axis = { stroke: color("--soft"), grid: { stroke: color("--edge"), width: 1 }, ticks: { show: false },
       values: (_, all) => all.map((value) => String(Number(value.toPrecision(6)))) };
+    // A logarithmic axis has the numbers whose powers of ten are drawn.
+    const powers = host.dataset.log ? { incrs: [0.5, 1, 2, 5, 10], values: (_, all) => all.map((value) => String(Number((10 ** value).toPrecision(2)))) } : {};
     const roomy = (_, low, high) => {
       const half = 0.55 * Math.max(high - low, Number(host.dataset.least));
       return [(low + high) / 2 - half, (low + high) / 2 + half];
@@ -175,7 +178,7 @@
     const chart = new uPlot({
       width: host.clientWidth, height: 280, series,
       scales: { x: { time: false }, y: { range: roomy } },
-      axes: [{ ...axis, label: host.dataset.x, size: 28, labelSize: 22 }, { ...axis, label: host.dataset.y, size: 58, labelSize: 22 }],
+      axes: [{ ...axis, label: host.dataset.x, size: 28, labelSize: 22 }, { ...axis, ...powers, label: host.dataset.y, size: 58, labelSize: 22 }],
       cursor: { y: false },
       legend: { markers: { dash: (_, i) => (series[i].dash?.length > 0 ? (series[i].dash[0] > 4 ? "dashed" : "dotted") : "solid") } },
       hooks: { drawAxes: [({ ctx, bbox, valToPos }) => {
@@ -207,6 +210,7 @@
     };
     row(byId("values").createTHead(), "th", ["section", ...charts.map((chart) => chart.y)]);
     const body = byId("values").createTBody();
+    if (charts.length === 0) return () => {};
     const rows = charts[0].series.slice(1).map((line) => row(body, "td", [line.label, ...charts]));
     return () => {
       const { low, high, part } = place(now);
@@ -281,7 +285,7 @@
     event.preventDefault();
   }
 
-  player.hidden = false;
+  player.hidden = run.still;
   const charts = [...document.querySelectorAll(".chart")].map(plot).filter((chart) => chart !== null);
   const fillTable = table(charts.filter((chart) => chart.isOfSections));
   scrub.min = first;

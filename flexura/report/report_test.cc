@@ -197,6 +197,67 @@ TEST(Report, HasAChapterForWhatWasMeasuredBesideTheMotion) {
   EXPECT_EQ(xml_fault(svg_of(report_figures(data), "a-edges.svg")), "");
 }
 
+TEST(Report, HasTablesAndFoldedListsInChapters) {
+  ReportData data = paper_run(10);
+  data.chapters = {{.heading = "Calibration",
+                    .text = "text",
+                    .figures = {},
+                    .table = ChapterTable{{"quantity", "reached"}, {{"angle < 1", "yes"}}},
+                    .details = {"What is unknown", {"a & b"}}}};
+  const std::string html = report_html(data);
+  for (const char* part :
+       {"<th scope=\"col\">quantity</th><th scope=\"col\">reached</th>",
+        "<tr><td>angle &lt; 1</td><td>yes</td></tr>",
+        "<details><summary>What is unknown</summary>\n<ul>\n<li>a &amp; b</li>\n</ul>\n</details>"})
+    EXPECT_NE(html.find(part), std::string::npos) << part;
+}
+
+TEST(Report, BeginsWithWhatCameOfTheRun) {
+  ReportData data = paper_run(10);
+  EXPECT_EQ(report_html(data).find("class=\"outcome\""), std::string::npos);
+  data.headline = "1 of 2 done", data.outcomes = {{"<a>", "there", true}, {"b", "not begun", false}};
+  const std::string html = report_html(data);
+  for (const char* part :
+       {"<p class=\"outcome\">1 of 2 done</p>", "<li><strong>&lt;a&gt;</strong> there</li>",
+        "<li class=\"missed\"><strong>b</strong> not begun</li>"})
+    EXPECT_NE(html.find(part), std::string::npos) << part;
+}
+
+TEST(Report, LinksToItsParts) {
+  ReportData data = spatial_run();
+  data.chapters = {{"Servo: <bow>", "text", {}}};
+  const std::string html = report_html(data);
+  std::size_t links = 0;
+  for (std::size_t at = html.find("<a href=\"#"); at != std::string::npos;
+       at = html.find("<a href=\"#", at + 1), ++links) {
+    const std::size_t begin = at + 10;
+    const std::string id = html.substr(begin, html.find('"', begin) - begin);
+    EXPECT_NE(html.find("id=\"" + id + "\""), std::string::npos) << id;
+  }
+  EXPECT_EQ(links, 6U);
+  EXPECT_NE(html.find(">Servo: &lt;bow&gt;</a>"), std::string::npos);
+}
+
+TEST(Report, HidesWhatNeverChanges) {
+  ReportData data = spatial_run();
+  for (ArmState& state : data.states)
+    for (Eigen::Vector2d& bend : state.bends) bend.y() = 0;
+  const std::string moving = report_html(data);
+  EXPECT_EQ(moving.find("picture-bends-y"), std::string::npos);
+  EXPECT_NE(moving.find("picture-bends-x"), std::string::npos);
+  EXPECT_NE(moving.find("Not shown, because it does not change: bend_y of each section."), std::string::npos);
+  for (ArmState& state : data.states) state = data.states.front();
+  data.safety = {.violations = {}, .lines = {{.start = 1, .text = "line"}}, .remarks = {}};
+  data.events = {{1, "start", "hold"}};
+  const std::string still = report_html(data);
+  for (const char* part :
+       {"id=\"picture-tip", "picture-bends", "picture-arm-middle", "class=\"jump\"", "href=\"#player"})
+    EXPECT_EQ(still.find(part), std::string::npos) << part;
+  EXPECT_NE(still.find("The arm, which does not move"), std::string::npos);
+  EXPECT_NE(still.find("\"still\":true"), std::string::npos);
+  EXPECT_TRUE(names_of(report_figures(data)).contains("tip.svg")) << "the files are complete";
+}
+
 TEST(Report, DrawsObstaclesInEveryPictureOfTheArm) {
   ReportData data = spatial_run();
   data.obstacles = {PlaneConfig{.name = "ground <"},
@@ -349,7 +410,8 @@ TEST(ReportHtml, ShowsARunOfOneState) {
   const std::string html = report_html(paper_run(0));
   EXPECT_NE(html.find("<dd>0.000 s</dd>"), std::string::npos);
   EXPECT_NE(html.find("<dd>E(0.000, 16.000)</dd>"), std::string::npos);
-  EXPECT_NE(html.find("start, middle, end"), std::string::npos)
+  EXPECT_NE(svg_of(report_figures(paper_run(0)), "tip-path.svg").find("start, middle, end"),
+            std::string::npos)
       << "one name at the one point of the tip's path";
 }
 

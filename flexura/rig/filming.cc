@@ -42,9 +42,9 @@ Filming::Filming(const Setup& setup) : Filming(setup, setup.true_rig().cameras.s
 Filming::Filming(const Setup& setup, std::size_t threads)
     : cameras_(setup.true_rig().cameras),
       photographers_(photographers(setup, cameras_.size())),
-      rig_(
+      rig_(std::make_unique<SimulatedRig>(
           setup.model_rig(), setup.true_rig(), [this](const Shot& shot) { return take(shot); },
-          static_cast<std::uint64_t>(setup.seed)),
+          static_cast<std::uint64_t>(setup.seed))),
       seed_(static_cast<std::uint64_t>(setup.seed)),
       stretch_(few_frames(cameras_)),
       thread_pool_(threads) {}
@@ -53,12 +53,12 @@ Filming::Filming(const Setup& setup, std::size_t threads)
 std::vector<FilmedFrame> Filming::new_frames() {
   std::vector<std::size_t> due;
   for (std::size_t i = 0; i < cameras_.size(); ++i)
-    if (rig_.camera(i).camera().has_new()) due.push_back(i);
+    if (rig_->camera(i).camera().has_new()) due.push_back(i);
   std::vector<std::vector<FilmedFrame>> films(due.size());
   thread_pool_.run(due.size(), [&](std::size_t place) {
     const std::size_t camera = due[place];
     const std::string& name = cameras_[camera].name;
-    for (const Frame& frame : rig_.camera(camera).camera().all_new())
+    for (const Frame& frame : rig_->camera(camera).camera().all_new())
       films[place].push_back({name, frame, logged_image(name, frame)});
   });
   std::vector<FilmedFrame> frames;
@@ -68,7 +68,7 @@ std::vector<FilmedFrame> Filming::new_frames() {
 }
 
 void Filming::play_to(double time, const ArmState& state, const TakeFrame& take) {
-  const RigPorts ports = rig_.ports();
+  const RigPorts ports = rig_->ports();
   // The simulated rig has no lost links: a fault here is a program error.
   (void)ports.arm->command(state, left_until(time, *ports.clock)).value();
   do {
@@ -78,18 +78,18 @@ void Filming::play_to(double time, const ArmState& state, const TakeFrame& take)
 }
 
 void Filming::pass_to(double time, const ArmState& state) {
-  const RigPorts ports = rig_.ports();
+  const RigPorts ports = rig_->ports();
   (void)ports.arm->command(state, left_until(time, *ports.clock)).value();
   ports.clock->wait_until(time);
 }
 
 void Filming::skip_to_now() {
-  for (std::size_t i = 0; i < cameras_.size(); ++i) rig_.camera(i).camera().skip_to_now();
+  for (std::size_t i = 0; i < cameras_.size(); ++i) rig_->camera(i).camera().skip_to_now();
 }
 
 RigStance Filming::stance(std::size_t camera) {
-  const double now = rig_.clock().now();
-  return {camera, rig_.camera(camera).head().truth(now), rig_.camera(camera).stage().truth(now)};
+  const double now = rig_->clock().now();
+  return {camera, rig_->camera(camera).head().truth(now), rig_->camera(camera).stage().truth(now)};
 }
 
 Shot Filming::shot(std::size_t camera, double start) {
@@ -100,8 +100,8 @@ Shot Filming::shot(std::size_t camera, double start) {
   shot.seed = seed_;
   shot.start = start;
   shot.is_covered = is_within(times_of_frame_at(*shot.sensor, start).middle, shot.sensor->covered);
-  shot.view = [&seen = rig_.camera(camera)](double time) { return seen.view(time); };
-  shot.backbone = [this](double time) { return rig_.arm().backbone(time); };
+  shot.view = [&seen = rig_->camera(camera)](double time) { return seen.view(time); };
+  shot.backbone = [this](double time) { return rig_->arm().backbone(time); };
   return shot;
 }
 

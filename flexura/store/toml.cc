@@ -222,7 +222,13 @@ std::string plain_words(std::string_view description) {
   if (description.starts_with(before) && description.ends_with(after))
     return fmt::format("the end comes within this {}: expected the rest of it",
                        description.substr(before.size(), description.size() - before.size() - after.size()));
-  return std::string(description);
+  if (!description.starts_with(before)) return std::string(description);
+  const std::string_view rest = description.substr(before.size());
+  const std::string_view what = rest.substr(0, rest.find(": "));
+  if (what.find("integer") != std::string_view::npos || what.find("floating-point") != std::string_view::npos)
+    return "not a number: expected digits alone; a unit is part of the key, as in length_cm = 30";
+  if (what.size() == rest.size()) return std::string(rest);
+  return fmt::format("not a valid {}: {}", what, rest.substr(what.size() + 2));
 }
 
 // Reports bytes that are not text, for which toml++ reports nesting or a byte sequence.

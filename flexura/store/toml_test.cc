@@ -51,6 +51,14 @@ TEST(ParseToml, SaysWhatIsExpectedWhereTheTextEndsOrHoldsAWord) {
             "x.toml:1:5: no value: expected a number, a text in quotes, true or false, an array or a table");
 }
 
+TEST(ParseToml, SaysOfANumberWithAUnitWhereUnitsBelong) {
+  for (const char* text : {"a = 30cm", "a = 1.5m", "a = 0x1g"})
+    EXPECT_THAT(toml_error_of(text),
+                HasSubstr("not a number: expected digits alone; a unit is part of the key"))
+        << text;
+  EXPECT_EQ(toml_error_of("a = [1 2]").find("Error while"), std::string::npos);
+}
+
 TEST(ParseToml, CanReadOnWhereAKeyIsWrittenTwice) {
   std::vector<Problem> repeated;
   const Node node = parse_toml("a = 1\na = 2\nb = 3\n[t]\nc = 1\nc = 'x'\nd = 4\n", "x.toml", &repeated);

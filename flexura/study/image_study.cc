@@ -61,7 +61,8 @@ ImageStudy::Measured ImageStudy::measured_difference() const {
   return result;
 }
 
-ImageStudy study_images(const StudyTask& task, const std::vector<CameraConfig>& cameras, std::uint64_t seed) {
+ImageStudy study_images(const StudyTask& task, const std::vector<CameraConfig>& cameras, std::uint64_t seed,
+                        Progress* progress) {
   const CameraConfig* config = camera_of(task, cameras);
   const std::vector<Variation> varied = variations(task.vary);
   if (config == nullptr || varied.size() != 1 || task.points < 2)
@@ -82,6 +83,8 @@ ImageStudy study_images(const StudyTask& task, const std::vector<CameraConfig>& 
   if (task.measure) study.columns.push_back({"measured", {}});
   const auto& [first, last] = study.variation.values;
   for (std::int64_t i = 0; i < task.points; ++i) {
+    if (progress != nullptr)
+      progress->update(static_cast<double>(i) / static_cast<double>(task.points), study.name);
     const double share = static_cast<double>(i) / static_cast<double>(task.points - 1);
     // Exact at both ends, which may be limits of an axis.
     study.values.push_back((1 - share) * first + share * last);

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "flexura/base/progress.h"
 #include "flexura/camera/camera_config.h"
 #include "flexura/study/image_features.h"
 #include "flexura/study/study_config.h"
@@ -49,7 +50,8 @@ struct ImageStudy {
 
 /// Makes a study that check_study has accepted, with the camera of that name among `cameras` at its initial
 /// axis positions. The noise of its pictures depends on `seed`, the camera's index and the value's.
+/// `progress` may be null; it cannot end the study.
 [[nodiscard]] ImageStudy study_images(const StudyTask& task, const std::vector<CameraConfig>& cameras,
-                                      std::uint64_t seed);
+                                      std::uint64_t seed, Progress* progress = nullptr);
 
 }  // namespace flexura

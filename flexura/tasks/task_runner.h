@@ -25,6 +25,7 @@
 #include "flexura/rig/setup.h"
 #include "flexura/safety/violation.h"
 #include "flexura/tasks/task_label.h"
+#include "flexura/tasks/task_outcome.h"
 
 namespace flexura {
 
@@ -68,6 +69,14 @@ struct TaskEnd {
   std::optional<std::string> failure;  ///< Why the run ends with this task; std::nullopt: it continues.
 };
 
+/// Estimated work of a task, for progress: only ratios count.
+struct TaskWork {
+  double duration = 0;    ///< Time that is played, s; the rig's part of the work depends on it.
+  double simulating = 0;  ///< Computing time of TaskRunner::simulate, s.
+  double performing = 0;  ///< Computing time of TaskRunner::perform, s.
+  double finishing = 0;   ///< Computing time of TaskRunner::finish, s.
+};
+
 /// Time at which a task's motion is known.
 enum class TaskMotionSource : std::uint8_t {
   known,      ///< From the state at its start.
@@ -87,6 +96,8 @@ class TaskRunner {
 
   [[nodiscard]] const std::string& name() const { return label_.name; }
   [[nodiscard]] virtual TaskMotionSource motion_source() const { return TaskMotionSource::known; }
+  /// Returns an estimate of its work.
+  [[nodiscard]] virtual TaskWork work() const = 0;
 
   /// Returns the plan for an arm in the state `from`. `done`: the performed motion if known, otherwise null;
   /// the plan then has the largest possible motion.
@@ -111,8 +122,13 @@ class TaskRunner {
 
   /// Writes its files into the results. `is_cancelled`: the run was cancelled, and computations still open
   /// are skipped.
-  virtual void finish(const std::filesystem::path& /*results*/, bool /*is_cancelled*/) {}
+  virtual void finish(const std::filesystem::path& /*results*/, bool /*is_cancelled*/,
+                      Progress& /*progress*/) {}
 
+  /// Returns what came of it. A task that did not begin is not reached, with the text "not begun". `motion`:
+  /// commanded motion, from its start; of tasks with a motion known from their start, which the caller knows
+  /// to be played.
+  [[nodiscard]] virtual TaskOutcome outcome(const Motion& motion) const = 0;
   /// Returns the summary's list of its kind: "servos"; "" if there is no list.
   [[nodiscard]] virtual std::string_view summary_list() const { return ""; }
   /// Returns its item in the list; std::nullopt without a result.

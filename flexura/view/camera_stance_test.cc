@@ -38,7 +38,32 @@ TEST_F(SlidingCamera, MovesAlongTheAxesThatItHas) {
   EXPECT_NEAR(pass(5).cameras[1].stage.y(), 0.2, 1e-6);
 }
 
-// The page shows the cameras at the positions that correspond to a run's readings.
+// Its true offset is no command: what is not commanded stays.
+TEST_F(SlidingCamera, KeepsItsOtherAxesWhereTheyAre) {
+  const CameraSample before = pass(0.1).cameras[1];
+  EXPECT_NEAR(before.head.pan, 2 * degree, 1e-6);
+  EXPECT_EQ(before.commanded_head.pan, 0);
+  EXPECT_EQ(ask(HeadRequest{"side", {}, {}, 1.5}).error, "");
+  EXPECT_EQ(ask(StageRequest{"side", {}, 0.2, {}}).error, "");
+  const CameraSample after = pass(5).cameras[1];
+  EXPECT_NEAR(after.head.pan, 2 * degree, 1e-6);
+  EXPECT_EQ(after.head.tilt, before.head.tilt);
+  EXPECT_NEAR(after.head.zoom, 1.5, 1e-6);
+  EXPECT_EQ(after.commanded_head.pan, 0);
+  EXPECT_EQ(after.commanded_head.zoom, 1.5);
+  EXPECT_NEAR(after.commanded_stage.y(), 0.2, 1e-6);
+  EXPECT_EQ(ask(HeadRequest{"side", 0.1, {}, {}}).error, "");
+  EXPECT_NEAR(pass(5).cameras[1].head.pan, 2 * degree + 0.1, 1e-6);
+  EXPECT_EQ(ask(HaltRequest{}).error, "");
+  EXPECT_NEAR(pass(1).cameras[1].commanded_head.pan, 0.1, 1e-6);
+}
+
+TEST_F(SlidingCamera, SaysWhereItIsCommandedToWithinItsEnds) {
+  EXPECT_EQ(ask(StageRequest{"side", {}, 7, {}}).error, "");
+  EXPECT_NEAR(pass(5).cameras[1].commanded_stage.y(), 0.3, 1e-6);
+}
+
+// What a run reads from its cameras is where the page sees them, and through them.
 TEST_F(SlidingCamera, StandsWhereAWatchedRunReadsIt) {
   auto run = std::make_shared<RunLink>();
   LiveSession watched(rig_, messenger_, background_, {.start = 100, .results = {}, .run = run});
@@ -115,7 +140,7 @@ TEST(CameraSample, HasTheNumbersOfItsLensEachInItsPlace) {
   const ViewedRigPtr rig =
       viewed_rig(replaced(viewed_text, "lens = { fx = 80, fy = 80, cx = 31.5, cy = 23.5 }",
                           "lens = { fx = 80, fy = 90, cx = 30, cy = 20 }"));
-  const CameraSample sample = camera_sample(rig->cameras[0], {{0.1, -0.2, 1.5}, {}});
+  const CameraSample sample = camera_sample(*rig, 0, {{0.1, -0.2, 1.5}, {}});
   EXPECT_NEAR(sample.fx, 120, 1e-9);
   EXPECT_NEAR(sample.fy, 135, 1e-9);
   EXPECT_EQ(sample.cx, 30);

@@ -118,7 +118,7 @@ TEST_F(FrontDoorTest, TakesEverythingAtOnceFromSeveralThreads) {
         door.on_message(client, R"({"id":3,"do":"pixel","camera":"front","u":3,"v":4})");
         door.asked("/image/side.png", [&](const HttpAnswer&) { ++documents; });
       }
-      door.on_message(client, R"({"id":4,"do":"run"})");
+      door.on_message(client, R"({"id":4,"do":"run","speed":0})");
     });
   }
   for (std::thread& thread : threads) thread.join();

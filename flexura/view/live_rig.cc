@@ -27,7 +27,15 @@ Picture no_picture(const Shot& /*shot*/) {
   throw std::logic_error("the live rig's pictures are taken elsewhere");
 }
 
-// Compares up to the rounding of a client's numbers.
+ShapeConfig shape_of(const ArmState& state) {
+  ShapeConfig shape;
+  shape.bends.emplace();
+  for (const auto& bend : state.bends) shape.bends->push_back({bend.x(), bend.y()});
+  shape.stretches = state.stretches;
+  return shape;
+}
+
+// But for what a client's numbers are rounded to.
 bool are_alike(const ArmState& a, const ArmState& b) {
   constexpr double rounding = 1e-6;  // In rad, and as a fraction of a length.
   const ArmDifference way = minus(a, b);
@@ -83,6 +91,23 @@ void LiveRig::restart(double now) {
                                               no_picture, static_cast<std::uint64_t>(rig_->experiment.seed));
   start_ = now;
   behind_ = 0;
+}
+
+void LiveRig::take_over(std::unique_ptr<SimulatedRig> rig, double now) {
+  simulated_ = std::move(rig);
+  start_ = now - simulated_->clock().now();
+  behind_ = 0;
+}
+
+void LiveRig::restart(double now, const ArmState& state) {
+  RigConfig model = rig_->experiment.model_rig(), truth = rig_->experiment.true_rig();
+  // As far off as at the start.
+  const ArmDifference off = minus(ArmSetup(truth).initial, ArmSetup(model).initial);
+  model.arm.initial = shape_of(state);
+  truth.arm.initial = shape_of(plus(state, off));
+  take_over(std::make_unique<SimulatedRig>(model, truth, no_picture,
+                                           static_cast<std::uint64_t>(rig_->experiment.seed)),
+            now);
 }
 
 void LiveRig::skip_to(double next) {
@@ -187,7 +212,7 @@ StateMessage LiveRig::state() {
   message.samples = arm_samples(backbone(message.time));
   for (std::size_t i = 0; i < rig_->cameras.size(); ++i) {
     const CameraStance stance = simulated_->camera(i).stance(rig_time(message.time));
-    message.cameras.push_back(camera_sample(rig_->cameras[i], stance));
+    message.cameras.push_back(camera_sample(*rig_, i, stance));
   }
   const Plant& plant = simulated_->arm().plant();
   const double time = rig_time(message.time);
@@ -255,7 +280,7 @@ StateMessage still_state(const ViewedRig& rig, double time, const ArmState& stat
     message.energy = RodEnergy{truth->energy->kinetic, truth->energy->strain, truth->energy->gravity};
   if (truth != nullptr) message.contacts = contact_samples(rig, truth->contacts);
   for (std::size_t i = 0; i < rig.cameras.size(); ++i)
-    message.cameras.push_back(camera_sample(rig.cameras[i], stances.at(i)));
+    message.cameras.push_back(camera_sample(rig, i, stances.at(i)));
   if (rig.drive) message.displacements = tendon_displacements(rig.model.driven(), *rig.drive, state).pulled;
   return message;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -28,12 +29,20 @@ class LiveRig {
   /// Restores the initial state of the experiment.
   void restart(double now);
 
+  /// Goes on with another simulated rig of the same experiment, as it stands, at `now` s.
+  void take_over(std::unique_ptr<SimulatedRig> rig, double now);
+  /// Puts everything back to how the experiment starts, but the arm into `state`, as its drives believe it to
+  /// be.
+  void restart(double now, const ArmState& state);
+
   [[nodiscard]] RigPorts ports() { return simulated_->ports(); }
   [[nodiscard]] double now() { return start_ + simulated_->clock().now(); }
   /// Advances to a time, not before the last one.
   void go_to(double now) { simulated_->clock().wait_until(rig_time(now)); }
-  /// To be called before advancing to a time. A rod is computed step by step, and cannot catch up on time
-  /// without viewers. All but the last 0.1 s before `next` is skipped without computing it.
+  /// Lets time pass without it, up to `now` s: nobody looks at it.
+  void rest_until(double now) { start_ += std::max(0.0, now - this->now()); }
+  /// Before it goes on to a time: a rod is followed step by step, and has no time to make up for what nobody
+  /// saw. All but the last 0.1 s up to then pass without it.
   void skip_to(double next);
   /// Returns the recent speed of the rig's time relative to real time, if its steps take longer than real
   /// time. Otherwise returns std::nullopt.

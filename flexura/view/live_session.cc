@@ -25,6 +25,11 @@ Node::Table event_table(double time, const std::string& level, const std::string
           {"text", {}, {text, {}}}};
 }
 
+// Where an axis is commanded to that cannot go beyond its ends.
+double within(const AxisConfig& axis, double position) {
+  return std::clamp(position, axis.limits[0], axis.limits[1]);
+}
+
 }  // namespace
 
 // Handles each request.
@@ -51,9 +56,12 @@ struct LiveSession::Taker : PictureSession::Taker {
     HeadState target = session.head_targets_.at(place);
     target = {head.pan.value_or(target.pan), head.tilt.value_or(target.tilt),
               head.zoom.value_or(target.zoom)};
+    const auto& axes = session.viewed()->nominal[place].head_axes();
+    target = {within(axes[0], target.pan), within(axes[1], target.tilt), within(axes[2], target.zoom)};
     const CameraPorts camera = session.rig_.ports().cameras.at(place);
-    if (const auto fault = command_head(camera, session.viewed()->cameras[place], target).fault())
+    if (const auto fault = command_head(camera, session.viewed()->nominal[place], target).fault())
       throw ViewRefusal(text(*fault));
+    session.left_.reset();
     session.head_targets_.at(place) = target;
     done();
   }
@@ -64,9 +72,15 @@ struct LiveSession::Taker : PictureSession::Taker {
     StageState target = session.stage_targets_.at(place);
     target.offset = {stage.x.value_or(target.offset.x()), stage.y.value_or(target.offset.y()),
                      stage.z.value_or(target.offset.z())};
+    const auto& axes = session.viewed()->nominal[place].stage_axes();
+    for (std::size_t i = 0; i < axes.size(); ++i) {
+      double& offset = target.offset[static_cast<Eigen::Index>(i)];
+      offset = within(axes[i], offset);
+    }
     const CameraPorts camera = session.rig_.ports().cameras.at(place);
-    if (const auto fault = command_stage(camera, session.viewed()->cameras[place], target).fault())
+    if (const auto fault = command_stage(camera, session.viewed()->nominal[place], target).fault())
       throw ViewRefusal(text(*fault));
+    session.left_.reset();
     session.stage_targets_.at(place) = target;
     done();
   }
@@ -99,6 +113,13 @@ struct LiveSession::Taker : PictureSession::Taker {
   void operator()(const RunRequest& run) const {
     session.require_free();
     session.start_run(run, reply);
+  }
+  void operator()(const SpeedRequest& request) const {
+    if (session.is_watched_run())
+      throw ViewRefusal("the run belongs to the terminal that started it: it plays as fast as possible");
+    if (session.run_ == nullptr) throw ViewRefusal("no run is going on");
+    session.pace_->set_speed(request.speed);
+    done();
   }
   void operator()(const CancelRequest&) const {
     if (session.is_watched_run()) throw ViewRefusal("the run belongs to the terminal that started it");
@@ -147,6 +168,7 @@ Hello LiveSession::hello() const {
 void LiveSession::opened(ClientId client) {
   clients_.insert(client);
   reporter_.repeat();
+  messenger().send(client, condition_message(reported_));
 }
 
 void LiveSession::closed(ClientId client) {
@@ -189,8 +211,12 @@ void LiveSession::start_run(const RunRequest& request, const Reply& reply) {
     throw ViewRefusal(error.what());
   }
   release();
+  left_.reset();
   run_ = std::make_shared<RunLink>();
   news_ = {};
+  pace_.emplace(request.speed, experiment.clock.step);
+  paced_at_ = clock_;
+  run_->pace_to(pace_->next(0, 0));
   reporter_.begin();
   background().run(Lane::tasks,
                    [experiment = std::move(experiment), folder, run = run_]() -> Background::After {
@@ -205,14 +231,39 @@ void LiveSession::follow_run() {
   const bool was_shown = news_.time.has_value();
   if (viewed()->is_rod) run_->request_truth();
   news_ = run_->news();
-  // The display jumps from the rig to the run's start, and from its end back to the rig.
-  if (news_.time && (!was_shown || news_.end)) ++leaps_;
-  // The page's time goes on. For a watched run, events carry the run's own time, like its states.
+  if (pace_) run_->pace_to(pace_->next(clock_ - paced_at_, news_.time.value_or(0)));
+  paced_at_ = clock_;
+  // From the rig to the run's start.
+  if (news_.time && !was_shown) ++leaps_;
+  // A page's time goes on, that of a watched run is its own: as that of states.
   const std::optional<double> now = is_watched_run() ? std::nullopt : std::optional(rig_.now());
+  if (news_.end && !is_watched_run()) stay_where_it_ended();
   reporter_.report(*run_, news_, clock_, now, clients_);
   if (!news_.end) return;
   if (!news_.end->folder.empty()) results_ = news_.end->folder;
+  left_ = {condition_after(news_.end->outcome), news_.end->text};
   run_.reset();
+  pace_.reset();
+}
+
+// What tasks have done stays done: the arm lies as they leave it, and cameras stand where they were moved.
+void LiveSession::stay_where_it_ended() {
+  if (!news_.time) return;  // It never began.
+  ++generation_;
+  warning_.clear();
+  try {
+    if (auto rig = run_->take_rig()) {
+      rig_.take_over(std::move(rig), rig_.now());
+      (void)rig_.ports().arm->halt().value();
+    } else {
+      rig_.restart(rig_.now(), news_.state);
+    }
+    aim_at_readings();
+    is_touching_ = !touched(rig_.backbone(rig_.now()), viewed()->forbidden).empty();
+  } catch (const std::exception& error) {
+    notice("error", "safety", std::string("everything is put back: ") + error.what());
+    reset();
+  }
 }
 
 void LiveSession::advance(double now) {
@@ -222,6 +273,7 @@ void LiveSession::advance(double now) {
   report_warning();
   report_pace();
   follow_run();
+  report_condition();
   if (clients_.empty()) return;
   send_states();
   send_images();
@@ -250,21 +302,55 @@ void LiveSession::send_states() {
   StateMessage state = is_running && news_.time
                            ? still_state(*viewed(), *news_.time, news_.state, run_stances(), run_truth())
                            : rig_.state();
-  if (is_running) state.pace.reset();
-  // The page's time goes on; a run that is watched from start to end has its own time.
+  // At rest steps of a motor lie between that and what it reports.
+  for (std::size_t i = 0; i < state.cameras.size() && !is_run_shown(); ++i) {
+    state.cameras[i].commanded_head = head_targets_.at(i);
+    state.cameras[i].commanded_stage = stage_targets_.at(i).offset;
+  }
+  if (is_running) state.pace = pace_ ? pace_->slowness() : std::nullopt;
+  // A page's time goes on; that of a run which it watches from the start to the end is the run's.
   if (!is_watched_run()) state.time = rig_.now();
   state.is_running = is_running;
   state.is_moving = state.is_moving || is_running;
-  state.is_unsafe = !is_running && is_touching_;
+  state.is_unsafe = reported_.condition == Condition::unsafe;
   state.leaps = leaps_;
   state.sequence = sequence_++;
   const auto message = std::make_shared<const std::string>(state_message(state));
   for (const ClientId client : clients_) messenger().post(client, state_stream, message);
 }
 
+// The picture of a camera in which a servo or a calibration has measured what is drawn; null: none is.
+const RunLink::Measured* LiveSession::measured(std::size_t camera) const {
+  if (!is_run_shown()) return nullptr;
+  const std::string& name = viewed()->cameras.at(camera).config().name;
+  const auto found = std::ranges::find(reporter_.measured(), name, &RunLink::Measured::camera);
+  return found == reporter_.measured().end() ? nullptr : &*found;
+}
+
+ValueShot LiveSession::measured_shot(std::size_t camera, const RunLink::Measured& seen) {
+  const SensorConfig& sensor = viewed()->sensors[camera];
+  CameraStance stance = viewed()->first_stance(camera);
+  if (seen.reading) {
+    stance = viewed()->stance(camera, *seen.reading);
+  } else if (camera < seen.readings.size()) {
+    stance = viewed()->stance(camera, seen.readings[camera]);
+  }
+  // So long ago, by the time that states have.
+  const double speed = pace_ ? pace_->speed() : 1;
+  const double ago = std::max(0.0, *news_.time - seen.time) / (speed > 0 ? speed : 1);
+  const double shown = is_watched_run() ? seen.time : rig_.now() - ago;
+  const double start = shown - times_of_frame_at(sensor, 0).middle;
+  Instant instant{start, seen.state, stance, {}};
+  instant.shape = viewed()->is_rod && seen.truth
+                      ? std::shared_ptr<const Backbone>(seen.truth, &seen.truth->backbone)
+                      : rig_.rod_at_rest(seen.state);
+  return with_covers(value_shot(viewed(), camera, seen.frame, start, {std::move(instant)}), seen.time);
+}
+
 ValueShot LiveSession::newest_shot(std::size_t camera) {
   const std::int64_t number = std::max<std::int64_t>(rig_.newest_frame(camera), 0);
   if (!is_run_shown()) return rig_.shot(camera, number);
+  if (const RunLink::Measured* seen = measured(camera)) return measured_shot(camera, *seen);
   const CameraStance stance = run_stances().at(camera);
   const SensorConfig& sensor = viewed()->sensors[camera];
   // As for states, the time is the page's own, or that of a run watched from start to end. So mid-exposure of
@@ -280,7 +366,8 @@ ValueShot LiveSession::newest_shot(std::size_t camera) {
 
 void LiveSession::send_images() {
   for (std::size_t camera = 0; camera < viewed()->cameras.size(); ++camera) {
-    const std::int64_t number = rig_.newest_frame(camera);
+    const RunLink::Measured* seen = measured(camera);
+    const std::int64_t number = seen != nullptr ? seen->frame : rig_.newest_frame(camera);
     if (number < 0 || room().is_busy(camera)) continue;
     const auto due = streams().due(camera, number, clock_);
     if (!due.empty()) room().show(newest_shot(camera), due, clock_);

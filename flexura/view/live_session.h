@@ -11,11 +11,13 @@
 #include <vector>
 
 #include "flexura/view/background.h"
+#include "flexura/view/condition.h"
 #include "flexura/view/live_rig.h"
 #include "flexura/view/messenger.h"
 #include "flexura/view/moves.h"
 #include "flexura/view/picture_session.h"
 #include "flexura/view/run_link.h"
+#include "flexura/view/run_pace.h"
 #include "flexura/view/run_reporter.h"
 #include "flexura/view/session.h"
 
@@ -74,6 +76,8 @@ class LiveSession : public PictureSession {
   void finish(const Move& move, const Judged& judged);
   void start_run(const RunRequest& request, const Reply& reply);
   void follow_run();
+  void stay_where_it_ended();
+  void aim_at_readings();
   void halt();
   void reset();
   void weigh(bool on);
@@ -81,6 +85,9 @@ class LiveSession : public PictureSession {
   void release();
   void watch_yielding();
   void report_pace();
+  [[nodiscard]] Conditioned condition();
+  [[nodiscard]] std::string run_danger();
+  void report_condition();
   void keep_clear(double next);
   void move_on(double next);
   void report_warning();
@@ -90,6 +97,8 @@ class LiveSession : public PictureSession {
   [[nodiscard]] Backbone shown_backbone();
   [[nodiscard]] std::vector<CameraStance> run_stances() const;
   [[nodiscard]] ValueShot newest_shot(std::size_t camera);
+  [[nodiscard]] const RunLink::Measured* measured(std::size_t camera) const;
+  [[nodiscard]] ValueShot measured_shot(std::size_t camera, const RunLink::Measured& seen);
   [[nodiscard]] const TrueArm* run_truth() const;
   void event(const char* level, const std::string& name, const std::string& text);
   void notice(const char* level, const std::string& name, const std::string& text);
@@ -113,9 +122,14 @@ class LiveSession : public PictureSession {
   double warned_ = -1;   // s
   std::string warning_;  // Last warning about the arm's state, as sent.
   std::shared_ptr<RunLink> run_;
-  RunLink::News news_;  // News of the run.
+  RunLink::News news_;           // of the run
+  std::optional<RunPace> pace_;  // of one that is started here
+  double paced_at_ = 0;          // s, of advance()
   RunReporter reporter_;
   std::optional<std::filesystem::path> results_;
+  // What tasks or a halt have left, until somebody moves something; and what clients know.
+  std::optional<Conditioned> left_;
+  Conditioned reported_;
 };
 
 }  // namespace flexura

@@ -84,6 +84,7 @@ void LiveSession::finish(const Move& move, const Judged& judged) {
   const CommandOutcome sent =
       pull != nullptr ? rig_.pull(*pull, duration) : rig_.ports().arm->command(judged.state, duration);
   const auto fault = sent.fault();
+  if (!fault) left_.reset();
   move.reply({judged.found ? tip_answer(*judged.found, "") : nothing(), fault ? text(*fault) : ""});
 }
 
@@ -103,10 +104,20 @@ void LiveSession::halt() {
   const RigPorts ports = rig_.ports();
   // The simulated rig's links are never interrupted: a fault here is a program error.
   (void)ports.arm->halt().value();
+  for (const CameraPorts& camera : ports.cameras) (void)halt_camera(camera).value();
+  aim_at_readings();
+  left_ = {Condition::halted, "everything was stopped"};
+}
+
+// What cameras say of themselves is what they are to do from now on: what commands add to.
+void LiveSession::aim_at_readings() {
+  head_targets_.clear();
+  stage_targets_.clear();
+  const RigPorts ports = rig_.ports();
   for (std::size_t i = 0; i < ports.cameras.size(); ++i) {
-    (void)halt_camera(ports.cameras[i]).value();
-    const CameraStance stands = measured_stance(ports.cameras[i], viewed()->cameras[i]).value();
-    head_targets_[i] = stands.head, stage_targets_[i] = stands.stage;
+    const CameraStance stands = measured_stance(ports.cameras[i], viewed()->nominal[i]).value();
+    head_targets_.push_back(stands.head);
+    stage_targets_.push_back(stands.stage);
   }
 }
 
@@ -117,12 +128,8 @@ void LiveSession::reset() {
   if (waiting_) std::exchange(waiting_, std::nullopt)->reply({nothing(), "something else has stopped it"});
   ++leaps_;
   rig_.restart(clock_ - config_.start);
-  head_targets_.clear();
-  stage_targets_.clear();
-  for (const Camera& camera : viewed()->cameras) {
-    head_targets_.push_back(camera.initial_head());
-    stage_targets_.push_back(camera.initial_stage());
-  }
+  aim_at_readings();
+  left_.reset();
   is_touching_ = !touched(rig_.backbone(rig_.now()), viewed()->forbidden).empty();
 }
 
@@ -167,6 +174,7 @@ void LiveSession::push(ClientId client, const PushRequest& request) {
     throw ViewRefusal(fmt::format("push: the arm stays as it is: {}", error.what()));
   }
   pushing_client_ = client;
+  left_.reset();
 }
 
 void LiveSession::release() {
@@ -214,11 +222,17 @@ void LiveSession::keep_clear(double next) {
   ++generation_;
   (void)rig_.ports().arm->halt().value();
   is_touching_ = false;
-  event("error", "safety", "stopped before " + text);
+  left_ = {Condition::halted, "stopped before " + text};
+  event("error", "safety", left_->text);
 }
 
 // A rod may reach a state without equilibrium.
 void LiveSession::move_on(double next) {
+  // A run has a rig of its own, and takes what the machine can give.
+  if (is_run_shown()) {
+    rig_.rest_until(next);
+    return;
+  }
   rig_.skip_to(next);
   try {
     keep_clear(next);
@@ -228,6 +242,34 @@ void LiveSession::move_on(double next) {
     notice("error", "safety", std::string("everything is put back: ") + error.what());
     reset();
   }
+}
+
+// What of a run is unsafe where it is now; "": nothing.
+std::string LiveSession::run_danger() {
+  const std::string limit = beyond_limits(viewed()->model.driven(), news_.state);
+  return limit.empty() ? touched(shown_backbone(), viewed()->forbidden) : limit;
+}
+
+Conditioned LiveSession::condition() {
+  if (run_ != nullptr) {
+    const std::string danger = news_.time ? run_danger() : "";
+    return danger.empty() ? Conditioned{Condition::running, news_.what}
+                          : Conditioned{Condition::unsafe, danger};
+  }
+  if (is_touching_) return {Condition::unsafe, touched(rig_.backbone(rig_.now()), viewed()->forbidden)};
+  if (left_) return *left_;
+  return {rig_.is_arm_moving() || rig_.is_yielding() ? Condition::moving : Condition::idle, ""};
+}
+
+// When it changes, and not each word of a run's progress.
+void LiveSession::report_condition() {
+  const Conditioned now = condition();
+  const bool is_new = now.condition != reported_.condition ||
+                      (now.condition != Condition::running && now.text != reported_.text);
+  if (!is_new) return;
+  reported_ = now;
+  const std::string text = condition_message(reported_);
+  for (const ClientId client : clients_) messenger().send(client, text);
 }
 
 }  // namespace flexura

@@ -1,15 +1,18 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <thread>
 
 #include "flexura/store/text_file.h"
 #include "flexura/view/live_session.h"
+#include "tests/support/experiment_files.h"
 #include "tests/support/live_sessions.h"
 #include "tests/support/view_fakes.h"
 
@@ -32,7 +35,7 @@ std::uint32_t image_number(const std::string& message) {
 
 TEST_F(LiveSessionTest, RunsTheTasksIntoANewFolder) {
   background_.is_prompt = false;
-  const ViewAnswer answer = ask(RunRequest{});
+  const ViewAnswer answer = ask(RunRequest{.task = {}, .speed = 0});
   ASSERT_EQ(answer.error, "");
   const std::filesystem::path results = *answer.result.find("folder")->as<std::string>();
   EXPECT_TRUE(pass(0.1).is_running);
@@ -51,21 +54,168 @@ TEST_F(LiveSessionTest, RunsOneTaskFromTheStart) {
   const ViewedRigPtr rig = viewed_rig(viewed_text + "[[task]]\nkind = \"hold\"\nduration = 0.5\n");
   LiveSession session(rig, messenger_, background_, {.start = 0, .results = folder_.path() / "one"});
   session.opened(other);
-  session.take(other, RunRequest{1}, [](const ViewAnswer& answer) { EXPECT_EQ(answer.error, ""); });
+  session.take(other, RunRequest{.task = 1, .speed = 0},
+               [](const ViewAnswer& answer) { EXPECT_EQ(answer.error, ""); });
   session.advance(0.1);
   const auto summary = folder_.path() / "one" / "summary.json";
   const Node reported = parse_json(read_text_file(summary, 1 << 20), "summary");
   ASSERT_EQ(reported.find("tasks")->as<Node::Array>()->size(), 1);
   EXPECT_EQ(*reported.find("tasks")->as<Node::Array>()->front().find("kind")->as<std::string>(), "hold");
   EXPECT_EQ(*reported.find("duration")->as<double>(), 0.5);
-  EXPECT_EQ(ask(RunRequest{1}).error, "task = 1: expected 0 to 0");
+  EXPECT_EQ(ask(RunRequest{.task = 1, .speed = 0}).error, "task = 1: expected 0 to 0");
   EXPECT_THAT(messenger_.last(me, "progress").find("what"), nullptr) << "that was refused";
+}
+
+// Ends what a test has begun, whatever comes of the test.
+class RunningSessionTest : public LiveSessionTest {
+ protected:
+  using LiveSessionTest::LiveSessionTest;
+  ~RunningSessionTest() override { end(); }
+  // Starts the tasks, which go on beside the test as the program's do.
+  void start(double speed) {
+    background_.is_prompt = false;
+    ASSERT_EQ(ask(RunRequest{.task = {}, .speed = speed}).error, "");
+    runner_ = std::thread([this] { background_.work(); });
+  }
+  // Goes on, as fast as the run can follow, until the run's motion is over or the test's patience is.
+  void pass_run(double seconds) {
+    for (const double end = clock_ + seconds; clock_ < end - 1e-9;) {
+      session_.advance(clock_ += 1.0 / 60);
+      std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    }
+  }
+  StateMessage wait_for_end() {
+    for (int i = 0; i < 20000 && session_.is_running(); ++i) pass_run(1.0 / 60);
+    EXPECT_FALSE(session_.is_running());
+    end();
+    return messenger_.state(me);
+  }
+  void end() {
+    session_.cancel();
+    if (runner_.joinable()) runner_.join();
+    background_.is_prompt = true;
+  }
+
+ private:
+  std::thread runner_;
+};
+
+TEST_F(RunningSessionTest, PlaysTasksInRealTimeAndStaysWhereTheyEnd) {
+  start(1);
+  pass_run(0.3);
+  EXPECT_TRUE(session_.is_running()) << "a task of 1 s";
+  EXPECT_LT(messenger_.state(me).arm.bends[0].x(), 0.45) << "of 0.8, which it has after 1 s";
+  const double begun = clock_;
+  const int leaps = messenger_.state(me).leaps;
+  EXPECT_NEAR(wait_for_end().arm.bends[0].x(), 0.8, 1e-6);
+  EXPECT_GT(clock_ - begun, 0.6);
+  const StateMessage later = pass(1);
+  EXPECT_NEAR(later.arm.bends[0].x(), 0.8, 1e-6) << "it stays there";
+  EXPECT_NEAR(later.arm.bends[1].y(), 0.7, 1e-6);
+  EXPECT_EQ(later.leaps, leaps) << "and came there by no leap";
+  ask(ResetRequest{});
+  EXPECT_EQ(pass(0.1).arm.bends[0].x(), 0);
+}
+
+TEST_F(RunningSessionTest, HaltsTasksWhereTheyAre) {
+  start(1);
+  pass_run(0.3);
+  EXPECT_EQ(ask(HaltRequest{}).error, "");
+  const double halted = wait_for_end().arm.bends[0].x();
+  EXPECT_GT(halted, 0);
+  EXPECT_LT(halted, 0.6);
+  EXPECT_EQ(*messenger_.last(me, "progress").find("outcome")->as<std::string>(), "cancelled");
+  EXPECT_NEAR(pass(1).arm.bends[0].x(), halted, 1e-6);
+  EXPECT_EQ(ask(bends({{0.1, 0}, {0, 0}})).error, "");
+  EXPECT_NEAR(pass(5).arm.bends[0].x(), 0.1, 1e-6) << "it goes on from there";
+}
+
+// One condition, which every client knows.
+TEST_F(RunningSessionTest, SaysInWhichConditionItIs) {
+  const auto condition = [&](ClientId client = me) {
+    const Node reported = messenger_.last(client, "condition");
+    return reported.empty() ? "" : *reported.find("condition")->as<std::string>();
+  };
+  EXPECT_EQ(condition(), "idle") << "as it comes";
+  ask(bends({{0.1, 0}, {0.5, 0}}));
+  pass(0.1);
+  EXPECT_EQ(condition(), "moving");
+  pass(3);
+  EXPECT_EQ(condition(), "idle");
+  start(1);
+  pass_run(0.2);
+  EXPECT_EQ(condition(), "running");
+  session_.opened(other);
+  EXPECT_EQ(condition(other), "running") << "who comes later knows it too";
+  wait_for_end();
+  EXPECT_EQ(condition(), "done");
+  ask(bends({{0.1, 0}, {0.5, 0}}));
+  pass(0.1);
+  EXPECT_EQ(condition(), "moving");
+  ask(HaltRequest{});
+  pass(0.1);
+  EXPECT_EQ(condition(), "halted");
+  ask(ResetRequest{});
+  pass(0.1);
+  EXPECT_EQ(condition(), "idle");
+}
+
+// The task leads beyond the limit of a section.
+class UnsafeSessionTest : public RunningSessionTest {
+ protected:
+  UnsafeSessionTest()
+      : RunningSessionTest(replaced(viewed_text, "bends = [[0.8, 0.5]", "bends = [[2.5, 0]")) {}
+};
+
+TEST_F(UnsafeSessionTest, SaysThatItIsUnsafeAndWas) {
+  start(1);
+  pass_run(0.1);
+  EXPECT_EQ(*messenger_.last(me, "condition").find("condition")->as<std::string>(), "running");
+  EXPECT_FALSE(messenger_.state(me).is_unsafe);
+  wait_for_end();
+  const Node reported = messenger_.last(me, "condition");
+  EXPECT_EQ(*reported.find("condition")->as<std::string>(), "unsafe");
+  EXPECT_THAT(*reported.find("text")->as<std::string>(), HasSubstr("section"));
+  EXPECT_TRUE(pass(0.1).is_unsafe);
+  ask(ResetRequest{});
+  EXPECT_FALSE(pass(0.1).is_unsafe);
+}
+
+TEST_F(RunningSessionTest, PlaysOnFasterWhenThatIsAsked) {
+  EXPECT_THAT(ask(SpeedRequest{4}).error, HasSubstr("no run is going on"));
+  start(0.001);
+  pass_run(0.2);
+  EXPECT_TRUE(session_.is_running());
+  EXPECT_EQ(ask(SpeedRequest{0}).error, "");
+  EXPECT_NEAR(wait_for_end().arm.bends[0].x(), 0.8, 1e-6);
+}
+
+// Its rig is the one that the tasks have played: also what nobody has commanded stays.
+class SwungArmTest : public RunningSessionTest {
+ protected:
+  SwungArmTest()
+      : RunningSessionTest(viewed_text + R"(
+[[truth.camera]]
+name = "front"
+initial = { pan = 0.1 }
+[[truth.arm.section]]
+length = 0.51
+[[truth.arm.section]]
+)") {}
+};
+
+TEST_F(SwungArmTest, StaysAsTheRigOfItsTasksStands) {
+  start(0);
+  const StateMessage state = wait_for_end();
+  EXPECT_NEAR(state.arm.bends[0].x(), 0.8, 1e-6);
+  EXPECT_NEAR(state.cameras[0].head.pan, 0.1, 1e-6) << "as it truly is";
+  EXPECT_NEAR(pass(1).samples.back().s, 1.01, 1e-6) << "the true arm";
 }
 
 TEST_F(LiveSessionTest, CancelsARun) {
   EXPECT_THAT(ask(CancelRequest{}).error, HasSubstr("no run is going on"));
   background_.is_prompt = false;
-  ask(RunRequest{});
+  ask(RunRequest{.task = {}, .speed = 0});
   EXPECT_EQ(ask(CancelRequest{}).error, "");
   background_.work();
   pass(0.1);
@@ -74,7 +224,7 @@ TEST_F(LiveSessionTest, CancelsARun) {
 
 TEST_F(LiveSessionTest, HaltsARunTogetherWithEverythingElse) {
   background_.is_prompt = false;
-  ask(RunRequest{});
+  ask(RunRequest{.task = {}, .speed = 0});
   EXPECT_EQ(ask(HaltRequest{}).error, "");
   background_.work();
   EXPECT_FALSE(pass(0.1).is_running);

@@ -131,7 +131,7 @@ TEST_F(LiveSessionTest, CountsWhereNoWayLeadsFromOneStateToTheNext) {
   ask(bends({{-1, 0}, {0, 0}}));
   pass(1);
   background_.is_prompt = false;
-  ask(RunRequest{});
+  ask(RunRequest{.task = {}, .speed = 0});
   EXPECT_EQ(pass(0.1).leaps, start + 1) << "it has not begun";
   background_.work();
   pass(0.1);
@@ -304,7 +304,7 @@ TEST_F(OneCamera, IsTurnedHaltedAndRunAsTwoAre) {
   EXPECT_NEAR(pass(2).cameras.at(0).head.pan, 0.2, 1e-6);
   EXPECT_EQ(ask(HaltRequest{}).error, "");
   EXPECT_NE(ask(HeadRequest{"side", 0.2, {}, {}}).error, "");
-  EXPECT_EQ(ask(RunRequest{}).error, "");
+  EXPECT_EQ(ask(RunRequest{.task = {}, .speed = 0}).error, "");
   EXPECT_EQ(pass(2).cameras.size(), 1U);
 }
 
@@ -312,7 +312,7 @@ TEST_F(ThreeCameras, AreTurnedHaltedAndRunAsTwoAre) {
   EXPECT_EQ(ask(HeadRequest{"behind", 0.2, {}, {}}).error, "");
   EXPECT_NEAR(pass(2).cameras.at(2).head.pan, 0.2, 1e-6);
   EXPECT_EQ(ask(HaltRequest{}).error, "");
-  EXPECT_EQ(ask(RunRequest{}).error, "");
+  EXPECT_EQ(ask(RunRequest{.task = {}, .speed = 0}).error, "");
   EXPECT_EQ(pass(2).cameras.size(), 3U);
 }
 

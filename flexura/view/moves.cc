@@ -165,6 +165,21 @@ std::string danger_on_path(const ArmModel& arm, const std::vector<Obstacle>& obs
   return {};
 }
 
+std::string beyond_limits(const Arm& arm, const ArmState& state) {
+  constexpr double rounding = 1e-6;  // rad, and of a length
+  for (std::size_t i = 0; i < arm.sections.size() && i < state.bends.size(); ++i) {
+    const Section& section = arm.sections[i];
+    const double bend = state.bends[i].norm();
+    if (bend > section.max_bend + rounding)
+      return fmt::format("section {} is bent by {:.4g} rad: {:.4g} at most", i + 1, bend, section.max_bend);
+    const auto [least, most] = section.stretch_limits;
+    if (state.stretches[i] < least - rounding || state.stretches[i] > most + rounding)
+      return fmt::format("section {} is stretched by {:.4g}: expected {:.4g} to {:.4g}", i + 1,
+                         state.stretches[i], least, most);
+  }
+  return {};
+}
+
 std::string touched(const Backbone& backbone, const std::vector<Obstacle>& obstacles) {
   const ArcArm arm(backbone);
   const auto touching = [&](const ContactWatch& watch) -> std::string {

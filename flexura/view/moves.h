@@ -45,7 +45,10 @@ void require_travel(const Camera& camera, const StageRequest& request);
 [[nodiscard]] std::string danger_on_path(const ArmModel& arm, const std::vector<Obstacle>& obstacles,
                                          const ArmState& from, const ArmState& to);
 
-/// Returns in one line what an arm with this backbone touches; "" if nothing.
+/// Which section is bent or stretched beyond its limits, one line; "" when none.
+[[nodiscard]] std::string beyond_limits(const Arm& arm, const ArmState& state);
+
+/// What an arm touches that lies so, one line; "" when nothing.
 [[nodiscard]] std::string touched(const Backbone& backbone, const std::vector<Obstacle>& obstacles);
 
 }  // namespace flexura

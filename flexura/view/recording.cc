@@ -111,14 +111,14 @@ void Recording::read_marks() {
     const double time = seconds(message.log_time);
     marks_.push_back({time, time, level_name(event.level), event.name, event.message});
   }
-  mark_violations();
+  read_summary();
   if (log_.truncated())
     marks_.push_back({duration(), duration(), "warning", "log", "the run was cut short: its log ends here"});
 }
 
-// The log gives the start of each violation, the summary its duration. A damaged summary (for example after a
-// full disk) does not prevent viewing of the log.
-void Recording::mark_violations() {
+// The log says when something begins to be unsafe, the summary how long it lasts. One that is damaged (a disk
+// was full, say) keeps nobody from looking at the log.
+void Recording::read_summary() {
   if (is_missing(folder_ / summary_file_name)) return;
   const auto file = file_of_results(folder_, summary_file_name);
   Node summary;
@@ -128,6 +128,18 @@ void Recording::mark_violations() {
     marks_.push_back({0, 0, "warning", "summary", error.what()});
     return;
   }
+  const Node* reported = summary.find("outcome");
+  if (const auto* outcome = reported == nullptr ? nullptr : reported->as<std::string>()) {
+    end_ = {condition_after(*outcome), ""};
+    const Node* reasons = summary.find("reasons");
+    const auto* lines = reasons == nullptr ? nullptr : reasons->as<Node::Array>();
+    const auto* first = lines == nullptr || lines->empty() ? nullptr : lines->front().as<std::string>();
+    if (first != nullptr) end_.text = *first;
+  }
+  mark_violations(summary);
+}
+
+void Recording::mark_violations(const Node& summary) {
   const Node* list = summary.find("violations");
   const auto* violations = list == nullptr ? nullptr : list->as<Node::Array>();
   if (violations == nullptr) return;
@@ -177,14 +189,21 @@ ArmState Recording::state(std::size_t place) const {
   return state;
 }
 
-bool Recording::is_unsafe(double time) const {
-  return std::ranges::any_of(marks_, [&](const Mark& mark) {
+Conditioned Recording::condition(double time) const {
+  const auto broken = std::ranges::find_if(marks_, [&](const Mark& mark) {
     return mark.name == "unsafe" && mark.level == "error" && time >= mark.time && time <= mark.end;
   });
+  if (broken != marks_.end()) return {Condition::unsafe, broken->text};
+  // The last state is shown from its time on.
+  if (state_at(time) + 1 == states()) return end_;
+  return {Condition::running, ""};
 }
 
-std::size_t Recording::image_at(std::size_t camera, double time) const {
-  return place_at(images_.at(camera), time);
+std::optional<std::size_t> Recording::image_at(std::size_t camera, double time) const {
+  constexpr double rounding = 1e-6;  // s
+  const Entries& images = images_.at(camera);
+  if (images.empty() || seconds(images.front().time) > time + rounding) return std::nullopt;
+  return place_at(images, time + rounding);
 }
 
 Recording::LoggedImage Recording::image(std::size_t camera, std::size_t place) const {
@@ -204,21 +223,43 @@ std::optional<ServoStep> Recording::servo_step(double time) const {
   return message_of<ServoStep>(*entry.message);
 }
 
-// Returns the observation for the picture that is shown at that time.
+// Of the picture that is shown then.
+template <class Observation>
 std::optional<Recording::PictureEntry> Recording::observation_at(const Entries& observations,
                                                                  std::size_t camera, double time) const {
   if (observations.empty()) return std::nullopt;
   if (images_[camera].empty()) {
     const Entry& entry = observations[place_at(observations, time)];
     if (seconds(entry.time) > time) return std::nullopt;
-    return PictureEntry{entry.message, {}};
+    // Without film it is the picture of the state at its exposure.
+    const double exposed = message_of<Observation>(*entry.message).time;
+    return PictureEntry{entry.message, static_cast<std::int64_t>(state_at(exposed))};
   }
-  // Both are logged at the time when the picture arrived.
-  const std::size_t place = image_at(camera, time);
+  // Both stand in the log at the time when the picture came.
+  const auto place = image_at(camera, time);
+  if (!place) return std::nullopt;
   const auto [first, last] =
-      std::ranges::equal_range(observations, images_[camera][place].time, {}, &Entry::time);
+      std::ranges::equal_range(observations, images_[camera][*place].time, {}, &Entry::time);
   if (first == last) return std::nullopt;
-  return PictureEntry{first->message, static_cast<std::int64_t>(place)};
+  return PictureEntry{first->message, static_cast<std::int64_t>(*place)};
+}
+
+std::optional<std::size_t> Recording::measured_state(std::size_t camera, double time) const {
+  if (!images_.at(camera).empty()) return std::nullopt;
+  const std::string& name = rig_->cameras[camera].config().name;
+  const auto number_in = [&](const auto& pictures) -> std::optional<std::size_t> {
+    for (const auto& picture : pictures)
+      if (picture.observation.camera == name && picture.number)
+        return static_cast<std::size_t>(*picture.number);
+    return std::nullopt;
+  };
+  try {
+    if (const auto shown = servo(time)) return number_in(shown->pictures);
+    if (const auto shown = calibration(time)) return number_in(shown->pictures);
+  } catch (const InputError&) {
+    return std::nullopt;  // What is damaged measures nothing.
+  }
+  return std::nullopt;
 }
 
 std::optional<ShownServo> Recording::servo(double time) const {
@@ -226,7 +267,7 @@ std::optional<ShownServo> Recording::servo(double time) const {
   if (!step) return std::nullopt;
   ShownServo shown{std::move(*step), {}};
   for (std::size_t camera = 0; camera < rig_->cameras.size(); ++camera)
-    if (const auto entry = observation_at(servo_observations_[camera], camera, time))
+    if (const auto entry = observation_at<ServoObservationMessage>(servo_observations_[camera], camera, time))
       shown.pictures.push_back({message_of<ServoObservationMessage>(*entry->message), entry->number});
   return shown;
 }
@@ -247,7 +288,7 @@ std::optional<ShownCalibration> Recording::calibration(double time) const {
   }
   for (std::size_t camera = 0; camera < rig_->cameras.size(); ++camera) {
     const Entries& all = calibration_observations_[camera];
-    const auto entry = observation_at(all, camera, time);
+    const auto entry = observation_at<CalibrationObservationMessage>(all, camera, time);
     if (!entry || all[place_at(all, time)].time < begun || !has_begun(all[place_at(all, time)])) continue;
     shown.pictures.push_back({message_of<CalibrationObservationMessage>(*entry->message), entry->number});
   }

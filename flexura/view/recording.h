@@ -12,6 +12,7 @@
 #include "flexura/store/mcap_reader.h"
 #include "flexura/tasks/servo/servo_messages.h"
 #include "flexura/view/calibration_extras.h"
+#include "flexura/view/condition.h"
 #include "flexura/view/describe.h"
 #include "flexura/view/servo_extras.h"
 #include "flexura/view/viewed_rig.h"
@@ -41,13 +42,14 @@ class Recording {
   /// the arm.
   [[nodiscard]] double time_of_state(std::size_t place) const { return seconds(states_.at(place).time); }
   [[nodiscard]] ArmState state(std::size_t place) const;
-  /// Returns whether a limit was violated at a time, s.
-  [[nodiscard]] bool is_unsafe(double time) const;
+  /// The run's condition at a time, s: unsafe while a limit is broken, at its end as its results say, else
+  /// running.
+  [[nodiscard]] Conditioned condition(double time) const;
 
-  /// Returns the number of a camera's logged images, and the index of the image at or just before `time` s,
-  /// or the first.
+  /// How many images the log has of a camera; the place of the one that came at or just before `time` s; none
+  /// before the first.
   [[nodiscard]] std::size_t images(std::size_t camera) const { return images_.at(camera).size(); }
-  [[nodiscard]] std::size_t image_at(std::size_t camera, double time) const;
+  [[nodiscard]] std::optional<std::size_t> image_at(std::size_t camera, double time) const;
   struct LoggedImage {
     double time = 0;  ///< Middle of its exposure, s.
     std::string png;
@@ -60,9 +62,11 @@ class Recording {
   [[nodiscard]] std::optional<ServoStep> servo_step(double time) const;
   /// Returns the servo's command, with its observations in the pictures shown at that time.
   [[nodiscard]] std::optional<ShownServo> servo(double time) const;
-  /// Returns whether the log has a calibration, and its state at a time, s, while a calibration is active:
-  /// the last decision, and the measurements in the pictures shown at that time. Throws InputError if the log
-  /// is not readable there.
+  /// The place of the state that a camera without film saw when a servo or a calibration, while one goes on,
+  /// measured what is drawn at a time, s; none at other times.
+  [[nodiscard]] std::optional<std::size_t> measured_state(std::size_t camera, double time) const;
+  /// Whether the log has a calibration; and what it had decided at a time, s, and measured in the pictures
+  /// that are shown then, while one goes on. InputError likewise.
   [[nodiscard]] bool has_calibration() const { return !decisions_.empty(); }
   [[nodiscard]] std::optional<ShownCalibration> calibration(double time) const;
   /// Returns whether the log has the true arm, and its samples at a time, s, from base to tip. Returns
@@ -100,12 +104,15 @@ class Recording {
   [[nodiscard]] static double interval_of(const Entries& entries);
   struct PictureEntry {
     const McapMessage* message = nullptr;
-    std::optional<std::int64_t> number;  // Number of the picture.
+    std::int64_t number =
+        0;  // of the picture: its place among the camera's, or of an unfilmed one the state's
   };
+  template <class Observation>
   [[nodiscard]] std::optional<PictureEntry> observation_at(const Entries& observations, std::size_t camera,
                                                            double time) const;
   void read_marks();
-  void mark_violations();
+  void read_summary();
+  void mark_violations(const Node& summary);
 
   std::filesystem::path folder_;
   ViewedRigPtr rig_;
@@ -120,6 +127,7 @@ class Recording {
   Entries decisions_;                                                   // Decisions of calibrations.
   double servo_interval_ = 0;  // Interval between commands of a servo, s.
   std::vector<Mark> marks_;
+  Conditioned end_ = {Condition::halted, "the results do not say how the run ended"};
 };
 
 using RecordingPtr = std::shared_ptr<const Recording>;

@@ -1,5 +1,7 @@
 #include "flexura/view/recording_session.h"
 
+#include <fmt/format.h>
+
 #include <exception>
 #include <filesystem>
 #include <optional>
@@ -23,6 +25,8 @@
 namespace flexura {
 namespace {
 
+// The number of no image, for streams.
+constexpr std::int64_t no_image = -1;
 constexpr std::size_t largest_report = std::size_t{256} << 20;
 
 // A report is a separate page, possibly from another source. It may run its script, but without access to
@@ -120,11 +124,13 @@ Hello RecordingSession::hello() const {
 
 void RecordingSession::opened(ClientId client) {
   times_[client] = 0;
+  reported_.erase(client);
   send_state(client);
 }
 
 void RecordingSession::closed(ClientId client) {
   times_.erase(client);
+  reported_.erase(client);
   PictureSession::closed(client);
 }
 
@@ -182,21 +188,39 @@ void RecordingSession::send_state(ClientId client) {
   StateMessage state = still_state(*viewed(), time, recording_->state(place), stances);
   add_forces(*viewed(), recording_->forces(time), state);
   state.is_recording = true;
-  state.is_unsafe = recording_->is_unsafe(time);
+  const Conditioned condition = recording_->condition(time);
+  state.is_unsafe = condition.condition == Condition::unsafe;
+  if (reported_[client] != condition) messenger().send(client, condition_message(condition));
+  reported_[client] = condition;
   state.sequence = sequence_++;
   messenger().post(client, state_stream, std::make_shared<const std::string>(state_message(state)));
 }
 
-std::int64_t RecordingSession::image_place(std::size_t camera, double time) const {
-  return static_cast<std::int64_t>(is_filmed(camera) ? recording_->image_at(camera, time)
-                                                     : recording_->state_at(time));
+std::optional<std::int64_t> RecordingSession::image_place(std::size_t camera, double time) const {
+  std::optional<std::size_t> place;
+  if (is_filmed(camera)) {
+    place = recording_->image_at(camera, time);
+  } else {
+    place = recording_->measured_state(camera, time).value_or(recording_->state_at(time));
+  }
+  return place ? std::optional(static_cast<std::int64_t>(*place)) : std::nullopt;
+}
+
+std::int64_t RecordingSession::require_image(std::size_t camera, double time) const {
+  const auto place = image_place(camera, time);
+  if (!place)
+    throw ViewRefusal(fmt::format("the camera {} has no picture at {:.4g} s: its first one comes later",
+                                  Node{viewed()->cameras[camera].config().name, {}}.brief(), time));
+  return *place;
 }
 
 ValueShot RecordingSession::shot(std::size_t camera, std::int64_t number) const {
   const auto place = static_cast<std::size_t>(number);
   const double time = recording_->time_of_state(place);
   const CameraStance stance = recording_->stance(camera, time);
-  return with_covers(value_shot(viewed(), camera, number, time, {{time, recording_->state(place), stance}}),
+  // Its exposure has its middle at the time of the state that it shows.
+  const double start = time - times_of_frame_at(viewed()->sensors.at(camera), 0).middle;
+  return with_covers(value_shot(viewed(), camera, number, start, {{start, recording_->state(place), stance}}),
                      time);
 }
 
@@ -205,12 +229,14 @@ void RecordingSession::advance(double now) {
   for (const auto& [client, time] : times_) {
     for (std::size_t camera = 0; camera < viewed()->cameras.size(); ++camera) {
       const ImageStreams::Key key{client, camera};
-      const std::int64_t place = image_place(camera, time);
-      if (!streams().is_due(key, place, now)) continue;
-      if (is_filmed(camera)) {
-        send_image(key, place);
+      const auto place = image_place(camera, time);
+      if (!streams().is_due(key, place.value_or(no_image), now)) continue;
+      if (!place) {
+        send_no_image(key, time);
+      } else if (is_filmed(camera)) {
+        send_image(key, *place);
       } else if (!room().is_busy(camera)) {
-        show_state(key, place);
+        show_state(key, *place);
       }
     }
   }
@@ -225,7 +251,16 @@ void RecordingSession::show_state(const ImageStreams::Key& key, std::int64_t pla
   }
 }
 
-// Sends a logged image unchanged.
+// What was shown before is of another time. Nobody acknowledges it.
+void RecordingSession::send_no_image(const ImageStreams::Key& key, double time) {
+  streams().sent(key, no_image, clock_);
+  streams().failed(key);
+  messenger().post(key.client, image_stream(key.camera),
+                   std::make_shared<const std::string>(
+                       image_message(static_cast<std::uint8_t>(key.camera), ImageFormat::png, 0, time, "")));
+}
+
+// A logged image goes as it is.
 void RecordingSession::send_image(const ImageStreams::Key& key, std::int64_t place) {
   streams().sent(key, place, clock_);
   background().run(Lane::pictures,
@@ -249,7 +284,7 @@ void RecordingSession::send_image(const ImageStreams::Key& key, std::int64_t pla
 
 void RecordingSession::report_pixel(const ImageStreams::Key& key, int u, int v, Reply reply) {
   const double time = times_.at(key.client);
-  const std::int64_t place = image_place(key.camera, time);
+  const std::int64_t place = require_image(key.camera, time);
   if (!is_filmed(key.camera)) {
     room().pixel(key, shot(key.camera, place), u, v, std::move(reply));
     return;
@@ -274,7 +309,7 @@ void RecordingSession::report_pixel(const ImageStreams::Key& key, int u, int v, 
 // With logged images, looks at the log's picture at the client's current time.
 PictureSession::Look RecordingSession::look(const ImageStreams::Key& key) {
   if (!is_filmed(key.camera)) return look_at_sent(key);
-  const std::int64_t place = image_place(key.camera, times_.at(key.client));
+  const std::int64_t place = require_image(key.camera, times_.at(key.client));
   return [key, place, recording = recording_] {
     const Recording::LoggedImage image = recording->image(key.camera, static_cast<std::size_t>(place));
     const ViewedRig& rig = *recording->rig();
@@ -286,7 +321,7 @@ PictureSession::Look RecordingSession::look(const ImageStreams::Key& key) {
 
 void RecordingSession::give_image(const ImageAsk& ask, std::function<void(HttpAnswer)> answer) {
   const std::size_t camera = place_of(ask.camera);
-  const std::int64_t place = image_place(camera, ask.time.value_or(recording_->duration()));
+  const std::int64_t place = require_image(camera, ask.time.value_or(recording_->duration()));
   if (!is_filmed(camera)) {
     if (!room().file(shot(camera, place), std::move(answer)))
       throw ViewRefusal("too many pictures are asked for at once");

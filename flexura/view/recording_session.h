@@ -37,10 +37,13 @@ class RecordingSession : public PictureSession {
   void send_state(ClientId client);
   void show_state(const ImageStreams::Key& key, std::int64_t place);
   void send_image(const ImageStreams::Key& key, std::int64_t place);
+  void send_no_image(const ImageStreams::Key& key, double time);
   void report_pixel(const ImageStreams::Key& key, int u, int v, Reply reply);
-  /// Returns the index of the image to be shown at a time, s: among the camera's logged images, or among the
-  /// states if it has none.
-  [[nodiscard]] std::int64_t image_place(std::size_t camera, double time) const;
+  /// The place of the image to be shown at a time, s: among the logged ones, none before the first; or where
+  /// there are none of this camera among the states.
+  [[nodiscard]] std::optional<std::int64_t> image_place(std::size_t camera, double time) const;
+  /// The same; a ViewRefusal where there is none.
+  [[nodiscard]] std::int64_t require_image(std::size_t camera, double time) const;
   [[nodiscard]] bool is_filmed(std::size_t camera) const { return recording_->images(camera) > 0; }
   [[nodiscard]] ValueShot shot(std::size_t camera, std::int64_t number) const;
   void give_image(const ImageAsk& ask, std::function<void(HttpAnswer)> answer);
@@ -49,7 +52,8 @@ class RecordingSession : public PictureSession {
 
   RecordingPtr recording_;
   std::shared_ptr<Table> table_;
-  std::map<ClientId, double> times_;  // Current time of each client, s.
+  std::map<ClientId, double> times_;  // at which clients are, s
+  std::map<ClientId, std::optional<Conditioned>> reported_;
   std::uint32_t sequence_ = 0;
   double clock_ = 0;  // Time of advance(), s.
 };

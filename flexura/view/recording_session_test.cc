@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cstring>
 #include <fstream>
 #include <limits>
 
@@ -109,6 +110,49 @@ TEST_F(RecordingSessionTest, MovesNothing) {
   for (const Ask& request : std::vector<Ask>{arm, TipRequest{}, HeadRequest{"front", 0.1, {}, {}},
                                              HaltRequest{}, ResetRequest{}, RunRequest{}})
     EXPECT_THAT(ask(request).error, HasSubstr("this is a recording"));
+}
+
+TEST_F(RecordingSessionTest, SaysInWhichConditionTheRunWas) {
+  record();
+  open();
+  const auto condition = [&](double time) {
+    ask(AtRequest{time});
+    return *messenger_.last(me, "condition").find("condition")->as<std::string>();
+  };
+  for (const auto& [time, reported] : std::vector<std::pair<double, std::string>>{
+           {0, "running"}, {0.5, "running"}, {1, "done"}, {0.9, "running"}})
+    EXPECT_EQ(condition(time), reported) << time;
+}
+
+// Not the first one before it has come, which is of the future.
+TEST_F(RecordingSessionTest, HasNoPictureBeforeTheFirstHasCome) {
+  record(replaced(replaced(viewed_text, "bits = 12", "bits = 12, delay = 0.3"), "[arm]",
+                  "[record]\ncameras = true\n[arm]"));
+  open();
+  EXPECT_EQ(ask(ImagesRequest{"side", 60, 80}).error, "");
+  auto shown_at = [&, now = 10.0](double time) mutable {
+    ask(AtRequest{time});
+    session_->advance(++now);
+    std::string message = last_image(2);
+    std::uint32_t number = 0;
+    std::memcpy(&number, message.data() + 4, sizeof(number));
+    ask(AckRequest{"side", number});
+    return message;
+  };
+  EXPECT_EQ(shown_at(0).size(), 16) << "a head, and no file";
+  EXPECT_THAT(ask(PixelRequest{"side", 3, 2}).error, HasSubstr("has no picture at 0 s"));
+  EXPECT_THROW(session_->take(ImageAsk{"side", 0.1}, [](const HttpAnswer&) {}), ViewRefusal);
+  double before = -1;
+  for (const double time : {0.4, 0.6, 1.0}) {
+    const std::string message = shown_at(time);
+    EXPECT_GT(message.size(), 100);
+    double exposed = 0;
+    std::memcpy(&exposed, message.data() + 8, sizeof(exposed));
+    EXPECT_GT(exposed, before);
+    EXPECT_LE(exposed, time - 0.3);
+    before = exposed;
+  }
+  EXPECT_EQ(shown_at(0.2).size(), 16) << "and none again";
 }
 
 TEST_F(RecordingSessionTest, SendsTheImagesOfTheLogAsTheyAre) {

@@ -18,6 +18,8 @@ namespace {
 constexpr double farthest = 1e9;
 constexpr std::size_t most_sections = 10000;
 const NumberRange any_place = between(-farthest, farthest);
+constexpr const char* speed_meaning = "of real time; 0: as fast as possible";
+const NumberRange speed_range = between(0, 1000);
 
 template <class S>
 Table<S> with_shape(const char* name, const char* meaning) {
@@ -180,7 +182,14 @@ const Table<RunRequest>& fields_of(const RunRequest*) {
   static const auto table =
       Table<RunRequest>("run", "The experiment's tasks run.")
           .field("task", &RunRequest::task,
-                 {.meaning = "the place of one, from 0", .range = between(0, farthest)});
+                 {.meaning = "the place of one, from 0", .range = between(0, farthest)})
+          .field("speed", &RunRequest::speed, {.meaning = speed_meaning, .range = speed_range});
+  return table;
+}
+const Table<SpeedRequest>& fields_of(const SpeedRequest*) {
+  static const auto table = Table<SpeedRequest>("speed", "A run of tasks plays faster or slower.")
+                                .field("speed", &SpeedRequest::speed,
+                                       {.meaning = speed_meaning, .range = speed_range, .required = true});
   return table;
 }
 const Table<CancelRequest>& fields_of(const CancelRequest*) { return bare<CancelRequest>("cancel"); }

@@ -46,7 +46,12 @@ struct PushRequest {
 };
 struct ReleaseRequest {};
 struct RunRequest {
-  std::optional<std::int64_t> task;  ///< Index of the task, from 0; default: all tasks.
+  std::optional<std::int64_t> task;  ///< Its place, from 0; all of them where it is left out.
+  double speed = 1;                  ///< Of real time; 0: as fast as possible.
+};
+/// A run of tasks that goes on plays faster or slower.
+struct SpeedRequest {
+  double speed = 1;  ///< Of real time; 0: as fast as possible.
 };
 struct CancelRequest {};
 struct OpenRequest {
@@ -90,6 +95,7 @@ const Table<WeightRequest>& fields_of(const WeightRequest*);
 const Table<PushRequest>& fields_of(const PushRequest*);
 const Table<ReleaseRequest>& fields_of(const ReleaseRequest*);
 const Table<RunRequest>& fields_of(const RunRequest*);
+const Table<SpeedRequest>& fields_of(const SpeedRequest*);
 const Table<CancelRequest>& fields_of(const CancelRequest*);
 const Table<OpenRequest>& fields_of(const OpenRequest*);
 const Table<LiveRequest>& fields_of(const LiveRequest*);
@@ -104,9 +110,9 @@ const Table<BackboneRequest>& fields_of(const BackboneRequest*);
 const Table<PingRequest>& fields_of(const PingRequest*);
 
 using Ask = std::variant<ArmRequest, TipRequest, HeadRequest, StageRequest, HaltRequest, ResetRequest,
-                         WeightRequest, PushRequest, ReleaseRequest, RunRequest, CancelRequest, OpenRequest,
-                         LiveRequest, AtRequest, ImagesRequest, AckRequest, PixelRequest, MeasureRequest,
-                         ShapeRequest, PointRequest, BackboneRequest, PingRequest>;
+                         WeightRequest, PushRequest, ReleaseRequest, RunRequest, SpeedRequest, CancelRequest,
+                         OpenRequest, LiveRequest, AtRequest, ImagesRequest, AckRequest, PixelRequest,
+                         MeasureRequest, ShapeRequest, PointRequest, BackboneRequest, PingRequest>;
 
 /// The request of one message, or why it is invalid.
 struct Request {

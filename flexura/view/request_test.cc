@@ -37,6 +37,11 @@ TEST(Request, ReadsEverythingThatAPageCanAsk) {
   EXPECT_FALSE(read_as_ask<WeightRequest>(R"({"id":7,"do":"weight","on":false})").on);
   EXPECT_FALSE(read_as_ask<RunRequest>(R"({"id":7,"do":"run"})").task);
   EXPECT_EQ(read_as_ask<RunRequest>(R"({"id":7,"do":"run","task":2})").task, 2);
+  EXPECT_EQ(read_as_ask<RunRequest>(R"({"id":7,"do":"run"})").speed, 1) << "real time";
+  EXPECT_EQ(read_as_ask<RunRequest>(R"({"id":7,"do":"run","speed":0.25})").speed, 0.25);
+  EXPECT_EQ(read_as_ask<SpeedRequest>(R"({"id":7,"do":"speed","speed":4})").speed, 4);
+  EXPECT_NE(read_request(R"({"id":7,"do":"speed","speed":-1})").error, "");
+  EXPECT_NE(read_request(R"({"id":7,"do":"speed"})").error, "");
   (void)read_as_ask<CancelRequest>(R"({"id":7,"do":"cancel"})");
   (void)read_as_ask<OpenRequest>(R"({"id":7,"do":"open"})");
   (void)read_as_ask<LiveRequest>(R"({"id":7,"do":"live"})");

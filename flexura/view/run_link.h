@@ -1,27 +1,31 @@
 #pragma once
 
 #include <atomic>
+#include <condition_variable>
 #include <cstddef>
 #include <cstdint>
 #include <deque>
 #include <filesystem>
+#include <limits>
 #include <memory>
 #include <mutex>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "flexura/base/progress.h"
 #include "flexura/experiment/run.h"
+#include "flexura/sim/simulated_rig.h"
 #include "flexura/view/calibration_extras.h"
 #include "flexura/view/servo_extras.h"
 
 namespace flexura {
 
-/// Connects a run on its own thread with its viewers. The run reports, viewers query when they have time, and
-/// neither waits for the other. All methods can be called from any thread.
+/// What connects a run on its own thread with those who watch: the run reports, they ask when they have time.
+/// The run waits for nobody, unless it is paced (pace_to). All methods can be called from any thread.
 class RunLink : public Progress, public RunWatcher {
  public:
   /// How a run ended.
@@ -35,17 +39,28 @@ class RunLink : public Progress, public RunWatcher {
     double time = 0;  ///< s
     std::string level, name, text;
   };
-  /// The newest state of everything.
+  /// What a camera saw in the picture that was measured last.
+  struct Measured {
+    std::string camera;
+    std::int64_t frame = 0;                ///< Its number.
+    double time = 0;                       ///< Middle of its exposure, s.
+    ArmState state;                        ///< As commanded then.
+    std::optional<CameraReading> reading;  ///< Of the camera then, as the measurement says; may be missing.
+    std::vector<CameraReading> readings;   ///< Else of all cameras; empty: they stood as at the start.
+    std::shared_ptr<const TrueArm> truth;  ///< Near that time; null: not known.
+  };
+  /// The newest of everything.
   struct News {
     double fraction = 0;
     std::string what;
     std::optional<double> time;  ///< Time of `state`, s; missing before the first one.
     ArmState state;
-    std::shared_ptr<const TrueArm> truth;  ///< The newest true arm reported since the last request; or null.
-    std::vector<CameraReading> cameras;    ///< Readings at that time, by camera; empty: as at the start.
-    std::optional<ShownServo> servo;       ///< Present while a servo controls the arm.
-    std::optional<ShownCalibration> calibration;  ///< Present while a calibration is active.
-    std::uint64_t changes = 0;                    ///< Counts the changes of servo and calibration.
+    std::shared_ptr<const TrueArm> truth;  ///< The newest that was told since truth was wanted; or null.
+    std::vector<CameraReading> cameras;  ///< As read then, by camera; empty where they stand as at the start.
+    std::optional<ShownServo> servo;     ///< While one steers the arm.
+    std::optional<ShownCalibration> calibration;  ///< While one goes on.
+    std::vector<Measured> measured;               ///< While one of them goes on, of each camera one.
+    std::uint64_t changes = 0;                    ///< Counts what came of both.
     std::optional<End> end;
   };
 
@@ -63,8 +78,14 @@ class RunLink : public Progress, public RunWatcher {
   void logged(const LoggedMessage& message) override;
   void task_ended() override;
 
-  void cancel() { cancelled_ = true; }
-  /// Requests the true arm with the next news: one report for each call.
+  void cancel();
+  /// From now on the run waits before each state that is later than `time` s.
+  void pace_to(double time);
+  /// Keeps the simulated rig of the run as it stands at its end; a run without one leaves none.
+  void leave(std::unique_ptr<SimulatedRig> rig);
+  /// Returns that rig once; null if there is none, or before the end.
+  [[nodiscard]] std::unique_ptr<SimulatedRig> take_rig();
+  /// The next news is to have how the arm truly stands: once, for each call.
   void request_truth() { is_truth_requested_ = true; }
   void finish(End end);
   [[nodiscard]] News news() const;
@@ -73,13 +94,26 @@ class RunLink : public Progress, public RunWatcher {
 
  private:
   void decided(const CalibrationDecisionMessage& decision);
+  // What stood then, as far as it is remembered; null: nothing is.
+  struct Step {
+    double time = 0;  // s
+    ArmState state;
+    std::vector<CameraReading> cameras;
+  };
+  [[nodiscard]] const Step* step_at(double time) const;
+  void measured(Measured seen);
 
   Progress* also_;
   std::atomic<bool> cancelled_ = false, is_truth_requested_ = false;
   mutable std::mutex mutex_;
+  std::condition_variable may_go_;
+  double allowed_ = std::numeric_limits<double>::infinity();  // s
+  std::unique_ptr<SimulatedRig> rig_;
   News news_;
   std::vector<ServoPicture> pictures_;  // Newest picture of each camera of a servo.
   std::deque<Event> events_;
+  std::deque<Step> steps_;  // of the last seconds
+  std::deque<std::pair<double, std::shared_ptr<const TrueArm>>> truths_;
 };
 
 /// Runs an experiment into an existing empty folder, and reports to `link` how it ends. Never throws.

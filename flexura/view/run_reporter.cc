@@ -14,6 +14,7 @@ namespace flexura {
 void RunReporter::begin() {
   reported_fraction_ = reported_at_ = drawn_at_ = -1;
   reported_what_.clear();
+  measured_.clear();
   changes_ = 0, are_extras_known_ = true;
 }
 
@@ -76,6 +77,7 @@ void RunReporter::report_extras(const RunLink::News& news, double clock, std::op
   } catch (const InputError&) {
     extras = {};  // An arm that cannot be drawn is omitted.
   }
+  measured_ = is_over ? std::vector<RunLink::Measured>() : news.measured;
   if (now) extras.time = *now;
   const auto message = std::make_shared<const std::string>(extras_message(extras));
   for (const ClientId client : clients) messenger_.post(client, extras_stream, message);

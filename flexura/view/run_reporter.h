@@ -5,6 +5,7 @@
 #include <set>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "flexura/base/node.h"
 #include "flexura/view/messenger.h"
@@ -19,7 +20,9 @@ class RunReporter {
  public:
   RunReporter(ViewedRigPtr rig, Messenger& messenger) : rig_(std::move(rig)), messenger_(messenger) {}
 
-  /// Resets the reported state for a new run.
+  /// The pictures in which that was measured which was told last: what is drawn belongs to them.
+  [[nodiscard]] const std::vector<RunLink::Measured>& measured() const { return measured_; }
+  /// Another run begins: nothing was told of it.
   void begin();
   /// Makes extras be sent again, for a new client.
   void repeat() { are_extras_known_ = false; }
@@ -38,6 +41,7 @@ class RunReporter {
   double reported_fraction_ = -1;
   std::string reported_what_;
   double reported_at_ = -1;  // s, of the clock
+  std::vector<RunLink::Measured> measured_;
   bool are_extras_known_ = true;
   std::uint64_t changes_ = 0;
   double drawn_at_ = -1;  // s, of the clock

@@ -228,7 +228,7 @@ class HurriedServo : public LiveSessionTest {
 };
 
 TEST_F(HurriedServo, SaysWhyItEndedAndLeavesARecording) {
-  EXPECT_EQ(ask(RunRequest{}).error, "");
+  EXPECT_EQ(ask(RunRequest{.task = {}, .speed = 0}).error, "");
   pass(0.1);
   const Node end = messenger_.last(me, "progress");
   EXPECT_EQ(*end.find("outcome")->as<std::string>(), "failed");

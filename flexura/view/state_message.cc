@@ -85,17 +85,20 @@ void put_camera(const CameraSample& camera, Writer& out) {
   out.pose(camera.X_WC);
   for (const double value :
        {camera.head.pan, camera.head.tilt, camera.head.zoom, camera.stage.x(), camera.stage.y(),
-        camera.stage.z(), camera.fx, camera.fy, camera.cx, camera.cy, 0.0})
+        camera.stage.z(), camera.fx, camera.fy, camera.cx, camera.cy, camera.commanded_head.pan,
+        camera.commanded_head.tilt, camera.commanded_head.zoom, camera.commanded_stage.x(),
+        camera.commanded_stage.y(), camera.commanded_stage.z()})
     out.single(value);
 }
 
 CameraSample take_camera(BytesReader& in) {
   CameraSample camera;
   camera.X_WC = in.pose();
-  double unused = 0;
   for (double* value :
        {&camera.head.pan, &camera.head.tilt, &camera.head.zoom, &camera.stage.x(), &camera.stage.y(),
-        &camera.stage.z(), &camera.fx, &camera.fy, &camera.cx, &camera.cy, &unused})
+        &camera.stage.z(), &camera.fx, &camera.fy, &camera.cx, &camera.cy, &camera.commanded_head.pan,
+        &camera.commanded_head.tilt, &camera.commanded_head.zoom, &camera.commanded_stage.x(),
+        &camera.commanded_stage.y(), &camera.commanded_stage.z()})
     *value = in.single();
   return camera;
 }
@@ -104,7 +107,7 @@ constexpr std::size_t head_size = 28;
 
 std::size_t body_size(std::size_t sections, std::size_t samples, std::size_t cameras, std::size_t tendons,
                       std::size_t actuators) {
-  return 4 * (3 * sections + 8 * samples + 18 * cameras + tendons + 3 * actuators);
+  return 4 * (3 * sections + 8 * samples + 23 * cameras + tendons + 3 * actuators);
 }
 
 // Returns the size of the fields announced by `flags`.

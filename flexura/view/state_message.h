@@ -26,9 +26,12 @@ struct ArmSample {
 /// Pose, axis positions and intrinsics of a camera.
 struct CameraSample {
   Pose X_WC;
-  HeadState head;
-  Eigen::Vector3d stage = Eigen::Vector3d::Zero();  ///< m
+  HeadState head;                                   ///< As it truly is.
+  Eigen::Vector3d stage = Eigen::Vector3d::Zero();  ///< Likewise, m.
   double fx = 0, fy = 0, cx = 0, cy = 0;            ///< px
+  /// What head and stage are commanded to, or report: what commands and the model count in.
+  HeadState commanded_head = {};
+  Eigen::Vector3d commanded_stage = Eigen::Vector3d::Zero();  ///< m
 };
 
 /// State of an actuator that clients can move individually: a tendon that is pulled in.

@@ -202,10 +202,12 @@ Pose interpolate(const Pose& from, const Pose& to, double part) {
   return {from.rotation * so3_exp(part * turn), from.position + part * (to.position - from.position)};
 }
 
-CameraSample camera_sample(const Camera& camera, const CameraStance& stance) {
-  const View view = camera.view(stance);
+CameraSample camera_sample(const ViewedRig& rig, std::size_t camera, const CameraStance& stance) {
+  const View view = rig.cameras.at(camera).view(stance);
   const Intrinsics& lens = view.lens.intrinsics();
-  return {view.X_WC, stance.head, stance.stage.offset, lens.fx, lens.fy, lens.cx, lens.cy};
+  const CameraReading reported = rig.reading(camera, stance);
+  return {view.X_WC, stance.head,   stance.stage.offset,  lens.fx, lens.fy, lens.cx,
+          lens.cy,   reported.head, reported.stage.offset};
 }
 
 ValueShot value_shot(const ViewedRigPtr& rig, std::size_t camera, std::int64_t frame, double start,

@@ -78,8 +78,9 @@ class ViewedRig {
 
 using ViewedRigPtr = std::shared_ptr<const ViewedRig>;
 
-/// Returns the sample of a camera at these axis positions.
-[[nodiscard]] CameraSample camera_sample(const Camera& camera, const CameraStance& stance);
+/// How a camera of the rig stands; as what it says of itself, its readings there.
+[[nodiscard]] CameraSample camera_sample(const ViewedRig& rig, std::size_t camera,
+                                         const CameraStance& stance);
 
 /// A frame that can be rendered without references to changing data.
 struct ValueShot {

@@ -128,7 +128,7 @@ TEST_F(ViewerTest, SaysNothingToOneWhoHasLeft) {
 TEST_F(ViewerTest, GoesFromTheRigToTheLastRunAndBack) {
   EXPECT_THAT(error_of(send_text(R"({"id":1,"do":"open"})")), HasSubstr("there is no recording yet"));
   viewer_.on_message(me, R"({"id":2,"do":"arm","bends":[[-0.5,0],[0,0]]})");
-  viewer_.on_message(me, R"({"id":3,"do":"run"})");
+  viewer_.on_message(me, R"({"id":3,"do":"run","speed":0})");
   viewer_.advance(1);
   EXPECT_EQ(mode(), "live");
   EXPECT_EQ(error_of(send_text(R"({"id":4,"do":"open"})")), "");
@@ -138,12 +138,12 @@ TEST_F(ViewerTest, GoesFromTheRigToTheLastRunAndBack) {
   send_text(R"({"id":5,"do":"live"})");
   EXPECT_EQ(mode(), "live");
   viewer_.advance(2);
-  EXPECT_NEAR(messenger_.state(me).arm.bends[0].x(), -0.5, 1e-6) << "as it was left";
+  EXPECT_NEAR(messenger_.state(me).arm.bends[0].x(), 0.8, 1e-6) << "where the tasks left it";
 }
 
 TEST_F(ViewerTest, SaysWhetherThereIsARecordingToOpen) {
   EXPECT_FALSE(says("recording"));
-  viewer_.on_message(me, R"({"id":1,"do":"run"})");
+  viewer_.on_message(me, R"({"id":1,"do":"run","speed":0})");
   viewer_.advance(1);
   viewer_.closed(me);
   viewer_.opened(me);
@@ -170,7 +170,7 @@ TEST(ViewerOfARig, ShowsARecordingToAllWhereItFailsForOne) {
                 background, 0);
   viewer.opened(me);
   viewer.opened(other);
-  viewer.on_message(me, R"({"id":1,"do":"run"})");
+  viewer.on_message(me, R"({"id":1,"do":"run","speed":0})");
   viewer.advance(1);
   messenger.is_broken = true;
   viewer.on_message(other, R"({"id":2,"do":"open"})");

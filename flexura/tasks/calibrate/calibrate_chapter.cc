@@ -11,6 +11,7 @@
 #include "flexura/camera/camera.h"
 #include "flexura/report/image_picture.h"
 #include "flexura/tasks/calibrate/calibrate_results.h"
+#include "flexura/tasks/calibrate/calibrate_table.h"
 #include "flexura/tasks/calibrate/loop_chapter.h"
 #include "flexura/tasks/photograph.h"
 
@@ -28,8 +29,11 @@ double power_of_ten(double value) {
 // Returns a chart of values that fall from look to look. The last look is calibrated separately, so that no
 // number of looks repeats.
 LineChart step_chart(const CalibrationRun& run, const char* heading) {
-  LineChart chart{
-      .heading = heading, .x_label = "looks of both cameras", .value_label = "size, power of ten", .x = {0}};
+  LineChart chart{.heading = heading,
+                  .x_label = "looks of both cameras",
+                  .value_label = "size",
+                  .x = {0},
+                  .is_log = true};
   for (const RigStep& step : run.result.steps) chart.x.push_back(static_cast<double>(step.looks));
   return chart;
 }
@@ -95,43 +99,25 @@ ImageOutline::Line circle_line(const CircleFit& circle) {
 
 std::string text_of(const CalibrationRun& run) {
   const RigSessionResult& result = run.result;
+  const std::size_t pictures = result.pictures[0] + result.pictures[1];
   if (!result.is_done)
-    return fmt::format("Not calibrated: {}. ({} looks, {} pictures.)", result.reason, result.looks,
-                       result.pictures[0] + result.pictures[1]);
-  const bool is_arm = !run.is_before_etalon;
+    return fmt::format("Not calibrated: {}. ({} looks, {} pictures.)", result.reason, result.looks, pictures);
   const std::string measured =
-      is_arm ? fmt::format("{} markers and {} points of the median axis", result.markers, result.points)
-             : fmt::format("{} points of its borders and red lines", result.etalon_points);
+      run.is_before_etalon
+          ? fmt::format("cylinder: {} points of its borders and red lines", result.etalon_points)
+          : fmt::format("arm: {} markers and {} points of its axis", result.markers, result.points);
   return fmt::format(
-      "{} looks of both cameras at the {}, {} pictures, in which {} were measured. The rig that explains "
-      "them best leaves {:.2f} standard deviations root mean square. Heads, stages and zooms were then sent "
-      "to where both cameras look at it along orthogonal axes with equal zoom, in one move. In fresh "
-      "pictures after it the prediction errors were {:.2f} px and {:.2f} px.",
-      result.looks, is_arm ? "arm" : "cylinder", result.pictures[0] + result.pictures[1], measured,
-      result.found.rms, result.verified[0], result.verified[1]);
+      "{} looks of both cameras, {} pictures of the {}. +- is a standard deviation; values after the "
+      "calibration and at the start are estimates.",
+      result.looks, pictures, measured);
 }
 
-std::vector<std::string> points_of(const CalibrationRun& run) {
-  const RigSessionResult& result = run.result;
+// Returns what the pictures do not determine.
+std::vector<std::string> unknowns_of(const CalibrationRun& run) {
   std::vector<std::string> points;
-  if (!result.is_done) return points;
-  points.push_back(remainder_text("At the start, as found", *result.start_remainder));
-  points.push_back(remainder_text("After the move, as found", result.remainder));
-  if (run.truth) points.push_back(remainder_text("After the move, in the simulated truth", *run.truth));
-  const RigSigmas& sigmas = result.steps.back().sigmas;
-  points.push_back(fmt::format(
-      "Known (standard deviations): the angle between the axes within {:.4f} deg, focal lengths within "
-      "{:.2f} % and {:.2f} %, zoom ratio within {:.2f} %.",
-      sigmas.angle / degree, 100 * sigmas.focal[0], 100 * sigmas.focal[1], 100 * sigmas.zoom_ratio));
-  for (const std::string& note : result.desired.notes) points.push_back(note);
-  const auto& blind = result.observability.unobservable;
-  constexpr std::size_t most = 6;
-  for (std::size_t i = 0; i < std::min(most, blind.size()); ++i)
+  for (const UnobservableDirection& blind : run.result.observability.unobservable)
     points.push_back(
-        fmt::format("Not observable in these pictures ({:.0f} % of the prior uncertainty is left): {}",
-                    100 * blind[i].share, blind[i].words));
-  if (blind.size() > most)
-    points.push_back(fmt::format("and {} more combinations, in summary.json", blind.size() - most));
+        fmt::format("{:.0f} % of the prior uncertainty is left: {}", 100 * blind.share, blind.words));
   return points;
 }
 
@@ -156,17 +142,15 @@ ImagePlot observed_picture(const CalibrationRun& run, const CameraObservation& o
   return plot;
 }
 
-std::string remainder_text(const std::string& when, const RigRemainder& left) {
-  return fmt::format(
-      "{}: the axes are {:.3f} deg apart, pass the target by {:.2f} mm and {:.2f} mm, zoom ratio {:.4f}; "
-      "roll about the axes, which no head can correct, {:.2f} deg and {:.2f} deg.",
-      when, 90 + left.angle / degree, 1e3 * left.aim[0].norm(), 1e3 * left.aim[1].norm(), left.zoom_ratio,
-      left.roll[0] / degree, left.roll[1] / degree);
-}
-
 Chapter calibration_chapter(const CalibrationRun& run, std::size_t number) {
   if (run.loop) return loop_chapter(run, number);
-  Chapter chapter{"Calibration: " + run.name, text_of(run), {}, points_of(run), false};
+  Chapter chapter{
+      .heading = "Calibration: " + run.name, .text = text_of(run), .figures = {}, .is_first_tall = false};
+  if (run.result.is_done) {
+    chapter.table = calibration_table(run);
+    chapter.points = run.result.desired.notes;
+    chapter.details = {"What these pictures do not determine", unknowns_of(run)};
+  }
   for (std::size_t i = 0; i < 2; ++i) {
     if (run.result.before[i]) chapter.figures.push_back(calibration_photograph(run, i, false, number));
     if (run.result.is_done) chapter.figures.push_back(calibration_photograph(run, i, true, number));

@@ -10,6 +10,7 @@
 #include "flexura/report/image_picture.h"
 #include "flexura/report/report.h"
 #include "flexura/tasks/calibrate/calibrate_run.h"
+#include "flexura/tasks/task_outcome.h"
 
 namespace flexura {
 
@@ -30,6 +31,10 @@ const Table<FoundRigFile>& fields_of(const FoundRigFile*);
 void write_rig_file(const Setup& setup, const CalibrationRun& run, const std::string& saved_as,
                     const std::filesystem::path& results);
 
+/// Returns what came of it: of the method "bundle" the angle between the axes with its standard deviation,
+/// and whether every required standard deviation is reached; of the paper's methods the angle as seen.
+[[nodiscard]] TaskOutcome calibration_outcome(const CalibrationRun& run);
+
 /// Returns its item in the list `calibrations` of a summary.
 [[nodiscard]] Node calibration_node(const CalibrationRun& run);
 
@@ -37,11 +42,8 @@ void write_rig_file(const Setup& setup, const CalibrationRun& run, const std::st
 [[nodiscard]] ImagePlot observed_picture(const CalibrationRun& run, const CameraObservation& observed,
                                          std::string heading);
 
-/// Returns the remaining errors as a sentence that begins with `when`.
-[[nodiscard]] std::string remainder_text(const std::string& when, const RigRemainder& left);
-
-/// Returns the calibration's chapter of a report: errors of the rig before and after, uncertainties, pictures
-/// before and after. `number` from 0, for the names of figures.
+/// Returns the calibration's chapter of a report: a table of the rig's errors before and after, charts,
+/// pictures before and after. `number` from 0, for the names of figures.
 [[nodiscard]] Chapter calibration_chapter(const CalibrationRun& run, std::size_t number);
 
 }  // namespace flexura

@@ -86,15 +86,19 @@ class LoggedSession : public RigSessionWatcher {
     message.bends = bends_of(observed.pose);
     add_seen(observed, message);
     log_.publish({calibration_observations_topic, observed.frame.received, message});
-    stage_.progress.update(std::min(1.0, static_cast<double>(observed.look) / static_cast<double>(images_)),
-                           run_.name);
+    ++pictures_;
+    stage_.progress.update(std::min(0.99, static_cast<double>(pictures_) / static_cast<double>(2 * images_)),
+                           fmt::format("{}, picture {}", run_.name, pictures_));
   }
   void known(const RigStep& step) override {
     const CalibrationDecisionMessage message = decision_message(step);
     log_.publish({calibration_decisions_topic, message.time, message});
-    const std::string what = step.is_found ? fmt::format("angle between the axes known within {:.4f} deg",
-                                                         step.sigmas.angle / degree)
-                                           : step.reason;
+    constexpr double most = 90;  // In deg; beyond, nothing is known of an angle.
+    const double sigma = step.sigmas.angle / degree;
+    std::string what = step.reason;
+    if (step.is_found)
+      what = sigma < most ? fmt::format("angle between the axes known within {:.4f} deg", sigma)
+                          : "angle between the axes not known yet";
     log_.event(step.time, Recorder::Level::info, run_.name,
                fmt::format("after {} looks: {}", step.looks, what));
   }
@@ -151,7 +155,8 @@ class LoggedSession : public RigSessionWatcher {
   }
 
   CalibrationRun& run_;
-  std::size_t images_;
+  std::size_t images_;        // Of a camera, at most.
+  std::size_t pictures_ = 0;  // Of both.
   TaskStage& stage_;
   RunLog& log_;
   CommandedMotion& motion_;
@@ -185,13 +190,15 @@ CalibrationRun run_calibration(const CalibrateTask& task, const std::string& nam
   CalibrationRun run;
   run.name = name;
   run.is_before_etalon = is_before_etalon(task);
+  run.required = session.desired;
   run.nominal = rig_model(setup.arm_model(), cameras);
   for (std::size_t i = 0; i < 2; ++i) run.cameras[i] = cameras[session.cameras[i]].name;
   RecordedPorts recorded(stage.rig.ports(), from, stage.record_steps);
-  LoggedSession log(run, session.images, stage, recorded.motion());
+  LoggedSession log(run, most_images(task), stage, recorded.motion());
   if (is_loop(task)) {
     LoopConfig loop = loop_config(task, setup.arm, cameras, setup.stand);
     loop.draw = ideal_pictures(setup);
+    run.accepted = loop.accepted;
     run.loop = calibrate_by_loop(recorded.ports(), run.nominal, loop, log);
   } else {
     const RigPrior prior = session_prior(task, run.nominal, setup.stand);
@@ -206,6 +213,11 @@ CalibrationRun run_calibration(const CalibrateTask& task, const std::string& nam
   run.truth = remainder(rig_model(rig.arm.arm(), rig.cameras),
                         {truth->stance(session.cameras[0]), truth->stance(session.cameras[1])},
                         run.loop ? run.loop->target : run.result.target);
+  run.true_focal.emplace();
+  for (std::size_t i = 0; i < 2; ++i) {
+    const std::size_t camera = session.cameras[i];
+    (*run.true_focal)[i] = Camera(rig.cameras[camera]).lens().at(truth->stance(camera).head.zoom).fx;
+  }
   return run;
 }
 

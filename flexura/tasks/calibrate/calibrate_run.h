@@ -28,6 +28,8 @@ struct CalibrationRun {
   std::string name;
   bool is_before_etalon = false;       ///< It used the calibration cylinder, not the arm.
   std::array<std::string, 2> cameras;  ///< Names of the cameras.
+  RigSigmas required = {};             ///< Required standard deviations, of the method "bundle".
+  double accepted = 0;                 ///< Tolerance of offsets in pictures, px, of the paper's methods.
   RigModel nominal;                    ///< Model before the calibration.
   RigSessionResult result;             ///< Result of the method "bundle".
   std::optional<LoopResult> loop;      ///< Result of one of the paper's methods, instead.
@@ -35,6 +37,7 @@ struct CalibrationRun {
   MotionPtr motion;                    ///< Commanded motion of the arm, from the task's start.
   /// True remaining errors at the cameras' final positions, unknown to the session; only for simulated rigs.
   std::optional<RigRemainder> truth;
+  std::optional<std::array<double, 2>> true_focal = {};  ///< Likewise, focal lengths there, px.
 
   /// Returns the model of the rig after the calibration: the nominal one with the results.
   [[nodiscard]] RigModel found() const;

@@ -45,6 +45,10 @@ class CalibrateRunner : public TaskRunner {
       : TaskRunner(setup, std::move(label)), task_(task) {}
 
   [[nodiscard]] TaskMotionSource motion_source() const override { return TaskMotionSource::by_rig; }
+  [[nodiscard]] TaskWork work() const override {
+    constexpr double of_look = 2;  // In s.
+    return {.performing = of_look * static_cast<double>(most_images(task_))};
+  }
   [[nodiscard]] TaskPlan plan(const ArmState& from, const MotionPtr& done) const override {
     return {.motion = done ? done : tour_of(task_, setup().arm_model(), from)};
   }
@@ -54,8 +58,11 @@ class CalibrateRunner : public TaskRunner {
     return {run_->motion, run_->is_done() ? std::nullopt : std::optional(run_->reason())};
   }
 
-  void finish(const std::filesystem::path& results, bool /*is_cancelled*/) override {
+  void finish(const std::filesystem::path& results, bool /*is_cancelled*/, Progress& /*progress*/) override {
     if (run_ && run_->is_done()) write_rig_file(setup(), *run_, task_.save, results);
+  }
+  [[nodiscard]] TaskOutcome outcome(const Motion& /*motion*/) const override {
+    return run_ ? calibration_outcome(*run_) : not_begun(name(), "calibrate", "calibration", "reached");
   }
   [[nodiscard]] std::string_view summary_list() const override { return "calibrations"; }
   [[nodiscard]] std::optional<Node> summary() const override {

@@ -14,6 +14,7 @@
 #include "flexura/estimate/backbone_pixels.h"
 #include "flexura/report/image_picture.h"
 #include "flexura/tasks/calibrate/calibrate_results.h"
+#include "flexura/tasks/calibrate/calibrate_table.h"
 #include "flexura/tasks/photograph.h"
 
 namespace flexura {
@@ -23,7 +24,8 @@ namespace {
 ReportFigure falling_offsets(const CalibrationRun& run, std::size_t i, std::size_t number) {
   LineChart chart{.heading = fmt::format("offsets of camera {}", run.cameras[i]),
                   .x_label = "pictures of both cameras",
-                  .value_label = "size, power of ten"};
+                  .value_label = "size",
+                  .is_log = true};
   std::vector<const LoopDecision*> steps;
   std::vector<double>& looks = chart.x;
   for (const LoopDecision& step : run.loop->steps) {
@@ -100,17 +102,6 @@ std::vector<std::string> loop_points(const CalibrationRun& run) {
   std::vector<std::string> points;
   points.reserve(run.arcs.size() + 1);
   for (std::size_t i = 0; i < run.arcs.size(); ++i) points.push_back(arc_text(run.arcs[i], run.cameras[i]));
-  if (result.angle)
-    points.push_back(fmt::format("As seen, the axes are {:.3f} deg apart.", 90 + *result.angle / degree));
-  if (result.zoom_ratio)
-    points.push_back(
-        fmt::format("As seen, the first camera shows the target {:.4f} times as large as the second.",
-                    *result.zoom_ratio));
-  for (std::size_t i = 0; i < 2; ++i)
-    if (result.roll[i])
-      points.push_back(
-          fmt::format("Camera {} is turned by {:.2f} deg about its axis, which no head can correct.",
-                      run.cameras[i], *result.roll[i] / degree));
   for (std::size_t i = 0; i < 2; ++i)
     if (const auto& by = result.principal_point[i])
       points.push_back(fmt::format(
@@ -118,7 +109,6 @@ std::vector<std::string> loop_points(const CalibrationRun& run) {
           "has it{}.",
           run.cameras[i], by->x(), by->y(),
           result.is_done ? "; the rig file of this calibration has it there" : ""));
-  if (run.truth) points.push_back(remainder_text("In the simulated truth", *run.truth));
   for (const std::string& note : result.notes) points.push_back(note);
   return points;
 }
@@ -134,6 +124,7 @@ Chapter loop_chapter(const CalibrationRun& run, std::size_t number) {
                   {},
                   loop_points(run),
                   false};
+  if (result.is_done) chapter.table = calibration_table(run);
   for (std::size_t i = 0; i < 2; ++i) {
     if (result.before[i]) chapter.figures.push_back(loop_photograph(run, i, false, number));
     if (result.after[i]) chapter.figures.push_back(loop_photograph(run, i, true, number));

@@ -69,7 +69,8 @@ std::vector<ReportFigure> figures_of(const DynamicsRun& run, std::size_t number)
   draw("lyapunov", "Lyapunov's function W = T + Pi", "J", least_joule, lines);
   for (auto& [line, value] : lines)
     value = [=](const Shown& at) { return std::log10(std::max(value(at), least_joule)); };
-  draw("lyapunov-powers", "the same", "J, power of ten", 1, lines);
+  draw("lyapunov-powers", "the same", "J", 1, lines);
+  std::get<LineChart>(figures.back().content).is_log = true;
   draw("energies", "the arm's energies, and what damping took", "J", least_joule,
        {{"gravity", &Shown::gravity_energy},
         {"elastic", &Shown::elastic_energy},
@@ -135,6 +136,21 @@ std::vector<std::string> findings_of(const DynamicsRun& run) {
 }
 
 }  // namespace
+
+TaskOutcome dynamics_outcome(const DynamicsRun& run) {
+  TaskOutcome outcome{.task = run.name,
+                      .kind = "dynamics",
+                      .noun = "law",
+                      .success = "did as in theory",
+                      .is_reached = run.is_done(),
+                      .text = {},
+                      .size = run.remaining.tip,
+                      .size_text = fmt::format("tip {} from its target", length_text(run.remaining.tip))};
+  const char* course = run.is_measured ? "at the target by measured angles" : "energy fell as in theory";
+  outcome.text = run.is_done() ? fmt::format("{}, {}", course, outcome.size_text)
+                               : fmt::format("not as in theory: {}; {}", run.reason(), outcome.size_text);
+  return outcome;
+}
 
 Node dynamics_node(const DynamicsRun& run) {
   const DynamicsSample& last = run.samples.back();

@@ -5,8 +5,12 @@
 #include "flexura/base/node.h"
 #include "flexura/report/report.h"
 #include "flexura/tasks/dynamics/dynamics_run.h"
+#include "flexura/tasks/task_outcome.h"
 
 namespace flexura {
+
+/// Returns what came of it: how far the tip is from its target, and whether the energy fell as in theory.
+[[nodiscard]] TaskOutcome dynamics_outcome(const DynamicsRun& run);
 
 /// Returns its item in the list `dynamics` of a summary.
 [[nodiscard]] Node dynamics_node(const DynamicsRun& run);

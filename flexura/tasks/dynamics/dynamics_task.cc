@@ -43,6 +43,10 @@ class DynamicsRunner : public TaskRunner {
       : TaskRunner(setup, std::move(label)), task_(task) {}
 
   [[nodiscard]] TaskMotionSource motion_source() const override { return TaskMotionSource::simulated; }
+  [[nodiscard]] TaskWork work() const override {
+    constexpr double of_second = 0.1;  // In s.
+    return {.duration = task_.duration, .simulating = of_second * task_.duration};
+  }
   [[nodiscard]] TaskPlan plan(const ArmState& from, const MotionPtr& done) const override {
     return {.motion = done ? done : straight_path(task_, setup().arm.arm(), from)};
   }
@@ -89,6 +93,9 @@ class DynamicsRunner : public TaskRunner {
     }
   }
 
+  [[nodiscard]] TaskOutcome outcome(const Motion& /*motion*/) const override {
+    return run_ ? dynamics_outcome(*run_) : not_begun(name(), "dynamics", "law", "did as in theory");
+  }
   [[nodiscard]] std::string_view summary_list() const override { return "dynamics"; }
   [[nodiscard]] std::optional<Node> summary() const override {
     return run_ ? std::optional(dynamics_node(*run_)) : std::nullopt;

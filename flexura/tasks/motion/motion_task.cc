@@ -9,6 +9,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "flexura/base/table.h"
 #include "flexura/kinematics/cord_motion.h"
 #include "flexura/kinematics/expression.h"
 #include "flexura/kinematics/inverse.h"
@@ -178,6 +179,41 @@ MotionPtr motion_of(const ExpressionTask& task, const ArmModel& model, const Arm
   });
 }
 
+// Return how long a motion takes, about, s.
+double duration_of(const MoveTask& task) { return task.duration.value_or(1); }
+template <class Task>
+double duration_of(const Task& task) {
+  return task.duration;
+}
+double duration_of(const KeyframesTask& task) {
+  const auto time = std::ranges::find(task.columns, "time");
+  if (time == task.columns.end() || task.rows.empty()) return 0;
+  return task.rows.back().at(static_cast<std::size_t>(time - task.columns.begin()));
+}
+
+// Returns what came of a motion that took so many seconds.
+std::string text_of(const MoveTask& task, double distance_to_target, double duration) {
+  return task.to.position
+             ? fmt::format("tip {} from its target after {:.4g} s", length_text(distance_to_target), duration)
+             : fmt::format("at its shape after {:.4g} s", duration);
+}
+
+std::string text_of(const HoldTask& /*task*/, double /*distance*/, double duration) {
+  return fmt::format("held for {:.4g} s", duration);
+}
+
+std::string text_of(const SineTask& task, double /*distance*/, double duration) {
+  return fmt::format("{:.4g} periods in {:.4g} s", duration / task.period, duration);
+}
+
+std::string text_of(const KeyframesTask& task, double /*distance*/, double duration) {
+  return fmt::format("through {} shapes in {:.4g} s", task.rows.size(), duration);
+}
+
+std::string text_of(const ExpressionTask& /*task*/, double /*distance*/, double duration) {
+  return fmt::format("followed its formulas for {:.4g} s", duration);
+}
+
 // A task whose motion is known from its start.
 template <class Task>
 class MotionRunner : public TaskRunner {
@@ -192,16 +228,43 @@ class MotionRunner : public TaskRunner {
     return plan;
   }
 
+  [[nodiscard]] TaskWork work() const override { return {.duration = duration_of(task_)}; }
+
+  [[nodiscard]] TaskOutcome outcome(const Motion& motion) const override {
+    TaskOutcome outcome{.task = name(),
+                        .kind = std::string(fields_of(static_cast<const Task*>(nullptr)).info().name),
+                        .noun = "motion",
+                        .success = "done",
+                        .text = {},
+                        .size = {}};
+    double missed = 0;
+    if constexpr (std::is_same_v<Task, MoveTask>) {
+      const ArmModel arm = setup().arm_model();
+      missed = missed_by(arm, motion);
+      outcome.is_reached = missed <= tolerance * arm.driven().length();
+      if (task_.to.position) {
+        outcome.size = missed;
+        outcome.size_text = fmt::format("tip {} from its target", length_text(missed));
+      }
+    }
+    outcome.text = text_of(task_, missed, motion.duration());
+    return outcome;
+  }
+
  private:
-  void add_missed(const ArmModel& arm, TaskPlan& plan) const {
-    // Share of the arm's length: a tip this near to its target has reached it.
-    constexpr double tolerance = 1e-6;
+  // Share of the arm's length: a tip this near to its target has reached it.
+  static constexpr double tolerance = 1e-6;
+
+  // Returns the distance of the tip from its target at the end, m; 0 without a target.
+  [[nodiscard]] double missed_by(const ArmModel& arm, const Motion& motion) const {
     const auto target = tip_target(task_);
-    if (!target) return;
-    const Motion& motion = *plan.motion;
-    const double missed = (arm.backbone(motion.at(motion.duration())).tip().position - *target).norm();
+    return target ? (arm.backbone(motion.at(motion.duration())).tip().position - *target).norm() : 0;
+  }
+
+  void add_missed(const ArmModel& arm, TaskPlan& plan) const {
+    const double missed = missed_by(arm, *plan.motion);
     if (missed > tolerance * arm.driven().length())
-      plan.missed.push_back({.place = "", .distance = missed, .limit = 0, .position = target});
+      plan.missed.push_back({.place = "", .distance = missed, .limit = 0, .position = tip_target(task_)});
   }
 
   const Task& task_;

@@ -55,12 +55,14 @@ std::array<ReportFigure, 2> falling_errors(const ServoRun& run, std::size_t numb
   constexpr double least_share = 1e-7, least_potential = 1e-12;
   LineChart errors{.heading = "distance from the target shape",
                    .x_label = "time in the task (s)",
-                   .value_label = "share of the length, power of ten",
-                   .series = {{"seen", {}}, {"tip", {}}, {"truth", {}}}};
+                   .value_label = "share of the length",
+                   .series = {{"seen", {}}, {"tip", {}}, {"truth", {}}},
+                   .is_log = true};
   LineChart potential{.heading = "half the square of the law's error",
                       .x_label = errors.x_label,
-                      .value_label = "power of ten",
-                      .series = {{"potential", {}}}};
+                      .value_label = "potential",
+                      .series = {{"potential", {}}},
+                      .is_log = true};
   for (const ServoStep& step : run.result.steps) {
     if (!step.is_fresh || !step.error) continue;
     errors.x.push_back(*step.seen_at - run.result.start);
@@ -99,6 +101,27 @@ std::string error_text(const ServoError& error) {
 }
 
 }  // namespace
+
+TaskOutcome servo_outcome(const ServoRun& run) {
+  const ServoResult& result = run.result;
+  TaskOutcome outcome{.task = run.name,
+                      .kind = "servo",
+                      .noun = "servo",
+                      .success = "converged",
+                      .is_reached = result.is_done,
+                      .text = {},
+                      .size = {}};
+  const double took = result.steps.empty() ? 0 : result.steps.back().time - result.start;
+  outcome.text = result.is_done ? fmt::format("converged in {:.2f} s", took)
+                                : fmt::format("not converged: {}", result.reason);
+  if (result.remaining) {
+    outcome.size = result.remaining->rms;
+    outcome.size_text = fmt::format("{:.2g} % of the length rms", 100 * result.remaining->rms);
+    outcome.text += ", " + outcome.size_text;
+  }
+  if (run.true_remaining) outcome.text += fmt::format(" (in truth {:.2g} %)", 100 * run.true_remaining->rms);
+  return outcome;
+}
 
 Node servo_node(const ServoRun& run) {
   const ServoResult& result = run.result;

@@ -5,8 +5,12 @@
 #include "flexura/base/node.h"
 #include "flexura/report/report.h"
 #include "flexura/tasks/servo/servo_run.h"
+#include "flexura/tasks/task_outcome.h"
 
 namespace flexura {
+
+/// Returns what came of it: the time it took and the error that remains.
+[[nodiscard]] TaskOutcome servo_outcome(const ServoRun& run);
 
 /// Returns its item in the list `servos` of a summary.
 [[nodiscard]] Node servo_node(const ServoRun& run);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "flexura/estimate/backbone_pixels.h"
@@ -21,9 +22,11 @@ namespace {
 // Logs all events, and compares with the true values.
 class LoggedServo : public ServoSessionWatcher {
  public:
-  LoggedServo(const Setup& setup, const ServoConfig& session, ServoRun& run, TaskStage& stage,
-              CommandedMotion& motion)
+  // `expected`: how long it takes, about, s.
+  LoggedServo(const Setup& setup, const ServoConfig& session, double expected, ServoRun& run,
+              TaskStage& stage, CommandedMotion& motion)
       : keeps_images_(setup.record.cameras),
+        expected_(expected),
         run_(run),
         stage_(stage),
         log_(stage.log),
@@ -59,9 +62,11 @@ class LoggedServo : public ServoSessionWatcher {
       logged.truth = true_shape(step, *truth);
     log_.publish({servo_steps_topic, logged.time, logged});
     truth_.push_back(std::move(logged.truth));
+    if (!begun_) begun_ = step.time;
     stage_.progress.update(
-        0.5, step.error ? fmt::format("{}: {:.2f} % of the length off", run_.name, 100 * step.error->rms)
-                        : run_.name);
+        std::min(0.99, (step.time - *begun_) / expected_),
+        step.error ? fmt::format("{}: {:.2f} % of the length off", run_.name, 100 * step.error->rms)
+                   : run_.name);
   }
   void reported(double time, const std::string& what) override {
     log_.event(time, Recorder::Level::warning, run_.name, what);
@@ -98,6 +103,8 @@ class LoggedServo : public ServoSessionWatcher {
   }
 
   bool keeps_images_;
+  double expected_;              // In s.
+  std::optional<double> begun_;  // Time of the first step, s.
   ServoRun& run_;
   TaskStage& stage_;
   RunLog& log_;
@@ -124,6 +131,11 @@ std::vector<double> band_places(const Setup& setup, const Arm& nominal) {
     places.push_back(arc_length_of(nominal, straight, material_point(arm, marker.at)));
   }
   return places;
+}
+
+double expected_duration(const ServoTask& task) {
+  constexpr double to_settle = 3;  // In s.
+  return to_settle + (task.target.empty() ? 0 : task.target.back().time);
 }
 
 ServoConfig servo_config(const Setup& setup, const ServoTask& task, const RigModel& nominal,
@@ -162,7 +174,7 @@ ServoRun run_servo(const ServoTask& task, const std::string& name, const Setup& 
   session.sent = from;
   run.settle = task.settle;
   for (std::size_t i = 0; i < 2; ++i) run.cameras[i] = recorded.ports().cameras[session.cameras[i]].name;
-  LoggedServo log(setup, session, run, stage, recorded.motion());
+  LoggedServo log(setup, session, expected_duration(task), run, stage, recorded.motion());
   run.result = servo_in_session(recorded.ports(), run.nominal, session, log);
   log.add_truth(run.result.steps);
   const double end = recorded.finish();

@@ -31,6 +31,9 @@ struct ServoRun {
 /// file's, a band keeps its share of its section.
 [[nodiscard]] std::vector<double> band_places(const Setup& setup, const Arm& nominal);
 
+/// Returns how long a servo to these targets takes, about, s.
+[[nodiscard]] double expected_duration(const ServoTask& task);
+
 /// Returns the configuration of a session for the task, with the arm in the state `from`.
 [[nodiscard]] ServoConfig servo_config(const Setup& setup, const ServoTask& task, const RigModel& nominal,
                                        const ArmState& from);

@@ -56,6 +56,10 @@ class ServoRunner : public TaskRunner {
       : TaskRunner(setup, std::move(label)), task_(task) {}
 
   [[nodiscard]] TaskMotionSource motion_source() const override { return TaskMotionSource::by_rig; }
+  [[nodiscard]] TaskWork work() const override {
+    constexpr double of_second = 5;  // In s.
+    return {.performing = of_second * expected_duration(task_)};
+  }
 
   // Includes the targets whose nearest shape of the arm is too far away.
   [[nodiscard]] TaskPlan plan(const ArmState& from, const MotionPtr& done) const override {
@@ -90,6 +94,9 @@ class ServoRunner : public TaskRunner {
                       name()));
   }
 
+  [[nodiscard]] TaskOutcome outcome(const Motion& /*motion*/) const override {
+    return run_ ? servo_outcome(*run_) : not_begun(name(), "servo", "servo", "converged");
+  }
   [[nodiscard]] std::string_view summary_list() const override { return "servos"; }
   [[nodiscard]] std::optional<Node> summary() const override {
     return run_ ? std::optional(servo_node(*run_)) : std::nullopt;

@@ -66,6 +66,28 @@ void write_study_table(ImageStudy& study, const std::filesystem::path& folder) {
   write_new_file(tables / (study.name + ".csv"), study_csv(study));
 }
 
+TaskOutcome study_outcome(const ImageStudy& study) {
+  const double length = study.largest_difference()[0];
+  const auto [count, rms] = study.measured_difference();
+  TaskOutcome outcome{.task = study.name,
+                      .kind = "study",
+                      .noun = "study",
+                      .success = "agree with the renderer",
+                      .is_reached = std::isfinite(length),
+                      .text = {},
+                      .size = {}};
+  if (!outcome.is_reached) {
+    outcome.text = "formulas and renderer disagree on what is visible";
+    return outcome;
+  }
+  outcome.size = length;
+  outcome.size_text = length < 0.001 ? "within 0.001 px" : fmt::format("within {:.2g} px", length);
+  outcome.text = "formulas agree with the renderer " + outcome.size_text;
+  if (count > 0)
+    outcome.text += fmt::format(", {} lengths measured in pictures are off by {:.2g} px rms", count, rms);
+  return outcome;
+}
+
 Node study_node(const ImageStudy& study) {
   const auto [length, ratio] = study.largest_difference();
   Node::Table entry{{"name", {}, {study.name, {}}},

@@ -6,6 +6,7 @@
 #include "flexura/base/node.h"
 #include "flexura/report/report.h"
 #include "flexura/study/image_study.h"
+#include "flexura/tasks/task_outcome.h"
 
 namespace flexura {
 
@@ -18,6 +19,9 @@ namespace flexura {
 /// if it is a valid file name and unique among the previous studies. Throws std::runtime_error with the path
 /// on a system error.
 void write_study_table(ImageStudy& study, const std::filesystem::path& folder);
+
+/// Returns what came of it: how well the formulas, the renderer and the pictures agree.
+[[nodiscard]] TaskOutcome study_outcome(const ImageStudy& study);
 
 /// Returns its item in the list `studies` of a summary.
 [[nodiscard]] Node study_node(const ImageStudy& study);

@@ -22,12 +22,20 @@ class StudyRunner : public TaskRunner {
     return {.motion = hold_motion(from, 0)};
   }
 
-  void finish(const std::filesystem::path& results, bool is_cancelled) override {
+  [[nodiscard]] TaskWork work() const override {
+    constexpr double of_value = 0.02, of_picture = 0.15;  // In s.
+    return {.finishing = static_cast<double>(task_.points) * (task_.measure ? of_picture : of_value)};
+  }
+
+  void finish(const std::filesystem::path& results, bool is_cancelled, Progress& progress) override {
     if (is_cancelled) return;
-    study_ = study_images(task_, setup().cameras(), static_cast<std::uint64_t>(setup().seed));
+    study_ = study_images(task_, setup().cameras(), static_cast<std::uint64_t>(setup().seed), &progress);
     write_study_table(*study_, results);
   }
 
+  [[nodiscard]] TaskOutcome outcome(const Motion& /*motion*/) const override {
+    return study_ ? study_outcome(*study_) : not_begun(name(), "study", "study", "agree with the renderer");
+  }
   [[nodiscard]] std::string_view summary_list() const override { return "studies"; }
   [[nodiscard]] std::optional<Node> summary() const override {
     return study_ ? std::optional(study_node(*study_)) : std::nullopt;

@@ -102,7 +102,7 @@ function rig(app: App): Binding[] {
   const ask = (what: string) => () => void viewer.commander.plain(what);
   return [
     { group, keys: ['Backspace'], what: 'Reset: everything back to the start', run: () => (viewer.readonly ? viewer.playback.seek(0) : viewer.blind || ask('reset')()) },
-    { group, keys: ['h'], what: 'Halt: everything stops', run: ask('halt') },
+    { group, keys: ['h', 'F8'], what: 'Halt: everything stops; from any field, too', anywhere: true, run: ask('halt') },
     { group, keys: ['g'], what: 'Push an elastic arm by dragging it, on or off', run: () => toggle_push(app) },
     { group, keys: ['r'], what: 'Run the tasks', run: () => viewer.blind || ask('run')() },
     { group, keys: ['c'], what: 'Cancel the run', run: () => viewer.readonly || ask('cancel')() },
@@ -120,6 +120,7 @@ function page(app: App): Binding[] {
 
 function escape(app: App): void {
   if (app.dialog.value) app.dialog.value = null;
+  else if (app.enlarged.value !== null) app.enlarged.value = null;
   else if (app.route.value !== 'viewer') return;
   else if (app.push_tool.value) app.push_tool.value = false;
   else if (app.views.current.value !== null) app.views.free();

@@ -5,6 +5,8 @@ export interface Binding {
   keys: string[];
   what: string;
   group: string;
+  /** Also from a focused field or dialog, unless one types text there. */
+  anywhere?: boolean;
   run(event: KeyboardEvent): void;
 }
 
@@ -62,13 +64,22 @@ export class KeyMap {
   handle = (event: KeyboardEvent): void => {
     if (event.defaultPrevented) return;
     const binding = names_of(event).map((name) => this.by_name.get(name)).find(Boolean);
-    if (!binding || !this.options.enabled(binding) || taken_by_control(event)) return;
+    if (!binding || !this.options.enabled(binding)) return;
+    if (binding.anywhere ? types_text(event) : taken_by_control(event)) return;
     event.preventDefault();
     binding.run(event);
   };
 }
 
-/** Keys handled by a focused slider; all others belong to the page. */
+/** Whether the key writes something in the focused field: letters in one for numbers do not. */
+export function types_text(event: KeyboardEvent): boolean {
+  const { target } = event;
+  if (event.key.length > 1 || !(target instanceof HTMLElement)) return false;
+  if (target.isContentEditable || target.tagName === 'TEXTAREA') return true;
+  return target instanceof HTMLInputElement && target.type === 'text' && target.inputMode !== 'decimal';
+}
+
+/** What a slider does itself: all the others are the page's. */
 const slid_by = ['ArrowLeft', 'ArrowRight', 'ArrowUp', 'ArrowDown', 'Home', 'End', 'PageUp', 'PageDown'];
 const typed_into = ['INPUT', 'SELECT', 'TEXTAREA'];
 const pressed = ['BUTTON', 'A', 'SUMMARY'];

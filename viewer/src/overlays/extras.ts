@@ -33,3 +33,28 @@ export function eyes_of(extras: Extras): { id: string; label: string; color: str
   }
   return eyes;
 }
+
+/** Of a camera: on a slow machine a picture comes seconds after that. */
+const remembered = 500;
+
+/** What was drawn upon the last pictures, by their numbers: a picture may come after what was measured in it, and in the next. */
+export class OverlayMemory {
+  private readonly cameras = new Map<string, Map<number, ExtraOverlay>>();
+
+  take(extras: Extras | null): void {
+    const drawn = extras?.overlays ?? [];
+    for (const camera of [...this.cameras.keys()]) if (!drawn.some((overlay) => overlay.camera === camera)) this.cameras.delete(camera);
+    for (const overlay of drawn) {
+      if (overlay.number === undefined) continue;
+      const of_camera = this.cameras.get(overlay.camera) ?? new Map<number, ExtraOverlay>();
+      this.cameras.set(overlay.camera, of_camera);
+      of_camera.delete(overlay.number);
+      of_camera.set(overlay.number, overlay);
+      if (of_camera.size > remembered) of_camera.delete(of_camera.keys().next().value!);
+    }
+  }
+
+  of(camera: string, number: number | undefined): ExtraOverlay | undefined {
+    return number === undefined ? undefined : this.cameras.get(camera)?.get(number);
+  }
+}

@@ -65,7 +65,7 @@ export function ArmPanel() {
       {modes.length > 1 && (
         <div class="segmented" role="group" aria-label="The arm’s shape in">
           {modes.map((each) => (
-            <button key={each} type="button" aria-pressed={each === mode} onClick={() => set_mode(each)}>{mode_names[each]}</button>
+            <button key={each} type="button" title={`The arm’s shape in ${mode_names[each].toLowerCase()}`} aria-pressed={each === mode} onClick={() => set_mode(each)}>{mode_names[each]}</button>
           ))}
         </div>
       )}

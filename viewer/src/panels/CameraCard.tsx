@@ -1,14 +1,14 @@
 import { useEffect, useRef } from 'preact/hooks';
-import { effect, type Signal } from '@preact/signals';
-import { extra_layers, extra_overlay } from '../overlays/extras';
+import { effect, useSignal, type Signal } from '@preact/signals';
+import { extra_layers } from '../overlays/extras';
 import { color_of } from '../overlays/measures';
 import { draw_layers } from '../overlays/registry';
-import type { ExtraOverlay, Layer, SceneCamera } from '../protocol/types';
+import type { Layer, SceneCamera } from '../protocol/types';
 import type { History } from '../state/history';
 import { preferences } from '../state/preferences';
 import type { Viewer } from '../state/viewer';
 import { use_app } from '../ui/app';
-import { format_time } from '../ui/format';
+import { format_time, lag_of } from '../ui/format';
 import { Icon } from '../ui/Icon';
 import type { Pixel } from './pixel_value';
 
@@ -20,14 +20,25 @@ interface Props {
 /** A live picture counts as old if newer states have been arriving for this long, s. */
 const late_s = 1;
 
+/** Live pictures take so long to come: that is not worth a word. */
+const live_lag_s = 0.25;
+
 export function CameraCard({ camera, pixel }: Props) {
-  const { viewer } = use_app();
+  const { viewer, enlarged } = use_app();
   const canvas = useRef<HTMLCanvasElement>(null);
+  // Lines are as thick on the screen as before when the picture is shown larger.
+  const width = useSignal(0);
+  useEffect(() => {
+    const observer = new ResizeObserver(([{ contentRect }]) => (width.value = contentRect.width));
+    observer.observe(canvas.current!);
+    return () => observer.disconnect();
+  }, []);
   useEffect(() => effect(() => {
+    width.value;
     viewer.picture_tick.value;
     const layers = [
       ...(viewer.layers.value[camera.name] ?? []), ...measured_layers(viewer, camera.name),
-      ...extra_layers(overlay_of(viewer, camera.name), preferences.hidden.value),
+      ...extra_layers(viewer.overlay_of(camera.name), preferences.hidden.value),
     ];
     const here = pixel.value?.camera === camera.name ? pixel.value : null;
     paint(canvas.current!, camera, viewer.picture_of.get(camera.name)?.bitmap ?? null, layers, here);
@@ -36,7 +47,8 @@ export function CameraCard({ camera, pixel }: Props) {
   viewer.tick.value;
   const picture = viewer.picture_of.get(camera.name);
   const measured = viewer.measured.pictures.value[camera.name]?.value;
-  const unfound = (measured?.found === false && measured.reason) || overlay_of(viewer, camera.name)?.reason;
+  const unfound = (measured?.found === false && measured.reason) || viewer.overlay_of(camera.name)?.reason;
+  const lag = picture ? lag_of(picture.time, viewer.shown?.time, viewer.freshness.value === 'recording' ? viewer.playback.step_s : live_lag_s) : '';
   const old = age(viewer.freshness.value, picture?.time, viewer.history);
   const point = (event: PointerEvent): void => {
     const { clientWidth, clientHeight } = canvas.current!;
@@ -44,7 +56,12 @@ export function CameraCard({ camera, pixel }: Props) {
     const v = Math.floor((event.offsetY / clientHeight) * camera.height);
     pixel.value = { camera: camera.name, ...inside(camera, u, v) };
   };
+  const is_enlarged = enlarged.value === camera.name;
+  const toggle = (): void => {
+    enlarged.value = is_enlarged ? null : camera.name;
+  };
   const step = (event: KeyboardEvent): void => {
+    if (event.key === 'Enter') toggle();
     const [du, dv] = { ArrowRight: [1, 0], ArrowLeft: [-1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] }[event.key] ?? [0, 0];
     if ((!du && !dv) || event.altKey) return;
     event.preventDefault();
@@ -53,19 +70,25 @@ export function CameraCard({ camera, pixel }: Props) {
     pixel.value = { camera: camera.name, ...inside(camera, from.u + far * du, from.v + far * dv) };
   };
   return (
-    <figure class="camera" data-old={old !== null}>
+    <figure class="camera" data-old={old !== null} data-enlarged={is_enlarged} style={{ '--aspect': camera.width / camera.height }}>
       <div class="picture">
         <canvas ref={canvas} width={camera.width} height={camera.height} tabIndex={0} role="img"
-          aria-label={`What the camera ${camera.name} sees; arrow keys move the inspected pixel`}
-          onPointerMove={point} onPointerDown={point} onKeyDown={step} />
-        {!picture && <span class="none">No picture</span>}
+          aria-label={`What the camera ${camera.name} sees; arrow keys move the inspected pixel, Enter enlarges`}
+          title={is_enlarged ? 'A click makes it small again (Esc)' : 'A click enlarges it'}
+          onPointerMove={point} onPointerDown={point} onKeyDown={step} onClick={toggle} />
+        {!picture && <span class="none">{viewer.freshness.value === 'recording' ? 'No picture yet at this time' : 'No picture'}</span>}
         {picture && old && <span class="old">{old}</span>}
         {picture && !old && unfound && <span class="unfound">{unfound}</span>}
         {picture && !old && viewer.freshness.value === 'held' && <span class="now">Now: only the view is held</span>}
       </div>
       <figcaption>
         <b>{camera.name}</b>
-        <span>{picture ? format_time(picture.time) : ''}</span>
+        <span class="picture-time" title={picture ? 'The middle of the picture’s exposure, and how far that is from the instant that is shown' : undefined}>
+          {picture ? format_time(picture.time) : ''}
+          {picture && lag && <em>, {lag}</em>}
+        </span>
+        <button type="button" class="icon-button" onClick={toggle} aria-label={`${is_enlarged ? 'Make small' : 'Enlarge'}: ${camera.name}`}
+          title={is_enlarged ? 'Make it small again (Esc)' : 'Enlarge this picture'}><Icon name={is_enlarged ? 'close' : 'enlarge'} /></button>
         {picture && (
           <a href={exact(camera.name, viewer)} download={`${camera.name}.png`} title="Save the exact picture (PNG)"
             aria-label={`Save the exact picture of ${camera.name}`}><Icon name="save" /></a>
@@ -75,12 +98,7 @@ export function CameraCard({ camera, pixel }: Props) {
   );
 }
 
-/** Returns the program's overlay for the shown picture. */
-function overlay_of(viewer: Viewer, camera: string): ExtraOverlay | undefined {
-  return extra_overlay(viewer.extras.value, camera, viewer.picture_of.get(camera)?.number);
-}
-
-/** Returns the layers of the measures, in the colours shown beside their names. */
+/** In the colours that stand beside their names. */
 function measured_layers(viewer: Viewer, camera: string): Layer[] {
   const layers = viewer.measured.pictures.value[camera]?.value?.layers ?? [];
   return layers.map((layer) => ({ color: color_of(layer.id), ...layer }));

@@ -1,7 +1,8 @@
 import type { Range } from '../protocol/types';
-import { camera_pan, camera_stage, camera_stride, camera_tilt, camera_zoom } from '../protocol/state';
+import { camera_commanded, camera_pan, camera_stride } from '../protocol/state';
+import { preferences } from '../state/preferences';
 import { use_app } from '../ui/app';
-import { degree } from '../ui/format';
+import { degree, fixed } from '../ui/format';
 import { use_draft } from './draft';
 import { Slider } from './Slider';
 
@@ -15,6 +16,11 @@ export function CameraPanel() {
   if (!heads.length && !stages.length) return <p class="empty">No camera here can be moved.</p>;
   return (
     <>
+      <label class="check" title="The simulated cameras can stand elsewhere than they are commanded to: the file's [truth], play and steps of motors. Tasks do not know that.">
+        <input type="checkbox" checked={preferences.true_axes.value}
+          onChange={(event) => (preferences.true_axes.value = event.currentTarget.checked)} />
+        Show where they truly stand
+      </label>
       {scene.cameras.map(({ name }, index) => {
         const head = heads.find(({ camera }) => camera === name);
         const stage = stages.find(({ camera }) => camera === name);
@@ -25,14 +31,14 @@ export function CameraPanel() {
             <legend>Camera “{name}”</legend>
             {head && (
               <>
-                <Axis what="head" camera={name} axis="pan" place={at + camera_pan} range={head.pan} scale={degree} unit="°" />
-                <Axis what="head" camera={name} axis="tilt" place={at + camera_tilt} range={head.tilt} scale={degree} unit="°" />
-                <Axis what="head" camera={name} axis="zoom" place={at + camera_zoom} range={head.zoom} scale={1}
+                <Axis what="head" camera={name} axis="pan" row={at} place={0} range={head.pan} scale={degree} unit="°" />
+                <Axis what="head" camera={name} axis="tilt" row={at} place={1} range={head.tilt} scale={degree} unit="°" />
+                <Axis what="head" camera={name} axis="zoom" row={at} place={2} range={head.zoom} scale={1}
                   unit={head.zoom_unit === 'count' ? 'counts' : '×'} />
               </>
             )}
             {stage && (['x', 'y', 'z'] as const).map((axis, i) => (
-              <Axis key={axis} what="stage" camera={name} axis={axis} place={at + camera_stage + i} range={stage[axis]} scale={1000} unit="mm" />
+              <Axis key={axis} what="stage" camera={name} axis={axis} row={at} place={3 + i} range={stage[axis]} scale={1000} unit="mm" />
             ))}
           </fieldset>
         );
@@ -45,37 +51,46 @@ interface AxisProps {
   what: 'head' | 'stage';
   camera: string;
   axis: string;
-  /** Index of the value in a camera's row of the state. */
+  /** Where the camera's row in the state begins. */
+  row: number;
+  /** Which of its axes: pan, tilt, zoom, stage x, y, z. */
   place: number;
   range: Range;
   scale: number;
   unit: string;
 }
 
-function Axis({ what, camera, axis, place, range, scale, unit }: AxisProps) {
+function Axis({ what, camera, axis, row, place, range, scale, unit }: AxisProps) {
   const { viewer } = use_app();
   const draft = use_draft<number>();
   viewer.tick.value;
-  const actual = viewer.shown?.cameras[place] ?? range[0];
-  // An axis without travel has no control.
+  // What is commanded: where it truly stands nobody knows who has its readings alone.
+  const commanded = viewer.shown?.cameras[row + camera_commanded + place] ?? range[0];
+  const truth = viewer.shown?.cameras[row + camera_pan + place] ?? commanded;
+  const is_true_shown = preferences.true_axes.value;
+  const places = unit === '×' ? 2 : Number(unit !== 'counts');
+  // An axis without a way to go is no control.
   if (!(range[1] > range[0])) return null;
   return (
-    <Slider
-      id={`${what}-${camera}-${axis}`}
-      label={what === 'stage' ? `stage ${axis}` : axis}
-      title={`Camera ${camera}, ${what === 'stage' ? `stage ${axis}` : axis}`}
-      value={draft.value ?? actual}
-      actual={actual}
-      span={range}
-      reach={range}
-      scale={scale}
-      unit={unit}
-      places={unit === '×' ? 2 : Number(unit !== 'counts')}
-      disabled={viewer.still}
-      change={(value) => {
-        draft.set(value);
-        viewer.commander.axis(what, camera, { [axis]: value });
-      }}
-    />
+    <>
+      <Slider
+        id={`${what}-${camera}-${axis}`}
+        label={what === 'stage' ? `stage ${axis}` : axis}
+        title={`Camera ${camera}, ${what === 'stage' ? `stage ${axis}` : axis}`}
+        value={draft.value ?? commanded}
+        actual={is_true_shown ? truth : undefined}
+        span={range}
+        reach={range}
+        scale={scale}
+        unit={unit}
+        places={places}
+        disabled={viewer.still}
+        change={(value) => {
+          draft.set(value);
+          viewer.commander.axis(what, camera, { [axis]: value });
+        }}
+      />
+      {is_true_shown && <p class="truth">truly {fixed(truth * scale, places + 1)} {unit}</p>}
+    </>
   );
 }

@@ -14,7 +14,7 @@ export function EventPanel() {
     <ol class="events">
       {all.map(({ time, level, name, text }, i) => (
         <li key={`${time} ${name} ${i}`} data-level={level}>
-          <button type="button" onClick={() => viewer.playback.seek(time)}>
+          <button type="button" title={`Shows ${format_time(time)}`} onClick={() => viewer.playback.seek(time)}>
             <time>{format_time(time)}</time>
             <span class="sr">{words[level]}:</span>
             <b>{name}</b>

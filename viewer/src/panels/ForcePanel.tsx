@@ -50,7 +50,7 @@ function PushFields({ control, state }: { control: PushControl; state: State }) 
       <p class="quiet">Shift and drag the arm in the view, or type:</p>
       <div class="push-row">
         <label for="push-s">at s, m</label>
-        <input id="push-s" type="range" min={0} max={control.length} step={control.length / 1000} value={s.value} disabled={still}
+        <input id="push-s" type="range" title="Where along the arm it is pushed" min={0} max={control.length} step={control.length / 1000} value={s.value} disabled={still}
           aria-label="Arc length of the pushed point" onInput={(event) => { s.value = event.currentTarget.valueAsNumber; again(); }} />
         <NumberField label="Arc length of the pushed point, m" value={s.value} places={places} disabled={still}
           change={(value) => { s.value = Math.min(control.length, Math.max(0, value)); again(); }} />
@@ -66,9 +66,9 @@ function PushFields({ control, state }: { control: PushControl; state: State }) 
         <span class="unit">N</span>
       </div>
       <div class="push-row">
-        <button type="button" class="button" id="push-apply" disabled={still}
+        <button type="button" class="button" id="push-apply" title="Pushes with this force" disabled={still}
           onClick={() => viewer.commander.push({ s: s.value, force: force.value })}>Apply</button>
-        <button type="button" class="button" id="push-release" disabled={still || !pushed} onClick={() => void viewer.commander.release()}>Release</button>
+        <button type="button" class="button" id="push-release" title="Pushes no more" disabled={still || !pushed} onClick={() => void viewer.commander.release()}>Release</button>
       </div>
       <output class="push-state" aria-live="off">
         {state.push

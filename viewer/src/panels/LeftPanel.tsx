@@ -17,9 +17,9 @@ export function LeftPanel() {
   return (
     <aside class="left" aria-label="Controls">
       <div class="tabs" role="tablist" aria-label="Controls">
-        {tabs.map(({ id, label }) => (
+        {tabs.map(({ id, label, title }) => (
           <button
-            key={id} id={`tab-${id}`} type="button" role="tab" aria-selected={id === tab.id}
+            key={id} id={`tab-${id}`} title={title} type="button" role="tab" aria-selected={id === tab.id}
             aria-controls="left-panel" tabIndex={id === tab.id ? 0 : -1}
             onClick={() => (open.value = id)}
             onKeyDown={(event) => {

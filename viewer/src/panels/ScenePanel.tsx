@@ -13,7 +13,7 @@ export function ScenePanel() {
           const shown = !hidden.includes(id);
           return (
             <li key={id}>
-              <button type="button" aria-pressed={shown} aria-label={`Show: ${label}`} onClick={() => toggle_hidden(id)}>
+              <button type="button" aria-pressed={shown} aria-label={`Show: ${label}`} title={shown ? `Hide: ${label}` : `Show: ${label}`} onClick={() => toggle_hidden(id)}>
                 <Icon name={shown ? 'eye' : 'hidden'} />
                 <span>{label}</span>
               </button>
@@ -22,7 +22,7 @@ export function ScenePanel() {
         })}
       </ul>
       {hidden.length > 0 && (
-        <button type="button" class="button quiet" onClick={() => (preferences.hidden.value = [])}>Show everything</button>
+        <button type="button" class="button quiet" title="Hides nothing any more" onClick={() => (preferences.hidden.value = [])}>Show everything</button>
       )}
     </>
   );

@@ -1,7 +1,8 @@
 // A slider with limits and the currently unreachable range, and a field for exact values.
 import type { Range } from '../protocol/types';
 import { useRef, useState } from 'preact/hooks';
-import { number_of } from '../ui/format';
+import { use_app } from '../ui/app';
+import { fixed, number_of } from '../ui/format';
 
 export interface SliderProps {
   id: string;
@@ -28,7 +29,15 @@ export function Slider(props: SliderProps) {
   const part = (x: number): number => (100 * (Math.min(high, Math.max(low, x)) - low)) / (high - low);
   const [from, to] = [part(reach[0]), part(reach[1])];
   const limited = reach[0] > low || reach[1] < high;
+  const { notices } = use_app().viewer;
   const input = (target: number): void => change(Math.min(reach[1], Math.max(reach[0], target)));
+  // A hand sees where a slider ends; who types does not.
+  const type = (target: number): void => {
+    const beyond = limit_of(target, reach, 0.5 * 10 ** -places / scale);
+    if (beyond) notices.info(`${title}: ${said(target)} is ${beyond.side} the limit. It is set to ${said(beyond.limit)}.`);
+    input(target);
+  };
+  const said = (x: number): string => `${fixed(x * scale, places)} ${unit}`;
   return (
     <div class="slider">
       <label for={id}>{label}</label>
@@ -48,6 +57,7 @@ export function Slider(props: SliderProps) {
           value={value}
           disabled={disabled}
           aria-label={title}
+          title={`${title}: ${said(reach[0])} to ${said(reach[1])}`}
           aria-valuetext={`${(value * scale).toFixed(places)} ${unit}`}
           onInput={(event) => input(event.currentTarget.valueAsNumber)}
           onKeyDown={(event) => {
@@ -60,7 +70,7 @@ export function Slider(props: SliderProps) {
         />
       </div>
       <NumberField label={`${title}, ${unit}`} value={value * scale} places={places} disabled={disabled}
-        change={(typed) => input(typed / scale)} />
+        change={(typed) => type(typed / scale)} />
       <span class="unit">{unit}</span>
     </div>
   );
@@ -74,13 +84,22 @@ interface NumberFieldProps {
   change(value: number): void;
 }
 
-/** A field that shows a changing value and accepts a new one with Enter. */
+/** The limit that a value is beyond by more than `rounding`; null within them. */
+export function limit_of(target: number, [low, high]: Range, rounding: number): { side: 'above' | 'below'; limit: number } | null {
+  if (target > high + rounding) return { side: 'above', limit: high };
+  return target < low - rounding ? { side: 'below', limit: low } : null;
+}
+
+/** Shows a changing value and lets one type another: what is typed holds from Enter on, which leaves the field. */
 export function NumberField({ label, value, places, disabled, change }: NumberFieldProps) {
   const [typed, set_typed] = useState<string | null>(null);
   const field = useRef<HTMLInputElement>(null);
+  const { notices } = use_app().viewer;
   const take = (): void => {
-    const number = number_of(typed ?? '');
+    if (typed === null) return;
+    const number = number_of(typed);
     if (number !== null) change(number);
+    else notices.error(`${label}: “${typed}” is not a number. The value stays ${shown}.`);
     set_typed(null);
   };
   const shown = value.toFixed(places);
@@ -91,13 +110,15 @@ export function NumberField({ label, value, places, disabled, change }: NumberFi
       type="text"
       inputMode="decimal"
       aria-label={label}
+      title={`${label}: type a number, then Enter`}
       disabled={disabled}
       value={typed ?? (Number(shown) === 0 ? (0).toFixed(places) : shown)}
       onInput={(event) => set_typed(event.currentTarget.value)}
       onFocus={(event) => event.currentTarget.select()}
       onBlur={take}
       onKeyDown={(event) => {
-        if (event.key === 'Enter') take();
+        // What leaves the field is taken; and the keys are the page's again.
+        if (event.key === 'Enter') field.current?.blur();
         if (event.key !== 'Escape') return;
         set_typed(null);
         event.stopPropagation();

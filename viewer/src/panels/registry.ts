@@ -9,6 +9,7 @@ import { ScenePanel } from './ScenePanel';
 export interface Tab {
   id: string;
   label: string;
+  title: string;
   Panel: FunctionComponent;
   /** For panels that may be empty: whether there is content. */
   shown?(hello: Hello | null): boolean;
@@ -16,9 +17,9 @@ export interface Tab {
 
 /** The tabs on the left. A new panel needs one line here and one file. */
 export const left_tabs: Tab[] = [
-  { id: 'arm', label: 'Arm', Panel: ArmPanel },
-  { id: 'forces', label: 'Forces', Panel: ForcePanel, shown: has_forces },
-  { id: 'cameras', label: 'Cameras', Panel: CameraPanel },
-  { id: 'scene', label: 'Scene', Panel: ScenePanel },
-  { id: 'events', label: 'Events', Panel: EventPanel },
+  { id: 'arm', label: 'Arm', title: 'The arm’s shape and its tip', Panel: ArmPanel },
+  { id: 'forces', label: 'Forces', title: 'What pushes the arm, its energies and contacts', Panel: ForcePanel, shown: has_forces },
+  { id: 'cameras', label: 'Cameras', title: 'Pan, tilt, zoom and stage of each camera', Panel: CameraPanel },
+  { id: 'scene', label: 'Scene', title: 'What the 3D view shows', Panel: ScenePanel },
+  { id: 'events', label: 'Events', title: 'What has happened, with its time', Panel: EventPanel },
 ];

@@ -29,14 +29,14 @@ export function AlongPlot({ place, options, choose }: Props) {
   };
   const latest = useRef(draw);
   latest.current = draw;
-  const { host, chart } = use_chart(names, along?.unit ?? '', draw, { colors, hover: (place) => (at.value = place) });
+  const { host, chart, series } = use_chart(names, along?.unit ?? '', draw, { colors, hover: (place) => (at.value = place) });
   useEffect(() => effect(() => {
     viewer.shown_extras.value;
     latest.current(chart.current);
   }), []);
   const i = along && at.value !== null ? Math.round((at.value / along.length) * ((curves[0]?.values.length ?? 1) - 1)) : -1;
   return (
-    <PlotFrame place={place} options={options} chosen={along_option.id} names={names} colors={colors}
+    <PlotFrame place={place} series={series} options={options} chosen={along_option.id} names={names} colors={colors}
       part={along ? `${along.unit} over m` : 'Nothing now: while a servo steers the arm'} host={host} choose={choose}
       values={curves.map(({ values }) => (i < 0 ? largest(values) : values[i]))} />
   );

@@ -28,7 +28,7 @@ export function LivePlot({ hello, scene, place, chosen, options, choose }: Props
   const source = sources.find(({ id }) => id === chosen) ?? sources[Math.min(place, sources.length - 1)];
   const latest = useRef(source);
   latest.current = source;
-  const { host, chart } = use_chart(source.names, source.unit, () => {});
+  const { host, chart, series } = use_chart(source.names, source.unit, () => {});
   useEffect(() => effect(() => {
     viewer.tick.value;
     const { history } = viewer;
@@ -44,7 +44,7 @@ export function LivePlot({ hello, scene, place, chosen, options, choose }: Props
   const at = cursor.value ?? viewer.playback.held.value;
   const state = at === null ? viewer.history.newest : viewer.history.at(at);
   return (
-    <PlotFrame place={place} options={options} chosen={source.id} names={short_names(source.names)} part={source.part} host={host} choose={choose}
+    <PlotFrame place={place} series={series} options={options} chosen={source.id} names={short_names(source.names)} part={source.part} host={host} choose={choose}
       values={source.names.map((_, i) => (state ? source.value(state, i) : null))} />
   );
 }

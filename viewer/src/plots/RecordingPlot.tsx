@@ -29,7 +29,7 @@ export function RecordingPlot({ hello, place, chosen, options, choose }: Props) 
     if (chart && columns.value) fill(chart, columns.value, [0, duration]);
   };
   const names = group?.names ?? [];
-  const { host, chart } = use_chart(names, group?.unit ?? '', draw);
+  const { host, chart, series } = use_chart(names, group?.unit ?? '', draw);
   const wanted = useRef('');
   useEffect(() => {
     if (!group) return;
@@ -51,7 +51,7 @@ export function RecordingPlot({ hello, place, chosen, options, choose }: Props) 
   const at = cursor.value ?? viewer.playback.time.value;
   const row = columns.value ? nearest(columns.value[0], at) : -1;
   return (
-    <PlotFrame place={place} options={options} chosen={group?.id ?? ''} names={short_names(names)} part={group?.part} host={host} choose={choose}
+    <PlotFrame place={place} series={series} options={options} chosen={group?.id ?? ''} names={short_names(names)} part={group?.part} host={host} choose={choose}
       values={names.map((_, i) => (row >= 0 ? columns.value![i + 1][row] : null))} />
   );
 }

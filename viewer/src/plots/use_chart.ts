@@ -1,4 +1,5 @@
 import { useEffect, useRef } from 'preact/hooks';
+import { useSignal } from '@preact/signals';
 import type uPlot from 'uplot';
 import { theme_now } from '../state/preferences';
 import { use_app } from '../ui/app';
@@ -17,6 +18,8 @@ export function use_chart(names: string[], unit: string, ready: (chart: uPlot) =
   const app = use_app();
   const host = useRef<HTMLDivElement>(null);
   const chart = useRef<uPlot | null>(null);
+  /** Names of the series that are not drawn. */
+  const hidden = useSignal<string[]>([]);
   const theme = theme_now();
   const signature = `${names.join('|')} ${unit} ${theme}`;
   useEffect(() => {
@@ -34,6 +37,7 @@ export function use_chart(names: string[], unit: string, ready: (chart: uPlot) =
       },
     });
     chart.current = made;
+    names.forEach((name, i) => hidden.peek().includes(name) && made.setSeries(i + 1, { show: false }));
     ready(made);
     const observer = new ResizeObserver(([{ contentRect }]) => {
       if (contentRect.width > 0) made.setSize({ width: Math.floor(contentRect.width), height: Math.floor(contentRect.height) });
@@ -45,5 +49,10 @@ export function use_chart(names: string[], unit: string, ready: (chart: uPlot) =
       chart.current = null;
     };
   }, [signature]);
-  return { host, chart };
+  const toggle = (name: string): void => {
+    const shows = hidden.value.includes(name);
+    hidden.value = shows ? hidden.value.filter((other) => other !== name) : [...hidden.value, name];
+    chart.current?.setSeries(names.indexOf(name) + 1, { show: shows });
+  };
+  return { host, chart, series: { names, hidden: hidden.value, toggle } };
 }

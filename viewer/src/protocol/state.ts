@@ -17,7 +17,7 @@ export const flag_pace = 128;
 /** Numbers in a row of `samples`: s, x, y, z, qw, qx, qy, qz. */
 export const sample_stride = 8;
 /** Numbers in a row of `cameras`. */
-export const camera_stride = 18;
+export const camera_stride = 23;
 
 /** Numbers in a row of `actuators`. */
 export const actuator_stride = 3;
@@ -45,6 +45,8 @@ export const camera_fx = 13;
 export const camera_fy = 14;
 export const camera_cx = 15;
 export const camera_cy = 16;
+/** Pan, tilt, zoom and stage x, y, z as they are commanded, or reported: what commands and the model count in. */
+export const camera_commanded = 17;
 
 export interface State {
   flags: number;

@@ -205,7 +205,17 @@ export interface ProgressMessage {
   text?: string;
 }
 
-/** A layer on a camera's picture; its kinds are in src/overlays. */
+export type Condition = 'idle' | 'moving' | 'running' | 'done' | 'halted' | 'failed' | 'unsafe';
+
+/** The rig's, or of a recorded run at the time that is shown. */
+export interface ConditionMessage {
+  type: 'condition';
+  condition: Condition;
+  /** Why; may be "". */
+  text: string;
+}
+
+/** Drawn upon a camera's picture; one file a kind in src/overlays. */
 export interface Layer {
   id: string;
   kind: string;
@@ -271,6 +281,7 @@ export type TextMessage =
   | { type: 'scene'; scene: Scene }
   | EventMessage
   | ProgressMessage
+  | ConditionMessage
   | Reply
   | OverlayMessage
   | GhostMessage;

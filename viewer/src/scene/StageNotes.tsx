@@ -16,7 +16,7 @@ export function StageNotes() {
     <>
       <div class="view-switch" role="group" aria-label="View">
         {[null, ...names].map((name) => (
-          <button key={name ?? ''} type="button" aria-pressed={views.current.value === name}
+          <button key={name ?? ''} type="button" title={name ? `Through the camera ${name}` : 'From where you like: drag to turn'} aria-pressed={views.current.value === name}
             onClick={() => (views.current.value = name)}>{name ?? 'Free view'}</button>
         ))}
       </div>
@@ -63,7 +63,7 @@ function ExtrasLegend() {
         {eyes_of(extras).map(({ id, label, color }) => {
           const shown = !hidden.includes(eye_of(id));
           return (
-            <button key={id} type="button" class="chip" aria-pressed={shown} aria-label={`Show: ${label}`} onClick={() => toggle_hidden(eye_of(id))}>
+            <button key={id} type="button" class="chip" aria-pressed={shown} aria-label={`Show: ${label}`} title={`Show ${label}, or not`} onClick={() => toggle_hidden(eye_of(id))}>
               <span class="swatch" style={{ background: color }} />{label}<Icon name={shown ? 'eye' : 'hidden'} />
             </button>
           );
@@ -87,12 +87,12 @@ function PickedPoint() {
     <aside class="picked" aria-label="The picked point of the backbone">
       <header>
         <b>Backbone</b>
-        <button type="button" class="button quiet square" aria-label="Pick nothing" onClick={() => (viewer.picked.value = null)}>
+        <button type="button" class="button quiet square" aria-label="Pick nothing" title="Pick nothing (Esc)" onClick={() => (viewer.picked.value = null)}>
           <Icon name="close" />
         </button>
       </header>
       <label class="sr" for="picked-s">Arc length of the picked point</label>
-      <input id="picked-s" type="range" min={0} max={span} step={span / 1000} value={s}
+      <input id="picked-s" type="range" title="Where along the arm" min={0} max={span} step={span / 1000} value={s}
         onInput={(event) => (viewer.picked.value = event.currentTarget.valueAsNumber)} />
       <dl>
         <div><dt>s</dt><dd>{fixed(s, places)} m, section {section_of(scene.arm.sections, s)}</dd></div>

@@ -23,7 +23,7 @@ export interface Part {
   label: string;
   group: Group | Object3D;
   draw?(state: State): void;
-  picture?(camera: string, picture: Picture): void;
+  picture?(camera: string, picture: Picture | null): void;
   ghosts?(ghosts: Record<string, GhostMessage>): void;
   /** True while the view is inside this camera; its own frustum would hide everything. */
   inside?(camera: string | null): void;

@@ -38,7 +38,7 @@ export class SceneView {
   private readonly head_light = new DirectionalLight(0xffffff, 0.5);
   private readonly size = new Vector2(1, 1);
   private readonly sharpness: Sharpness;
-  private readonly pictures = new Map<string, Picture>();
+  private readonly pictures = new Map<string, Picture | null>();
   private picture_timer: ReturnType<typeof setTimeout> | undefined;
   private frame = 0;
   private dirty = false;
@@ -92,14 +92,14 @@ export class SceneView {
     this.invalidate();
   }
 
-  /** Updates a camera's picture in the view, a few times a second; the full rate is shown beside it. */
-  show_picture(name: string, picture: Picture): void {
+  /** The cameras' pictures hang in the view a few times a second: beside it they are shown in full. */
+  show_picture(name: string, picture: Picture | null): void {
     this.pictures.set(name, picture);
     this.picture_timer ??= setTimeout(() => {
       this.picture_timer = undefined;
       for (const [camera, newest] of this.pictures) {
-        // A picture of another run may have been closed meanwhile.
-        if (newest.bitmap.width > 0) for (const part of this.parts) part.picture?.(camera, newest);
+        // One of another run was closed meanwhile.
+        if (!newest || newest.bitmap.width > 0) for (const part of this.parts) part.picture?.(camera, newest);
       }
       this.pictures.clear();
       this.request();

@@ -5,6 +5,7 @@ import type { Link } from '../connection/link';
 import type { TipResult, Vector3 } from '../protocol/types';
 import type { Notices } from './notices';
 import type { Playback } from './playback';
+import { preferences } from './preferences';
 
 export type ArmCommand = Record<string, unknown>;
 
@@ -97,13 +98,29 @@ export class Commander {
   /** Sends a request without values: halt, reset, run, cancel, open, live. Resolves to whether it was accepted. */
   plain(what: string): Promise<boolean> {
     if (what === 'reset') this.forget_tip();
+    if (what === 'halt') return this.halt();
     return what === 'run' ? this.run() : this.ask(what);
   }
 
-  /** Runs all tasks, or the one with this index in the experiment. */
+  /** Everything stops, and that is confirmed. */
+  async halt(): Promise<boolean> {
+    const is_done = await this.ask('halt');
+    if (is_done) this.notices.info('Halted: everything has stopped.');
+    return is_done;
+  }
+
+  /** All tasks, or the one at that place from the experiment's start, as fast as is preferred. */
   run(task?: number): Promise<boolean> {
+    this.playback.go_live();
     this.forget_tip();
-    return this.ask('run', task === undefined ? {} : { task });
+    const speed = preferences.run_speed.value;
+    return this.ask('run', task === undefined ? { speed } : { task, speed });
+  }
+
+  /** Tasks play so fast from now on: those that run, too. */
+  run_speed(speed: number, is_running: boolean): void {
+    preferences.run_speed.value = speed;
+    if (is_running) void this.ask('speed', { speed });
   }
 
   /** Replaces the present rig by that of one of the hello's examples. */

@@ -37,7 +37,11 @@ export const preferences = {
   plots: kept<[string, string]>('plots', ['tip', 'bends']),
   recording_plots: kept<[string, string]>('recording_plots', ['', '']),
   show_plots: kept('show_plots', true),
-  /** Measures that are drawn on the pictures. */
+  /** How fast tasks play, of real time; 0: as fast as possible. */
+  run_speed: kept('run_speed', 1),
+  /** Camera sliders mark where the axes truly stand. */
+  true_axes: kept('true_axes', false),
+  /** What is measured in the pictures and drawn upon them. */
   overlays: kept<string[]>('overlays', []),
 };
 

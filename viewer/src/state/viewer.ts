@@ -6,14 +6,14 @@ import type { Entry } from '../connection/entry';
 import {
   decode_extras, decode_image, decode_state, flag_running, type ImageMessage, kind_extras, kind_image, kind_of, kind_state, type State,
 } from '../protocol/state';
-import type { EventMessage, Extras, GhostMessage, Hello, Layer, ProgressMessage, Scene, TextMessage } from '../protocol/types';
+import type { ConditionMessage, EventMessage, ExtraOverlay, Extras, GhostMessage, Hello, Layer, ProgressMessage, Scene, TextMessage } from '../protocol/types';
 import { Commander } from './commander';
 import { History } from './history';
 import { Measured } from './measured';
 import { Notices } from './notices';
 import { Playback } from './playback';
 import { preferences } from './preferences';
-import { extra_ghosts } from '../overlays/extras';
+import { extra_ghosts, extra_overlay, OverlayMemory } from '../overlays/extras';
 import { shape } from '../overlays/measures';
 import { capital } from '../ui/format';
 
@@ -42,6 +42,7 @@ export class Viewer implements LinkListener {
   readonly scene = signal<Scene | null>(null);
   readonly events = signal<EventMessage[]>([]);
   readonly progress = signal<ProgressMessage | null>(null);
+  readonly condition = signal<ConditionMessage | null>(null);
   readonly layers = signal<Record<string, Layer[]>>({});
   /** The newest extras; they belong to the newest pictures. */
   readonly extras = signal<Extras | null>(null);
@@ -66,9 +67,13 @@ export class Viewer implements LinkListener {
   shown: State | null = null;
   readonly picture_of = new Map<string, Picture>();
   readonly state_listeners = new Set<(state: State) => void>();
-  readonly picture_listeners = new Set<(camera: string, picture: Picture) => void>();
+  /** Null: there is none at the time that is shown. */
+  readonly picture_listeners = new Set<(camera: string, picture: Picture | null) => void>();
+  private readonly overlay_memory = new OverlayMemory();
   private readonly stateless = signal(false);
   private last_state = 0;
+  /** The next recording plays at once. */
+  private plays_next = false;
   private tick_timer: ReturnType<typeof setTimeout> | undefined;
 
   constructor(entry: Entry) {
@@ -118,12 +123,21 @@ export class Viewer implements LinkListener {
         return;
       case 'progress':
         return this.take_progress(message);
+      case 'condition':
+        this.condition.value = message;
+        return;
       case 'overlay':
         this.layers.value = { ...this.layers.value, [message.camera]: message.layers };
         return;
       case 'ghost':
         return this.take_ghost(message);
     }
+  }
+
+  /** The recording of the last run, from its start on. */
+  async replay(): Promise<void> {
+    this.plays_next = true;
+    if (!(await this.commander.plain('open'))) this.plays_next = false;
   }
 
   failed(why: string): void {
@@ -144,7 +158,8 @@ export class Viewer implements LinkListener {
 
   closed(): void {
     this.progress.value = null;
-    // The extras may be outdated; they are sent again after reconnecting.
+    this.condition.value = null;
+    // Whether they still hold nobody knows; who does says so again.
     this.extras.value = null;
   }
 
@@ -161,6 +176,8 @@ export class Viewer implements LinkListener {
     } else {
       this.playback.again();
     }
+    if (hello.mode === 'recording' && this.plays_next) this.playback.play();
+    this.plays_next = false;
     for (const { name } of hello.scene.cameras) {
       // A recording without pictures refuses this request; the page then shows none.
       this.link.request('images', { camera: name, rate: image_rate }).catch(() => {});
@@ -177,6 +194,7 @@ export class Viewer implements LinkListener {
     this.layers.value = {};
     this.sent_ghosts.value = {};
     this.extras.value = null;
+    this.overlay_memory.take(null);
     this.shown_extras.value = null;
     this.picked.value = null;
     this.commander.forget_tip();
@@ -211,8 +229,15 @@ export class Viewer implements LinkListener {
     return all;
   }
 
-  /** Extras belong to the next state, or to the shown one if it already has that time. */
+  /** What the program draws upon the picture of the camera that is shown: what was measured in that one. */
+  overlay_of(camera: string): ExtraOverlay | undefined {
+    const number = this.picture_of.get(camera)?.number;
+    return extra_overlay(this.extras.value, camera, number) ?? this.overlay_memory.of(camera, number);
+  }
+
+  /** They belong to the state that comes next; where that is shown already, to it. */
   private take_extras(extras: Extras | null): void {
+    this.overlay_memory.take(extras);
     this.extras.value = extras;
     if (this.playback.held.peek() !== null || !this.shown) return;
     if (extras && extras.time > this.shown.time && this.playback.mode.peek() === 'live') return;
@@ -246,6 +271,7 @@ export class Viewer implements LinkListener {
   private async take_image(image: ImageMessage): Promise<void> {
     const camera = this.scene.value?.cameras[image.camera]?.name;
     if (camera === undefined) return;
+    if (!image.file.length) return this.show_no_picture(camera);
     try {
       await this.pictures.take(camera, image);
     } catch {
@@ -260,6 +286,15 @@ export class Viewer implements LinkListener {
     this.picture_of.set(camera, picture);
     for (const listener of this.picture_listeners) listener(camera, picture);
     before?.bitmap.close();
+    this.picture_tick.value++;
+  }
+
+  /** The camera has seen nothing yet at the time that is shown. */
+  private show_no_picture(camera: string): void {
+    this.pictures.forget(camera);
+    this.picture_of.get(camera)?.bitmap.close();
+    this.picture_of.delete(camera);
+    for (const listener of this.picture_listeners) listener(camera, null);
     this.picture_tick.value++;
   }
 

@@ -18,12 +18,12 @@ export function Timeline() {
         <button type="button" class="button quiet square" disabled={!ready} aria-label="One step back" title="One step back (←)"
           onClick={() => playback.step(-1)}><Icon name="back" /></button>
         <button type="button" class="button square" disabled={!ready} id="play"
-          aria-label={running ? (live ? 'Hold the view' : 'Pause') : live ? 'Back to now' : 'Play'} title="Space"
+          aria-label={running ? (live ? 'Hold the view' : 'Pause') : live ? 'Back to now' : 'Play'} title={running ? 'Hold or pause (Space)' : 'Play, or back to now (Space)'}
           onClick={() => playback.toggle()}><Icon name={running ? 'pause' : 'play'} /></button>
         <button type="button" class="button quiet square" disabled={!ready} aria-label="One step forward" title="One step forward (→)"
           onClick={() => playback.step(1)}><Icon name="next" /></button>
         {live ? (
-          <button type="button" class="button live-button" disabled={!ready || playback.held.value === null}
+          <button type="button" class="button live-button" title="Back from a past instant to now" disabled={!ready || playback.held.value === null}
             onClick={() => playback.go_live()}>Now</button>
         ) : (
           <select aria-label="Speed" title="Slower or faster (− +)" value={playback.speed.value}
@@ -55,7 +55,7 @@ function Line() {
     <>
       <output class="time" id="time" aria-live="off">{viewer.freshness.value === 'live' ? 'now' : ''} {said}</output>
       <div class="line">
-        <input type="range" id="scrub" aria-label="Time" min={from} max={Math.max(to, from + 1e-9)} step="any" value={time}
+        <input type="range" id="scrub" aria-label="Time" title="The instant that is shown" min={from} max={Math.max(to, from + 1e-9)} step="any" value={time}
           aria-valuetext={said}
           onInput={(event) => {
             if (!live) playback.pause();

@@ -24,7 +24,7 @@ function Waiting({ why, at }: { why: string; at: number }) {
     <div class="entrance" role="status">
       <b>{why}</b>
       <span aria-live="off">{seconds ? `Trying again in ${seconds} s.` : 'Trying again.'}</span>
-      <button type="button" class="button" onClick={() => void viewer.link.open()}>Try now</button>
+      <button type="button" class="button" title="Connects now" onClick={() => void viewer.link.open()}>Try now</button>
     </div>
   );
 }
@@ -41,9 +41,9 @@ function Refused({ why }: { why: string }) {
       <b>{why}</b>
       <label for="token">Open the address that <code>flexura view</code> printed when it started, or paste it here:</label>
       <span class="row">
-        <input id="token" type="text" autocomplete="off" spellcheck={false} value={text}
+        <input id="token" type="text" title="The address or its token" autocomplete="off" spellcheck={false} value={text}
           placeholder="http://127.0.0.1:8421/#token=…" onInput={(event) => set_text(event.currentTarget.value)} />
-        <button type="submit" class="button primary">Connect</button>
+        <button type="submit" class="button primary" title="Connects with this address or token">Connect</button>
       </span>
       {bad && <span class="bad">There is no token in this: 32 hexadecimal digits behind “#token=”.</span>}
     </form>

@@ -29,14 +29,14 @@ export function Examples() {
     <dialog ref={dialog} class="examples" aria-labelledby="examples-title" onClose={() => (app.dialog.value = null)}>
       <header>
         <h2 id="examples-title">Open an example</h2>
-        <button type="button" class="button quiet square" aria-label="Close" onClick={() => (app.dialog.value = null)}>
+        <button type="button" class="button quiet square" aria-label="Close" title="Close (Esc)" onClick={() => (app.dialog.value = null)}>
           <Icon name="close" />
         </button>
       </header>
       <ol>
         {examples.map(({ name, title }) => (
           <li key={name}>
-            <button type="button" class="button" onClick={choose(name)}>
+            <button type="button" class="button" title={`Opens ${name}`} onClick={choose(name)}>
               <span>{title}</span><small>{name}</small>
             </button>
           </li>

@@ -1,7 +1,8 @@
 import { useSignal } from '@preact/signals';
-import { flag_pace, flag_unsafe, flag_weightless } from '../protocol/state';
-import { theme_now, toggle_theme } from '../state/preferences';
+import { flag_pace, flag_weightless } from '../protocol/state';
+import { preferences, theme_now, toggle_theme } from '../state/preferences';
 import { use_app } from './app';
+import { ConditionBadge } from './ConditionBadge';
 import { fixed } from './format';
 import { Icon } from './Icon';
 
@@ -24,13 +25,13 @@ export function Header() {
   const teaching = app.route.value === 'teach';
   return (
     <header class="header">
-      <a class="brand" href="#/" aria-label="Flexura, the viewer">
+      <a class="brand" href="#/" aria-label="Flexura, the viewer" title="The viewer">
         <svg viewBox="0 0 32 32" aria-hidden="true"><path d="M8 27V18C8 9 14 5 19 5s7 4 7 7-2 5-5 5-4-2-4-4" /></svg>
         <span>Flexura</span>
       </a>
       <h1 class="title">{teaching ? 'The planar arm, by its equations' : (hello?.title ?? '')}</h1>
       {!teaching && <span class="badge" data-kind={freshness} role="status" title={meaning}>{badge}</span>}
-      {!teaching && (viewer.flags.value & flag_unsafe) !== 0 && <span class="badge" data-kind="unsafe" role="status">UNSAFE</span>}
+      {!teaching && <ConditionBadge />}
       {!teaching && (viewer.flags.value & flag_weightless) !== 0 && (
         <span class="badge" data-kind="weightless" role="status" title="Weight and loads are switched off in this simulation.">NO WEIGHT</span>
       )}
@@ -39,14 +40,14 @@ export function Header() {
       {!teaching && hello && <Rig />}
       <nav class="tools" aria-label="Page">
         {!teaching && (hello?.examples?.length ?? 0) > 0 && (
-          <button type="button" class="button quiet" onClick={() => (app.dialog.value = 'examples')}>
+          <button type="button" class="button quiet" title="Opens an example" onClick={() => (app.dialog.value = 'examples')}>
             <Icon name="folder" />Examples
           </button>
         )}
         {teaching ? (
-          <a class="button" href="#/"><Icon name="back" />Viewer</a>
+          <a class="button" href="#/" title="Back to the viewer"><Icon name="back" />Viewer</a>
         ) : (
-          <a class="button quiet" href="#/teach"><Icon name="teach" />Learn</a>
+          <a class="button quiet" href="#/teach" title="The planar arm, by its equations"><Icon name="teach" />Learn</a>
         )}
         <button type="button" class="button quiet square" onClick={toggle_theme}
           aria-label={theme_now() === 'dark' ? 'Light colours' : 'Dark colours'} title="Light or dark (L)">
@@ -72,7 +73,24 @@ function Pace() {
   );
 }
 
-/** Controls for tasks, recording and rig. */
+/** How fast tasks play: those that run, and the next. */
+function RunSpeed({ running, disabled }: { running: boolean; disabled: boolean }) {
+  const { viewer } = use_app();
+  return (
+    <select aria-label="Speed of the tasks" title="How fast tasks play, compared with real time" disabled={disabled}
+      value={preferences.run_speed.value}
+      onChange={({ currentTarget: { value } }) => viewer.commander.run_speed(Number(value), running)}>
+      {run_speeds.map(({ speed, label }) => <option key={speed} value={speed}>{label}</option>)}
+    </select>
+  );
+}
+
+const run_speeds = [
+  { speed: 0.25, label: '0.25 ×' }, { speed: 1, label: '1 × real time' }, { speed: 4, label: '4 ×' },
+  { speed: 0, label: 'As fast as possible' },
+];
+
+/** Tasks and what belongs to them. */
 function Rig() {
   const { viewer } = use_app();
   const only = useSignal<number | null>(null);
@@ -83,14 +101,14 @@ function Rig() {
   const ask = (what: string) => () => void viewer.commander.plain(what);
   const connected = viewer.link.status.value.kind === 'open';
   const report = hello.report && (
-    <a class="button quiet" href="report" target="_blank" rel="noopener"><Icon name="report" />Report</a>
+    <a class="button quiet" href="report" target="_blank" rel="noopener" title="The report of this run, in a tab of its own"><Icon name="report" />Report</a>
   );
   if (hello.mode === 'recording') {
     return (
       <div class="tools">
         {report}
         {hello.rig && (
-          <button type="button" class="button" disabled={!connected} onClick={ask('live')}><Icon name="live" />To the rig</button>
+          <button type="button" class="button" disabled={!connected} onClick={ask('live')} title="Back from the recording to the live rig"><Icon name="live" />To the rig</button>
         )}
       </div>
     );
@@ -114,7 +132,7 @@ function Rig() {
         </span>
       )}
       {!running && tasks.length > 1 && (
-        <select aria-label="Which tasks run" value={only.value ?? ''} disabled={!connected || viewer.readonly || viewer.blind}
+        <select aria-label="Which tasks run" title="All tasks, or one alone" value={only.value ?? ''} disabled={!connected || viewer.readonly || viewer.blind}
           onChange={({ currentTarget: { value } }) => (only.value = value === '' ? null : Number(value))}>
           <option value="">All tasks</option>
           {tasks.map(({ name, kind }, i) => <option key={i} value={i}>{`${i + 1}: ${name === kind ? name : `${name} (${kind})`}`}</option>)}
@@ -126,11 +144,15 @@ function Rig() {
           <Icon name="run" />Run tasks
         </button>
       )}
-      {recorded && !running && <button type="button" class="button" disabled={!connected} onClick={ask('open')}><Icon name="film" />Recording</button>}
+      {tasks.length > 0 && !hello.readonly && <RunSpeed running={running} disabled={!connected || viewer.blind} />}
+      {recorded && !running && (
+        <button type="button" class="button" disabled={!connected} onClick={() => void viewer.replay()}
+          title="Opens the recording of the last run and plays it"><Icon name="film" />Replay</button>
+      )}
       {report}
       {/* Halt stays enabled even if the rig does not answer. */}
       <button type="button" class="button danger" disabled={!connected || viewer.readonly} onClick={ask('halt')}
-        title="Everything stops (H)"><Icon name="halt" />Halt</button>
+        title="Everything stops (H or F8, from any field)"><Icon name="halt" />Halt</button>
       <button type="button" class="button quiet" disabled={!connected || viewer.still} onClick={ask('reset')}
         title="Everything back to the start (Backspace)"><Icon name="reset" />Reset</button>
     </div>

@@ -28,11 +28,11 @@ export function Help() {
       <header>
         <h2 id="help-title">Keys and mouse</h2>
         <label class="check">
-          <input type="checkbox" checked={preferences.keys.value}
+          <input type="checkbox" title="Whether single keys do something" checked={preferences.keys.value}
             onChange={(event) => (preferences.keys.value = event.currentTarget.checked)} />
           Keys are on
         </label>
-        <button type="button" class="button quiet square" aria-label="Close" onClick={() => (app.dialog.value = null)}>
+        <button type="button" class="button quiet square" aria-label="Close" title="Close (Esc)" onClick={() => (app.dialog.value = null)}>
           <Icon name="close" />
         </button>
       </header>
@@ -41,7 +41,7 @@ export function Help() {
         <Group title="Mouse" rows={hand} />
       </div>
       <p class="made-of">
-        Flexura {app.viewer.hello.value?.version}. Made with three, preact and uPlot (<a href="licences.html" target="_blank" rel="noopener">licences</a>).
+        Flexura {app.viewer.hello.value?.version}. Made with three, preact and uPlot (<a href="licences.html" title="The licences of these parts" target="_blank" rel="noopener">licences</a>).
       </p>
     </dialog>
   );

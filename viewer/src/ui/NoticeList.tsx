@@ -8,7 +8,7 @@ export function NoticeList() {
     notices.list.value.filter((notice) => notice.level === level).map(({ id, text, times }) => (
       <div key={id} class="notice" data-level={level}>
         <span>{text}{times > 1 && <b class="times"> ×{times}</b>}</span>
-        <button type="button" class="button quiet square" aria-label="Dismiss" onClick={() => notices.dismiss(id)}>
+        <button type="button" class="button quiet square" aria-label="Dismiss" title="Dismiss" onClick={() => notices.dismiss(id)}>
           <Icon name="close" />
         </button>
       </div>

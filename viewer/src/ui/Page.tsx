@@ -26,10 +26,23 @@ export function Page() {
   );
 }
 
+/** Where there is no room for all side by side. */
+const narrow_tabs = [
+  { id: 'view', label: '3D view', title: 'The arm in three dimensions' },
+  { id: 'controls', label: 'Controls', title: 'Arm, cameras, scene and events' },
+  { id: 'cameras', label: 'Pictures', title: 'What the cameras see' },
+  { id: 'plots', label: 'Plots', title: 'Quantities over time' },
+] as const;
+
 function Bench() {
-  const { viewer } = use_app();
+  const { viewer, narrow_tab } = use_app();
   return (
-    <main class="bench" data-plots={preferences.show_plots.value} data-freshness={viewer.freshness.value}>
+    <main class="bench" data-tab={narrow_tab.value} data-plots={preferences.show_plots.value} data-freshness={viewer.freshness.value}>
+      <div class="narrow-tabs tabs" role="group" aria-label="What is shown">
+        {narrow_tabs.map(({ id, label, title }) => (
+          <button key={id} type="button" aria-pressed={narrow_tab.value === id} title={title} onClick={() => (narrow_tab.value = id)}>{label}</button>
+        ))}
+      </div>
       <LeftPanel />
       <section class="stage" aria-label="3D view">
         <Stage3D />
@@ -37,7 +50,7 @@ function Bench() {
         <Entrance />
       </section>
       <RightPanel />
-      {preferences.show_plots.value && <Plots />}
+      {(preferences.show_plots.value || narrow_tab.value === 'plots') && <Plots />}
       <Timeline />
     </main>
   );

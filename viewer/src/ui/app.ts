@@ -9,6 +9,8 @@ import { Views } from '../state/views';
 
 export type Dialog = 'help' | 'examples' | null;
 
+export type NarrowTab = 'view' | 'controls' | 'cameras' | 'plots';
+
 export interface App {
   viewer: Viewer;
   views: Views;
@@ -19,7 +21,11 @@ export interface App {
   route: Signal<'viewer' | 'teach'>;
   /** The left button pushes the dragged point of the arm. */
   push_tool: Signal<boolean>;
-  /** Time under the pointer in a plot or on the timeline, shown by all of them. */
+  /** The camera whose picture fills the page. */
+  enlarged: Signal<string | null>;
+  /** On narrow screens one panel is shown at a time. */
+  narrow_tab: Signal<NarrowTab>;
+  /** The time under the pointer in a plot or on the timeline, which all of them show. */
   cursor: Signal<number | null>;
   keys: KeyMap;
   /** Takes a pasted address or token and connects with it. Returns false if it contains no token. */
@@ -35,6 +41,8 @@ export function make_app(viewer: Viewer, keys: KeyMap): App {
     dialog: signal(null),
     route: signal('viewer'),
     push_tool: signal(false),
+    enlarged: signal(null),
+    narrow_tab: signal('view'),
     cursor: signal(null),
     keys,
     use_token: () => false,

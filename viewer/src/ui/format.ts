@@ -40,3 +40,11 @@ export function vector(values: ArrayLike<number>, places: number): string {
 export function capital(text: string): string {
   return text.charAt(0).toUpperCase() + text.slice(1);
 }
+
+/** How far a picture is from the instant that is shown, in words; nothing where that is less than `least`, s. */
+export function lag_of(picture: number, shown: number | undefined, least: number): string {
+  if (shown === undefined || !Number.isFinite(picture)) return '';
+  const off = Math.abs(picture - shown);
+  if (off < least + 1e-3) return '';
+  return `${off.toFixed(2)} s ${picture < shown ? 'earlier' : 'later'}`;
+}

@@ -155,7 +155,7 @@ export interface ServerState {
   time: number;
   bends: number[];
   tip: number[];
-  /** Row of the first camera: x, y, z, q, pan, tilt, zoom, ... */
+  /** x, y, z, q, pan, tilt, zoom, ..., and from 17 on what is commanded, of the first camera. */
   camera: number[];
   /** Tendon displacements, m. */
   displacements: number[];
@@ -186,7 +186,7 @@ export async function server_state(page: Page): Promise<ServerState> {
       const samples = view.getUint16(4, true);
       const numbers = new Float32Array(data as ArrayBuffer, 28);
       const last = 3 * sections + 8 * (samples - 1);
-      const tendons = last + 8 + 18 * view.getUint16(6, true);
+      const tendons = last + 8 + 23 * view.getUint16(6, true);
       const actuators = tendons + view.getUint16(8, true);
       const flags = view.getUint8(1);
       const energy = actuators + 3 * view.getUint16(24, true);
@@ -197,7 +197,7 @@ export async function server_state(page: Page): Promise<ServerState> {
         time: view.getFloat64(16, true),
         bends: Array.from(numbers.subarray(0, 2 * sections)),
         tip: Array.from(numbers.subarray(last + 1, last + 4)),
-        camera: Array.from(numbers.subarray(last + 8, last + 26)),
+        camera: Array.from(numbers.subarray(last + 8, last + 31)),
         displacements: Array.from(numbers.subarray(tendons, actuators)),
         actuators: Array.from({ length: view.getUint16(24, true) }, (_, i) => Array.from(numbers.subarray(actuators + 3 * i, actuators + 3 * i + 3))),
         energy: Array.from(numbers.subarray(energy, push)),

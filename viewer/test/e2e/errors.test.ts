@@ -138,12 +138,12 @@ test('tasks run with progress, can be cancelled, and their recording can be open
   await until(async () => Number(await page.locator('progress').getAttribute('value')) > 0.1);
   // The tasks take three seconds; most of it is skipped.
   server.session.time += 2.5;
-  await page.getByRole('button', { name: 'Recording' }).click({ timeout: 20000 });
+  await page.getByRole('button', { name: 'Replay' }).click({ timeout: 20000 });
   await page.waitForSelector('.badge[data-kind="recording"]');
   await page.getByRole('button', { name: 'To the rig' }).click();
   await page.waitForSelector('.badge[data-kind="live"]');
   await page.reload();
-  await page.getByRole('button', { name: 'Recording' }).click();
+  await page.getByRole('button', { name: 'Replay' }).click();
   await page.waitForSelector('.badge[data-kind="recording"]');
 });
 

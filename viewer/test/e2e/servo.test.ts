@@ -58,7 +58,7 @@ describe.skipIf(!program)('a servo', () => {
   });
 
   test('its recording shows the same, at every time', async () => {
-    await page.getByRole('button', { name: 'Recording' }).click();
+    await page.getByRole('button', { name: 'Replay' }).click();
     await page.waitForSelector('.badge[data-kind="recording"]');
     await slide(page, '#scrub', 1);
     await legend().waitFor();

@@ -27,7 +27,7 @@ export function encode_state(state: StateRows): Buffer {
   bytes.writeUInt8(flags, 1);
   bytes.writeUInt16LE(state.stretches.length, 2);
   bytes.writeUInt16LE(state.samples.length / 8, 4);
-  bytes.writeUInt16LE(state.cameras.length / 18, 6);
+  bytes.writeUInt16LE(state.cameras.length / 23, 6);
   bytes.writeUInt16LE(state.displacements.length, 8);
   bytes.writeUInt16LE(state.leaps ?? 0, 10);
   bytes.writeUInt32LE(state.sequence, 12);

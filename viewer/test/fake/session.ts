@@ -130,7 +130,7 @@ export class FakeSession {
     return this.rig.scene.cameras.flatMap(({ width, height }, i) => {
       const { pan, tilt, zoom } = this.heads[i];
       const f = this.rig.focal * zoom;
-      return [...this.camera_pose(i), pan, tilt, zoom, ...this.stage, f, f, (width - 1) / 2, (height - 1) / 2, 0];
+      return [...this.camera_pose(i), pan, tilt, zoom, ...this.stage, f, f, (width - 1) / 2, (height - 1) / 2, pan, tilt, zoom, ...this.stage];
     });
   }
 

@@ -1,5 +1,5 @@
 import { expect, test, vi } from 'vitest';
-import { eye_of, eyes_of, extra_ghosts, extra_layers, extra_overlay } from '../../src/overlays/extras';
+import { OverlayMemory, eye_of, eyes_of, extra_ghosts, extra_layers, extra_overlay } from '../../src/overlays/extras';
 import { columns_of } from '../../src/plots/AlongPlot';
 import { can_be_along, groups_of, live_sources, short_names, shown_groups } from '../../src/plots/sources';
 import { decode_extras, kind_extras, kind_of, type State } from '../../src/protocol/state';
@@ -140,4 +140,20 @@ test('what was drawn before the link broke is not drawn with what is new after i
   viewer.bytes(state(9));
   expect(viewer.ghosts.value).toEqual({});
   vi.useRealTimers();
+});
+
+test('what was measured in a picture is drawn upon it also when that comes later', () => {
+  const memory = new OverlayMemory();
+  const drawn = (number: number): Extras => ({
+    time: 0, title: '', text: '', ghosts: [], values: {}, overlays: [{ camera: 'front', number, layers: [{ id: `${number}`, kind: 'polyline' }] }],
+  });
+  for (let number = 1; number <= 40; ++number) memory.take(drawn(number));
+  expect(memory.of('front', 3)?.layers[0].id).toBe('3');
+  expect(memory.of('front', 41)).toBeUndefined();
+  expect(memory.of('side', 3)).toBeUndefined();
+  for (let number = 41; number <= 2000; ++number) memory.take(drawn(number));
+  expect(memory.of('front', 3)).toBeUndefined();
+  expect(memory.of('front', 2000)).toBeDefined();
+  memory.take(null);
+  expect(memory.of('front', 2000)).toBeUndefined();
 });

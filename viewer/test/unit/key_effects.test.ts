@@ -45,6 +45,7 @@ function press(key: string): void {
     views: noted('views', { current: signal(null) }),
     view: signal(noted('view', { orbit, camera, state: { samples: new Float32Array(7) } })),
     dialog: signal(null),
+    enlarged: signal(null),
     route: signal('viewer'),
     push_tool,
   } as unknown as App;

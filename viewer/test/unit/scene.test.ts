@@ -215,7 +215,7 @@ test('the free view goes neither into a point nor out of sight', () => {
 function default_stand(): { scene: typeof rig.scene; state: State; span: number } {
   const span = total_length(arm);
   const far = (span * Math.hypot(760, 228)) / 228;
-  const seen = [0, 0, 1, 0, 0, 0, 760, 760, 319.5, 239.5, 0];
+  const seen = [0, 0, 1, 0, 0, 0, 760, 760, 319.5, 239.5, 0, 0, 1, 0, 0, 0];
   const cameras = Float32Array.from([
     0, 0, far, 0, 1, 0, 0, ...seen,
     -far, 0, 0, 0, Math.SQRT1_2, 0, Math.SQRT1_2, ...seen,
@@ -276,7 +276,7 @@ test('through a camera one sees as near and as far wherever the world’s origin
   const near_of = (shift: number): number => {
     const camera = new PerspectiveCamera();
     const moved = { ...rig.scene, arm: { ...arm, base: arm.base.map((x, i) => (i === 0 ? x + shift : x)) as Pose } };
-    const cameras = Float32Array.from([shift, 0.4, 2.2, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 760, 760, 319.5, 239.5, 0]);
+    const cameras = Float32Array.from([shift, 0.4, 2.2, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 760, 760, 319.5, 239.5, 0, 0, 1, 0, 0, 0]);
     const state = {
       flags: 0, leaps: 0, sequence: 0, time: 0, bends: new Float32Array(), stretches: new Float32Array(), samples: new Float32Array(),
       cameras, displacements: new Float32Array(), actuators: new Float32Array(),
@@ -289,7 +289,7 @@ test('through a camera one sees as near and as far wherever the world’s origin
 
 test('through a camera beside the base one sees everything that stands around', () => {
   const camera = new PerspectiveCamera();
-  const cameras = Float32Array.from([0.03, 0.01, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 760, 760, 319.5, 239.5, 0]);
+  const cameras = Float32Array.from([0.03, 0.01, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 760, 760, 319.5, 239.5, 0, 0, 1, 0, 0, 0]);
   const state = { samples: new Float32Array(), cameras } as State;
   expect(see_through(camera, rig.scene, state, 'front', 4 / 3)).toBe(true);
   expect(camera.near).toBeLessThan(0.01 - radius_at(arm, 0) / 10);

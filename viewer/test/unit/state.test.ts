@@ -4,7 +4,7 @@ import { encode_image, encode_state } from '../fake/encode';
 
 const rows = {
   flags: 9, leaps: 65_535, sequence: 4_000_000_000, time: 12.5, bends: [0.5, -1, 2, 3], stretches: [1, 1.25],
-  samples: Array.from({ length: 24 }, (_, i) => i / 4), cameras: Array.from({ length: 18 }, (_, i) => i - 4),
+  samples: Array.from({ length: 24 }, (_, i) => i / 4), cameras: Array.from({ length: 23 }, (_, i) => i - 4),
   displacements: [0.125, 0.25, 0.375], actuators: [0.5, 2, 0, 0.25, 0, 60],
 };
 

@@ -66,11 +66,12 @@ export function make_cameras({ scene, span, theme }: PartContext): Part[] {
         into_camera.copy(group.matrix).invert();
         samples = state.samples;
       },
-      picture(camera, { bitmap }) {
+      picture(camera, shown) {
         if (camera !== name) return;
-        canvas.getContext('2d')?.drawImage(bitmap, 0, 0, canvas.width, canvas.height);
+        has_picture = shown !== null;
+        if (!shown) return;
+        canvas.getContext('2d')?.drawImage(shown.bitmap, 0, 0, canvas.width, canvas.height);
         texture.needsUpdate = true;
-        has_picture = true;
       },
       inside: (camera) => {
         is_inside = camera === name;

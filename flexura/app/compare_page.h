@@ -1,0 +1,17 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "flexura/base/progress.h"
+#include "flexura/report/chart.h"
+
+namespace flexura {
+
+/// Returns charts over time with both runs of two results folders: the tip's coordinates, the distance
+/// between the tips, the true tip if both logs have it, the bends of each section (of the first eight), and a
+/// servo's error. Throws InputError for a missing or damaged log.
+[[nodiscard]] std::vector<ReportFigure> comparison_figures(const std::string& a, const std::string& b,
+                                                           Progress& progress);
+
+}  // namespace flexura

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <cstddef>
+#include <deque>
+#include <string_view>
+#include <vector>
+
+#include "flexura/base/progress.h"
+
+namespace flexura {
+
+/// Progress of a job of several pieces of work: its fraction is the done share of all work, whatever the
+/// order of the pieces. It never decreases.
+class WorkProgress {
+ public:
+  /// `weights`: the work of each piece, in any common unit; only their ratios count. Negative ones count as
+  /// 0.
+  WorkProgress(Progress& whole, const std::vector<double>& weights);
+  WorkProgress(const WorkProgress&) = delete;
+  WorkProgress& operator=(const WorkProgress&) = delete;
+
+  /// Returns the progress of one piece, valid as long as this object. Throws std::out_of_range.
+  [[nodiscard]] Progress& piece(std::size_t index) { return pieces_.at(index); }
+  /// Reports that a piece is done.
+  void finish(std::size_t index, std::string_view what) { piece(index).update(1, what); }
+
+ private:
+  class Piece : public Progress {
+   public:
+    Piece(WorkProgress& job, double share) : job_(&job), share_(share) {}
+    void update(double fraction, std::string_view what) override;
+    [[nodiscard]] bool is_cancelled() const override { return job_->whole_.is_cancelled(); }
+
+   private:
+    WorkProgress* job_;
+    double share_;  // Of the job's work.
+    double done_ = 0;
+  };
+
+  Progress& whole_;
+  double done_ = 0;           // Share of the job's work.
+  std::deque<Piece> pieces_;  // Does not move them.
+};
+
+}  // namespace flexura

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <cstddef>
+
+#include "flexura/base/progress.h"
+#include "flexura/base/work_progress.h"
+#include "flexura/experiment/experiment.h"
+#include "flexura/experiment/schedule.h"
+
+namespace flexura {
+
+/// Progress of a run by its work: checks, what each task simulates, performs and computes, and the report.
+class RunProgress {
+ public:
+  RunProgress(Progress& whole, const Experiment& experiment, const TaskRunners& tasks);
+
+  [[nodiscard]] Progress& checks() { return work_.piece(0); }
+  [[nodiscard]] Progress& report() { return work_.piece(1); }
+  /// Return that of task `i` while it is simulated before, played or performed, and while it computes its
+  /// results.
+  [[nodiscard]] Progress& simulation(std::size_t i) { return work_.piece(2 + 3 * i); }
+  [[nodiscard]] Progress& task(std::size_t i) { return work_.piece(3 + 3 * i); }     ///< See simulation().
+  [[nodiscard]] Progress& results(std::size_t i) { return work_.piece(4 + 3 * i); }  ///< See simulation().
+
+ private:
+  WorkProgress work_;
+};
+
+}  // namespace flexura

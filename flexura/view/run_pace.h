@@ -1,0 +1,32 @@
+#pragma once
+
+#include <optional>
+
+namespace flexura {
+
+/// How far a run of tasks may go, so that people can follow it: its time goes with a clock, `speed` times as
+/// fast. What the run cannot keep up with is not made up for later. Pauses of the clock are none of the run.
+class RunPace {
+ public:
+  /// `speed` in run seconds per second of the clock; 0: as fast as it can. `step`: of the run's clock, s.
+  RunPace(double speed, double step) : speed_(speed), step_(step) {}
+
+  [[nodiscard]] double speed() const { return speed_; }
+  /// From now on at another speed.
+  void set_speed(double speed);
+  /// Returns the run's time, s, up to which it may go, `passed` s of the clock after the last call;
+  /// `reached` is its time now, s. Infinite for speed 0.
+  [[nodiscard]] double next(double passed, double reached);
+  /// Returns how fast the run goes of late, in run seconds per second of the clock, if it does not keep up
+  /// with the speed; else std::nullopt.
+  [[nodiscard]] std::optional<double> slowness() const;
+
+ private:
+  double speed_, step_;
+  double allowed_ = 0;  // s of the run
+  double reached_ = 0;  // Likewise, at the last call.
+  double rate_ = 0;     // Run seconds per second, of late.
+  double behind_ = 0;   // For how long it has been behind, s of the clock.
+};
+
+}  // namespace flexura

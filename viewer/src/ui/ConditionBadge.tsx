@@ -1,0 +1,27 @@
+import type { Condition } from '../protocol/types';
+import { use_app } from './app';
+
+/** In words for whoever points at it; the reports of runs have the same badges (flexura/report). */
+const meanings: Record<Condition, string> = {
+  idle: 'Nothing moves, and no tasks run.',
+  moving: 'The arm goes where it was sent.',
+  running: 'Tasks run.',
+  done: 'The tasks are done, and everything stays where they left it.',
+  halted: 'Everything was stopped.',
+  failed: 'The tasks failed.',
+  unsafe: 'The arm breaks a limit, or touches what it must not touch.',
+};
+
+/** The condition of the rig, or of a recorded run at the time that is shown: one badge, the same everywhere. */
+export function ConditionBadge() {
+  const { viewer } = use_app();
+  const said = viewer.condition.value;
+  // Nobody knows it while nothing is heard.
+  if (!said || viewer.blind) return null;
+  const { condition, text } = said;
+  return (
+    <span class="badge" data-kind={condition} id="condition" role="status" title={text ? `${meanings[condition]} ${text}` : meanings[condition]}>
+      {condition.toUpperCase()}
+    </span>
+  );
+}

@@ -1,0 +1,53 @@
+// One badge says in which condition the rig is, and the run that is recorded, and the same is in the run's report.
+import { fileURLToPath } from 'node:url';
+import { describe, expect, test } from 'vitest';
+import { slide, until } from './browser';
+import { opened_before, recorded, started } from './opened';
+import { program } from './program';
+
+const file = (name: string) => fileURLToPath(new URL(name, import.meta.url));
+
+describe.skipIf(!program)('the condition', () => {
+  describe('of a rig', () => {
+    const opened = opened_before(() => started(['view', file('run.toml')]), 'live');
+    const says = (word: string) => until(() => opened.page.evaluate((wanted) => document.getElementById('condition')?.textContent === wanted, word), 8000, `not ${word}`);
+
+    test('is idle, running, halted, done', async () => {
+      const { page, complaints } = opened;
+      await says('IDLE');
+      await page.getByRole('button', { name: 'Run tasks' }).click();
+      await says('RUNNING');
+      await page.keyboard.press('h');
+      await says('HALTED');
+      await page.getByRole('button', { name: 'Reset' }).click();
+      await says('IDLE');
+      await page.getByLabel('Speed of the tasks').selectOption({ label: 'As fast as possible' });
+      await page.getByRole('button', { name: 'Run tasks' }).click();
+      await says('DONE');
+      await page.reload();
+      await says('DONE');
+      expect(complaints).toEqual([]);
+    });
+  });
+
+  describe('of a recorded run', () => {
+    const opened = opened_before(() => recorded(file('unsafe.toml'), 1), 'recording');
+
+    test('is that of the time that is shown, and its report has the badge of its end', async () => {
+      const { page, complaints } = opened;
+      const says = (word: string) => until(() => page.evaluate((wanted) => document.getElementById('condition')?.textContent === wanted, word), 8000, `not ${word}`);
+      await slide(page, '#scrub', 1);
+      await says('RUNNING');
+      await slide(page, '#scrub', 3);
+      await says('UNSAFE');
+      const color = (of: string) => page.locator(of).evaluate((badge) => getComputedStyle(badge).backgroundColor);
+      const report = await page.context().newPage();
+      await report.goto(new URL('report', page.url()).href);
+      const badge = report.locator('.badge');
+      expect(await badge.textContent()).toBe('UNSAFE');
+      expect(await badge.evaluate((each) => getComputedStyle(each).backgroundColor)).toBe(await color('#condition'));
+      await report.close();
+      expect(complaints).toEqual([]);
+    });
+  });
+});

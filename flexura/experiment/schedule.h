@@ -87,8 +87,8 @@ struct EndedBy {
   std::size_t task = 0;  ///< Its number.
   std::string failure;
 };
-/// Simulates every simulated task whose start is known: those before the first task that the rig still has to
-/// do, or up to one that ends the run, which is returned. Adds their motions to `done`.
+/// Simulates every simulated task whose start is known. These are the tasks before the first one that the rig
+/// still has to do. If one of them ends the run, stops there and returns it. Adds their motions to `done`.
 [[nodiscard]] std::optional<EndedBy> simulate_tasks(const Experiment& experiment, const TaskRunners& tasks,
                                                     DoneTasks& done, Progress& progress);
 

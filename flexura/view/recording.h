@@ -60,9 +60,9 @@ class Recording {
   [[nodiscard]] std::optional<ServoStep> servo_step(double time) const;
   /// Returns the servo's command, with its observations in the pictures shown at that time.
   [[nodiscard]] std::optional<ShownServo> servo(double time) const;
-  /// Returns whether the log has a calibration, and its state at a time, s, while a calibration is active:
-  /// the last decision, and the measurements in the pictures shown at that time. Throws InputError if the log
-  /// is not readable there.
+  /// Return whether the log has a calibration, and its state at a time, s. While a calibration is active, the
+  /// state has the last decision and the measurements in the pictures shown at that time. Throws InputError
+  /// if the log is not readable there.
   [[nodiscard]] bool has_calibration() const { return !decisions_.empty(); }
   [[nodiscard]] std::optional<ShownCalibration> calibration(double time) const;
   /// Returns whether the log has the true arm, and its samples at a time, s, from base to tip. Returns

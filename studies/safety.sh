@@ -18,7 +18,7 @@ mkdir -p docs/studies build/studies
   echo
   echo "- Bends, mean bend rates, stretches and folding: every step."
   echo "- Clearances to itself and obstacles, by points and descents: every hundredth step, and every step between where a contact outside the reported ones is possible."
-  echo "- Every section and obstacle, and every pair of sections, is compared with its reported spans; each worst value with the samples and the state at its time (pairs to 1 % of the length, where neighbours begin)."
+  echo "- Every section and obstacle, and every pair of sections, is compared with its reported spans. Each worst value is compared with the samples and with the state at its time (pairs to 1 % of the length, where neighbours begin)."
   echo "- Tolerances: 1e-4 s for contact times; contacts from 2e-6 m of depth; worst values may be 1e-4 short (relative; depths in m) where the check states no uncertainty."
   echo
   echo '```console'

@@ -233,9 +233,9 @@ void print_aims(const std::string& kind, bool are_heads_exact, const std::vector
 // arm is inside it.
 void print_range(std::size_t trials, std::uint64_t seed) {
   fmt::print(
-      "## How rough guesses may be\n\nA fixed plan of {} pictures a camera, aimed by the guess alone; wrong "
-      "by this many times the rough guesses (10 deg, 20 % of the distance, 10 % of the focal length, 10 px). "
-      "Wrong answers: found, but an angle between the axes more than five sigmas off.\n\n"
+      "## How rough guesses may be\n\nA fixed plan of {} pictures a camera, aimed by the guess alone. The "
+      "guess is wrong by this many times the rough guesses (10 deg, 20 % of the distance, 10 % of the focal "
+      "length, 10 px). Wrong answers: found, but an angle between the axes more than five sigmas off.\n\n"
       "| times | found | from the first start | refused | wrong |\n| ---: | ---: | ---: | ---: | ---: |\n",
       pictures);
   for (const double times : {1.0, 1.5, 2.0, 3.0}) {
@@ -270,10 +270,9 @@ void print_heads(std::uint64_t seed) {
   for (int i = 0; i < draws; ++i) off.push_back(random.uniform(-half, half) - random.uniform(-half, half));
   const auto within = std::ranges::count_if(off, [](double one) { return std::abs(one) <= half; });
   fmt::print(
-      "## The bound of head resolution\n\nWith everything known except two pan angles within half a step, "
-      "the "
-      "axes end within half a step of 90 degrees in {:.1f} % of {} cases: a bound for one move decided "
-      "beforehand.\n\n{}{}\n",
+      "## The bound of head resolution\n\nTwo pan angles are unknown within half a step, everything else is "
+      "known. The axes then end within half a step of 90 degrees in {:.1f} % of {} cases. This bounds a "
+      "single move decided beforehand.\n\n{}{}\n",
       100.0 * static_cast<double>(within) / draws, draws, spread_head,
       spread_row("true axes, from 90 deg, deg", off, degree, 4));
 }

@@ -158,11 +158,11 @@ int study(int cases, std::uint64_t seed) {
   study_row("noise 2, PSF 0.7, a gamma of 2.2 undone", gamma, 2.2, false, cases, seed);
   study_row("the same, not undone", gamma, 1, false, cases, seed);
   std::printf(
-      "\nBands, noise 2, PSF 0.7: %zu in view, %zu found, %zu of these false; median %.3f px from the "
-      "backbone's image at the band's middle, 90 %% within %.2f px, %.2f %% beyond 4 sigma; %zu false "
-      "spots.\n",
-      banded.markers_shown, banded.markers, banded.false_markers, banded.marker.size(0.5),
-      banded.marker.size(0.9), 100 * banded.marker_by_sigma.share_beyond(4), banded.spots);
+      "\nBands, noise 2, PSF 0.7: %zu in view, %zu found, %zu of these false, %zu false spots. Distance from "
+      "the backbone's image at the band's middle: median %.3f px, 90 %% within %.2f px, %.2f %% beyond 4 "
+      "sigma.\n",
+      banded.markers_shown, banded.markers, banded.false_markers, banded.spots, banded.marker.size(0.5),
+      banded.marker.size(0.9), 100 * banded.marker_by_sigma.share_beyond(4));
   return 0;
 }
 

@@ -32,14 +32,22 @@ def markdown_texts(text):
 
 
 def docstrings(text):
+    """Yields paragraphs, items of lists, and formulas (indented lines, each of its own)."""
     block = []
     for line in text.split('\n'):
-        whole = re.match(r'\s*///(?!<)\s?(.*)', line)
-        if whole:
-            block.append(whole.group(1))
+        whole = re.match(r'\s*///(?!<) ?(\s*)(- )?(.*)', line)
+        is_item = bool(block) and block[0] == '-'
+        if whole and whole.group(3) and not whole.group(2) and (is_item or not whole.group(1)):
+            block.append(whole.group(3))
             continue
-        yield ' '.join(block)
+        yield ' '.join(block[1:] if is_item else block)
         block = []
+        if whole and whole.group(2):
+            block = ['-', whole.group(3)]
+        elif whole and whole.group(1):
+            yield whole.group(3)
+        elif whole:
+            block = [whole.group(3)] if whole.group(3) else []
         behind = re.search(r'///<\s?(.*)', line)
         if behind:
             yield behind.group(1)

@@ -11,10 +11,9 @@ namespace flexura {
 /// Answers one line of `flexura ik`: a JSON object {"position":[x,y,z]} with an optional "direction":[x,y,z]
 /// or "rotation":[w,x,y,z], or {"curve":[[x,y,z],...]}; optional "prefer", "start" and "all"
 /// (docs/command-line.md). The answer is one line of JSON without its line end:
-/// {"converged":..,"reason":..,"bends":[[bx,by],...],"stretches":[..],"position_error":..,"angle_error":..},
-/// with "archings" instead of "bends" for a planar arm, "nearest" and "distance" when not converged, or
-/// "solutions" when all are asked for; {"error":"..."} for a line that cannot be answered. Never throws on
-/// account of the line.
+/// {"converged":..,"reason":..,"bends":[[bx,by],...],"stretches":[..],"position_error":..,"angle_error":..}.
+/// A planar arm has "archings" instead of "bends". If not converged, "nearest" and "distance" follow; with
+/// "all", "solutions" follows. A line that cannot be answered gives {"error":"..."}; no line throws.
 [[nodiscard]] std::string answer_inverse(const ArmModel& arm, std::string_view line);
 /// Answers one line of `flexura ik` for an arm of arcs.
 [[nodiscard]] inline std::string answer_inverse(const Arm& arm, std::string_view line) {

@@ -10,10 +10,10 @@ namespace flexura {
 /// calibration", 1971; the parameters and their order are OpenCV's).
 ///
 /// A point (x, y, z) in the camera's frame C (x right, y down, z forward, metres) has the normalized
-/// coordinates a = x/z, b = y/z. With r^2 = a^2 + b^2 they are distorted to
+/// coordinates a = x/z, b = y/z. With r^2 = a^2 + b^2 they are distorted to:
 ///   a' = a (1 + k1 r^2 + k2 r^4 + k3 r^6) + 2 p1 a b + p2 (r^2 + 2 a^2)
 ///   b' = b (1 + k1 r^2 + k2 r^4 + k3 r^6) + p1 (r^2 + 2 b^2) + 2 p2 a b
-/// and the pixel is u = fx a' + cx, v = fy b' + cy; (0, 0) is the centre of the top-left pixel.
+/// The pixel is u = fx a' + cx, v = fy b' + cy; (0, 0) is the centre of the top-left pixel.
 struct Intrinsics {
   double fx = 800, fy = 800;                           ///< Focal lengths, px; > 0.
   double cx = 319.5, cy = 239.5;                       ///< Principal point, px.

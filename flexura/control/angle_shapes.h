@@ -11,8 +11,8 @@ enum class AngleBasis {
   sections,    ///< Linear in every section, given by its values at the sections' ends (and at the base).
 };
 
-/// Points of the unstretched arm for integrals along it (Gauss-Legendre in each section), and the shape
-/// functions of an angle there: angle(s) = base(s) clamp + sum over a of P_a(s) x_a.
+/// Points of the unstretched arm for integrals along it (Gauss-Legendre in each section). The shape functions
+/// P_a of an angle at these points give angle(s) = base(s) clamp + sum over a of P_a(s) x_a.
 struct AngleShapes {
   std::vector<double> lengths;  ///< Lengths of the sections, m.
   AngleBasis basis = AngleBasis::polynomial;

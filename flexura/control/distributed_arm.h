@@ -32,9 +32,9 @@ struct DistributedArmModel {
 
 /// Equations of motion of such an arm. It is discretised along s before Lagrange's equations are derived, so
 /// that energies and forces are exactly consistent (docs/control.md, "The distributed arm"). The coordinates
-/// x are the two angles' numbers (AngleShapes) and, with variable lengths, the sections' u_i: theta (rad), q
-/// (rad), u (m). |q| must stay below pi/2, where the angles are singular. After the constructor, only
-/// functions that return vectors or matrices allocate.
+/// x are the numbers of theta (rad) and q (rad), see AngleShapes. With variable lengths the sections' u_i (m)
+/// follow. |q| must stay below pi/2, where the angles are singular. After the constructor, only functions
+/// that return vectors or matrices allocate.
 class DistributedArm {
  public:
   /// Throws std::invalid_argument for numbers out of their range or not finite, or fewer points than nodes.

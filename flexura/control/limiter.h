@@ -41,12 +41,12 @@ struct LimiterFault {
   std::optional<ArmState> asked;     ///< Command of the law at that time.
 };
 
-/// Limits commands between a law and an arm's drives. For any command of the law, the command sent
-///   - is finite, within the arm's bends, stretches and folding, and changes no faster than its bends and
-///     stretches may;
-///   - respects the motors' speeds, step rates and accelerations (backlash and rounding are up to the drive),
-///     and their positions with both;
-///   - can be brought to rest from there within all of these, and with `looks_ahead` without a contact on the
+/// Limits commands between a law and an arm's drives. For any command of the law, the command sent:
+///   - Is finite and within the arm's bends, stretches and folding. It changes no faster than bends and
+///     stretches may.
+///   - Respects the motors' speeds, step rates and accelerations; their backlash and rounding are left to the
+///     drive. It respects the motors' positions, with backlash and rounding.
+///   - Can be brought to rest from there within all of these. With `looks_ahead` there is no contact on the
 ///     way. That way is kept, and followed if nothing else is allowed (docs/control.md, "The limiter").
 /// A command that is not finite or of another arm, and every fault() from outside, stops the arm. It follows
 /// that way to rest and stays there until reset().

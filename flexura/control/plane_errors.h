@@ -30,7 +30,7 @@ struct PlaneError {
 [[nodiscard]] bool planes_contradict(const PlaneView& seen);
 
 /// Returns the errors of the angles from the plane errors e_1 = alpha_1 - alpha_1d and e_2 = alpha_2 -
-/// alpha_2d. They are converted by the derivative at the measured angles, as in the paper's section 2:
+/// alpha_2d. They are converted by the derivative at the measured angles, as in the paper's section 2.
 ///   e_theta = e_1,   e_q = cos theta / cos^2 alpha_2 cos^2 q e_2 - sin q cos q tan theta e_1.
 [[nodiscard]] PlaneError plane_error(const PlaneView& measured, const PlaneView& desired);
 

@@ -30,8 +30,8 @@ struct PotentialGains {
 
 /// The paper's law for a distributed arm (section 2 with its sources; docs/control.md, eq. 9):
 ///   F = -dPi/dx + dV_g/dx - K dx/dt,
-///   Pi = 1/2 int (k_theta (theta - theta_d)^2 + k_q (q - q_d)^2) ds + 1/2 k_u sum (u - u_d)^2,
-/// as generalized forces on the coordinates of a DistributedArm. If its conditions hold, W = T + Pi
+///   Pi = 1/2 int (k_theta (theta - theta_d)^2 + k_q (q - q_d)^2) ds + 1/2 k_u sum (u - u_d)^2.
+/// These are generalized forces on the coordinates of a DistributedArm. If its conditions hold, W = T + Pi
 /// decreases: dW/dt = -int (theta_t, q_t) K (theta_t, q_t) ds - the arm's own damping.
 class PotentialLaw {
  public:

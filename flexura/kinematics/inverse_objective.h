@@ -32,8 +32,9 @@ struct ObjectiveScale {
 void follow_objective(BoundedDescent& descent, const ObjectiveScale& scale, Eigen::VectorXd& x);
 
 /// Brings a solution from follow_objective() to the minimum of the preference, by Newton steps on the surface
-/// of solutions. x remains a solution and gets no worse. follow_objective() uses the surface's tangents but
-/// not its curvature, and converges linearly. It ends about 1e-5 away, each time elsewhere.
+/// of solutions. The result x is a solution and no worse. Without these steps, follow_objective() converges
+/// linearly, because it uses the surface's tangents but not its curvature. It ends about 1e-5 away, each time
+/// elsewhere.
 void run_down_to_minimum(BoundedDescent& descent, const ObjectiveScale& scale, Eigen::VectorXd& x);
 
 }  // namespace flexura

@@ -19,8 +19,8 @@ namespace flexura {
 /// Returns a lower bound on the rotation angle between the tip's frame and `R_BT`, rad.
 [[nodiscard]] double least_angle(const Arm& arm, const Eigen::Matrix3d& R_BT);
 
-/// Returns a lower bound on the distance of the tip from the origin of `X_BT` if it points along the z of
-/// `X_BT`, m: least_distance from either end of the arm.
+/// Returns a lower bound, m, on the distance of the tip from the origin of `X_BT` if it points along the z of
+/// `X_BT`. The bound is least_distance from either end of the arm.
 [[nodiscard]] double least_distance_along(const Arm& arm, const Pose& X_BT);
 
 }  // namespace flexura

@@ -13,10 +13,10 @@ enum class TipRows { position = 3, direction = 5, rotation = 6 };
 
 /// Residual of "the tip is at the target", as a function of ArmVariables' x. Rows 0 to 2 are the tip's
 /// distance from the target in base axes over the arm's greatest length. The other rows are the rotation
-/// vector from the target orientation to the tip's, in the tip's axes, rad. There are two rows (about x and
-/// y) for a direction of the tip's z, and three for a whole rotation.
+/// vector from the target orientation to the tip's, in the tip's axes, rad. A direction of the tip's z has
+/// two rows (about x and y), a whole rotation has three.
 ///
-/// linearise() gives as orientation rows the angular velocity, not the derivative of the rotation vector e.
+/// The orientation rows of linearise() are the angular velocity, not the derivative of the rotation vector e.
 /// The two differ by a matrix that has e as an eigenvector with eigenvalue 1. So the gradient of |e|^2 and
 /// the undamped Gauss-Newton step are equal, and the angular velocity has no singular orientation.
 class TipProblem final : public BoundedProblem {

@@ -13,9 +13,9 @@ namespace flexura {
 /// Returns the unit vector in W with these angles.
 [[nodiscard]] Eigen::Vector3d direction_of_angles(const Eigen::Vector2d& angles);
 
-/// Returns the elevation of a direction from two parallel views, rad (paper, section 2): atan(tan alpha_2 cos
-/// alpha_1). alpha_1 is the angle from Y towards X in the plane XOY, which is the azimuth. alpha_2 is the
-/// angle from Y towards Z in the plane ZOY.
+/// Returns the elevation of a direction from two parallel views, rad: atan(tan alpha_2 cos alpha_1) (paper,
+/// section 2). The azimuth alpha_1 is the angle from Y towards X in the plane XOY. The angle alpha_2 is from
+/// Y towards Z in the plane ZOY.
 [[nodiscard]] double elevation_of_planes(double alpha_1, double alpha_2);
 /// Returns true if the azimuth is within 10 degrees of a quarter turn, where alpha_2 gives little information
 /// on the elevation.

@@ -32,10 +32,11 @@ enum class DescentEnd {
 };
 
 /// Tries steps from a point with this `cost` and accepts each that lowers it.
-/// - try_step(damping) solves for a step and returns its result, a TriedStep.
-/// - keep(step, cost) takes the step just tried, linearises there, and sets `cost` to the value that the next
-/// one has to lower. Returns true if it was the last.
-/// - leave(step, cost) returns true if smaller steps need not be tried.
+///
+/// - `try_step(damping)` solves for a step and returns its result, a TriedStep.
+/// - `keep(step, cost)` takes the step just tried and linearises there. It sets `cost` to the value that the
+///   next one has to lower, and returns true if it was the last.
+/// - `leave(step, cost)` returns true if smaller steps need not be tried.
 template <class Try, class Keep, class Leave>
 DescentEnd levenberg_marquardt(double cost, const Damping& damping, int most_tries, const Try& try_step,
                                const Keep& keep, const Leave& leave) {

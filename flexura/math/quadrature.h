@@ -24,8 +24,9 @@ struct Quadrature {
 /// Returns its derivative by x.
 [[nodiscard]] double legendre_slope(int degree, double x);
 
-/// Returns the integral of f over [a, b], divided into `panels` >= 1 equal parts with `rule` in each. f takes
-/// a double and returns a double or an Eigen vector or matrix (by value, never an expression of temporaries).
+/// Returns the integral of f over [a, b], divided into `panels` >= 1 equal parts with `rule` in each. The
+/// function f takes a double. It returns a double or an Eigen vector or matrix (by value, never an expression
+/// of temporaries).
 template <typename Function>
 [[nodiscard]] auto integrate(const Quadrature& rule, Function&& f, double a, double b, int panels = 1) {
   const double half = 0.5 * (b - a) / panels;

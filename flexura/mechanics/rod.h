@@ -87,7 +87,7 @@ struct RodSection {
 
 /// Path of a tendon from the rod's base through all sections to the end of one, where it is fastened. At
 /// undeformed arc length s m from the base it passes the cross-section at (x(s), y(s)) + r(s) (cos a(s), sin
-/// a(s)), with r = radius + radius_slope s and a = angle + angle_slope s.
+/// a(s)). Here r = radius + radius_slope s and a = angle + angle_slope s.
 struct TendonRoute {
   std::size_t section = 0;             ///< Section at whose end it is fastened, 0 at the base.
   double radius = 0;                   ///< m
@@ -148,8 +148,8 @@ struct Rod {
   [[nodiscard]] double length() const;
 };
 
-/// Returns what is wrong with a rod, in words: lengths, radii or stiffnesses that are not positive, a tendon
-/// that ends at no section, counts out of bounds, numbers that are not finite. Empty if it is valid.
+/// Returns the errors of a rod, in words; empty if it is valid. Errors are lengths, radii or stiffnesses that
+/// are not positive, a tendon that ends at no section, counts out of bounds, and numbers that are not finite.
 [[nodiscard]] std::vector<std::string> rod_problems(const Rod& rod);
 
 }  // namespace flexura

@@ -14,10 +14,10 @@
 
 namespace flexura {
 
-/// The joined sections of a rod: shape by the modes q, balance r(q) of all generalized forces, and linear
-/// systems with r's derivative, at a cost linear in the number of sections. For r = 0 the rod is in
-/// equilibrium. If the loads have an energy, r is the gradient of the total energy. All in the frame of the
-/// base.
+/// The joined sections of a rod. Computes the shape by the modes q and the balance r(q) of all generalized
+/// forces. Solves linear systems with r's derivative, at a cost linear in the number of sections. For r = 0
+/// the rod is in equilibrium. If the loads have an energy, r is the gradient of the total energy. All in the
+/// frame of the base.
 ///
 /// A section receives only the twist of its base from proximal sections and only a wrench from distal ones.
 /// So each section's modes are eliminated from tip to base, as in the articulated-body algorithm (R.
@@ -47,9 +47,9 @@ class RodChain {
   /// Computes the balance at q under tensions, N, and a share of the loads.
   void balance(const Eigen::VectorXd& q, std::span<const double> tensions, const RodLoads& loads,
                double share);
-  /// Return results of the last balance: r, size(); tendon lengths, m; their derivatives by q, size() x
-  /// tendons(); and the derivative of r by the tensions at the base, which is equal to the latter without
-  /// friction.
+  /// Return results of the last balance. `residual`: r, size(). `tendon_lengths`: m. `length_slopes`: their
+  /// derivatives by q, size() x tendons(). `pull_slopes`: the derivative of r by the tensions at the base,
+  /// equal to `length_slopes` without friction.
   [[nodiscard]] const Eigen::VectorXd& residual() const { return residual_; }
   [[nodiscard]] const Eigen::VectorXd& tendon_lengths() const { return lengths_; }
   [[nodiscard]] const Eigen::MatrixXd& length_slopes() const { return slopes_; }
@@ -83,9 +83,9 @@ class RodChain {
   /// Replaces rhs by the solution for it; size() x columns.
   void solve(Eigen::Ref<Eigen::MatrixXd> rhs);
 
-  /// Returns the derivatives of r at the last balance by each section's parameters, size() x 5 sections:
-  /// relative changes of its stiffness against shear, stretch, bends and twist, and of its mass per length
-  /// under this gravity. Requires the columns.
+  /// Returns the derivatives of r at the last balance by each section's five parameters, size() x 5 sections.
+  /// Parameters are relative changes of its stiffness against shear, stretch, bends and twist, and of its
+  /// mass per length under this gravity. Requires the columns.
   [[nodiscard]] Eigen::MatrixXd parameter_slopes(const Eigen::Vector3d& gravity) const;
 
   /// Switches tendon friction; initially on.

@@ -107,8 +107,8 @@ class RodElement {
   Matrix6d wrench_by_base = Matrix6d::Zero();
   /// Wrench of all of its loads.
   Vector6d wrench = Vector6d::Zero();
-  /// Length of each tendon of the rod in it, m; its derivative by the modes, size() x tendons; and the
-  /// residual's derivative by the tensions at the base, equal to the latter without friction.
+  /// Length of each tendon of the rod in it, m, and its derivative by the modes, size() x tendons. The
+  /// residual's derivative by the tensions at the base (`pull_slopes`) equals it without friction.
   Eigen::VectorXd tendon_lengths;
   Eigen::MatrixXd length_slopes, pull_slopes;
   /// Strain energy, J.

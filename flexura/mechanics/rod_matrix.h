@@ -14,8 +14,8 @@ namespace flexura {
 
 /// Matrices of a rod's modes assembled from nodes and strains: the sum over the nodes of A^T H A, and a block
 /// for each section. A is the twist of a node by the modes, H a symmetric 6 x 6 matrix. Examples are the mass
-/// matrix and the matrix of an implicit step. Systems are solved at a cost linear in the number of sections:
-/// each section's modes are eliminated from tip to base, which leaves a 6 x 6 inertia for the proximal ones
+/// matrix and the matrix of an implicit step. Systems are solved at a cost linear in the number of sections.
+/// Each section's modes are eliminated from tip to base, which leaves a 6 x 6 inertia for the proximal ones
 /// (R. Featherstone's articulated bodies). Allocates only in the constructor.
 class RodMatrix {
  public:

@@ -27,8 +27,9 @@ struct RodPoints {
   RodPoints(const Rod& rod, const RodLayout& layout, std::span<const RodPlace> places);
 
   std::vector<Point> points;
-  /// For each point that is not a node: the three moments of each of its section's modes from its interval's
-  /// beginning on, then those of the six undeformed strains, without driven stretch.
+  /// Moments for each point that is not a node, from its interval's beginning on. First come the three
+  /// moments of each of its section's modes, then those of the six undeformed strains, without driven
+  /// stretch.
   std::vector<double> moments;
 };
 

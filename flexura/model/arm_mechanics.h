@@ -13,14 +13,14 @@ namespace flexura {
 
 struct ArmConfig;
 
-/// Mechanical model of an arm. kinematic: the shape follows the commands. statics: sections are elastic rods,
-/// in equilibrium with their tendons, gravity and loads. dynamics: the same rods in motion, with their
-/// inertia.
+/// Mechanical model of an arm. With `kinematic` the shape follows the commands. With `statics` sections are
+/// elastic rods, in equilibrium with their tendons, gravity and loads. With `dynamics` these rods move with
+/// their inertia.
 enum class ArmMechanics { kinematic, statics, dynamics };
 
 /// Route of a tendon in the arm's cross-sections, from the arm's base to the end of one section,
 /// `[[arm.tendon]]`. At s m of arc length from the base, at rest, its offset from the backbone is (x(s),
-/// y(s)) + r(s) (cos a(s), sin a(s)). r and a change linearly from base to end.
+/// y(s)) + r(s) (cos a(s), sin a(s)). Radius r and angle a change linearly from base to end.
 struct TendonRouteConfig {
   std::int64_t section = 1;               ///< Section at whose end it ends, counted from 1 at the base.
   double radius = 0;                      ///< Distance from the backbone at the base, m.

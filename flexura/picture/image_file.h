@@ -21,12 +21,13 @@ struct PngConfig {
 [[nodiscard]] std::string png(const Image<std::uint8_t>& image, PngConfig config = {});
 [[nodiscard]] std::string png(const Image<std::uint16_t>& image, PngConfig config = {});
 
-/// Reads the picture in a file of any of these kinds, identified by its first bytes:
-/// - PNG, 1 to 16 bits per value, interlaced or not;
-/// - JPEG in gray, colour or four inks (CMYK, YCCK; inverted, as introduced by Adobe), also progressive;
-/// - TIFF (its first page) in gray, RGB or a palette, 1 to 16 bits per value, or CMYK, YCbCr or CIELab in
-///   bytes; in strips or tiles, with every compression of libtiff except JBIG and the JPEG of before 1995;
-/// - PNM (P1 to P6).
+/// Reads the picture in a file of any of these kinds, identified by its first bytes.
+///
+/// - `PNG`: 1 to 16 bits per value, interlaced or not.
+/// - `JPEG`: gray, colour or four inks (CMYK, YCCK; inverted, as introduced by Adobe), also progressive.
+/// - `TIFF`: its first page, in gray, RGB or a palette (1 to 16 bits per value), or CMYK, YCbCr or CIELab (in
+///   bytes). Strips or tiles, with every compression of libtiff except JBIG and the JPEG of before 1995.
+/// - `PNM`: P1 to P6.
 ///
 /// The result has one channel for gray, and for a palette of grays alone; three (red, green, blue) for
 /// colours. Up to 8 bits give bytes from 0 to 255; more give words as in the file. The file's orientation,

@@ -21,10 +21,10 @@ struct StanceReading {
 /// number that is not finite, another number of sections.
 [[nodiscard]] std::variant<ArmReading, std::string> read_arm(ArmPort& arm, std::size_t sections);
 
-/// Returns the reading of head and stage of the rig's camera `camera`, or the reason why it is invalid: a
-/// fault, a number that is not finite, a zoom outside the lens's table. A zoom within one step of an end of
-/// the table counts as that end. `optics` is the model of that camera, whose initial positions replace a
-/// missing head or stage.
+/// Returns the reading of head and stage of the rig's camera `camera`, or the reason why it is invalid.
+/// Reasons are a fault, a number that is not finite, and a zoom outside the lens's table. A zoom within one
+/// step of an end of the table counts as that end. `optics` is the model of that camera, whose initial
+/// positions replace a missing head or stage.
 [[nodiscard]] std::variant<StanceReading, std::string> read_camera(const RigPorts& rig, std::size_t camera,
                                                                    const Camera& optics);
 

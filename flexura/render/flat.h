@@ -15,7 +15,7 @@ struct Circle {
   Eigen::Vector3d x, y;            ///< Perpendicular unit vectors in its plane.
   double radius = 0;               ///< Radius, m; > 0.
   /// A ray of direction d meets the circle's plane at (d . by_x, d . by_y) / (d . by_z), from the center
-  /// along x and y. by_z is positive in front of the camera.
+  /// along x and y. The divisor is positive in front of the camera.
   Eigen::Vector3d by_x, by_y, by_z;
   Eigen::Vector2d narrow_way;  ///< Direction in (a, b) across which its image is narrowest.
   double steepness = 0;        ///< Bound on the derivative of CircleView::value by (a, b).

@@ -85,9 +85,10 @@ struct SpanRim {
   float u0, v0;
   Linear x, y, z;
   Linear nearness;  ///< 1/depth of the plane.
-  /// The skin at the rim is visible where (x, y) . facing < -l (radius - lean l / (l - (x, y) . bend)), m,
-  /// where l is the length of (x, y). `radius` is the tube's radius. `lean` is the tilt of a tapered skin
-  /// towards the camera, larger where the tube bends to that side. `margin` (m) times l is a safety margin.
+  /// With l the length of (x, y), the skin at the rim is visible where
+  ///   (x, y) . facing < -l (radius - lean l / (l - (x, y) . bend)), m.
+  /// `radius` is the tube's radius. `lean` is the tilt of a tapered skin towards
+  /// the camera, larger where the tube bends to that side. `margin` (m) times l is a safety margin.
   float facing[2], radius, lean, bend[2], margin;
   float light[3];
   bool is_front;     ///< Whether the end itself is visible.

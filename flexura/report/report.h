@@ -104,10 +104,10 @@ struct FigureFile {
 /// std::invalid_argument if times and states do not match or do not fit the arm.
 [[nodiscard]] std::string report_html(const ReportData& data);
 
-/// Returns the report's pictures and charts, for papers: arm-start, arm-middle, arm-end, arm-unsafe-1 and on
-/// (violations at their worst moments, those of one moment together), tip-path, bends (a spatial arm: bends-x
-/// and bends-y), archings and cord-angles (planar arms), stretches (if they change), tip, and those of the
-/// chapters. Throws like report_html.
+/// Returns the report's pictures and charts, for papers. All runs have arm-start, arm-middle, arm-end,
+/// tip-path, tip and the figures of the chapters. Violations have arm-unsafe-1 and on, at their worst
+/// moments, those of one moment together. Spatial arms have bends-x and bends-y; planar arms have bends,
+/// archings and cord-angles. Stretches that change have stretches. Throws like report_html.
 [[nodiscard]] std::vector<FigureFile> report_figures(const ReportData& data);
 
 }  // namespace flexura

@@ -8,8 +8,8 @@
 
 namespace flexura {
 
-/// Returns text escaped for XML and HTML, for content and quoted attributes. & < > " ' become references;
-/// bytes that are not UTF-8 and characters that XML forbids become U+FFFD.
+/// Returns text escaped for XML and HTML, for content and quoted attributes. The characters & < > " ' become
+/// references. Bytes that are not UTF-8 and characters that XML forbids become U+FFFD.
 [[nodiscard]] std::string xml_escape(std::string_view text);
 
 /// Returns a page coordinate with at most three decimals, as short as possible ("12.5", "0", never "-0").

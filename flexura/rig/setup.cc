@@ -87,9 +87,9 @@ const Table<RecordConfig>& fields_of(const RecordConfig*) {
                  {.meaning = "Whether the log keeps the surroundings, and ten arm shapes a second, for "
                              "programs that draw them."})
           .field("curve", &RecordConfig::curve,
-                 {.meaning = "Curve drawn along the arm in the report: its exact arcs, the paper's "
-                             "Catmull-Rom spline through the sections' base points (eq. 11), or one Bezier "
-                             "curve per section with exact tangents."})
+                 {.meaning = "Curve drawn along the arm in the report. `arcs`: its exact arcs. "
+                             "`catmull_rom`: the paper's spline through the sections' base points (eq. 11). "
+                             "`bezier`: one curve per section with exact tangents."})
           .field("tension", &RecordConfig::tension,
                  {.meaning = "Tension of the Catmull-Rom spline.", .range = between(0, 1)});
   return table;

@@ -17,13 +17,13 @@ struct ShownScene {
 };
 
 /// Writes the true values of the picture of `shown` in the file `image`, from the geometry and without sensor
-/// effects. The files beside NAME.png are
-///   NAME_depth.tiff   depth along the optical axis, m; infinite without an object
-///   NAME_s.tiff       arc length on the arm, m; not a number elsewhere
-///   NAME_labels.png   visible object, 16 bits
-///   NAME_flow.tiff    motion in the image until `next`, px right and down; only if there is a next
-///   NAME_truth.json   the camera, the labels' meaning, the backbone, the outlines and the markers in the
-///                     image
+/// effects. The files beside NAME.png:
+///   NAME_depth.tiff   Depth along the optical axis, m; infinite without an object.
+///   NAME_s.tiff       Arc length on the arm, m; not a number elsewhere.
+///   NAME_labels.png   Visible object, 16 bits.
+///   NAME_flow.tiff    Motion in the image until `next`, px right and down; only if there is a next.
+///   NAME_truth.json   The camera, the labels' meaning, the backbone, the outlines and the markers in the
+///                     image.
 /// Returns the files. Throws std::runtime_error with the path on a system error.
 std::vector<std::filesystem::path> write_truth(const ShownScene& shown, const std::optional<ShownScene>& next,
                                                const std::filesystem::path& image);

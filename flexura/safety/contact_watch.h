@@ -31,8 +31,8 @@ struct Contact {
 /// Watches one object that the arm may touch: itself or an obstacle.
 ///
 /// For self-contact, all pairs of backbone points count between which the backbone turns by half a turn (pi)
-/// or more. If a section of the pair or between them is thinner than the two on average, other pairs count:
-/// those with more than half a circle of their mean radius between them. All other pairs cannot meet, or are
+/// or more. If a section of the pair or between them is thinner than the two on average, other pairs count.
+/// These have more than half a circle of their mean radius between them. All other pairs cannot meet, or are
 /// neighbours (docs/safety.md).
 class ContactWatch {
  public:

@@ -18,12 +18,14 @@ struct FeatureMark {
   std::vector<Eigen::Vector2d> seen, desired;
 };
 
-/// Draws what a law compares into the pictures:
-/// - pixels of `points`, and of the edges of `silhouettes`,
-/// - chords of `chords` and `potential`; each target chord is rotated about the middle of the measured one,
-/// because the law compares only directions,
-/// - of `moments` the centroid and the ellipse with the second moments,
-/// - nothing for `shape`, which compares no images.
+/// Draws what a law compares into the pictures.
+///
+/// - `points`, `silhouettes`: pixels of the points, or of the edges.
+/// - `chords`, `potential`: chords. Each target chord is rotated about the middle of the measured one,
+/// because
+///   the law compares only directions.
+/// - `moments`: the centroid and the ellipse with the second moments.
+/// - `shape`: nothing, because it compares no images.
 class FeatureMarker {
  public:
   FeatureMarker(ServoLawKind law, Arm arm, std::int64_t points);

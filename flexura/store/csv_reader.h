@@ -14,14 +14,14 @@ struct NumberTable {
   std::vector<int> lines;                 ///< Line of each row.
 };
 
-/// Parses CSV (RFC 4180, "
-/// " or "\r
-/// "): a line of names, then lines with one number per name. Skips blank lines. Throws InputError
-/// (source:line:column, the column counting characters) with up to 20 problems:
-/// - no header, an empty or repeated name,
-/// - too few or too many values, a value that is not a finite number,
-/// - columns separated by semicolons or tabs, an unclosed quote,
-/// - more than 10^6 rows.
+/// Parses CSV (RFC 4180, with "\n" or "\r\n"): a line of names, then lines with one number per name. Skips
+/// blank lines. Throws InputError (source:line:column, the column counting characters) with up to 20
+/// problems.
+///
+/// - Header: missing, or with an empty or repeated name.
+/// - Values: too few or too many, or a value that is not a finite number.
+/// - Separators: semicolons or tabs between columns, an unclosed quote.
+/// - Size: more than 10^6 rows.
 [[nodiscard]] NumberTable parse_csv(std::string_view text, const std::string& source);
 /// Returns the column of each cell in a line of CSV, from 1: after the preceding comma. Empty for an invalid
 /// line.

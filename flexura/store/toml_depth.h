@@ -5,9 +5,9 @@
 
 namespace flexura {
 
-/// Throws InputError if a key has more than 32 dotted parts or brackets are nested more than 32 deep. toml++
-/// 3.3 limits nested values but not dotted keys, and frees its tables recursively: a key of a million parts
-/// would overflow the stack.
+/// Throws InputError if a key has more than 32 dotted parts or brackets are nested more than 32 deep. The
+/// parser toml++ 3.3 limits nested values but not dotted keys. It frees its tables recursively, so a key of a
+/// million parts would overflow the stack.
 void check_toml_depth(std::string_view text, const std::string& source);
 
 }  // namespace flexura

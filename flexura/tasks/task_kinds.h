@@ -20,14 +20,14 @@
 namespace flexura {
 
 /// One `[[task]]` of a file, with all kinds. For each kind, its header of keys declares its table of fields
-/// and
-///   void check_keys(const KIND&, const Setup&, const std::string& path, Reader&)
-///   std::unique_ptr<TaskRunner> runner_of(const KIND&, const Setup&, TaskLabel)
-/// and optionally
+/// and functions that those below call.
+///   void check_keys(const KIND&, const Setup&, const std::string& path, Reader&);
+///   std::unique_ptr<TaskRunner> runner_of(const KIND&, const Setup&, TaskLabel);
+/// These are optional.
 ///   void read_files(KIND&, const Setup&, const Node& written, const std::string& path,
-///                   std::vector<Problem>&)
-///   LogTables log_tables(const KIND*)
-/// for the functions below. Summaries list the kinds in this order.
+///                   std::vector<Problem>&);
+///   LogTables log_tables(const KIND*);
+/// Summaries list the kinds in this order.
 using TaskConfig = std::variant<MoveTask, HoldTask, SineTask, KeyframesTask, ExpressionTask, StudyTask,
                                 CalibrateTask, ServoTask, DynamicsTask>;
 

@@ -108,10 +108,10 @@ const Table<SineTask>& fields_of(const SineTask*) {
 const Table<KeyframesTask>& fields_of(const KeyframesTask*) {
   static const auto table =
       Table<KeyframesTask>("keyframes",
-                           "Moves the arm through shapes at given times. The columns are `time` (s in the "
-                           "task, from 0) and, for every section, one of `arching_1`, `cord_angle_1` (rad, "
-                           "or with `_deg`, `_pi`) or the pair `bend_x_1`, `bend_y_1`; and `stretch_1` where "
-                           "sections stretch. The first row is the current shape.")
+                           "Moves the arm through shapes at given times. One column is `time` (s in the "
+                           "task, from 0). Every section has `arching_1`, `cord_angle_1` or the pair "
+                           "`bend_x_1`, `bend_y_1` (rad, or with `_deg`, `_pi`). Sections that stretch also "
+                           "have `stretch_1`. The first row is the current shape.")
           .field("name", &KeyframesTask::name, name_spec)
           .field("file", &KeyframesTask::file,
                  {.meaning = "CSV file in this file's folder or below. Its first line names the columns.",
@@ -130,9 +130,9 @@ const Table<KeyframesTask>& fields_of(const KeyframesTask*) {
 const Table<ExpressionTask>& fields_of(const ExpressionTask*) {
   static const auto table =
       Table<ExpressionTask>("expression",
-                            "Moves the arm by formulas of `t` (s in the task), `T` (duration of the task) "
-                            "and `i` (number of the section from 1), such as `\"0.3*sin(2*pi*t/T)\"`: one "
-                            "for all sections, or one each. Angles are in rad.")
+                            "Moves the arm by formulas such as `\"0.3*sin(2*pi*t/T)\"`, one for all sections "
+                            "or one each. The variables are `t` (s in the task), `T` (duration of the "
+                            "task) and `i` (number of the section from 1). Angles are in rad.")
           .field("name", &ExpressionTask::name, name_spec)
           .field("duration", &ExpressionTask::duration, duration_spec)
           .field("cord_angles", &ExpressionTask::cord_angles,

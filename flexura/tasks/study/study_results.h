@@ -10,9 +10,9 @@
 
 namespace flexura {
 
-/// Returns a study as CSV: the parameter (its name in the file, base units), the features by each source in
-/// turn ("top_formula", ..., "top_rendered", ...), px, and in_image (1 or 0). Values that could not be
-/// measured are empty cells.
+/// Returns a study as CSV. The first column is the parameter (its name in the file, base units). Then come
+/// the features by each source in turn ("top_formula", ..., "top_rendered", ...), px, and in_image (1 or 0).
+/// Values that could not be measured are empty cells.
 [[nodiscard]] std::string study_csv(const ImageStudy& study);
 
 /// Writes the study's tables/NAME.csv into a results folder and sets the study's name. Its own name is kept

@@ -26,10 +26,10 @@ export async function enter(entry: Entry, answer_ms: number): Promise<EntryOutco
     });
     if (token !== null) entry.settle(token);
     if (status === 401) {
-      return { kind: 'refused', why: 'This page has no token that the program knows: it was started again, or the address is not the whole one.' };
+      return { kind: 'refused', why: 'No valid token: the program was restarted, or the address is incomplete.' };
     }
     if (status === 403 || status === 421) {
-      return { kind: 'refused', why: 'The program refuses pages under this address; use the one that it printed.' };
+      return { kind: 'refused', why: 'This address is not allowed; use the one that the program printed.' };
     }
     // 503: too many clients. With any other status the program is reachable, and the socket will report errors.
     return { kind: 'in' };

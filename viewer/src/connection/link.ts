@@ -178,7 +178,7 @@ export class Link {
     const silence = performance.now() - this.last_word;
     if (silence > this.patience.dead) {
       this.drop();
-      this.wait('The program has not said a word for some seconds.');
+      this.wait('No message from the program for several seconds.');
       return;
     }
     if (silence > this.patience.stale) this.fresh.value = false;

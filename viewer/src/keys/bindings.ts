@@ -59,14 +59,14 @@ function view(app: App): Binding[] {
     { group, keys: ['Numpad1', '1'], what: 'From the front, as camera 1', run: look(0, 0) },
     { group, keys: ['Numpad3', '3'], what: 'From the side, as camera 2', run: look(-Math.PI / 2, 0) },
     { group, keys: ['Numpad7', '7'], what: 'From above', run: look(0, Math.PI / 2) },
-    { group, keys: ['Numpad0', '0', 'a'], what: 'All of the arm in view', run: () => (app.views.free(), app.view.value?.frame_arm()) },
+    { group, keys: ['Numpad0', '0', 'a'], what: 'Show the whole arm', run: () => (app.views.free(), app.view.value?.frame_arm()) },
     { group, keys: ['Numpad5', '5', 'Shift+Home'], what: 'The arm and all cameras in view', run: () => (app.views.free(), app.view.value?.frame_cameras()) },
     { group, keys: ['NumpadDecimal', '.'], what: 'Look at the picked point, or at the tip', run: () => look_at_point(app) },
     { group, keys: ['k'], what: 'Pick the backbone’s tip, or nothing; its slider goes along the arm', run: () => pick_tip(app) },
     { group, keys: [']', 'BracketRight'], what: 'The next view: free, then each camera', run: () => app.views.cycle(1) },
-    { group, keys: ['[', 'BracketLeft'], what: 'The view before', run: () => app.views.cycle(-1) },
-    { group, keys: ['Alt+ArrowLeft', 'Numpad4'], what: 'Go round to the left', run: orbit(turn, 0) },
-    { group, keys: ['Alt+ArrowRight', 'Numpad6'], what: 'Round to the right', run: orbit(-turn, 0) },
+    { group, keys: ['[', 'BracketLeft'], what: 'Previous view', run: () => app.views.cycle(-1) },
+    { group, keys: ['Alt+ArrowLeft', 'Numpad4'], what: 'Orbit left', run: orbit(turn, 0) },
+    { group, keys: ['Alt+ArrowRight', 'Numpad6'], what: 'Orbit right', run: orbit(-turn, 0) },
     { group, keys: ['Alt+ArrowUp', 'Numpad8'], what: 'Rise', run: orbit(0, turn) },
     { group, keys: ['Alt+ArrowDown', 'Numpad2'], what: 'Sink', run: orbit(0, -turn) },
     { group, keys: ['Alt+Shift+ArrowLeft'], what: 'Move the view to the left', run: pan(0.04, 0) },
@@ -101,8 +101,8 @@ function rig(app: App): Binding[] {
   const group = 'Rig';
   const ask = (what: string) => () => void viewer.commander.plain(what);
   return [
-    { group, keys: ['Backspace'], what: 'Reset: everything back to the start', run: () => (viewer.readonly ? viewer.playback.seek(0) : viewer.blind || ask('reset')()) },
-    { group, keys: ['h', 'F8'], what: 'Halt: everything stops; from any field, too', anywhere: true, run: ask('halt') },
+    { group, keys: ['Backspace'], what: 'Reset to the initial state', run: () => (viewer.readonly ? viewer.playback.seek(0) : viewer.blind || ask('reset')()) },
+    { group, keys: ['h', 'F8'], what: 'Halt: stop all motion; from any field, too', anywhere: true, run: ask('halt') },
     { group, keys: ['g'], what: 'Push an elastic arm by dragging it, on or off', run: () => toggle_push(app) },
     { group, keys: ['r'], what: 'Run the tasks', run: () => viewer.blind || ask('run')() },
     { group, keys: ['c'], what: 'Cancel the run', run: () => viewer.readonly || ask('cancel')() },
@@ -113,7 +113,7 @@ function page(app: App): Binding[] {
   const group = 'Page';
   return [
     { group, keys: ['F1', '?'], what: 'This help', run: () => (app.dialog.value = app.dialog.value === 'help' ? null : 'help') },
-    { group, keys: ['Escape'], what: 'Close; then push no more; then the free view; then pick nothing', run: () => escape(app) },
+    { group, keys: ['Escape'], what: 'Close; leave push mode; free view; clear selection', run: () => escape(app) },
     { group, keys: ['l'], what: 'Light or dark', run: toggle_theme },
   ];
 }

@@ -12,7 +12,7 @@ export function ActuatorPanel({ actuators }: { actuators: ActuatorControl[] }) {
   viewer.tick.value;
   const state = viewer.shown;
   const shown = state ? actuators_of(state) : [];
-  if (shown.length !== actuators.length) return <p class="empty">How its tendons pull has not come yet.</p>;
+  if (shown.length !== actuators.length) return <p class="empty">Waiting for the tendon tensions.</p>;
   const { still } = viewer;
   const together = preferences.tendons_together.value;
   const scale = force_scale(shown.map(({ force }) => force));

@@ -79,7 +79,7 @@ export function CameraCard({ camera, pixel }: Props) {
         {!picture && <span class="none">{viewer.freshness.value === 'recording' ? 'No picture yet at this time' : 'No picture'}</span>}
         {picture && old && <span class="old">{old}</span>}
         {picture && !old && unfound && <span class="unfound">{unfound}</span>}
-        {picture && !old && viewer.freshness.value === 'held' && <span class="now">Now: only the view is held</span>}
+        {picture && !old && viewer.freshness.value === 'held' && <span class="now">Current picture (the 3D view is held)</span>}
       </div>
       <figcaption>
         <b>{camera.name}</b>
@@ -113,7 +113,7 @@ function exact(name: string, viewer: Viewer): string {
 /** Returns why a picture is not current; null if it is current or its time is unknown. */
 function age(freshness: string, time: number | undefined, history: History): string | null {
   if (time === undefined || freshness === 'recording') return null;
-  if (freshness === 'lost' || freshness === 'stale') return `Old: of ${format_time(time)}`;
+  if (freshness === 'lost' || freshness === 'stale') return `Outdated: from ${format_time(time)}`;
   const outdated = history.outdated_for(time);
   return outdated > late_s ? `${outdated.toFixed(1)} s old` : null;
 }

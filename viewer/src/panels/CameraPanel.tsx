@@ -11,7 +11,7 @@ export function CameraPanel() {
   const { viewer } = use_app();
   const hello = viewer.hello.value;
   const scene = viewer.scene.value;
-  if (!hello || !scene) return <p class="empty">Nothing has come yet.</p>;
+  if (!hello || !scene) return <p class="empty">No data received yet.</p>;
   const { heads, stages } = hello.controls;
   if (!heads.length && !stages.length) return <p class="empty">No camera here can be moved.</p>;
   return (

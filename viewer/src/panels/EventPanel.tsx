@@ -9,7 +9,7 @@ export function EventPanel() {
   const { viewer } = use_app();
   const marks = viewer.hello.value?.marks ?? [];
   const all = [...marks, ...viewer.events.value].sort((a, b) => b.time - a.time);
-  if (!all.length) return <p class="empty">Nothing has happened.</p>;
+  if (!all.length) return <p class="empty">No events.</p>;
   return (
     <ol class="events">
       {all.map(({ time, level, name, text }, i) => (

@@ -73,7 +73,7 @@ function PushFields({ control, state }: { control: PushControl; state: State }) 
       <output class="push-state" aria-live="off">
         {state.push
           ? `Pushed by ${force_text(size_at(state.push, push_force))} at s = ${fixed(state.push[0], places)} m`
-          : `Nothing pushes; ${force_text(control.most)} at most`}
+          : `No push; ${force_text(control.most)} at most`}
       </output>
     </fieldset>
   );
@@ -120,9 +120,9 @@ function Contacts({ contacts, scene }: { contacts: Float32Array; scene: Scene })
   return (
     <fieldset class="section contacts" id="contacts">
       <legend>Contacts</legend>
-      {count === 0 ? <p class="quiet" role="status">The arm touches nothing.</p> : (
+      {count === 0 ? <p class="quiet" role="status">No contacts.</p> : (
         <table>
-          <thead><tr><th scope="col">With</th><th scope="col">s, m</th><th scope="col" title="Across the surface">Normal</th><th scope="col">Friction</th></tr></thead>
+          <thead><tr><th scope="col">With</th><th scope="col">s, m</th><th scope="col" title="Normal to the surface">Normal</th><th scope="col">Friction</th></tr></thead>
           <tbody>
             {Array.from({ length: count }, (_, i) => {
               const at = contact_stride * i;

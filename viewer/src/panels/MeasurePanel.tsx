@@ -38,7 +38,7 @@ function Shape({ found }: { found: ShapeResult | null }) {
 
 function said(found: ShapeResult | null): string {
   if (!found) return 'Shape: …';
-  if (!found.found) return `No shape: ${found.reason || 'the arm is not seen'}`;
-  const doubtful = found.notes.length ? ', doubtful' : '';
+  if (!found.found) return `No shape: ${found.reason || 'the arm was not found in the pictures'}`;
+  const doubtful = found.notes.length ? ', low confidence' : '';
   return `Shape ±${(1000 * (found.sigma ?? 0)).toPrecision(2)} mm, images ${(found.rms_px ?? 0).toPrecision(2)} px off${doubtful}`;
 }

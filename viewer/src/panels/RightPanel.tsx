@@ -14,7 +14,7 @@ export function RightPanel() {
     <aside class="right" aria-label="Cameras">
       <div class="cards" data-count={cameras.length}>
         {cameras.map((camera) => <CameraCard key={camera.name} camera={camera} pixel={pixel} />)}
-        {!cameras.length && <p class="empty">{viewer.scene.value ? 'This rig has no cameras.' : 'Nothing has come yet.'}</p>}
+        {!cameras.length && <p class="empty">{viewer.scene.value ? 'This rig has no cameras.' : 'No data received yet.'}</p>}
       </div>
       {cameras.length > 0 && <MeasurePanel cameras={cameras.length} />}
       {cameras.length > 0 && <PixelInspector pixel={pixel} />}

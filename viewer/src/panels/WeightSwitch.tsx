@@ -16,9 +16,9 @@ export function WeightSwitch() {
             box.checked = !off;
             void viewer.commander.weight(on);
           }} />
-        Weight and loads pull at the arm
+        Apply weight and loads
       </label>
-      {off && <p role="status">Switched off in this simulation, until Reset. A run of tasks has them.</p>}
+      {off && <p role="status">Off until Reset; task runs always include them.</p>}
     </div>
   );
 }

@@ -37,7 +37,7 @@ export function AlongPlot({ place, options, choose }: Props) {
   const i = along && at.value !== null ? Math.round((at.value / along.length) * ((curves[0]?.values.length ?? 1) - 1)) : -1;
   return (
     <PlotFrame place={place} series={series} options={options} chosen={along_option.id} names={names} colors={colors}
-      part={along ? `${along.unit} over m` : 'Nothing now: while a servo steers the arm'} host={host} choose={choose}
+      part={along ? `${along.unit} over m` : 'Available while a servo is running'} host={host} choose={choose}
       values={curves.map(({ values }) => (i < 0 ? largest(values) : values[i]))} />
   );
 }

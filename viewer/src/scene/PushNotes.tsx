@@ -28,7 +28,7 @@ export function PushNote() {
   return (
     <>
       {push_tool.value && !pushed && !viewer.still && (
-        <div class="push-note" role="status">Push: drag a point of the arm. Esc ends this.</div>
+        <div class="push-note" role="status">Push: drag a point of the arm. Esc to stop.</div>
       )}
       {pushed && <PushLabel />}
     </>

@@ -18,7 +18,7 @@ export function Stage3D() {
       id="stage"
       tabIndex={0}
       role="img"
-      aria-label="The arm and its stand in three dimensions. Alt and the arrow keys turn the view, Page Up and Page Down zoom, 1, 3 and 7 look from the front, the side and above."
+      aria-label="3D view of the arm and its surroundings. Alt and the arrow keys turn the view, Page Up and Page Down zoom, 1, 3 and 7 look from the front, the side and above."
     />
   );
 }

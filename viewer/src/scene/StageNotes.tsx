@@ -38,7 +38,7 @@ function OldLabel() {
   if (freshness !== 'stale' && freshness !== 'lost') return null;
   return (
     <div class="old-label" role="status">
-      {freshness === 'lost' ? 'Connection lost' : 'No new data'} — this is the state of {format_time(viewer.shown?.time ?? NaN)}
+      {freshness === 'lost' ? 'Connection lost' : 'No new data'} — showing the state at {format_time(viewer.shown?.time ?? NaN)}
     </div>
   );
 }
@@ -59,7 +59,7 @@ function ExtrasLegend() {
   return (
     <aside class="extras" aria-label={`${extras.title}: what is drawn`}>
       <header><b>{extras.title}</b> <span>{extras.text}</span></header>
-      <div class="chips" role="group" aria-label="Drawn beside the arm and upon the pictures">
+      <div class="chips" role="group" aria-label="Overlays in the 3D view and on the pictures">
         {eyes_of(extras).map(({ id, label, color }) => {
           const shown = !hidden.includes(eye_of(id));
           return (
@@ -87,7 +87,7 @@ function PickedPoint() {
     <aside class="picked" aria-label="The picked point of the backbone">
       <header>
         <b>Backbone</b>
-        <button type="button" class="button quiet square" aria-label="Pick nothing" title="Pick nothing (Esc)" onClick={() => (viewer.picked.value = null)}>
+        <button type="button" class="button quiet square" aria-label="Clear selection" title="Clear selection (Esc)" onClick={() => (viewer.picked.value = null)}>
           <Icon name="close" />
         </button>
       </header>

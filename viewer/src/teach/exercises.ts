@@ -60,7 +60,7 @@ export const exercises: Exercise[] = [
     id: 'parallel',
     title: 'Aside, and upright again',
     task: 'Bend both sections so that the tip points straight up again but stands 1 m to the right of the base.',
-    hint: 'Upright again means that the archings add up to nothing. Which sign moves the tip to the right?',
+    hint: 'Upright again means that the archings add up to zero. Which sign moves the tip to the right?',
     lengths: [2, 2],
     start: [0, 0],
     check(sections) {
@@ -104,7 +104,7 @@ export const exercises: Exercise[] = [
   {
     id: 'paper',
     title: 'The paper’s arm',
-    task: 'Eight sections. All but the fifth are as in the paper’s experiment; find the fifth arching for which the fifth cord makes 1.15 π (207°) with Ox, and see where the end effector comes to.',
+    task: 'Eight sections. All but the fifth are as in the paper’s experiment; find the fifth arching for which the fifth cord makes 1.15 π (207°) with Ox, and see where the end effector ends.',
     hint: 'The tangent where section 5 starts is at 90° + 2 · (9° + 9° + 18° + 18°) = 198°.',
     lengths: [2, 3, 1, 2, 4, 2, 1, 1],
     start: [0.05, 0.05, 0.1, 0.1, 0, -0.3, 0.2, -0.35].map((a) => a * Math.PI),

@@ -34,7 +34,7 @@ function Refused({ why }: { why: string }) {
   const [text, set_text] = useState('');
   const [bad, set_bad] = useState(false);
   return (
-    <form class="entrance" role="alertdialog" aria-label="Not let in" onSubmit={(event) => {
+    <form class="entrance" role="alertdialog" aria-label="Access refused" onSubmit={(event) => {
       event.preventDefault();
       set_bad(!app.use_token(text));
     }}>

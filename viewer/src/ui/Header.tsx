@@ -7,13 +7,13 @@ import { fixed } from './format';
 import { Icon } from './Icon';
 
 const badges = {
-  live: ['LIVE', 'What is shown is of now.'],
-  held: ['HELD', 'The view is held at a past instant; the rig goes on.'],
-  recording: ['RECORDING', 'A recording: nothing moves.'],
-  stale: ['STALE', 'No new data come: what is shown is old.'],
-  lost: ['NO CONNECTION', 'The connection is lost: what is shown is old.'],
-  none: ['CONNECTING', 'Nothing was received yet.'],
-  refused: ['NO ACCESS', 'The program does not let this page in: open the address that it printed.'],
+  live: ['LIVE', 'The current state is shown.'],
+  held: ['HELD', 'The view is held at an earlier time; the rig keeps running.'],
+  recording: ['RECORDING', 'Recording: the rig cannot be moved.'],
+  stale: ['STALE', 'No new data: the shown state is outdated.'],
+  lost: ['NO CONNECTION', 'Connection lost: the shown state is outdated.'],
+  none: ['CONNECTING', 'No data received yet.'],
+  refused: ['NO ACCESS', 'Access refused: open the address that the program printed.'],
 } as const;
 
 export function Header() {
@@ -67,7 +67,7 @@ function Pace() {
   const pace = viewer.shown?.pace;
   return (
     <span class="badge" data-kind="slow" role="status"
-      title="Its steps take longer than they last: the arm moves more slowly than in real time.">
+      title="The simulation is slower than real time: the arm moves more slowly than in real time.">
       {pace ? `${fixed(pace, 2)} × REAL TIME` : 'SLOW'}
     </span>
   );
@@ -132,7 +132,7 @@ function Rig() {
         </span>
       )}
       {!running && tasks.length > 1 && (
-        <select aria-label="Which tasks run" title="All tasks, or one alone" value={only.value ?? ''} disabled={!connected || viewer.readonly || viewer.blind}
+        <select aria-label="Tasks to run" title="All tasks, or one alone" value={only.value ?? ''} disabled={!connected || viewer.readonly || viewer.blind}
           onChange={({ currentTarget: { value } }) => (only.value = value === '' ? null : Number(value))}>
           <option value="">All tasks</option>
           {tasks.map(({ name, kind }, i) => <option key={i} value={i}>{`${i + 1}: ${name === kind ? name : `${name} (${kind})`}`}</option>)}
@@ -154,7 +154,7 @@ function Rig() {
       <button type="button" class="button danger" disabled={!connected || viewer.readonly} onClick={ask('halt')}
         title="Everything stops (H or F8, from any field)"><Icon name="halt" />Halt</button>
       <button type="button" class="button quiet" disabled={!connected || viewer.still} onClick={ask('reset')}
-        title="Everything back to the start (Backspace)"><Icon name="reset" />Reset</button>
+        title="Reset to the initial state (Backspace)"><Icon name="reset" />Reset</button>
     </div>
   );
 }

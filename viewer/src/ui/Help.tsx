@@ -9,7 +9,7 @@ const hand = [
   { keys: ['Right drag, Shift drag'], what: 'Move the view' },
   { keys: ['Shift drag on the arm'], what: 'Push an elastic arm there; so does any drag with Push switched on (G)' },
   { keys: ['Wheel'], what: 'Nearer or farther' },
-  { keys: ['Double click'], what: 'Look at what is there' },
+  { keys: ['Double click'], what: 'Centre the view on the point' },
   { keys: ['Click on the arm'], what: 'Pick a point of the backbone' },
   { keys: ['Drag the tip’s handle'], what: 'The arm follows by inverse kinematics' },
   { keys: ['Point at a camera’s picture'], what: 'The pixel’s exact value' },
@@ -30,7 +30,7 @@ export function Help() {
         <label class="check">
           <input type="checkbox" title="Whether single keys do something" checked={preferences.keys.value}
             onChange={(event) => (preferences.keys.value = event.currentTarget.checked)} />
-          Keys are on
+          Enable keys
         </label>
         <button type="button" class="button quiet square" aria-label="Close" title="Close (Esc)" onClick={() => (app.dialog.value = null)}>
           <Icon name="close" />

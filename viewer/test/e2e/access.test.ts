@@ -167,7 +167,7 @@ for (const dark of [true, false]) {
         const form = (await page.getByRole('alertdialog').textContent())!;
         expect(form).toContain('no token that the program knows');
         expect(form).toContain('Open the address that');
-        expect(await page.locator('.right').textContent()).toBe('Nothing has come yet.');
+        expect(await page.locator('.right').textContent()).toBe('No data received yet.');
         expect(new URL(page.url()).hash).toBe('');
         const shown = await ground_of_stage(page);
         for (let i = 0; i < 3; ++i) expect(Math.abs(shown[i] - ground[i]), `${shown.join()} of the 3D view`).toBeLessThan(6);

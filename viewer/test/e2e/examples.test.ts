@@ -22,7 +22,7 @@ test.runIf(program)('the examples are offered at the start, and one of them open
   await dialog.getByRole('button', { name: 'Steering the shape' }).click();
   await until(async () => (await page.title()).includes('Steering the shape'));
   expect(await dialog.isVisible()).toBe(false);
-  expect(await page.locator('select[aria-label="Which tasks run"] option').count()).toBeGreaterThan(3);
+  expect(await page.locator('select[aria-label="Tasks to run"] option').count()).toBeGreaterThan(3);
 });
 
 test.runIf(program)('another one opens from the header', async () => {

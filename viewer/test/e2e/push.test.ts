@@ -58,7 +58,7 @@ describe.skipIf(!program)('an arm in motion', () => {
   test('is pushed by the tool, against a post whose contacts are listed', async () => {
     const { page, complaints } = opened;
     await page.getByRole('tab', { name: 'Forces' }).click();
-    await page.getByText('The arm touches nothing.').waitFor();
+    await page.getByText('No contacts.').waitFor();
     await from_front(page);
     await page.keyboard.press('g');
     expect(await page.locator('.push-tool').getAttribute('aria-pressed')).toBe('true');
@@ -72,7 +72,7 @@ describe.skipIf(!program)('an arm in motion', () => {
     expect(await page.locator('#contacts tbody th').first().textContent()).toBe('post');
     await until(async () => /slides|sticks/.test(await page.locator('#contacts tbody tr').first().textContent() ?? ''));
     await page.mouse.up();
-    await page.getByText('The arm touches nothing.').waitFor({ timeout: 30000 });
+    await page.getByText('No contacts.').waitFor({ timeout: 30000 });
     await page.keyboard.press('Escape');
     await until(async () => (await page.locator('.push-tool').getAttribute('aria-pressed')) === 'false');
     expect(complaints).toEqual([]);
@@ -139,7 +139,7 @@ describe.skipIf(!program)('a recording of an arm that grasps', () => {
   test('shows its energy and what it touches', async () => {
     const { page, complaints } = opened;
     await page.getByRole('tab', { name: 'Forces' }).click();
-    await page.getByText('The arm touches nothing.').waitFor();
+    await page.getByText('No contacts.').waitFor();
     await slide(page, '#scrub', 3.9);
     await page.locator('#contacts tbody tr').first().waitFor();
     expect(await page.locator('#contacts tbody th').first().textContent()).toBe('post');

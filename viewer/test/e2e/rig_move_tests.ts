@@ -218,7 +218,7 @@ export function pick_tests(opened: Opened): void {
     await tab_to('#picked-s');
     for (let i = 0; i < 3; ++i) await page.keyboard.press('PageDown');
     await until(async () => (await s.textContent()) !== at_tip);
-    await tab_to('button[aria-label="Pick nothing"], .picked button');
+    await tab_to('button[aria-label="Clear selection"], .picked button');
     await page.keyboard.press('Enter');
     expect(await page.locator('.picked').count()).toBe(0);
     await page.keyboard.press('k');

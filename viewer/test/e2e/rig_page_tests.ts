@@ -25,7 +25,7 @@ export function page_tests(opened: Opened): void {
     await page.waitForSelector('dialog.help[open]');
     const help = (await page.locator('dialog.help').textContent())!;
     for (const word of ['Space', 'F1', 'Esc', 'Backspace', '[', ']', 'Halt', 'Drag']) expect(help).toContain(word);
-    const box = page.getByLabel('Keys are on');
+    const box = page.getByLabel('Enable keys');
     await box.uncheck();
     await page.keyboard.press('Escape');
     await until(async () => (await page.locator('dialog.help[open]').count()) === 0);

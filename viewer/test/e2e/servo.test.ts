@@ -23,7 +23,7 @@ describe.skipIf(!program)('a servo', () => {
 
   test('one task is chosen and started; wanted, seen and true shapes have a legend', async () => {
     expect(await legend().count()).toBe(0);
-    await page.getByLabel('Which tasks run').selectOption({ label: '2: sway (servo)' });
+    await page.getByLabel('Tasks to run').selectOption({ label: '2: sway (servo)' });
     await page.getByRole('button', { name: 'Run tasks' }).click();
     await legend().waitFor();
     await until(async () => (await legend().getByRole('button').count()) === 4, 15000, 'not all shapes came');

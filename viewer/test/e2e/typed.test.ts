@@ -71,11 +71,11 @@ test('H halts from any focus, and that is confirmed', async () => {
   await page.waitForSelector('dialog.help[open]');
   await page.keyboard.press('h');
   await until(() => halts() === 4, 8000, 'not from the help');
-  await page.getByLabel('Keys are on').uncheck();
+  await page.getByLabel('Enable keys').uncheck();
   await page.keyboard.press('F8');
   await page.waitForTimeout(300);
   expect(halts()).toBe(4);
-  await page.getByLabel('Keys are on').check();
+  await page.getByLabel('Enable keys').check();
   await page.keyboard.press('F8');
   await until(() => halts() === 5);
 });

@@ -16,7 +16,8 @@ constexpr double same_instant = 1e-9;  // In s.
 TaskOutcome outcome_of(const TaskRunner& task, const Leg& leg, const Played& played, bool is_whole) {
   TaskOutcome outcome = task.outcome(*leg.motion);
   outcome.kind = leg.kind;
-  if (is_whole || task.way() != TaskMotionSource::known || leg.motion->duration() == 0) return outcome;
+  if (is_whole || task.motion_source() != TaskMotionSource::known || leg.motion->duration() == 0)
+    return outcome;
   const double played_of_it = played.time - leg.start;
   if (played_of_it <= same_instant)
     return not_begun(outcome.task, outcome.kind, outcome.noun, outcome.success);

@@ -13,6 +13,7 @@
 #include "flexura/log/results.h"
 #include "flexura/model/backbone.h"
 #include "flexura/report/arm_drawing.h"
+#include "flexura/sim/simulation_error.h"
 
 namespace flexura {
 namespace {
@@ -101,7 +102,11 @@ void RunRecorder::draw_scene(const Experiment& experiment) {
 }
 
 void RunRecorder::state(std::size_t step, double time, const ArmState& state) {
-  const Backbone backbone = model_.backbone(state);
+  const ArmState shape = model_.actuation().shape(state);
+  if (!std::ranges::all_of(shape.bends, [](const Eigen::Vector2d& bend) { return bend.allFinite(); }))
+    throw SimulationError(
+        fmt::format("at {:.6g} s the model of the arm has no equilibrium under the commanded bends", time));
+  const Backbone backbone = model_.backbone_of_shape(shape);
   commanded_tip_ = backbone.tip().position;
   log_.recorder().state(time, state, backbone);
   if (drawn_color_ && (scene_times_.is_next(time) || step == last_step_)) {

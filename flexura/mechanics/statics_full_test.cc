@@ -37,8 +37,8 @@ TEST(StaticsReference, AThousandRobotsFromACold) {
     const RodLoads loads = random_loads(random, rod);
     const Equilibrium at = RodStatics(rod).solve({.tensions = tensions}, loads);
     ASSERT_TRUE(at.converged()) << words(at.end);
-    ShootingRod run_recorder(rod, tensions, loads);
-    const ShootingRod::Shot shot = run_recorder.shoot(wrench_at_base(rod, at, tensions, loads));
+    ShootingRod reference(rod, tensions, loads);
+    const ShootingRod::Shot shot = reference.shoot(wrench_at_base(rod, at, tensions, loads));
     ASSERT_TRUE(shot.hit) << shot.miss;
     const double difference = (shot.tip.position - at.tip.position).norm() / rod.length();
     worst = std::max(worst, difference);
@@ -62,8 +62,8 @@ TEST(StaticsReference, EachModeMoreComesNearer) {
     RodLoads loads = random_loads(random, rod);
     loads.gravity = random.vector<3>(-10.0, 10.0);
     const Equilibrium first = RodStatics(rod).solve({.tensions = tensions}, loads);
-    ShootingRod run_recorder(rod, tensions, loads);
-    const ShootingRod::Shot shot = run_recorder.shoot(wrench_at_base(rod, first, tensions, loads));
+    ShootingRod reference(rod, tensions, loads);
+    const ShootingRod::Shot shot = reference.shoot(wrench_at_base(rod, first, tensions, loads));
     ASSERT_TRUE(shot.hit);
     const auto error = [&](int modes) {
       const Equilibrium at = RodStatics(finer(rod, modes)).solve({.tensions = tensions}, loads);

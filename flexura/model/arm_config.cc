@@ -186,6 +186,11 @@ const Table<ArmConfig>& fields_of(const ArmConfig*) {
                  {.meaning = "Integration time step of a dynamic arm.",
                   .unit = Unit::second,
                   .range = between(1e-6, 0.1)})
+          .field("spectral_radius", &ArmConfig::spectral_radius,
+                 {.meaning = "Numerical damping of a dynamic arm: spectral radius of the integration at high "
+                             "frequencies. 0 damps fast vibrations in one step; 1 keeps the energy of an arm "
+                             "without damping.",
+                  .range = between(0, 1)})
           .field("contact", &ArmConfig::contact,
                  {.meaning = "Contact of a dynamic arm with obstacles and with itself.",
                   .default_text = "no contact"})

@@ -50,6 +50,7 @@ struct ArmConfig {
   std::vector<TendonRouteConfig> tendon;      ///< Empty: the drive's tendons, if there is a drive.
   std::vector<LoadConfig> load;
   double time_step = 0.005;              ///< Of rods in motion, s; the next fields are for those too.
+  double spectral_radius = 0.1;          ///< Of the integration at high frequencies, 0 to 1.
   std::optional<ContactConfig> contact;  ///< Missing: the arm touches nothing.
   std::optional<DragConfig> drag;        ///< Missing: no fluid.
   std::vector<PayloadConfig> payload;

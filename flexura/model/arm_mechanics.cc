@@ -75,6 +75,14 @@ void check_motion(const ArmConfig& arm, Reader& reader) {
                         "has no mass: expected density or mass_per_length, for the arm's model is "
                         "\"dynamic\"");
   }
+  if (!arm.contact || !arm.contact->spacing) return;
+  constexpr double most_places = 10000;
+  double length = 0;
+  for (const Section& section : arm.section) length += section.length;
+  if (length / *arm.contact->spacing > most_places)
+    reader.problem_at("contact.spacing",
+                      fmt::format("{:.6g} m: expected at least {:.6g} m, which gives {} points",
+                                  *arm.contact->spacing, length / most_places, most_places));
 }
 
 }  // namespace

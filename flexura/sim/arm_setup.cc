@@ -22,6 +22,7 @@ std::vector<std::array<double, 2>> tube_radii(const Arm& arm) {
 // Sets the time step, contact, drag and payloads of an arm with inertia.
 void set_motion(const RigConfig& config, const Arm& arm, ArmRod& rod) {
   rod.time_step = config.arm.time_step;
+  rod.spectral_radius = config.arm.spectral_radius;
   if (const auto& contact = config.arm.contact) {
     rod.contact = {.law = {.stiffness = contact->stiffness,
                            .damping = contact->damping,

@@ -21,6 +21,7 @@ struct ArmRod {
   std::vector<TendonBreak> breaks = {};
   /// Time step of the motion, s. Missing: the arm has no inertia, and the fields below are empty.
   std::optional<double> time_step = {};
+  double spectral_radius = 0.1;  ///< RodDynamicsConfig::spectral_radius.
   std::optional<RodContactConfig> contact = {};
   std::optional<RodDragConfig> drag = {};
   /// A mass that the arm carries for a time.

@@ -13,7 +13,6 @@
 namespace flexura {
 namespace {
 
-constexpr RodDynamicsConfig plant_config{};
 // Longest step while motors may lose microsteps, s: a fifth of the rotor time.
 constexpr double rotor_step = rotor_time / 5;
 // Interval of the backward difference for the rates of section lengths, s.
@@ -31,6 +30,8 @@ const ArmRod& moving_rod(const PlantSetup& setup) {
   return *setup.truth.rod;
 }
 
+RodDynamicsConfig config_of(const ArmRod& rod) { return {.spectral_radius = rod.spectral_radius}; }
+
 // Returns the places that must be nodes: those of the payloads.
 std::vector<RodPlace> places_of(const ArmRod& rod) {
   std::vector<RodPlace> places;
@@ -47,7 +48,7 @@ DynamicPlant::DynamicPlant(const PlantSetup& setup)
       X_WB_(setup.truth.arm.X_WB),
       step_(setup.truth.rod->time_step.value()),
       horizon_(setup.horizon),
-      dynamics_(inputs().rod(), plant_config, places_of(rod_)),
+      dynamics_(inputs().rod(), config_of(rod_), places_of(rod_)),
       carried_(rod_.payloads.size(), 0) {
   if (rod_.contact)
     for (const Obstacle& obstacle : obstacles(rod_.contact->obstacles)) names_.push_back(obstacle.name);
@@ -65,7 +66,7 @@ DynamicPlant::DynamicPlant(const PlantSetup& setup)
   const Equilibrium rest =
       statics.solve({.displacements = inputs().displacements(0, inputs().nothing_lost())}, inputs().loads(0));
   if (!rest.converged())
-    throw std::invalid_argument(
+    throw SimulationError(
         fmt::format("the arm comes to no rest from which it could begin: {}", words(rest.end)));
   snapshots_.push_back({0, dynamics_.rest(rest), rotors_at_rest(inputs(), rest.tensions), carried_});
   hand_over(snapshots_.back(), 0);
@@ -88,7 +89,7 @@ void DynamicPlant::grab(const std::optional<RodPlace>& place) const {
   if (place == grabbed_) return;
   std::vector<RodPlace> places = places_of(rod_);
   if (place) places.push_back(*place);
-  dynamics_ = RodDynamics(inputs().rod(), plant_config, places);
+  dynamics_ = RodDynamics(inputs().rod(), config_of(rod_), places);
   grabbed_ = place;
   carried_.assign(rod_.payloads.size(), 0);
   surround();
@@ -173,7 +174,7 @@ void DynamicPlant::turn(Snapshot& at, double from, double to) const {
 }
 
 void DynamicPlant::move(Snapshot& at, double from, double h) const {
-  const double middle = from + h / (1 + plant_config.spectral_radius);
+  const double middle = from + h / (1 + rod_.spectral_radius);
   const TendonInput input{.displacements = inputs().displacements(middle, at.rotors.behind)};
   if (can_stretch_) {
     std::vector<double> rates = inputs().rest_stretches(from + h);

@@ -24,7 +24,7 @@ mkdir -p docs/studies "$trials_kept"
   echo "| number | bound |"
   echo "| --- | --- |"
   echo "| mount: rotation; position | 10 degrees pan and tilt, 1 roll; 0.2 m per axis |"
-  echo "| focal length; fy alone; principal point; k1 | 10 %; 0.1 %; 10 px; 0.02 |"
+  echo "| focal length; ratio fy/fx; principal point; k1 | 10 %; 0.1 %; 10 px; 0.02 |"
   echo "| zeros of head axes; tilt axis point and pupil; pupil shift | 1 degree; 3 mm per axis; 1 mm per unit of zoom ratio |"
   echo "| section bends; lengths | 1 %; 0.5 % |"
   echo

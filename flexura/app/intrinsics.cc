@@ -130,9 +130,9 @@ void check_are_there(const IntrinsicsArguments& arguments) {
 }  // namespace
 
 int intrinsics_command(const IntrinsicsArguments& arguments, std::ostream& out, std::ostream& err) {
-  check_are_there(arguments);
   check(arguments);
   const BoardTarget board = board_of(arguments);
+  check_are_there(arguments);
   TerminalProgress progress(err);
   const Node answer = arguments.zooms.empty() ? cameras_answer(arguments, board, progress)
                                               : zoom_answer(arguments, board, progress);

@@ -96,7 +96,7 @@ class Table : public AnyTable {
 
   /// Reports a field's old name, with any unit's suffix, as an error that gives the new `name`: "is now
   /// called
-  /// ...". The field is added before; std::logic_error otherwise.
+  /// ...". Add the field `name` first; else it throws std::logic_error.
   Table& renamed(std::string old_name, std::string name) {
     add_renamed(std::move(old_name), std::move(name));
     return *this;

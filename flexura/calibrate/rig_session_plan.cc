@@ -224,8 +224,8 @@ RigCommander::Error RigSessionPlan::error_with(const RigModel& model, const Desi
                angle = std::acos(std::clamp(cosine, -1.0, 1.0));
   if (std::min(angle, std::numbers::pi - angle) < steepest)
     return fmt::format(
-        "both cameras look {}: their lines of sight are {:.1f} deg apart where the stages end, and heads "
-        "alone cannot make orthogonal axes of that",
+        "both cameras look {}: their lines of sight are {:.1f} deg apart where the stages end, so heads "
+        "alone cannot make the axes orthogonal",
         angle < std::numbers::pi / 2 ? "from one side" : "from opposite sides", angle / degree);
   std::string why;
   for (const std::string& note : desired.notes) why += "; " + note;

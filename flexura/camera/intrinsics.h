@@ -64,7 +64,7 @@ class Lens {
   [[nodiscard]] bool project_by_point(const Eigen::Vector3d& p_CP, PointProjection& result) const;
 
   /// Returns the normalized coordinates (a, b) of a pixel, to about 1e-13: (a, b, 1) is the direction of the
-  /// pixel's ray in C. Empty where the lens has no direction.
+  /// pixel's ray in C. Empty where the lens's distortion maps no ray to it.
   [[nodiscard]] std::optional<Eigen::Vector2d> unproject(const Eigen::Vector2d& pixel) const;
 
  private:

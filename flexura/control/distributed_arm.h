@@ -41,7 +41,8 @@ class DistributedArm {
   explicit DistributedArm(const DistributedArmModel& model);
 
   [[nodiscard]] const DistributedArmModel& model() const { return model_; }
-  /// Returns the shape functions of both angles; "the points" of this class are their s.
+  /// Returns the shape functions of both angles; "the points" in this class are the quadrature points, by arc
+  /// length s.
   [[nodiscard]] const AngleShapes& shapes() const { return shapes_; }
   /// Return the number of coordinates, and of numbers per angle.
   [[nodiscard]] Eigen::Index size() const { return size_; }

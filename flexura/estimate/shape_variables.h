@@ -15,8 +15,8 @@ namespace flexura {
 /// Prior knowledge of an arm.
 struct ShapePrior {
   Arm arm;                              ///< Its sections, and its base as far as known.
-  bool is_base_position_known = true;   ///< Whether the position of Arm::X_WB holds.
-  bool is_base_direction_known = true;  ///< Whether the rotation of Arm::X_WB holds.
+  bool is_base_position_known = true;   ///< Whether the position in Arm::X_WB is known; else it is estimated.
+  bool is_base_direction_known = true;  ///< Whether the rotation in Arm::X_WB is known; else it is estimated.
   bool is_length_known = true;          ///< Otherwise all sections have a common stretch.
   /// Standard deviation of the change of curvature from one section to the next, 1/m; infinite: sections bend
   /// independently. Smooth arms without a kinematic model are many short sections with a small one.

@@ -30,7 +30,7 @@ struct RodDynamics::Work {
           error(1.0 / 12 + 0.25 * (1 - rho) * (1 - rho) / ((1 + rho) * (1 + rho))) {}
     double alpha_f, alpha_m, gamma;
     double stage;   ///< Factor of the step times the stage's rate: from the start to the stage.
-    double memory;  ///< Factor of the step times the remembered rate.
+    double memory;  ///< Factor of the step times RodState::rate, the integrator's rate before the step.
     double error;   ///< Step error in units of h^3 x'''.
   };
 

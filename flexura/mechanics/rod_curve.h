@@ -44,7 +44,7 @@ class RodCurve {
   explicit RodCurve(std::span<const double> s);
 
   [[nodiscard]] const std::vector<Segment>& segments() const { return segments_; }
-  /// Returns the geometry of a segment for given places.
+  /// Returns the curve of a segment through the positions of its four points.
   [[nodiscard]] static Piece piece(const Segment& segment, const std::array<Eigen::Vector3d, 4>& places);
 
  private:

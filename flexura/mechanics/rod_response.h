@@ -18,9 +18,9 @@
 namespace flexura {
 
 /// Shape of an arm that is an elastic rod under commands (docs/mechanics.md, "The rod as a model"). A
-/// command's bends set the displacement of each tendon: that of arcs with these bends. Without a drive its
-/// stretches are factors on the sections' own lengths. The shape is the chain of arcs nearest to the rod's
-/// equilibrium, by least squares of places along the rod.
+/// command's bends set the displacement of each tendon: that of arcs with these bends. Without a drive, a
+/// command's stretches multiply the sections' own lengths. The shape is the chain of arcs nearest to the
+/// rod's equilibrium, by least squares of places along the rod.
 class RodResponse : public ArmResponse {
  public:
   /// `driven` has an arc for each number of its sections' bend profiles. Displacements are those of the

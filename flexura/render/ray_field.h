@@ -13,7 +13,7 @@ namespace flexura {
 /// Returns the ray of the image point (u, v) of a lens without distortion.
 [[nodiscard]] Ray straight_ray(const Intrinsics& intrinsics, double u, double v);
 
-/// Returns the ray of an image point; empty where the lens has no direction.
+/// Returns the ray of an image point; empty where the lens's distortion maps no ray to it.
 [[nodiscard]] std::optional<Ray> ray_at(const Lens& lens, const Eigen::Vector2d& pixel);
 
 /// The rays of all pixels of an image. Without distortion nothing is stored. With it, all rays are stored and
@@ -23,7 +23,7 @@ class RayField {
   /// Throws std::invalid_argument for a size that is not positive or over 65536 px.
   void set(const Lens& lens, int width, int height);
 
-  /// Returns the ray of a pixel; empty where the lens has no direction.
+  /// Returns the ray of a pixel; empty where the lens's distortion maps no ray to it.
   [[nodiscard]] std::optional<Ray> ray(int u, int v) const;
   /// Returns the largest step in (a, b) from one pixel to its neighbours.
   [[nodiscard]] double largest_step() const { return largest_step_; }

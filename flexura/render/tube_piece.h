@@ -25,10 +25,11 @@ struct TubePiece {
   double radius = 0, widening = 0;                 ///< Radius at the start, m, and its change by arc length.
   double s = 0;                                    ///< Arc length of its start on the whole tube, m.
   bool is_ball = false;                            ///< Everything within `radius` of the origin instead.
-  bool is_cut_before = true, is_cut_after = true;  ///< Whether it ends at the planes (a sphere at none).
-  Eigen::Vector3d end_tangent = {0, 0, 1};         ///< Unit tangent at the end, P.
-  double end_offset = 0;                           ///< Offset of the end's plane along end_tangent, m.
-  int before = -1, after = -1;                     ///< Continuing pieces at its ends; -1: a true end.
+  bool is_cut_before = true,
+       is_cut_after = true;  ///< Whether the plane at its start, or end, cuts it (never for a ball).
+  Eigen::Vector3d end_tangent = {0, 0, 1};  ///< Unit tangent at the end, P.
+  double end_offset = 0;                    ///< Offset of the end's plane along end_tangent, m.
+  int before = -1, after = -1;              ///< Continuing pieces at its ends; -1: a true end.
   int body = 0;
   Eigen::Vector3d bound_center = Eigen::Vector3d::Zero();  ///< Center of a ball that contains it, P.
   double bound_radius = 0;                                 ///< Radius of that ball, m.

@@ -1,5 +1,6 @@
 #include "flexura/report/arm_curve.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -15,7 +16,9 @@ bool lies_in_xoy(const Arm& arm) {
 
 std::vector<Eigen::Vector2d> arc_points(const Arc& arc, PlotView view, const PlotFrame& frame,
                                         std::array<double, 2> aside) {
-  const int steps = 16 * (1 + static_cast<int>(arc.bend.norm() / (std::numbers::pi / 4)));
+  // Beyond some hundred turns nothing more can be seen.
+  constexpr double most = 1000;
+  const int steps = 16 * (1 + static_cast<int>(std::min(most, arc.bend.norm() / (std::numbers::pi / 4))));
   std::vector<Eigen::Vector2d> points;
   Eigen::Vector2d normal = {1.0, 0.0};
   for (int i = 0; i <= steps; ++i) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <numbers>
 
 namespace flexura {
 namespace {
@@ -49,9 +50,12 @@ void extend_by_tube(Eigen::AlignedBox3d& box, const Backbone& backbone) {
   constexpr double step = 0.2;  // In rad; an arc bulges at most step^2/8 of its radius between points.
   for (const Arc& arc : backbone.arcs()) {
     const Eigen::Vector3d around = Eigen::Vector3d::Constant(std::max(arc.radius[0], arc.radius[1]));
-    const double steps = 1.0 + std::floor(arc.bend.norm() / step);
+    // After a full turn it repeats itself.
+    const double bend = arc.bend.norm(), turn = std::min(bend, 2 * std::numbers::pi);
+    const double reach = bend > 0 ? arc.length * turn / bend : arc.length;
+    const double steps = 1.0 + std::floor(turn / step);
     for (double k = 0.0; k <= steps; ++k) {
-      const Eigen::Vector3d at = arc.pose(arc.length * k / steps).position;
+      const Eigen::Vector3d at = arc.pose(reach * k / steps).position;
       box.extend(Eigen::AlignedBox3d(at - around, at + around));
     }
   }

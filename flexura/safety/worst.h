@@ -10,7 +10,8 @@ namespace flexura {
 struct WorstValue {
   double time = 0;  ///< In s.
   double value = 0;
-  /// By how much it may be larger elsewhere, if there were too many intervals; 0: as precise as required.
+  /// By how much the true maximum may exceed `value`, if the search ran out of intervals; 0: as precise as
+  /// required.
   double uncertainty = 0;
 };
 

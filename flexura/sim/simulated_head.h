@@ -23,9 +23,9 @@ class ThreeAxes {
     bool moving;                ///< Whether any of the three moves.
   };
 
-  /// The loads start at `start` while the motors count `counted`; the difference remains as an offset. Half
-  /// of each axis's backlash lies to either side of its motor. Commands take effect `delay` s after they were
-  /// given. Positions can be queried back to `horizon` s before now.
+  /// The driven axes start at `start` while the motors read `counted`; the difference remains as an offset.
+  /// Half of each axis's backlash lies to either side of its motor. Commands take effect `delay` s after they
+  /// were given. Positions can be queried back to `horizon` s before now.
   ThreeAxes(SimulatedLink link, const std::array<AxisConfig, 3>& axes, const Eigen::Vector3d& counted,
             const Eigen::Vector3d& start, double delay, double horizon);
 

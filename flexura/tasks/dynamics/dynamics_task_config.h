@@ -48,7 +48,7 @@ struct MeasurementConfig {
 };
 
 /// `kind = "dynamics"`: the arm is a continuum with mass, weight and elasticity (DistributedArm). It starts
-/// at rest in its current shape, and moves by the forces of the paper's law.
+/// at rest in its current shape, and moves by the forces of `law` (docs/control.md).
 struct DynamicsTask {
   std::string name;
   double duration = 5;  ///< s

@@ -177,7 +177,8 @@ void add_export(CLI::App& app, Command& chosen) {
       add_command(app, "export", command_group::experiments, "Write a run's log in another format",
                   "flexura export results/experiment --to csv");
   command->add_option("RESULTS", *results, "A folder made by `flexura run`")->type_name("")->required();
-  command->add_option("--to", *format, "csv: tables; mp4, png: a film of each recorded camera (png: animated)")
+  command
+      ->add_option("--to", *format, "csv: tables; mp4, png: a film of each recorded camera (png: animated)")
       ->type_name("csv|mp4|png")
       ->check(CLI::IsMember({"csv", "mp4", "png"}).description(""))
       ->required();

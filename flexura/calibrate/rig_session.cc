@@ -305,8 +305,8 @@ class Session {
     };
     note("the angle between the axes", is.angle / degree, desired.angle / degree, " degrees");
     for (std::size_t i = 0; i < 2; ++i)
-      note(fmt::format("the focal length of camera {}", name(i)), 100 * is.focal[i],
-           100 * desired.focal[i], " %");
+      note(fmt::format("the focal length of camera {}", name(i)), 100 * is.focal[i], 100 * desired.focal[i],
+           " %");
     note("the zoom ratio", 100 * is.zoom_ratio, 100 * desired.zoom_ratio, " %");
     // For an accurate arm model, residuals are about half of the stated standard deviations.
     constexpr double suspicious_rms = 1.2;

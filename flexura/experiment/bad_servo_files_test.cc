@@ -43,7 +43,8 @@ TEST(BadServo, EachIsOneClearLine) {
            {"target = [{curve = [[0, 0, 0], [0, 0, 0]]}]\n", "target[0].curve: has no length"},
            {"target = [{curve = [[0, 0, 0], [0, nan, 0]]}]\n", "nan"},
            {"target = [{curve = [[0, 0, 0], [0, 0.9, 0]]}]\n",
-            "x.toml:32:12: task[0].target[0].curve: is 0.9 m long: expected the length of the arm within 5 %, 1 m"},
+            "x.toml:32:12: task[0].target[0].curve: is 0.9 m long: expected the length of the arm within 5 "
+            "%, 1 m"},
            {"target = [{pictures = [\"a.png\", \"b.png\"]}]\n",
             "task[0].target[0].pictures: no file \"a.png\""},
            {"target = [{pictures = [\"a.png\"]}]\n", "expected an array of 2"},

@@ -133,8 +133,8 @@ TEST(ServoClocks, ACameraWhoseClockIsOddIsNotBelieved) {
 
 // For a moment: later pictures must be used again.
 TEST(ServoClocks, ACameraWhoseClockWasOddIsBelievedAgain) {
-  for (const auto& [off, reading] : {std::pair{1000.0, "999.9"},
-                                     std::pair{std::numeric_limits<double>::quiet_NaN(), "not finite"}}) {
+  for (const auto& [off, reading] :
+       {std::pair{1000.0, "999.9"}, std::pair{std::numeric_limits<double>::quiet_NaN(), "not finite"}}) {
     ServoBench bench(servo_file(servo_target));
     RigPorts ports = bench.ports();
     AlteredCamera camera(*ports.cameras[1].camera,

@@ -97,7 +97,8 @@ TEST(ServoFaults, AHeadThatTellsNoNumberStopsTheArm) {
   ServoNotes notes;
   const ServoResult result = bench.servo(ports, notes);
   EXPECT_FALSE(result.is_done);
-  EXPECT_NE(result.reason.find("camera side: the readings of its head or stage are not finite"), std::string::npos)
+  EXPECT_NE(result.reason.find("camera side: the readings of its head or stage are not finite"),
+            std::string::npos)
       << result.reason;
   ASSERT_TRUE(result.fault);
   EXPECT_LT(result.steps.back().time, 1.5);
@@ -110,7 +111,9 @@ TEST(ServoFaults, AHeadThatTellsNoNumberStopsTheArm) {
   ports = bench.ports();
   ports.cameras[0].head = &never;
   ServoNotes silent;
-  EXPECT_NE(bench.servo(ports, silent).reason.find("camera front: the readings of its head or stage are not finite"), std::string::npos);
+  EXPECT_NE(bench.servo(ports, silent)
+                .reason.find("camera front: the readings of its head or stage are not finite"),
+            std::string::npos);
   EXPECT_TRUE(silent.sent.empty());
 }
 

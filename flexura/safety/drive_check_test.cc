@@ -153,10 +153,10 @@ TEST_F(DriveCheck, PlayIsTakenUpAtOnceAndCounts) {
   EXPECT_NEAR(report.violations[0].end, 1 + step, 1e-12);
   EXPECT_NEAR(report.violations[0].value, 13, 1e-7);
   ASSERT_EQ(report.caveats.size(), 1U);
-  EXPECT_EQ(
-      report.caveats[0],
-      "motors of 1.1: where a tendon reverses, its backlash is taken up within one step of the clock, 0.01 s; "
-      "the shorter that is, the more it asks");
+  EXPECT_EQ(report.caveats[0],
+            "motors of 1.1: where a tendon reverses, its backlash is taken up within one step of the clock, "
+            "0.01 s; "
+            "the shorter that is, the more it asks");
   // A motion that is too fast throughout, with or without backlash, needs no caveat.
   drive_.axes[0].motor.max_speed = 2;
   drive_.axes[0].spool.backlash = 0;

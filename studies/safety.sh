@@ -14,7 +14,7 @@ mkdir -p docs/studies build/studies
 {
   echo "# Checks of motions against dense samples"
   echo
-  echo "Random arms of one to six sections (every fourth planar), with random limits and radii, each with a random plane, ball, rod and box. Eight motions per arm: hold, minimum-jerk linear, trapezoid, sine, linear and smooth keyframes, a trapezoid with rates and accelerations per section, a move of the tip. Planar arms add a move of cord angles with a law per section, and its swing. Each is checked ([safety](../safety.md)) and sampled at $samples even steps by independent code ([limits](../../tests/support/sampled_check.h), [clearances](../../tests/support/sampled_clearance.h)). Motions, section frames and point-obstacle distances are the simulator's own."
+  echo "Random arms of one to six sections (every fourth planar), with random limits and radii, each with a random plane, ball, rod and box. Eight motions per arm: hold, minimum-jerk linear, trapezoid, sine, linear and smooth keyframes, a trapezoid with rates and accelerations per section, a move of the tip. Planar arms add two motions in cord angles: a move with a profile per section, and a sine. Each is checked ([safety](../safety.md)) and sampled at $samples even steps by independent code ([limits](../../tests/support/sampled_check.h), [clearances](../../tests/support/sampled_clearance.h)). Motions, section frames and point-obstacle distances are the simulator's own."
   echo
   echo "- Bends, mean bend rates, stretches and folding: every step."
   echo "- Clearances to itself and obstacles, by points and descents: every hundredth step, and every step between where a contact outside the reported ones is possible."

@@ -200,7 +200,7 @@ void print(const std::string& title, const std::vector<Outcome>& all) {
   row("aim at the arm: error, mm", 1e-3, 3, [](const Outcome& o) { return o.figures.aim; });
   row("residuals over noise", 1, 4, [](const Outcome& o) { return o.rms; });
   row("true axes, from 90 deg, deg", degree, 4, [](const Outcome& o) { return o.off_square; });
-  row("true zoom ratio, from 1, %", 0.01, 3, [](const Outcome& o) { return o.zoom_off; });
+  row("true zoom ratio: deviation from 1, %", 0.01, 3, [](const Outcome& o) { return o.zoom_off; });
   fmt::print("\n");
 }
 

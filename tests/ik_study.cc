@@ -150,7 +150,7 @@ int main(int count, char** arguments) {
   is_good &= flexura::print_reachable("full pose, bends up to 360 degrees", TargetKind::pose, turn, most,
                                       targets / 20, seed);
   std::puts(
-      "\n| out of reach | asked | refused with proof | as far as constructed or further | nearest pose "
+      "\n| out of reach | asked | refused with proof | error at least the constructed bound | nearest pose "
       "beaten | by at most |");
   std::puts("| --- | ---: | ---: | ---: | ---: | ---: |");
   is_good &= flexura::print_unreachable("beyond the arm's length", 0, unreachable, seed);

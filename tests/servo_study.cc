@@ -54,7 +54,7 @@ std::vector<Method> laws() {
           {.name = "chords", .law = ServoLawKind::chords},
           {.name = "potential", .law = ServoLawKind::potential},
           {.name = "silhouettes", .law = ServoLawKind::silhouettes},
-          {.name = "moments, from within 0.15 rad", .law = ServoLawKind::moments, .is_near = true}};
+          {.name = "moments, starts within 0.15 rad", .law = ServoLawKind::moments, .is_near = true}};
 }
 
 std::vector<Method> all_methods() {

@@ -26,7 +26,7 @@ struct UnobservableDirection {
 struct RigObservability {
   std::vector<RigKnowledge> numbers;  ///< Variables in the order of x.
   std::vector<UnobservableDirection>
-      unobservable;  ///< Combinations with over half of the prior left, largest first.
+      unobservable;  ///< Combinations whose sigma is over half of the prior's, largest first.
 };
 
 /// Evaluates a covariance of x for the rig's own variables. Those without a prior are compared with a

@@ -17,7 +17,7 @@ namespace flexura {
 /// table.
 [[nodiscard]] bool is_like(const RigModel& model, const ViewCandidate& candidate, const ViewCandidate& look);
 
-/// Decisions of a session by its present knowledge; moves nothing.
+/// Decides a session's next action from its present knowledge; moves nothing.
 class RigSessionPlan {
  public:
   RigSessionPlan(const RigModel& nominal, const RigSessionConfig& config)

@@ -12,7 +12,7 @@ namespace flexura {
 
 /// Points of the two curves along which one camera's rays touch an arm's side, two per cross-section. The
 /// first is right of the direction from base to tip in the picture, then the left one (docs/control.md, eq.
-/// 19a and 19b). All values are not numbers where rays do not touch the section: the arm points at the camera
+/// 19a and 19b). All values are NaN where rays do not touch the section: the arm points at the camera
 /// there.
 struct ContourImage {
   Eigen::Matrix2Xd pixels;   ///< px, a column per point.

@@ -42,7 +42,8 @@ void LyapunovMonitor::add(const LyapunovSample& sample) {
 }
 
 LyapunovVerdict LyapunovMonitor::verdict() const {
-  if (samples_.size() < 2) throw std::logic_error("a run is judged by two samples of its energies or more");
+  if (samples_.size() < 2)
+    throw std::logic_error("a verdict on a run needs at least two samples of its energies");
   LyapunovVerdict verdict;
   const LyapunovSample& start = samples_.front();
   double least = lyapunov_value(start);

@@ -95,7 +95,8 @@ struct EndedBy {
     const Experiment& experiment, const TaskRunners& tasks, DoneTasks& done,
     const std::function<Progress&(std::size_t task)>& progress_of);
 
-/// Returns the hazards of this schedule of these tasks (Schedule::check), with additions of each task.
+/// Returns the hazards of this schedule of these tasks (Schedule::check), with the caveats that each task
+/// adds.
 [[nodiscard]] SafetyReport checked(const Schedule& schedule, const TaskRunners& tasks,
                                    const std::optional<EndedBy>& ended_by, Progress* progress = nullptr);
 

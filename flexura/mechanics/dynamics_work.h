@@ -44,7 +44,7 @@ struct RodDynamics::Work {
   /// Sets the state in motion under `tendons`, with its forces; friction as held by `motion`.
   void set_forces(RodState& state, const Eigen::VectorXd& v, const TendonInput& tendons,
                   const RodLoads& loads);
-  /// Calls RodMotion::hold of all instances that compute.
+  /// Sets the friction state of the motion and its derivatives (RodMotion::hold).
   void hold(const double* before, double time);
   /// How long tendons are assumed to have slid at their present rate, s, if nothing else is known.
   static constexpr double has_slid = 0.1;

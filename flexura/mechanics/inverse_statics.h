@@ -43,7 +43,7 @@ struct InverseStaticsConfig {
 
 /// How a search for tensions ended.
 enum class InverseStaticsEnd {
-  reached,         ///< Within the tolerance, by a stable equilibrium.
+  reached,         ///< A stable equilibrium meets the target within the tolerance.
   nearest,         ///< No search reached it; the result comes nearest.
   bad_input,       ///< Described in `problem`.
   no_equilibrium,  ///< No initial equilibrium was found.

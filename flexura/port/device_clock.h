@@ -38,7 +38,7 @@ class DeviceClock {
   /// counts as reset, and contradicting bounds are dropped.
   bool add(double device, double earliest, double latest);
 
-  /// Returns true if anything is known.
+  /// Returns true if rig_time() can answer.
   [[nodiscard]] bool is_known() const { return !seconds_.empty(); }
   /// Returns the rig's time, s, at the device's time `device`, s. Throws std::logic_error if nothing is
   /// known.

@@ -73,7 +73,7 @@ class ContactWatch {
 };
 
 /// Depths of the contacts of every section, or pair of sections, with each watched object, m
-/// (`contact_tolerance` without a deeper contact). For motions with known rates. For many quantities together
+/// (`contact_tolerance` if none is deeper). For motions with known rates. For many quantities together
 /// only contact or no contact matters. So `find_values` returns any depth that occurs above the tolerance,
 /// which is much faster than finding the largest one.
 class ContactDepths : public WatchedQuantities {

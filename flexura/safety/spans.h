@@ -78,7 +78,7 @@ struct FoundSpans {
 /// Misses nothing: an interval is dropped only if its bounds prove it safe, is unsafe if they prove that, and
 /// is halved otherwise. One as short as `search` specifies is unsafe if its ends or middle are. It is safe if
 /// they are not and its upper bound is that near to the limit. So anything missed is shorter than half of
-/// that time, and exceeds the limit by at most that value. The ends of spans are right to that time. An
+/// that time, and exceeds the limit by at most that value. The ends of spans are accurate to that time. An
 /// interval too short for doubles (`shortest_interval`) is unsafe unless proved safe.
 ///
 /// All intervals of one length come before shorter ones, and all of one length are evaluated or none. So if

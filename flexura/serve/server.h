@@ -23,7 +23,7 @@ struct ServerConfig {
   /// Limit of unread texts per client; one more closes the connection. From a quarter of it on, nothing is
   /// read from the client.
   std::size_t waiting_texts = 1024;
-  std::size_t waiting_bytes = std::size_t{4} * 1024 * 1024;  ///< Limit of their bytes, with equal effects.
+  std::size_t waiting_bytes = std::size_t{4} * 1024 * 1024;  ///< The same limit for their bytes.
   std::chrono::milliseconds handshake{5000};
   std::chrono::milliseconds idle{20000};
 };

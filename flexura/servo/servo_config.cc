@@ -56,7 +56,7 @@ void check_servo(const ServoConfig& config) {
     before = goal.time;
   }
   require(config.measure == ServoMeasure::picture || has_chords(config.law),
-          "flow carries the angles of the laws chords and potential alone");
+          "only the laws chords and potential measure angles by flow");
   require(config.anchor > 0, "a servo's anchor is above 0");
   require(
       config.settle >= 0 && config.hold_after > 0 && config.give_up_after > config.hold_after &&

@@ -65,7 +65,7 @@ struct Extras {
 struct LayerMark {
   std::string id, label;
   std::string color;  ///< "#rrggbb"
-  std::string of;     ///< The ghost whose visibility button also hides it; "": no ghost.
+  std::string of;     ///< Ghost layer whose visibility button also hides this layer; "": none.
 };
 /// Returns crosses, or separate lines, on a picture, rounded to a hundredth of a pixel.
 [[nodiscard]] Node points_layer(const LayerMark& mark, const std::vector<Eigen::Vector2d>& points);

@@ -173,7 +173,7 @@ const Table<PushRequest>& fields_of(const PushRequest*) {
             if (push.to.has_value() == push.force.has_value())
               reader.problem("expected one of to (a spring draws the point there) and force");
             if (push.force && push.stiffness)
-              reader.problem_at("stiffness", "is of a spring: expected none beside force");
+              reader.problem_at("stiffness", "applies only to a spring (to): expected none with force");
           });
   return table;
 }

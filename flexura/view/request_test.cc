@@ -118,7 +118,7 @@ TEST(Request, SaysInOneLineWhatIsWrong) {
       {R"({"id":7,"do":"push","s":0.1,"force":[0,null,1]})", "force[1]"},
       {R"({"id":7,"do":"push","s":0.1,"force":[0,1]})", "force"},
       {R"({"id":7,"do":"push","s":0.1,"to":[0,0,0],"stiffness":0})", "stiffness"},
-      {R"({"id":7,"do":"push","s":0.1,"force":[0,0,1],"stiffness":5})", "stiffness: is of a spring"},
+      {R"({"id":7,"do":"push","s":0.1,"force":[0,0,1],"stiffness":5})", "stiffness: applies only to a spring"},
       {R"({"id":7,"do":"push","s":0.1,"force":[0,0,1],"hand":1})", "hand: unknown key"},
       {R"({"id":7,"do":"release","s":0.1})", "s: unknown key"},
       {R"({"id":7,"do":"at","time":"now"})", "time"},

@@ -8,7 +8,7 @@ const Table<FeatureMarkMessage>& fields_of(const FeatureMarkMessage*) {
   using M = FeatureMarkMessage;
   static const auto table =
       Table<M>("flexura.FeatureMark",
-               "Something that a law compares in a picture: a pixel, or a line of some.")
+               "Something that a law compares in a picture: a pixel, or a polyline of pixels.")
           .field("seen", &M::seen, {.meaning = "As measured, px."})
           .field("target", &M::desired, {.meaning = "Target, px."});
   return table;

@@ -63,7 +63,7 @@ std::vector<TaskOutcome> run_outcomes(const Player& player, const Played& played
 }
 
 std::string headline_of(RunOutcome outcome, double time, const std::vector<TaskOutcome>& outcomes) {
-  const std::string total = total_of(outcomes);
+  std::string total = total_of(outcomes);
   switch (outcome) {
     case RunOutcome::done:
       break;

@@ -64,10 +64,10 @@ GhostArm ghost_of(const ExtraName& mark, const Shape& shape) {
 }
 
 // Returns the distances between points at equal fractions of both lengths, mm.
-AlongCurve distances(const ExtraName& mark, const Shape& shape, const Shape& desired) {
+AlongCurve distances(const ExtraName& mark, const Shape& shape, const Shape& target) {
   AlongCurve curve{mark.id, mark.label, mark.color, {}};
   for (const double off :
-       shape_distances(Backbone(shape.arm, shape.state), Backbone(desired.arm, desired.state)))
+       shape_distances(Backbone(shape.arm, shape.state), Backbone(target.arm, target.state)))
     curve.values.push_back(1000 * off);
   return curve;
 }

@@ -115,6 +115,7 @@ std::string text_of(const CalibrationRun& run) {
 // Returns what the pictures do not determine.
 std::vector<std::string> unknowns_of(const CalibrationRun& run) {
   std::vector<std::string> points;
+  points.reserve(run.result.observability.unobservable.size());
   for (const UnobservableDirection& blind : run.result.observability.unobservable)
     points.push_back(
         fmt::format("{:.0f} % of the prior uncertainty is left: {}", 100 * blind.share, blind.words));

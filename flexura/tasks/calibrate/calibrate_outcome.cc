@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "flexura/base/degree.h"
@@ -33,6 +34,7 @@ TaskOutcome outcome_of_bundle(const CalibrationRun& run, TaskOutcome outcome) {
   const std::string axes = "axes " + degrees_between_axes(run.result.remainder.angle);
   const Accuracy angle = {axes, " degrees", is.angle / degree, required.angle / degree};
   std::vector<Accuracy> others;
+  others.reserve(3);
   for (std::size_t i = 0; i < 2; ++i)
     others.push_back({"focal length of " + run.cameras[i], " %", 100 * is.focal[i], 100 * required.focal[i]});
   others.push_back({"zoom ratio", " %", 100 * is.zoom_ratio, 100 * required.zoom_ratio});
@@ -67,15 +69,15 @@ TaskOutcome outcome_of_loop(const CalibrationRun& run, TaskOutcome outcome) {
 }  // namespace
 
 TaskOutcome calibration_outcome(const CalibrationRun& run) {
-  const TaskOutcome outcome{.task = run.name,
-                            .kind = "calibrate",
-                            .noun = "calibration",
-                            .success = "reached",
-                            .is_reached = run.is_done(),
-                            .text = "not calibrated: " + run.reason(),
-                            .size = {}};
+  TaskOutcome outcome{.task = run.name,
+                      .kind = "calibrate",
+                      .noun = "calibration",
+                      .success = "reached",
+                      .is_reached = run.is_done(),
+                      .text = "not calibrated: " + run.reason(),
+                      .size = {}};
   if (!run.is_done()) return outcome;
-  return run.loop ? outcome_of_loop(run, outcome) : outcome_of_bundle(run, outcome);
+  return run.loop ? outcome_of_loop(run, std::move(outcome)) : outcome_of_bundle(run, std::move(outcome));
 }
 
 }  // namespace flexura

@@ -165,7 +165,7 @@ for (const dark of [true, false]) {
         await page.waitForSelector('.badge[data-kind="refused"]');
         expect(await page.locator('.badge').first().textContent()).toBe('NO ACCESS');
         const form = (await page.getByRole('alertdialog').textContent())!;
-        expect(form).toContain('no token that the program knows');
+        expect(form).toContain('No valid token');
         expect(form).toContain('Open the address that');
         expect(await page.locator('.right').textContent()).toBe('No data received yet.');
         expect(new URL(page.url()).hash).toBe('');

@@ -53,7 +53,7 @@ test('silence makes everything stale, labelled and grey, and the first word ends
   await until(async () => (await badge()) === 'stale');
   expect(await page.locator('.old-label').textContent()).toContain('No new data');
   expect(await page.locator('#stage').evaluate((canvas) => getComputedStyle(canvas).filter)).toContain('grayscale');
-  await until(async () => /Old/.test((await page.locator('.picture .old').first().textContent()) ?? ''));
+  await until(async () => /Outdated/.test((await page.locator('.picture .old').first().textContent()) ?? ''));
   server.mute = false;
   await until(async () => (await badge()) === 'live');
   expect(await page.locator('.old-label').count()).toBe(0);

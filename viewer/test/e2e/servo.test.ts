@@ -27,17 +27,17 @@ describe.skipIf(!program)('a servo', () => {
     await page.getByRole('button', { name: 'Run tasks' }).click();
     await legend().waitFor();
     await until(async () => (await legend().getByRole('button').count()) === 4, 15000, 'not all shapes came');
-    for (const label of ['Wanted', 'Seen', 'True', 'Features']) expect(await eye(label).getAttribute('aria-pressed')).toBe('true');
+    for (const label of ['Target', 'Seen', 'True', 'Features']) expect(await eye(label).getAttribute('aria-pressed')).toBe('true');
     await until(async () => /sway: [\d.]+ % of the length off/.test((await page.locator('.running-text').textContent()) ?? ''), 15000, 'no word');
   });
 
   test('the axis as measured and the wanted shape lie upon both pictures, each with its eye', async () => {
     await until(() => drawn(wanted), 15000, 'the wanted shape is not drawn');
     await until(() => drawn(seen), 15000, 'the axis is not drawn');
-    await eye('Wanted').click();
+    await eye('Target').click();
     await until(async () => !(await drawn(wanted)), 8000, 'it is not hidden');
     expect(await drawn(seen)).toBe(true);
-    await eye('Wanted').click();
+    await eye('Target').click();
     await until(() => drawn(wanted));
   });
 
@@ -67,10 +67,10 @@ describe.skipIf(!program)('a servo', () => {
     const plot = page.locator('.plot').nth(1);
     await until(async () => /rms.*tip.*true rms/.test((await plot.locator('.legend').textContent()) ?? ''), 8000, 'no errors over time');
     const all = await stage_at_rest(page);
-    for (const label of ['Wanted', 'Seen', 'True']) await eye(label).click();
+    for (const label of ['Target', 'Seen', 'True']) await eye(label).click();
     expect((await stage_at_rest(page)).equals(all)).toBe(false);
     await until(async () => !(await drawn(wanted)) && !(await drawn(seen)));
-    for (const label of ['Wanted', 'Seen', 'True']) await eye(label).click();
+    for (const label of ['Target', 'Seen', 'True']) await eye(label).click();
     expect(opened.complaints).toEqual([]);
   });
 

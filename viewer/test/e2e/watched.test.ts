@@ -28,7 +28,7 @@ describe.skipIf(!program)('a watched run', () => {
       await until(async () => (await page.locator('.picture .none').count()) === 0, 20000, 'no picture came');
       const seconds = async (): Promise<number> => {
         const text = (await page.locator('.camera figcaption span').first().textContent())!;
-        const [minutes, rest] = text.includes(':') ? text.split(':').map(Number) : [0, parseFloat(text)];
+        const [minutes, rest] = text.includes(':') ? text.split(':').map(parseFloat) : [0, parseFloat(text)];
         return 60 * minutes + rest;
       };
       let looks = 0;

@@ -9,10 +9,10 @@
 
 namespace flexura {
 
-/// What `flexura compare` is told.
+/// Arguments of `flexura compare`.
 struct CompareArguments {
   std::string a, b;   ///< Folders made by `flexura run`.
-  std::string out;    ///< A page to write; "" for none.
+  std::string out;    ///< Page to write; "": no page.
   bool all = false;   ///< Also values that are equal.
   bool json = false;  ///< Print one JSON document.
 };

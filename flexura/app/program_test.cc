@@ -88,7 +88,7 @@ TEST_F(Program, EndsWithOneWhenALimitWouldBeBroken) {
 TEST_F(Program, ChecksWithoutRunning) {
   const Ended safe = run("check " + paper_file);
   EXPECT_EQ(safe.status, 0);
-  EXPECT_EQ(safe.out, "note: 0 s: singular pose: the tip can set out in 1 of 2 dimensions\nsafe\n");
+  EXPECT_EQ(safe.out, "note: 0 s: singular: the tip Jacobian has rank 1 of 2\nsafe\n");
   const Ended unsafe = run("check " + paper_file + " --json --set arm.section.1.max_bend_deg=3");
   EXPECT_EQ(unsafe.status, 1);
   const Node found = parse_json(unsafe.out, "stdout");

@@ -227,6 +227,7 @@ TEST(AnswerStatics, NotesChordsThatNeedMoreModes) {
   EXPECT_EQ(answer_to(coarse, R"({"tensions":[0.2,0.1]})").find("note"), nullptr) << "hardly bent";
   const Node of_pieces = answer_to(pieces, line);
   EXPECT_THAT(tip_position(of_fine), near(tip_position(of_pieces), 3e-3));
+  EXPECT_THAT(tip_position(of_coarse), ::testing::Not(near(tip_position(of_pieces), 2e-2)));
 }
 
 TEST(AnswerStatics, AnswersABadLineWithItsError) {

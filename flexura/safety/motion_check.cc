@@ -35,7 +35,7 @@ void note_singular(const Arm& arm, const ArmState& state, double time, SafetyRep
   const std::size_t usual = std::min<std::size_t>(arm.kind == ArmKind::planar ? 2 : 3, free.size());
   if (now == usual) return;
   report.notes.push_back(
-      fmt::format("{:.6g} s: singular pose: the tip can set out in {} of {} dimensions", time, now, usual));
+      fmt::format("{:.6g} s: singular: the tip Jacobian has rank {} of {}", time, now, usual));
 }
 
 // `before` is the state of the arm before the motion.

@@ -279,8 +279,7 @@ TEST(MotionCheck, ASingularPoseIsANoteOnly) {
   const SafetyReport report = check(
       arm, point_to_point_motion(ArmState::straight(8), paper_state(), std::vector(8, Profile::linear(5))));
   EXPECT_TRUE(report.is_safe());
-  EXPECT_THAT(report.notes,
-              testing::ElementsAre("0 s: singular pose: the tip can set out in 1 of 2 dimensions"));
+  EXPECT_THAT(report.notes, testing::ElementsAre("0 s: singular: the tip Jacobian has rank 1 of 2"));
 }
 
 TEST(MotionCheck, TellsTheTimesOfAShortSpanApart) {

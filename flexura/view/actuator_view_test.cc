@@ -197,7 +197,7 @@ TEST_F(TallColumn, SaysThatItSnapsWhenItIsPulledOver) {
   const std::size_t reported = messenger_.texts[me].size();
   EXPECT_EQ(ask(WeightRequest{false}).error, "");
   EXPECT_NEAR(tip(pass(0.5)).x(), -0.245, 0.01) << "as its tendon has it";
-  EXPECT_EQ(messenger_.texts[me].size(), reported) << "it is told once, and no switch is a snap";
+  EXPECT_EQ(messenger_.texts[me].size(), reported) << "it is reported once, and no switch is a snap";
 }
 
 // A rod with motors, spools and their backlash.

@@ -42,7 +42,7 @@ class RecordingSession : public PictureSession {
   /// The place of the image to be shown at a time, s: among the logged ones, none before the first; or where
   /// there are none of this camera among the states.
   [[nodiscard]] std::optional<std::int64_t> image_place(std::size_t camera, double time) const;
-  /// The same; a ViewRefusal where there is none.
+  /// The same; throws ViewRefusal if there is none.
   [[nodiscard]] std::int64_t require_image(std::size_t camera, double time) const;
   [[nodiscard]] bool is_filmed(std::size_t camera) const { return recording_->images(camera) > 0; }
   [[nodiscard]] ValueShot shot(std::size_t camera, std::int64_t number) const;

@@ -5,7 +5,8 @@
 namespace flexura {
 
 /// How far a run of tasks may go, so that people can follow it: its time goes with a clock, `speed` times as
-/// fast. What the run cannot keep up with is not made up for later. Pauses of the clock are none of the run.
+/// fast. Time that the run
+/// could not keep up with is not caught up later. Pauses of the clock do not count.
 class RunPace {
  public:
   /// `speed` in run seconds per second of the clock; 0: as fast as it can. `step`: of the run's clock, s.
@@ -24,7 +25,7 @@ class RunPace {
  private:
   double speed_, step_;
   double allowed_ = 0;  // s of the run
-  double reached_ = 0;  // Likewise, at the last call.
+  double reached_ = 0;  // Time of the run at the last call, s.
   double rate_ = 0;     // Run seconds per second, of late.
   double behind_ = 0;   // For how long it has been behind, s of the clock.
 };

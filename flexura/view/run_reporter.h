@@ -20,9 +20,9 @@ class RunReporter {
  public:
   RunReporter(ViewedRigPtr rig, Messenger& messenger) : rig_(std::move(rig)), messenger_(messenger) {}
 
-  /// The pictures in which that was measured which was told last: what is drawn belongs to them.
+  /// Pictures of the last reported measurement: overlays belong to them.
   [[nodiscard]] const std::vector<RunLink::Measured>& measured() const { return measured_; }
-  /// Another run begins: nothing was told of it.
+  /// Forgets the last run: nothing is reported of the next one yet.
   void begin();
   /// Makes extras be sent again, for a new client.
   void repeat() { are_extras_known_ = false; }

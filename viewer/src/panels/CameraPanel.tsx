@@ -16,7 +16,7 @@ export function CameraPanel() {
   if (!heads.length && !stages.length) return <p class="empty">No camera here can be moved.</p>;
   return (
     <>
-      <label class="check" title="The simulated cameras can stand elsewhere than they are commanded to: the file's [truth], play and steps of motors. Tasks do not know that.">
+      <label class="check" title="Shows the true axis positions of the simulated cameras. They differ from the commanded ones by [truth], backlash and motor steps; tasks do not know them.">
         <input type="checkbox" checked={preferences.true_axes.value}
           onChange={(event) => (preferences.true_axes.value = event.currentTarget.checked)} />
         Show where they truly stand

@@ -70,7 +70,7 @@ test('a typed coordinate of the tip too', async () => {
 test('while nothing is heard of the rig nothing can be moved, by a hand or a key; to stop it is worth a try', async () => {
   server.mute = true;
   await until(async () => (await badge()) === 'stale');
-  const enabled = () => page.locator('.left input:enabled:not([type="checkbox"])').count();
+  const enabled = () => page.locator('.left label:not(:has-text("truly stand")) input:enabled, .left input:enabled:not(label input)').count();
   await until(async () => (await enabled()) === 0);
   await page.getByRole('tab', { name: 'Cameras' }).click();
   expect(await enabled()).toBe(0);

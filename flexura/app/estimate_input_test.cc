@@ -50,7 +50,7 @@ TEST_F(EstimateInput, SaysWhereAFileOfCamerasIsWrong) {
   EXPECT_EQ(refusal(side, "position_mm = [1e200, 0, 0]"),
             "cameras.toml:13:15: camera[1].position: expected within 1e+06 m");
   EXPECT_EQ(refusal(side, ""),
-            "cameras.toml:8:1: camera[1].position: missing: expected where each camera stands");
+            "cameras.toml:8:1: camera[1].position: missing: expected the pose of each camera");
   EXPECT_EQ(refusal("\"side\"", "\"front\""),
             "cameras.toml:9:1: camera[1].name: is that of camera[0], too: expected another");
   EXPECT_EQ(refusal("cx = 319.5", "cx = 1e308"),

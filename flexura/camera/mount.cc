@@ -25,7 +25,8 @@ struct Fault {
 
 // Returns why the mount does not have exactly one orientation; an empty text if it does.
 Fault orientation_fault(const MountConfig& mount) {
-  if (mount.look_at && mount.rotation) return {"rotation", "stands beside look_at: expected one of the two"};
+  if (mount.look_at && mount.rotation)
+    return {"rotation", "is given together with look_at: expected one of them"};
   if (!mount.look_at && !mount.rotation) return {"", "has no orientation: expected look_at or rotation"};
   if (mount.rotation) {
     if (std::string problem = quaternion_problem(*mount.rotation); !problem.empty())

@@ -64,10 +64,10 @@ const Table<LineMessage>& fields_of(const LineMessage*) {
 
 const Table<EntityMessage>& fields_of(const EntityMessage*) {
   static const auto table =
-      Table<EntityMessage>("foxglove.SceneEntity", "A thing in the scene.")
+      Table<EntityMessage>("foxglove.SceneEntity", "An object in the scene.")
           .field("timestamp", &EntityMessage::timestamp, {})
-          .field("frame_id", &EntityMessage::frame_id, {.meaning = "The frame it stands in."})
-          .field("id", &EntityMessage::id, {.meaning = "It replaces the thing of the same name."})
+          .field("frame_id", &EntityMessage::frame_id, {.meaning = "Its frame of reference."})
+          .field("id", &EntityMessage::id, {.meaning = "It replaces an earlier entity of this name."})
           .field("lifetime", &EntityMessage::lifetime, {.meaning = "0: until it is replaced."})
           .field("frame_locked", &EntityMessage::frame_locked, {})
           .field("cubes", &EntityMessage::cubes, {})

@@ -53,7 +53,7 @@ void check_poses(const Node& file, const std::vector<MeasuredCamera>& cameras) {
       problems.push_back(
           {position->where, fmt::format("camera[{}].position: expected within {:g} m", i, farthest_place)});
     else if (i + 1 == tables.size() && i > 0 && stand_at_one_place(cameras))
-      problems.push_back({position->where, fmt::format("camera[{}].position: camera[0] stands there: "
+      problems.push_back({position->where, fmt::format("camera[{}].position: is that of camera[0]: "
                                                        "expected the position and rotation of each",
                                                        i)});
   }

@@ -37,7 +37,7 @@ Fault orientation_fault(const MountConfig& mount) {
   const Eigen::Vector3d forward = vector(*mount.look_at) - vector(mount.position);
   if (!(forward.norm() > 0)) return {"look_at", "is the mount's own position: expected another point"};
   if (!upright(forward))
-    return {"look_at", "is straight above or below, where no side is up: expected rotation instead"};
+    return {"look_at", "is straight above or below, which leaves the roll open: expected rotation instead"};
   return {};
 }
 

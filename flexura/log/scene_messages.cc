@@ -57,8 +57,8 @@ const Table<LineMessage>& fields_of(const LineMessage*) {
           .field("scale_invariant", &LineMessage::scale_invariant, {.meaning = "The thickness is in pixels."})
           .field("points", &LineMessage::points, {.meaning = "m"})
           .field("color", &LineMessage::color, {})
-          .field("colors", &LineMessage::colors, {.meaning = "One a point; none: the color."})
-          .field("indices", &LineMessage::indices, {.meaning = "Into the points; none: their order."});
+          .field("colors", &LineMessage::colors, {.meaning = "One per point; empty: the color."})
+          .field("indices", &LineMessage::indices, {.meaning = "Indices of points; empty: all, in order."});
   return table;
 }
 
@@ -84,7 +84,7 @@ const Table<SceneMessage>& fields_of(const SceneMessage*) {
 }
 
 const Table<FrameMessage>& fields_of(const FrameMessage*) {
-  static const auto table = Table<FrameMessage>("foxglove.FrameTransform", "Where a frame stands in another.")
+  static const auto table = Table<FrameMessage>("foxglove.FrameTransform", "Pose of a frame in another.")
                                 .field("timestamp", &FrameMessage::timestamp, {})
                                 .field("parent_frame_id", &FrameMessage::parent_frame_id, {})
                                 .field("child_frame_id", &FrameMessage::child_frame_id, {})
@@ -95,7 +95,7 @@ const Table<FrameMessage>& fields_of(const FrameMessage*) {
 
 const Table<FramesMessage>& fields_of(const FramesMessage*) {
   static const auto table =
-      Table<FramesMessage>("foxglove.FrameTransforms", "Where the arm's base and the cameras stand.")
+      Table<FramesMessage>("foxglove.FrameTransforms", "Poses of the arm's base and of the cameras.")
           .field("transforms", &FramesMessage::transforms, {});
   return table;
 }

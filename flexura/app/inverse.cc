@@ -145,7 +145,7 @@ void add_state(const Arm& arm, const InverseRequest& request, const InverseResul
 
 Node answer_one(const Arm& arm, const InverseRequest& request, const InverseResult& result) {
   if (!result.tip.allFinite())
-    throw InputError(std::vector<Problem>{{{}, "the arm comes to no rest under its weight and loads"}});
+    throw InputError(std::vector<Problem>{{{}, "the arm has no equilibrium under its weight and loads"}});
   Node::Table members{{"converged", {}, {result.converged(), {}}},
                       {"reason", {}, {std::string(name_of(result.outcome)), {}}}};
   add_state(arm, request, result, members);

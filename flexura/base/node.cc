@@ -40,7 +40,7 @@ std::string step_into(Node*& node, std::string_view part, const SourcePosition& 
     std::size_t index = 0;
     const auto [end, error] = std::from_chars(part.data(), part.data() + part.size(), index);
     if (error != std::errc{} || end != part.data() + part.size()) {
-      return fmt::format("\"{}\" stands for one of an array: expected a number counted from 0", part);
+      return fmt::format("\"{}\" names an item of an array: expected its index, from 0", part);
     }
     if (index >= array->size())
       return fmt::format("index {} is outside an array of {}", index, array->size());

@@ -103,7 +103,8 @@ class ArcsCorrected : public ArcsLoop {
     predicted_.reset();
     if (reading_) predicted_ = angle({AskedStance{loop_.stance(0), {}}, AskedStance{loop_.stance(1), {}}});
     RigReading reading = observer_->read(before());
-    if (!reading.found.is_found) return "no two cameras explain what was seen: " + reading.found.reason;
+    if (!reading.found.is_found)
+      return "no poses of the two cameras explain the pictures: " + reading.found.reason;
     reading_ = std::move(reading);
     const RigVariables& variables = reading_->problem->variables();
     angle_ = angle({observed_stance(variables, observer_->stance(0).value()),

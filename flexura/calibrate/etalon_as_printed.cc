@@ -157,7 +157,8 @@ class EtalonAsPrinted : public EtalonLoop {
     next = loop_.commandable_stance(i, next);
     loop_.decide(
         i, "horizontal positioning", off(outer), 0, "px",
-        fmt::format("two axes are seen: pan by {:.4f} rad, so that the outer one leaves the picture", turn));
+        fmt::format("two red axes are seen: pan by {:.4f} rad, to turn the outer one out of the picture",
+                    turn));
     return loop_.go(i, next);
   }
 

@@ -69,10 +69,10 @@ struct LoopResult {
 
 /// Calibrates two cameras by a loop of looking, measuring, deciding and moving (docs/calibration-paper.md),
 /// through the ports alone. `nominal` gives ranges and resolutions of heads, stages and lenses, and focal
-/// lengths. Any error ends the loop, also one that never ends or diverges. Heads, stages and arm then return
-/// to the start, and the result holds the reason. Equal rigs, readings and pictures give equal results.
-/// Throws std::invalid_argument if the ports are for other cameras than the model's, or if both cameras are
-/// the same.
+/// lengths. The loop also ends after an error, and if it diverges or oscillates. Heads, stages and arm
+/// then return to the start, and the result holds the reason. Equal rigs, readings and pictures give equal
+/// results. Throws std::invalid_argument if the ports are for other cameras than the model's, or if both
+/// cameras are the same.
 [[nodiscard]] LoopResult calibrate_by_loop(const RigPorts& ports, const RigModel& nominal,
                                            const LoopConfig& config, RigSessionWatcher& watcher);
 

@@ -25,7 +25,8 @@ struct Fault {
 
 // Returns why the mount does not have exactly one orientation; an empty text if it does.
 Fault orientation_fault(const MountConfig& mount) {
-  if (mount.look_at && mount.rotation) return {"rotation", "stands beside look_at: expected one of the two"};
+  if (mount.look_at && mount.rotation)
+    return {"rotation", "is given together with look_at: expected one of them"};
   if (!mount.look_at && !mount.rotation) return {"", "has no orientation: expected look_at or rotation"};
   if (mount.rotation) {
     if (std::string problem = quaternion_problem(*mount.rotation); !problem.empty())
@@ -36,7 +37,7 @@ Fault orientation_fault(const MountConfig& mount) {
   const Eigen::Vector3d forward = vector(*mount.look_at) - vector(mount.position);
   if (!(forward.norm() > 0)) return {"look_at", "is the mount's own position: expected another point"};
   if (!upright(forward))
-    return {"look_at", "is straight above or below, where no side is up: expected rotation instead"};
+    return {"look_at", "is straight above or below, which leaves the roll open: expected rotation instead"};
   return {};
 }
 

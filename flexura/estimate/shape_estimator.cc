@@ -116,7 +116,7 @@ std::string bent_beyond_arms(const Shape& shape) {
   if (most->norm() <= most_bend) return "";
   return fmt::format(
       "no shape of this arm explains the pictures: section {} would have to bend by more than a full turn. "
-      "Expected pictures of the arm as it is described, by cameras as they are described, with most of that "
+      "Expected an arm and cameras that agree with their descriptions, and pictures with most of that "
       "section in them",
       most - bends.begin() + 1);
 }

@@ -67,7 +67,7 @@ TEST_F(Study, BadFilesSayWhatIsWrong) {
        "x.toml:12:1: task[0].vary: names no parameter: expected one, such as orbit_deg = [-60, 60]"},
       {"no vary", study_with("vary.orbit_deg = [-60, 60]", ""), "task[0].vary: missing: expected a table"},
       {"two varied", study_with("points = 5", "vary.zoom = [1, 2]"),
-       "x.toml:13:6: task[0].vary.zoom: stands beside vary.orbit: expected one parameter"},
+       "x.toml:13:6: task[0].vary.zoom: is given together with vary.orbit: expected one parameter"},
       {"unknown parameter", study_with("orbit_deg", "orbits_deg"),
        "vary.orbits_deg: unknown key; did you mean \"orbit"},
       {"wrong unit", study_with("orbit_deg", "orbit_mm"), "vary.orbit_mm: wrong unit: expected orbit (rad)"},

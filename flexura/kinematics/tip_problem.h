@@ -17,8 +17,8 @@ enum class TipRows { position = 3, direction = 5, rotation = 6 };
 /// two rows (about x and y), a whole rotation has three.
 ///
 /// The orientation rows of linearise() are the angular velocity, not the derivative of the rotation vector e.
-/// The two differ by a matrix that has e as an eigenvector with eigenvalue 1. So the gradient of |e|^2 and
-/// the undamped Gauss-Newton step are equal, and the angular velocity has no singular orientation.
+/// A matrix converts one to the other; it has e as an eigenvector with eigenvalue 1. So the gradient of |e|^2
+/// and the undamped Gauss-Newton step are equal, and the angular velocity has no singular orientation.
 class TipProblem final : public BoundedProblem {
  public:
   /// `X_BT` is the target pose of the tip in the base's frame. A direction uses only its z axis, a position

@@ -57,17 +57,17 @@ const Table<LineMessage>& fields_of(const LineMessage*) {
           .field("scale_invariant", &LineMessage::scale_invariant, {.meaning = "The thickness is in pixels."})
           .field("points", &LineMessage::points, {.meaning = "m"})
           .field("color", &LineMessage::color, {})
-          .field("colors", &LineMessage::colors, {.meaning = "One a point; none: the color."})
-          .field("indices", &LineMessage::indices, {.meaning = "Into the points; none: their order."});
+          .field("colors", &LineMessage::colors, {.meaning = "One per point; empty: the color."})
+          .field("indices", &LineMessage::indices, {.meaning = "Indices of points; empty: all, in order."});
   return table;
 }
 
 const Table<EntityMessage>& fields_of(const EntityMessage*) {
   static const auto table =
-      Table<EntityMessage>("foxglove.SceneEntity", "A thing in the scene.")
+      Table<EntityMessage>("foxglove.SceneEntity", "An object in the scene.")
           .field("timestamp", &EntityMessage::timestamp, {})
-          .field("frame_id", &EntityMessage::frame_id, {.meaning = "The frame it stands in."})
-          .field("id", &EntityMessage::id, {.meaning = "It replaces the thing of the same name."})
+          .field("frame_id", &EntityMessage::frame_id, {.meaning = "Its frame of reference."})
+          .field("id", &EntityMessage::id, {.meaning = "It replaces an earlier entity of this name."})
           .field("lifetime", &EntityMessage::lifetime, {.meaning = "0: until it is replaced."})
           .field("frame_locked", &EntityMessage::frame_locked, {})
           .field("cubes", &EntityMessage::cubes, {})
@@ -84,7 +84,7 @@ const Table<SceneMessage>& fields_of(const SceneMessage*) {
 }
 
 const Table<FrameMessage>& fields_of(const FrameMessage*) {
-  static const auto table = Table<FrameMessage>("foxglove.FrameTransform", "Where a frame stands in another.")
+  static const auto table = Table<FrameMessage>("foxglove.FrameTransform", "Pose of a frame in another.")
                                 .field("timestamp", &FrameMessage::timestamp, {})
                                 .field("parent_frame_id", &FrameMessage::parent_frame_id, {})
                                 .field("child_frame_id", &FrameMessage::child_frame_id, {})
@@ -95,7 +95,7 @@ const Table<FrameMessage>& fields_of(const FrameMessage*) {
 
 const Table<FramesMessage>& fields_of(const FramesMessage*) {
   static const auto table =
-      Table<FramesMessage>("foxglove.FrameTransforms", "Where the arm's base and the cameras stand.")
+      Table<FramesMessage>("foxglove.FrameTransforms", "Poses of the arm's base and of the cameras.")
           .field("transforms", &FramesMessage::transforms, {});
   return table;
 }

@@ -12,7 +12,7 @@ namespace flexura {
 /// Tolerances for an ordinary differential equation.
 struct OdeTolerance {
   double relative = 1e-9;    ///< Of each component, per step.
-  double absolute = 1e-12;   ///< Of each component, per step, in the units of y; both add up.
+  double absolute = 1e-12;   ///< The same, in the units of y; added to the relative one.
   double first_step = 1e-3;  ///< First step to try, in units of the time; > 0.
   double largest_step = std::numeric_limits<double>::infinity();  ///< In units of the time.
   int most_steps = 1'000'000;                                     ///< Of one advance, with rejected steps.

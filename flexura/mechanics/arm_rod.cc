@@ -239,7 +239,7 @@ Eigen::MatrixXd arc_displacement_slopes(const Rod& rod, const ArmState& state) {
 std::vector<double> pretension_displacements(RodStatics& statics, double tension) {
   const std::vector<double> tensions(statics.rest_lengths().size(), tension);
   const Equilibrium tight = statics.solve({.tensions = tensions}, {});
-  if (!tight.converged()) throw std::invalid_argument("the arm comes to no rest under its pretension");
+  if (!tight.converged()) throw std::invalid_argument("the arm has no equilibrium under its pretension");
   return tight.displacements;
 }
 

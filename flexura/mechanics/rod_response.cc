@@ -89,7 +89,7 @@ RodResponse::RodResponse(const Arm& driven, const Rod& rod, RodLoads loads, std:
   const ArmState straight = ArmState::straight(driven_.sections.size());
   straight_ = solved(straight, {});
   if (!straight_.converged())
-    throw std::invalid_argument("the arm comes to no rest under its weight and loads");
+    throw std::invalid_argument("the arm has no equilibrium under its weight and loads");
 }
 
 std::vector<double> RodResponse::displacements(const ArmState& command) const {

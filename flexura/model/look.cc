@@ -135,9 +135,9 @@ void check_look(const LookConfig& look, const Arm& arm, const std::string& path,
   for (std::size_t i = 0; i + 1 < markers.size(); ++i) {
     if (markers[i].at + markers[i].width / 2 <= markers[i + 1].at - markers[i + 1].width / 2 + slack)
       continue;
-    reader.problem_at(
-        path, fmt::format("has markers one upon the other, at {:.6g} m and {:.6g} m: expected them apart",
-                          markers[i].at, markers[i + 1].at));
+    reader.problem_at(path,
+                      fmt::format("has markers that overlap, at {:.6g} m and {:.6g} m: expected them apart",
+                                  markers[i].at, markers[i + 1].at));
     return;
   }
 }

@@ -13,7 +13,7 @@
 
 namespace flexura {
 
-/// An arm and its cameras: the nominal model, or an estimate of it. The world frame is relative to the arm's
+/// An arm and its cameras: the nominal model, or an estimate of it. The world frame is fixed to the arm's
 /// base (docs/calibration.md, "Gauge").
 struct RigModel {
   Arm arm;                         ///< One section per arc of its shapes.

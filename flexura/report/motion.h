@@ -45,7 +45,7 @@ struct ReportMotion {
   double tension = 0.5;
   bool in_plane = false;          ///< The arm moves in a plane parallel to XOY.
   bool stretches_change = false;  ///< Some stretch is not always 1.
-  bool is_still = false;          ///< All states are the same.
+  bool is_still = false;          ///< The arm never moves.
 
   [[nodiscard]] std::size_t count() const { return times.size(); }
   /// Returns true if a violation is drawn on the section in state i.

@@ -20,14 +20,14 @@ inline constexpr double smallest_jump = 1e-6;
 struct Jump {
   double time = 0;          ///< In s.
   double size = 0;          ///< Largest change of a bend (rad) or a stretch.
-  std::size_t section = 0;  ///< Section with that change, from 0.
+  std::size_t section = 0;  ///< Index of the section with that change.
   bool is_of_stretch = false;
 };
 
 /// Returns the largest change of a bend (rad) or a stretch (factor) of any section.
 [[nodiscard]] double largest_change(const ArmState& a, const ArmState& b);
 
-/// Returns the section that changes most between two states, from 0.
+/// Returns the index of the section that changes most between two states.
 [[nodiscard]] std::size_t most_changed(const ArmState& a, const ArmState& b);
 
 /// Returns true if a section's stretch (factor) changes by more than its bend (rad).

@@ -16,7 +16,7 @@ enum class Hazard : std::uint8_t {
   stretch,             ///< A section is longer or shorter than allowed; factor.
   stretch_rate,        ///< A section changes its length faster than allowed; 1/s.
   folding,             ///< The inner side of the tube folds: curvature times radius reaches 1.
-  jump,                ///< The law has two states at one time; rad (or a factor).
+  jump,                ///< The motion has two states at one time; rad (stretch: factor).
   not_finite,          ///< The law's formula has no finite value, or no length above 0.
   self_contact,        ///< The arm touches itself; m of depth.
   obstacle,            ///< The arm touches an obstacle; m of depth.

@@ -27,7 +27,7 @@ struct ReadMore {};
 struct Question {
   std::string target;
 };
-/// Continue as a WebSocket; HttpSession::refuse if that is impossible.
+/// Continue as a WebSocket. If that is impossible, call HttpSession::refuse.
 struct Upgrade {
   std::string key;  ///< Client's Sec-WebSocket-Key.
 };

@@ -34,7 +34,7 @@ class Outbox {
   std::optional<Message> next();
   /// The message from next() has been sent.
   void done();
-  /// Returns the bytes of all messages, with the one being sent.
+  /// Returns the number of bytes of all messages, including the one being sent.
   [[nodiscard]] std::size_t bytes() const { return text_bytes_ + stream_bytes_ + sending_bytes_; }
   /// Returns true if a message is being sent.
   [[nodiscard]] bool is_sending() const { return sending_bytes_ > 0; }

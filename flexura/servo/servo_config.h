@@ -72,7 +72,7 @@ struct ServoSettings {
   ServoMeasure measure = ServoMeasure::picture;  ///< For the laws that compare chord angles.
   double anchor = 0.1;  ///< Angles carried by flow approach the measured ones as exp(-t/anchor), s.
   ServoJacobian jacobian = ServoJacobian::model;
-  std::int64_t points = 12;  ///< Of the laws points, chords, potential and silhouettes: places along the arm.
+  std::int64_t points = 12;  ///< Number of places along the arm (points, chords, potential, silhouettes).
   double rate = 4;           ///< Errors fall as exp(-rate t), 1/s.
   double damping = 0.01;     ///< ImageLawGains::damping; not with `shape`.
   bool predict = true;       ///< What was sent after a picture was taken is counted as done.

@@ -66,8 +66,7 @@ DynamicPlant::DynamicPlant(const PlantSetup& setup)
   const Equilibrium rest =
       statics.solve({.displacements = inputs().displacements(0, inputs().nothing_lost())}, inputs().loads(0));
   if (!rest.converged())
-    throw SimulationError(
-        fmt::format("the arm comes to no rest from which it could begin: {}", words(rest.end)));
+    throw SimulationError(fmt::format("the arm has no equilibrium to start from: {}", words(rest.end)));
   snapshots_.push_back({0, dynamics_.rest(rest), rotors_at_rest(inputs(), rest.tensions), carried_});
   hand_over(snapshots_.back(), 0);
 }

@@ -176,7 +176,7 @@ void check_study(const StudyTask& task, const std::vector<CameraConfig>& cameras
   }
   for (std::size_t i = 1; i < varied.size(); ++i) {
     reader.problem_at(fmt::format("{}.vary.{}", path, varied[i].name),
-                      fmt::format("stands beside vary.{}: expected one parameter", varied[0].name));
+                      fmt::format("is given together with vary.{}: expected one parameter", varied[0].name));
   }
   if (varied.size() > 1) return;
   const CameraConfig* config = camera_of(task, cameras);

@@ -88,8 +88,8 @@ std::string read(Node document, Request& request) {
     request.id = *number;
   const Node name = taken(*table, "do");
   const auto* text = name.as<std::string>();
-  if (name.empty()) return "do is missing: expected what to do";
-  if (text == nullptr) return fmt::format("do = {}: expected what to do in quotes", name.brief());
+  if (name.empty()) return "do is missing: expected a command";
+  if (text == nullptr) return fmt::format("do = {}: expected a command in quotes", name.brief());
   if (!request.id && !id.empty())
     return fmt::format("id = {}: expected a whole number from -2^53 to 2^53", id.brief());
   if (!request.id && *text != "ack") return "id is missing: expected a whole number";
@@ -111,7 +111,7 @@ const Table<ArmRequest>& fields_of(const ArmRequest*) {
           .field("duration", &ArmRequest::duration, {.meaning = "s", .range = between(0, 1e6)})
           .check([](const ArmRequest& arm, Reader& reader) {
             if (arm.tendons && (arm.bends || arm.cord_angles || arm.archings || arm.stretches))
-              reader.problem_at("tendons", "are given beside another shape: expected tendons alone");
+              reader.problem_at("tendons", "are given together with another shape: expected tendons alone");
             if (!arm.tendons && !arm.bends && !arm.cord_angles && !arm.archings && !arm.stretches)
               reader.problem("has no shape: expected bends, cord_angles, archings, tendons or stretches");
           });

@@ -40,7 +40,7 @@ struct FigureBorder {
   bool touches_border = false;      ///< Whether any of its pixels lies in the picture's outermost ring.
   std::vector<BorderPoint> points;  ///< Border points in order around it (find_border).
 };
-/// Finds it in a gray picture.
+/// Finds the largest figure of a gray picture.
 [[nodiscard]] FigureBorder largest_figure(const Image<std::uint8_t>& gray,
                                           const ThresholdConfig& config = {});
 

@@ -58,7 +58,7 @@ inline std::string kind_of(const std::string& reason) {
                                                  "correlation is",
                                                  "what can be commanded ends",
                                                  "ends",
-                                                 "no two cameras explain",
+                                                 "no poses of the two cameras explain",
                                                  "are not explained",
                                                  "do not agree"};
   for (const std::string& kind : kinds)

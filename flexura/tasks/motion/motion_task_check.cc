@@ -28,7 +28,7 @@ void check_one(const MoveTask& task, ArmKind kind, std::size_t sections, const s
     reader.problem_at(path + ".to", "is empty: expected a shape, as archings or bends, or position");
   if (to.position && has_shape)
     reader.problem_at(path + ".to.position",
-                      "stands beside a shape: expected a place for the tip or a shape");
+                      "is given together with a shape: expected either a position or a shape");
   check_one_or_each(task.law.size(), sections, path + ".law", reader);
   const auto trapezoids = std::ranges::count(task.law, MoveLaw::trapezoid);
   if (trapezoids == 0) {
@@ -60,7 +60,8 @@ void check_one(const KeyframesTask& task, ArmKind kind, std::size_t sections, co
                Reader& reader) {
   if (!task.file.empty()) {
     if (!task.columns.empty() || !task.rows.empty()) {
-      reader.problem_at(path + ".file", "stands beside columns or rows: expected a file or those");
+      reader.problem_at(path + ".file",
+                        "is given together with columns or rows: expected either a file or those");
     }
     return;  // Checked after the file is read.
   }

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
+#include <optional>
 #include <string>
 #include <thread>
 #include <vector>
@@ -31,14 +32,14 @@ struct Method {
   ServoLawKind law = ServoLawKind::shape;
   ServoJacobian jacobian = ServoJacobian::model;
   double rate = 4;
+  std::string model = "dynamic";
 };
 
 std::vector<Method> methods() {
   return {{.name = "shape"},
-          {.name = "shape, rate 2", .rate = 2},
+          {.name = "shape, static model", .model = "static"},
           {.name = "points", .law = ServoLawKind::points},
-          {.name = "points, rate 2", .law = ServoLawKind::points, .rate = 2},
-          {.name = "shape, broyden", .jacobian = ServoJacobian::broyden},
+          {.name = "points, static model", .law = ServoLawKind::points, .model = "static"},
           {.name = "shape, recursive", .jacobian = ServoJacobian::recursive}};
 }
 
@@ -73,6 +74,9 @@ class StudyRig {
                                       : half_a_degree(random_))),
         gray_(swinging_world_file(file_, false, world_)) {
     nominal_ = rig_model(gray_.experiment().arm_model(), gray_.experiment().cameras());
+    SwingingWorld still = world_;
+    still.model = "static";
+    static_ = parse_experiment(swinging_world_file(file_, false, still), "x.toml").arm_model();
     if (!is_calibrated) {
       for (CameraConfig& camera : nominal_.cameras)
         camera.lens.fx *= random_.uniform(-1, 1) < 0 ? 0.99 : 1.01;
@@ -105,7 +109,14 @@ class StudyRig {
     (void)gray_.ports().arm->command(ArmState::straight(3), 3).value();
     wait(6);
     TruthWatcher watcher(gray_, nominal_.driven, config);
-    const ServoResult result = servo_in_session(gray_.ports(), nominal_, config, watcher);
+    RigModel nominal = nominal_;
+    if (method.model == "static") nominal.actuation = static_->actuation();
+    const ServoResult result = servo_in_session(gray_.ports(), nominal, config, watcher);
+    if (std::getenv("TRACE"))
+      for (const ServoStep& step : result.steps)
+        std::fprintf(stderr, "%.3f %s err %.3f%% ahead %.3f%% sigma %.3f%% b %.4f %.4f %.4f %s\n",
+                     step.time - result.start, step.is_fresh ? "*" : " ", step.error ? 100 * step.error->rms : -1,
+                     step.ahead ? 100 * step.ahead->rms : -1, 100 * step.sigma, step.sent.bends[0].x(), step.sent.bends[1].x(), step.sent.bends[2].x(), step.limited.c_str());
     Run run;
     run.totals = watcher.totals();
     Arrival& arrival = run.arrival;
@@ -136,6 +147,7 @@ class StudyRig {
   LoopRig file_;
   RigBench gray_;
   RigModel nominal_;
+  std::optional<ArmModel> static_;  // The same arm without swing.
   std::string why_not_;
 };
 

@@ -7,6 +7,7 @@
 #include "flexura/estimate/observation.h"
 #include "flexura/estimate/shape_estimator.h"
 #include "flexura/estimate/shape_variables.h"
+#include "flexura/estimate/swing_filter.h"
 
 namespace flexura {
 
@@ -38,21 +39,30 @@ class ShapeTracker {
   /// found have the views' errors in `shape.views`.
   [[nodiscard]] ShapeEstimate look(std::span<const Observation> observations, double time,
                                    const std::optional<ArmState>& expected);
+  /// Returns the shape of an arm that swings. `expected`: prediction without the swing's change; `path`: of
+  /// the drives since the previous estimate.
+  [[nodiscard]] ShapeEstimate look(std::span<const Observation> observations, double time,
+                                   const std::optional<ArmState>& expected, const SwingPath& path);
+  /// Returns the swing at the last estimate; not tracked for an arm without modes.
+  [[nodiscard]] const SwingFilter& swing() const { return swing_; }
 
   /// Resets the tracker: the next observations are of an unknown arm.
-  void forget() { prediction_.reset(), usual_rms_ = 0, unreliable_ = 0, elsewhere_.reset(); }
+  void forget() {
+    prediction_.reset(), usual_rms_ = 0, unreliable_ = 0, elsewhere_.reset();
+    swing_.forget();
+  }
 
  private:
-  // The predicted state of the filter.
-  [[nodiscard]] ShapePrediction gone_on(std::span<const Observation> observations, double time,
-                                        const ArmState& expected) const;
+  // Advances the filter's state to these observations.
+  void go_on(std::span<const Observation> observations, double time, const ArmState& expected,
+             const SwingPath& path);
+  void update_swing(std::span<const Observation> observations, const ShapeEstimate& estimate);
   [[nodiscard]] bool is_as_usual(const ShapeEstimate& estimate) const;
   // Estimates from the prediction, and sets whether the observations contradict it.
-  [[nodiscard]] ShapeEstimate followed(std::span<const Observation> observations, double time,
-                                       const ArmState& expected);
+  [[nodiscard]] ShapeEstimate followed(std::span<const Observation> observations, const ArmState& expected);
   [[nodiscard]] bool is_to_be_checked(const ShapeEstimate& estimate);
   [[nodiscard]] ShapeEstimate from_nothing(std::span<const Observation> observations);
-  [[nodiscard]] ShapeEstimate found(std::span<const Observation> observations, double time,
+  [[nodiscard]] ShapeEstimate found(std::span<const Observation> observations,
                                     const std::optional<ArmState>& expected);
 
   ShapePrior prior_;
@@ -60,7 +70,10 @@ class ShapeTracker {
   TrackerConfig config_;
   ShapeVariables variables_;
   ShapeEstimator estimator_;
+  // The last estimate; while looking, the filter's prediction.
   std::optional<ShapePrediction> prediction_;
+  SwingFilter swing_;
+  bool is_updated_ = false;  // The estimate contains the prediction.
   double time_ = 0;       // Of `prediction_`, s.
   double usual_rms_ = 0;  // Of the last estimate's residuals, px.
   bool is_innovation_large_ = false;

@@ -250,7 +250,8 @@ ArmModel arm_model_of(const ArmConfig& arm, const std::optional<DriveConfig>& dr
     if (!section.bend_profile) section.bend_profile.emplace(arcs_of_rod_section, 1.0);
   const Actuation actuation(
       driven, std::make_shared<RodResponse>(driven, rod_of(arm, drive), loads_of(arm),
-                                            drive ? std::optional(drive->drive()) : std::nullopt));
+                                            drive ? std::optional(drive->drive()) : std::nullopt,
+                                            arm.mechanics == ArmMechanics::dynamics));
   return {driven, actuation, shaped_arm(driven, actuation)};
 }
 

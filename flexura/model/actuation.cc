@@ -153,6 +153,15 @@ void Actuation::slopes(const ArmState& command, Eigen::MatrixXd& by_command) con
   }
 }
 
+std::vector<SwingMode> Actuation::swing(const ArmState& command, std::size_t most) const {
+  if (!response_) return {};
+  std::vector<SwingMode> modes = response_->swing(command, most);
+  for (SwingMode& mode : modes)
+    for (std::size_t k = 0; k < arcs(); ++k)
+      mode.shape.segment<2>(3 * static_cast<Eigen::Index>(k)) *= shares_[k];
+  return modes;
+}
+
 void Actuation::by_command(const Eigen::MatrixXd& by_shape, const ArmState& command,
                            Eigen::MatrixXd& by_command) const {
   if (sections_ == 0) {

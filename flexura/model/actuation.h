@@ -52,6 +52,9 @@ class Actuation {
   /// Computes the derivative of the shape's (bend_x, bend_y, stretch) by the command's, 3 arcs x 3 sections,
   /// at a command. Resizes `by_command` if needed. Throws std::invalid_argument for a command of another arm.
   void slopes(const ArmState& command, Eigen::MatrixXd& by_command) const;
+  /// Returns the slowest modes in which the arm swings about the equilibrium of a command (ArmResponse::swing);
+  /// empty without a response.
+  [[nodiscard]] std::vector<SwingMode> swing(const ArmState& command, std::size_t most) const;
   /// Converts derivatives by a shape, three columns per arc (bend_x, bend_y, stretch), to those by a command,
   /// three columns per section, at this command. Resizes `by_command` if needed. Throws std::invalid_argument
   /// for another number of columns.

@@ -6,6 +6,7 @@
 #include <deque>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "flexura/camera/camera.h"
 #include "flexura/port/rig_model.h"
@@ -50,9 +51,13 @@ class RigReader {
   /// Returns the reason why there is no pair: the cameras without a picture since this time, s.
   [[nodiscard]] std::string no_pair(double since) const;
 
-  /// said() returns the drives' shape at a time; believed() the model's shape for it.
+  /// measured() returns the drives' reading at a time, a command; nominal() the model's shape for it.
   [[nodiscard]] ArmState measured(double time) const { return *arm_.at(time); }
   [[nodiscard]] ArmState nominal(double time) const { return model_.bent(measured(time)); }
+  /// Returns the times of the drives' readings after `from` and before `to`, s, in order.
+  [[nodiscard]] std::vector<double> readings_between(double from, double to) const {
+    return arm_.times_between(from, to);
+  }
   /// Returns the nominal views of the cameras at a time.
   [[nodiscard]] std::array<View, 2> views(double time) const { return {view(0, time), view(1, time)}; }
   /// Returns the axis positions that a camera's head and stage reported.

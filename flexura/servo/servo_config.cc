@@ -32,8 +32,8 @@ const Table<ServoCameraPrior>& fields_of(const ServoCameraPrior*) {
 }
 
 const std::vector<std::string>& names_of(const ServoLawKind*) {
-  static const std::vector<std::string> names = {"shape",   "points",    "chords",
-                                                 "moments", "potential", "silhouettes"};
+  static const std::vector<std::string> names = {"shape",     "points",      "chords",    "moments",
+                                                 "potential", "silhouettes", "predictive"};
   return names;
 }
 

@@ -28,6 +28,8 @@ enum class ServoLawKind : std::uint8_t {
   moments,      ///< Length, centroid and second moments of its images.
   potential,    ///< The paper's law: errors in two image planes, an artificial potential of two angles.
   silhouettes,  ///< Positions of the two edges of its images, across the edges.
+  /// The estimated shape, by model predictive control of commands and swing (PredictiveLaw).
+  predictive,
 };
 
 /// Returns true if a law compares chord angles, which optical flow may carry.

@@ -44,6 +44,8 @@ class ServoLaw {
   void by_variables(const Eigen::MatrixXd& by_shape, const ArmState& command, Eigen::MatrixXd& J);
   // Packs the variables of a command, within the limits or not.
   void pack(const ArmState& state, Eigen::VectorXd& x) const;
+  // Computes the measured features into seen_.
+  [[nodiscard]] bool find_features(const ServoObservation& observed);
   // Computes the error of the measured features, which it writes to seen_.
   [[nodiscard]] bool find_error(const Input& input, const TargetShape& desired, FeatureError& result);
   // Adds the motion of the drives that follows the target's motion.

@@ -21,6 +21,9 @@ struct ServoObservation {
   std::array<Frame, 2> frames;         ///< Of both cameras.
   std::array<Observation, 2> seen;     ///< Centerlines, bands, borders; views corrected by their errors.
   ShapeEstimate estimate;              ///< Shape of the arm at that time.
+  /// Shape of the arm without its swing about the equilibrium; equal to that of `estimate` for an arm that
+  /// does not swing.
+  ArmState rest;
   std::array<std::string, 2> reasons;  ///< Reason why a picture shows no arm, or "".
 };
 

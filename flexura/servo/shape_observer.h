@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <array>
 #include <memory>
 #include <optional>
@@ -18,7 +19,7 @@ namespace flexura {
 /// the time without observations.
 class ShapeObserver {
  public:
-  /// `rig`, which gives the drives' motion, must outlive this object.
+  /// `rig`, which gives the drives' motion, and `nominal` must outlive this object.
   ShapeObserver(const RigReader& rig, const RigModel& nominal, const ServoConfig& config);
 
   /// The time without observations counts from `time`, s of the rig's clock.
@@ -40,9 +41,13 @@ class ShapeObserver {
   [[nodiscard]] double blind_for(double now) const { return now - seen_since_; }
   [[nodiscard]] double seen_since() const { return seen_since_; }
 
-  /// Returns the expected shape if the model gives `driven` for the drives: the last estimate plus the
-  /// drives' motion since.
+  /// Returns the expected shape of the arm at rest if the model gives `driven` for the drives: the last
+  /// estimate, without its swing, plus the drives' motion since.
   [[nodiscard]] ArmState expected(ArmState driven) const;
+  /// Returns the swing of the arm at the last observation; not tracked for an arm that does not swing.
+  [[nodiscard]] const SwingFilter& swing() const { return tracker_.swing(); }
+  /// Returns the motion of the drives from the last observation until `time`, s, by their readings.
+  [[nodiscard]] SwingPath path_until(double time) const;
   /// Returns the standard deviation of the last shape from the pictures' noise, root mean square along the
   /// arm, share of its length. Errors of cameras without a prior are equal in every picture and are not
   /// included.
@@ -55,13 +60,16 @@ class ShapeObserver {
  private:
   // Standard deviation of the shape along the arm, share of its length.
   [[nodiscard]] double relative_sigma(const ShapeEstimate& estimate) const;
-  void estimate(ServoObservation& observed, const std::optional<ArmState>& expected);
+  void estimate(ServoObservation& observed, const std::optional<ArmState>& expected, const SwingPath& path);
   [[nodiscard]] ShapeEstimate shape_of(const ServoObservation& observed,
-                                       const std::optional<ArmState>& expected);
+                                       const std::optional<ArmState>& expected, const SwingPath& path);
 
   void forget() { tracker_.forget(), uses_nominal_views_ = false; }
+  // Returns the predicted shape at the time of an observation, without the change of the swing.
+  [[nodiscard]] ArmState predicted(double time) const;
 
   const RigReader& rig_;
+  const RigModel& nominal_;
   double length_;  // m
   ViewPrior view_prior_;
   ShapePrior prior_;
@@ -69,6 +77,7 @@ class ShapeObserver {
   bool uses_nominal_views_ = false;
   double seen_since_ = 0;
   std::shared_ptr<const ServoObservation> first_, last_;
+  Eigen::VectorXd rate_;  // Of the drives' motion at the last observation, (bends, stretch) a section, 1/s.
 };
 
 }  // namespace flexura

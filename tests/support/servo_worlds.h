@@ -31,7 +31,7 @@ struct SwingingWorld {
   double friction = 0.02;   ///< True friction coefficient of the tendons.
   double payload = 0.02;    ///< Mass at the tip that the model lacks, kg.
   double backlash_deg = 1;  ///< True backlash of the spools.
-  bool knows = true;        ///< The model has elastic rods; otherwise arcs.
+  std::string model = "dynamic";  ///< `arm.model` of the model: "kinematic", "static" or "dynamic".
 };
 
 /// Turns the sections of the table `arm` or `truth.arm` of a file into a steel wire of 2 mm radius with 0.2
@@ -81,10 +81,11 @@ inline std::string swinging_world_file(const LoopRig& rig, bool is_colored, cons
         stiffness * 54e9);
   };
   add_to_each("arm.section", "max_bend_rate_deg = 90\nbend_profile = [1, 1, 1]\n", text);
-  if (world.knows) add_to_each("arm.section", material(1), text);
+  const bool has_rods = world.model != "kinematic";
+  if (has_rods) add_to_each("arm.section", material(1), text);
   add_to_each("truth.arm.section", material(world.stiffness), text);
   const std::string gravity = "gravity = [0, -9.81, 0]\n";
-  if (world.knows) text.insert(text.find("[arm]\n") + 6, "model = \"static\"\n" + gravity);
+  if (has_rods) text.insert(text.find("[arm]\n") + 6, fmt::format("model = \"{}\"\n", world.model) + gravity);
   text += "\n[truth.arm]\nmodel = \"dynamic\"\n" + gravity;
   if (world.payload > 0)
     text += fmt::format("[[truth.arm.payload]]\nsection = 3\nmass = {}\n", world.payload);

@@ -1,5 +1,7 @@
 #include "flexura/sim/deep_start.h"
 
+#include <vector>
+
 #include "flexura/mechanics/dynamics.h"
 #include "flexura/mechanics/rod_contact.h"
 #include "flexura/mechanics/statics.h"
@@ -22,8 +24,10 @@ std::optional<DeepStart> deep_start(const RigConfig& model, const RigConfig& tru
   RodDynamics dynamics(inputs.rod());
   const RodContact contact(dynamics.chain(), arm.rod.value().contact.value());
   dynamics.set_surroundings(&contact);
-  const std::vector<double> factors = inputs.rest_stretches(0);
-  dynamics.stretch_rest(factors, std::vector<double>(factors.size(), 0.0));
+  if (inputs.can_stretch()) {
+    const std::vector<double> factors = inputs.rest_stretches(0);
+    dynamics.stretch_rest(factors, std::vector<double>(factors.size(), 0.0));
+  }
   std::optional<DeepStart> deepest;
   for (const ContactForce& each : contact.find(dynamics.point_motions(dynamics.rest(rest)))) {
     if (!each.is_deep || !each.obstacle || (deepest && deepest->depth >= each.depth)) continue;

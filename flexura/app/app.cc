@@ -160,6 +160,8 @@ void add_identify(CLI::App& app, Command& chosen) {
       ->type_name("S");
   identify->add_flag("--alike", arguments->alike, "All sections have the same material");
   identify->add_flag("--mass", arguments->mass, "Estimate a factor on the mass too");
+  identify->add_flag("--friction", arguments->friction,
+                     "Estimate the friction coefficient of the tendons too, one for all");
   add_set_option(*identify, arguments->sets);
   identify->add_option("--seed", arguments->seed, "Seed of the noise, 0 to 1e15")
       ->type_name("N")

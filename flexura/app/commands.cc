@@ -91,8 +91,8 @@ class WatchedRun {
   OpenViewer viewer_;
 };
 
-// A run without a viewer. The first stop signal cancels it; a second one ends the program at once, as the
-// default handler would.
+// A run or a check without a viewer. The first stop signal cancels it; a second one ends the program at once,
+// as the default handler would.
 class UnwatchedRun {
  public:
   explicit UnwatchedRun(const std::shared_ptr<RunLink>& link)
@@ -196,8 +196,14 @@ int check_command(const CheckArguments& arguments, std::ostream& out, std::ostre
   if (experiment.task.empty())
     throw input_error(arguments.experiment, "nothing to check: expected at least one [[task]]", 1, 1);
   TerminalProgress progress(err);
-  const SafetyReport report = check_experiment_safety(experiment, progress);
+  const auto link = std::make_shared<RunLink>(&progress);
+  const UnwatchedRun stoppable(link);
+  const SafetyReport report = check_experiment_safety(experiment, *link);
   progress.clear();
+  if (link->is_cancelled()) {
+    print_line(err, "cancelled", "it was stopped before the check was complete");
+    return exit_of_signal(stoppable.received_signal());
+  }
   if (arguments.json) {
     out << write_json(safety_node(report), 2) << '\n';
   } else {

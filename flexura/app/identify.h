@@ -21,16 +21,20 @@ struct IdentifyArguments {
   std::optional<double> window = {};         ///< Length of motion in one equation, s.
   std::optional<std::int64_t> seed = {};     ///< Seed of the noise added to a log's places.
   bool mass = false;                         ///< Also identify a mass factor.
+  bool friction = false;                     ///< Also identify the friction coefficient of the tendons.
   bool alike = false;                        ///< Whether all sections are of one material.
   bool json = false;
 };
 
 /// One value identified from a motion.
 struct IdentifiedValue {
-  std::string name;  ///< "youngs_modulus", "stiffness_factor", "damping_time" or "mass_factor".
+  std::string name;  ///< "youngs_modulus", "stiffness_factor", "damping_time", "mass_factor", "friction".
   std::string unit;  ///< "Pa", "s" or "".
   std::optional<std::size_t> section = {};  ///< From 1; empty: the whole arm.
   bool is_determined = false;               ///< If false, the motion does not determine value and sigma.
+  /// False for a determined value that no material has: a negative damping time or friction, or no stiffness
+  /// or mass above 0. The value is not constrained, so that its standard deviation remains valid.
+  bool is_physical = true;
   double value = 0;
   double sigma = 0;    ///< Standard deviation of the value.
   double nominal = 0;  ///< Value in the file.
@@ -47,7 +51,9 @@ struct IdentifiedArm {
   /// Rms distance from the places (places_missed) of the arm in the file, m. Infinite if the motion cannot be
   /// computed.
   double missed_file = 0;
-  double missed = 0;  ///< The same distance for the identified arm, m.
+  double missed = 0;      ///< The same distance for the identified arm, m. Unphysical values: as in the file.
+  double step = 0;        ///< Mean time between two samples, s.
+  bool converged = true;  ///< Identification::converged.
 };
 
 /// What to identify, and how.
@@ -55,11 +61,13 @@ struct IdentifySettings {
   double noise = 0;   ///< Standard deviation of measured places, m; 0: unknown.
   double window = 0;  ///< Length of motion in one equation, s; 0: the period of the slowest mode, if any.
   bool mass = false;
+  bool friction = false;
   bool alike = false;
 };
 
-/// Identifies the stiffness and damping time of each section from a motion of the arm. `rod` is the nominal
-/// rod of `arm`. Throws std::invalid_argument as record_of_places() and identify() do.
+/// Identifies the stiffness and damping time of each section from a motion of the arm; with `mass` a mass
+/// factor of the arm, with `friction` one friction coefficient of all its tendons. `rod` is the nominal rod
+/// of `arm`. Throws std::invalid_argument as record_of_places() and identify() do.
 [[nodiscard]] IdentifiedArm identify_arm(const ArmConfig& arm, const Rod& rod, const MeasuredMotion& motion,
                                          const IdentifySettings& settings);
 

@@ -19,6 +19,7 @@ struct ExportResult {
 /// stretches; base points and tip),
 /// - events.csv,
 /// - truth.csv: the true arm, for runs that play a rig,
+/// - contacts.csv: for arms in motion that touch something,
 /// - tensions.csv: for arms that are rods,
 /// - energy.csv: for rods in motion,
 /// - tables of `more` with messages in the log (task_tables).

@@ -91,7 +91,10 @@ RodResponse::RodResponse(const Arm& driven, const Rod& rod, RodLoads loads, std:
     if (k + 1 == count) ends_.push_back(places_.size() - 1);
   });
   has_driven_lengths_ = !drive_ && std::ranges::any_of(driven_.sections, &Section::can_stretch);
-  J_.resize(3 * static_cast<Eigen::Index>(places_.size()), variables_.size());
+  std::vector<MaterialPoint> on_arcs;
+  on_arcs.reserve(places_.size());
+  for (const Place& place : places_) on_arcs.push_back(place.on_arcs);
+  fit_.emplace(variables_, std::move(on_arcs));
   tight_.assign(rod.tendons.size(), 0.0);
   if (drive_ && drive_->pretension > 0) tight_ = pretension_displacements(statics_, drive_->pretension);
   const ArmState straight = ArmState::straight(driven_.sections.size());
@@ -159,32 +162,21 @@ ArmState RodResponse::fitted(const Equilibrium& at, const ArmState& command) con
   fine_.place(at.q);
   ArmState shape = along_tangents(command);
   const double length = driven_.length();
-  Eigen::VectorXd r(J_.rows());
-  Jacobian columns(6, 3 * static_cast<Eigen::Index>(ends_.size()));
+  Eigen::MatrixXd missed(3 * static_cast<Eigen::Index>(places_.size()), 1), reached;
   for (int step = 0; step < max_fit_steps; ++step) {
-    jacobian_.set(shaped_, shape);
+    fit_->set(shaped_, shape);
     for (std::size_t p = 0; p < places_.size(); ++p) {
       const Place& place = places_[p];
-      const auto row = 3 * static_cast<Eigen::Index>(p);
-      r.segment<3>(row) = fine_.elements()[place.element].poses()[place.node].position -
-                          jacobian_.pose(place.on_arcs).position;
-      jacobian_.at(place.on_arcs, columns);
-      for (std::size_t k = 0; k < ends_.size(); ++k) {
-        const ArmVariables::Part& part = variables_.parts()[k];
-        const auto from = 3 * static_cast<Eigen::Index>(k);
-        J_.block<3, 1>(row, part.at) = columns.block<3, 1>(0, from);
-        if (part.is_spatial) J_.block<3, 1>(row, part.at + 1) = columns.block<3, 1>(0, from + 1);
-        if (part.is_stretchable) J_.block<3, 1>(row, part.stretch_at()) = columns.block<3, 1>(0, from + 2);
-      }
+      missed.col(0).segment<3>(3 * static_cast<Eigen::Index>(p)) =
+          fine_.elements()[place.element].poses()[place.node].position - fit_->position(p);
     }
-    fit_.compute(J_.transpose() * J_);
-    const Eigen::VectorXd change = fit_.solve(J_.transpose() * r);
+    const Eigen::VectorXd change = fit_->solve(missed, &reached);
     for (std::size_t k = 0; k < ends_.size(); ++k) {
       const ArmVariables::Part& part = variables_.parts()[k];
       shape.bends[k] += part.bend(change);
       if (part.is_stretchable) shape.stretches[k] += change[part.stretch_at()];
     }
-    if (change.norm() < 1e-12 || (J_ * change).norm() < 1e-13 * length) break;
+    if (change.norm() < 1e-12 || reached.norm() < 1e-13 * length) break;
   }
   return shape;
 }
@@ -222,7 +214,7 @@ RodResponse::~RodResponse() = default;
 // each, at the last answer.
 Eigen::MatrixXd RodResponse::arcs_along(const Eigen::MatrixXd& dq) const {
   fine_.place_with_columns(last_->at.q);
-  Eigen::MatrixXd places(J_.rows(), dq.cols());
+  Eigen::MatrixXd places(3 * static_cast<Eigen::Index>(places_.size()), dq.cols());
   RodElement::Columns twists(6, fine_.size());
   for (std::size_t p = 0; p < places_.size(); ++p) {
     const Place& place = places_[p];
@@ -233,7 +225,7 @@ Eigen::MatrixXd RodResponse::arcs_along(const Eigen::MatrixXd& dq) const {
       places.block<3, 1>(3 * static_cast<Eigen::Index>(p), c) =
           moved.col(c).head<3>() + moved.col(c).tail<3>().cross(at);
   }
-  const Eigen::MatrixXd arcs = fit_.solve(J_.transpose() * places);
+  const Eigen::MatrixXd arcs = fit_->solve(places);
   Eigen::MatrixXd changes = Eigen::MatrixXd::Zero(3 * static_cast<Eigen::Index>(ends_.size()), dq.cols());
   for (std::size_t k = 0; k < ends_.size(); ++k) {
     const ArmVariables::Part& part = variables_.parts()[k];

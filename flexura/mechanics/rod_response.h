@@ -1,6 +1,5 @@
 #pragma once
 
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <cstddef>
 #include <memory>
@@ -9,8 +8,9 @@
 #include <vector>
 
 #include "flexura/kinematics/arm_variables.h"
-#include "flexura/kinematics/jacobian.h"
 #include "flexura/mechanics/dynamics.h"
+#include "flexura/kinematics/spatial.h"
+#include "flexura/mechanics/arc_fit.h"
 #include "flexura/mechanics/rod_chain.h"
 #include "flexura/mechanics/statics.h"
 #include "flexura/model/arm.h"
@@ -87,9 +87,7 @@ class RodResponse : public ArmResponse {
   mutable RodChain fine_;
   mutable Equilibrium straight_;  // of the command without bends
   mutable std::optional<Answer> last_;
-  mutable BackboneJacobian jacobian_;
-  mutable Eigen::MatrixXd J_;                 // of the places by the arcs' variables, at the fit
-  mutable Eigen::LDLT<Eigen::MatrixXd> fit_;  // of J_^T J_
+  mutable std::optional<ArcFit> fit_;  // of the arcs to the places, at the last fit
 };
 
 }  // namespace flexura

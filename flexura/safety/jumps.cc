@@ -57,7 +57,8 @@ bool changes_stretch(const ArmState& a, const ArmState& b, std::size_t section) 
   return std::abs(a.stretches[section] - b.stretches[section]) > (a.bends[section] - b.bends[section]).norm();
 }
 
-std::vector<Jump> find_jumps(const Motion& motion, double step, double until) {
+std::vector<Jump> find_jumps(const Motion& motion, double step, double until,
+                             const std::function<bool(double done)>& go_on) {
   const double end = std::min(until, motion.duration());
   std::vector<Jump> jumps;
   const auto count = static_cast<std::size_t>(std::ceil(end / step));
@@ -65,6 +66,7 @@ std::vector<Jump> find_jumps(const Motion& motion, double step, double until) {
   for (std::size_t k = 1; k <= count; ++k) {
     Sample next{std::min(static_cast<double>(k) * step, end), {}};
     next.state = motion.at(next.time);
+    if (go_on && !go_on(static_cast<double>(k) / static_cast<double>(count))) break;
     if (const auto jump = jump_between(motion, last, next)) jumps.push_back(*jump);
     last = std::move(next);
   }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <limits>
 #include <vector>
 
@@ -35,8 +36,10 @@ struct Jump {
 
 /// Returns the jumps of any law. Searches every interval of `step` s by halving it towards its larger change:
 /// a jump keeps its size, and a fast change does not. Finds a jump if it is at least 1/32 of the law's change
-/// in its step. Ignores changes that are not finite. `until`: end of the search, s.
+/// in its step. Ignores changes that are not finite. `until`: end of the search, s. `go_on` may be empty; it
+/// receives the completed share, and returns false to end the search.
 [[nodiscard]] std::vector<Jump> find_jumps(const Motion& motion, double step,
-                                           double until = std::numeric_limits<double>::infinity());
+                                           double until = std::numeric_limits<double>::infinity(),
+                                           const std::function<bool(double done)>& go_on = {});
 
 }  // namespace flexura

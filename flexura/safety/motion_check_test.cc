@@ -202,6 +202,15 @@ TEST(MotionCheck, FindsJumpsInFormulasAndNoneWhereTheyAreOnlyFast) {
   });
 }
 
+TEST(MotionCheck, TheSearchForJumpsCanBeEnded) {
+  int asked = 0;
+  const auto motion = function_motion(2, [&](double) { return ++asked, bent(0); });
+  std::vector<double> shares;
+  (void)find_jumps(*motion, 0.01, 2, [&](double done) { return shares.push_back(done), shares.size() < 5; });
+  EXPECT_EQ(shares, (std::vector<double>{0.005, 0.01, 0.015, 0.02, 0.025}));
+  EXPECT_LE(asked, 6);
+}
+
 TEST(MotionCheck, SaysWhatItOnlySampled) {
   const auto formula = function_motion(3, [](double t) { return bent(0.1 * t); });
   const SafetyReport report = check(short_section(), formula, 0.05);

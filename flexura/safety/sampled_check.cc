@@ -73,7 +73,10 @@ class SampledCheck {
     }
     add_found();
     if (!last_possible || !checked_.report.is_complete) return;
-    for (const Jump& jump : find_jumps(checked_.motion(), checked_.step, *last_possible))
+    const auto go_on = [&](double done) {
+      return checked_.go_on(samples_share + (1 - samples_share) * done);
+    };
+    for (const Jump& jump : find_jumps(checked_.motion(), checked_.step, *last_possible, go_on))
       checked_.add_jump({jump.time, jump.time}, jump.section, jump.is_of_stretch, {jump.time, jump.size});
   }
 

@@ -1,5 +1,5 @@
-// The background: a gradient from the horizon to the zenith, drawn as one triangle behind everything. Its colours go to
-// the picture unchanged (plain.ts says why).
+// The background: a gradient, drawn as one triangle at the far end, after everything that is opaque: what is hidden costs
+// nothing. Its colours go to the picture unchanged (plain.ts says why).
 import { BufferAttribute, BufferGeometry, Color, Mesh, ShaderMaterial } from 'three';
 import type { Theme } from './part';
 
@@ -14,14 +14,13 @@ export class Backdrop {
     this.material = new ShaderMaterial({
       uniforms: { low: { value: new Color() }, high: { value: new Color() } },
       vertexShader: 'varying vec3 shade; uniform vec3 low; uniform vec3 high; void main() {'
-        + ' shade = mix(low, high, position.y * 0.5 + 0.5); gl_Position = vec4(position.xy, 1.0, 1.0); }',
+        + ' shade = mix(low, high, position.y * 0.5 + 0.5); gl_Position = vec4(position.xy, 0.9999999, 1.0); }',
       fragmentShader: 'varying vec3 shade; void main() { gl_FragColor = vec4(shade, 1.0); }',
-      depthTest: false,
       depthWrite: false,
     });
     this.mesh = new Mesh(new BufferGeometry().setAttribute('position', corners), this.material);
     this.mesh.frustumCulled = false;
-    this.mesh.renderOrder = -10;
+    this.mesh.renderOrder = 100;
     // It is no thing that can be clicked.
     this.mesh.raycast = () => {};
   }

@@ -48,7 +48,8 @@ export function make_floor({ span, floor, theme, scene }: PartContext): Part[] {
     plain(new MeshBasicMaterial({ color: colors[theme].plate, polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 4 })),
   );
   plate.position.y = floor - 5e-4 * span;
-  plate.renderOrder = -9;
+  // After what stands on it: what is hidden costs nothing.
+  plate.renderOrder = 50;
   const ground = new Group().add(plate, grid);
   ground.position.set(middle_x, 0, middle_z);
 

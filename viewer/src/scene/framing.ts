@@ -13,6 +13,9 @@ const margin = 0.05;
 /** The opening view goes no farther away than this, in lengths of the arm: it would be too small. */
 export const farthest_opening = 9;
 
+/** How much of a large screen the opening view holds, to each side of the arm, in lengths of the arm. */
+const screen_share = 0.8;
+
 export interface Look {
   target: Vector3;
   azimuth: number;
@@ -59,14 +62,21 @@ export function distance_for_all(points: Vector3[], look: Look, span: number): n
   return Math.max(nearest_look * span, ...points.map((point) => distance_for(point, look)));
 }
 
-/** Returns the corners of the screens, those below the floor raised to it: what is below is not seen. */
-export function screen_points(scene: Scene, floor: number): Vector3[] {
+/**
+ * Returns the corners of the screens' parts behind the arm, above the floor: of a screen much larger than the arm, what is
+ * within `screen_share` of the place nearest to the middle of its workspace.
+ */
+export function screen_points(scene: Scene, middle: Vector3, floor: number, span: number): Vector3[] {
+  const most = screen_share * span;
   return scene.screens.flatMap(({ pose: [x, y, z, qw, qx, qy, qz], size: [width, height] }) => {
     const turn = new Quaternion(qx, qy, qz, qw);
-    return [[-1, -1], [1, -1], [1, 1], [-1, 1]].map(([u, v]) => {
-      const corner = new Vector3((u * width) / 2, (v * height) / 2, 0).applyQuaternion(turn);
+    const nearest = middle.clone().sub(new Vector3(x, y, z)).applyQuaternion(turn.clone().invert());
+    const ends = (size: number, at: number): number[] =>
+      [-1, 1].map((side) => Math.min(size / 2, Math.max(-size / 2, at + side * most)));
+    return ends(width, nearest.x).flatMap((u) => ends(height, nearest.y).map((v) => {
+      const corner = new Vector3(u, v, 0).applyQuaternion(turn);
       return new Vector3(x + corner.x, Math.max(floor, y + corner.y), z + corner.z);
-    });
+    }));
   });
 }
 

@@ -1,6 +1,6 @@
 // The 3D view; it draws only after changes.
 import {
-  DirectionalLight, HemisphereLight, Matrix4, PerspectiveCamera, Raycaster, Scene as World, Vector2, Vector3, WebGLRenderer,
+  DirectionalLight, HemisphereLight, Matrix4, type Object3D, PerspectiveCamera, Raycaster, Scene as World, Vector2, Vector3, WebGLRenderer,
 } from 'three';
 import { point_at } from '../math/arc';
 import type { Picture } from '../connection/images';
@@ -152,11 +152,11 @@ export class SceneView {
     return this.parts.flatMap(({ group, labels }) => (group.visible ? labels ?? [] : []));
   }
 
-  /** The opening view: holds the arm's workspace, the cameras and the screens above the floor. */
+  /** The opening view: holds the arm's workspace, the cameras and the screens behind the arm. */
   frame_all(): void {
     if (!this.scene) return;
     const look = this.look_at_reach(this.scene);
-    const points = [...this.frusta(this.scene), ...screen_points(this.scene, this.floor.height)];
+    const points = [...this.frusta(this.scene), ...screen_points(this.scene, look.target, this.floor.height, this.span)];
     const { right, up, distance } = frame_of(points, look, this.span);
     this.orbit.distance = distance;
     this.orbit.place(this.camera);
@@ -233,7 +233,7 @@ export class SceneView {
     ray.setFromCamera(pointer, this.camera);
     ray.params.Line.threshold = 0;
     const groups = this.parts.filter(({ group, id }) => group.visible && id !== 'shadow').map(({ group }) => group);
-    return ray.intersectObjects(groups, true).find(({ object }) => object.visible && object.type !== 'LineSegments')?.point ?? null;
+    return ray.intersectObjects(groups, true).find(({ object }) => is_shown(object) && object.type !== 'LineSegments')?.point ?? null;
   }
 
   get width(): number {
@@ -297,6 +297,11 @@ export class SceneView {
 
 const seen_by = new Matrix4();
 const nothing = new Float32Array(0);
+
+function is_shown(object: Object3D | null): boolean {
+  for (let each = object; each; each = each.parent) if (!each.visible) return false;
+  return true;
+}
 
 function same(a: Float32Array, b: Float32Array): boolean {
   if (a.length !== b.length) return false;

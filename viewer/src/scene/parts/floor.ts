@@ -1,5 +1,5 @@
 import {
-  BufferAttribute, BufferGeometry, DynamicDrawUsage, Group, LineBasicMaterial, LineSegments, Mesh, MeshBasicMaterial, PlaneGeometry,
+  BufferAttribute, BufferGeometry, DoubleSide, DynamicDrawUsage, Group, LineBasicMaterial, LineSegments, Mesh, MeshBasicMaterial, PlaneGeometry,
   Quaternion, Vector3,
 } from 'three';
 import type { Label, Part, PartContext } from '../part';
@@ -18,6 +18,14 @@ const scale_share = 0.62;
 /** From how far away of the world's origin the base has axes of its own, in lengths of the arm. */
 const apart = 0.05;
 
+/** Half the floor's width, in lengths of the arm: at least, and at most if screens stand farther away. */
+const [least_half, most_half] = [1.6, 3];
+
+function half_floor({ arm: { base }, screens }: PartContext['scene'], span: number): number {
+  const feet = screens.map(({ pose }) => Math.max(Math.abs(pose[0] - base[0]), Math.abs(pose[2] - base[2])));
+  return Math.min(most_half * span, Math.max(least_half * span, ...feet));
+}
+
 /** Returns a round number of metres that gives about ten squares along the arm. */
 export function grid_step(span: number): number {
   const rough = span / 8;
@@ -32,7 +40,7 @@ export function grid_step(span: number): number {
 export function make_floor({ span, floor, theme, scene }: PartContext): Part[] {
   const { base } = scene.arm;
   const step = grid_step(span);
-  const half = Math.ceil((1.6 * span) / step);
+  const half = Math.ceil(half_floor(scene, span) / step);
   const middle_x = Math.round(base[0] / step) * step;
   const middle_z = Math.round(base[2] / step) * step;
   const points: number[] = [];
@@ -54,11 +62,12 @@ export function make_floor({ span, floor, theme, scene }: PartContext): Part[] {
   ground.position.set(middle_x, 0, middle_z);
 
   const size = (at: number): number => at * span;
-  const bar = lines([0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0], colors[theme].bar);
-  const ends = bar.geometry.getAttribute('position') as BufferAttribute;
-  ends.setUsage(DynamicDrawUsage);
+  const ends = new BufferAttribute(new Float32Array(3 * 4 * 3), 3).setUsage(DynamicDrawUsage);
+  const geometry = new BufferGeometry().setAttribute('position', ends);
+  geometry.setIndex([0, 1, 2, 2, 1, 3, 4, 5, 6, 6, 5, 7, 8, 9, 10, 10, 9, 11]);
+  const bar = new Mesh(geometry, plain(new MeshBasicMaterial({ color: colors[theme].bar, side: DoubleSide })));
   bar.frustumCulled = false;
-  bar.position.y = floor;
+  bar.raycast = () => {};
   const label: Label = { kind: 'scale', text: format_step(step), at: new Vector3() };
   let side = -1;
   const lay_scale = (nearest: number): void => {
@@ -67,22 +76,30 @@ export function make_floor({ span, floor, theme, scene }: PartContext): Part[] {
     // The bar is the edge of the square nearest to the eye, in the middle of that side.
     const [x, z] = [[0, away], [away, 0], [0, -away], [-away, 0]][side];
     const across = side % 2 === 0;
-    const [dx, dz] = across ? [step, 0] : [0, step];
-    const [mx, mz] = across ? [0, 0.12 * step] : [0.12 * step, 0];
     const [ax, az] = [middle_x + x, middle_z + z];
-    ends.array.set([
-      ax, 0, az, ax + dx, 0, az + dz,
-      ax - mx, 0, az - mz, ax + mx, 0, az + mz, ax + dx - mx, 0, az + dz - mz, ax + dx + mx, 0, az + dz + mz,
-    ]);
+    const put = (at: number, from: number, to: number, width: number): void => {
+      for (const [i, [along, beside]] of [[from, -width], [to, -width], [from, width], [to, width]].entries()) {
+        ends.setXYZ(at + i, ax + (across ? along : beside), floor + 1e-4 * span, az + (across ? beside : along));
+      }
+    };
+    put(0, 0, step, 0.035 * step);
+    put(4, -0.03 * step, 0.03 * step, 0.15 * step);
+    put(8, 0.97 * step, 1.03 * step, 0.15 * step);
     ends.needsUpdate = true;
-    const [ox, oz] = [[0, 1], [1, 0], [0, -1], [-1, 0]][side];
-    label.at.set(ax + dx / 2 + 0.3 * step * ox, floor, az + dz / 2 + 0.3 * step * oz);
+    label.at.set(ax + (across ? step / 2 : 0), floor, az + (across ? 0 : step / 2));
   };
   lay_scale(0);
 
   const { axes, letters } = axes_of(span, theme, 'XYZ');
   const parts: Part[] = [
-    { id: 'grid', label: `Floor, squares of ${format_step(step)}`, group: ground, dispose: () => dispose_tree(ground) },
+    {
+      id: 'grid',
+      label: `Floor, squares of ${format_step(step)}`,
+      group: ground,
+      // A camera sees through the floor: its picture has none.
+      inside: (camera) => (plate.visible = camera === null),
+      dispose: () => dispose_tree(ground),
+    },
     {
       id: 'scale',
       label: 'Scale on the floor',

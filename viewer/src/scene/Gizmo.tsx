@@ -67,7 +67,7 @@ export function Gizmo() {
       {axes.map((axis, i) => (
         <g key={axis.name} class={axis.kind} data-axis={i}>
           {axis.sign > 0 && <line x2="0" y2="0" />}
-          <g class="end" role="button" tabIndex={0} aria-label={`Look from ${axis.name}`} data-negative={axis.sign < 0}
+          <g class="end" role="button" tabindex={0} aria-label={`Look from ${axis.name}`} data-negative={axis.sign < 0}
             onClick={() => look(axis)}
             onKeyDown={(event) => {
               if (event.key !== 'Enter' && event.key !== ' ') return;

@@ -19,11 +19,11 @@ import { draws_in_software, Sharpness } from './sharpness';
 
 /** Minimum time between two updates of the pictures in the view, ms. */
 const picture_ms = 200;
-/** Colours of the light from above and from the floor, and of the light at the eye. */
-const lights = {
-  dark: { sky: 0xe6f0ff, ground: 0x6c7681, eye: 0.85 },
-  light: { sky: 0xffffff, ground: 0x9aa4ad, eye: 0.5 },
-};
+/**
+ * Colours of the light from above and from the floor, and strength of the light at the eye. The same in both themes, so
+ * that things keep their colours.
+ */
+const light = { sky: 0xffffff, ground: 0xa8b2bb, eye: 0.9 };
 
 export class SceneView {
   readonly orbit = new Orbit();
@@ -42,12 +42,12 @@ export class SceneView {
   /** The rig's camera whose view is shown; null for the free view. */
   through: string | null = null;
   private readonly world = new World();
-  private readonly ambient = new HemisphereLight(0xffffff, 0xffffff, 1);
+  private readonly ambient = new HemisphereLight(light.sky, light.ground, 1);
   private readonly backdrop = new Backdrop();
   private readonly looked = new Matrix4();
   private looked_anew = true;
   private readonly sun = new DirectionalLight(0xffffff, 1);
-  private readonly head_light = new DirectionalLight(0xffffff, 0.5);
+  private readonly head_light = new DirectionalLight(0xffffff, light.eye);
   private readonly size = new Vector2(1, 1);
   private readonly sharpness: Sharpness;
   private readonly pictures = new Map<string, Picture | null>();
@@ -82,11 +82,7 @@ export class SceneView {
     this.parts = [...part_makers.flatMap((make) => make(context)), this.handles];
     for (const { group } of this.parts) this.world.add(group);
     this.show_ground(theme);
-    const { sky, ground, eye } = lights[theme];
-    this.ambient.color.set(sky);
-    this.ambient.groundColor.set(ground);
     this.ambient.intensity = Math.PI * Math.max(0.25, scene.light.ambient * 0.8);
-    this.head_light.intensity = eye;
     this.sun.intensity = Math.PI * scene.light.directional;
     this.sun.position.set(...scene.light.towards);
     if (frame_all) this.frame_all();

@@ -20,7 +20,7 @@ export function make_arm(context: PartContext): Part[] {
   let tube = tube_of(0);
   let samples: ArrayLike<number> | null = null;
   // Arms are dark, for the cameras. Their own colours are drawn in both themes: it is their gloss that shows the form.
-  const skin = new Mesh(tube.geometry, new MeshPhongMaterial({ vertexColors: true, shininess: 28, specular: 0x3a3f44 }));
+  const skin = new Mesh(tube.geometry, new MeshPhongMaterial({ vertexColors: true, shininess: 28, specular: 0x24282c }));
   skin.frustumCulled = false;
   const group = new Group();
   group.add(skin);

@@ -30,7 +30,7 @@ function stand_at(object: Object3D, [x, y, z, qw, qx, qy, qz]: Pose): void {
 }
 
 /** Light of a screen's front in the dark theme, where a truly bright one would dazzle: enough for the arm to stand out. */
-const dimmed = new Color(0x4d5a66);
+const dimmed = new Color(0x71808d);
 
 /**
  * A screen: bright on its front; only its edges are visible from behind, so that it never hides the arm. It is opaque,

@@ -6,6 +6,8 @@ import { radius_at, total_length } from './rings';
 
 /** Share of the arm's length between a hanging arm's straight tip and the floor. */
 const below = 0.05;
+/** How far below the base a floor may be, in lengths of the arm. */
+const deepest = 2.5;
 /** The smallest depth that is worth a word, as a share of the arm's length. */
 const least = 2e-3;
 /** Points per interval between two samples. */
@@ -26,7 +28,7 @@ export function up_of_base({ arm: { base } }: Scene): 1 | -1 {
 
 /**
  * Returns the floor: the highest horizontal plane among the obstacles that is not above the base. Without one it is
- * drawn below a standing arm, or below the workspace of a hanging one.
+ * drawn below a standing arm, or below the workspace of a hanging one: at the world's height 0 where that is not far below.
  */
 export function floor_of(scene: Scene): Floor {
   const span = total_length(scene.arm);
@@ -36,10 +38,13 @@ export function floor_of(scene: Scene): Floor {
     if (obstacle.kind !== 'plane') continue;
     const { name, point, normal } = obstacle;
     const is_level = normal[1] > 0.999 * Math.hypot(...normal);
-    if (!is_level || point[1] > base + 1e-3 * span || point[1] < base - 2.5 * span) continue;
+    if (!is_level || point[1] > base + 1e-3 * span || point[1] < base - deepest * span) continue;
     if (!floor || point[1] > floor.height) floor = { height: point[1], obstacle: name };
   }
-  return floor ?? { height: base - (up_of_base(scene) > 0 ? 0 : (1 + below) * span), obstacle: null };
+  if (floor) return floor;
+  if (up_of_base(scene) > 0) return { height: base, obstacle: null };
+  const highest = base - (1 + below) * span;
+  return { height: highest >= 0 && base < deepest * span ? 0 : highest, obstacle: null };
 }
 
 /** Returns how far the arm's skin is below the floor, m; 0 where it is not. */

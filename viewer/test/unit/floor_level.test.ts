@@ -27,7 +27,10 @@ test('the floor is the horizontal plane among the obstacles, else below the arm'
   expect(floor_of(scene)).toEqual({ height: 0, obstacle: 'ground' });
   expect(floor_of(bare)).toEqual({ height: 0, obstacle: null });
   const hung: Scene = { ...bare, arm: { ...arm, base: down } };
-  expect(floor_of(hung).height).toBeCloseTo(0.9 - 1.05 * span, 9);
+  // Where the world's ground is near, it is that.
+  expect(floor_of(hung)).toEqual({ height: 0, obstacle: null });
+  const high: Pose = [0, 5, 0, 0, 0, Math.SQRT1_2, -Math.SQRT1_2];
+  expect(floor_of({ ...bare, arm: { ...arm, base: high } }).height).toBeCloseTo(5 - 1.05 * span, 9);
   expect(floor_of({ ...hung, obstacles: scene.obstacles })).toEqual({ height: 0, obstacle: 'ground' });
   const wall: Scene = { ...bare, obstacles: [{ name: 'wall', kind: 'plane', point: [0, 0, 0], normal: [1, 0, 0] }] };
   expect(floor_of(wall).obstacle).toBe(null);

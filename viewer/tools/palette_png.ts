@@ -44,7 +44,7 @@ function palette_of(counts: Map<number, number>, most: number): { palette: numbe
 }
 
 /** Encodes opaque RGBA pixels as a PNG with a palette of at most `most` colours. */
-export function palette_png(pixels: Uint8Array, width: number, height: number, most = 128): Buffer {
+export function palette_png(pixels: Uint8Array, width: number, height: number, most = 96): Buffer {
   const color_at = (i: number): number => (pixels[4 * i] << 16) | (pixels[4 * i + 1] << 8) | pixels[4 * i + 2];
   const counts = new Map<number, number>();
   for (let i = 0; i < width * height; ++i) counts.set(color_at(i), (counts.get(color_at(i)) ?? 0) + 1);

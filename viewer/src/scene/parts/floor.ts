@@ -8,7 +8,7 @@ import { plain } from '../plain';
 
 const colors = {
   dark: { plate: 0x2a363f, line: 0x3d4c58, bar: 0xdbe5ec, x: 0xff6b6b, y: 0x69db7c, z: 0x74a9ff },
-  light: { plate: 0xe4e9ee, line: 0xc3ccd4, bar: 0x33424f, x: 0xc92a2a, y: 0x2b8a3e, z: 0x1c5fd0 },
+  light: { plate: 0xe4e9ee, line: 0xc3ccd4, bar: 0x33424f, x: 0xc92a2a, y: 0x1f6b2e, z: 0x1c5fd0 },
 };
 
 /** Edge length of the axes, as a share of the arm's length, and where their letters are. */

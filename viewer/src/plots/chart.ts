@@ -69,7 +69,9 @@ export function make_chart({ host, names, unit, now, hover, seek, zoom, axis: y_
         const { left, width } = u.select;
         if (width < least_drag) return;
         u.setSelect({ left: 0, width: 0, top: 0, height: 0 }, false);
-        zoom([u.posToVal(left, 'x'), u.posToVal(left + width, 'x')]);
+        const range: [number, number] = [u.posToVal(left, 'x'), u.posToVal(left + width, 'x')];
+        // The other plot has the same selection: it must not find its axis zoomed already.
+        queueMicrotask(() => zoom(range));
       }],
       draw: [(u) => draw_now(u, now(), color('--accent'))],
     },

@@ -24,7 +24,7 @@ function clamp(value: number, low: number, high: number): number {
 /** Returns the sizes, px, that the areas have in a window until they are dragged. */
 export function standard_of({ width, height }: Extent): Sizes {
   const compact = height <= 780 || width <= 1360;
-  return { left: compact ? 292 : 300, right: compact ? 262 : 336, plots: Math.round(clamp(0.23 * height, 150, 240)) };
+  return { left: compact ? 296 : 300, right: compact ? 262 : 336, plots: Math.round(clamp(0.23 * height, 150, 240)) };
 }
 
 /** Returns the smallest and the largest size of an area, px, beside the others. */

@@ -20,7 +20,7 @@ export function AxisFields({ place, id, axis }: Props) {
   };
   return (
     <div class="axis-fields" role="group" aria-label={`Y axis of plot ${place + 1}`}>
-      <span>y from</span>
+      <span>y</span>
       <LimitField label={`Lower limit of y, plot ${place + 1}`} value={axis.low} change={(low) => take({ ...axis, low })} />
       <span>to</span>
       <LimitField label={`Upper limit of y, plot ${place + 1}`} value={axis.high} change={(high) => take({ ...axis, high })} />

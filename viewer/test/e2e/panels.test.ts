@@ -96,12 +96,16 @@ describe('a rig’s page', () => {
 
   test('below 900 px a notice has a row of its own, and no panel is wider than the window', async () => {
     await page.setViewportSize({ width: 390, height: 844 });
-    server.broadcast({ type: 'reply', id: null, error: 'too many requests wait' });
-    await page.waitForSelector('.notice');
+    const notice_again = async (): Promise<void> => {
+      // The same words prolong it.
+      server.broadcast({ type: 'reply', id: null, error: 'too many requests wait' });
+      await page.waitForSelector('.notice');
+    };
     const tabs = { '3D view': '.stage', Controls: '.left', Pictures: '.right', Plots: '.plots' };
     for (const [tab, panel] of Object.entries(tabs)) {
       await page.getByRole('button', { name: tab, exact: true }).click();
       await until(async () => page.locator(panel).isVisible());
+      await notice_again();
       const [notice, shown, timeline] = [await box('.notices'), await box(panel), await box('.timeline')];
       expect(shown.y + shown.height).toBeLessThanOrEqual(notice.y + 0.5);
       expect(timeline.y + timeline.height).toBeLessThanOrEqual(notice.y + 0.5);
@@ -123,6 +127,7 @@ describe('a rig’s page', () => {
         expect(await page.locator('.panel').evaluate((element) => element.scrollWidth - element.clientWidth), name).toBeLessThanOrEqual(1);
       }
     }
+    await notice_again();
     await page.getByRole('button', { name: 'Dismiss', exact: true }).click();
     await until(async () => (await page.locator('.notice').count()) === 0);
   });

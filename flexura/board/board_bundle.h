@@ -12,32 +12,38 @@ namespace flexura {
 
 /// One view of a board by cameras that are fixed to each other.
 struct BoardView {
-  std::vector<std::vector<Eigen::Vector2d>> pixels;  ///< For each camera, the pixels (u, v) of the board's points, in the board's order, px; empty if the camera did not see the board.
+  std::vector<std::vector<Eigen::Vector2d>>
+      pixels;  ///< For each camera, the pixels (u, v) of the board's points, in the board's order, px; empty
+               ///< if the camera did not see the board.
 };
 
 /// Unknowns of a bundle adjustment. A camera that never sees the board keeps its initial values.
 struct BoardBundle {
   std::vector<Intrinsics> lenses;  ///< Intrinsics of each camera.
-  std::vector<Pose> cameras;       ///< Pose X_1C of each camera relative to the first camera, whose own pose is fixed.
-  std::vector<Pose> boards;        ///< Pose X_1B of the board relative to the first camera, in each view.
+  std::vector<Pose>
+      cameras;  ///< Pose X_1C of each camera relative to the first camera, whose own pose is fixed.
+  std::vector<Pose> boards;  ///< Pose X_1B of the board relative to the first camera, in each view.
 };
 
 /// Settings of a bundle adjustment.
 struct BundleConfig {
-  bool cameras = true;  ///< Whether lenses and camera poses are fitted, in addition to the boards.
-  int distortion = 5;  ///< Number of fitted distortion coefficients in the order k1, k2, p1, p2, k3; the others keep their values.
-  int most_steps = 100;       ///< Limit of BundleFit::steps.
-  double least_gain = 1e-12;  ///< The fit ends when a step decreases the sum of squares by less than this fraction.
+  bool cameras = true;   ///< Whether lenses and camera poses are fitted, in addition to the boards.
+  int distortion = 5;    ///< Number of fitted distortion coefficients in the order k1, k2, p1, p2, k3; the
+                         ///< others keep their values.
+  int most_steps = 100;  ///< Limit of BundleFit::steps.
+  double least_gain =
+      1e-12;  ///< The fit ends when a step decreases the sum of squares by less than this fraction.
 };
 
 /// Result of a bundle adjustment.
 struct BundleFit {
-  BoardBundle bundle;         ///< Fitted unknowns.
-  bool is_converged = false;  ///< False if no step decreased the sum of squares, or the limit on steps was reached.
-  int steps = 0;              ///< Number of the first linearization and all steps tried.
-  double square_sum = 0;      ///< Sum of squared distances between observed and computed pixels, px^2.
-  std::size_t points = 0;     ///< Number of observed pixels.
-  std::size_t unknowns = 0;   ///< Number of unknowns of cameras and boards.
+  BoardBundle bundle;  ///< Fitted unknowns.
+  bool is_converged =
+      false;      ///< False if no step decreased the sum of squares, or the limit on steps was reached.
+  int steps = 0;  ///< Number of the first linearization and all steps tried.
+  double square_sum = 0;     ///< Sum of squared distances between observed and computed pixels, px^2.
+  std::size_t points = 0;    ///< Number of observed pixels.
+  std::size_t unknowns = 0;  ///< Number of unknowns of cameras and boards.
   /// Information matrix of the cameras' unknowns for noise of 1 px, with the boards' unknowns eliminated. Its
   /// inverse is the covariance. First come the fitted intrinsics of each camera, in the order of
   /// `intrinsics_count`. Then, for each camera except the first, the small motion [v; w] of X_1C: p + v,

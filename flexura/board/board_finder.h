@@ -14,8 +14,9 @@ namespace flexura {
 struct BoardObservation {
   /// Pixels (u, v) of the board's points, in the board's order, px; empty if the board was not found.
   std::vector<Eigen::Vector2d> pixels;
-  std::string reason;      ///< Reason why the board was not found; otherwise "".
-  bool is_larger = false;  ///< Whether the found points were rejected because the pattern continues, as on a larger board.
+  std::string reason;  ///< Reason why the board was not found; otherwise "".
+  bool is_larger =
+      false;  ///< Whether the found points were rejected because the pattern continues, as on a larger board.
 
   [[nodiscard]] bool is_found() const { return !pixels.empty(); }
 };

@@ -16,8 +16,10 @@ namespace flexura {
 
 /// Settings of a camera calibration from views of a board.
 struct IntrinsicsConfig {
-  int distortion = 5;  ///< Number of estimated distortion coefficients in the order k1, k2, p1, p2, k3; the others are 0.
-  int hold_out = 0;    ///< Every Nth view is not fitted but only predicted (N = hold_out); 0: all views are fitted.
+  int distortion =
+      5;  ///< Number of estimated distortion coefficients in the order k1, k2, p1, p2, k3; the others are 0.
+  int hold_out =
+      0;  ///< Every Nth view is not fitted but only predicted (N = hold_out); 0: all views are fitted.
 };
 
 /// Lens of one camera, estimated from views of a board.
@@ -26,7 +28,8 @@ struct CameraFit {
   /// Covariance of the intrinsics, in the order of `intrinsics_count`; 0 for intrinsics that are not
   /// estimated. The covariance is scaled by the residuals, which are assumed to be independent.
   Eigen::Matrix<double, intrinsics_count, intrinsics_count> covariance;
-  double rms = 0;        ///< Root mean square of the distances between observed and computed pixels in the camera's fitted pictures, px.
+  double rms = 0;  ///< Root mean square of the distances between observed and computed pixels in the camera's
+                   ///< fitted pictures, px.
   double rms_alone = 0;  ///< Root mean square of these distances if the camera is calibrated alone, px.
   /// Root mean square of these distances in each view, including held-out views, px; empty for views in which
   /// the camera did not see the board.
@@ -53,13 +56,16 @@ struct IntrinsicsFit {
   std::vector<Pose> poses;         ///< Pose X_1C of each camera relative to the first camera.
   /// Covariance of the small motion [v; w] of each pose X_1C (p + v, exp(w) R); 0 for the first camera.
   std::vector<Eigen::Matrix<double, 6, 6>> pose_covariance;
-  double rms = 0;                      ///< Root mean square of the distances between observed and computed pixels in all fitted pictures, px.
-  double noise = 0;                    ///< Standard deviation of one coordinate of an observed pixel, px.
+  double rms = 0;    ///< Root mean square of the distances between observed and computed pixels in all fitted
+                     ///< pictures, px.
+  double noise = 0;  ///< Standard deviation of one coordinate of an observed pixel, px.
   std::size_t points = 0;              ///< Number of observed pixels that were fitted.
   std::vector<bool> is_held_out;       ///< Whether the view was held out, for each view.
-  std::optional<double> held_out_rms;  ///< Root mean square of the distances in held-out views, of which only the boards' poses are fitted, px.
-  std::vector<std::optional<Pose>> boards;  ///< Pose X_1B of the board relative to the first camera, for each view.
-  int steps = 0;                            ///< Number of steps of the joint fit.
+  std::optional<double> held_out_rms;  ///< Root mean square of the distances in held-out views, of which only
+                                       ///< the boards' poses are fitted, px.
+  std::vector<std::optional<Pose>>
+      boards;     ///< Pose X_1B of the board relative to the first camera, for each view.
+  int steps = 0;  ///< Number of steps of the joint fit.
 };
 
 /// Calibrates cameras from views of a board with `points` (z = 0 in B, m). `sizes` has the width and height

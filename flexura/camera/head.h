@@ -31,7 +31,8 @@ struct ZoomConfig {
   /// Smallest and largest zoom position. Default: 1 to 10 for a linear zoom, otherwise the range of the
   /// lens's table.
   std::optional<std::array<double, 2>> limits;
-  std::optional<double> max_rate;  ///< Largest speed, zoom positions per second; default: the whole range in 3 s.
+  std::optional<double>
+      max_rate;  ///< Largest speed, zoom positions per second; default: the whole range in 3 s.
   /// The meaning of the following members is as in AxisConfig, in units of zoom position.
   double max_acceleration = std::numeric_limits<double>::infinity();
   double resolution = 0;
@@ -46,10 +47,12 @@ struct HeadConfig {
   PanConfig pan;
   TiltConfig tilt;
   ZoomConfig zoom;
-  double delay = 0;                             ///< Delay from a command to the start of the motion, s.
-  std::array<double, 3> tilt_axis = {0, 0, 0};  ///< A point on the tilt axis, in the mount's frame rotated by pan, m.
-  std::array<double, 3> pupil = {0, 0, 0};      ///< Entrance pupil at zoom ratio 1, relative to `tilt_axis`, in C's axes, m.
-  double pupil_shift = 0;                       ///< Forward shift of the entrance pupil per unit of zoom ratio, m.
+  double delay = 0;  ///< Delay from a command to the start of the motion, s.
+  std::array<double, 3> tilt_axis = {
+      0, 0, 0};  ///< A point on the tilt axis, in the mount's frame rotated by pan, m.
+  std::array<double, 3> pupil = {
+      0, 0, 0};            ///< Entrance pupil at zoom ratio 1, relative to `tilt_axis`, in C's axes, m.
+  double pupil_shift = 0;  ///< Forward shift of the entrance pupil per unit of zoom ratio, m.
 };
 
 /// Position that a head reads.
@@ -67,7 +70,8 @@ const Table<HeadConfig>& fields_of(const HeadConfig*);
 
 /// Geometry of a head's axes at one zoom position.
 struct HeadGeometry {
-  Eigen::Vector3d tilt_axis = Eigen::Vector3d::Zero();  ///< A point on the tilt axis, in the mount's frame rotated by pan, m.
+  Eigen::Vector3d tilt_axis =
+      Eigen::Vector3d::Zero();  ///< A point on the tilt axis, in the mount's frame rotated by pan, m.
   /// Entrance pupil relative to `tilt_axis`, in C's axes, m.
   Eigen::Vector3d pupil = Eigen::Vector3d::Zero();
 };

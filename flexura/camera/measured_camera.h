@@ -45,9 +45,10 @@ struct MeasuredCamera {
   std::array<double, 5> distortion = {0, 0, 0, 0, 0};  ///< Distortion k1, k2, p1, p2, k3, in OpenCV's order.
   std::array<double, 3> position = {0, 0, 0};          ///< Position p_WC of the entrance pupil, m.
   RotationConfig rotation;                             ///< R_WC; C has x right, y down, z forward.
-  double gamma = 1;                                    ///< Gamma of the pictures: pixel values are light to the power 1/gamma.
-  std::optional<std::array<std::int64_t, 2>> size;     ///< Width and height of the camera's pictures, px; default: any.
-  ViewPrior prior;                                     ///< Prior standard deviations of orientation and focal lengths.
+  double gamma = 1;  ///< Gamma of the pictures: pixel values are light to the power 1/gamma.
+  std::optional<std::array<std::int64_t, 2>>
+      size;         ///< Width and height of the camera's pictures, px; default: any.
+  ViewPrior prior;  ///< Prior standard deviations of orientation and focal lengths.
 
   /// Returns the camera's lens. Throws std::invalid_argument for invalid intrinsics (see Lens).
   [[nodiscard]] Lens lens() const;

@@ -33,9 +33,10 @@ struct StageState {
 
 /// Pose of a camera's mount in a file. Either `look_at` or `rotation` gives the orientation.
 struct MountConfig {
-  std::array<double, 3> position = {0, 0, 0};    ///< Position p_WM at stage offset 0, m.
-  std::optional<std::array<double, 3>> look_at;  ///< Point in W, m, to which M's z points; M's y points downwards as far as possible.
-  double roll = 0;                               ///< Additional rotation about M's z, with look_at only, rad.
+  std::array<double, 3> position = {0, 0, 0};  ///< Position p_WM at stage offset 0, m.
+  std::optional<std::array<double, 3>>
+      look_at;      ///< Point in W, m, to which M's z points; M's y points downwards as far as possible.
+  double roll = 0;  ///< Additional rotation about M's z, with look_at only, rad.
   /// Unit quaternion (w, x, y, z) of R_WM, instead of look_at.
   std::optional<std::array<double, 4>> rotation;
   StageConfig stage;

@@ -31,11 +31,13 @@ struct SensorConfig {
   /// Intervals [from, to), s, in which the lens is covered (`covered`) or the camera does not answer
   /// (`silent`).
   std::vector<std::array<double, 2>> covered = {}, silent = {};
-  double gain = 1;       ///< Factor on the light before readout, which also amplifies shot noise.
-  double full_well = 0;  ///< Electrons at full scale and gain 1, which determine the shot noise. 0: no shot noise.
+  double gain = 1;  ///< Factor on the light before readout, which also amplifies shot noise.
+  double full_well =
+      0;  ///< Electrons at full scale and gain 1, which determine the shot noise. 0: no shot noise.
   double read_noise = 0;  ///< Standard deviation of the read noise, in values of an 8-bit image.
   double psf = 0;         ///< Standard deviation of the Gaussian blur of lens and pixels, px.
-  double vignetting = 0;  ///< Fraction of the light lost in the image's corners. The loss increases with the square of the distance from the middle.
+  double vignetting = 0;  ///< Fraction of the light lost in the image's corners. The loss increases with the
+                          ///< square of the distance from the middle.
   double gamma = 1;       ///< Gamma: pixel values are light to the power 1/gamma.
   Readout readout = Readout::global;
   double row_time = 0;  ///< Time between two rows of a rolling shutter, s; only with Readout::rolling.

@@ -13,7 +13,7 @@ namespace flexura {
 /// size of the image.
 struct View {
   Lens lens{Intrinsics{}};
-  Pose X_WC;         ///< Pose of C, position in m. C's origin is the entrance pupil; x right, y down, z forward.
+  Pose X_WC;  ///< Pose of C, position in m. C's origin is the entrance pupil; x right, y down, z forward.
   int width = 640;   ///< Width of the image, px.
   int height = 480;  ///< Height of the image, px.
 

@@ -20,17 +20,19 @@ namespace flexura {
 struct ZoomRow {
   double ratio = 1;                      ///< Zoom ratio: focal length over the focal length at ratio 1; > 0.
   std::optional<double> count;           ///< Position of the zoom motor.
-  std::optional<double> fx, fy, cx, cy;  ///< Focal lengths and principal point, px. Default: those at ratio 1, with fx and fy times the ratio.
-  std::optional<std::array<double, 5>> distortion;  ///< Distortion k1, k2, p1, p2, k3; default: as at ratio 1.
+  std::optional<double> fx, fy, cx, cy;  ///< Focal lengths and principal point, px. Default: those at ratio
+                                         ///< 1, with fx and fy times the ratio.
+  std::optional<std::array<double, 5>>
+      distortion;  ///< Distortion k1, k2, p1, p2, k3; default: as at ratio 1.
 };
 
 /// A zoom lens in a file: parameters at zoom ratio 1 and their change with zoom.
 struct LensConfig {
-  double fx = 800;                                     ///< Horizontal focal length at ratio 1, px.
-  std::optional<double> fy;                            ///< Vertical focal length at ratio 1, px; default: fx.
-  std::optional<double> cx, cy;                        ///< Principal point at ratio 1, px; default: the image's middle.
+  double fx = 800;               ///< Horizontal focal length at ratio 1, px.
+  std::optional<double> fy;      ///< Vertical focal length at ratio 1, px; default: fx.
+  std::optional<double> cx, cy;  ///< Principal point at ratio 1, px; default: the image's middle.
   std::array<double, 5> distortion = {0, 0, 0, 0, 0};  ///< Distortion k1, k2, p1, p2, k3 at ratio 1.
-  std::vector<ZoomRow> zoom;                           ///< Zoom table, in order of increasing ratio. Empty: linear zoom.
+  std::vector<ZoomRow> zoom;  ///< Zoom table, in order of increasing ratio. Empty: linear zoom.
 };
 
 const Table<ZoomRow>& fields_of(const ZoomRow*);

@@ -14,7 +14,8 @@ namespace flexura {
 
 /// A cubic Bezier curve with four control points and a parameter u in [0, 1].
 struct CubicBezier {
-  std::array<Eigen::Vector3d, 4> points;  ///< Control points in W, m. The first and the last are the curve's ends.
+  std::array<Eigen::Vector3d, 4>
+      points;  ///< Control points in W, m. The first and the last are the curve's ends.
 
   /// Returns the point at u, in W, m. Extrapolates the cubic for u outside [0, 1].
   [[nodiscard]] Eigen::Vector3d at(double u) const;
@@ -50,9 +51,8 @@ enum class CurveKind : std::uint8_t { arcs, catmull_rom, bezier };
 
 /// Deviation of a drawn curve from the backbone.
 struct CurveDeviation {
-  double distance =
-      0.0;  ///< Largest distance from the backbone among 256 points per piece of the curve, m.
-  double length = 0.0;  ///< Length of the curve, m.
+  double distance = 0.0;  ///< Largest distance from the backbone among 256 points per piece of the curve, m.
+  double length = 0.0;    ///< Length of the curve, m.
 };
 /// Returns the deviation of `curve` from `backbone`, and the length of `curve`.
 [[nodiscard]] CurveDeviation deviation(std::span<const CubicBezier> curve, const Backbone& backbone);

@@ -15,8 +15,8 @@ namespace flexura {
 /// Target of the tip, in world axes.
 struct TipTarget {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< p_WT, m.
-  std::optional<Eigen::Vector3d> direction = {};  ///< Direction of the tip's z axis; any length above 0.
-  std::optional<Eigen::Matrix3d> rotation = {};   ///< R_WT; not together with `direction`.
+  std::optional<Eigen::Vector3d> direction = {};       ///< Direction of the tip's z axis; any length above 0.
+  std::optional<Eigen::Matrix3d> rotation = {};        ///< R_WT; not together with `direction`.
 };
 
 /// Target curve of the whole backbone: a polyline. The point at a fraction f of the backbone's length
@@ -29,7 +29,8 @@ struct CurveTarget {
 enum class InverseObjective {
   none,           ///< Takes the first solution found.
   least_bending,  ///< Minimizes the sum of squares of all bends (rad) and of all stretches minus 1.
-  mid_range,      ///< Minimizes the sum of squares of all bends relative to max_bend (at most pi), and of all stretches' distances from mid-range relative to half the range.
+  mid_range,      ///< Minimizes the sum of squares of all bends relative to max_bend (at most pi), and of all
+                  ///< stretches' distances from mid-range relative to half the range.
 };
 
 /// Returns the largest distance of a polyline from the smooth curve through its vertices, m, estimated from
@@ -49,15 +50,17 @@ struct InverseConfig {
   /// caller must set a tolerance.
   std::optional<double> position_tolerance = {};
   double angle_tolerance = 1e-9;  ///< Tolerance of direction or rotation, rad.
-  int max_starts = 400;           ///< Largest number of descents, each from a different state, the first from `start`; >= 1.
-  std::uint64_t seed = 1;         ///< Seed of the random start states, which are all after the first two.
+  int max_starts =
+      400;  ///< Largest number of descents, each from a different state, the first from `start`; >= 1.
+  std::uint64_t seed = 1;  ///< Seed of the random start states, which are all after the first two.
 };
 
 /// Outcome of a search.
 enum class InverseOutcome {
-  converged,       ///< A state within the tolerances was found.
-  not_reachable,   ///< The target is out of reach: proven (is_proven), or the nearest state found is a minimum without an active limit.
-  at_limit,        ///< At the nearest state found, an active limit prevents the arm from coming nearer.
+  converged,      ///< A state within the tolerances was found.
+  not_reachable,  ///< The target is out of reach: proven (is_proven), or the nearest state found is a minimum
+                  ///< without an active limit.
+  at_limit,       ///< At the nearest state found, an active limit prevents the arm from coming nearer.
   no_convergence,  ///< The search did not find whether the target is reachable.
 };
 
@@ -68,11 +71,13 @@ enum class InverseOutcome {
 /// Result of inverse kinematics: the state found and, if it is not a solution, the reason.
 struct InverseResult {
   InverseOutcome outcome = InverseOutcome::no_convergence;
-  bool is_proven = false;       ///< Whether it is proven that no state within the limits reaches the target.
-  ArmState state;               ///< The solution, or the nearest state found; within the limits.
-  Eigen::Vector3d tip;          ///< p_WT of `state`, m.
-  double position_error = 0.0;  ///< Distance of the tip from the target, m; for a curve the largest distance along the arm.
-  double angle_error = 0.0;  ///< Angle between `state` and the target's direction or rotation, rad; otherwise 0.
+  bool is_proven = false;  ///< Whether it is proven that no state within the limits reaches the target.
+  ArmState state;          ///< The solution, or the nearest state found; within the limits.
+  Eigen::Vector3d tip;     ///< p_WT of `state`, m.
+  double position_error =
+      0.0;  ///< Distance of the tip from the target, m; for a curve the largest distance along the arm.
+  double angle_error =
+      0.0;  ///< Angle between `state` and the target's direction or rotation, rad; otherwise 0.
   double position_tolerance = 0.0;  ///< Tolerance on position_error, m.
   int iterations = 0;               ///< Number of evaluations of the arm and its Jacobian.
   int starts = 0;                   ///< Number of descents made.

@@ -33,7 +33,8 @@ struct TendonFit {
   /// pulls against the others; a tendon with a negative residual is slack. Zero if the displacements are
   /// consistent.
   TendonDisplacements residual;
-  bool converged = true;  ///< Whether a fit was found. False is possible only with guide disks; `state` is then the last iterate.
+  bool converged = true;  ///< Whether a fit was found. False is possible only with guide disks; `state` is
+                          ///< then the last iterate.
 };
 
 /// Returns the state for tendon displacements: bends, and stretches of stretchable sections. The fit is exact

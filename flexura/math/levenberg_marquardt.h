@@ -8,7 +8,8 @@ namespace flexura {
 
 /// Result of a trial step.
 struct TriedStep {
-  double cost = std::numeric_limits<double>::infinity();  ///< Cost after the step; infinite if the step is invalid.
+  double cost =
+      std::numeric_limits<double>::infinity();  ///< Cost after the step; infinite if the step is invalid.
   /// Decrease of the cost that the linear model predicts; infinite if there is no prediction.
   double promised = std::numeric_limits<double>::infinity();
 };
@@ -16,8 +17,9 @@ struct TriedStep {
 /// Parameters of the damping.
 struct Damping {
   double start = 1e-4;  ///< Initial damping.
-  double most = 1e12;  ///< Largest damping.
-  double rise = 10;    ///< Factor on the damping after a rejected step. Each further consecutive rejection multiplies the factor by `growth`.
+  double most = 1e12;   ///< Largest damping.
+  double rise = 10;     ///< Factor on the damping after a rejected step. Each further consecutive rejection
+                        ///< multiplies the factor by `growth`.
   double growth = 1;
   /// Function that returns the damping after an accepted step. Its parameters are the previous damping and
   /// the ratio of actual to predicted decrease of the cost (-1 if no decrease was predicted).
@@ -35,7 +37,8 @@ enum class DescentEnd {
 /// most `most_tries` steps.
 ///
 /// - `try_step(damping)` computes a trial step and returns its TriedStep.
-/// - `keep(step, cost)` accepts the step just tried and linearizes the problem there. It sets `cost` to the cost that
+/// - `keep(step, cost)` accepts the step just tried and linearizes the problem there. It sets `cost` to the
+/// cost that
 ///   next one has to lower, and returns true if it was the last.
 /// - `leave(step, cost)` returns true if smaller steps need not be tried.
 template <class Try, class Keep, class Leave>

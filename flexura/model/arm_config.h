@@ -26,10 +26,13 @@ inline constexpr NumberRange arching_range = {.min = -largest_bend / 2, .max = l
 /// A shape of the arm as a user gives it: bends in one of three forms, and stretches. `kinematics/shape.h`
 /// converts the shape for a given arm. Default: the straight, unstretched arm.
 struct ShapeConfig {
-  std::optional<std::vector<double>> cord_angles;           ///< Planar arms: angle of each section's chord from +X, rad.
-  std::optional<std::vector<double>> archings;              ///< Planar arms: arching of each section, counter-clockwise, rad.
-  std::optional<std::vector<std::array<double, 2>>> bends;  ///< Bend vector (bend_x, bend_y) of each section, rad.
-  std::optional<std::vector<double>> stretches;             ///< Factor on the length of each section.
+  std::optional<std::vector<double>>
+      cord_angles;  ///< Planar arms: angle of each section's chord from +X, rad.
+  std::optional<std::vector<double>>
+      archings;  ///< Planar arms: arching of each section, counter-clockwise, rad.
+  std::optional<std::vector<std::array<double, 2>>>
+      bends;                                     ///< Bend vector (bend_x, bend_y) of each section, rad.
+  std::optional<std::vector<double>> stretches;  ///< Factor on the length of each section.
 };
 
 /// Pose of the arm's base.
@@ -48,10 +51,12 @@ struct ArmConfig {
   LookConfig look;
   ArmMechanics mechanics = ArmMechanics::kinematic;
   std::array<double, 3> gravity = {0, 0, 0};  ///< In the world's frame, m/s^2.
-  std::vector<TendonRouteConfig> tendon;      ///< Routes of tendons. Empty: the tendons of the drive, if there is a drive.
+  std::vector<TendonRouteConfig>
+      tendon;  ///< Routes of tendons. Empty: the tendons of the drive, if there is a drive.
   std::vector<LoadConfig> load;
-  double time_step = 0.005;              ///< Integration step of a dynamic arm, s. The fields from here on are for dynamic arms.
-  double spectral_radius = 0.1;          ///< Spectral radius of the time integration at high frequencies, 0 to 1.
+  double time_step =
+      0.005;  ///< Integration step of a dynamic arm, s. The fields from here on are for dynamic arms.
+  double spectral_radius = 0.1;  ///< Spectral radius of the time integration at high frequencies, 0 to 1.
   std::optional<ContactConfig> contact;  ///< Missing: no contact forces.
   std::optional<DragConfig> drag;        ///< Missing: no surrounding fluid.
   std::vector<PayloadConfig> payload;

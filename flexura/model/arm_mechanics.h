@@ -23,15 +23,17 @@ enum class ArmMechanics { kinematic, statics, dynamics };
 /// r(s) (cos a(s), sin a(s)), m. The radius r and the angle a change linearly from the arm's base to the
 /// tendon's end.
 struct TendonRouteConfig {
-  std::int64_t section = 1;               ///< Section at the end of which the tendon ends, counted from 1 at the base.
-  double radius = 0;                      ///< Distance from the backbone at the base, m.
-  double angle = 0;                       ///< Angle around the backbone at the base, from x towards y, rad.
-  std::optional<double> end_radius = {};  ///< Distance from the backbone at the tendon's end, m; default: `radius`.
-  double turns = 0;                       ///< Turns around the backbone from the arm's base to the tendon's end, from x towards y.
-  std::vector<double> x = {}, y = {};     ///< Coefficients of x(s) and y(s), from the power 0 of s up: m, m/m, ...
-  double compliance = 0;                  ///< Elongation of the tendon per tension, m/N.
-  double friction = 0;                    ///< Coulomb friction coefficient along the route.
-  std::optional<double> breaks_at = {};   ///< Time at which the tendon breaks, s; default: never.
+  std::int64_t section = 1;  ///< Section at the end of which the tendon ends, counted from 1 at the base.
+  double radius = 0;         ///< Distance from the backbone at the base, m.
+  double angle = 0;          ///< Angle around the backbone at the base, from x towards y, rad.
+  std::optional<double> end_radius =
+      {};            ///< Distance from the backbone at the tendon's end, m; default: `radius`.
+  double turns = 0;  ///< Turns around the backbone from the arm's base to the tendon's end, from x towards y.
+  std::vector<double> x = {},
+                      y = {};  ///< Coefficients of x(s) and y(s), from the power 0 of s up: m, m/m, ...
+  double compliance = 0;       ///< Elongation of the tendon per tension, m/N.
+  double friction = 0;         ///< Coulomb friction coefficient along the route.
+  std::optional<double> breaks_at = {};  ///< Time at which the tendon breaks, s; default: never.
 
   /// Returns the offset from the backbone, m, at arc length `s` of a tendon that ends at arc length `end`,
   /// both in m from the base.
@@ -40,8 +42,9 @@ struct TendonRouteConfig {
 
 /// A force and a moment at the end of a section, `[[arm.load]]`.
 struct LoadConfig {
-  std::int64_t section = 1;                  ///< Section with the loaded end, counted from 1 at the base.
-  std::array<double, 3> force = {0, 0, 0};   ///< Force in the world's frame, N; if `following`, in the frame of the section's end.
+  std::int64_t section = 1;  ///< Section with the loaded end, counted from 1 at the base.
+  std::array<double, 3> force = {
+      0, 0, 0};  ///< Force in the world's frame, N; if `following`, in the frame of the section's end.
   std::array<double, 3> moment = {0, 0, 0};  ///< Moment in the same frame as the force, N m.
   bool following = false;                    ///< Whether force and moment rotate with the section's end.
 };

@@ -41,8 +41,9 @@ struct Arc {
 
 /// A sample of a backbone of any shape.
 struct BackboneSample {
-  Pose X_WS;          ///< Frame of the cross-section; z is the tangent, x and y rotate with the material.
-  double s_rest = 0;  ///< Arc length from the base along the arm at rest, m; strictly increasing over the samples.
+  Pose X_WS;  ///< Frame of the cross-section; z is the tangent, x and y rotate with the material.
+  double s_rest =
+      0;  ///< Arc length from the base along the arm at rest, m; strictly increasing over the samples.
   double radius = 0.02;     ///< Radius of the tube, m; > 0.
   std::size_t section = 0;  ///< Section of the arm between this sample and the next.
 };

@@ -27,8 +27,8 @@ struct Marker {
 
 /// Bands of equal width at equal distances along every section.
 struct MarkerBands {
-  std::int64_t per_section = 4;                          ///< Number of bands per section. The last band ends at the section's end.
-  std::optional<double> width;                           ///< Width of a band along the arm, m; default: a fifth of the spacing.
+  std::int64_t per_section = 4;  ///< Number of bands per section. The last band ends at the section's end.
+  std::optional<double> width;   ///< Width of a band along the arm, m; default: a fifth of the spacing.
   std::vector<ColorConfig> colors = {{0.85, 0.1, 0.1}};  ///< Colours of the bands from the base on, repeated.
 };
 

@@ -33,28 +33,33 @@ struct ModesConfig {
 
 /// A rigid body fixed to a section's backbone.
 struct BodyConfig {
-  double at = 1;                             ///< Position along the section as a fraction of its length; in [0, 1].
-  double mass = 0;                           ///< Mass, kg.
+  double at = 1;    ///< Position along the section as a fraction of its length; in [0, 1].
+  double mass = 0;  ///< Mass, kg.
   std::array<double, 3> offset = {0, 0, 0};  ///< Centre of mass in the cross-section's frame, m.
 };
 
 /// Material of the elastic rod in a section, `[arm.section.material]`. Either moduli and radii or `stiffness`
 /// give the rod's stiffness.
 struct MaterialConfig {
-  std::optional<double> youngs_modulus = {};         ///< Young's modulus E, Pa.
-  std::optional<double> shear_modulus = {};          ///< Shear modulus G, Pa.
-  std::optional<double> poisson = {};                ///< Poisson's ratio nu, with G = E / (2 (1 + nu)); not together with a shear modulus.
-  double density = 0;                                ///< Density, kg/m^3.
-  std::optional<std::array<double, 2>> radius = {};  ///< Outer radius of the rod at the section's base and end, m; default: the tube's radius.
-  std::array<double, 2> inner_radius = {0, 0};       ///< Radius of the rod's bore at the section's base and end, m.
-  std::optional<StiffnessConfig> stiffness = {};     ///< Stiffness of the rod, instead of the moduli.
-  std::optional<double> mass_per_length = {};        ///< Mass per length of the rod, instead of the density, kg/m.
-  double damping_time = 0;                           ///< Ratio of damping to stiffness (Kelvin-Voigt), s.
-  std::array<double, 2> rest_bend = {0, 0};          ///< Bend vector of the unloaded section, rad.
-  double rest_twist = 0;                   ///< Rotation of the unloaded section's end about the backbone relative to its base, rad.
-  std::optional<std::int64_t> disks = {};  ///< Number of equal pieces of the section between guide disks; tendons are straight in each piece.
+  std::optional<double> youngs_modulus = {};  ///< Young's modulus E, Pa.
+  std::optional<double> shear_modulus = {};   ///< Shear modulus G, Pa.
+  std::optional<double> poisson =
+      {};              ///< Poisson's ratio nu, with G = E / (2 (1 + nu)); not together with a shear modulus.
+  double density = 0;  ///< Density, kg/m^3.
+  std::optional<std::array<double, 2>> radius =
+      {};  ///< Outer radius of the rod at the section's base and end, m; default: the tube's radius.
+  std::array<double, 2> inner_radius = {0,
+                                        0};  ///< Radius of the rod's bore at the section's base and end, m.
+  std::optional<StiffnessConfig> stiffness = {};  ///< Stiffness of the rod, instead of the moduli.
+  std::optional<double> mass_per_length = {};  ///< Mass per length of the rod, instead of the density, kg/m.
+  double damping_time = 0;                     ///< Ratio of damping to stiffness (Kelvin-Voigt), s.
+  std::array<double, 2> rest_bend = {0, 0};    ///< Bend vector of the unloaded section, rad.
+  double rest_twist =
+      0;  ///< Rotation of the unloaded section's end about the backbone relative to its base, rad.
+  std::optional<std::int64_t> disks =
+      {};  ///< Number of equal pieces of the section between guide disks; tendons are straight in each piece.
   ModesConfig modes = {};
-  std::int64_t nodes = 0;             ///< Number of quadrature nodes along the section; 0: as many as the modes need.
+  std::int64_t nodes = 0;  ///< Number of quadrature nodes along the section; 0: as many as the modes need.
   std::vector<BodyConfig> mass = {};  ///< Bodies fixed to the section, in any order.
 };
 

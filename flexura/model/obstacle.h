@@ -37,8 +37,8 @@ struct PlaneConfig {
   std::string name = {};   ///< Name in messages; "": the obstacle's kind and position in the list.
   double ignore_base = 0;  ///< See Obstacle::ignore_base, m.
   bool may_touch = false;  ///< Whether the arm may touch the obstacle, for example to grasp it.
-  std::array<double, 3> point = {0, 0, 0};       ///< A point of the plane, in W, m.
-  std::array<double, 3> normal = {0, 1, 0};      ///< Normal in W, away from the half space; any length above 0.
+  std::array<double, 3> point = {0, 0, 0};   ///< A point of the plane, in W, m.
+  std::array<double, 3> normal = {0, 1, 0};  ///< Normal in W, away from the half space; any length above 0.
   std::array<double, 3> color = obstacle_color;  ///< Reflected fractions of red, green and blue light.
 };
 
@@ -69,9 +69,11 @@ struct BoxConfig {
   std::string name = {};
   double ignore_base = 0;
   bool may_touch = false;
-  std::array<double, 3> center = {0, 0, 0};       ///< In W, m.
-  std::array<double, 3> half_sizes = {0, 0, 0};   ///< Half the lengths of the edges along the box's x, y and z, m.
-  std::array<double, 4> rotation = {1, 0, 0, 0};  ///< Unit quaternion (w, x, y, z) from the box's axes to the world.
+  std::array<double, 3> center = {0, 0, 0};  ///< In W, m.
+  std::array<double, 3> half_sizes = {0, 0,
+                                      0};  ///< Half the lengths of the edges along the box's x, y and z, m.
+  std::array<double, 4> rotation = {1, 0, 0,
+                                    0};  ///< Unit quaternion (w, x, y, z) from the box's axes to the world.
   std::array<double, 3> color = obstacle_color;
 };
 

@@ -10,12 +10,14 @@ namespace flexura {
 
 /// Contact of a moving arm with obstacles and itself, `[arm.contact]` (docs/mechanics.md, "Contact").
 struct ContactConfig {
-  double stiffness = 1e5;              ///< Contact force per metre of penetration and per metre of arm, N/m^2.
-  double damping = 5;                  ///< Hunt-Crossley damping: relative increase of the contact force per m/s of approach, s/m.
-  double friction = 0.3;               ///< Coulomb friction coefficient.
-  double slip_speed = 1e-3;            ///< Slip speed below which a contact sticks, m/s.
-  std::optional<double> spacing = {};  ///< Distance between contact points along the arm, m; default: the smallest tube radius.
-  bool itself = false;                 ///< Whether the arm can touch itself.
+  double stiffness = 1e5;  ///< Contact force per metre of penetration and per metre of arm, N/m^2.
+  double damping =
+      5;  ///< Hunt-Crossley damping: relative increase of the contact force per m/s of approach, s/m.
+  double friction = 0.3;     ///< Coulomb friction coefficient.
+  double slip_speed = 1e-3;  ///< Slip speed below which a contact sticks, m/s.
+  std::optional<double> spacing =
+      {};  ///< Distance between contact points along the arm, m; default: the smallest tube radius.
+  bool itself = false;  ///< Whether the arm can touch itself.
 };
 
 /// Fluid around a moving arm, `[arm.drag]` (docs/mechanics.md, "Drag").
@@ -30,12 +32,12 @@ struct DragConfig {
 
 /// A mass that a moving arm carries for a time, `[[arm.payload]]`.
 struct PayloadConfig {
-  std::int64_t section = 1;                  ///< Section that carries the payload, counted from 1 at the base.
-  double at = 1;                             ///< Position along the section as a fraction of its length; in [0, 1].
-  double mass = 0;                           ///< Mass, kg.
+  std::int64_t section = 1;  ///< Section that carries the payload, counted from 1 at the base.
+  double at = 1;             ///< Position along the section as a fraction of its length; in [0, 1].
+  double mass = 0;           ///< Mass, kg.
   std::array<double, 3> offset = {0, 0, 0};  ///< Centre of mass in the cross-section's frame, m.
-  double from = 0;                           ///< Time at which the arm picks up the payload, s. The payload is at rest until then.
-  std::optional<double> until = {};          ///< Time at which the arm drops the payload, s; default: never.
+  double from = 0;  ///< Time at which the arm picks up the payload, s. The payload is at rest until then.
+  std::optional<double> until = {};  ///< Time at which the arm drops the payload, s; default: never.
 };
 
 const Table<ContactConfig>& fields_of(const ContactConfig*);

@@ -56,8 +56,9 @@ class DrivenArm : public ArmPort {
   Arm arm_;
   Drive drive_;
   MotorCommander commander_;
-  std::vector<double> zero_;      // Displacements at motor positions 0, m.
-  std::vector<double> followed_;  // Positions behind the backlash, microsteps, if the port does not report them.
+  std::vector<double> zero_;  // Displacements at motor positions 0, m.
+  std::vector<double>
+      followed_;  // Positions behind the backlash, microsteps, if the port does not report them.
 };
 
 /// Returns the tendon displacements at motor positions 0, m, if the motor positions `positions`, microsteps,

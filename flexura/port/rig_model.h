@@ -19,8 +19,10 @@ struct RigModel {
   Arm arm;                         ///< Arm with one section per arc.
   std::vector<double> bend_gains;  ///< Factor on each arc's bend; empty: all 1.
   std::vector<CameraConfig> cameras;
-  Arm driven = {};           ///< Arm with its sections as the drives bend them, if any section has several arcs; otherwise without sections.
-  Actuation actuation = {};  ///< Conversion of commands to shapes, if any section has several arcs; otherwise the identity.
+  Arm driven = {};  ///< Arm with its sections as the drives bend them, if any section has several arcs;
+                    ///< otherwise without sections.
+  Actuation actuation =
+      {};  ///< Conversion of commands to shapes, if any section has several arcs; otherwise the identity.
 
   /// Returns the number of sections of a command.
   [[nodiscard]] std::size_t sections() const;

@@ -24,9 +24,10 @@ inline constexpr double contact_motion = 1e-4;  // m.
 
 /// Place of the smallest clearance.
 struct Contact {
-  double clearance = no_distance;              ///< Clearance, m; a negative clearance is a penetration depth.
-  std::size_t section = 0;                     ///< Section, 0 at the base.
-  std::optional<std::size_t> other_section{};  ///< Other section of a self-contact, which may be the same section.
+  double clearance = no_distance;  ///< Clearance, m; a negative clearance is a penetration depth.
+  std::size_t section = 0;         ///< Section, 0 at the base.
+  std::optional<std::size_t>
+      other_section{};  ///< Other section of a self-contact, which may be the same section.
 };
 
 /// Computes clearances and contacts of the arm with one object: the arm itself or an obstacle.

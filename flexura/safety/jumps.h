@@ -18,9 +18,9 @@ inline constexpr double smallest_jump = 1e-6;
 
 /// A jump of a motion: two states at one time.
 struct Jump {
-  double time = 0;          ///< Time of the jump, s.
-  double size = 0;          ///< Largest change of a bend (rad) or a stretch.
-  std::size_t section = 0;  ///< Index of the section with the largest change.
+  double time = 0;             ///< Time of the jump, s.
+  double size = 0;             ///< Largest change of a bend (rad) or a stretch.
+  std::size_t section = 0;     ///< Index of the section with the largest change.
   bool is_of_stretch = false;  ///< Whether the stretch of this section changes most, not its bend.
 };
 

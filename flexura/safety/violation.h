@@ -24,21 +24,22 @@ enum class Hazard : std::uint8_t {
   step_rate,           ///< A motor's controller gives more microsteps per second than its limit; 1/s.
   motor_acceleration,  ///< A motor accelerates or decelerates faster than its limit; rad/s^2.
   motor_position,      ///< A motor exceeds its position limit; microsteps.
-  workspace,           ///< The tip's target is outside the workspace; distance from the nearest reachable pose in m.
+  workspace,  ///< The tip's target is outside the workspace; distance from the nearest reachable pose in m.
 };
 
 /// A violation and its time span.
 struct Violation {
   Hazard hazard = Hazard::bend;
-  double start = 0;                               ///< Start of the span, s.
-  double end = 0;                                 ///< End of the span, s.
-  double worst_time = 0;                          ///< Time of `value`, s.
-  std::optional<std::size_t> section = {};        ///< Section, 0 at the base; for a motor, the section of its tendon.
+  double start = 0;       ///< Start of the span, s.
+  double end = 0;         ///< End of the span, s.
+  double worst_time = 0;  ///< Time of `value`, s.
+  std::optional<std::size_t> section =
+      {};  ///< Section, 0 at the base; for a motor, the section of its tendon.
   std::optional<std::size_t> other_section = {};  ///< Section that `section` touches, 0 at the base.
   std::string name = {};                          ///< Name of the obstacle, the motor's axis or the task.
   double value = 0;                               ///< Worst value in the span, in the hazard's unit.
   double limit = 0;                               ///< Limit, in the hazard's unit.
-  bool is_of_stretch = false;                  ///< Whether a jump is of the stretch (a factor), not of the bend (rad).
+  bool is_of_stretch = false;  ///< Whether a jump is of the stretch (a factor), not of the bend (rad).
   std::optional<Eigen::Vector3d> target = {};  ///< Position that the tip does not reach, in W, m.
 
   /// Returns "0.5 s to 2 s: section 1: bend 62 deg, limit 60 deg". The times are formatted by span_text()

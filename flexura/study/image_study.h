@@ -18,7 +18,8 @@ namespace flexura {
 
 /// Features from one source, for all values of the study's parameter.
 struct StudyColumn {
-  std::string_view source;  ///< Source: "formula", "rendered" or "measured". Result files name features "top_formula", ...
+  std::string_view
+      source;  ///< Source: "formula", "rendered" or "measured". Result files name features "top_formula", ...
   std::vector<ImageFeatures> features;  ///< Features for each value of the parameter.
 };
 
@@ -27,10 +28,12 @@ struct ImageStudy {
   std::string name;
   std::string camera;
   Variation variation;
-  int width = 0, height = 0;         ///< Size of the camera's image, px.
-  std::vector<double> values;        ///< Values of the parameter, in base units.
-  std::vector<TargetImage> images;   ///< Image of the target for each value, computed by the projection formulas.
-  std::vector<StudyColumn> columns;  ///< Features from the projection formulas, from the renderer's geometry, and optionally measured in pictures.
+  int width = 0, height = 0;   ///< Size of the camera's image, px.
+  std::vector<double> values;  ///< Values of the parameter, in base units.
+  std::vector<TargetImage>
+      images;  ///< Image of the target for each value, computed by the projection formulas.
+  std::vector<StudyColumn> columns;  ///< Features from the projection formulas, from the renderer's geometry,
+                                     ///< and optionally measured in pictures.
 
   /// Returns whether the whole target is inside the image for the value i.
   [[nodiscard]] bool in_image(std::size_t i) const;

@@ -48,17 +48,17 @@ struct Count {
 
 /// Description of one field in a table of fields, without the member that stores the field's value.
 struct Spec {
-  std::string meaning =
-      {};  ///< Meaning of the field, a sentence for error messages, the schema and the reference page.
+  /// Meaning of the field, a sentence for error messages, the schema and the reference page.
+  std::string meaning = {};
   Unit unit = Unit::none;
   NumberRange range = {};  ///< Range of a number, or of each number of an array.
   Count count = {};        ///< Number of entries of the outermost array.
   bool required = false;
-  bool partial =
-      false;  ///< For a table: a file may contain only some of its fields; the reader gets a complete table.
+  /// For a table: a file may contain only some of its fields; the reader gets a complete table.
+  bool partial = false;
   bool one_for_all = false;  ///< For an array: a file may give one value for all entries.
-  std::string default_text =
-      {};  ///< Effect of omitting the field, if the default value alone does not show the effect.
+  /// Effect of omitting the field, if the default value alone does not show the effect.
+  std::string default_text = {};
 };
 
 /// Type of a field's value.
@@ -71,8 +71,8 @@ struct Type {
   std::shared_ptr<const Type> item = {};  ///< For `array`: type of an entry.
   Count count = {};                       ///< For `array`: number of entries that the C++ type fixes.
   const TableInfo* table = nullptr;       ///< For `table`: the table's fields.
-  std::vector<const TableInfo*> alternatives =
-      {};  ///< For `one_of`: the tables, identified by the key "kind".
+  /// For `one_of`: the tables, identified by the key "kind".
+  std::vector<const TableInfo*> alternatives = {};
 };
 
 /// Everything that a schema or a reference page shows of a field.

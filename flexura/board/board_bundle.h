@@ -31,16 +31,16 @@ struct BundleConfig {
   int distortion = 5;    ///< Number of fitted distortion coefficients in the order k1, k2, p1, p2, k3; the
                          ///< others keep their values.
   int most_steps = 100;  ///< Limit of BundleFit::steps.
-  double least_gain =
-      1e-12;  ///< The fit ends when a step decreases the sum of squares by less than this fraction.
+  /// The fit ends when a step decreases the sum of squares by less than this fraction.
+  double least_gain = 1e-12;
 };
 
 /// Result of a bundle adjustment.
 struct BundleFit {
   BoardBundle bundle;  ///< Fitted unknowns.
-  bool is_converged =
-      false;      ///< False if no step decreased the sum of squares, or the limit on steps was reached.
-  int steps = 0;  ///< Number of the first linearization and all steps tried.
+  /// False if no step decreased the sum of squares, or the limit on steps was reached.
+  bool is_converged = false;
+  int steps = 0;             ///< Number of the first linearization and all steps tried.
   double square_sum = 0;     ///< Sum of squared distances between observed and computed pixels, px^2.
   std::size_t points = 0;    ///< Number of observed pixels.
   std::size_t unknowns = 0;  ///< Number of unknowns of cameras and boards.

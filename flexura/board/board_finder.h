@@ -15,8 +15,8 @@ struct BoardObservation {
   /// Pixels (u, v) of the board's points, in the board's order, px; empty if the board was not found.
   std::vector<Eigen::Vector2d> pixels;
   std::string reason;  ///< Reason why the board was not found; otherwise "".
-  bool is_larger =
-      false;  ///< Whether the found points were rejected because the pattern continues, as on a larger board.
+  /// Whether the found points were rejected because the pattern continues, as on a larger board.
+  bool is_larger = false;
 
   [[nodiscard]] bool is_found() const { return !pixels.empty(); }
 };

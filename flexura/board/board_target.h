@@ -16,9 +16,9 @@ struct BoardTarget {
   BoardPattern pattern = BoardPattern::chessboard;
   int columns = 9, rows = 6;  ///< Numbers of columns and rows of points. For asymmetric circles, `columns` is
                               ///< the number of points in one row.
-  double square =
-      0.025;  ///< Distance between neighbouring rows, and between neighbouring columns, m. Circles in a row
-              ///< of asymmetric circles are 2 `square` apart, and every second row is shifted by `square`.
+  /// Distance between neighbouring rows, and between neighbouring columns, m. Circles in a row of asymmetric
+  /// circles are 2 `square` apart, and every second row is shifted by `square`.
+  double square = 0.025;
 
   /// Returns the points in the board's plane, m, row by row. The first point is (0, 0).
   [[nodiscard]] std::vector<Eigen::Vector2d> points() const;

@@ -16,10 +16,10 @@ namespace flexura {
 
 /// Settings of a camera calibration from views of a board.
 struct IntrinsicsConfig {
-  int distortion =
-      5;  ///< Number of estimated distortion coefficients in the order k1, k2, p1, p2, k3; the others are 0.
-  int hold_out =
-      0;  ///< Every Nth view is not fitted but only predicted (N = hold_out); 0: all views are fitted.
+  /// Number of estimated distortion coefficients in the order k1, k2, p1, p2, k3; the others are 0.
+  int distortion = 5;
+  /// Every Nth view is not fitted but only predicted (N = hold_out); 0: all views are fitted.
+  int hold_out = 0;
 };
 
 /// Lens of one camera, estimated from views of a board.

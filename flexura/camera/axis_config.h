@@ -8,10 +8,10 @@ namespace flexura {
 /// Motion limits of one motor-driven axis of a camera. The unit of position is rad, m, or zoom position.
 struct AxisConfig {
   std::array<double, 2> limits = {0, 0};  ///< Smallest and largest position.
-  double max_rate =
-      std::numeric_limits<double>::infinity();  ///< Largest speed, units of position per second.
-  double max_acceleration = std::numeric_limits<double>::infinity();  ///< Largest acceleration, units of
-                                                                      ///< position per second squared.
+  /// Largest speed, units of position per second.
+  double max_rate = std::numeric_limits<double>::infinity();
+  /// Largest acceleration, units of position per second squared.
+  double max_acceleration = std::numeric_limits<double>::infinity();
   double resolution = 0;  ///< Smallest position increment that can be commanded; 0: continuous.
   double backlash = 0;    ///< Motor travel without motion of the axis after a reversal.
 };

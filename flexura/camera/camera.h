@@ -23,8 +23,8 @@ struct CameraProjection {
   Eigen::Matrix<double, 2, 6> by_mount;
   Eigen::Matrix<double, 2, 3> by_stage;  ///< Derivative with respect to the stage's offset, px/m.
   Eigen::Vector2d by_pan, by_tilt;       ///< Derivatives with respect to pan and tilt, px/rad.
-  Eigen::Vector2d
-      by_zoom;  ///< Derivative with respect to the zoom position, including the shift of the pupil.
+  /// Derivative with respect to the zoom position, including the shift of the pupil.
+  Eigen::Vector2d by_zoom;
   Eigen::Matrix<double, 2, 3> by_tilt_axis;  ///< Derivative with respect to HeadConfig::tilt_axis, px/m.
   Eigen::Matrix<double, 2, 3> by_pupil;      ///< Derivative with respect to HeadConfig::pupil, px/m.
   Eigen::Vector2d by_pupil_shift;            ///< Derivative with respect to HeadConfig::pupil_shift, px/m.

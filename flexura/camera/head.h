@@ -70,8 +70,8 @@ const Table<HeadConfig>& fields_of(const HeadConfig*);
 
 /// Geometry of a head's axes at one zoom position.
 struct HeadGeometry {
-  Eigen::Vector3d tilt_axis =
-      Eigen::Vector3d::Zero();  ///< A point on the tilt axis, in the mount's frame rotated by pan, m.
+  /// A point on the tilt axis, in the mount's frame rotated by pan, m.
+  Eigen::Vector3d tilt_axis = Eigen::Vector3d::Zero();
   /// Entrance pupil relative to `tilt_axis`, in C's axes, m.
   Eigen::Vector3d pupil = Eigen::Vector3d::Zero();
 };

@@ -32,8 +32,8 @@ struct SensorConfig {
   /// (`silent`).
   std::vector<std::array<double, 2>> covered = {}, silent = {};
   double gain = 1;  ///< Factor on the light before readout, which also amplifies shot noise.
-  double full_well =
-      0;  ///< Electrons at full scale and gain 1, which determine the shot noise. 0: no shot noise.
+  /// Electrons at full scale and gain 1, which determine the shot noise. 0: no shot noise.
+  double full_well = 0;
   double read_noise = 0;  ///< Standard deviation of the read noise, in values of an 8-bit image.
   double psf = 0;         ///< Standard deviation of the Gaussian blur of lens and pixels, px.
   double vignetting = 0;  ///< Fraction of the light lost in the image's corners. The loss increases with the

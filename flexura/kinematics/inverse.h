@@ -50,8 +50,8 @@ struct InverseConfig {
   /// caller must set a tolerance.
   std::optional<double> position_tolerance = {};
   double angle_tolerance = 1e-9;  ///< Tolerance of direction or rotation, rad.
-  int max_starts =
-      400;  ///< Largest number of descents, each from a different state, the first from `start`; >= 1.
+  /// Largest number of descents, each from a different state, the first from `start`; >= 1.
+  int max_starts = 400;
   std::uint64_t seed = 1;  ///< Seed of the random start states, which are all after the first two.
 };
 
@@ -74,10 +74,10 @@ struct InverseResult {
   bool is_proven = false;  ///< Whether it is proven that no state within the limits reaches the target.
   ArmState state;          ///< The solution, or the nearest state found; within the limits.
   Eigen::Vector3d tip;     ///< p_WT of `state`, m.
-  double position_error =
-      0.0;  ///< Distance of the tip from the target, m; for a curve the largest distance along the arm.
-  double angle_error =
-      0.0;  ///< Angle between `state` and the target's direction or rotation, rad; otherwise 0.
+  /// Distance of the tip from the target, m; for a curve the largest distance along the arm.
+  double position_error = 0.0;
+  /// Angle between `state` and the target's direction or rotation, rad; otherwise 0.
+  double angle_error = 0.0;
   double position_tolerance = 0.0;  ///< Tolerance on position_error, m.
   int iterations = 0;               ///< Number of evaluations of the arm and its Jacobian.
   int starts = 0;                   ///< Number of descents made.

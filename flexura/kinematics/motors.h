@@ -39,8 +39,8 @@ class MotorCommander {
 
  private:
   struct Side {
-    bool letting_out =
-        false;  // Whether the tendon is being let out, with the backlash compensated for this direction.
+    // Whether the tendon is being let out, with the backlash compensated for this direction.
+    bool letting_out = false;
     double farthest = 0;  // Extreme position since the last reversal, microsteps pulled in.
   };
   void command(std::size_t axis, double target);

@@ -12,8 +12,8 @@ namespace flexura {
 /// Tolerances and limits for solving an ordinary differential equation.
 struct OdeTolerance {
   double relative = 1e-9;  ///< Relative error tolerance of each component per step.
-  double absolute =
-      1e-12;  ///< Absolute error tolerance per step, in the units of y; added to the relative tolerance.
+  /// Absolute error tolerance per step, in the units of y; added to the relative tolerance.
+  double absolute = 1e-12;
   double first_step = 1e-3;  ///< First step size to try, in units of time; > 0.
   double largest_step = std::numeric_limits<double>::infinity();  ///< Largest step size, in units of time.
   int most_steps = 1'000'000;  ///< Largest number of steps in one advance, including rejected steps.

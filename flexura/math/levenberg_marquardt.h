@@ -8,8 +8,8 @@ namespace flexura {
 
 /// Result of a trial step.
 struct TriedStep {
-  double cost =
-      std::numeric_limits<double>::infinity();  ///< Cost after the step; infinite if the step is invalid.
+  /// Cost after the step; infinite if the step is invalid.
+  double cost = std::numeric_limits<double>::infinity();
   /// Decrease of the cost that the linear model predicts; infinite if there is no prediction.
   double promised = std::numeric_limits<double>::infinity();
 };

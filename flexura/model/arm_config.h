@@ -54,8 +54,8 @@ struct ArmConfig {
   std::vector<TendonRouteConfig>
       tendon;  ///< Routes of tendons. Empty: the tendons of the drive, if there is a drive.
   std::vector<LoadConfig> load;
-  double time_step =
-      0.005;  ///< Integration step of a dynamic arm, s. The fields from here on are for dynamic arms.
+  /// Integration step of a dynamic arm, s. The fields from here on are for dynamic arms.
+  double time_step = 0.005;
   double spectral_radius = 0.1;  ///< Spectral radius of the time integration at high frequencies, 0 to 1.
   std::optional<ContactConfig> contact;  ///< Missing: no contact forces.
   std::optional<DragConfig> drag;        ///< Missing: no surrounding fluid.

@@ -26,13 +26,13 @@ struct TendonRouteConfig {
   std::int64_t section = 1;  ///< Section at the end of which the tendon ends, counted from 1 at the base.
   double radius = 0;         ///< Distance from the backbone at the base, m.
   double angle = 0;          ///< Angle around the backbone at the base, from x towards y, rad.
-  std::optional<double> end_radius =
-      {};            ///< Distance from the backbone at the tendon's end, m; default: `radius`.
+  /// Distance from the backbone at the tendon's end, m; default: `radius`.
+  std::optional<double> end_radius = {};
   double turns = 0;  ///< Turns around the backbone from the arm's base to the tendon's end, from x towards y.
-  std::vector<double> x = {},
-                      y = {};  ///< Coefficients of x(s) and y(s), from the power 0 of s up: m, m/m, ...
-  double compliance = 0;       ///< Elongation of the tendon per tension, m/N.
-  double friction = 0;         ///< Coulomb friction coefficient along the route.
+  /// Coefficients of x(s) and y(s), from the power 0 of s up: m, m/m, ...
+  std::vector<double> x = {}, y = {};
+  double compliance = 0;                 ///< Elongation of the tendon per tension, m/N.
+  double friction = 0;                   ///< Coulomb friction coefficient along the route.
   std::optional<double> breaks_at = {};  ///< Time at which the tendon breaks, s; default: never.
 
   /// Returns the offset from the backbone, m, at arc length `s` of a tendon that ends at arc length `end`,

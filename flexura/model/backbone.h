@@ -42,8 +42,8 @@ struct Arc {
 /// A sample of a backbone of any shape.
 struct BackboneSample {
   Pose X_WS;  ///< Frame of the cross-section; z is the tangent, x and y rotate with the material.
-  double s_rest =
-      0;  ///< Arc length from the base along the arm at rest, m; strictly increasing over the samples.
+  /// Arc length from the base along the arm at rest, m; strictly increasing over the samples.
+  double s_rest = 0;
   double radius = 0.02;     ///< Radius of the tube, m; > 0.
   std::size_t section = 0;  ///< Section of the arm between this sample and the next.
 };

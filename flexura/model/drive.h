@@ -34,12 +34,12 @@ struct StepperMotor {
   std::int64_t steps = 300;      ///< Full steps per turn; a multiple of `phases`.
   std::int64_t microsteps = 10;  ///< Microsteps per full step.
   double max_speed = std::numeric_limits<double>::infinity();  ///< Largest speed of the motor, rad/s.
-  double max_acceleration =
-      std::numeric_limits<double>::infinity();  ///< Largest acceleration of the motor, rad/s^2.
-  double max_step_rate =
-      std::numeric_limits<double>::infinity();  ///< Largest rate of the controller, microsteps per second.
-  double max_position = std::numeric_limits<double>::infinity();  ///< Largest distance from position 0 in
-                                                                  ///< either direction, microsteps.
+  /// Largest acceleration of the motor, rad/s^2.
+  double max_acceleration = std::numeric_limits<double>::infinity();
+  /// Largest rate of the controller, microsteps per second.
+  double max_step_rate = std::numeric_limits<double>::infinity();
+  /// Largest distance from position 0 in either direction, microsteps.
+  double max_position = std::numeric_limits<double>::infinity();
   /// Pull-out torque as pairs of speed, rad/s, and torque, N m, in order of increasing speed. Outside the
   /// given speeds the torque is constant. Default: unlimited torque.
   std::optional<std::vector<std::array<double, 2>>> pull_out = {};

@@ -43,21 +43,21 @@ struct BodyConfig {
 struct MaterialConfig {
   std::optional<double> youngs_modulus = {};  ///< Young's modulus E, Pa.
   std::optional<double> shear_modulus = {};   ///< Shear modulus G, Pa.
-  std::optional<double> poisson =
-      {};              ///< Poisson's ratio nu, with G = E / (2 (1 + nu)); not together with a shear modulus.
+  /// Poisson's ratio nu, with G = E / (2 (1 + nu)); not together with a shear modulus.
+  std::optional<double> poisson = {};
   double density = 0;  ///< Density, kg/m^3.
-  std::optional<std::array<double, 2>> radius =
-      {};  ///< Outer radius of the rod at the section's base and end, m; default: the tube's radius.
-  std::array<double, 2> inner_radius = {0,
-                                        0};  ///< Radius of the rod's bore at the section's base and end, m.
+  /// Outer radius of the rod at the section's base and end, m; default: the tube's radius.
+  std::optional<std::array<double, 2>> radius = {};
+  /// Radius of the rod's bore at the section's base and end, m.
+  std::array<double, 2> inner_radius = {0, 0};
   std::optional<StiffnessConfig> stiffness = {};  ///< Stiffness of the rod, instead of the moduli.
   std::optional<double> mass_per_length = {};  ///< Mass per length of the rod, instead of the density, kg/m.
   double damping_time = 0;                     ///< Ratio of damping to stiffness (Kelvin-Voigt), s.
   std::array<double, 2> rest_bend = {0, 0};    ///< Bend vector of the unloaded section, rad.
-  double rest_twist =
-      0;  ///< Rotation of the unloaded section's end about the backbone relative to its base, rad.
-  std::optional<std::int64_t> disks =
-      {};  ///< Number of equal pieces of the section between guide disks; tendons are straight in each piece.
+  /// Rotation of the unloaded section's end about the backbone relative to its base, rad.
+  double rest_twist = 0;
+  /// Number of equal pieces of the section between guide disks; tendons are straight in each piece.
+  std::optional<std::int64_t> disks = {};
   ModesConfig modes = {};
   std::int64_t nodes = 0;  ///< Number of quadrature nodes along the section; 0: as many as the modes need.
   std::vector<BodyConfig> mass = {};  ///< Bodies fixed to the section, in any order.

@@ -70,10 +70,10 @@ struct BoxConfig {
   double ignore_base = 0;
   bool may_touch = false;
   std::array<double, 3> center = {0, 0, 0};  ///< In W, m.
-  std::array<double, 3> half_sizes = {0, 0,
-                                      0};  ///< Half the lengths of the edges along the box's x, y and z, m.
-  std::array<double, 4> rotation = {1, 0, 0,
-                                    0};  ///< Unit quaternion (w, x, y, z) from the box's axes to the world.
+  /// Half the lengths of the edges along the box's x, y and z, m.
+  std::array<double, 3> half_sizes = {0, 0, 0};
+  /// Unit quaternion (w, x, y, z) from the box's axes to the world.
+  std::array<double, 4> rotation = {1, 0, 0, 0};
   std::array<double, 3> color = obstacle_color;
 };
 

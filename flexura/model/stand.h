@@ -25,12 +25,12 @@ struct ScreenConfig {
 
 /// The calibration cylinder: dark gray, with four red lines parallel to its axis. E is the cylinder's frame.
 struct EtalonConfig {
-  std::array<double, 3> position = {0, 0,
-                                    0};  ///< Centre of the cylinder's lower end in W, the origin of E, m.
-  std::array<double, 4> rotation = {1, 0, 0,
-                                    0};  ///< Quaternion (w, x, y, z) of R_WE; the cylinder's axis is E's +Y.
-  double radius = 0.1;                   ///< Radius, m.
-  double height = 0.4;                   ///< Height, m.
+  /// Centre of the cylinder's lower end in W, the origin of E, m.
+  std::array<double, 3> position = {0, 0, 0};
+  /// Quaternion (w, x, y, z) of R_WE; the cylinder's axis is E's +Y.
+  std::array<double, 4> rotation = {1, 0, 0, 0};
+  double radius = 0.1;  ///< Radius, m.
+  double height = 0.4;  ///< Height, m.
   ColorConfig color = {0.1, 0.1, 0.1};
   double line_width = 0.01;  ///< Width of a line around the cylinder, m. The lines face E's +Z and every 90
                              ///< degrees from there.
@@ -41,8 +41,8 @@ struct EtalonConfig {
 struct LightConfig {
   double ambient = 0.45;  ///< Ambient light, equal from all directions; 1 is a camera's full scale on white.
   double directional = 0.55;  ///< Directional light on a surface that faces the source.
-  std::array<double, 3> towards = {0.4, 0.8,
-                                   0.45};  ///< Direction to the source of the directional light, in W.
+  /// Direction to the source of the directional light, in W.
+  std::array<double, 3> towards = {0.4, 0.8, 0.45};
   double shadow = 0;  ///< Fraction of the directional light, and of a screen's light, that a shadow removes.
   double angular_radius = 0.05;  ///< Half the angular size of the light source, rad.
 };

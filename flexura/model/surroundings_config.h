@@ -11,12 +11,12 @@ namespace flexura {
 /// Contact of a moving arm with obstacles and itself, `[arm.contact]` (docs/mechanics.md, "Contact").
 struct ContactConfig {
   double stiffness = 1e5;  ///< Contact force per metre of penetration and per metre of arm, N/m^2.
-  double damping =
-      5;  ///< Hunt-Crossley damping: relative increase of the contact force per m/s of approach, s/m.
+  /// Hunt-Crossley damping: relative increase of the contact force per m/s of approach, s/m.
+  double damping = 5;
   double friction = 0.3;     ///< Coulomb friction coefficient.
   double slip_speed = 1e-3;  ///< Slip speed below which a contact sticks, m/s.
-  std::optional<double> spacing =
-      {};  ///< Distance between contact points along the arm, m; default: the smallest tube radius.
+  /// Distance between contact points along the arm, m; default: the smallest tube radius.
+  std::optional<double> spacing = {};
   bool itself = false;  ///< Whether the arm can touch itself.
 };
 

@@ -17,8 +17,8 @@ namespace {
 
 // libjpeg passes its errors to a function that must not return.
 struct Errors {
-  jpeg_error_mgr
-      manager;  // Must be the first member, because libjpeg passes its address as that of the struct.
+  // Must be the first member, because libjpeg passes its address as that of the struct.
+  jpeg_error_mgr manager;
   std::jmp_buf back;
   char text[JMSG_LENGTH_MAX];
 };

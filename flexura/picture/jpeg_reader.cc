@@ -19,8 +19,8 @@ namespace {
 
 // libjpeg passes its errors to a function that must not return.
 struct JpegInput {
-  jpeg_error_mgr
-      manager;  // Must be the first member, because libjpeg passes its address as that of the struct.
+  // Must be the first member, because libjpeg passes its address as that of the struct.
+  jpeg_error_mgr manager;
   std::jmp_buf back;
   jpeg_progress_mgr progress;
   char text[JMSG_LENGTH_MAX];

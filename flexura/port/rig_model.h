@@ -21,8 +21,8 @@ struct RigModel {
   std::vector<CameraConfig> cameras;
   Arm driven = {};  ///< Arm with its sections as the drives bend them, if any section has several arcs;
                     ///< otherwise without sections.
-  Actuation actuation =
-      {};  ///< Conversion of commands to shapes, if any section has several arcs; otherwise the identity.
+  /// Conversion of commands to shapes, if any section has several arcs; otherwise the identity.
+  Actuation actuation = {};
 
   /// Returns the number of sections of a command.
   [[nodiscard]] std::size_t sections() const;

@@ -10,8 +10,8 @@ inline constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// A ray through a point of the image: all points depth * direction with depth > 0, in C.
 struct Ray {
-  Eigen::Vector3d
-      direction;  ///< (a, b, 1) in normalized coordinates, so that the parameter along the ray is the depth.
+  /// (a, b, 1) in normalized coordinates, so that the parameter along the ray is the depth.
+  Eigen::Vector3d direction;
   Eigen::Matrix2d by_pixel;  ///< Derivative of (a, b) with respect to (u, v), 1/px.
 };
 

@@ -78,10 +78,10 @@ struct VisibleObstacle {
 /// Light on surfaces. A surface has the brightness albedo * (ambient + directional * max(0, cosine of the
 /// angle between its normal and the light)).
 struct Light {
-  Eigen::Vector3d direction = {0.4, 0.8,
-                               0.45};  ///< Direction towards the light source, in W; any length above 0.
-  double ambient = 0.45,
-         directional = 0.55;  ///< Ambient and directional light; 1 is full scale on a white surface.
+  /// Direction towards the light source, in W; any length above 0.
+  Eigen::Vector3d direction = {0.4, 0.8, 0.45};
+  /// Ambient and directional light; 1 is full scale on a white surface.
+  double ambient = 0.45, directional = 0.55;
   /// Fraction of the directional light, and of a screen's light, that a shadow removes; 0: no shadows. The
   /// arm casts shadows on all surfaces. Guide disks, the calibration cylinder and obstacles other than planes
   /// cast shadows on screens and planes only.

@@ -33,8 +33,8 @@ struct SensorRows {
   std::vector<std::uint8_t> is_plain, is_even, is_known, is_needed;
   std::vector<BlockWork> work;       ///< Work for each block.
   std::vector<const float*> window;  ///< Rows that the PSF combines for the current row, in order.
-  std::vector<float> light,
-      levels;  ///< Light and levels of the current row, with the length rounded up to whole blocks.
+  /// Light and levels of the current row, with the length rounded up to whole blocks.
+  std::vector<float> light, levels;
   std::vector<std::uint8_t> bytes;  ///< Levels of the current row, for sensors of up to 8 bits.
 };
 
@@ -90,8 +90,8 @@ class Sensor {
   int width_, height_, radius_ = 0;
   std::vector<float> weights_;
   std::size_t channels_, count_, values_;  // Numbers of values per pixel, per row and per block.
-  std::size_t margin_,
-      blocks_;  // Number of blocks that continue a row at each end; number of blocks including these.
+  // Number of blocks that continue a row at each end; number of blocks including these.
+  std::size_t margin_, blocks_;
   std::vector<float> lost_across_;  // Fraction of light lost by vignetting across a row, for each value.
   SensorLevels levels_;
   GammaTable gamma_;

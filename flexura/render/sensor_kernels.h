@@ -25,8 +25,8 @@ struct NoiseRow {
 /// Properties of a row of light in the sensor.
 struct SensorRow {
   std::size_t blocks = 0;
-  const float* weights =
-      nullptr;  ///< Weights of one side of the PSF, nearest pixel first, without the middle weight.
+  /// Weights of one side of the PSF, nearest pixel first, without the middle weight.
+  const float* weights = nullptr;
   std::size_t radius = 0;  ///< Number of these weights.
   std::size_t channels = 1;
 };

@@ -61,12 +61,12 @@ struct SpanPiece {
   Linear point[3], direction[3];
   Linear way;  ///< Depth from depth0 to approximately the plane that contains the piece's axis and faces the
                ///< camera, m.
-  float curvature, radius,
-      widening;  ///< Curvature, 1/m; radius at the piece's start, m; change of the radius per arc length.
+  /// Curvature, 1/m; radius at the piece's start, m; change of the radius per arc length.
+  float curvature, radius, widening;
   float widest;  ///< Largest radius, m.
-  float kink_before,
-      kink_after;  ///< Distances along the axis from start and end, m, within which contours are left to the
-                   ///< reference path, because curvature or taper change there; 0 without a change.
+  /// Distances along the axis from start and end, m, within which contours are left to the reference path,
+  /// because curvature or taper change there; 0 without a change.
+  float kink_before, kink_after;
   float end_sine, end_cosine, end_offset;
   float reach;  ///< Distance from the surface within which contours may divide the pixel, m.
   /// Distance inside a contour within which the images of edges of rings and lines are curved, m; >= reach.

@@ -20,8 +20,8 @@ struct Body {
   Color albedo;
   bool is_arm = false;     ///< Whether the body is the arm, whose surface shows sections and markers.
   bool is_etalon = false;  ///< Whether the body is the calibration cylinder, whose surface shows red lines.
-  bool takes_all_shadows =
-      false;  ///< Whether the body receives the shadows of all bodies, not only of the arm.
+  /// Whether the body receives the shadows of all bodies, not only of the arm.
+  bool takes_all_shadows = false;
 };
 
 struct DiscPart {

@@ -23,8 +23,8 @@ struct Part {
 
 /// The first surface that a ray hits.
 struct Hit {
-  double depth = std::numeric_limits<double>::infinity();  ///< Depth along the optical axis, m; infinite
-                                                           ///< without a surface.
+  /// Depth along the optical axis, m; infinite without a surface.
+  double depth = std::numeric_limits<double>::infinity();
   Part part = {Part::Kind::piece, 0};
   Eigen::Vector3d normal = {0, 0, -1};  ///< Unit normal in C, on the camera's side.
   /// Arc length from the base on the arm, m; NaN on other surfaces.
@@ -39,8 +39,8 @@ struct Hit {
 struct Trace {
   Hit hit;
   Border nearest, second;  ///< Nearest and second nearest border; infinitely far if beyond border_reach.
-  double clear = std::numeric_limits<double>::infinity();  ///< Distance of the nearest border that is not an
-                                                           ///< edge of a ring, px.
+  /// Distance of the nearest border that is not an edge of a ring, px.
+  double clear = std::numeric_limits<double>::infinity();
 };
 
 /// Intersects rays with some primitives of a stage, in the given order. Surfaces are visible only from

@@ -25,10 +25,10 @@ namespace flexura {
 /// True values in the middle of one pixel.
 struct PixelTruth {
   SurfaceLabel label;
-  double depth = std::numeric_limits<double>::infinity();  ///< Depth along the optical axis, m; infinite
-                                                           ///< without a surface.
-  double s = std::numeric_limits<double>::quiet_NaN();     ///< Arc length from the base on the arm, m; NaN on
-                                                           ///< other surfaces.
+  /// Depth along the optical axis, m; infinite without a surface.
+  double depth = std::numeric_limits<double>::infinity();
+  /// Arc length from the base on the arm, m; NaN on other surfaces.
+  double s = std::numeric_limits<double>::quiet_NaN();
 };
 /// Returns the true values of pixel (u, v). Throws std::out_of_range unless (u, v) is in the image.
 [[nodiscard]] PixelTruth pixel_truth(const Renderer& renderer, int u, int v);

@@ -25,16 +25,15 @@ struct TubePiece {
   double radius = 0, widening = 0;  ///< Radius at the start, m, and change of the radius per arc length.
   double s = 0;                     ///< Arc length of the piece's start on the whole tube, m.
   bool is_ball = false;  ///< Whether the piece is a ball of `radius` around the origin of P instead.
-  bool is_cut_before = true,
-       is_cut_after =
-           true;  ///< Whether the plane at the start, or at the end, cuts the piece (never for a ball).
+  /// Whether the plane at the start, or at the end, cuts the piece (never for a ball).
+  bool is_cut_before = true, is_cut_after = true;
   Eigen::Vector3d end_tangent = {0, 0, 1};  ///< Unit tangent at the end, in P.
   double end_offset = 0;                    ///< Offset of the end's plane along end_tangent, m.
   int before = -1, after = -1;  ///< Neighbouring pieces at start and end; -1: the tube ends there.
   int body = 0;
-  Eigen::Vector3d bound_center =
-      Eigen::Vector3d::Zero();  ///< Center of a ball that contains the piece, in P, m.
-  double bound_radius = 0;      ///< Radius of this ball, m.
+  /// Center of a ball that contains the piece, in P, m.
+  Eigen::Vector3d bound_center = Eigen::Vector3d::Zero();
+  double bound_radius = 0;   ///< Radius of this ball, m.
   double near_radius = 0;    ///< Radius of a ball with the same center that also contains everything near the
                              ///< piece in the image, m.
   std::size_t tube_arc = 0;  ///< Arc of the tube from which the piece was cut.
@@ -83,8 +82,8 @@ struct TubePoint {
   Eigen::Vector3d normal;  ///< Unit normal of the surface of equal gap, in C.
   Eigen::Vector3d outward;  ///< Unit direction from the centerline to the point, in C.
   Eigen::Vector3d tangent;  ///< Unit tangent of the centerline, in C.
-  double shrink =
-      1;  ///< 1 - curvature * distance towards the centre of curvature: length at the point per arc length.
+  /// 1 - curvature * distance towards the centre of curvature: length at the point per arc length.
+  double shrink = 1;
 };
 [[nodiscard]] TubePoint tube_point(const TubePiece& piece, const Eigen::Vector3d& p_CQ);
 

@@ -61,11 +61,10 @@ struct SpanSearch {
   double time = 0;   ///< Length above which an undecided interval is halved, s.
   double value = 0;  ///< An undecided interval whose upper bound exceeds the limit by more than this value is
                      ///< halved, too.
-  std::size_t most_intervals =
-      200'000;  ///< Largest number of intervals per quantity. Samples decide the remaining intervals.
-  std::size_t most_together =
-      std::numeric_limits<std::size_t>::max();  ///< Largest number of intervals of all quantities together,
-                                                ///< distributed evenly.
+  /// Largest number of intervals per quantity. Samples decide the remaining intervals.
+  std::size_t most_intervals = 200'000;
+  /// Largest number of intervals of all quantities together, distributed evenly.
+  std::size_t most_together = std::numeric_limits<std::size_t>::max();
   /// Called from time to time with the fraction of the time that is decided. If the function returns false,
   /// the search ends with the results found up to then.
   std::function<bool(double decided)> go_on = {};

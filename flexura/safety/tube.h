@@ -23,8 +23,8 @@ struct SectionTube {
   Eigen::Vector2d bend;               ///< Bend vector, rad.
   double length = 0;                  ///< Length with stretch, m.
   std::array<double, 2> radius = {};  ///< Radius at the section's start and end, m.
-  double turn =
-      0;  ///< Turn of the backbone from the arm's base to the section's start: the sum of |bend|, rad.
+  /// Turn of the backbone from the arm's base to the section's start: the sum of |bend|, rad.
+  double turn = 0;
   double start = 0;  ///< Length of the backbone from the arm's base to the section's start, m.
   /// A quarter of the circumference (pi/2 times the radius) at the section's start and end, m, for PairRule.
   /// Unchanged in thicker or thinner copies of a tube.

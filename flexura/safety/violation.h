@@ -33,8 +33,8 @@ struct Violation {
   double start = 0;       ///< Start of the span, s.
   double end = 0;         ///< End of the span, s.
   double worst_time = 0;  ///< Time of `value`, s.
-  std::optional<std::size_t> section =
-      {};  ///< Section, 0 at the base; for a motor, the section of its tendon.
+  /// Section, 0 at the base; for a motor, the section of its tendon.
+  std::optional<std::size_t> section = {};
   std::optional<std::size_t> other_section = {};  ///< Section that `section` touches, 0 at the base.
   std::string name = {};                          ///< Name of the obstacle, the motor's axis or the task.
   double value = 0;                               ///< Worst value in the span, in the hazard's unit.

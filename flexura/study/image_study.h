@@ -18,8 +18,8 @@ namespace flexura {
 
 /// Features from one source, for all values of the study's parameter.
 struct StudyColumn {
-  std::string_view
-      source;  ///< Source: "formula", "rendered" or "measured". Result files name features "top_formula", ...
+  /// Source: "formula", "rendered" or "measured". Result files name features "top_formula", ...
+  std::string_view source;
   std::vector<ImageFeatures> features;  ///< Features for each value of the parameter.
 };
 

@@ -18,9 +18,9 @@ struct VaryConfig {
   using Values = std::optional<std::array<double, 2>>;  ///< First and last value.
   Values pan, tilt, roll, orbit;                        ///< Angles, rad.
   Values distance;  ///< Distance of the camera from the target's centre, m.
-  Values mount_x, mount_y,
-      mount_z;  ///< Coordinates of MountConfig::position, m; the camera keeps its orientation.
-  Values zoom;  ///< Zoom position.
+  /// Coordinates of MountConfig::position, m; the camera keeps its orientation.
+  Values mount_x, mount_y, mount_z;
+  Values zoom;                          ///< Zoom position.
   Values stage_x, stage_y, stage_z;     ///< Stage offset, m.
   Values focal_length, fx, fy, cx, cy;  ///< Intrinsics at the initial zoom, px; focal_length sets fx and fy.
   Values k1, k2, p1, p2, k3;            ///< Distortion of the lens at the initial zoom.

@@ -35,8 +35,8 @@ struct AxisSample {
       0, 1};         ///< Unit normal: the direction from base to tip, rotated by 90 degrees from u towards v.
   double width = 0;  ///< Distance between the arm's borders along the normal, px.
   double sigma = 0;  ///< Standard deviation of `pixel` along the normal, px.
-  bool is_seen =
-      false;  ///< Whether both borders are visible; otherwise the sample is extrapolated from its neighbours.
+  /// Whether both borders are visible; otherwise the sample is extrapolated from its neighbours.
+  bool is_seen = false;
 };
 
 /// Reason why an observed centerline ends.
@@ -64,8 +64,8 @@ struct ArmObservation {
   std::vector<std::string> notes;  ///< Further messages about the picture, for the user.
   std::vector<AxisSample> axis;    ///< Samples of the centerline, base first, one or two pixels apart.
   std::array<AxisEnd, 2> ends;     ///< End at the base and end at the tip.
-  double blur =
-      0;  ///< Standard deviation of the blur of the arm's borders, including that of the pixels, px.
+  /// Standard deviation of the blur of the arm's borders, including that of the pixels, px.
+  double blur = 0;
   double noise = 0;        ///< Standard deviation of the picture's noise, on a scale from 0 to 255.
   double contrast = 0;     ///< Contrast across the arm's borders, on a scale from 0 to 255.
   bool is_closed = false;  ///< Whether the centerline is a closed curve without ends.

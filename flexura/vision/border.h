@@ -21,8 +21,8 @@ struct BorderPoint {
   Eigen::Vector2d pixel = {0, 0};   ///< Subpixel position, px.
   Eigen::Vector2d normal = {1, 0};  ///< Unit vector, outward.
   double contrast = 0;              ///< Contrast across the border, on a scale from 0 to 255.
-  double residual =
-      0;  ///< Standard deviation of the local brightness from a blurred step, on the same scale.
+  /// Standard deviation of the local brightness from a blurred step, on the same scale.
+  double residual = 0;
 };
 
 /// Finds the outer border of a component with subpixel accuracy. The points are in order around the

@@ -14,8 +14,8 @@ struct EdgeFit {
   double offset = 0;    ///< Distance of the border outward from the expected position, px.
   double contrast = 0;  ///< Contrast; positive if the background is on the outward side.
   double residual = 0;  ///< Standard deviation of the brightness from the fitted model.
-  double sigma =
-      0;  ///< Standard deviation of the offset, px, for noise whose standard deviation equals the contrast.
+  /// Standard deviation of the offset, px, for noise whose standard deviation equals the contrast.
+  double sigma = 0;
 };
 
 /// Finds borders of a figure in a picture, using pixels of one row or one column, whichever is closer to

@@ -30,8 +30,8 @@ struct EtalonObservation {
   /// Width of the silhouette at a tenth of its height below the upper end and above the lower end, px
   /// (docs/vision.md).
   double width_above = 0, width_below = 0;
-  std::optional<double> upper_edge,
-      lower_edge;  ///< v of the silhouette's upper and lower end, measured near its middle, px.
+  /// v of the silhouette's upper and lower end, measured near its middle, px.
+  std::optional<double> upper_edge, lower_edge;
   std::vector<UprightLine> lines;  ///< The red lines, from left to right.
   bool touches_border = false;     ///< Whether a pixel of the silhouette is in the picture's outermost ring.
 

@@ -15,10 +15,10 @@ struct MarkerObservation {
   /// For a band: image of the backbone in the band's middle, px. For a spot: centre of its visible part, px,
   /// which may be anywhere on the arm's surface and gives no backbone position.
   Eigen::Vector2d pixel = {0, 0};
-  double along =
-      0;  ///< Distance along the centerline from its first sample to the point nearest to `pixel`, px.
-  double aside =
-      0;  ///< Distance from this nearest point to `pixel` along the centerline's normal, px; 0 for bands.
+  /// Distance along the centerline from its first sample to the point nearest to `pixel`, px.
+  double along = 0;
+  /// Distance from this nearest point to `pixel` along the centerline's normal, px; 0 for bands.
+  double aside = 0;
   double length = 0;  ///< Length along the centerline, px.
   double sigma = 0;   ///< Standard deviation of `along`, px.
   /// Bulge of the band's visible front along the centerline, in half widths of the arm. The bulge is the sine

@@ -40,7 +40,7 @@ std::string step_into(Node*& node, std::string_view part, const SourcePosition& 
     std::size_t index = 0;
     const auto [end, error] = std::from_chars(part.data(), part.data() + part.size(), index);
     if (error != std::errc{} || end != part.data() + part.size()) {
-      return fmt::format("\"{}\" names an item of an array: expected its index, from 0", part);
+      return fmt::format("\"{}\" names an entry of an array: expected its index, counted from 0", part);
     }
     if (index >= array->size())
       return fmt::format("index {} is outside an array of {}", index, array->size());
@@ -52,7 +52,8 @@ std::string step_into(Node*& node, std::string_view part, const SourcePosition& 
   Node* found = node->find(part);
   const auto is_digit = [](unsigned char c) { return std::isdigit(c) != 0; };
   if (found == nullptr && std::ranges::all_of(part, is_digit))
-    return fmt::format("there is no array to set entry {} of: set the whole of it, as [..., ...]", part);
+    return fmt::format(
+        "entry {} cannot be set because the array does not exist: set the whole array, as [..., ...]", part);
   if (found == nullptr) {
     table->push_back({std::string(part), where, {Node::Table{}, where}});
     found = &table->back().node;
@@ -137,7 +138,7 @@ std::string set_at_path(Node& root, std::string_view path, Node value) {
     const std::size_t dot = rest.find('.');
     const std::string_view part = rest.substr(0, dot);
     if (part.empty())
-      return fmt::format("\"{}\" is no path: expected names and numbers joined by dots", path);
+      return fmt::format("\"{}\" is not a path: expected names and numbers joined by dots", path);
     if (dot == std::string_view::npos) make_way(*node, part, value.where);
     if (std::string error = step_into(node, part, value.where); !error.empty()) return error;
     if (dot == std::string_view::npos) break;

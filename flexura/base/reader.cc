@@ -302,8 +302,8 @@ std::vector<FoundField> find_fields(const Node& node, const TableInfo& table, Re
       const Reader::Scope scope(reader, member.key, member.where);
       const SourcePosition& first = slot.member->where;
       const bool same_file = first.source == member.where.source || first.source == nullptr;
-      reader.problem(fmt::format("written twice: {} stands in line {}{} already", slot.member->key,
-                                 first.line, same_file ? "" : " of " + *first.source));
+      reader.problem(fmt::format("written twice: {} is already in line {}{}", slot.member->key, first.line,
+                                 same_file ? "" : " of " + *first.source));
       continue;
     }
     slot = {&member, spelling};

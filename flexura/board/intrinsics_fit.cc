@@ -106,7 +106,7 @@ class Calibration {
       const CameraAlone& own = alone.back();
       if (own.views.size() < 2) {
         result_.reason = camera_text(camera) +
-                         fmt::format("{} to fit: expected two at least, from different sides",
+                         fmt::format("{} to fit: expected at least two, from different directions",
                                      own.views.empty() ? "no view of the board" : "one view of the board");
       } else if (!own.fit.is_converged) {
         result_.reason = camera_text(camera) + why_not_converged(own.fit);
@@ -158,9 +158,9 @@ class Calibration {
       if (i == 0 || own.turn > spread.turn) spread = own, camera = i + 1;
     }
     return fmt::format(
-        "{}its pictures do not belong to those of camera 1: the cameras fit to {} px alone and {} together, "
-        "and view {} puts it {:.0f} degrees and {} m elsewhere than most do: expected pictures taken "
-        "together, in the same order, by cameras that stand still to each other",
+        "{}its pictures do not match those of camera 1: the cameras fit to {} px alone and {} together, "
+        "and view {} gives a pose that differs by {:.0f} degrees and {} m from most views: expected pictures "
+        "taken at the same time, in the same order, by cameras fixed to each other",
         camera_text(camera), fmt::join(rms_alone, " and "),
         fit.points > 0 ? fmt::format("to {:.3g} px", rms) : "not at all", numbers_[spread.view] + 1,
         spread.turn / degree, bounded_text(spread.distance, 100));

@@ -31,13 +31,15 @@ Fault orientation_fault(const MountConfig& mount) {
   if (mount.rotation) {
     if (std::string problem = quaternion_problem(*mount.rotation); !problem.empty())
       return {"rotation", std::move(problem)};
-    if (mount.roll != 0) return {"roll", "belongs to look_at: expected it to be part of rotation"};
+    if (mount.roll != 0) return {"roll", "is only for look_at: expected the roll to be part of rotation"};
     return {};
   }
   const Eigen::Vector3d forward = vector(*mount.look_at) - vector(mount.position);
   if (!(forward.norm() > 0)) return {"look_at", "is the mount's own position: expected another point"};
   if (!upright(forward))
-    return {"look_at", "is straight above or below, which leaves the roll open: expected rotation instead"};
+    return {
+        "look_at",
+        "is straight above or below the mount, so that the roll is undetermined: expected rotation instead"};
   return {};
 }
 

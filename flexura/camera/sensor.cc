@@ -38,7 +38,7 @@ void check_sensor(const SensorConfig& sensor, Reader& reader) {
     reader.problem_at("row_time", "is missing: a rolling shutter needs the time between two rows");
   }
   if (!is_rolling && sensor.row_time > 0) {
-    reader.problem_at("row_time", "is for readout = \"rolling\" alone");
+    reader.problem_at("row_time", "is only for readout = \"rolling\"");
   }
   if (is_rolling && sensor.row_time * height > frame) {
     reader.problem_at(

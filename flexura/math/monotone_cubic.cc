@@ -61,7 +61,7 @@ MonotoneCubic::MonotoneCubic(std::vector<double> x, std::vector<double> y)
   std::vector<double> widths, slopes;
   for (std::size_t i = 0; i + 1 < x_.size(); ++i) {
     widths.push_back(x_[i + 1] - x_[i]);
-    if (!(widths[i] > 0)) throw std::invalid_argument("the points of a curve must rise in x");
+    if (!(widths[i] > 0)) throw std::invalid_argument("the x of a curve's points must increase");
     slopes.push_back((y_[i + 1] - y_[i]) / widths[i]);
   }
   const std::size_t last = slopes.size();

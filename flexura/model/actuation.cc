@@ -22,8 +22,8 @@ std::vector<double> profile_of(const Section& section, std::size_t index) {
   double sum = 0;
   for (const double part : shares) sum += part >= 0 ? part : std::nan("");
   if (!(sum > 0) || !std::isfinite(sum))
-    throw std::invalid_argument(
-        fmt::format("section {}: a bend profile is of numbers from 0 on, one of them above", index + 1));
+    throw std::invalid_argument(fmt::format(
+        "section {}: the numbers of a bend profile must be at least 0, and one of them above 0", index + 1));
   return shares;
 }
 
@@ -76,7 +76,7 @@ Actuation::Actuation(const Arm& driven, std::shared_ptr<const ArmResponse> respo
 Actuation Actuation::with_gains(const std::vector<double>& gains) const {
   Actuation actuation = *this;
   if (gains.empty()) return actuation;
-  if (gains.size() != arcs()) throw std::invalid_argument("gains are one for each arc");
+  if (gains.size() != arcs()) throw std::invalid_argument("expected one gain for each arc");
   for (std::size_t k = 0; k < arcs(); ++k) actuation.shares_[k] *= gains[k];
   return actuation;
 }
@@ -160,7 +160,7 @@ void Actuation::by_command(const Eigen::MatrixXd& by_shape, const ArmState& comm
     return;
   }
   if (by_shape.cols() != 3 * static_cast<Eigen::Index>(arcs()))
-    throw std::invalid_argument("a derivative by a shape has three columns an arc");
+    throw std::invalid_argument("a derivative with respect to a shape must have three columns per arc");
   if (response_) {
     Eigen::MatrixXd slopes_here;
     slopes(command, slopes_here);

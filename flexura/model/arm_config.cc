@@ -93,7 +93,7 @@ const Table<Section>& fields_of(const Section*) {
           .check([](const Section& section, Reader& reader) {
             const auto& profile = section.bend_profile;
             if (profile && std::ranges::all_of(*profile, [](double part) { return part == 0; }))
-              reader.problem_at("bend_profile", "is all 0: expected a number above 0 among them");
+              reader.problem_at("bend_profile", "is all 0: expected at least one number above 0");
             if (section.stretch_limits[0] > section.stretch_limits[1]) {
               reader.problem_at("stretch_limits", "expected the smaller factor first");
             }

@@ -57,8 +57,9 @@ void join(const BackboneSample& from, const BackboneSample& to, std::size_t inde
   const Eigen::Vector3d t0 = from.X_WS.rotation.col(2), t1 = to.X_WS.rotation.col(2);
   const double along = chord.dot(t0 + t1), square = chord.squaredNorm();
   if (!(to.s_rest > from.s_rest) || !(square > 0) || !(chord.dot(t0) > 0) || !(chord.dot(t1) > 0)) {
-    throw std::invalid_argument(
-        fmt::format("samples {} and {} of the backbone do not follow each other", index, index + 1));
+    throw std::invalid_argument(fmt::format(
+        "samples {} and {} of the backbone have equal positions, decreasing s_rest or a reversed tangent",
+        index, index + 1));
   }
   const double d = square / (along + std::sqrt(along * along + (t0 - t1).squaredNorm() * square));
   const Eigen::Vector3d middle = 0.5 * (from.X_WS.position + to.X_WS.position + d * (t0 - t1));
@@ -146,7 +147,7 @@ Backbone Backbone::through(std::span<const BackboneSample> samples) {
 Backbone::Backbone(const Arm& arm, const ArmState& state, std::span<const std::size_t> section_of)
     : Backbone(arm, state) {
   if (section_of.size() != arcs_.size())
-    throw std::invalid_argument("a backbone of parts needs to know of each which section it belongs to");
+    throw std::invalid_argument("a backbone of parts needs the section of each part");
   for (std::size_t i = 0; i < arcs_.size(); ++i) arcs_[i].section = section_of[i];
 }
 

@@ -67,7 +67,7 @@ class Backbone {
   /// the material rotates evenly about the tangent, by less than half a turn. Throws std::invalid_argument
   /// for fewer than two samples, numbers that are not finite, a radius that is not positive, or s_rest that
   /// does not increase. Also throws it for consecutive samples at the same position, or for a tangent
-  /// opposite to the direction to the next sample.
+  /// at 90 degrees or more to the direction from one sample to the next.
   [[nodiscard]] static Backbone through(std::span<const BackboneSample> samples);
 
   /// Returns the arcs, base first; each section has one or more arcs.

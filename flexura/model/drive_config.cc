@@ -64,8 +64,8 @@ void check_positions(const Drive& drive, const ArmConfig& arm, const std::string
                             drive.axes[i].backlash_steps();
     if (farthest < max_position) continue;
     reader.problem_at(fmt::format("{}[{}]", path, i),
-                      fmt::format("makes up to {:.1e} microsteps: expected less than {:.1e}, by a larger "
-                                  "spool.radius, a smaller gear, fewer steps or microsteps",
+                      fmt::format("needs up to {:.1e} microsteps: expected less than {:.1e}; use a larger "
+                                  "spool.radius, a smaller gear, or fewer steps or microsteps",
                                   farthest, max_position));
   }
 }
@@ -113,11 +113,11 @@ const Table<StepperMotor>& fields_of(const StepperMotor*) {
     motor.check([](const StepperMotor& value, Reader& reader) {
       for (std::size_t i = 1; value.pull_out && i < value.pull_out->size(); ++i) {
         if ((*value.pull_out)[i][0] > (*value.pull_out)[i - 1][0]) continue;
-        reader.problem_at(fmt::format("pull_out[{}]", i), "expected a higher speed than the one before");
+        reader.problem_at(fmt::format("pull_out[{}]", i), "expected a higher speed than in the pair before");
         break;
       }
       if (value.steps % value.phases == 0) return;
-      reader.problem_at("steps", fmt::format("{} full steps a turn of a motor with {} phases: expected a "
+      reader.problem_at("steps", fmt::format("{} full steps per turn of a motor with {} phases: expected a "
                                              "multiple of the phases",
                                              value.steps, value.phases));
     });

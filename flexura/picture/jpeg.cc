@@ -65,7 +65,7 @@ std::string jpeg(const Image<std::uint8_t>& image, JpegConfig config) {
   if (image.width() <= 0 || image.height() <= 0) throw std::invalid_argument("a JPEG file needs pixels");
   if (image.width() > JPEG_MAX_DIMENSION || image.height() > JPEG_MAX_DIMENSION)
     throw std::invalid_argument("a JPEG file has at most " + std::to_string(JPEG_MAX_DIMENSION) +
-                                " pixels a side");
+                                " pixels per side");
   if (image.channels() != 1 && image.channels() != 3)
     throw std::invalid_argument("a JPEG file is gray or RGB: not " + std::to_string(image.channels()) +
                                 " channels");

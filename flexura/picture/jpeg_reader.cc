@@ -130,7 +130,7 @@ Picture read_jpeg(std::span<const std::uint8_t> file, std::size_t most_pixels) {
   const int channels = reader.job.num_components;
   if (channels != 1 && channels != 3 && channels != 4)
     throw std::runtime_error("the JPEG file has " + std::to_string(channels) +
-                             " values a pixel: expected gray, colours or four inks (CMYK)");
+                             " values per pixel: expected gray, colours or four inks (CMYK)");
   constexpr std::array<J_COLOR_SPACE, 5> spaces = {JCS_UNKNOWN, JCS_GRAYSCALE, JCS_UNKNOWN, JCS_RGB,
                                                    JCS_CMYK};
   reader.job.out_color_space = spaces[static_cast<std::size_t>(channels)];

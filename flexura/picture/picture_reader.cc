@@ -78,20 +78,20 @@ Picture read_picture(std::span<const std::uint8_t> file, const std::string& name
 
 void check_picture_size(std::int64_t width, std::int64_t height, std::size_t most_pixels) {
   if (width < 1 || height < 1)
-    throw std::runtime_error(fmt::format("{} x {} px: expected one pixel at least", width, height));
+    throw std::runtime_error(fmt::format("{} x {} px: expected at least one pixel", width, height));
   if (static_cast<std::size_t>(width) > most_pixels / static_cast<std::size_t>(height))
     throw std::runtime_error(fmt::format("{} x {} px: expected at most {} px", width, height, most_pixels));
 }
 
 std::runtime_error cut_short(std::string_view kind) {
-  return std::runtime_error(fmt::format("the {} file is cut short", kind));
+  return std::runtime_error(fmt::format("the {} file is truncated", kind));
 }
 
 std::runtime_error damaged(std::string_view kind, std::string_view text) {
   std::string line(text);
   std::ranges::replace_if(line, [](char c) { return c < ' ' || c > '~'; }, '?');
   return std::runtime_error(
-      fmt::format("the {} file is damaged, or of a sort that cannot be read: {}", kind, line));
+      fmt::format("the {} file is damaged, or of a kind that is not supported: {}", kind, line));
 }
 
 Image<std::uint8_t> painted(Image<std::uint8_t> indices, const Palette& palette) {

@@ -53,7 +53,7 @@ void read_values(TIFF* open, TiffLayout* layout) {
   const char* name = is_whole ? "" : "signed ";
   if (format == SAMPLEFORMAT_IEEEFP) name = "floating point ";
   refuse_tiff(fmt::format("{}values of {} bits", name, layout->bits),
-              "whole ones of 1, 2, 4, 8, 10, 12, 14 or 16 bits, without a sign");
+              "unsigned integers of 1, 2, 4, 8, 10, 12, 14 or 16 bits");
 }
 
 // Reads the format of the values and checks that it is supported.
@@ -78,7 +78,7 @@ void read_form(TIFF* open, TiffLayout* layout) {
   if (layout->samples < layout->channels() || layout->samples > most_samples ||
       (layout->bits < 8 && layout->samples > 1) ||
       (layout->bits > 8 && layout->photometric == PHOTOMETRIC_PALETTE))
-    refuse_tiff(fmt::format("{} values of {} bits a pixel", layout->samples, layout->bits),
+    refuse_tiff(fmt::format("{} values of {} bits per pixel", layout->samples, layout->bits),
                 "gray, RGB or a palette");
 }
 

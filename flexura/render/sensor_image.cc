@@ -20,7 +20,7 @@ SensorConfig checked(SensorConfig config) {
     if (!holds) throw std::invalid_argument(message);
   };
   require(config.width >= 1 && config.height >= 1 && config.width <= 1 << 20 && config.height <= 1 << 20,
-          "a sensor needs from 1 to 2^20 pixels a side");
+          "a sensor needs from 1 to 2^20 pixels per side");
   require(config.bits >= 1 && config.bits <= 16, "a sensor has from 1 to 16 bits");
   for (const double strength : {config.full_well, config.read_noise, config.psf, config.vignetting})
     require(std::isfinite(strength) && strength >= 0, "a sensor's effect must be finite and not negative");

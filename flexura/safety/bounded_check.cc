@@ -185,7 +185,7 @@ class BoundedCheck {
   void report_undecided(const std::string& what, const Span& span, double sampled_every,
                         std::size_t intervals) {
     checked_.report.caveats.push_back(
-        fmt::format("{} undecided, {}: more than {} intervals to look into, sampled every {:.3g} s", what,
+        fmt::format("{} undecided, {}: more than {} intervals, therefore sampled every {:.3g} s", what,
                     span_text(span, checked_.timed.start), most_intervals(intervals), sampled_every));
   }
 

@@ -85,7 +85,7 @@ SafetyReport check_with(const Arm& arm, const std::vector<ContactWatch>& contact
     before = motion.at(motion.duration());
     note_singular(arm, before, motions[i].start + motion.duration(), report);
   }
-  if (!report.is_complete) report.caveats.emplace_back("cancelled: not all of it is checked");
+  if (!report.is_complete) report.caveats.emplace_back("cancelled: the motion is not completely checked");
   report.sort();
   report.notes.erase(std::ranges::unique(report.notes).begin(), report.notes.end());
   return report;

@@ -178,7 +178,7 @@ bool ArmFinder::Work::follow(const Image<Value>& picture, double scale, const Co
   if (static_cast<double>(component.area) < least_slenderness * width * width ||
       component.on_border > 6 * width + 12) {
     seen.reason = fmt::format(
-        "the largest figure is no tube: {} px large, about {:.0f} px across, {} px of it on the picture's "
+        "the largest figure is not a tube: {} px large, about {:.0f} px across, {} px of it on the picture's "
         "border",
         component.area, width, component.on_border);
     return false;
@@ -209,9 +209,9 @@ std::string ArmFinder::Work::reason_against_following(double width) const {
     return fmt::format("they are blurred by some {:.0f} px", least_blur);
   const double contrast = seen.threshold.bright - seen.threshold.dark;
   if (contrast < faint)
-    return fmt::format("it is no tube, points at the camera, or is too faint (a contrast of {:.0f} of 255)",
-                       contrast);
-  return "it is no tube, or points at the camera";
+    return fmt::format(
+        "it is not a tube, points at the camera, or is too faint (a contrast of {:.0f} of 255)", contrast);
+  return "it is not a tube, or points at the camera";
 }
 
 // Tries the first few seeds; the result of the best one is in `best`.
@@ -274,7 +274,7 @@ void ArmFinder::Work::order_ends() {
     for (AxisSample& sample : seen.axis) sample.normal = -sample.normal;
   }
   if (seen.is_closed) {
-    seen.notes.emplace_back("the tube comes back to where it starts: it has no ends");
+    seen.notes.emplace_back("the tube is closed and has no ends");
     return;
   }
   for (const AxisEnd& end : seen.ends) {
@@ -283,8 +283,8 @@ void ArmFinder::Work::order_ends() {
       seen.notes.push_back(fmt::format("the picture's border cuts the arm at its {}", name));
     if (end.kind == AxisEndKind::lost)
       seen.notes.push_back(
-          fmt::format("at ({:.1f}, {:.1f}) the arm's borders are seen no more: it lies along another "
-                      "figure, or points at the camera",
+          fmt::format("at ({:.1f}, {:.1f}) the arm's borders are no longer visible: the arm is beside "
+                      "another figure, or points at the camera",
                       end.pixel.x(), end.pixel.y()));
   }
 }
@@ -303,13 +303,12 @@ void ArmFinder::Work::note_others() {
         static_cast<double>(components.list[i].area) > 0.2 * area)
       ++others;
   if (others > 0)
-    seen.notes.push_back(fmt::format("{} other figure{} of a like size: the largest tube is measured", others,
-                                     others > 1 ? "s" : ""));
+    seen.notes.push_back(fmt::format("{} other figure{} of similar size: the largest tube is measured",
+                                     others, others > 1 ? "s" : ""));
   if (seen.covered < 0.8)
-    seen.notes.push_back(
-        fmt::format("the tube explains {:.0f} % of its silhouette: something else touches it, or it "
-                    "crosses itself",
-                    100 * seen.covered));
+    seen.notes.push_back(fmt::format(
+        "the tube covers {:.0f} % of the silhouette: something touches the tube, or the tube crosses itself",
+        100 * seen.covered));
 }
 
 // Adds enough places to test whether a shape covers the figure. Parts thinner than a third of the arm may

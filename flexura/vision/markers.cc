@@ -267,7 +267,7 @@ void note_left_out(const std::vector<Stretch>& others, const std::vector<MarkerO
   const auto dropped = std::ranges::count_if(others, [&](const Stretch& other) { return !is_spot(other); });
   if (dropped > 0)
     notes.push_back(
-        fmt::format("{} spot{} of another colour left out: at an end of the arm, half hidden, touching "
+        fmt::format("{} spot{} of another colour omitted: at an end of the arm, half hidden, touching "
                     "another, or too small to be a marker",
                     dropped, dropped > 1 ? "s" : ""));
 }
@@ -285,8 +285,8 @@ MarkerObservations find_markers(const Image<std::uint8_t>& picture, const ArmObs
   std::vector<double> half_widths = skin.half_widths;
   const double thickness = 2 * median(std::span(half_widths));
   if (thickness < thinnest) {
-    found.notes.push_back(fmt::format("the arm is {:.1f} px thick: no markers are looked for below {} px",
-                                      thickness, thinnest));
+    found.notes.push_back(
+        fmt::format("the arm is {:.1f} px thick: markers are not searched below {} px", thickness, thinnest));
     return found;
   }
   const double bound = std::max(least_difference, 5 * arm.noise);

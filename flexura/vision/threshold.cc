@@ -102,16 +102,17 @@ std::string reason_against(const Histogram& histogram, const Threshold& found, d
   if (contrast > spreads * found.spread)
     return fmt::format("the picture is {}: its two brightnesses are nearer than {} {}", exposure,
                        least_contrast, means);
-  return fmt::format("the picture is {}: no two brightnesses stand apart {}", exposure, means);
+  return fmt::format("the picture is {}: no two brightnesses are distinct {}", exposure, means);
 }
 
 // Returns the reason why a fixed level separates nothing although another would.
 std::string reason_against_level(double level, const Threshold& otsu) {
-  const char* where = "parts the picture at the wrong place";
+  const char* where = "separates the picture at the wrong brightness";
   if (level < otsu.dark) where = "is darker than nearly all of the picture";
   if (level > otsu.bright) where = "is brighter than nearly all of the picture";
-  return fmt::format("the fixed level {:g} {}: its two brightnesses are {:.0f} and {:.0f}, {:g} parts them",
-                     level, where, otsu.dark, otsu.bright, otsu.level);
+  return fmt::format(
+      "the fixed level {:g} {}: its two brightnesses are {:.0f} and {:.0f}, {:g} separates them", level,
+      where, otsu.dark, otsu.bright, otsu.level);
 }
 
 // Returns the share of bright pixels in the ring `ring` px inside the picture's border. `level`: at (u, v).

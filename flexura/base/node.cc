@@ -20,7 +20,7 @@ struct BriefVisitor {
   std::string operator()(double value) const { return std::isnan(value) ? "nan" : fmt::format("{}", value); }
   std::string operator()(const std::string& value) const {
     constexpr std::size_t longest = 40;
-    // Does not cut a character in two.
+    // Does not split a UTF-8 character.
     std::size_t end = std::min(longest, value.size());
     while (end < value.size() && end > 0 && (static_cast<unsigned char>(value[end]) & 0xC0U) == 0x80) --end;
     std::string shown;
@@ -34,7 +34,7 @@ struct BriefVisitor {
   std::string operator()(const Node::Other& value) const { return value.name; }
 };
 
-// Makes one step of a path into `node`: a key of a table (made if missing) or an index of an array.
+// Follows one part of a path from `node`: a key of a table (made if missing) or an index of an array.
 std::string step_into(Node*& node, std::string_view part, const SourcePosition& where) {
   if (auto* array = node->as<Node::Array>()) {
     std::size_t index = 0;
@@ -62,8 +62,8 @@ std::string step_into(Node*& node, std::string_view part, const SourcePosition& 
   return {};
 }
 
-// Removes a value given in another unit, as length_mm replaces length; and sets the key's position to the
-// value's.
+// Removes a value of the same quantity in another unit, for example length if length_mm is set. Sets the
+// key's position to that of the value.
 void make_way(Node& node, std::string_view key, const SourcePosition& where) {
   auto* members = node.as<Node::Table>();
   if (members == nullptr) return;
@@ -119,7 +119,8 @@ void merge(Node& under, Node over) {
     if (found == below->end()) {
       below->push_back(std::move(member));
     } else {
-      // Tables keep the position of the first; other keys get that of their value.
+      // Merged tables keep the position of the table in `under`; other keys get the position of their new
+      // value.
       if (member.node.as<Node::Table>() == nullptr) found->where = member.where;
       merge(found->node, std::move(member.node));
     }
@@ -127,7 +128,7 @@ void merge(Node& under, Node over) {
 }
 
 std::string set_at_path(Node& root, std::string_view path, Node value) {
-  // Also accepts the notation of messages: section[0] is section.0.
+  // Also accepts the notation of messages: section[0] means section.0.
   std::string dotted;
   for (const char c : path) {
     if (c == '[') dotted += '.';

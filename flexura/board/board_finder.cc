@@ -102,10 +102,10 @@ double brightness(const Image<std::uint8_t>& gray, const std::vector<Vector2d>& 
   return sum;
 }
 
-// Brings the points into an order common to all cameras, as far as the board determines it.
+// Brings the points into the same order for all cameras, as far as the board determines the order.
 void put_in_order(const Image<std::uint8_t>& gray, const BoardTarget& board, std::vector<Vector2d>& pixels) {
   const auto columns = static_cast<std::size_t>(board.columns), rows = pixels.size() / columns;
-  // Mirrored: the board would be seen from behind.
+  // The order is mirrored, as if the board were seen from behind.
   if (board.pattern != BoardPattern::asymmetric_circles &&
       turn(pixels.front(), pixels[columns - 1], pixels[(rows - 1) * columns]) < 0)
     for (std::size_t row = 0; row < rows; ++row)

@@ -23,7 +23,7 @@ struct Fault {
   std::string path, what;
 };
 
-// Returns why the mount does not have exactly one orientation; an empty text if it does.
+// Returns an error if the mount does not have exactly one valid orientation; otherwise an empty text.
 Fault orientation_fault(const MountConfig& mount) {
   if (mount.look_at && mount.rotation)
     return {"rotation", "is given together with look_at: expected one of them"};
@@ -122,7 +122,7 @@ Pose MountConfig::pose() const {
 std::optional<Eigen::Matrix3d> upright(const Eigen::Vector3d& forward) {
   const Eigen::Vector3d z = forward.stableNormalized();
   const Eigen::Vector3d across = z.cross(Eigen::Vector3d::UnitY());
-  // Nearer to the vertical than this, its direction is determined by rounding.
+  // Within this angle from the vertical, rounding errors would determine the direction.
   if (!(across.norm() > 1e-9)) return std::nullopt;
   Eigen::Matrix3d R;
   R.col(0) = across.normalized();

@@ -13,7 +13,8 @@
 namespace flexura {
 namespace {
 
-// Most steps from a shape to its command. Each reduces the error by a factor of about ten.
+// Largest number of correction steps from a shape to its command. Each step reduces the error by a factor of
+// about ten.
 constexpr int max_steps = 20;
 
 // Returns the section's profile. Throws std::invalid_argument if it is invalid.
@@ -31,7 +32,7 @@ std::vector<double> shares_of(const Section& section, std::size_t index) {
   std::vector<double> shares = profile_of(section, index);
   double sum = 0;
   for (const double part : shares) sum += part;
-  // A single arc has exactly all of the bend.
+  // A single arc gets exactly the whole bend.
   for (double& part : shares) part = shares.size() == 1 ? 1 : part / sum;
   return shares;
 }
@@ -122,7 +123,7 @@ ArmState Actuation::command(const ArmState& shape) const {
   return best;
 }
 
-// Uses only the shares.
+// Uses only the shares of the arcs, not the response.
 ArmState Actuation::linear_command(const ArmState& shape) const {
   ArmState command = ArmState::straight(sections_);
   std::vector<double> squares(sections_, 0), counts(sections_, 0);
@@ -167,7 +168,7 @@ void Actuation::by_command(const Eigen::MatrixXd& by_shape, const ArmState& comm
     by_command.noalias() = by_shape * slopes_here;
     return;
   }
-  // Multiplies without a matrix of mostly zeros.
+  // Multiplies block by block, because the matrix would be mostly zeros.
   by_command.setZero(by_shape.rows(), 3 * static_cast<Eigen::Index>(sections_));
   for (std::size_t k = 0; k < arcs(); ++k) {
     const auto from = 3 * static_cast<Eigen::Index>(k), to = 3 * static_cast<Eigen::Index>(section_of_[k]);

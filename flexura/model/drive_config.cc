@@ -12,7 +12,7 @@
 namespace flexura {
 namespace {
 
-// Directions that differ by less than about this, rad, count as one.
+// Angle, rad, below which two directions count as equal.
 constexpr double direction_tolerance = 1e-3;
 constexpr std::size_t max_tendons = 10000;
 // Doubles and the positions of a log represent all integers up to this value.
@@ -27,8 +27,8 @@ const char* tendons_needed(bool planar, bool stretching) {
   return "at least 2 in different directions";
 }
 
-// A tendon that ends at a section depends on the sum of the bends up to there. So the tendons of each section
-// determine one sum, and cannot be replaced by another section's.
+// The length of a tendon depends on the sum of the bends up to the section at which the tendon ends. Hence
+// the tendons of each section determine one sum, and tendons of another section cannot replace them.
 void check_section(const Drive& drive, const ArmConfig& arm, std::size_t index, const std::string& path,
                    Reader& reader) {
   const bool planar = arm.kind == ArmKind::planar;
@@ -40,7 +40,8 @@ void check_section(const Drive& drive, const ArmConfig& arm, std::size_t index, 
     offsets.push_back(tendon.offset());
     largest = std::max(largest, tendon.radius);
   }
-  // Bend in one plane or two, and stretch; motions that the section cannot make count as determined.
+  // Unknowns: the bend in one or two planes, and the stretch. Motions that the section cannot make count as
+  // determined.
   Eigen::Matrix3d gram = Eigen::Vector3d(0, planar ? 1 : 0, stretching ? 0 : 1).asDiagonal();
   gram *= largest * largest;
   for (const Eigen::Vector2d& offset : offsets) {

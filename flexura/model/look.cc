@@ -112,7 +112,7 @@ std::vector<Marker> LookConfig::markers(const Arm& arm) const {
 
 void check_look(const LookConfig& look, const Arm& arm, const std::string& path, Reader& reader) {
   const double length = arm.length();
-  // Rounding of sums of section lengths.
+  // Tolerance for rounding errors in sums of section lengths.
   const double slack = 1e-9 * length;
   const auto off_arm = [&](double at, double width) {
     return at - width / 2 < -slack || at + width / 2 > length + slack;

@@ -101,7 +101,7 @@ CommandOutcome DrivenArm::pull(const std::vector<double>& displacements, double 
   for (std::size_t i = 0; i < desired.pulled.size(); ++i)
     if (!(std::abs(desired.pulled[i]) * drive_.axes[i].microsteps_a_metre() < most_microsteps))
       return arm_refuses("a motor position is too large to be counted");
-  // If the controller refuses the command, the backlash stays on its side.
+  // If the controller refuses the command, the backlash remains on the same side.
   MotorCommander next = commander_;
   next.follow(desired);
   const std::vector<double> targets(next.positions().begin(), next.positions().end());

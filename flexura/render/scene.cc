@@ -69,7 +69,7 @@ void require_pose(const Pose& pose, const Place& place) {
   require_near(pose.position, place);
 }
 
-// Limited by the index of a label.
+// The index of a label limits this number.
 constexpr std::size_t most_parts = 4096;
 
 void require_few(std::size_t count, const char* what) {

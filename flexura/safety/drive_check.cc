@@ -24,7 +24,7 @@ namespace {
 // Doubles represent all integers up to this value; motor positions must not exceed it.
 constexpr double max_countable = 9007199254740992.0;
 
-// One limit of one axis. Joins violations in consecutive rows.
+// Checks one limit of one axis. Joins violations in consecutive rows.
 class AxisLimit {
  public:
   AxisLimit(Hazard hazard, const Drive& drive, std::size_t axis, double limit)
@@ -34,7 +34,7 @@ class AxisLimit {
                .limit = limit} {}
 
   [[nodiscard]] bool is_beyond(double value) const { return value > found_.limit * (1 + limit_tolerance); }
-  // Returns true if the limit is broken.
+  // Returns whether the limit is violated.
   bool add(Span span, double value, SafetyReport& report) {
     if (!is_beyond(value)) {
       close(report);
@@ -64,9 +64,9 @@ struct MotorPlace {
 // Facts for the caveats of an axis, in addition to its violations.
 struct AxisNotes {
   bool has_single_steps = false;       // Rows of one microstep were accepted.
-  bool is_rounded_over = false;        // Only the rounding breaks a limit.
+  bool is_rounded_over = false;        // Only the rounding violates a limit.
   bool takes_up_backlash = false;      // The backlash compensation is too fast or too sudden.
-  bool is_over_while_steered = false;  // By backlash or rounding alone.
+  bool is_over_while_steered = false;  // Only backlash or rounding violates a limit while the arm is servoed.
 };
 
 // Checks one axis from row to row.
@@ -213,7 +213,7 @@ void prove(const Arm& arm, const Drive& drive, Span span, double shortest, const
   prove(arm, drive, {middle, span.end}, shortest, rates, is_unproven);
 }
 
-// Returns the axes with a speed limit that the law may exceed between rows, by its rates.
+// Returns the axes with a speed limit that the motion may exceed between rows according to its rates.
 std::vector<char> unproven_axes(const Arm& arm, const Drive& drive, const Span& span,
                                 const RateBounds& rates) {
   constexpr double shortest_part = 1.0 / 16384;

@@ -22,7 +22,7 @@ struct WorstSearch {
   std::size_t most_intervals = 2000;  ///< Largest number of intervals.
 };
 
-/// Returns the largest value of a quantity in a span; the quantity has this value at the returned time. The
+/// Returns the largest value of a quantity in a span, and a time at which the quantity has this value. The
 /// method is branch and bound, which halves the interval with the largest upper bound. It ends when no upper
 /// bound exceeds the largest value at interval ends and middles by more than the tolerance.
 [[nodiscard]] WorstValue worst_in(const WatchedQuantity& quantity, const Span& span,

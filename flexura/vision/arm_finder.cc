@@ -34,7 +34,7 @@ constexpr double least_blurred = 2, blurred_share = 0.12, faint = 30;
 // This many pixels separate a histogram's two classes well enough: the borders are measured separately.
 constexpr std::size_t histogram_samples = 12288;
 
-// Smaller figures are dust.
+// Smaller figures are ignored as dust.
 constexpr std::int64_t least_area = 24;
 
 // Smallest ratio of length to width of a tube.
@@ -65,7 +65,7 @@ double merit(const ArmObservation& seen) {
   return std::min(seen.covered, 1.0) + 0.2 * static_cast<double>(std::ranges::count_if(seen.ends, is_known));
 }
 
-// Returns whether no other seed would show more.
+// Returns whether no other seed can give a better result.
 bool shows_all(const ArmObservation& seen) {
   constexpr double whole = 0.85;
   const auto is_lost = [](const AxisEnd& end) { return end.kind == AxisEndKind::lost; };

@@ -16,10 +16,11 @@ namespace {
 
 using Eigen::Vector2d;
 
-// Share of the knowledge of position, direction and curvature that remains after a pixel.
+// Factor of the fading memory per pixel for position, direction and curvature.
 constexpr double memory_of_pixel = 0.7;
 
-// Edges with less than this share of the usual contrast, or more than this multiple, are other edges.
+// Edges with less than this fraction of the usual contrast, or with more than this multiple, do not belong to
+// the tube.
 constexpr double least_share = 0.55, most_share = 1.8;
 
 // Up to its middle, the shading of a round tube is nearly linear.
@@ -198,7 +199,7 @@ CrossSection TubeTracker<Value>::meet(State& state, const Gains& gains, int way)
   return section;
 }
 
-// Counts how long borders have been missing.
+// Counts the sections since borders were visible.
 template <typename Value>
 void TubeTracker<Value>::count(State& state, const CrossSection& section) const {
   const bool any = section.is_seen[0] || section.is_seen[1];

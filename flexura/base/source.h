@@ -14,8 +14,8 @@ struct SourcePosition {
   std::shared_ptr<const std::string> source;
   int line = 0;
   int column = 0;
-  /// Column of the first character inside the quotes of a text that is on one line and has no escapes. 0 for
-  /// other values and texts.
+  /// Column of the first character inside the quotes of a text, if the text is on one line and has no
+  /// escapes. Otherwise 0.
   int text_column = 0;
 
   /// Returns "file:line:column"; "file" if the line is 0; "" if the source is null.

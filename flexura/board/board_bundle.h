@@ -51,11 +51,12 @@ struct BundleFit {
   Eigen::MatrixXd information;
 };
 
-/// Fits cameras and boards by bundle adjustment (D. C. Brown). It minimizes the squared distances between the
-/// observed pixels in `views` and the computed pixels of `points` (z = 0 in B), over all cameras and views.
-/// Uses the Levenberg-Marquardt method from `start`. The six unknowns of a board appear in its own view only.
-/// Hence the Schur complement eliminates them from each step, at a cost proportional to the number of views.
-/// If an observed point cannot be projected at the start, the result is the start, not converged.
+/// Fits cameras and boards by bundle adjustment (D. C. Brown). Minimizes the squared distances between the
+/// observed pixels in `views` and the computed pixels of `points`, over all cameras and views. The points are
+/// in the board's plane (z = 0 in B). Uses the Levenberg-Marquardt method from `start`. The six unknowns of a
+/// board appear in its own view only. Hence the Schur complement eliminates them from each step, at a cost
+/// proportional to the number of views. If an observed point cannot be projected at the start, the result is
+/// the start, not converged.
 [[nodiscard]] BundleFit fit_bundle(std::span<const Eigen::Vector2d> points, std::span<const BoardView> views,
                                    const BoardBundle& start, const BundleConfig& config);
 

@@ -8,9 +8,8 @@
 
 namespace flexura {
 
-/// Returns, for each intrinsic parameter in the order of `intrinsics_count`, the approximate motion in px of
-/// the most affected of `pixels` per unit of the parameter. All results are above 0. Needs at least one
-/// pixel.
+/// Returns the approximate motion, px, of the most affected of `pixels` per unit of each intrinsic parameter.
+/// Parameters are in the order of `intrinsics_count`. All results are above 0. Needs at least one pixel.
 [[nodiscard]] Eigen::Vector<double, intrinsics_count> intrinsics_effects(
     const Intrinsics& lens, std::span<const Eigen::Vector2d> pixels);
 

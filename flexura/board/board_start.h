@@ -21,7 +21,7 @@ namespace flexura {
 /// result has a field of view of 50 degrees.
 [[nodiscard]] Intrinsics start_lens(std::span<const Eigen::Matrix3d> homographies, int width, int height);
 
-/// Returns the approximate pose X_CB of a board whose `points` (z = 0 in B) have the given pixels; empty if
+/// Returns the approximate pose X_CB of a board whose `points` (z = 0 in B) have the given pixels. Empty if
 /// the lens has no ray for some of the pixels.
 [[nodiscard]] std::optional<Pose> start_pose(const Lens& lens, std::span<const Eigen::Vector2d> points,
                                              std::span<const Eigen::Vector2d> pixels);

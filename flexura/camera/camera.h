@@ -18,8 +18,8 @@ namespace flexura {
 struct CameraProjection {
   Eigen::Vector2d pixel;                 ///< Pixel (u, v), px; may be outside the image.
   Eigen::Matrix<double, 2, 3> by_point;  ///< Derivative with respect to the point in W, px/m.
-  /// Derivative with respect to a small motion [v; w] of the mount (V_WM_W), in W's axes: the position
-  /// becomes p_WM + v, the rotation exp(w) R_WM.
+  /// Derivative with respect to a small motion [v; w] of the mount in W's axes (V_WM_W). The position becomes
+  /// p_WM + v, the rotation exp(w) R_WM.
   Eigen::Matrix<double, 2, 6> by_mount;
   Eigen::Matrix<double, 2, 3> by_stage;  ///< Derivative with respect to the stage's offset, px/m.
   Eigen::Vector2d by_pan, by_tilt;       ///< Derivatives with respect to pan and tilt, px/rad.

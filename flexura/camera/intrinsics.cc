@@ -95,8 +95,8 @@ Distorted distort(const Eigen::Vector2d& normal, const std::array<double, 5>& di
   const auto [k1, k2, p1, p2, k3] = distortion;
   const double a = normal.x(), b = normal.y(), q = a * a + b * b;
   const double radial = 1 + q * (k1 + q * (k2 + q * k3));
-  const double slope =
-      2 * (k1 + q * (2 * k2 + q * 3 * k3));  // Twice the derivative of the radial factor with respect to q.
+  // Twice the derivative of the radial factor with respect to q.
+  const double slope = 2 * (k1 + q * (2 * k2 + q * 3 * k3));
   Distorted result;
   result.point = {a * radial + 2 * p1 * a * b + p2 * (q + 2 * a * a),
                   b * radial + p1 * (q + 2 * b * b) + 2 * p2 * a * b};

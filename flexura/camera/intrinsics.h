@@ -9,7 +9,7 @@ namespace flexura {
 /// Intrinsic parameters of a pinhole camera with Brown-Conrady distortion (D. C. Brown, "Close-range camera
 /// calibration", 1971). Parameters and their order are those of OpenCV.
 ///
-/// A point (x, y, z) in the camera's frame C (x right, y down, z forward, metres) has the normalized
+/// The camera's frame C has x right, y down, z forward. A point (x, y, z) in C, m, has the normalized
 /// coordinates a = x/z, b = y/z. With r^2 = a^2 + b^2 the distorted coordinates are:
 ///   a' = a (1 + k1 r^2 + k2 r^4 + k3 r^6) + 2 p1 a b + p2 (r^2 + 2 a^2)
 ///   b' = b (1 + k1 r^2 + k2 r^4 + k3 r^6) + p1 (r^2 + 2 b^2) + 2 p2 a b

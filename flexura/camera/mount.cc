@@ -122,7 +122,7 @@ Pose MountConfig::pose() const {
 std::optional<Eigen::Matrix3d> upright(const Eigen::Vector3d& forward) {
   const Eigen::Vector3d z = forward.stableNormalized();
   const Eigen::Vector3d across = z.cross(Eigen::Vector3d::UnitY());
-  // Within this angle from the vertical, rounding errors would determine the direction.
+  // Within 1e-9 rad from the vertical, rounding errors would determine the direction.
   if (!(across.norm() > 1e-9)) return std::nullopt;
   Eigen::Matrix3d R;
   R.col(0) = across.normalized();

@@ -9,8 +9,8 @@
 
 namespace flexura {
 
-/// View of one camera at one instant: the lens at the current zoom, the pose of the camera's frame C, and the
-/// size of the image.
+/// View of one camera at one instant: lens at the current zoom, pose of the camera's frame C, and size of the
+/// image.
 struct View {
   Lens lens{Intrinsics{}};
   Pose X_WC;  ///< Pose of C, position in m. C's origin is the entrance pupil; x right, y down, z forward.

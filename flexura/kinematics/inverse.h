@@ -87,9 +87,10 @@ struct InverseResult {
 
 /// Returns a state of `arm` within its limits that reaches the target. If the target is proven out of reach,
 /// the result is always not_reachable, with the nearest state found. This state is nearest in position if the
-/// position is out of reach. Throws std::invalid_argument if a target or start is not finite, the start does
-/// not have one bend and one stretch per section, or a tolerance is not positive. Also throws it for a zero
-/// direction, both a direction and a rotation, an invalid rotation matrix, or a curve without length.
+/// position is out of reach. Throws std::invalid_argument if a target or start is not finite, or a tolerance
+/// is not positive. Also throws it if the start does not have one bend and one stretch per section. Also
+/// throws it for a zero direction, both a direction and a rotation, an invalid rotation matrix, or a curve
+/// without length.
 [[nodiscard]] InverseResult solve_inverse(const Arm& arm, const TipTarget& target,
                                           const InverseConfig& config = {});
 [[nodiscard]] InverseResult solve_inverse(const Arm& arm, const CurveTarget& target,

@@ -9,10 +9,10 @@
 
 namespace flexura {
 
-/// Jacobian of a backbone point P, 6 x 3n for an arm of n sections. Columns 3i, 3i + 1 and 3i + 2 are the
-/// twists [v; w] of P, relative to and expressed in W, per unit rate of bend_x, bend_y (rad/s) and stretch
-/// (1/s) of section i. v is the velocity of P, m/s; w is the angular velocity of the backbone's frame at P,
-/// rad/s.
+/// Jacobian of a backbone point P, 6 x 3n for an arm of n sections. Columns 3i, 3i + 1 and 3i + 2 are twists
+/// [v; w] of P, relative to and expressed in W. They are per unit rate of bend_x, bend_y (rad/s) and stretch
+/// (1/s) of section i. The first three rows are the velocity v of P, m/s. The last three rows are the angular
+/// velocity w of the backbone's frame at P, rad/s.
 using Jacobian = Eigen::Matrix<double, 6, Eigen::Dynamic>;
 
 /// Analytic Jacobians of any number of backbone points in one state of an arm. Allocates nothing after the

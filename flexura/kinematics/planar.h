@@ -12,7 +12,7 @@
 namespace flexura {
 
 /// Returns chord angles by eq. 5: cord_n = base_tangent + 2 (arching_0 + ... + arching_{n-1}) + arching_n.
-/// base_tangent is the tangent's angle at the base, the paper's alpha_Ox^0.
+/// The tangent's angle at the base, base_tangent, is the paper's alpha_Ox^0.
 [[nodiscard]] std::vector<double> cord_angles_from_archings(std::span<const double> archings,
                                                             double base_tangent);
 
@@ -29,9 +29,9 @@ namespace flexura {
 /// the plane (bend_y not 0).
 [[nodiscard]] double arching_from_bend(const Eigen::Vector2d& bend);
 
-/// Returns the base point of each section and, last, the end effector E, m, by eqs. 7 and 8, which are
-/// equivalent to 9 and 10. Throws std::invalid_argument unless `lengths` and `archings` have one element per
-/// section.
+/// Returns the base point of each section and, last, the end effector E, m. Uses eqs. 7 and 8, which are
+/// equivalent to eqs. 9 and 10. Throws std::invalid_argument unless `lengths` and `archings` have one element
+/// per section.
 [[nodiscard]] std::vector<Eigen::Vector2d> base_points(std::span<const double> lengths,
                                                        std::span<const double> archings,
                                                        const Eigen::Vector2d& base_point,

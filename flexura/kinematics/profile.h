@@ -10,8 +10,8 @@ class Profile {
   /// Returns a profile of constant rate. This and the other functions throw std::invalid_argument unless the
   /// duration, s, is above 0.
   [[nodiscard]] static Profile linear(double duration);
-  /// Returns the profile of least integrated squared jerk with zero rate and acceleration at both ends: 10
-  /// x^3 - 15 x^4 + 6 x^5, with x = t / duration.
+  /// Returns the minimum-jerk profile 10 x^3 - 15 x^4 + 6 x^5, with x = t / duration. It has zero rate and
+  /// acceleration at both ends, and the least integral of squared jerk.
   [[nodiscard]] static Profile minimum_jerk(double duration);
   /// Returns the fastest profile over `distance` > 0 with |rate| <= max_rate and |acceleration| <=
   /// max_acceleration. Both limits are above 0, in units of distance per s and per s^2. The profile has

@@ -13,9 +13,9 @@ namespace flexura {
 /// Returns the unit vector in W with the given azimuth and elevation, rad.
 [[nodiscard]] Eigen::Vector3d direction_of_angles(const Eigen::Vector2d& angles);
 
-/// Returns the elevation of a direction, rad, from its angles in two parallel projections: atan(tan alpha_2
-/// cos alpha_1) (paper, section 2). alpha_1, rad, is the angle from Y towards X in the plane XOY, which is
-/// the azimuth. alpha_2, rad, is the angle from Y towards Z in the plane ZOY.
+/// Returns the elevation of a direction, rad, from its angles in two parallel projections. The result is
+/// atan(tan alpha_2 cos alpha_1) (paper, section 2). The azimuth alpha_1, rad, is the angle from Y towards X
+/// in the plane XOY. The angle alpha_2, rad, is from Y towards Z in the plane ZOY.
 [[nodiscard]] double elevation_of_planes(double alpha_1, double alpha_2);
 /// Returns whether the azimuth, rad, is within 10 degrees of +-90 degrees. There the angle in the plane ZOY
 /// gives little information about the elevation.

@@ -34,13 +34,14 @@ class DormandPrince {
   /// Result of an advance.
   struct Progress {
     /// Whether the time `until` was reached. Otherwise the number of steps reached its limit, the step size
-    /// became too small, or go_on() stopped the advance. t and y are then those of the last accepted step.
+    /// became too small, or go_on() stopped the advance. In this case t and y are those of the last accepted
+    /// step.
     bool is_there = false;
     int steps = 0, taken_back = 0;  ///< Numbers of accepted steps, and of steps rejected for their error.
   };
 
-  /// Advances from (t, y) to exactly the time `until` >= t. f(t, y, slope) writes dy/dt into `slope`. go_on()
-  /// is called before every step; if it returns false, the advance stops.
+  /// Advances from (t, y) to exactly the time `until` >= t. f(t, y, slope) writes dy/dt into `slope`. Before
+  /// every step go_on() is called; if it returns false, the advance stops.
   template <class Function, class GoOn = bool (*)()>
   Progress advance(Function&& f, double& t, Eigen::VectorXd& y, double until, GoOn go_on = always) {
     Progress progress;

@@ -24,8 +24,9 @@ struct Quadrature {
 /// Returns the derivative of the Legendre polynomial P_degree at x.
 [[nodiscard]] double legendre_slope(int degree, double x);
 
-/// Returns the integral of f over [a, b], with `rule` applied to each of `panels` >= 1 equal parts. f takes a
-/// double and returns a double, or an Eigen vector or matrix by value (not an Eigen expression).
+/// Returns the integral of f over [a, b], with `rule` applied to each of `panels` >= 1 equal parts. The
+/// function f takes a double. It returns a double, or an Eigen vector or matrix by value (not an Eigen
+/// expression).
 template <typename Function>
 [[nodiscard]] auto integrate(const Quadrature& rule, Function&& f, double a, double b, int panels = 1) {
   const double half = 0.5 * (b - a) / panels;

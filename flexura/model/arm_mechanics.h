@@ -18,10 +18,10 @@ struct ArmConfig;
 /// their inertia.
 enum class ArmMechanics { kinematic, statics, dynamics };
 
-/// Route of a tendon from the arm's base to the end of one section, `[[arm.tendon]]`. In the cross-section at
-/// arc length s, m, from the base of the arm at rest, the tendon's offset from the backbone is (x(s), y(s)) +
-/// r(s) (cos a(s), sin a(s)), m. The radius r and the angle a change linearly from the arm's base to the
-/// tendon's end.
+/// Route of a tendon from the arm's base to the end of one section, `[[arm.tendon]]`. Let s be the arc length
+/// from the base of the arm at rest, m. In the cross-section at s, the tendon's offset from the backbone is
+/// (x(s), y(s)) + r(s) (cos a(s), sin a(s)), m. The radius r and the angle a change linearly from the arm's
+/// base to the tendon's end.
 struct TendonRouteConfig {
   std::int64_t section = 1;  ///< Section at the end of which the tendon ends, counted from 1 at the base.
   double radius = 0;         ///< Distance from the backbone at the base, m.
@@ -35,8 +35,8 @@ struct TendonRouteConfig {
   double friction = 0;                   ///< Coulomb friction coefficient along the route.
   std::optional<double> breaks_at = {};  ///< Time at which the tendon breaks, s; default: never.
 
-  /// Returns the offset from the backbone, m, at arc length `s` of a tendon that ends at arc length `end`,
-  /// both in m from the base.
+  /// Returns the tendon's offset from the backbone, m, at arc length `s`. The tendon ends at arc length
+  /// `end`. Arc lengths are in m from the base.
   [[nodiscard]] Eigen::Vector2d offset(double s, double end) const;
 };
 

@@ -6,8 +6,9 @@
 
 namespace flexura {
 
-/// Computes shapes for commands where each arc's bend is not a fixed share of its section's bend, such as for
-/// a rod under tendons, weight and loads. The shape depends on the command alone. Thread-safe.
+/// Computes the shape for a command if the arcs' bends are not fixed shares of their section's bend. An
+/// example is an elastic rod under tendons, weight and loads. The shape depends on the command alone.
+/// Thread-safe.
 class ArmResponse {
  public:
   ArmResponse() = default;

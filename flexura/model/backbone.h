@@ -13,7 +13,7 @@ namespace flexura {
 
 /// Returns the pose of an arc's end frame in the arc's start frame, whose z is along the tangent. The arc is
 /// `length` m long and bent by `bend` rad. With t = |bend| the position is length (bend_x (1 - cos t)/t^2,
-/// bend_y (1 - cos t)/t^2, sin t/t), and the rotation vector is (-bend_y, bend_x, 0). The result is smooth
+/// bend_y (1 - cos t)/t^2, sin t/t). The rotation vector is (-bend_y, bend_x, 0). The result is smooth
 /// through bend = 0.
 [[nodiscard]] Pose arc_pose(const Eigen::Vector2d& bend, double length);
 /// Returns the pose of an arc's end frame for known sinc(t) and cosc(t) (math/series.h), where t = |bend|.
@@ -66,8 +66,8 @@ class Backbone {
   /// samples (a biarc; docs/renderer.md). Samples of a circular arc give this arc exactly. Between samples
   /// the material rotates evenly about the tangent, by less than half a turn. Throws std::invalid_argument
   /// for fewer than two samples, numbers that are not finite, a radius that is not positive, or s_rest that
-  /// does not increase. Also throws it for consecutive samples at the same position, or for a tangent
-  /// at 90 degrees or more to the direction from one sample to the next.
+  /// does not increase. Also throws it for consecutive samples at the same position, or for a tangent at 90
+  /// degrees or more to the direction between consecutive samples.
   [[nodiscard]] static Backbone through(std::span<const BackboneSample> samples);
 
   /// Returns the arcs, base first; each section has one or more arcs.

@@ -42,8 +42,8 @@ struct Division {
   SquarePart far_part;
 };
 
-/// Linear model of the arm's arc length over a square of the image: the arc length at distance x, px, along
-/// the normal from the middle is s + slope x.
+/// Linear model of the arm's arc length over a square of the image. At a distance x, px, along the normal
+/// from the square's middle, the arc length is s + slope x.
 struct Stripes {
   Eigen::Vector2d normal;
   double slope = 0;  ///< Change of arc length per pixel along the normal, m/px; > 0.

@@ -14,8 +14,8 @@ struct Circle {
   Eigen::Vector3d center, normal;  ///< Center, m; unit normal.
   Eigen::Vector3d x, y;            ///< Perpendicular unit vectors in the circle's plane.
   double radius = 0;               ///< Radius, m; > 0.
-  /// A ray of direction d intersects the circle's plane at (d . by_x, d . by_y) / (d . by_z), m, from the
-  /// center along x and y. The divisor is positive in front of the camera.
+  /// A ray of direction d intersects the circle's plane at (d . by_x, d . by_y) / (d . by_z). These
+  /// coordinates are from the center along x and y, m. The divisor is positive in front of the camera.
   Eigen::Vector3d by_x, by_y, by_z;
   Eigen::Vector2d narrow_way;  ///< Direction in (a, b) in which the circle's image is narrowest.
   double steepness = 0;        ///< Bound on the derivative of CircleView::value with respect to (a, b).
@@ -35,7 +35,7 @@ struct CircleView {
 };
 [[nodiscard]] CircleView view_of(const Circle& circle, const Ray& ray);
 
-/// Returns the depth at which the ray intersects the plane through `point` perpendicular to `normal`; empty
+/// Returns the depth at which the ray intersects the plane through `point` perpendicular to `normal`. Empty
 /// if the intersection is not in front of the camera.
 [[nodiscard]] std::optional<double> meet_plane(const Eigen::Vector3d& point, const Eigen::Vector3d& normal,
                                                const Ray& ray);

@@ -52,9 +52,9 @@ struct SensorRows {
 /// threads and every instruction set.
 class Sensor {
  public:
-  /// Throws std::invalid_argument for a size below 1 or above 2^20, a PSF above 30 px, bits outside 1 to 16,
-  /// or a strength of an effect that is negative or infinite. Also throws it for a gain or gamma that is not
-  /// positive, or an instruction set that this processor does not support.
+  /// Throws std::invalid_argument for a size below 1 or above 2^20, a PSF above 30 px, or bits outside 1 to
+  /// 16. Also throws it for a strength of an effect that is negative or infinite. Further causes are a gain
+  /// or gamma that is not positive, and an instruction set that this processor does not support.
   explicit Sensor(const SensorConfig& config, SimdPath path = best_simd_path());
 
   [[nodiscard]] const SensorConfig& config() const { return config_; }

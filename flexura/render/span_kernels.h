@@ -64,8 +64,8 @@ struct SpanPiece {
   /// Curvature, 1/m; radius at the piece's start, m; change of the radius per arc length.
   float curvature, radius, widening;
   float widest;  ///< Largest radius, m.
-  /// Distances along the axis from start and end, m, within which contours are left to the reference path,
-  /// because curvature or taper change there; 0 without a change.
+  /// Distances along the axis from start and end, m, within which contours are left to the reference path.
+  /// They are above 0 where curvature or taper changes.
   float kink_before, kink_after;
   float end_sine, end_cosine, end_offset;
   float reach;  ///< Distance from the surface within which contours may divide the pixel, m.

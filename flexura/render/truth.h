@@ -42,8 +42,8 @@ struct TruthMaps {
 /// Computes `maps`, resized to the view's image.
 void truth_maps(const Renderer& renderer, TruthMaps& maps);
 
-/// Returns the fraction of each pixel's square that shows surfaces of `kind`, from 0 to 1; with an index,
-/// only of the surface with this index. The image has one channel and the view's size.
+/// Returns the fraction of each pixel's square that shows surfaces of `kind`, from 0 to 1. With an index,
+/// only the surface with this index counts. The image has one channel and the view's size.
 [[nodiscard]] Image<float> coverage(const Renderer& renderer, SurfaceKind kind,
                                     std::optional<std::uint16_t> index = std::nullopt);
 
@@ -53,8 +53,8 @@ struct AxisPoint {
   std::optional<Eigen::Vector2d>
       pixel;  ///< Pixel (u, v), px; empty if the point is behind the camera or outside the lens's field.
   double depth = 0;  ///< Depth along the optical axis, m; negative behind the camera.
-  /// Whether the camera sees the arm's surface in front of the point: the line from camera to point enters
-  /// the arm exactly once, and hits nothing else before.
+  /// Whether the camera sees the arm's surface in front of the point. The line from camera to point then
+  /// enters the arm exactly once, and hits nothing else before.
   bool is_visible = false;
 };
 /// Returns the backbone points at arc lengths `s`, m, clamped to the arm. Empty without an arm.

@@ -12,7 +12,7 @@
 namespace flexura {
 
 /// A piece of a tube that turns by at most 30 degrees, or a ball at a tube's end, for intersection with rays.
-/// docs/renderer.md has the equations.
+/// For the equations see docs/renderer.md.
 ///
 /// The piece's frame P has its origin at the start of the centerline, z along the tangent, and x towards the
 /// centre of curvature. The piece's part of space is between the planes perpendicular to the centerline at

@@ -49,9 +49,9 @@ class ContactWatch {
   /// `contact_tolerance`.
   [[nodiscard]] std::vector<Contact> contacts(const ArmState& state) const;
 
-  /// Visits every section that may touch the obstacle, or every pair of sections that may touch each other. A
-  /// visit gets the ends of a chain of sections: from the base to the section, or from one section of the
-  /// pair to the other.
+  /// Visits every section that may touch the obstacle, or every pair of sections that may touch each other.
+  /// The parameters of a visit are the ends of a chain of sections: base and section, or both sections of the
+  /// pair.
   void for_each_chain(const std::function<void(std::size_t first, std::size_t last)>& visit) const;
   /// Returns the contact that belongs to a chain from section `first` to `last`, without clearance.
   [[nodiscard]] Contact place_of(std::size_t first, std::size_t last) const;

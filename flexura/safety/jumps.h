@@ -9,8 +9,8 @@
 
 namespace flexura {
 
-/// Rate of a bend (rad/s) or a stretch (1/s) from which a change counts as a jump: more than a full turn
-/// within a thousandth of a second.
+/// Rate of a bend (rad/s) or a stretch (1/s) from which a change counts as a jump. It is more than a full
+/// turn within a thousandth of a second.
 inline constexpr double jump_rate = 1e4;
 
 /// Smallest jump that is reported: rad for a bend, a factor for a stretch.

@@ -67,13 +67,13 @@ struct DistanceQuery {
 [[nodiscard]] double tube_distance(const SectionTube& a, const SectionTube& b, const PairRule& rule,
                                    const DistanceQuery& query = {});
 
-/// Returns true if all pairs that `rule` selects are proved to be at least `distance`, m, apart; false if
-/// there is no proof within the limit on steps.
+/// Returns true if all pairs that `rule` selects are proved to be at least `distance`, m, apart. False if no
+/// proof is found within the limit on steps.
 [[nodiscard]] bool stay_apart(const SectionTube& a, const SectionTube& b, const PairRule& rule,
                               double distance);
 
-/// Returns true if a pair that `rule` selects is proved to be nearer than `distance`, m; false if there is no
-/// proof within the limit on steps.
+/// Returns true if a pair that `rule` selects is proved to be nearer than `distance`, m. False if no proof is
+/// found within the limit on steps.
 [[nodiscard]] bool come_within(const SectionTube& a, const SectionTube& b, const PairRule& rule,
                                double distance);
 
@@ -82,13 +82,13 @@ struct DistanceQuery {
 [[nodiscard]] double obstacle_distance(const SectionTube& tube, double from, const Obstacle& obstacle,
                                        const DistanceQuery& query);
 
-/// Returns true if the tube is proved to be at least `distance`, m, from the obstacle; false if there is no
-/// proof within the limit on steps.
+/// Returns true if the tube is proved to be at least `distance`, m, from the obstacle. False if no proof is
+/// found within the limit on steps.
 [[nodiscard]] bool stays_clear(const SectionTube& tube, double from, const Obstacle& obstacle,
                                double distance);
 
-/// Returns true if the tube is proved to be nearer to the obstacle than `distance`, m; false if there is no
-/// proof within the limit on steps.
+/// Returns true if the tube is proved to be nearer to the obstacle than `distance`, m. False if no proof is
+/// found within the limit on steps.
 [[nodiscard]] bool comes_within(const SectionTube& tube, double from, const Obstacle& obstacle,
                                 double distance);
 

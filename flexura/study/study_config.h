@@ -13,7 +13,7 @@
 
 namespace flexura {
 
-/// The parameter that a study varies, from a first to a last value. Exactly one member must be given.
+/// Camera parameter that a study varies, as first and last value. Exactly one member must be given.
 struct VaryConfig {
   using Values = std::optional<std::array<double, 2>>;  ///< First and last value.
   Values pan, tilt, roll, orbit;                        ///< Angles, rad.

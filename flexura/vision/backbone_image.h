@@ -11,9 +11,9 @@ namespace flexura {
 /// Moves a centerline to the image of the backbone (docs/vision.md). The result is exact for a tube of
 /// constant radius. Two planes through the camera are tangent to the tube at arc length s. They are symmetric
 /// about the plane through the camera and the backbone's tangent at s. Hence the viewing direction to the
-/// backbone is the mean of the viewing directions to the two borders, which differs from the middle in the
-/// picture. A sample is unchanged if the lens has no ray for a border pixel; fewer than 3 samples are all
-/// unchanged. Returns whether all samples have rays.
+/// backbone is the mean of the viewing directions to the two borders. This is not the middle in the picture.
+/// A sample is unchanged if the lens has no ray for a border pixel; fewer than 3 samples are all unchanged.
+/// Returns whether all samples have rays.
 bool to_backbone_image(const Lens& lens, std::vector<AxisSample>& axis);
 
 /// Returns whether the lens has rays for both borders of a measured sample.
@@ -39,9 +39,9 @@ struct BackboneAxis {
 inline constexpr std::string_view middle_in_places =
     "the camera's distortion has no ray for some pixels of the arm: there the axis is its middle";
 
-/// Returns the depth of the backbone along the optical axis at each sample, m, computed from the width of the
-/// tube's image and the tube's radius, m. The relative error is of second order in radius over distance. NaN
-/// for samples without a ray. Throws std::invalid_argument for a radius that is not positive.
+/// Returns the depth of the backbone along the optical axis at each sample, m. It is computed from the width
+/// of the tube's image and the tube's radius, m. The result is exact to first order in (radius / distance)^2.
+/// NaN for samples without a ray. Throws std::invalid_argument for a radius that is not positive.
 [[nodiscard]] std::vector<double> backbone_depths(const Lens& lens, const std::vector<AxisSample>& axis,
                                                   double radius);
 

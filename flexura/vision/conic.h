@@ -19,7 +19,8 @@ struct CircleFit {
   /// significance level of 1 %: an ellipse does not fit significantly better.
   bool is_verified = false;
   /// Smallest tilt of the circle's plane, rad, that this test would detect with these points in 9 of 10
-  /// cases, for the least favourable direction. pi/2 if the test would detect no tilt.
+  /// cases. The direction of the tilt is the least favourable. The value is pi/2 if the test would detect no
+  /// tilt.
   double detectable_tilt = 0;
   /// Correlation of residuals of points with neighbouring angles, in [-1, 1]. About 0 for independent noise;
   /// near 1 if the points are on another curve than a circle, or are smoothed.
@@ -34,8 +35,8 @@ struct CircleFit {
   }
   /// Returns whether the points are on a circle: the circle's equation is verified and the residuals are
   /// noise. If `sigma` is known, residuals up to four times `sigma` are noise. Otherwise another shape, such
-  /// as a polygon or a drop, is recognized by a high correlation of neighbouring residuals that are larger
-  /// than those of smoothed points.
+  /// as a polygon or a drop, is recognized by a high correlation of neighbouring residuals. These residuals
+  /// must be larger than those of smoothed points.
   [[nodiscard]] bool is_circle() const {
     constexpr double most_alike = 0.9, smooth = 0.15;  // px
     const bool is_noise = sigma > 0 ? rms <= 4 * sigma : misfit_correlation <= most_alike || rms <= smooth;

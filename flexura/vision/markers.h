@@ -22,8 +22,8 @@ struct MarkerObservation {
   double length = 0;  ///< Length along the centerline, px.
   double sigma = 0;   ///< Standard deviation of `along`, px.
   /// Bulge of the band's visible front along the centerline, in half widths of the arm. The bulge is the sine
-  /// of the angle between the arm and the image plane, positive if the arm comes nearer to the camera from
-  /// base to tip.
+  /// of the angle between the arm and the image plane. It is positive if the arm comes nearer to the camera
+  /// from base to tip.
   double bulge = 0;
   /// Red, green and blue of the marker's middle, from 0 to 255. In a gray picture, the gray value three
   /// times.

@@ -35,8 +35,8 @@ inline constexpr std::size_t most_picture_bytes = std::size_t{1} << 29;
 /// picture, truncated, damaged, too large, or has an unsupported number of bits.
 [[nodiscard]] Photograph decode_picture(std::span<const std::uint8_t> file, const std::string& name);
 
-/// Converts a colour picture to gray, rounded: 0.2126 red + 0.7152 green + 0.0722 blue (ITU-R BT.709) of the
-/// values as they are, without decoding a gamma. A gray picture is returned unchanged.
+/// Converts a colour picture to gray: 0.2126 red + 0.7152 green + 0.0722 blue (ITU-R BT.709), rounded.
+/// Gamma-encoded values are not decoded before. A gray picture is returned unchanged.
 [[nodiscard]] Image<std::uint8_t> gray_picture(const Image<std::uint8_t>& picture);
 [[nodiscard]] Image<std::uint16_t> gray_picture(const Image<std::uint16_t>& picture);
 

@@ -35,7 +35,7 @@ constexpr const char* untilted =
     "expected boards "
     "tilted to different sides";
 
-// Undetermined unknowns diverge although the views are explained.
+// Undetermined unknowns diverge although the fit explains the views.
 const char* why_not_converged(const BundleFit& fit) {
   constexpr double good = 2;  // px
   const bool is_explained = fit.points > 0 && rms_of(fit.square_sum, fit.points) < good;
@@ -271,7 +271,7 @@ class Calibration {
     const auto [width, height] = sizes_[camera];
     const double largest = largest_share * std::hypot(width, height);
     own.corner_sigma = corner_sigma(own.lens, own.covariance, width, height);
-    // Perfect pictures would determine everything.
+    // Without noise, all unknowns would seem to be determined.
     const double grown = result_.noise < best_noise ? best_noise / std::max(result_.noise, 1e-12) : 1;
     const auto seen = intrinsics_effects(own.lens, seen_by(camera)),
                corners = intrinsics_effects(own.lens, image_corners(width, height));

@@ -31,7 +31,7 @@ namespace {
 // Arms of less contrast may be lost in noise.
 constexpr double least_blurred = 2, blurred_share = 0.12, faint = 30;
 
-// This many pixels separate a histogram's two classes well enough: the borders are measured separately.
+// Number of pixels that suffice for the histogram. The borders are measured separately.
 constexpr std::size_t histogram_samples = 12288;
 
 // Smaller figures are ignored as dust.
@@ -40,15 +40,15 @@ constexpr std::int64_t least_area = 24;
 // Smallest ratio of length to width of a tube.
 constexpr double least_slenderness = 2.5;
 
-// An axis that covers less of its figure is some edge of it, not an arm.
+// If an axis covers less than this fraction of its figure, it is an edge of the figure, not an arm.
 constexpr double least_covered = 0.3;
 
 constexpr std::size_t most_tries = 4, most_seeds = 4;
 
-// If the axis covers more, the rest is its ends and noise.
+// If the axis covers more than this fraction, the rest is due to the ends and noise.
 constexpr double all_but_ends = 0.95;
 
-// Returns whether a point of the border lies beside the axis, at the distance of the axis's width.
+// Returns whether a point of the border belongs to the axis: its distance from the axis is half the width.
 bool is_explained(const BorderPoint& point, const std::vector<AxisSample>& axis) {
   constexpr double close = 1.5;  // px, across and along the axis.
   return std::ranges::any_of(axis, [&](const AxisSample& sample) {
@@ -165,8 +165,8 @@ void ArmFinder::Work::find_axis(const Image<Value>& picture, double scale) {
   seen.reason = first_reason;
 }
 
-// Follows the tube of a component from the first seed that leads to both its ends, or else from the one that
-// leads farthest.
+// Tracks the tube of a component from the first seed that leads to both ends; if there is none, from the seed
+// that leads farthest.
 template <typename Value>
 bool ArmFinder::Work::follow(const Image<Value>& picture, double scale, const Component& component) {
   tube_seeds(components, component, seeds);
@@ -187,7 +187,7 @@ bool ArmFinder::Work::follow(const Image<Value>& picture, double scale, const Co
   least_blur = std::numeric_limits<double>::infinity();
   try_seeds(picture, scale, component);
   if (best.axis.empty()) {
-    // Where hairs form more of the figure than the arm does, the arm is the thickest.
+    // If hairs form a larger part of the figure than the arm, the arm is the thickest tube.
     std::ranges::stable_sort(seeds, std::ranges::greater{}, &TubeSeed::width);
     try_seeds(picture, scale, component);
   }
@@ -214,7 +214,7 @@ std::string ArmFinder::Work::reason_against_following(double width) const {
   return "it is not a tube, or points at the camera";
 }
 
-// Tries the first few seeds; the result of the best one is in `best`.
+// Tries the first few seeds. Stores the result of the best seed in `best`.
 template <typename Value>
 void ArmFinder::Work::try_seeds(const Image<Value>& picture, double scale, const Component& component) {
   for (std::size_t i = 0; i < std::min(seeds.size(), most_seeds); ++i) {
@@ -224,7 +224,7 @@ void ArmFinder::Work::try_seeds(const Image<Value>& picture, double scale, const
   }
 }
 
-// Follows the tube from a seed in both directions.
+// Tracks the tube from a seed in both directions.
 template <typename Value>
 bool ArmFinder::Work::follow_from(const Image<Value>& picture, double scale, const Component& component,
                                   const TubeSeed& rough) {
@@ -322,7 +322,7 @@ void ArmFinder::Work::add_places() {
   strew(components, followed, spacing, seen.places);
 }
 
-// For the figure that was followed, or the largest.
+// Uses the figure that was tracked, or the largest figure.
 void ArmFinder::Work::add_unexplained(const Image<std::uint8_t>& gray) {
   if (order.empty() || (seen.is_found() && seen.covered >= all_but_ends)) return;
   const std::uint32_t component = seen.is_found() ? followed : order.front();

@@ -52,7 +52,7 @@ TEST_F(EstimateInput, SaysWhereAFileOfCamerasIsWrong) {
   EXPECT_EQ(refusal(side, ""),
             "cameras.toml:8:1: camera[1].position: missing: expected the pose of each camera");
   EXPECT_EQ(refusal("\"side\"", "\"front\""),
-            "cameras.toml:9:1: camera[1].name: is that of camera[0], too: expected another");
+            "cameras.toml:9:1: camera[1].name: is also the name of camera[0]: expected another name");
   EXPECT_EQ(refusal("cx = 319.5", "cx = 1e308"),
             "cameras.toml:4:6: camera[0].cx = 1e+308: expected a number from -10000000 to 10000000");
   arguments_.images.emplace_back("third.png");

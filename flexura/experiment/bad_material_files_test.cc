@@ -104,8 +104,7 @@ TEST(BadMaterialFiles, EachGetsALineWithPlaceValueAndExpectation) {
            "= 0.01 }\nmass_per_length = 0.1\n",
            ""),
        "x.toml:18:1: arm.section[1]: has no material: expected material.youngs_modulus or "
-       "material.stiffness, "
-       "for the arm's model is \"static\""},
+       "material.stiffness, because the arm's model is \"static\""},
       {"a tendon outside the tube", rods_with("radius = 0.01\n", "radius = 0.011\n"),
        "arm.tendon[0]: runs outside the tube: expected at most 0.0108 m off the backbone in section 2, 0.484 "
        "m "

@@ -117,7 +117,7 @@ TEST(BadDynamicFiles, EachGetsALineWithPlaceValueAndExpectation) {
               HasSubstr("arm.section[0].material: has no mass: expected density or mass_per_length"));
   EXPECT_EQ(error_of_file(moving_with("radius = 0.01\n", "radius = 0.01\nfriction = 0.1\n")), "no error");
   EXPECT_THAT(error_of_file(moving_with("\"dynamic\"", "\"static\"")),
-              HasSubstr("arm.contact: is of arms in motion: expected model = \"dynamic\""));
+              HasSubstr("arm.contact: is only for dynamic arms: expected model = \"dynamic\""));
   EXPECT_EQ(error_of_file(moving_with("radius = 0.02\n", "radius = 0.02\nstretch_limits = [1, 2]\n")),
             "no error");
   EXPECT_THAT(error_of_file(moving_with("until = 2", "until = 0.5")),

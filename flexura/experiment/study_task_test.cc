@@ -94,7 +94,7 @@ TEST_F(Study, BadFilesSayWhatIsWrong) {
       {"no normal", study_with("target.radius = 0.4", "target.normal = [0, 0, 0]"),
        "task[0].target.normal: has no direction: expected a length above 0"},
       {"in the camera", study_with("target.radius = 0.4", "target.center = [0, 0, 2.5]"),
-       "task[0].target.center: is where the camera stands: it cannot orbit there"},
+       "task[0].target.center: is the camera's own position: the camera cannot orbit it"},
   };
   for (const BadFile& file : files) EXPECT_THAT(error_of_file(file.text), HasSubstr(file.error)) << file.what;
 }

@@ -11,7 +11,7 @@
 namespace flexura {
 namespace {
 
-// A file in memory with the functions that libtiff needs.
+// A file in memory, with the file functions that libtiff calls.
 struct MemoryFile {
   std::string bytes;
   std::size_t at = 0;

@@ -29,7 +29,7 @@ std::optional<Jump> jump_between(const Motion& motion, Sample a, Sample b) {
     const double second = largest_change(middle.state, b.state);
     size = std::max(first, second);
     (first > second ? b : a) = std::move(middle);
-    // The change of a smooth law would be about 1/64 by then.
+    // The change of a smooth motion would have decreased to about 1/64.
     if (n == few && size < whole / 32) return std::nullopt;
   }
   if (size <= smallest_jump) return std::nullopt;

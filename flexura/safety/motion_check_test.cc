@@ -215,11 +215,13 @@ TEST(MotionCheck, SaysWhatItOnlySampled) {
   const auto formula = function_motion(3, [](double t) { return bent(0.1 * t); });
   const SafetyReport report = check(short_section(), formula, 0.05);
   EXPECT_TRUE(report.is_safe());
-  EXPECT_THAT(report.caveats,
-              testing::ElementsAre("0 s to 3 s: sampled every 0.05 s: the law has no bound on its rates"));
-  EXPECT_THAT(check(short_section(), formula, 1000).caveats,
-              testing::ElementsAre(
-                  "0 s to 3 s: sampled at its start and its end alone: the law has no bound on its rates"));
+  EXPECT_THAT(
+      report.caveats,
+      testing::ElementsAre("0 s to 3 s: sampled every 0.05 s: no bound on the rates of the motion is known"));
+  EXPECT_THAT(
+      check(short_section(), formula, 1000).caveats,
+      testing::ElementsAre(
+          "0 s to 3 s: sampled only at its start and its end: no bound on the rates of the motion is known"));
   EXPECT_TRUE(check(short_section(), hold_motion(bent(0), 1)).caveats.empty());
 }
 

@@ -53,9 +53,9 @@ class SampledCheck {
   void run() {
     const bool is_short = times_.size() <= 2;
     checked_.report.caveats.push_back(fmt::format(
-        "{}: sampled {}: the law has no bound on its rates",
+        "{}: sampled {}: no bound on the rates of the motion is known",
         span_text(checked_.whole(), checked_.timed.start),
-        is_short ? "at its start and its end alone" : fmt::format("every {:.6g} s", checked_.step)));
+        is_short ? "only at its start and its end" : fmt::format("every {:.6g} s", checked_.step)));
     std::optional<double> last_possible;
     std::optional<ArmState> before;
     for (std::size_t k = 0; k < times_.size(); ++k) {

@@ -104,20 +104,20 @@ TEST_F(Dynamics, EachViolatedConditionFailsWithItsReason) {
     const char *set, *reported, *shown;
   };
   for (const Violation& violation :
-       {Violation{"task.0.law.gravity_compensation=0", "gravity is compensated to 0 %",
-                  "gravity is not compensated: 100 % of it is left"},
-        Violation{"task.0.law.gravity_compensation=0.7", "gravity is compensated to 70 %",
-                  "gravity is not compensated: 30 % of it is left"},
+       {Violation{"task.0.law.gravity_compensation=0", "0 % of gravity is compensated",
+                  "gravity is not fully compensated: 100 % of it remains"},
+        Violation{"task.0.law.gravity_compensation=0.7", "70 % of gravity is compensated",
+                  "gravity is not fully compensated: 30 % of it remains"},
         Violation{"task.0.law.elasticity=\"ignored\"", "elasticity is neither cancelled nor part",
-                  "the arm's elasticity is not compensated: 100 % of it is left"},
-        Violation{"task.0.law.sign=-1", "has the sign -1, not +1", "it leads away from the target"},
+                  "the arm's elasticity is not fully compensated: 100 % of it remains"},
+        Violation{"task.0.law.sign=-1", "has the sign -1, not +1", "it drives the arm away from the target"},
         Violation{"task.0.law.stiffness=[-5, 20]", "a stiffness k is not above 0",
                   "has no minimum at the target"},
         Violation{"task.0.law.damping=[[0, 0], [0, 0]]", "the damping K is not positive",
-                  "damping took none of the arm's energy"},
+                  "damping removed no energy from the arm"},
         Violation{"task.0.law.damping=[[4, 0], [0, -0.05]]",
-                  "the damping K is not positive: its least eigenvalue is -0.05",
-                  "it gave the arm energy"}}) {
+                  "the damping K is not positive definite: its least eigenvalue is -0.05",
+                  "it added energy to the arm"}}) {
     SCOPED_TRACE(violation.set);
     // Without the medium's damping, which would hide the law's.
     const RunResult result = run(dynamics_arm() + dynamics_task("duration = 0.5\n" + bent_target),
@@ -326,7 +326,7 @@ TEST_F(Dynamics, ItsTrueMotionIsJudgedBeforeItIsPlayed) {
   const SafetyReport report = check_experiment_safety(let_go, quiet);
   EXPECT_FALSE(report.is_safe());
   EXPECT_THAT(report.violations.front().text(), HasSubstr("table"));
-  EXPECT_THAT(report.notes, testing::Contains(HasSubstr("dynamics: gravity is compensated to 0 %")));
+  EXPECT_THAT(report.notes, testing::Contains(HasSubstr("dynamics: 0 % of gravity is compensated")));
   const RunResult result = run(text, falls);
   EXPECT_EQ(result.outcome, RunOutcome::failed);
   EXPECT_THAT(result.reasons.front(), HasSubstr("table"));

@@ -132,7 +132,8 @@ void check_rows(const KeyframesTask& task, const std::vector<Column>& columns,
     const auto row = static_cast<std::ptrdiff_t>(r);
     if (task.rows[r].size() != columns.size()) {
       problems.push_back(
-          {row, 0, fmt::format("{} values: expected {}, one a column", task.rows[r].size(), columns.size())});
+          {row, 0,
+           fmt::format("{} values: expected {}, one per column", task.rows[r].size(), columns.size())});
       continue;
     }
     for (std::size_t c = 0; c < columns.size(); ++c) {

@@ -34,7 +34,9 @@ Table<Request>& add_rod_fields(Table<Request>& table) {
       .field("tensions", &Request::tensions,
              {.meaning = "tendons' tensions at the base, N", .range = between(0, 1e9)})
       .field("displacements", &Request::displacements,
-             {.meaning = "how far tendons are pulled in", .unit = Unit::metre, .range = between(-1e6, 1e6)})
+             {.meaning = "lengths by which the tendons are pulled in",
+              .unit = Unit::metre,
+              .range = between(-1e6, 1e6)})
       .field("tip_force", &Request::tip_force, {.meaning = "force at the tip, N", .range = load_range})
       .field("tip_moment", &Request::tip_moment, {.meaning = "moment at the tip, N m", .range = load_range})
       .field("gravity", &Request::gravity,

@@ -113,7 +113,8 @@ void Recording::read_marks() {
   }
   read_summary();
   if (log_.truncated())
-    marks_.push_back({duration(), duration(), "warning", "log", "the run was cut short: its log ends here"});
+    marks_.push_back(
+        {duration(), duration(), "warning", "log", "the run was interrupted: its log ends here"});
 }
 
 // The log says when something begins to be unsafe, the summary how long it lasts. One that is damaged (a disk

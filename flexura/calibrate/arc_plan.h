@@ -16,8 +16,8 @@ namespace flexura {
 
 /// Returns the bends for which the whole arm is one circular arc that turns by `bend` rad towards a direction
 /// of W. Each section bends in proportion to its length (steps 1 and 7 of the paper's section 3.4). Empty if
-/// the arm cannot form this arc. That is the case if the arc is outside a planar arm's plane, the direction
-/// is not perpendicular to the base axis, or a section's limit is exceeded.
+/// the arm cannot form this arc. Reasons are: the arc is outside a planar arm's plane, the direction is not
+/// perpendicular to the base axis, or a section's limit is exceeded.
 [[nodiscard]] std::optional<ArmState> arc_state(const Arm& arm, double bend, const Eigen::Vector3d& towards);
 
 /// Camera poses for the calibration with arcs, computed with the simulator. Each camera looks along the

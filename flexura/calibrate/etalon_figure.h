@@ -68,9 +68,9 @@ class EtalonFigure {
   /// Empty if there is no line, or if the lens has no ray for the pixel.
   [[nodiscard]] std::optional<Eigen::Vector3d> nearest(const EtalonPoint& seen, const View& view) const;
 
-  /// Predicts the points of a picture, with sigma 0: two of each side, one of each rim, and two of each
-  /// red line that faces the camera within 60 degrees. Empty unless the whole cylinder is visible, at least
-  /// `margin` px from the border.
+  /// Predicts the points of a picture, with sigma 0. They are two of each side, one of each rim, and two of
+  /// each red line that faces the camera within 60 degrees. Empty unless the whole cylinder is visible, at
+  /// least `margin` px from the border.
   [[nodiscard]] std::optional<std::vector<EtalonPoint>> expected(const View& view, double margin) const;
   /// Number of points of each rim in an outline.
   static constexpr std::size_t rim_points = 32;

@@ -37,8 +37,8 @@ class MarkerPalette {
 /// the distance to the nearest other expected feature of its kind, at most 40 px.
 [[nodiscard]] std::vector<double> tolerances(const std::vector<MarkerFeature>& expected);
 
-/// Receives a similarity that may map the expected to the seen picture: the complex factor `turn` (rotation
-/// and scale), and a point `from` that maps to `to`.
+/// Receives a similarity that may map the expected to the seen picture. `turn`: complex factor for rotation
+/// and scale. The point `from` maps to `to`.
 using MarkerMove = std::function<void(const std::complex<double>& turn, const std::complex<double>& from,
                                       const std::complex<double>& to)>;
 /// Calls `move` for each pair of expected features with each pair of seen features of the same kinds. It uses

@@ -42,12 +42,12 @@ struct MatchPrior {
 };
 
 /// Identifies markers by their pattern. The expected picture is shifted, rotated (up to 45 degrees) and
-/// scaled (by 0.5 to 2) until most seen features coincide with an expected feature of their kind. Ends and
-/// markers are of different kinds, and so are markers of different colours. The score of a match decreases by
-/// 1 for each seen feature that is not expected. It decreases by 1/2 for each expected feature inside an
-/// image of `size` px that is not seen. It decreases by half the squared similarity in standard deviations of
-/// `match_prior`. This prevents a match of equal markers that is shifted by one marker. Of matches with equal
-/// scores the one with the smaller distances is taken, then the one found first.
+/// scaled (by 0.5 to 2). The best match has most seen features near an expected feature of their kind. Ends
+/// and markers are of different kinds, and so are markers of different colours. The score of a match
+/// decreases by 1 for each seen feature that is not expected. It decreases by 1/2 for each expected feature
+/// inside an image of `size` px that is not seen. It decreases by half the squared similarity in standard
+/// deviations of `match_prior`. This prevents a match of equal markers that is shifted by one marker. Of
+/// matches with equal scores the one with the smaller distances is taken, then the one found first.
 [[nodiscard]] MarkerMatch match_markers(const MarkerScene& expected, const MarkerScene& seen,
                                         const std::array<int, 2>& size, const MatchPrior& match_prior = {});
 

@@ -20,17 +20,16 @@ namespace flexura {
                               const Eigen::Vector3d& p_WP);
 
 /// Returns the stage position, m, that brings the camera's pupil to a point of W with the head as in
-/// `stance`. The result is neither clamped nor quantised. If the modelled mount rotation has the error R, a
-/// pupil at the offset e from the point moves to the offset (I - R) e. The offset decreases if R is less than
-/// 60 degrees (docs/calibration-paper.md). Throws std::out_of_range if the zoom is beyond the ends of the
-/// lens's table.
+/// `stance`. The result is neither clamped nor quantised. If the modelled mount rotation has the error R, the
+/// pupil's offset e from the point becomes (I - R) e. The offset decreases if R is less than 60 degrees
+/// (docs/calibration-paper.md). Throws std::out_of_range if the zoom is beyond the ends of the lens's table.
 [[nodiscard]] Eigen::Vector3d stage_towards(const CameraConfig& model, const RigStance& stance,
                                             const Eigen::Vector3d& p_WC);
 
 /// Returns the stance clamped to the limits and quantised to the resolutions of head, lens and stage.
 [[nodiscard]] RigStance commanded(const Camera& camera, RigStance stance);
-/// Returns the head position that moves a point, whose image is `off` px to the right of and below the
-/// principal point, onto the principal point.
+/// Returns the head position that moves an image point onto the principal point. `off`: position of the point
+/// to the right of and below the principal point, px.
 [[nodiscard]] HeadState turned_towards(HeadState head, const Intrinsics& lens, const Eigen::Vector2d& off);
 
 /// Returns the lens positions of the shortest and the longest focal length within the head's limits.

@@ -33,15 +33,15 @@ enum CameraSlot : Eigen::Index {
 inline constexpr Eigen::Index stance_slots = 6;
 
 /// The unknown errors of a rig and of its readings as one vector x, where x = 0 is the guess. Each variable
-/// is an offset from the guess in its own unit. Variables that the prior fixes have no entry in x. The order
-/// is: variables of each camera, of the arm (logarithms of the lengths, bend gains), of each pose (bend
-/// offsets from the command), and of each stance. The variables of cameras and arm are the rig's own, and
-/// globals() is their number. The others belong to the pictures.
+/// is an offset from the guess in its own unit. Variables that the prior fixes have no entry in x. First come
+/// the variables of each camera and of the arm (logarithms of the lengths, bend gains). Then follow those of
+/// each pose (bend offsets from the command) and of each stance. The variables of cameras and arm are the
+/// rig's own, and globals() is their number. The others belong to the pictures.
 class RigVariables {
  public:
   /// Throws std::invalid_argument unless there is one prior per camera, or if a prior is negative or NaN.
-  /// Also if observations refer to missing cameras, stances or poses, to another arm, or are in another
-  /// order. Throws std::out_of_range for a marker beyond the arm's end.
+  /// Also throws it if observations refer to missing cameras, stances or poses, to another arm, or are in
+  /// another order. Throws std::out_of_range for a marker beyond the arm's end.
   RigVariables(const RigModel& guess, const RigPrior& prior, const RigObservations& seen);
 
   /// A variable of the rig.

@@ -57,7 +57,8 @@ struct ViewGrid {
   /// image. Candidates with the target in the middle are also included.
   double spread = 0.4;
   std::optional<Eigen::Vector3d> target = {};
-  /// Returns the ratio and spread of a camera for one of the zooms; missing: all cameras use the same.
+  /// Returns the ratio and spread of a camera for one of the zooms; missing: all cameras use `zoom` and
+  /// `spread`.
   std::function<std::array<double, 2>(std::size_t camera, double zoom)> own = {};
 };
 

@@ -11,8 +11,8 @@
 namespace flexura {
 
 /// Points of the two contours of an arm: the curves along which one camera's rays touch the arm's surface.
-/// Each cross-section has two points: the first is right of the direction from base to tip in the picture,
-/// the second left (docs/control.md, eq. 19a and 19b). All values are NaN where no rays touch the
+/// Each cross-section has two points (docs/control.md, eq. 19a and 19b). The first is right of the direction
+/// from base to tip in the picture, the second left. All values are NaN where no rays touch the
 /// cross-section, because the arm points at the camera.
 struct ContourImage {
   Eigen::Matrix2Xd pixels;   ///< Pixels of the points, px, a column per point.

@@ -12,8 +12,8 @@
 
 namespace flexura {
 
-/// An arm with mass, weight and elasticity along it, whose direction is given by two continuous angles
-/// (docs/control.md, eq. 1): the plant of the paper's theory (its section 2).
+/// An arm with distributed mass, weight and elasticity: the plant of the theory in the paper's section 2. Two
+/// continuous angles give the arm's direction (docs/control.md, eq. 1).
 struct DistributedArmModel {
   std::vector<double> lengths = {1};  ///< Lengths of the sections at rest, m: l_i0.
   bool has_variable_lengths =

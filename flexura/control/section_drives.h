@@ -16,7 +16,7 @@ namespace flexura {
 [[nodiscard]] Eigen::MatrixXd section_torques(const DistributedArm& arm);
 
 /// Returns the matrix G of drives that bend sections. Column 2k is the moment (N m) on the change of theta
-/// from section k's base to its end, and column 2k + 1 the moment on that of q. The last columns are the
+/// from section k's base to its end. Column 2k + 1 is the moment on the change of q. The last columns are the
 /// forces on variable lengths. Tendons that end at section k and whose lengths count from its base act in
 /// this way. The coordinates of the drives are y = G^T x: the changes of the angles along each section,
 /// without the angles of a clamped base.

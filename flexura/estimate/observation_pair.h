@@ -24,8 +24,8 @@ using ObservationPair = std::array<std::size_t, 2>;
 /// Returns all observations with their points in a common order along the arm. The second observation of the
 /// pair keeps its order or, with `against`, is reversed. The other observations are ordered like the points
 /// that the pair then triangulates. With `from_base` the pair runs from the base, and other observations with
-/// a visible base keep their order. Without `from_base`, all observations are reversed if the very first one
-/// would otherwise be.
+/// a visible base keep their order. Without `from_base`, the very first observation keeps its order: if it
+/// was reversed, all observations are reversed again.
 [[nodiscard]] std::vector<Observation> run_alike(std::vector<Observation> observations,
                                                  const ObservationPair& pair, bool against, bool from_base);
 

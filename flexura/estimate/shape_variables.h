@@ -40,9 +40,9 @@ struct ShapePrediction {
   Eigen::MatrixXd covariance;  ///< Covariance of the unknowns (ShapeVariables), including views with a prior.
 };
 
-/// The unknowns of a prior, in this order: the bends (x and y of each section; of planar arms x alone), the
-/// base's position (m, W). Then follow the base's rotation about its own x and y (rad), and the logarithm of
-/// the stretch. The last ones are the error of each view with a prior (turn in rad, focal).
+/// The unknowns of a prior, in order. First are the bends (x and y of each section; only x for planar arms)
+/// and the base's position (m, W). Then follow the base's rotation about its own x and y (rad), and the
+/// logarithm of the stretch. The last ones are the error of each view with a prior (turn in rad, focal).
 class ShapeVariables {
  public:
   /// `observations`: each shows whether its view has a prior.

@@ -56,8 +56,8 @@ class Schedule {
   /// Returns the legs, at least one. Without tasks it is a hold with duration 0.
   [[nodiscard]] const std::vector<Leg>& legs() const { return legs_; }
   [[nodiscard]] double duration() const { return duration_; }  ///< In s.
-  /// Returns the number of clock steps after time 0; the last step is at duration(), the others are at
-  /// multiples of the clock's step before it.
+  /// Returns the number of clock steps after time 0; the last step is at duration(), and the others are at
+  /// multiples of the clock's step.
   [[nodiscard]] std::size_t steps() const { return steps_; }
   [[nodiscard]] double time_of_step(std::size_t step) const;  ///< In s.
   /// Returns the index of the leg at `time` (s). A leg includes its start but not its end; the last leg also

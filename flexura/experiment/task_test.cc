@@ -274,7 +274,7 @@ TEST(Keyframes, BadFilesAreReportedAtTheirLine) {
       error_with("wave.csv", "time;arching_1;arching_2\n0;0,0;0\n1;0,5;0\n"),
       HasSubstr("wave.csv:1:5: columns are separated by ';': expected commas, and points in numbers"));
   EXPECT_THAT(error_with("none.csv", ""), HasSubstr("x.toml:7:8: task[0].file: no file \"none.csv\""));
-  EXPECT_THAT(error_with("../x.csv", ""), HasSubstr("lies outside the experiment's folder"));
+  EXPECT_THAT(error_with("../x.csv", ""), HasSubstr("is outside the experiment's folder"));
 }
 
 TEST(Keyframes, AMissingFileHidesNoOtherError) {

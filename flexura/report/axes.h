@@ -25,9 +25,9 @@ inline constexpr double tallest_plot = 430.0;  ///< Largest height of a plot, pa
 /// Returns the range enlarged about its middle to an extent of at least `extent`.
 [[nodiscard]] Interval grown_to(Interval range, double extent);
 
-/// Returns the range enlarged about its middle to an extent of at least `least`, and then by the share
-/// `margin` of the extent at each end. The result's extent is > 0. An extent below the resolution of the
-/// range's numbers counts as zero.
+/// Returns the range enlarged about its middle to an extent of at least `least`. It is then enlarged at each
+/// end by the share `margin` of that extent. The result's extent is > 0. An extent below the resolution of
+/// the range's numbers counts as zero.
 [[nodiscard]] Interval padded(Interval range, double least, double margin);
 
 /// Ticks of an axis.

@@ -35,7 +35,7 @@ struct LineChart {
   std::vector<double> marks = {};  ///< Positions of fine vertical lines.
   bool is_log = false;  ///< Whether values are exponents of ten; a logarithmic axis then shows the powers.
 
-  /// Returns the label of the value axis, which says whether it is logarithmic.
+  /// Returns the label of the value axis, which states whether the axis is logarithmic.
   [[nodiscard]] std::string axis_label() const { return value_label + (is_log ? ", log scale" : ""); }
 
   /// Returns the style classes of a series.

@@ -41,8 +41,8 @@ class RigReader {
   /// in the future or too old.
   [[nodiscard]] Error read();
   /// Requests pictures from the cameras. Returns a new pair of pictures, if there is one. A picture is
-  /// refused if its timestamp is not finite, in the future, or out of order. silence() returns the reason if
-  /// a camera did not answer or its picture was refused.
+  /// refused if its timestamp is not finite, in the future, or out of order. If a camera did not answer or
+  /// its picture was refused, silence() returns the reason.
   [[nodiscard]] std::optional<PicturePair> newest_pair();
   /// Returns the name of a camera that gave no picture at the last request, with the reason, or "" if both
   /// gave one.

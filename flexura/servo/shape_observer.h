@@ -51,8 +51,8 @@ class ShapeObserver {
   [[nodiscard]] double sigma() const;
   /// Returns the standard deviation of the last shape from the last pictures alone, without earlier pictures.
   /// The filter assumes independent errors in successive pictures. For an arm at rest the errors are equal in
-  /// all pictures and do not average. sigma() is then too small, several times so if camera errors are
-  /// estimated; sigma_of_last() is correct.
+  /// all pictures and do not average. Then sigma() is too small, by a factor of several if camera errors are
+  /// estimated, and sigma_of_last() is correct.
   [[nodiscard]] double sigma_of_last() const;
 
  private:

@@ -230,7 +230,7 @@ const Table<AckRequest>& fields_of(const AckRequest*) {
 
 const Table<PixelRequest>& fields_of(const PixelRequest*) {
   static const auto table =
-      Table<PixelRequest>("pixel", "What a pixel shows.")
+      Table<PixelRequest>("pixel", "Asks what a pixel shows.")
           .field("camera", &PixelRequest::camera, {.required = true})
           .field("u", &PixelRequest::u, {.range = between(0, 65535), .required = true})
           .field("v", &PixelRequest::v, {.range = between(0, 65535), .required = true})
@@ -240,7 +240,7 @@ const Table<PixelRequest>& fields_of(const PixelRequest*) {
 
 const Table<MeasureRequest>& fields_of(const MeasureRequest*) {
   static const auto table =
-      Table<MeasureRequest>("measure", "What a picture shows of the arm.")
+      Table<MeasureRequest>("measure", "Measures the arm in a picture.")
           .field("camera", &MeasureRequest::camera, {.required = true})
           .field("layers", &MeasureRequest::layers,
                  {.meaning = "what is to be drawn", .count = {0, layer_names().size()}})
@@ -261,13 +261,13 @@ const Table<ShapeRequest>& fields_of(const ShapeRequest*) { return bare<ShapeReq
 
 const Table<PointRequest>& fields_of(const PointRequest*) {
   static const auto table =
-      Table<PointRequest>("point", "A point of the backbone.")
+      Table<PointRequest>("point", "Asks for a point of the backbone.")
           .field("s", &PointRequest::s, {.meaning = "m", .range = any_place, .required = true});
   return table;
 }
 
 const Table<BackboneRequest>& fields_of(const BackboneRequest*) {
-  static const auto table = with_shape<BackboneRequest>("backbone", "Where the arm would lie.");
+  static const auto table = with_shape<BackboneRequest>("backbone", "Asks for the backbone of a shape.");
   return table;
 }
 

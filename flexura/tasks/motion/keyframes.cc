@@ -68,7 +68,7 @@ void check_columns(const std::vector<std::string>& names, const std::vector<Colu
       return c.quantity == column.quantity && c.section == column.section;
     };
     if (std::ranges::count_if(columns, same) > 1) {
-      problems.push_back({header_row, i, fmt::format("column {} is there twice", names[i])});
+      problems.push_back({header_row, i, fmt::format("column {} occurs twice", names[i])});
     }
     if (column.section >= sections) {
       problems.push_back(

@@ -181,7 +181,7 @@ TEST(Tasks, BadOnesGetAClearLine) {
       {"kind='keyframes'\ncolumns=['time','arching_1','arching_2','arching_3']\nrows=[[0,0,0,0],[2,0,0,0]]\n",
        "column arching_3: the arm has 2 sections"},
       {"kind='keyframes'\ncolumns=['time','arching_1','arching_2','arching_2']\nrows=[[0,0,0,0],[2,0,0,0]]\n",
-       "column arching_2 is there twice"},
+       "column arching_2 occurs twice"},
       {"kind='keyframes'\nfile='a.csv'\ncolumns=['time']\n",
        "task[0].file: is given together with columns or rows"},
       {"kind='expression'\n", "task[0]: is empty: expected cord_angles"},

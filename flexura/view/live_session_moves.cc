@@ -109,7 +109,7 @@ void LiveSession::halt() {
   left_ = {Condition::halted, "everything was stopped"};
 }
 
-// What cameras say of themselves is what they are to do from now on: what commands add to.
+// Takes the readings of the cameras as their commanded positions, to which further commands are relative.
 void LiveSession::aim_at_readings() {
   head_targets_.clear();
   stage_targets_.clear();
@@ -242,7 +242,7 @@ void LiveSession::move_on(double next) {
   }
 }
 
-// What of a run is unsafe where it is now; "": nothing.
+// Returns what is unsafe in the present state of a run, or "".
 std::string LiveSession::run_danger() {
   const std::string limit = beyond_limits(viewed()->model.driven(), news_.state);
   return limit.empty() ? touched(shown_backbone(), viewed()->forbidden) : limit;
@@ -259,7 +259,7 @@ Conditioned LiveSession::condition() {
   return {rig_.is_arm_moving() || rig_.is_yielding() ? Condition::moving : Condition::idle, ""};
 }
 
-// When it changes, and not each word of a run's progress.
+// Reports the condition to the clients if it has changed.
 void LiveSession::report_condition() {
   const Conditioned now = condition();
   const bool is_new = now.condition != reported_.condition ||

@@ -243,7 +243,7 @@ int export_command(const std::string& results, const std::string& format, std::o
   const ExportResult result = export_as(format, results, progress);
   progress.clear();
   if (result.truncated)
-    err << "note: the run was cut short; exported up to the last complete chunk of its log\n";
+    err << "note: the run was interrupted; exported up to the last complete chunk of its log\n";
   print_line(out, format == "csv" ? "tables" : "films", result.folder.string());
   return exit_done;
 }

@@ -144,7 +144,7 @@ EstimateConfig estimate_config(const EstimateArguments& arguments) {
   const auto is_alike = [&](double one, double next) { return next - one <= alike; };
   if (const auto twice = std::ranges::adjacent_find(markers, is_alike); twice != markers.end())
     throw input_error("--markers",
-                      fmt::format("a place is there twice, {:.9g} of the arm's length: expected each once",
+                      fmt::format("a position occurs twice, {:.9g} of the arm's length: expected each once",
                                   *twice / config.prior.arm.length()));
   config.threshold = threshold_config(arguments.threshold);
   config.points = static_cast<std::size_t>(arguments.points);

@@ -32,7 +32,7 @@ struct ForwardRequest {
 
 const Table<ForwardRequest>& fields_of(const ForwardRequest*) {
   static const auto table =
-      Table<ForwardRequest>("fk request", "A shape of the arm, and where along it to answer.")
+      Table<ForwardRequest>("fk request", "Shape of the arm, and the positions along it for the answer.")
           .field("cord_angles", &ForwardRequest::cord_angles,
                  {.meaning = "cords' angles from +X", .unit = Unit::radian, .range = angle_range})
           .field("archings", &ForwardRequest::archings,

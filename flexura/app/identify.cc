@@ -159,7 +159,7 @@ std::string words_of(const std::string& name) {
 
 std::string distance_words(double metres) {
   constexpr double most = 100;  // In m; beyond, the computed motion has blown up.
-  return metres < most ? fmt::format("{:.2f} mm", 1e3 * metres) : "farther than can be computed";
+  return metres < most ? fmt::format("{:.2f} mm", 1e3 * metres) : "more than can be computed";
 }
 
 void print_table(const IdentifiedArm& found, std::ostream& out) {
@@ -171,10 +171,12 @@ void print_table(const IdentifiedArm& found, std::ostream& out) {
                                 : fmt::format("{:>24}", "not observable in this motion"));
     out << fmt::format("{:>12.5g}{}\n", value.nominal, value.is_physical ? "" : "  not physical");
   }
-  out << fmt::format("{} places at {} times, which the rod's shapes meet within {} (rms); misfit {:.2f}\n",
-                     found.places, found.samples, distance_words(found.rms), found.misfit);
   out << fmt::format(
-      "moved by its tendons alone the arm of the file is off by {} (rms), as identified by {}\n",
+      "{} positions at {} times, which the rod's shapes approximate within {} (rms); misfit {:.2f}\n",
+      found.places, found.samples, distance_words(found.rms), found.misfit);
+  out << fmt::format(
+      "simulated with its tendons' forces, the arm of the file is {} (rms) from the motion, the identified "
+      "arm {}\n",
       distance_words(found.missed_file), distance_words(found.missed));
 }
 
@@ -226,10 +228,10 @@ void refuse_what_is_not_known(const IdentifyArguments& arguments, const ArmConfi
                                             *arguments.from, *arguments.to));
   if (arm.drag)
     throw input_error(arguments.experiment,
-                      "arm.drag: a fluid is not known to identification: expected none");
+                      "arm.drag: the identification does not support a fluid: expected none");
   if (!arm.payload.empty())
     throw input_error(arguments.experiment,
-                      "arm.payload: payloads are not known to identification: expected none");
+                      "arm.payload: the identification does not support payloads: expected none");
   const auto is_good = [](double value) { return value > 0 && std::isfinite(value); };
   if (arguments.noise_mm && !is_good(*arguments.noise_mm))
     throw input_error("--noise-mm", fmt::format("{}: expected a number above 0", *arguments.noise_mm));
@@ -320,7 +322,7 @@ int identify_command(const IdentifyArguments& arguments, std::ostream& out, std:
   if (arguments.friction && rod.tendons.empty())
     throw input_error("--friction", "the arm has no tendons: expected an arm with tendons");
   MeasuredMotion motion = read_motion(arguments.motion, experiment, rod, {arguments.from, arguments.to});
-  if (motion.is_cut) err << "note: the run was cut short; its log is read up to the last complete chunk\n";
+  if (motion.is_cut) err << "note: the run was interrupted; its log is read up to the last complete chunk\n";
   const double noise = arguments.noise_mm.value_or(0) * 1e-3;
   if (motion.is_logged && noise > 0) add_errors(motion, noise, experiment.seed);
   IdentifiedArm found;

@@ -56,7 +56,7 @@ const Table<InverseRequest>& fields_of(const InverseRequest*) {
                   .range = between(-farthest, farthest),
                   .count = {2, 10000}})
           .field("tolerance", &InverseRequest::tolerance,
-                 {.meaning = "how far the arm may be from the curve",
+                 {.meaning = "largest distance of the arm from the curve",
                   .unit = Unit::metre,
                   .range = above_up_to(0, farthest)})
           .field("prefer", &InverseRequest::objective, {.meaning = "which of many solutions to prefer"})
@@ -72,7 +72,8 @@ void check_target(const InverseRequest& request, Reader& reader) {
   }
   if (request.curve) {
     if (request.direction || request.rotation || request.all) {
-      reader.problem_at("curve", "stands alone: direction, rotation and all are for a position");
+      reader.problem_at(
+          "curve", "cannot be combined with direction, rotation or all: expected these only with a position");
     }
     const auto& points = *request.curve;
     double length = 0;

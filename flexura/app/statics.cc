@@ -29,7 +29,8 @@ struct StaticsRequest : RodRequest {
 
 const Table<StaticsRequest>& fields_of(const StaticsRequest*) {
   static const auto table = [] {
-    Table<StaticsRequest> made("statics request", "What pulls at the arm, and where along it to answer.");
+    Table<StaticsRequest> made("statics request",
+                               "Forces on the arm, and the positions along it for the answer.");
     add_rod_fields(made)
         .field("target", &StaticsRequest::target,
                {.meaning = "target of the arm, instead of tensions or displacements"})

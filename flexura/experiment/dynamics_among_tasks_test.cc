@@ -155,7 +155,7 @@ TEST_F(Dynamics, TellsWhatIsWrongAfterATaskThatFailsToo) {
   Quiet quiet;
   const SafetyReport report = check_experiment_safety(experiment, quiet);
   is_reported(report.caveats, report.notes);
-  EXPECT_THAT(report.notes, testing::Contains("first: gravity is compensated to 50 %, not to 100 %"));
+  EXPECT_THAT(report.notes, testing::Contains("first: 50 % of gravity is compensated, not 100 %"));
   const RunResult result = run(experiment);
   const auto lines = [&](const char* key) {
     std::vector<std::string> texts;
@@ -164,7 +164,7 @@ TEST_F(Dynamics, TellsWhatIsWrongAfterATaskThatFailsToo) {
     return texts;
   };
   is_reported(lines("caveats"), lines("notes"));
-  EXPECT_THAT(result.reasons, ElementsAre("first: gravity is compensated to 50 %, not to 100 %"));
+  EXPECT_THAT(result.reasons, ElementsAre("first: 50 % of gravity is compensated, not 100 %"));
 }
 
 }  // namespace

@@ -261,7 +261,7 @@ Experiment parse_experiment(std::string_view text, const std::string& source, co
     return file != nullptr && !file->as<std::string>()->empty();
   };
   if (std::ranges::any_of(task_nodes(document), names_file))
-    throw input_error(source, "a text alone cannot name a file of keyframes");
+    throw input_error(source, "an experiment given as text cannot refer to a file of keyframes");
   check_whole(experiment, document);
   return experiment;
 }

@@ -54,7 +54,7 @@ std::optional<Chapter> RodRecord::chapter(const Arm& arm, const std::vector<Obst
     series.name = std::to_string(i + 1);
     for (const std::vector<double>& at : tensions) series.values.push_back(at[i]);
   }
-  LineChart tip{.heading = "the true tip from the commanded one",
+  LineChart tip{.heading = "distance of the true tip from the commanded tip",
                 .x_label = "t (s)",
                 .value_label = "distance (mm)",
                 .least = 1,
@@ -64,10 +64,9 @@ std::optional<Chapter> RodRecord::chapter(const Arm& arm, const std::vector<Obst
   const bool is_moving = !energies.empty();
   Chapter chapter{
       .heading = "The true arm",
-      .text =
-          fmt::format("The simulated arm is an elastic rod, {} under its tendons, its weight and its loads. "
-                      "The pictures above show the arm as it was commanded.",
-                      is_moving ? "in motion" : "at rest"),
+      .text = fmt::format("The simulated arm is an elastic rod, {} under the forces of its tendons, weight "
+                          "and loads. The pictures above show the arm as commanded.",
+                          is_moving ? "in motion" : "at rest"),
       .figures = {{"true-arm", two_shapes_picture(arm, obstacles, *last, commanded,
                                                   "the true arm at the end, and as commanded (line)")}},
       .is_first_tall = false};
@@ -77,7 +76,7 @@ std::optional<Chapter> RodRecord::chapter(const Arm& arm, const std::vector<Obst
   if (std::ranges::any_of(contact_forces, [](double force) { return force > 0; })) {
     LineChart contacts{.heading = "contact forces on the true arm",
                        .x_label = "t (s)",
-                       .value_label = "sum of their sizes (N)",
+                       .value_label = "sum of magnitudes (N)",
                        .least = 1e-3,
                        .x = times};
     contacts.series.emplace_back().values = contact_forces;
@@ -209,7 +208,7 @@ void RunRecorder::report_lost_steps(double time, const std::vector<double>& lost
     if (lost[i] != lost_[i])
       log_.event(
           time, Recorder::Level::warning, "drive",
-          fmt::format("the motor of axis {} loses {:.0f} microsteps, which its controller does not know",
+          fmt::format("the motor of axis {} loses {:.0f} microsteps without knowledge of its controller",
                       axis_names_.at(i), lost[i] - lost_[i]));
     lost_[i] = lost[i];
   }

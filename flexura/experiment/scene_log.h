@@ -15,13 +15,14 @@ namespace flexura {
 /// Returns the poses of the arm's base ("base") and the cameras' optical frames ("camera/NAME") at the start.
 [[nodiscard]] FramesMessage frames_message(const Experiment& experiment);
 
-/// Returns the arm along `backbone`: strips with the mean thickness of its sections, in micrometres.
+/// Returns the arm along `backbone` as polylines. Each has the mean thickness of its section, rounded to
+/// micrometres.
 [[nodiscard]] SceneMessage arm_message(const ColorConfig& color, double time, const Backbone& backbone);
 
-/// Selects the states with a drawing of the arm: the first, and then ten per second of simulated time.
+/// Selects the states at which the arm is drawn: the first, and then ten per second of simulated time.
 class SceneTimes {
  public:
-  /// Returns true if a state at `time` s, after those of all previous calls, is selected.
+  /// Returns true if the state at `time` (s) is selected. The times of successive calls must increase.
   [[nodiscard]] bool is_next(double time);
 
  private:

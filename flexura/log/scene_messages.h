@@ -7,8 +7,8 @@
 #include "flexura/base/fields.h"
 #include "flexura/log/messages.h"
 
-// Objects of the scene and their poses, for programs that draw logs. They follow the layout of the foxglove.*
-// schemas.
+// Objects of the scene and their poses, for programs that display logs. The messages have the layout of the
+// Foxglove schemas.
 namespace flexura {
 
 /// foxglove.Duration.
@@ -21,7 +21,7 @@ struct ColorMessage {
   double r = 0, g = 0, b = 0, a = 1;
 };
 
-/// foxglove.CubePrimitive: centred in its pose.
+/// foxglove.CubePrimitive: a box whose middle is at its pose.
 struct CubeMessage {
   PoseMessage pose;
   VectorMessage size;  ///< In m.
@@ -35,7 +35,7 @@ struct SphereMessage {
   ColorMessage color;
 };
 
-/// foxglove.CylinderPrimitive: centred in its pose, along its z.
+/// foxglove.CylinderPrimitive: a cylinder whose middle is at its pose, with the axis along z.
 struct CylinderMessage {
   PoseMessage pose;
   VectorMessage size;  ///< Two diameters and the length, m.
@@ -43,9 +43,9 @@ struct CylinderMessage {
   ColorMessage color;
 };
 
-/// foxglove.LinePrimitive: a strip.
+/// foxglove.LinePrimitive: a polyline.
 struct LineMessage {
-  std::int64_t type = 0;  ///< 0: a strip.
+  std::int64_t type = 0;  ///< 0: a polyline.
   PoseMessage pose;
   double thickness = 0;  ///< In m.
   bool scale_invariant = false;
@@ -55,12 +55,12 @@ struct LineMessage {
   std::vector<std::int64_t> indices;
 };
 
-/// foxglove.SceneEntity: replaces one with an equal `id`.
+/// foxglove.SceneEntity: replaces an earlier entity with an equal `id`.
 struct EntityMessage {
   TimeMessage timestamp;
   std::string frame_id = "world";
   std::string id;
-  DurationMessage lifetime;  ///< 0: until it is replaced.
+  DurationMessage lifetime;  ///< Time for which the entity is shown; 0: until it is replaced.
   bool frame_locked = false;
   std::vector<CubeMessage> cubes;
   std::vector<SphereMessage> spheres;

@@ -23,7 +23,7 @@ class MotionHistory {
     while (readings_.size() > 2 && readings_[1].first < time - span_) readings_.pop_front();
   }
 
-  /// Returns the time of the first reading, s. Requires a reading.
+  /// Returns the time of the first kept reading, s. Requires a reading.
   [[nodiscard]] double since() const { return readings_.front().first; }
 
   /// Returns the times of the readings after `from` and before `to`, s, in order.

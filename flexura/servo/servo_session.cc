@@ -121,7 +121,7 @@ class Session {
     try {
       limiter_.emplace(nominal_arm_, limiter_config(config_), sent_);
     } catch (const std::invalid_argument& error) {
-      return fmt::format("the arm cannot be steered from where it is: {}", error.what());
+      return fmt::format("the arm cannot be controlled from its present state: {}", error.what());
     }
     judge_.emplace(config_, result_.start, goals_->last());
     tally_.emplace(model_.arm, config_, result_.start, goals_->last());
@@ -156,9 +156,9 @@ class Session {
     if (!(passed < most)) passed = 0, fault("the clock's time is out of range for a servo");
     const long next = std::max(ticks_ + 1, static_cast<long>(passed));
     if (next > ticks_ + 1 && result_.missed_steps == 0)
-      watcher_.reported(rig_.now(),
-                        fmt::format("a step took longer than its {:.4g} s: those that it missed are left out",
-                                    config_.step));
+      watcher_.reported(
+          rig_.now(),
+          fmt::format("a step took longer than {:.4g} s: the missed steps are skipped", config_.step));
     result_.missed_steps += next - ticks_ - 1;
     ticks_ = next;
     rig_.ports().clock->wait_until(result_.start + config_.step * static_cast<double>(ticks_));
@@ -264,10 +264,10 @@ class Session {
     for (std::size_t i = 0; i < state.bends.size(); ++i) {
       const Section& section = nominal_arm_.driven().sections[i];
       if (state.bends[i].norm() >= nearly * section.max_bend)
-        return fmt::format("section {} is bent as far as it goes", i + 1);
+        return fmt::format("section {} is at its bend limit", i + 1);
       const auto& [least, most] = section.stretch_limits;
       if (least < most && (state.stretches[i] * nearly <= least || state.stretches[i] >= nearly * most))
-        return fmt::format("section {} is stretched as far as it goes", i + 1);
+        return fmt::format("section {} is at its stretch limit", i + 1);
     }
     return "";
   }

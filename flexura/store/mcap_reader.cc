@@ -97,7 +97,8 @@ class McapScan {
   }
 
   void take_top(Record& record) {
-    if (data_end_ && is_data(record.op)) cursor_.fail("the data go on after their end", record.start);
+    if (data_end_ && is_data(record.op))
+      cursor_.fail("there are data after the end of the data section", record.start);
     switch (record.op) {
       case McapOp::header:
         record.content.take_text();  // The profile.
@@ -142,13 +143,14 @@ class McapScan {
               compression_at);
     }
     McapCursor records = in.take_part(in.take<std::uint64_t>());
-    if (records.remaining() != size) in.fail("a plain chunk gives two sizes", records.position());
+    if (records.remaining() != size) in.fail("a plain chunk has two different sizes", records.position());
     check_crc(crc, records.rest(), records, "a chunk's");
     while (!records.done()) {
       const std::size_t start = records.position();
       const auto op = McapOp{records.take<std::uint8_t>()};
       Record record{op, start, records.take_part(records.take<std::uint64_t>())};
-      if (!take_inner(record) && op <= McapOp::data_end) in.fail("no place for this in a chunk", start);
+      if (!take_inner(record) && op <= McapOp::data_end)
+        in.fail("this record is not allowed in a chunk", start);
     }
   }
 
@@ -179,7 +181,8 @@ class McapScan {
     const auto schema = schemas_.find(schema_id);
     if (schema != schemas_.end()) {
       copied_schemas_ += schema->second.data.size();
-      if (copied_schemas_ > max_copied_schemas) in.fail("the channels' schemas take too much", record.start);
+      if (copied_schemas_ > max_copied_schemas)
+        in.fail("the channels' schemas need too much memory", record.start);
       channel.schema = schema->second;
     } else if (schema_id != 0) {
       in.fail("a channel has an unknown schema, " + std::to_string(schema_id), record.start);
@@ -214,13 +217,13 @@ class McapScan {
     if (in.remaining() != mcap_footer_length) in.fail("a footer has 20 bytes", record.start);
     const auto summary_start = in.take<std::uint64_t>();
     if (summary_start != 0 && summary_start != *data_end_) {
-      in.fail("the footer does not know where the summary starts", record.start);
+      in.fail("the footer has a wrong position of the summary", record.start);
     }
     in.take_bytes(sizeof(std::uint64_t));  // Start of the summary's offsets.
     const auto summary = in.since(*data_end_);
     check_crc(in.take<std::uint32_t>(), summary, in, "the summary's");
     if (!take_magic("the log's last bytes are wrong")) return;
-    if (!cursor_.done()) cursor_.fail("the log goes on after its end");
+    if (!cursor_.done()) cursor_.fail("there are bytes after the end of the log");
     to_.truncated_ = false;
   }
 

@@ -19,8 +19,8 @@ namespace flexura {
 struct McapMessage {
   const McapChannel* channel;
   std::uint64_t log_time;           ///< Simulated time, ns.
-  std::uint32_t sequence;           ///< As counted by the writer; it may wrap.
-  std::span<const std::byte> data;  ///< As written: JSON in the logs of runs.
+  std::uint32_t sequence;           ///< Number of the message as counted by the writer; it may wrap.
+  std::span<const std::byte> data;  ///< Data as written; in the logs of runs JSON.
 
   /// Returns the data as text.
   [[nodiscard]] std::string_view text() const {
@@ -28,14 +28,15 @@ struct McapMessage {
   }
 };
 
-/// Whether to verify checksums. Without them, a damaged log gives what its structure still contains.
+/// Whether to verify checksums (`crc`) or only the structure. With `structure` all messages of a damaged log
+/// are read whose structure is intact.
 enum class McapCheck : std::uint8_t { crc, structure };
 
-/// Reads a whole log, from this or another program, by its data section from start to end. Memory grows only
-/// with the number of messages; their data stay in the file's pages. A log whose writer was killed has no
-/// end: it is read up to its last complete chunk, and `truncated` is set. Constructors throw
-/// std::runtime_error with the log's name and the byte of the error. Errors are no log at all, a record that
-/// does not fit, a wrong CRC, a message without channel, a compressed chunk.
+/// Reads the whole data section of a log, from this or another program. The memory used grows only with the
+/// number of messages, because their data stay in the file's pages. A log whose writer was killed is read up
+/// to its last complete chunk, and `truncated` is set. Constructors throw std::runtime_error with the log's
+/// name and the position of the error in bytes. Errors are: a file that is no log, a record that exceeds its
+/// part, a wrong CRC, a message without channel, a compressed chunk.
 class McapReader {
  public:
   /// Also throws std::system_error if the file cannot be read.
@@ -43,7 +44,7 @@ class McapReader {
   /// `bytes` must outlive the reader; `name` identifies them in errors.
   McapReader(std::span<const std::byte> bytes, const std::string& name, McapCheck check = McapCheck::crc);
 
-  /// By identifier.
+  /// Returns the channels by their identifiers.
   [[nodiscard]] const std::map<std::uint16_t, McapChannel>& channels() const { return channels_; }
   /// Returns the messages in the file's order, which may differ from the order of time.
   [[nodiscard]] const std::vector<McapMessage>& messages() const { return messages_; }

@@ -8,7 +8,7 @@
 
 namespace flexura {
 
-/// The earliest and the latest of some times, ns.
+/// The earliest and the latest of a set of times, ns.
 struct McapTimeRange {
   std::uint64_t start = UINT64_MAX, end = 0;
   void add(std::uint64_t time);
@@ -18,14 +18,15 @@ struct McapTimeRange {
 /// Position of a chunk and its message indexes.
 struct McapChunkIndex {
   McapTimeRange time;
-  std::uint64_t start = 0;                 ///< Start of the chunk's record in the file.
-  std::uint64_t length = 0;                ///< Length of the whole record.
-  std::uint64_t records_size = 0;          ///< Size of its messages.
-  std::uint64_t message_index_length = 0;  ///< Length of all message indexes, which follow the chunk.
-  std::map<std::uint16_t, std::uint64_t> message_index_offsets;  ///< By channel; in the file.
+  std::uint64_t start = 0;                 ///< Start of the chunk's record in the file, bytes.
+  std::uint64_t length = 0;                ///< Length of the whole record, bytes.
+  std::uint64_t records_size = 0;          ///< Size of the chunk's records, bytes.
+  std::uint64_t message_index_length = 0;  ///< Length of all message indexes, which follow the chunk, bytes.
+  std::map<std::uint16_t, std::uint64_t>
+      message_index_offsets;  ///< Position of each channel's message index in the file, bytes.
 };
 
-/// Content of a log as listed at its end.
+/// Content of a log, as listed in the summary at its end.
 struct McapSummary {
   struct Channel {
     McapChannel description;
@@ -37,8 +38,7 @@ struct McapSummary {
   std::vector<McapChunkIndex> chunks;
 };
 
-/// Chunks are not compressed. Compression would set another name here; a chunk's CRC and uncompressed size
-/// would stay those of the plain records.
+/// Name of the compression of chunks: empty, because chunks are not compressed.
 inline constexpr std::string_view mcap_compression;
 
 void put_schema(McapBytes& out, std::uint16_t id, const McapSchema& schema);

@@ -115,8 +115,10 @@ class StudyRig {
     if (std::getenv("TRACE"))
       for (const ServoStep& step : result.steps)
         std::fprintf(stderr, "%.3f %s err %.3f%% ahead %.3f%% sigma %.3f%% b %.4f %.4f %.4f %s\n",
-                     step.time - result.start, step.is_fresh ? "*" : " ", step.error ? 100 * step.error->rms : -1,
-                     step.ahead ? 100 * step.ahead->rms : -1, 100 * step.sigma, step.sent.bends[0].x(), step.sent.bends[1].x(), step.sent.bends[2].x(), step.limited.c_str());
+                     step.time - result.start, step.is_fresh ? "*" : " ",
+                     step.error ? 100 * step.error->rms : -1, step.ahead ? 100 * step.ahead->rms : -1,
+                     100 * step.sigma, step.sent.bends[0].x(), step.sent.bends[1].x(), step.sent.bends[2].x(),
+                     step.limited.c_str());
     Run run;
     run.totals = watcher.totals();
     Arrival& arrival = run.arrival;
@@ -160,7 +162,8 @@ ArmState random_command(TestRandom& random) {
 void print_rows(const std::vector<Method>& ways, const std::vector<std::vector<Run>>& runs) {
   fmt::print(
       "| law | converged | to 2 %, s (median / 95 %) | overshoot, % (95 %) | left, rms, % (median / 95 %) | "
-      "left, most, % (largest) | energy, J (median) | tension, N (largest) | violations: bend / rate / view / "
+      "left, most, % (largest) | energy, J (median) | tension, N (largest) | violations: bend / rate / view "
+      "/ "
       "contact |\n| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |\n");
   for (std::size_t j = 0; j < ways.size(); ++j) {
     std::vector<double> settled, overshoot, rms, most, energy, tension;

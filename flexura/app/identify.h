@@ -22,8 +22,8 @@ struct IdentifyArguments {
   std::optional<double> window = {};      ///< Duration of motion in one equation, s.
   std::optional<std::int64_t> seed = {};  ///< Seed of the noise added to a log's positions.
   bool mass = false;                      ///< Whether to identify a mass factor too.
-  bool friction = false;                 ///< Whether to identify the friction coefficient of the tendons too.
-  bool alike = false;                     ///< Whether all sections have one material.
+  bool friction = false;  ///< Whether to identify the friction coefficient of the tendons too.
+  bool alike = false;     ///< Whether all sections have one material.
   bool json = false;
 };
 
@@ -68,7 +68,8 @@ struct IdentifySettings {
 };
 
 /// Identifies the stiffness and damping time of each section from a motion of the arm; with `mass` a mass
-/// factor too, with `friction` one friction coefficient of all tendons. `rod` is the nominal rod of `arm`. Throws the std::invalid_argument of record_of_places() and identify().
+/// factor too, with `friction` one friction coefficient of all tendons. `rod` is the nominal rod of `arm`.
+/// Throws the std::invalid_argument of record_of_places() and identify().
 [[nodiscard]] IdentifiedArm identify_arm(const ArmConfig& arm, const Rod& rod, const MeasuredMotion& motion,
                                          const IdentifySettings& settings);
 

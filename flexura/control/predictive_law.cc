@@ -149,8 +149,8 @@ void PredictiveLaw::solve(const Eigen::VectorXd& sent, const Eigen::VectorXd& ra
     Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(n, n);
     for (int i = horizon - 1 - lag, m = 0; i >= 0; --i, ++m) {
       // The change at step i acts m + lag steps later when that at step i + lag acts m steps later.
-      sum.noalias() += answer_[static_cast<std::size_t>(m + lag)].transpose() *
-                       answer_[static_cast<std::size_t>(m)];
+      sum.noalias() +=
+          answer_[static_cast<std::size_t>(m + lag)].transpose() * answer_[static_cast<std::size_t>(m)];
       H_.block(i * n, (i + lag) * n, n, n) = T * sum;
       if (lag > 0) H_.block((i + lag) * n, i * n, n, n) = T * sum.transpose();
     }

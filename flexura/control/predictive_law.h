@@ -52,7 +52,7 @@ class PredictiveLaw {
 
  private:
   struct Disc {
-    Eigen::Index at = 0;   // First of its numbers in a step's variables.
+    Eigen::Index at = 0;  // First of its numbers in a step's variables.
     Eigen::Index size = 2;
     double bend = 0, rate = 0;  // Largest.
   };

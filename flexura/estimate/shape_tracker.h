@@ -74,8 +74,8 @@ class ShapeTracker {
   std::optional<ShapePrediction> prediction_;
   SwingFilter swing_;
   bool is_updated_ = false;  // Whether the estimate contains the prediction.
-  double time_ = 0;       // Time of `prediction_`, s.
-  double usual_rms_ = 0;  // Root mean square of the last estimate's residuals, px.
+  double time_ = 0;          // Time of `prediction_`, s.
+  double usual_rms_ = 0;     // Root mean square of the last estimate's residuals, px.
   bool is_innovation_large_ = false;
   int unreliable_ = 0;  // Number of successive observations with many outliers, up to the last one.
   // Shape of the last estimate without a start, if it needs camera errors beyond their priors.

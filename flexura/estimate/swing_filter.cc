@@ -59,9 +59,7 @@ void SwingFilter::forget() {
   cross_.resize(0, 0);
 }
 
-double SwingFilter::frequency_factor() const {
-  return is_tracked() ? std::exp(mean_[mean_.size() - 1]) : 1;
-}
+double SwingFilter::frequency_factor() const { return is_tracked() ? std::exp(mean_[mean_.size() - 1]) : 1; }
 
 Eigen::VectorXd SwingFilter::predict(const SwingPath& path, Eigen::Index bends, Eigen::MatrixXd& covariance) {
   const auto count = static_cast<Eigen::Index>(path.modes.size()), of_factor = 2 * count;

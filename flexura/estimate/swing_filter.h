@@ -23,16 +23,17 @@ struct SwingPath {
 
 /// Standard deviations of the swing's model.
 struct SwingFilterConfig {
-  double kick_error = 0.3;       ///< Error of a kick, share of it.
-  double force_noise = 0.2;      ///< Process noise of each mode's rate, rad/s per root second.
-  double frequency_error = 0.2;  ///< Initial error of the logarithm of the frequencies, common to all modes.
+  double kick_error = 0.3;        ///< Error of a kick, share of it.
+  double force_noise = 0.2;       ///< Process noise of each mode's rate, rad/s per root second.
+  double frequency_error = 0.2;   ///< Initial error of the logarithm of the frequencies, common to all modes.
   double frequency_noise = 0.02;  ///< Process noise of it, per root second.
 };
 
 /// Swing of an arm about its equilibrium: estimates the modes' coordinates z, their rates z', and a common
 /// factor on their frequencies, which depends on the true stiffness and on masses that the model lacks
 /// (docs/estimation.md, "An arm that swings"). An extended Kalman filter on (z, z', logarithm of the factor).
-/// It is a part of a larger one, whose other unknowns begin with the bends of the arm's shape, swing included.
+/// It is a part of a larger one, whose other unknowns begin with the bends of the arm's shape, swing
+/// included.
 class SwingFilter {
  public:
   explicit SwingFilter(const SwingFilterConfig& config = {}) : config_(config) {}
@@ -43,8 +44,8 @@ class SwingFilter {
   [[nodiscard]] bool is_tracked() const { return !modes_.empty(); }
 
   /// Advances the swing along a path. Modes of another number start anew, at rest. `covariance`: of the other
-  /// unknowns, advanced too; they begin with `bends` numbers (bend_x, bend_y) for each arc. Returns the change
-  /// of (bend_x, bend_y, stretch) of each arc; empty if the path has no modes.
+  /// unknowns, advanced too; they begin with `bends` numbers (bend_x, bend_y) for each arc. Returns the
+  /// change of (bend_x, bend_y, stretch) of each arc; empty if the path has no modes.
   [[nodiscard]] Eigen::VectorXd predict(const SwingPath& path, Eigen::Index bends,
                                         Eigen::MatrixXd& covariance);
   /// Updates the swing by an estimate of the other unknowns. `innovation`: estimate minus prediction;

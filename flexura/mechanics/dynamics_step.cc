@@ -248,8 +248,8 @@ bool RodDynamics::Work::factor_exactly(const Stage& stage) {
 // derivative while iterations converge fast.
 bool RodDynamics::Work::iterate_exactly(const Stage& stage, RodStep& result) {
   constexpr double similar = 0.8;
-  bool is_old = factor_ && similar * factor_->stretch <= stage.stretch &&
-                similar * stage.stretch <= factor_->stretch;
+  bool is_old =
+      factor_ && similar * factor_->stretch <= stage.stretch && similar * stage.stretch <= factor_->stretch;
   evaluate(stage);
   if (!change_.allFinite() || (!is_old && !factor_exactly(stage)) || !solve_exactly(stage)) return false;
   const int most = result.iterations + config.most_iterations;

@@ -248,8 +248,8 @@ std::vector<SwingMode> RodResponse::swing(const ArmState& command, std::size_t m
   const std::lock_guard lock(mutex_);
   const Answer& here = answer(command);
   if (!dynamics_ || has_driven_lengths_ || !here.at.converged()) return {};
-  const RodDynamicsSlopes by = dynamics_->slopes(
-      dynamics_->rest(here.at), {.displacements = displacements(command)}, loads_);
+  const RodDynamicsSlopes by =
+      dynamics_->slopes(dynamics_->rest(here.at), {.displacements = displacements(command)}, loads_);
   const Eigen::LLT<Eigen::MatrixXd> mass(by.mass);
   const auto across = [&](const Eigen::MatrixXd& form) {
     const Eigen::MatrixXd half = mass.matrixL().solve(form);

@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "flexura/kinematics/arm_variables.h"
-#include "flexura/mechanics/dynamics.h"
 #include "flexura/kinematics/spatial.h"
 #include "flexura/mechanics/arc_fit.h"
+#include "flexura/mechanics/dynamics.h"
 #include "flexura/mechanics/rod_chain.h"
 #include "flexura/mechanics/statics.h"
 #include "flexura/model/arm.h"

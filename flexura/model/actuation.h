@@ -57,8 +57,8 @@ class Actuation {
   /// `by_command` if needed. Throws std::invalid_argument if the command does not have one bend and one
   /// stretch per section.
   void slopes(const ArmState& command, Eigen::MatrixXd& by_command) const;
-  /// Returns the slowest modes in which the arm swings about the equilibrium of a command (ArmResponse::swing);
-  /// empty without a response.
+  /// Returns the slowest modes in which the arm swings about the equilibrium of a command
+  /// (ArmResponse::swing); empty without a response.
   [[nodiscard]] std::vector<SwingMode> swing(const ArmState& command, std::size_t most) const;
   /// Converts derivatives with respect to the shape to derivatives with respect to the command, at `command`.
   /// `by_shape` has three columns per arc (bend_x, bend_y, stretch), `by_command` three per section. Resizes

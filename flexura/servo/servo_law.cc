@@ -54,7 +54,8 @@ bool ServoLaw::find_features(const ServoObservation& observed) {
   if (observed.rest == estimate) return true;
   const std::array<View, 2> views = {observed.seen[0].view, observed.seen[1].view};
   Eigen::VectorXd swung, rest;
-  if (!features_.predict(estimate, views, swung) || !features_.predict(observed.rest, views, rest)) return false;
+  if (!features_.predict(estimate, views, swung) || !features_.predict(observed.rest, views, rest))
+    return false;
   seen_ += rest - swung;
   return true;
 }
@@ -84,8 +85,7 @@ void ServoLaw::go_along(const ArmState& desired, const ArmState& next, ArmState&
 ServoLaw::Output ServoLaw::step(const Input& input) {
   const ArmState& estimate = input.observed.rest;
   if (input.is_fresh) features_.look(input.observed);
-  if (!find_features(input.observed) || !find_error(input, input.desired, is_))
-    return {input.sent, 0, true};
+  if (!find_features(input.observed) || !find_error(input, input.desired, is_)) return {input.sent, 0, true};
   double potential = 0.5 * is_.error.squaredNorm();
   if (!is_same(input.then, input.desired)) {
     if (!find_error(input, input.then, was_)) return {input.sent, 0, true};

@@ -21,7 +21,7 @@ struct ServoObservation {
   std::array<Frame, 2> frames;  ///< Frames of both cameras.
   std::array<Observation, 2>
       seen;  ///< Measured arm in each picture; the views are corrected by their estimated errors.
-  ShapeEstimate estimate;              ///< Estimated shape of the arm at the time of the observation.
+  ShapeEstimate estimate;  ///< Estimated shape of the arm at the time of the observation.
   /// Shape of the arm without its swing about the equilibrium. For an arm that does not swing it equals the
   /// shape of `estimate`.
   ArmState rest;

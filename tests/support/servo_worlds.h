@@ -27,10 +27,10 @@ struct ServoWorld {
 
 /// A true arm of elastic rods with inertia, friction and a load, and the model of it. Both have a drive.
 struct SwingingWorld {
-  double stiffness = 1;     ///< True over nominal stiffness.
-  double friction = 0.02;   ///< True friction coefficient of the tendons.
-  double payload = 0.02;    ///< Mass at the tip that the model lacks, kg.
-  double backlash_deg = 1;  ///< True backlash of the spools.
+  double stiffness = 1;           ///< True over nominal stiffness.
+  double friction = 0.02;         ///< True friction coefficient of the tendons.
+  double payload = 0.02;          ///< Mass at the tip that the model lacks, kg.
+  double backlash_deg = 1;        ///< True backlash of the spools.
   std::string model = "dynamic";  ///< `arm.model` of the model: "kinematic", "static" or "dynamic".
 };
 
@@ -77,7 +77,8 @@ inline std::string swinging_world_file(const LoopRig& rig, bool is_colored, cons
   if (!is_colored) make_gray(text);
   const auto material = [](double stiffness) {
     return fmt::format(
-        "material = {{ youngs_modulus = {}, radius_mm = 1.7, mass_per_length = 0.15, damping_time = 0.01 }}\n",
+        "material = {{ youngs_modulus = {}, radius_mm = 1.7, mass_per_length = 0.15, damping_time = 0.01 "
+        "}}\n",
         stiffness * 54e9);
   };
   add_to_each("arm.section", "max_bend_rate_deg = 90\nbend_profile = [1, 1, 1]\n", text);

@@ -38,9 +38,7 @@ class TruthWatcher : public ServoSessionWatcher {
       : bench_(bench), driven_(std::move(driven)), config_(config) {}
 
   /// Pushes the arm's tip with this force, N, world frame, from `from` to `until`, s of the rig's clock.
-  void push_tip(const Eigen::Vector3d& force, double from, double until) {
-    push_ = Push{force, from, until};
-  }
+  void push_tip(const Eigen::Vector3d& force, double from, double until) { push_ = Push{force, from, until}; }
 
   void arm_sent(double, const ArmState& state, double duration) override {
     if (!sent_.bends.empty())

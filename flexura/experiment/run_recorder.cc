@@ -99,6 +99,8 @@ void RunRecorder::draw_scene(const Experiment& experiment) {
   const SceneMessage stand = stand_message(experiment);
   log_.recorder().write({scene_topic, 0, stand});
   drawn_color_ = experiment.arm.look.color;
+  for (const CameraConfig& camera : experiment.true_rig().cameras)
+    camera_drawings_.emplace_back(camera, log_.recorder());
 }
 
 void RunRecorder::state(std::size_t step, double time, const ArmState& state) {
@@ -198,8 +200,20 @@ void RunRecorder::readings(Rig& rig) {
   }
   recorder.reading(ports.arm->read().value());
   for (const CameraPorts& camera : ports.cameras) {
-    if (camera.head != nullptr) recorder.reading(camera.name, camera.head->read().value());
-    if (camera.stage != nullptr) recorder.reading(camera.name, camera.stage->read().value());
+    const auto drawing = std::ranges::find(camera_drawings_, camera.name, &CameraDrawing::name);
+    std::optional<CameraStance> stance;
+    if (drawing != camera_drawings_.end()) stance = drawing->initial();
+    if (camera.head != nullptr) {
+      const HeadReading reading = camera.head->read().value();
+      recorder.reading(camera.name, reading);
+      if (stance) stance->head = reading.state;
+    }
+    if (camera.stage != nullptr) {
+      const StageReading reading = camera.stage->read().value();
+      recorder.reading(camera.name, reading);
+      if (stance) stance->stage = reading.state;
+    }
+    if (stance) drawing->stance(now, *stance, recorder);
   }
 }
 

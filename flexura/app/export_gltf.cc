@@ -14,6 +14,7 @@
 #include "flexura/base/version.h"
 #include "flexura/log/results.h"
 #include "flexura/math/arrays.h"
+#include "flexura/math/series.h"
 #include "flexura/math/so3.h"
 #include "flexura/store/text_file.h"
 #include "flexura/view/recording.h"
@@ -88,13 +89,27 @@ std::vector<GltfPart> tube_parts(const Arm& arm, TipKind tip, const std::vector<
   return parts;
 }
 
-// Returns the pose at s on the polyline of these samples.
+// Returns the arc from one sample to the next, which begins along its tangent.
+Arc arc_between_samples(const Pose& from, const Pose& to) {
+  const Eigen::Vector3d way = from.inverse() * to.position;
+  const double across = way.head<2>().norm(), half = std::atan2(across, way.z());
+  Arc arc;
+  arc.X_WS = from;
+  arc.length = way.norm() / sinc(half);
+  if (across > 0) arc.bend = way.head<2>() * (2 * half / across);
+  // What is left of the rotation is about the tangent.
+  arc.twist = so3_log(arc.carried(arc.length).rotation.transpose() * to.rotation).z();
+  return arc;
+}
+
+// Returns the pose at s on the arcs through these samples.
 Pose pose_among(const std::vector<ArmSample>& samples, double s) {
   const auto after = std::ranges::upper_bound(samples, s, {}, &ArmSample::s);
   if (after == samples.begin()) return samples.front().X_WS;
   if (after == samples.end()) return samples.back().X_WS;
   const ArmSample& before = *(after - 1);
-  return interpolate(before.X_WS, after->X_WS, (s - before.s) / (after->s - before.s));
+  const Arc arc = arc_between_samples(before.X_WS, after->X_WS);
+  return arc.pose(arc.length * (s - before.s) / (after->s - before.s));
 }
 
 // The joints' poses in the world over a run.

@@ -99,8 +99,9 @@ void RunRecorder::draw_scene(const Experiment& experiment) {
   const SceneMessage stand = stand_message(experiment);
   log_.recorder().write({scene_topic, 0, stand});
   drawn_color_ = experiment.arm.look.color;
-  for (const CameraConfig& camera : experiment.true_rig().cameras)
-    camera_drawings_.emplace_back(camera, log_.recorder());
+  const std::vector<CameraConfig> cameras = experiment.true_rig().cameras, models = experiment.cameras();
+  for (std::size_t i = 0; i < cameras.size(); ++i)
+    camera_drawings_.emplace_back(cameras[i], models[i], log_.recorder());
 }
 
 void RunRecorder::state(std::size_t step, double time, const ArmState& state) {
@@ -202,7 +203,7 @@ void RunRecorder::readings(Rig& rig) {
   for (const CameraPorts& camera : ports.cameras) {
     const auto drawing = std::ranges::find(camera_drawings_, camera.name, &CameraDrawing::name);
     std::optional<CameraStance> stance;
-    if (drawing != camera_drawings_.end()) stance = drawing->initial();
+    if (drawing != camera_drawings_.end()) stance = drawing->first_report();
     if (camera.head != nullptr) {
       const HeadReading reading = camera.head->read().value();
       recorder.reading(camera.name, reading);
@@ -213,7 +214,7 @@ void RunRecorder::readings(Rig& rig) {
       recorder.reading(camera.name, reading);
       if (stance) stance->stage = reading.state;
     }
-    if (stance) drawing->stance(now, *stance, recorder);
+    if (stance) drawing->report(now, *stance, recorder);
   }
 }
 

@@ -145,8 +145,8 @@ CameraCalibrationMessage calibration_message(const Camera& camera, double time, 
   return message;
 }
 
-CameraDrawing::CameraDrawing(const CameraConfig& config, Recorder& recorder)
-    : camera_(config), logged_(camera_.initial_stance()) {
+CameraDrawing::CameraDrawing(const CameraConfig& camera, const CameraConfig& model, Recorder& recorder)
+    : camera_(camera), first_report_(Camera(model).initial_stance()), logged_(camera_.initial_stance()) {
   log_lens(0, logged_.head.zoom, recorder);
 }
 
@@ -155,9 +155,14 @@ void CameraDrawing::log_lens(double time, double zoom, Recorder& recorder) {
   recorder.write({intrinsics_topic(name()), time, message});
 }
 
-void CameraDrawing::stance(double time, const CameraStance& stance, Recorder& recorder) {
-  CameraStance now = stance;
-  // A report is rounded, and the true lens may end elsewhere than its model.
+void CameraDrawing::report(double time, const CameraStance& reported, Recorder& recorder) {
+  // Reports count from the start of the model, where the true camera may stand otherwise.
+  CameraStance now = camera_.initial_stance();
+  now.head.pan += reported.head.pan - first_report_.head.pan;
+  now.head.tilt += reported.head.tilt - first_report_.head.tilt;
+  now.head.zoom += reported.head.zoom - first_report_.head.zoom;
+  now.stage.offset += reported.stage.offset - first_report_.stage.offset;
+  // Such a zoom may lie beyond the ends of the true lens.
   now.head.zoom = std::clamp(now.head.zoom, camera_.lens().first(), camera_.lens().last());
   constexpr double rounding = 1e-9;
   const double interval = 1 / camera_.config().sensor.frame_rate - rounding;

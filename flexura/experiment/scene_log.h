@@ -26,20 +26,22 @@ namespace flexura {
 /// and when it has changed, at most once per frame of the camera.
 class CameraDrawing {
  public:
-  /// Logs the lens at the start. The pose at the start is in frames_message.
-  CameraDrawing(const CameraConfig& config, Recorder& recorder);
+  /// Takes the true camera and its model, by whose start its axes count. Logs the lens at the start; the pose
+  /// at the start is in frames_message.
+  CameraDrawing(const CameraConfig& camera, const CameraConfig& model, Recorder& recorder);
 
   [[nodiscard]] const std::string& name() const { return camera_.config().name; }
-  /// Returns the stance at the start.
-  [[nodiscard]] CameraStance initial() const { return camera_.initial_stance(); }
-  /// Logs what a stance that is reported at `time` s has changed.
-  void stance(double time, const CameraStance& stance, Recorder& recorder);
+  /// Returns what the camera's axes report at the start.
+  [[nodiscard]] const CameraStance& first_report() const { return first_report_; }
+  /// Logs what has changed if the axes report this at `time` s.
+  void report(double time, const CameraStance& reported, Recorder& recorder);
 
  private:
   void log_lens(double time, double zoom, Recorder& recorder);
 
   Camera camera_;
-  CameraStance logged_;
+  CameraStance first_report_;
+  CameraStance logged_;   // True.
   double logged_at_ = 0;  // s
 };
 

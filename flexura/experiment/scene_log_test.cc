@@ -8,6 +8,8 @@
 #include <map>
 #include <string>
 
+#include "flexura/base/table.h"
+#include "flexura/log/recorder.h"
 #include "tests/support/runs.h"
 
 namespace flexura {
@@ -111,6 +113,8 @@ TEST(SceneLog, HasEachLensAtTheStartAndWhenItsZoomHasChanged) {
   const TemporaryFolder folder;
   CameraConfig config;
   config.name = "front";
+  config.mount.position = {0, 0, 2};
+  config.mount.look_at = {0, 0, 0};
   config.sensor.frame_rate = 10;
   config.lens.fx = 800;
   config.lens.cx = 300;
@@ -119,14 +123,20 @@ TEST(SceneLog, HasEachLensAtTheStartAndWhenItsZoomHasChanged) {
   CameraStance stance = camera.initial_stance();
   {
     Recorder recorder(folder.path() / "log.mcap", experiment_of(furnished).arm.arm());
-    CameraDrawing drawing(config, recorder);
-    drawing.stance(0.5, stance, recorder);  // Nothing has changed.
-    for (int i = 1; i <= 100; ++i) {        // Every hundredth of a second for 1 s.
-      stance.head.zoom = 1 + 0.01 * std::min(i, 90);
-      drawing.stance(1 + 0.01 * i, stance, recorder);
+    CameraConfig model = config;
+    model.initial.pan = 0.25;  // The true camera stands otherwise.
+    CameraDrawing drawing(config, model, recorder);
+    CameraStance reported = drawing.first_report();
+    EXPECT_EQ(reported.head.pan, 0.25);
+    drawing.report(0.5, reported, recorder);  // Nothing has changed.
+    for (int i = 1; i <= 100; ++i) {          // Every hundredth of a second for 1 s.
+      reported.head.zoom = 1 + 0.01 * std::min(i, 90);
+      drawing.report(1 + 0.01 * i, reported, recorder);
     }
+    reported.head.pan += 0.1;
+    drawing.report(3, reported, recorder);
+    stance.head.zoom = 1.9;
     stance.head.pan += 0.1;
-    drawing.stance(3, stance, recorder);
     recorder.close();
   }
   const McapReader log(folder.path() / "log.mcap");
@@ -148,7 +158,8 @@ TEST(SceneLog, HasEachLensAtTheStartAndWhenItsZoomHasChanged) {
   ASSERT_FALSE(frames.empty());
   EXPECT_EQ(frames.back().transforms.at(0).timestamp.sec, 3);
   const Pose pose = camera.pose(stance);
-  EXPECT_NEAR(frames.back().transforms.at(0).translation.z, pose.position.z(), 1e-12);
+  const QuaternionMessage& q = frames.back().transforms.at(0).rotation;
+  EXPECT_TRUE(Eigen::Quaterniond(q.w, q.x, q.y, q.z).toRotationMatrix().isApprox(pose.rotation, 1e-9));
 }
 
 TEST(SceneLog, IsKeptTenTimesASecondUnlessItIsNotWanted) {

@@ -32,6 +32,13 @@ struct CheckArguments {
   bool json = false;
 };
 
+/// Arguments of `flexura export`.
+struct ExportArguments {
+  std::string results;
+  std::string format = "csv";
+  std::string out;  ///< New file, for glTF only; "": default.
+};
+
 // Each command writes its result to `out` and messages for the user to `err`, and returns an exit status.
 // Commands throw InputError for bad input and other exceptions for system failures.
 
@@ -41,8 +48,7 @@ int forward_command(const std::string& arm_file, std::istream& in, std::ostream&
 int inverse_command(const std::string& arm_file, std::istream& in, std::ostream& out);
 int statics_command(const std::string& arm_file, std::istream& in, std::ostream& out);
 int linearise_command(const std::string& arm_file, std::istream& in, std::ostream& out);
-int export_command(const std::string& results, const std::string& format, std::ostream& out,
-                   std::ostream& err);
+int export_command(const ExportArguments& arguments, std::ostream& out, std::ostream& err);
 int schema_command(const std::string& format, std::ostream& out);
 
 }  // namespace flexura

@@ -98,6 +98,9 @@ void RunRecorder::draw_scene(const Experiment& experiment) {
   const SceneMessage stand = stand_message(experiment);
   log_.recorder().write({scene_topic, 0, stand});
   drawn_color_ = experiment.arm.look.color;
+  const std::vector<CameraConfig> cameras = experiment.true_rig().cameras, models = experiment.cameras();
+  for (std::size_t i = 0; i < cameras.size(); ++i)
+    camera_drawings_.emplace_back(cameras[i], models[i], log_.recorder());
 }
 
 void RunRecorder::state(std::size_t step, double time, const ArmState& state) {
@@ -197,8 +200,20 @@ void RunRecorder::readings(Rig& rig) {
   }
   recorder.reading(ports.arm->read().value());
   for (const CameraPorts& camera : ports.cameras) {
-    if (camera.head != nullptr) recorder.reading(camera.name, camera.head->read().value());
-    if (camera.stage != nullptr) recorder.reading(camera.name, camera.stage->read().value());
+    const auto drawing = std::ranges::find(camera_drawings_, camera.name, &CameraDrawing::name);
+    std::optional<CameraStance> stance;
+    if (drawing != camera_drawings_.end()) stance = drawing->first_report();
+    if (camera.head != nullptr) {
+      const HeadReading reading = camera.head->read().value();
+      recorder.reading(camera.name, reading);
+      if (stance) stance->head = reading.state;
+    }
+    if (camera.stage != nullptr) {
+      const StageReading reading = camera.stage->read().value();
+      recorder.reading(camera.name, reading);
+      if (stance) stance->stage = reading.state;
+    }
+    if (stance) drawing->report(now, *stance, recorder);
   }
 }
 

@@ -80,7 +80,8 @@ class RunRecorder {
   std::optional<DriveCommands> commands_;
   std::optional<ColorConfig> drawn_color_;  // Missing: the scene is not logged.
   SceneTimes scene_times_;
-  std::optional<std::int64_t> read_at_;  // Time of the last readings, ns.
+  std::vector<CameraDrawing> camera_drawings_;  // Empty if the scene is not logged.
+  std::optional<std::int64_t> read_at_;         // Time of the last readings, ns.
   ArmModel model_;
   std::size_t last_step_ = 0;
   std::size_t kept_every_ = 1;

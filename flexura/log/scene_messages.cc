@@ -105,4 +105,22 @@ const Table<FramesMessage>& fields_of(const FramesMessage*) {
   return table;
 }
 
+const Table<CameraCalibrationMessage>& fields_of(const CameraCalibrationMessage*) {
+  using M = CameraCalibrationMessage;
+  static const auto table =
+      Table<M>("foxglove.CameraCalibration", "A camera's lens at its present zoom.")
+          .field("timestamp", &M::timestamp, {})
+          .field("frame_id", &M::frame_id, {.meaning = "The camera's optical frame."})
+          .field("width", &M::width, {.meaning = "px"})
+          .field("height", &M::height, {.meaning = "px"})
+          .field("distortion_model", &M::distortion_model, {})
+          .field("D", &M::distortion, {.meaning = "k1, k2, p1, p2, k3."})
+          .field("K", &M::intrinsics, {.meaning = "fx 0 cx, 0 fy cy, 0 0 1; px."})
+          .field("R", &M::rectification, {.meaning = "The identity: pictures are not rectified."})
+          .field("P", &M::projection, {.meaning = "K and a column of zeros; px."});
+  return table;
+}
+
+std::string intrinsics_topic(std::string_view camera) { return "/intrinsics/" + std::string(camera); }
+
 }  // namespace flexura

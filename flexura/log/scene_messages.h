@@ -1,7 +1,9 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "flexura/base/fields.h"
@@ -87,6 +89,18 @@ struct FramesMessage {
   std::vector<FrameMessage> transforms;
 };
 
+/// foxglove.CameraCalibration, on /intrinsics/NAME. For `plumb_bob`, the distortion of OpenCV.
+struct CameraCalibrationMessage {
+  TimeMessage timestamp;
+  std::string frame_id;                ///< "camera/NAME"
+  std::int64_t width = 0, height = 0;  ///< Of a picture, px.
+  std::string distortion_model = "plumb_bob";
+  std::vector<double> distortion;            ///< k1, k2, p1, p2, k3.
+  std::array<double, 9> intrinsics = {};     ///< fx 0 cx, 0 fy cy, 0 0 1, row by row, px.
+  std::array<double, 9> rectification = {};  ///< The identity: pictures are not rectified.
+  std::array<double, 12> projection = {};    ///< The intrinsics and a column of zeros, row by row, px.
+};
+
 inline constexpr std::string_view scene_topic = "/scene";
 inline constexpr std::string_view frames_topic = "/frames";
 
@@ -100,5 +114,9 @@ const Table<EntityMessage>& fields_of(const EntityMessage*);
 const Table<SceneMessage>& fields_of(const SceneMessage*);
 const Table<FrameMessage>& fields_of(const FrameMessage*);
 const Table<FramesMessage>& fields_of(const FramesMessage*);
+const Table<CameraCalibrationMessage>& fields_of(const CameraCalibrationMessage*);
+
+/// Returns the topic of a camera's intrinsics.
+[[nodiscard]] std::string intrinsics_topic(std::string_view camera);
 
 }  // namespace flexura

@@ -139,8 +139,8 @@ TEST(McapReader, RefusesWhatIsNoLog) {
 }
 
 TEST(McapReader, NamesTheCompressionItDoesNotRead) {
-  const auto log = by_hand([](McapBytes& out) { put_chunk(out, "zstd", {}); });
-  EXPECT_THAT(refusal(log), HasSubstr(R"(a chunk is compressed ("zstd"))"));
+  const auto log = by_hand([](McapBytes& out) { put_chunk(out, "lz4", {}); });
+  EXPECT_THAT(refusal(log), HasSubstr(R"(a chunk is compressed ("lz4"))"));
 }
 
 TEST(McapReader, RefusesMessagesWithoutAChannel) {

@@ -41,6 +41,10 @@ inline constexpr std::size_t mcap_record_header = 9;
 /// Length of the footer's content: starts of the summary and its offsets (8 + 8), and the summary's CRC (4).
 inline constexpr std::size_t mcap_footer_length = 20;
 
+/// Name of the compression of a chunk by Zstandard; plain chunks have an empty one. A chunk's CRC and
+/// uncompressed size are those of the plain records.
+inline constexpr std::string_view mcap_zstd = "zstd";
+
 /// Format of a channel's messages.
 struct McapSchema {
   std::string name;

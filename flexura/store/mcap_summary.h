@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <map>
+#include <string_view>
 #include <vector>
 
 #include "flexura/store/mcap_records.h"
@@ -18,12 +19,13 @@ struct McapTimeRange {
 /// Position of a chunk and its message indexes.
 struct McapChunkIndex {
   McapTimeRange time;
-  std::uint64_t start = 0;                 ///< Start of the chunk's record in the file, bytes.
-  std::uint64_t length = 0;                ///< Length of the whole record, bytes.
-  std::uint64_t records_size = 0;          ///< Size of the chunk's records, bytes.
-  std::uint64_t message_index_length = 0;  ///< Length of all message indexes, which follow the chunk, bytes.
-  std::map<std::uint16_t, std::uint64_t>
-      message_index_offsets;  ///< Position of each channel's message index in the file, bytes.
+  std::uint64_t start = 0;                 ///< Start of the chunk's record in the file.
+  std::uint64_t length = 0;                ///< Length of the whole record.
+  std::uint64_t records_size = 0;          ///< Size of its messages.
+  std::string_view compression;            ///< mcap_zstd, or empty.
+  std::uint64_t stored_size = 0;           ///< Size of its messages as stored.
+  std::uint64_t message_index_length = 0;  ///< Length of all message indexes, which follow the chunk.
+  std::map<std::uint16_t, std::uint64_t> message_index_offsets;  ///< By channel; in the file.
 };
 
 /// Content of a log, as listed in the summary at its end.
@@ -37,9 +39,6 @@ struct McapSummary {
   std::vector<Channel> channels;
   std::vector<McapChunkIndex> chunks;
 };
-
-/// Name of the compression of chunks: empty, because chunks are not compressed.
-inline constexpr std::string_view mcap_compression;
 
 void put_schema(McapBytes& out, std::uint16_t id, const McapSchema& schema);
 void put_channel(McapBytes& out, std::uint16_t id, const McapSummary::Channel& channel);

@@ -15,7 +15,8 @@ namespace flexura {
 
 /// Writes a new log (docs/log-format.md): messages on channels, collected into chunks. A full chunk is passed
 /// to the operating system in one write. If the process is killed, the log is therefore readable up to its
-/// last complete chunk. Equal calls give equal bytes. Every call that writes throws std::system_error with
+/// last complete chunk. Equal calls give equal bytes
+/// with the same version of libzstd. Every call that writes throws std::system_error with
 /// the path on a system error, such as a full disk. The content written before stays readable, and the writer
 /// accepts nothing more.
 class McapWriter {
@@ -25,6 +26,8 @@ class McapWriter {
     /// A chunk is closed when its messages reach this number of bytes (1 to 2^30); a larger message is a
     /// separate chunk.
     std::size_t chunk_size = std::size_t{256} * 1024;
+    /// Compresses chunks by zstd where that makes them smaller. Otherwise every chunk is plain.
+    bool compress = true;
   };
 
   /// Creates the file. Never overwrites an existing file. Throws std::system_error with the path if it
@@ -60,7 +63,8 @@ class McapWriter {
 
   void append(const McapBytes& out);
   void require_open() const;
-  void put_chunk(McapBytes& out) const;
+  /// Puts the current chunk and completes its entry in the summary.
+  void put_chunk(McapBytes& out, McapChunkIndex& chunk) const;
   void put_message_indexes(McapBytes& out, McapChunkIndex& chunk) const;
 
   Config config_;

@@ -29,6 +29,8 @@ class Recording {
 
   [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }
   [[nodiscard]] const ViewedRigPtr& rig() const { return rig_; }
+  /// Returns whether the log has no end: the run was killed.
+  [[nodiscard]] bool is_truncated() const { return log_.truncated(); }
   [[nodiscard]] const std::vector<Mark>& marks() const { return marks_; }
   [[nodiscard]] double duration() const {
     return seconds(states_.back().time);

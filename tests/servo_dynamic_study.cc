@@ -36,7 +36,8 @@ struct Method {
 };
 
 std::vector<Method> methods() {
-  return {{.name = "shape"},
+  return {{.name = "predictive", .law = ServoLawKind::predictive},
+          {.name = "shape"},
           {.name = "shape, static model", .model = "static"},
           {.name = "points", .law = ServoLawKind::points},
           {.name = "points, static model", .law = ServoLawKind::points, .model = "static"},

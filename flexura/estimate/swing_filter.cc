@@ -134,12 +134,8 @@ Eigen::VectorXd SwingFilter::shape() const {
 }
 
 Eigen::VectorXd SwingFilter::after(const SwingPath& path) const {
-  return moved(modes_, path, mean_).head(2 * static_cast<Eigen::Index>(modes_.size()));
-}
-
-Eigen::VectorXd SwingFilter::shape_after(const SwingPath& path) const {
   if (!is_tracked()) return {};
-  return shapes_of(modes_) * after(path).head(static_cast<Eigen::Index>(modes_.size()));
+  return moved(modes_, path, mean_).head(2 * static_cast<Eigen::Index>(modes_.size()));
 }
 
 }  // namespace flexura

@@ -56,10 +56,10 @@ class SwingFilter {
 
   /// Returns the change of (bend_x, bend_y, stretch) of each arc by the present swing; empty if not tracked.
   [[nodiscard]] Eigen::VectorXd shape() const;
-  /// Returns this change after a path from the present; the filter stays as it is.
-  [[nodiscard]] Eigen::VectorXd shape_after(const SwingPath& path) const;
-  /// Returns z and z' of the modes after a path from the present.
+  /// Returns z of all modes, then z', after a path from the present with these modes; empty if not tracked.
   [[nodiscard]] Eigen::VectorXd after(const SwingPath& path) const;
+  /// Returns the modes that the swing is made of.
+  [[nodiscard]] const std::vector<SwingMode>& modes() const { return modes_; }
   /// Returns the factor on the modes' frequencies.
   [[nodiscard]] double frequency_factor() const;
   [[nodiscard]] const Eigen::MatrixXd& covariance() const { return covariance_; }

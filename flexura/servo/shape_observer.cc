@@ -66,7 +66,9 @@ ShapeObserver::ShapeObserver(const RigReader& rig, const RigModel& nominal, cons
       tracker_(prior_, patient_estimator(view_prior_)) {}
 
 bool ShapeObserver::observe(const std::shared_ptr<ServoObservation>& observed, double now) {
-  const SwingPath path = path_until(observed->time);
+  const SwingPath path = path_until(
+      observed->time,
+      last_ ? nominal_.actuation.swing(rig_.measured(observed->time), swing_modes) : std::vector<SwingMode>());
   estimate(*observed, predicted(observed->time), path);
   if (!first_) first_ = observed;
   if (!observed->estimate.is_found) return false;
@@ -79,12 +81,11 @@ bool ShapeObserver::observe(const std::shared_ptr<ServoObservation>& observed, d
   return true;
 }
 
-// A part is a time between two readings, with the mean rate of the drives. The modes are those at its end.
-SwingPath ShapeObserver::path_until(double time) const {
+// A part is a time between two readings, with the mean rate of the drives.
+SwingPath ShapeObserver::path_until(double time, const std::vector<SwingMode>& modes) const {
   SwingPath path;
-  if (!last_ || !(time > last_->time)) return path;
-  path.modes = nominal_.actuation.swing(rig_.measured(time), swing_modes);
-  if (path.modes.empty()) return path;
+  if (!last_ || !(time > last_->time) || modes.empty()) return path;
+  path.modes = modes;
   std::vector<double> ends = rig_.readings_between(last_->time, time);
   ends.push_back(time);
   double from = last_->time;

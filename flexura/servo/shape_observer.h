@@ -4,6 +4,7 @@
 #include <array>
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "flexura/camera/view.h"
 #include "flexura/estimate/shape_tracker.h"
@@ -48,8 +49,9 @@ class ShapeObserver {
   [[nodiscard]] ArmState expected(ArmState driven) const;
   /// Returns the swing of the arm at the last observation; not tracked for an arm that does not swing.
   [[nodiscard]] const SwingFilter& swing() const { return tracker_.swing(); }
-  /// Returns the motion of the drives from the last observation until `time`, s, by their readings.
-  [[nodiscard]] SwingPath path_until(double time) const;
+  /// Returns the motion of the drives from the last observation until `time`, s, by their readings, with
+  /// kicks of these modes.
+  [[nodiscard]] SwingPath path_until(double time, const std::vector<SwingMode>& modes) const;
   /// Returns the standard deviation of the last shape from the pictures' noise, root mean square along the
   /// arm, share of its length. It does not include errors of cameras without a prior, which are equal in
   /// every picture.

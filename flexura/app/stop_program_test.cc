@@ -128,7 +128,7 @@ TEST_F(StoppedProgram, StopsInTheCheckBeforeTheRun) {
   EXPECT_EQ(ended.status, 128 + SIGTERM);
   EXPECT_EQ(ended.err, "cancelled: it was stopped at 0 s\n");
   EXPECT_THAT(summary(), HasSubstr("\"outcome\": \"cancelled\""));
-  EXPECT_THAT(summary(), HasSubstr("cancelled: not all of it is checked"));
+  EXPECT_THAT(summary(), HasSubstr("cancelled: the motion is not completely checked"));
   EXPECT_FALSE(McapReader(path("long/log.mcap")).truncated());
   EXPECT_FALSE(std::filesystem::exists(path("long/commands.csv")));
 }

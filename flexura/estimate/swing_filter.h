@@ -36,6 +36,7 @@ struct SwingFilterConfig {
 /// included.
 class SwingFilter {
  public:
+  /// Starts at rest, not tracked.
   explicit SwingFilter(const SwingFilterConfig& config = {}) : config_(config) {}
 
   /// Forgets the swing: the arm is at rest, as far as known.

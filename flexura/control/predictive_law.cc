@@ -58,7 +58,8 @@ PredictiveLaw::PredictiveLaw(const Arm& driven, const Arm& shaped, const Predict
 void PredictiveLaw::find_metric(const ArmState& shape) {
   const BackboneJacobian jacobian(shaped_, shape);
   const auto arcs = static_cast<Eigen::Index>(shaped_.sections.size());
-  metric_.setZero(3 * places_an_arc * arcs + 2 * arcs, 3 * arcs);
+  constexpr Eigen::Index rows_an_arc = 3 * Eigen::Index{places_an_arc} + 2;
+  metric_.setZero(rows_an_arc * arcs, 3 * arcs);
   Jacobian J(6, 3 * arcs);
   double total = 0;
   for (const Section& section : shaped_.sections) total += section.length;
@@ -157,14 +158,15 @@ void PredictiveLaw::solve(const Eigen::VectorXd& sent, const Eigen::VectorXd& ra
   H_.setZero(size, size);
   gradient_.setZero(size);
   // Products of answers: entry (i, j) sums over the steps k after both changes.
-  for (int lag = 0; lag < horizon; ++lag) {
+  for (std::size_t lag = 0; lag < answer_.size(); ++lag) {
     Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(n, n);
-    for (int i = horizon - 1 - lag, m = 0; i >= 0; --i, ++m) {
+    for (std::size_t m = 0; m + lag < answer_.size(); ++m) {
       // The change at step i acts m + lag steps later when that at step i + lag acts m steps later.
-      sum.noalias() +=
-          answer_[static_cast<std::size_t>(m + lag)].transpose() * answer_[static_cast<std::size_t>(m)];
-      H_.block(i * n, (i + lag) * n, n, n) = T * sum;
-      if (lag > 0) H_.block((i + lag) * n, i * n, n, n) = T * sum.transpose();
+      sum.noalias() += answer_[m + lag].transpose() * answer_[m];
+      const Eigen::Index i = horizon - 1 - static_cast<Eigen::Index>(lag + m),
+                         j = i + static_cast<Eigen::Index>(lag);
+      H_.block(i * n, j * n, n, n) = T * sum;
+      if (lag > 0) H_.block(j * n, i * n, n, n) = T * sum.transpose();
     }
   }
   for (int i = 0; i < horizon; ++i)
@@ -211,19 +213,19 @@ void PredictiveLaw::solve(const Eigen::VectorXd& sent, const Eigen::VectorXd& ra
   if (project(w_in, u_in)) return;
 
   // rates = w0 + B x with B lower triangular of ones; commands = u0 + T C x with C the ramps.
-  Eigen::MatrixXd BtB = Eigen::MatrixXd::Zero(horizon, horizon), CtC = BtB;
+  Eigen::MatrixXd of_rates = Eigen::MatrixXd::Zero(horizon, horizon), of_ramps = of_rates;
   for (int i = 0; i < horizon; ++i)
     for (int j = 0; j < horizon; ++j)
       for (int k = std::max(i, j); k < horizon; ++k)
-        BtB(i, j) += 1, CtC(i, j) += static_cast<double>((k - i + 1) * (k - j + 1));
+        of_rates(i, j) += 1, of_ramps(i, j) += static_cast<double>((k - i + 1) * (k - j + 1));
   const double typical = H_.diagonal().mean();
-  const double weight_w = typical / BtB.diagonal().mean(),
-               weight_u = typical / (T * T * CtC.diagonal().mean());
+  const double weight_w = typical / of_rates.diagonal().mean(),
+               weight_u = typical / (T * T * of_ramps.diagonal().mean());
   Eigen::MatrixXd system = H_;
   for (int i = 0; i < horizon; ++i)
     for (int j = 0; j < horizon; ++j)
       system.block(i * n, j * n, n, n).diagonal().array() +=
-          weight_w * BtB(i, j) + weight_u * T * T * CtC(i, j);
+          weight_w * of_rates(i, j) + weight_u * T * T * of_ramps(i, j);
   const Cholesky factored(system);
   Eigen::VectorXd w0(size), u0(size), dual_w = Eigen::VectorXd::Zero(size), dual_u = dual_w, right(size);
   rates_of(Eigen::VectorXd::Zero(size), w0, u0);

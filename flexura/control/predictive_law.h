@@ -27,8 +27,8 @@ struct PredictiveState {
   ArmState desired;  ///< Target shape now.
   /// Change of the target shape in each later step; shorter lists end at the last target.
   std::vector<ArmState> desired_later = {};
-  std::vector<SwingMode> modes = {};  ///< Of the arm's swing; empty: it does not swing.
-  Eigen::VectorXd swing = {};         ///< z of all modes, then z'.
+  std::vector<SwingMode> modes = {};       ///< Of the arm's swing; empty: it does not swing.
+  Eigen::VectorXd swing = {};              ///< z of all modes, then z'.
   Eigen::VectorXd frequency_factors = {};  ///< On the frequencies of the modes.
 };
 

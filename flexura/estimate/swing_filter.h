@@ -23,8 +23,8 @@ struct SwingPath {
 
 /// Standard deviations of the swing's model.
 struct SwingFilterConfig {
-  double kick_error = 0.3;        ///< Error of a kick, share of it.
-  double force_noise = 0.1;       ///< Process noise of each mode's rate, rad/s per root second.
+  double kick_error = 0.3;             ///< Error of a kick, share of it.
+  double force_noise = 0.1;            ///< Process noise of each mode's rate, rad/s per root second.
   double frequency_error = 0.2;        ///< Initial error of the logarithms of all frequencies, in common.
   double mode_frequency_error = 0.15;  ///< Initial error of each mode's in addition.
   double frequency_noise = 0.02;       ///< Process noise of these logarithms, per root second.
@@ -32,9 +32,9 @@ struct SwingFilterConfig {
 
 /// Swing of an arm about its equilibrium: estimates the modes' coordinates z, their rates z', and a factor on
 /// each frequency, which depends on the true stiffness and on masses that the model lacks
-/// (docs/estimation.md, "An arm that swings"). An extended Kalman filter on (z, z', logarithms of the factors).
-/// It is a part of a larger one, whose other unknowns begin with the bends of the arm's shape, swing
-/// included.
+/// (docs/estimation.md, "An arm that swings"). An extended Kalman filter on (z, z', logarithms of the
+/// factors). It is a part of a larger one, whose other unknowns begin with the bends of the arm's shape,
+/// swing included.
 class SwingFilter {
  public:
   /// Starts at rest, not tracked.

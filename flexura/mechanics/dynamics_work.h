@@ -111,7 +111,7 @@ struct RodDynamics::Work {
   bool iterate_quickly(const Stage& stage, double contraction, RodStep& result, double& worst_gain);
   bool iterate_exactly(const Stage& stage, RodStep& result);
   void find_grip(const Eigen::VectorXd& give);
-  void find_friction_work(const RodState& state, double h, RodStep& result) const;
+  bool add_friction_work(const RodState& state, double h, RodStep& result) const;
   bool find_tensions();
   bool factor_exactly(const Stage& stage);
   template <typename Solve>

@@ -45,6 +45,9 @@ class RodResponse : public ArmResponse {
   /// model"). Empty unless `swings` was set.
   [[nodiscard]] std::vector<SwingMode> swing(const ArmState& command, std::size_t most) const override;
 
+  /// A released tendon is one that is paid out by the length of the arm.
+  [[nodiscard]] std::vector<ArmState> released(const ArmState& command) const override;
+
   /// Returns the rod's equilibrium in its frame; not converged if there is none.
   [[nodiscard]] Equilibrium equilibrium(const ArmState& command) const;
 

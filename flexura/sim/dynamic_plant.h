@@ -71,6 +71,9 @@ class DynamicPlant : public RodPlant {
   [[nodiscard]] std::vector<PlantContact> found(const std::vector<ContactForce>& contacts) const;
   // Returns the motion of the rod and the carried payloads at a time.
   [[nodiscard]] Snapshot at(double time) const;
+  // Returns the modes' amplitudes at a time by interpolation within a step. Empty if the step's end is not
+  // known yet, or if an event within the step changes the motion.
+  [[nodiscard]] std::optional<Eigen::VectorXd> shape_between(double time) const;
 
   ArmRod rod_;
   Pose X_WB_;

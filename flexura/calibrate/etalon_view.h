@@ -12,7 +12,7 @@
 namespace flexura {
 
 /// Pose of a camera relative to the calibration cylinder, from one picture (docs/calibration-paper.md, "What
-/// a picture of the cylinder tells"). Angles are in rad, lengths in the unit of the radius.
+/// a picture of the cylinder shows"). Angles are in rad, lengths in the unit of the radius.
 struct EtalonView {
   std::string
       reason;  ///< Why the following members are not known, except perhaps `centroid`; "" if all are known.

@@ -18,9 +18,9 @@ namespace flexura {
 
 /// Settings of the time integration.
 struct RodDynamicsConfig {
-  /// Factor by which one step reduces motion that is much faster than the step, from 0 to 1. 1: no numerical
-  /// damping; the step is the implicit midpoint rule. Values near 1 are more accurate. But if steps are
-  /// longer than periods of an undamped rod, values much above 0.1 may let its energy grow.
+  /// Factor by which one step reduces motion that is much faster than the step, from 0 to 1. With 1 there is
+  /// no numerical damping: the step is the implicit midpoint rule. Values near 1 are more accurate. But if
+  /// steps are longer than periods of an undamped rod, values much above 0.1 may let its energy grow.
   double spectral_radius = 0.1;
   /// Tolerance of a step's equations, rad/s. The remaining errors of the rates have at most the energy of the
   /// whole rod turning at this rate, stiffness included.
@@ -185,8 +185,8 @@ class RodDynamics {
   [[nodiscard]] Vector6d momentum(const RodState& state);
   /// Returns the motion at a node: a section's end or a requested place.
   [[nodiscard]] NodeMotion motion(const RodState& state, const RodPlace& place);
-  /// Returns the motion of all nodes. node_runs() returns the length of rod that each node represents in an
-  /// integral along the rod, m, as in RodSurroundings.
+  /// Returns the motion of all nodes. Then node_runs() returns the length of rod that each node represents in
+  /// an integral along the rod, m.
   [[nodiscard]] std::vector<NodeMotion> motions(const RodState& state);
   [[nodiscard]] std::span<const double> node_runs() const;
   /// Returns the motion of all points at which the surroundings may act (RodSurroundings::points()).

@@ -70,10 +70,11 @@ struct InverseStaticsResult {
   [[nodiscard]] bool reached() const { return end == InverseStaticsEnd::reached; }
 };
 
-/// Finds tensions between 0 and `most` (N, one per tendon, finite) that bring the equilibrium under `loads`
-/// to the target with least effort (inverse kinematics under load). If no tensions reach the target, it
-/// minimises the sum of squared distances and weighted angles. Reports bad input in the result and does not
-/// throw. Afterwards `statics` is solved with the result's tensions, so its slopes() are those at the result.
+/// Inverse kinematics under load: finds tensions that bring the equilibrium under `loads` to the target with
+/// least effort. Tensions are between 0 and `most` (N, one per tendon, finite). If no tensions reach the
+/// target, it minimises the sum of squared distances and weighted angles. Reports bad input in the result and
+/// does not throw. Afterwards `statics` is solved with the result's tensions, so its slopes() are those at
+/// the result.
 ///
 /// Method: Levenberg and Marquardt within bounds (BoundedDescent), then stabilized sequential quadratic
 /// programming (S. J. Wright 1998) along the tensions that reach the target. The latter handles dependent

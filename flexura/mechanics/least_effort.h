@@ -6,8 +6,8 @@
 
 namespace flexura {
 
-/// Returns the d that minimises d^T A d / 2 + b^T d with low <= d <= high, for a positive definite A and
-/// bounds that include 0. Active set method.
+/// Returns the d that minimises d^T A d / 2 + b^T d with low <= d <= high, by an active set method. A is
+/// positive definite, and the bounds include 0.
 [[nodiscard]] Eigen::VectorXd least_in_box(const Eigen::MatrixXd& A, const Eigen::VectorXd& b,
                                            const Eigen::VectorXd& low, const Eigen::VectorXd& high);
 

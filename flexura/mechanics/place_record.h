@@ -26,14 +26,14 @@ struct RodPlaceRecord {
   double rms = 0;          ///< Root mean square residual of the coordinates, m.
 };
 
-/// Fits the modes to places at each time by least squares, under loads. Strains that places do not show, such
-/// as a twist of a straight rod, stay near the undeformed value: the energies of all strains are a prior. The
-/// prior energy of a bending mode is that of the bends in the record; that of any other mode is a hundredth
-/// of it. `noise`: standard deviation of each coordinate, m. 0: it is estimated from the residuals, with a
-/// lower bound of 1e-5 of the rod's length. Throws std::invalid_argument for an invalid rod, numbers that are
-/// not finite, fewer than two samples, or wrong numbers of positions. Also throws it for duplicate places,
-/// for places outside the rod or measured far from all of its shapes, and if there are no more coordinates
-/// than modes.
+/// Fits the modes to places at each time by least squares, under loads. The energies of all strains are a
+/// prior. So strains that places do not show, such as a twist of a straight rod, stay near the undeformed
+/// value. The prior energy of a bending mode is that of the bends in the record; that of any other mode is a
+/// hundredth of it. `noise`: standard deviation of each coordinate, m. 0: it is estimated from the residuals,
+/// with a lower bound of 1e-5 of the rod's length. Throws std::invalid_argument for an invalid rod, numbers
+/// that are not finite, fewer than two samples, or wrong numbers of positions. Also throws it for duplicate
+/// places, and for places outside the rod or measured far from all of its shapes. Further errors are as many
+/// coordinates as modes, or fewer.
 [[nodiscard]] RodPlaceRecord record_of_places(const Rod& rod, std::span<const RodPlace> places,
                                               std::span<const RodPlaceSample> samples, const RodLoads& loads,
                                               double noise = 0);

@@ -77,7 +77,7 @@ struct RodSection {
   [[nodiscard]] double mass_per_length_at(double t) const;
   /// Returns the diagonal of the damping at t, N s and N m^2 s.
   [[nodiscard]] Vector6d damping_at(double t) const;
-  /// Returns the moments of inertia about x, y and z of a slice at t, per metre, kg m: those of the round
+  /// Returns the moments of inertia about x, y and z of a slice at t, per metre, kg m. The slice is a round
   /// cross-section with the mass `mass_per_length_at`.
   [[nodiscard]] Eigen::Vector3d slice_inertia_at(double t) const;
   /// Returns the undeformed strain at t.
@@ -119,8 +119,8 @@ struct EndLoad {
   bool following = false;
 };
 
-/// A spring that pulls a point of a rod's centerline to a place. With the vector d from the point to the
-/// place, its force is k d / sqrt(1 + (k |d| / most)^2), which never exceeds `most`. A constant force is
+/// A spring that pulls a point of a rod's centerline to a place. The spring force is k d / sqrt(1 + (k |d| /
+/// most)^2), with the vector d from the point to the place. It never exceeds `most`. A constant force is
 /// added.
 struct PointSpring {
   std::size_t section = 0;
@@ -150,8 +150,9 @@ struct Rod {
   [[nodiscard]] double length() const;
 };
 
-/// Returns the errors of a rod, in words; empty if it is valid. Errors are lengths, radii or stiffnesses that
-/// are not positive, a tendon of a missing section, counts out of bounds, and numbers that are not finite.
+/// Returns the errors of a rod, in words; empty if it is valid. Errors are numbers that are not finite, and
+/// lengths, radii or stiffnesses that are not positive. Further errors are a tendon of a missing section and
+/// counts out of bounds.
 [[nodiscard]] std::vector<std::string> rod_problems(const Rod& rod);
 
 }  // namespace flexura

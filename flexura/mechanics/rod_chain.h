@@ -32,8 +32,8 @@ class RodChain {
   /// Returns the number of modes.
   [[nodiscard]] Eigen::Index size() const { return size_; }
   [[nodiscard]] std::size_t tendons() const { return rod_.tendons.size(); }
-  /// Returns for each mode the factor that makes it dimensionless: the section's length for bends and twists,
-  /// which become radians, and 1 for stretch and shear.
+  /// Returns for each mode the factor that makes it dimensionless. It is the section's length for bends and
+  /// twists, which become radians, and 1 for stretch and shear.
   [[nodiscard]] const Eigen::VectorXd& scales() const { return scales_; }
   [[nodiscard]] const std::vector<RodElement>& elements() const { return elements_; }
   /// Returns the index in q of the first mode of element i.

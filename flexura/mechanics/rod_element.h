@@ -66,9 +66,8 @@ class RodElement {
   /// Stores the share of the tension that friction leaves at each node, for stress(). Sections with chords
   /// require the poses.
   void rub(std::size_t tendon, double friction, Run& run);
-  /// Computes the effect of a change dq of the modes on the last result of rub(), and adds the change of
-  /// friction to the residual's change. `run` is changed as in rub(). Sections with chords require the
-  /// columns.
+  /// Computes how a change dq of the modes changes the last result of rub(). Adds the effect of the change of
+  /// friction to `residual_change`. `run` is changed as in rub(). Sections with chords require the columns.
   void rub_change(std::size_t tendon, double friction, double tension, const Eigen::VectorXd& dq, Run& run,
                   RunChange& change, Eigen::Ref<Eigen::VectorXd> residual_change) const;
   /// Computes residual, tangent, tendon lengths and their derivatives from internal and tendon forces.

@@ -24,8 +24,9 @@ class RodMatrix {
   /// Computes the node twists by the modes at the last placement of the rod.
   void find_columns(const RodMotion<double>& motion);
 
-  /// Factors of the sum: mass + damping_factor damping + stiffness_factor (stiffness + that of the tendons
-  /// under tension) - stiffness_factor by_pose - damping_factor by_twist of the surroundings, symmetric part.
+  /// Factors d and k (`damping`, `stiffness`) of the matrix M + d (D - B_v) + k (K + K_t - B_p). M, D and K
+  /// are the rod's mass, damping and stiffness. K_t is the geometric stiffness of tendons under tension. B_v
+  /// and B_p are the symmetric parts of by_twist and by_pose of the surroundings.
   struct Factors {
     double damping = 0, stiffness = 0;
   };

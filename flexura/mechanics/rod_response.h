@@ -27,9 +27,9 @@ class RodResponse : public ArmResponse {
  public:
   /// `driven` has one arc per number of its sections' bend profiles. With a drive, displacements are those of
   /// the drive's tendons, in addition to those of the pretension. Without a drive, they are those of the
-  /// rod's tendons. Throws std::invalid_argument for wrong numbers of sections or tendons, an invalid rod, no
-  /// equilibrium under the pretension, or none under weight and loads without a command. `swings`: whether
-  /// the rod has inertia, so that swing() returns modes. It then must have a mass.
+  /// rod's tendons. Throws std::invalid_argument for wrong numbers of sections or tendons, or an invalid rod.
+  /// Also throws it if there is no equilibrium under the pretension, or none under weight and loads without a
+  /// command. `swings`: whether the rod has inertia, so that swing() returns modes. It then must have a mass.
   RodResponse(const Arm& driven, const Rod& rod, RodLoads loads, std::optional<Drive> drive,
               bool swings = false);
   ~RodResponse() override;

@@ -88,9 +88,9 @@ class RodStatics {
   [[nodiscard]] Equilibrium solve(const TendonInput& tendons, const RodLoads& loads);
   /// Solves from a nearby equilibrium, or from the undeformed rod if that does not converge directly.
   [[nodiscard]] Equilibrium solve(const TendonInput& tendons, const RodLoads& loads, const Equilibrium& near);
-  /// Returns the equilibrium that a rod with the shape of `near` reaches: the nearby one if it is stable,
-  /// else the one at the end of the descent from `near`. Starts from the undeformed rod if `near` did not
-  /// converge. Returns an unstable equilibrium only if no descent from it found a stable one.
+  /// Returns the equilibrium that a rod with the shape of `near` reaches. It is the nearby one if that is
+  /// stable, otherwise the one at the end of the descent from `near`. Starts from the undeformed rod if
+  /// `near` did not converge. Returns an unstable equilibrium only if no descent from it found a stable one.
   [[nodiscard]] Equilibrium settle(const TendonInput& tendons, const RodLoads& loads,
                                    const Equilibrium& near);
   /// Settles from the undeformed rod.

@@ -28,8 +28,9 @@ struct RigConfig {
 /// returns the document itself. Throws InputError if [truth] is not a table, or names a missing entry.
 [[nodiscard]] Node truth_of(Node document);
 
-/// Returns why `truth` and `model` do not match, or "" if they do. They must have the same kind of arm, the
-/// same numbers of sections, drives and axes, and the same cameras with the same sizes and kinds of images.
+/// Returns why `truth` and `model` do not match, or "" if they do. They must have the same kind of arm and
+/// the same numbers of sections, drives and axes. Their cameras must have the same names, and the same sizes
+/// and kinds of images.
 [[nodiscard]] std::string truth_problem(const RigConfig& model, const RigConfig& truth);
 
 }  // namespace flexura

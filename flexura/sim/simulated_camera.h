@@ -39,8 +39,8 @@ inline constexpr int frames_kept = 16;
 [[nodiscard]] double frame_horizon(const SensorConfig& sensor);
 
 /// A camera that exposes frames at its frame rate from time 0 on, delays them and loses some. Only requested
-/// frames are rendered. Several cameras of a rig can be queried at once, each from its own thread, while no
-/// other thread waits for the clock or sends commands. Their TakePicture functions must be thread-safe for
+/// frames are rendered. Several cameras of a rig can be queried at once, each from its own thread. Meanwhile
+/// no thread may wait for the clock or send commands. Their TakePicture functions must be thread-safe for
 /// this.
 class SimulatedCamera : public CameraPort {
  public:

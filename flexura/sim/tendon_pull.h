@@ -27,8 +27,8 @@ struct PulledTendon {
   /// Displacement of each tendon per metre of this tendon such that no tendon works against it; 1 for itself.
   /// Computed for the straight arm and a bend of the section where this tendon ends.
   std::vector<double> together;
-  /// Points of the route from the base to the tendon's end: arc length of the rod at rest, and offset (x, y)
-  /// in the cross-section, m.
+  /// Points of the route from the base to the tendon's end, m: arc length of the rod at rest, and offset (x,
+  /// y) in the cross-section.
   std::vector<std::array<double, 3>> route;
 };
 

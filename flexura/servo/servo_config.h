@@ -24,7 +24,7 @@ namespace flexura {
 enum class ServoLawKind : std::uint8_t {
   shape,        ///< Difference between the shape estimated from both images and the target shape.
   points,       ///< Pixels of points along the arm.
-  chords,       ///< Angles of the images of chords of the arm.
+  chords,       ///< Directions of the arm's chords in the images, as angles.
   moments,      ///< Length, centroid and second moments of the arm's images.
   potential,    ///< The paper's law: errors in two image planes, an artificial potential of two angles.
   silhouettes,  ///< Positions of the two edges of the arm's images, perpendicular to the edges.

@@ -165,7 +165,7 @@ void print_rows(const std::vector<Method>& ways, const std::vector<std::vector<R
   for (std::size_t j = 0; j < ways.size(); ++j) {
     std::vector<double> settled, overshoot, rms, all, energy, tension;
     std::array<int, 4> violations = {};
-    for (const auto& [arrival, totals, is_run] : runs[j]) {
+    for (const auto& [arrival, totals, is_run, reports] : runs[j]) {
       violations[0] += totals.bend_violations, violations[1] += totals.rate_violations;
       violations[2] += totals.view_violations, violations[3] += totals.contacts;
       if (is_run) all.push_back(100 * arrival.rms);

@@ -129,6 +129,7 @@ struct LiveSession::Taker : PictureSession::Taker {
   }
   void operator()(const OpenRequest&) const { throw ViewRefusal("there is no recording yet"); }
   void operator()(const LiveRequest&) const { done(); }
+  void operator()(const BranchRequest&) const { throw ViewRefusal("this is no recording"); }
   void operator()(const AtRequest&) const { throw ViewRefusal("this is no recording: it cannot go back"); }
   void operator()(const PixelRequest& pixel) const {
     const std::size_t camera = session.place_of(pixel.camera);

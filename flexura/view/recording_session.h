@@ -27,6 +27,8 @@ class RecordingSession : public PictureSession {
   void take(const Document& document, std::function<void(HttpAnswer)> answer) override;
   void advance(double now) override;
 
+  [[nodiscard]] const Recording& recording() const { return *recording_; }
+
  private:
   struct Taker;
   struct Table;  // Table of the series, used only on the lane of checks.

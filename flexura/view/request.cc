@@ -202,6 +202,13 @@ const Table<OpenRequest>& fields_of(const OpenRequest*) {
 const Table<LiveRequest>& fields_of(const LiveRequest*) { return bare<LiveRequest>("live"); }
 const Table<PingRequest>& fields_of(const PingRequest*) { return bare<PingRequest>("ping"); }
 
+const Table<BranchRequest>& fields_of(const BranchRequest*) {
+  static const auto table =
+      Table<BranchRequest>("branch", "Opens a live rig that starts in a state of the recording.")
+          .field("time", &BranchRequest::time, {.meaning = "s", .range = any_place, .required = true});
+  return table;
+}
+
 const Table<AtRequest>& fields_of(const AtRequest*) {
   static const auto table =
       Table<AtRequest>("at", "Goes to a time of a recording.")

@@ -58,6 +58,10 @@ struct OpenRequest {
   std::optional<std::string> example;  ///< Name of the example; default: the recording of the last run.
 };
 struct LiveRequest {};
+/// Opens a live rig that starts in a state of the recording.
+struct BranchRequest {
+  double time = 0;  ///< Time in the recording, s.
+};
 struct AtRequest {
   double time = 0;  ///< Time in the recording, s.
 };
@@ -99,6 +103,7 @@ const Table<SpeedRequest>& fields_of(const SpeedRequest*);
 const Table<CancelRequest>& fields_of(const CancelRequest*);
 const Table<OpenRequest>& fields_of(const OpenRequest*);
 const Table<LiveRequest>& fields_of(const LiveRequest*);
+const Table<BranchRequest>& fields_of(const BranchRequest*);
 const Table<AtRequest>& fields_of(const AtRequest*);
 const Table<ImagesRequest>& fields_of(const ImagesRequest*);
 const Table<AckRequest>& fields_of(const AckRequest*);
@@ -109,10 +114,11 @@ const Table<PointRequest>& fields_of(const PointRequest*);
 const Table<BackboneRequest>& fields_of(const BackboneRequest*);
 const Table<PingRequest>& fields_of(const PingRequest*);
 
-using Ask = std::variant<ArmRequest, TipRequest, HeadRequest, StageRequest, HaltRequest, ResetRequest,
-                         WeightRequest, PushRequest, ReleaseRequest, RunRequest, SpeedRequest, CancelRequest,
-                         OpenRequest, LiveRequest, AtRequest, ImagesRequest, AckRequest, PixelRequest,
-                         MeasureRequest, ShapeRequest, PointRequest, BackboneRequest, PingRequest>;
+using Ask =
+    std::variant<ArmRequest, TipRequest, HeadRequest, StageRequest, HaltRequest, ResetRequest, WeightRequest,
+                 PushRequest, ReleaseRequest, RunRequest, SpeedRequest, CancelRequest, OpenRequest,
+                 LiveRequest, BranchRequest, AtRequest, ImagesRequest, AckRequest, PixelRequest,
+                 MeasureRequest, ShapeRequest, PointRequest, BackboneRequest, PingRequest>;
 
 /// The request of one message, or why it is invalid.
 struct Request {

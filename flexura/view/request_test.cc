@@ -46,6 +46,7 @@ TEST(Request, ReadsEverythingThatAPageCanAsk) {
   (void)read_as_ask<OpenRequest>(R"({"id":7,"do":"open"})");
   (void)read_as_ask<LiveRequest>(R"({"id":7,"do":"live"})");
   EXPECT_EQ(read_as_ask<AtRequest>(R"({"id":7,"do":"at","time":2.5})").time, 2.5);
+  EXPECT_EQ(read_as_ask<BranchRequest>(R"({"id":7,"do":"branch","time":2.5})").time, 2.5);
   const auto images =
       read_as_ask<ImagesRequest>(R"({"id":7,"do":"images","camera":"a","rate":30,"quality":60})");
   EXPECT_EQ(images.rate, 30);
@@ -123,6 +124,7 @@ TEST(Request, SaysInOneLineWhatIsWrong) {
       {R"({"id":7,"do":"push","s":0.1,"force":[0,0,1],"hand":1})", "hand: unknown key"},
       {R"({"id":7,"do":"release","s":0.1})", "s: unknown key"},
       {R"({"id":7,"do":"at","time":"now"})", "time"},
+      {R"({"id":7,"do":"branch"})", "time"},
       {R"({"id":"7","do":"ack","camera":"a","number":0})", "id = \"7\": expected a whole number"}};
   for (const auto& [text, error] : cases) {
     const Request request = read_request(text);

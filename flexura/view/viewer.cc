@@ -10,6 +10,7 @@
 #include "flexura/base/version.h"
 #include "flexura/store/json.h"
 #include "flexura/view/answers.h"
+#include "flexura/view/branch.h"
 #include "flexura/view/document.h"
 #include "flexura/view/request.h"
 
@@ -57,6 +58,7 @@ std::string reply_text(const std::optional<std::int64_t>& id, const ViewAnswer& 
 
 Viewer::Viewer(ViewStart start, Messenger& messenger, Background& background, double now)
     : start_(std::move(start)), messenger_(messenger), background_(background), clock_(now) {
+  if (start_.results.empty()) start_.results = std::filesystem::path("results") / "view";
   if (start_.recording != nullptr) {
     recording_ = std::make_unique<RecordingSession>(start_.recording, messenger_, background_);
     start_.rig = start_.recording->rig();
@@ -112,6 +114,8 @@ void Viewer::take(ClientId client, const Request& request, const std::shared_ptr
     }
   } else if (std::holds_alternative<LiveRequest>(request.ask)) {
     go_live(reply);
+  } else if (const auto* const branch_at = std::get_if<BranchRequest>(&request.ask)) {
+    branch(branch_at->time, reply);
   } else {
     if (std::holds_alternative<AckRequest>(request.ask)) reply = [](const ViewAnswer&) {};
     shown_->take(client, request.ask, std::move(reply));
@@ -139,15 +143,30 @@ void Viewer::open_example(const std::string& name, const Reply& reply) {
         fmt::format("there is no example {}: expected one of the hello's examples", text_node(name).brief()));
   if (is_opening_) throw ViewRefusal("a recording is being opened");
   if (live_ != nullptr && live_->is_running()) throw ViewRefusal("tasks are running: cancel them first");
-  start_.rig = found->load();
-  start_.results = found->results;
-  const auto live_before =
-      std::exchange(live_, std::make_unique<LiveSession>(start_.rig, messenger_, background_,
-                                                         LiveSession::Config{clock_, start_.results, {}}));
-  reply({nothing(), ""});
-  show(*live_);
+  replace_rig(found->load(), found->results, reply);
   // No client is in the old sessions any more.
   recording_.reset();
+}
+
+// The recording stays, to be opened again.
+void Viewer::branch(double time, const Reply& reply) {
+  if (shown_ != recording_.get())
+    throw ViewRefusal("this is no recording: expected a recording to start from");
+  if (is_opening_) throw ViewRefusal("a recording is being opened");
+  if (live_ != nullptr && live_->is_running()) throw ViewRefusal("tasks are running: cancel them first");
+  replace_rig(std::make_shared<const ViewedRig>(experiment_from(recording_->recording(), time)),
+              start_.results, reply);
+}
+
+void Viewer::replace_rig(ViewedRigPtr rig, std::filesystem::path results, const Reply& reply) {
+  auto live =
+      std::make_unique<LiveSession>(rig, messenger_, background_, LiveSession::Config{clock_, results, {}});
+  start_.rig = std::move(rig);
+  start_.results = std::move(results);
+  start_.run.reset();
+  const auto live_before = std::exchange(live_, std::move(live));
+  reply({nothing(), ""});
+  show(*live_);
 }
 
 // Opens a recording in the background, since a long log takes time to read.

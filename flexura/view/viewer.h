@@ -30,7 +30,7 @@ struct ViewStart {
   std::string session;                     ///< Identifier that differs for each start of the program.
   ViewedRigPtr rig = {};                   ///< The rig; null only if there is a recording.
   RecordingPtr recording = {};             ///< The recording; may be null.
-  std::filesystem::path results = {};      ///< Folder for the results of task runs.
+  std::filesystem::path results = {};      ///< Folder for the results of task runs; default: results/view.
   std::shared_ptr<RunLink> run = {};       ///< An active run; its recording is opened at its end.
   std::vector<ViewExample> examples = {};  ///< Other experiments to open; empty if a file was given.
 };
@@ -64,6 +64,8 @@ class Viewer {
   void take(ClientId client, const Request& request, const std::shared_ptr<const void>& debt);
   void open_last(Reply reply);
   void open_example(const std::string& name, const Reply& reply);
+  void branch(double time, const Reply& reply);
+  void replace_rig(ViewedRigPtr rig, std::filesystem::path results, const Reply& reply);
   void open(const std::filesystem::path& folder, Reply reply);
   void go_live(const Reply& reply);
   /// Returns whether there is a live rig; false after the end of a watched run.

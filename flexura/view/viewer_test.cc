@@ -259,6 +259,78 @@ TEST(ViewerOfARecording, HasItsRigToGoTo) {
   EXPECT_TRUE(messenger.state(me).is_recording);
 }
 
+TEST(ViewerOfARecording, StartsARigInAnInstantOfIt) {
+  const TemporaryFolder folder;
+  FakeMessenger messenger;
+  FakeBackground background;
+  const auto run = std::make_shared<RunLink>();
+  std::filesystem::create_directory(folder.path() / "first");
+  // The true arm and camera start elsewhere than their models.
+  const auto rig = viewed_rig(viewed_text + R"(
+[truth.arm]
+initial = { bends = [[0.05, 0], [0, 0]] }
+[[truth.camera]]
+name = "front"
+initial = { pan = 0.02 }
+)");
+  run_linked(rig->experiment, folder.path() / "first", *run);
+  Viewer viewer({.session = "1",
+                 .recording = std::make_shared<const Recording>(folder.path() / "first"),
+                 .results = folder.path() / "next"},
+                messenger, background, 0);
+  viewer.opened(me);
+  viewer.on_message(me, R"({"id":1,"do":"branch","time":0.5})");
+  EXPECT_EQ(messenger.last(me, "reply").find("error"), nullptr);
+  const Node hello = messenger.last(me, "hello");
+  EXPECT_EQ(*hello.find("mode")->as<std::string>(), "live");
+  EXPECT_EQ(*hello.find("title")->as<std::string>(), "Two sections (from 0.5 s)");
+  EXPECT_TRUE(*hello.find("recording")->as<bool>());
+  viewer.advance(0.1);
+  const StateMessage start = messenger.state(me);
+  EXPECT_FALSE(start.is_moving);
+  EXPECT_NEAR(start.arm.bends[0].x(), 0.4 + 0.05, 1e-6) << "half of the way, and as far off as before";
+  EXPECT_NEAR(start.arm.bends[1].y(), 0.35, 1e-6);
+  EXPECT_NEAR(start.cameras[0].head.pan, 0.02, 1e-6);
+  EXPECT_NEAR(start.cameras[0].commanded_head.pan, 0, 1e-6);
+
+  // Tasks go from there, and reset goes back there.
+  viewer.on_message(me, R"({"id":2,"do":"run","speed":0})");
+  viewer.advance(0.2);
+  EXPECT_NEAR(messenger.state(me).arm.bends[0].x(), 0.8 + 0.05, 1e-6);
+  viewer.on_message(me, R"({"id":3,"do":"reset"})");
+  viewer.advance(0.3);
+  EXPECT_NEAR(messenger.state(me).arm.bends[0].x(), 0.4 + 0.05, 1e-6);
+  // The run's results say where it started, and it can be branched in turn.
+  viewer.on_message(me, R"({"id":4,"do":"open"})");
+  EXPECT_NEAR(messenger.state(me).arm.bends[0].x(), 0.4, 1e-6);
+  viewer.on_message(me, R"({"id":5,"do":"branch","time":1})");
+  viewer.advance(0.4);
+  EXPECT_NEAR(messenger.state(me).arm.bends[0].x(), 0.8 + 0.05, 1e-6);
+  viewer.on_message(me, R"({"id":6,"do":"branch","time":1})");
+  EXPECT_THAT(*messenger.last(me, "reply").find("error")->as<std::string>(), HasSubstr("no recording"));
+}
+
+TEST(ViewerOfARun, CanBeContinuedFromItsRecording) {
+  const TemporaryFolder folder;
+  FakeMessenger messenger;
+  FakeBackground background;
+  const auto run = std::make_shared<RunLink>();
+  const auto rig = viewed_rig();
+  Viewer viewer({.session = "1", .rig = rig, .run = run}, messenger, background, 0);
+  viewer.opened(me);
+  viewer.on_message(me, R"({"id":1,"do":"branch","time":0})");
+  EXPECT_NE(messenger.last(me, "reply").find("error"), nullptr);
+  run_linked(rig->experiment, folder.path(), *run);
+  viewer.advance(0.2);
+  viewer.on_message(me, R"({"id":2,"do":"branch","time":1})");
+  const Node hello = messenger.last(me, "hello");
+  EXPECT_EQ(*hello.find("mode")->as<std::string>(), "live");
+  EXPECT_TRUE(*hello.find("rig")->as<bool>());
+  EXPECT_FALSE(*hello.find("readonly")->as<bool>()) << "nobody else moves this rig";
+  viewer.advance(0.3);
+  EXPECT_NEAR(messenger.state(me).arm.bends[0].x(), 0.8, 1e-6);
+}
+
 TEST(ViewerExamples, AreOfferedAndOpenedOneAfterAnother) {
   FakeMessenger messenger;
   FakeBackground background;

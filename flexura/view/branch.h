@@ -1,0 +1,13 @@
+#pragma once
+
+#include "flexura/experiment/experiment.h"
+#include "flexura/view/recording.h"
+
+namespace flexura {
+
+/// Returns the recording's experiment with another start: the arm is commanded as in the recording at `time`
+/// (s), and the axes of the cameras read as they do then. The differences between truth and model at the
+/// start stay. Everything starts at rest. Throws ViewRefusal if the arm cannot start there.
+[[nodiscard]] Experiment experiment_from(const Recording& recording, double time);
+
+}  // namespace flexura

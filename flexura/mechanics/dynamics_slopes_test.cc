@@ -86,9 +86,7 @@ TEST(DynamicsSlopes, MomentaAndForcesAreThoseOfTheKineticEnergy) {
   for_random_cases(10, [](TestRandom& random) {
     const Moving moving(random);
     const RodChain chain(moving.rod);
-    std::vector<RodGrid> grids;
-    for (const RodElement& element : chain.elements()) grids.push_back(element.grid());
-    const RodLayout layout(chain.rod(), grids, true);
+    const RodLayout layout(chain, true);
     RodMotion<double> motion(layout);
     const std::vector<double> none(chain.tendons());
     Eigen::VectorXd momentum(moving.q.size()), force(moving.q.size());

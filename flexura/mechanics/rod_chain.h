@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <Eigen/LU>
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -14,13 +15,20 @@
 
 namespace flexura {
 
-/// The joined sections of a rod. Computes the shape by the modes q and the balance r(q) of all generalized
-/// forces. Solves linear systems with r's derivative, at a cost linear in the number of sections. For r = 0
-/// the rod is in equilibrium. If the loads have an energy, r is the gradient of the total energy. All in the
-/// frame of the base.
+/// A node of a rod: its element, and its index among that element's nodes.
+struct RodNode {
+  std::size_t element = 0, node = 0;
+
+  bool operator==(const RodNode&) const = default;
+};
+
+/// The joined elements of a rod: its sections, or their pieces between guide disks (rod_parts.h). Computes
+/// the shape by the modes q and the balance r(q) of all generalized forces. Solves linear systems with r's
+/// derivative, at a cost linear in the number of elements. For r = 0 the rod is in equilibrium. If the loads
+/// have an energy, r is the gradient of the total energy. All in the frame of the base.
 ///
-/// A section receives only the twist of its base from proximal sections and only a wrench from distal ones.
-/// So each section's modes are eliminated from tip to base, as in the articulated-body algorithm (R.
+/// An element receives only the twist of its base from proximal ones and only a wrench from distal ones. So
+/// each element's modes are eliminated from tip to base, as in the articulated-body algorithm (R.
 /// Featherstone, Rigid Body Dynamics Algorithms, ch. 7).
 class RodChain {
  public:
@@ -36,6 +44,12 @@ class RodChain {
   /// become radians, 1 for stretch and shear.
   [[nodiscard]] const Eigen::VectorXd& scales() const { return scales_; }
   [[nodiscard]] const std::vector<RodElement>& elements() const { return elements_; }
+  /// Returns the node at a place, which must be one, else the nearest of its element. Throws
+  /// std::invalid_argument for a place outside the rod.
+  [[nodiscard]] RodNode node_of(const RodPlace& place) const;
+  /// Returns the section, if any, whose modes are too few for the bend between its guide disks at the last
+  /// balance.
+  [[nodiscard]] std::optional<std::size_t> coarse_section() const;
   /// Returns the index in q of the first mode of element i.
   [[nodiscard]] Eigen::Index first(std::size_t element) const { return first_[element]; }
 
@@ -57,6 +71,9 @@ class RodChain {
   /// Returns the derivative of r by the share of the loads, size().
   [[nodiscard]] const Eigen::VectorXd& load_slope() const { return load_slope_; }
   [[nodiscard]] double strain_energy() const;
+  /// Returns whether a tendon pulled the holes of two guide disks together at the last balance. Real disks
+  /// touch before; no shape beyond is an equilibrium.
+  [[nodiscard]] bool disks_meet() const;
   /// Returns minus the work of all loads from the base's origin on at the last balance, J. It is an energy if
   /// has_energy().
   [[nodiscard]] double load_energy(const RodLoads& loads) const;
@@ -105,6 +122,8 @@ class RodChain {
   void place(const Eigen::VectorXd& q);
   /// Computes poses and columns.
   void place_with_columns(const Eigen::VectorXd& q);
+  /// Returns the pose of a node, after place() or place_with_columns().
+  [[nodiscard]] const Pose& pose(const RodNode& at) const { return elements_[at.element].poses()[at.node]; }
   [[nodiscard]] const Pose& tip() const { return elements_.back().poses().back(); }
   /// Writes the twist of a node by q, 6 x size(), about the base's origin; after place_with_columns(). An
   /// Eigen::Ref is written through.

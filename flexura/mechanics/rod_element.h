@@ -10,11 +10,12 @@
 #include "flexura/math/se3.h"
 #include "flexura/mechanics/rod.h"
 #include "flexura/mechanics/rod_grid.h"
+#include "flexura/mechanics/rod_parts.h"
 
 namespace flexura {
 
-/// Evaluation of one section of a rod: its shape, and the balance of its internal forces with the loads.
-/// Allocates only in the constructor.
+/// Evaluation of one part of a rod, which is a section or a piece of it: its shape, and the balance of its
+/// internal forces with the loads. Allocates only in the constructor.
 ///
 /// All in the frame of the rod's base. Twists and wrenches are about its origin. So a Jacobian column is
 /// constant distal of what it moves, and wrenches add up directly.
@@ -22,10 +23,10 @@ class RodElement {
  public:
   using Columns = Eigen::Matrix<double, 6, Eigen::Dynamic>;
 
-  /// `s_base`: arc length from the rod's base to the section's, m. `at`: places, from 0 to 1, that become
-  /// nodes.
-  RodElement(const RodSection& section, std::span<const TendonRoute> tendons, std::size_t index,
-             double s_base, std::span<const double> at);
+  /// `at`: places of the part, from 0 to 1, that become nodes.
+  RodElement(RodPart part, std::span<const TendonRoute> tendons, std::span<const double> at);
+
+  [[nodiscard]] const RodPart& part() const { return part_; }
 
   [[nodiscard]] int size() const { return grid_.size; }
   [[nodiscard]] const RodGrid& grid() const { return grid_; }
@@ -48,6 +49,11 @@ class RodElement {
   [[nodiscard]] const std::vector<Pose>& poses() const { return X_; }
   /// Twist of each node by each mode, 6 x size().
   [[nodiscard]] const std::vector<Columns>& columns() const { return A_; }
+
+  /// Whether its modes are too few for its bend between guide disks: with a piece of its own, the highest
+  /// polynomial of a bend is not small; else the rod lies beside the chord by a part of the tendons'
+  /// distance.
+  [[nodiscard]] bool is_coarse() const;
 
   /// Path of a tendon since its base: the turning angle, rad, and its direction in the frame of a section's
   /// end; zero at the base.
@@ -113,6 +119,9 @@ class RodElement {
   Eigen::MatrixXd length_slopes, pull_slopes;
   /// Strain energy, J.
   double strain_energy = 0;
+  /// Shortest straight piece of a taut tendon between two disks, as a part of the undeformed length of the
+  /// rod between them; 1 without any.
+  double least_chord = 1;
 
  private:
   // Passage of a tendon at a node.
@@ -133,10 +142,9 @@ class RodElement {
                  std::size_t column, double factor);
   [[nodiscard]] MagnusStep::Moments moments_of(std::size_t interval) const;
 
+  RodPart part_;
   RodGrid grid_;
   double length_;
-  std::size_t index_;
-  std::vector<PointMass> masses_;
   // Tendons through this section: their indices in the rod's list, and their passages at the nodes.
   std::vector<std::size_t> tendons_;
   std::vector<std::vector<Passage>> passages_;

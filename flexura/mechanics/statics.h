@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -26,6 +27,9 @@ enum class StaticsEnd {
   bad_input,  ///< A number that is not finite, a tension below 0, a list of wrong length.
   /// The load path left all bounds before full load, or the rod would have to pass through itself.
   no_equilibrium,
+  /// The tendons pull two guide disks together: the rod buckles between them and nothing holds it but the
+  /// contact of the disks, which is not modelled.
+  disks_meet,
   out_of_steps,  ///< Neither an equilibrium nor an end of the path was found.
 };
 /// Returns a description for users.
@@ -43,6 +47,9 @@ struct Equilibrium {
   /// Other equilibria exist, as far as detected: the path branched or turned, or the rod descended to another
   /// equilibrium.
   bool ambiguous = false;
+  /// Section whose strain modes are too few for the bend between its guide disks, as far as seen from the
+  /// modes: its tip may be wrong by more than 1e-4 of the rod's length.
+  std::optional<std::size_t> coarse_section = {};
   int iterations = 0;                  ///< Linear systems solved.
   Eigen::VectorXd q;                   ///< The strain modes (RodChain).
   std::vector<double> tensions;        ///< N, at the base; 0 for slack ones.

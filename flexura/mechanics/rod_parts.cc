@@ -14,8 +14,8 @@ constexpr int least_bends = 3;
 // With more pieces a section's chords are so near to a channel that their effect on single pieces is small.
 constexpr int most_parts = 24;
 
-// A section's number of modes for a strain, spread over its pieces: each has all of them up to `share` pieces,
-// then fewer in proportion to its length, but at least `least`.
+// A section's number of modes for a strain, spread over its pieces: each has all of them up to `share`
+// pieces, then fewer in proportion to its length, but at least `least`.
 int spread_modes(int count, int share, int pieces, int least) {
   if (count == 0) return 0;
   return std::clamp((share * count + pieces - 1) / pieces, least, std::max(least, count));
@@ -65,7 +65,7 @@ RodSection section_of_part(const RodSection& section, const RodPart& part, int p
     rod.masses.push_back(mass);
   }
   // So many nodes that the energy of all modes is exact.
-  const int nodes = std::max(4, *std::ranges::max_element(rod.modes.counts()) + 1);
+  const int nodes = std::max(4, std::ranges::max(rod.modes.counts()) + 1);
   rod.nodes = std::max(nodes, (section.nodes + pieces - 1) / pieces);
   return rod;
 }

@@ -1,15 +1,23 @@
 #include <benchmark/benchmark.h>
 
 #include <Eigen/Core>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <numbers>
+#include <optional>
 #include <vector>
 
+#include "flexura/kinematics/arm_variables.h"
+#include "flexura/kinematics/jacobian.h"
+#include "flexura/math/dense.h"
+#include "flexura/mechanics/arc_fit.h"
+#include "flexura/mechanics/arm_rod.h"
 #include "flexura/mechanics/dynamics.h"
 #include "flexura/mechanics/inverse_statics.h"
 #include "flexura/mechanics/rod.h"
 #include "flexura/mechanics/statics.h"
+#include "flexura/model/arm_model.h"
 #include "tests/support/known_rods.h"
 
 // Benchmarks of equilibria: from the rod at rest (cold), and from a nearby one (warm). `error_m` is the
@@ -194,6 +202,98 @@ void inverse_statics(benchmark::State& state) {
   state.counters["equilibria"] = benchmark::Counter(evaluations, benchmark::Counter::kAvgIterations);
 }
 BENCHMARK(inverse_statics)->Arg(0)->Arg(1)->Unit(benchmark::kMicrosecond);
+
+// A step of the fit of arcs to places along them, four on each arc: by elimination arc by arc (0), and by
+// dense normal equations (1), as an independent reference whose result it must agree with.
+void fit_of_arcs(benchmark::State& state) {
+  const auto count = static_cast<std::size_t>(state.range(0));
+  Arm arm;
+  arm.kind = ArmKind::spatial;
+  arm.sections.resize(count);
+  for (Section& section : arm.sections) section.length = 1 / static_cast<double>(count);
+  const ArmVariables variables(arm);
+  std::vector<MaterialPoint> places;
+  for (std::size_t k = 0; k < count; ++k)
+    for (const double at : {0.25, 0.5, 0.75, 1.0}) places.push_back({k, at});
+  const auto rows = 3 * static_cast<Eigen::Index>(places.size());
+  Eigen::MatrixXd moved(rows, 1), J(rows, variables.size());
+  for (Eigen::Index i = 0; i < rows; ++i) moved(i, 0) = 1e-3 * std::sin(static_cast<double>(i));
+  ArmState shape = ArmState::straight(count);
+  for (Eigen::Vector2d& bend : shape.bends) bend = Eigen::Vector2d(2, 1) / static_cast<double>(count);
+  const auto dense = [&]() -> Eigen::VectorXd {
+    const BackboneJacobian jacobian(arm, shape);
+    Jacobian columns(6, 3 * static_cast<Eigen::Index>(count));
+    for (std::size_t p = 0; p < places.size(); ++p) {
+      jacobian.at(places[p], columns);
+      for (Eigen::Index k = 0; k < static_cast<Eigen::Index>(count); ++k)
+        J.block<3, 2>(3 * static_cast<Eigen::Index>(p), 2 * k) = columns.block<3, 2>(0, 3 * k);
+    }
+    return PivotedCholesky(J.transpose() * J).solve(J.transpose() * moved);
+  };
+  ArcFit fit(variables, places);
+  const auto by_arcs = [&]() -> Eigen::VectorXd {
+    fit.set(arm, shape);
+    return fit.solve(moved);
+  };
+  for (auto _ : state) {
+    if (state.range(1) != 0)
+      benchmark::DoNotOptimize(dense());
+    else
+      benchmark::DoNotOptimize(by_arcs());
+  }
+  state.counters["difference"] = (by_arcs() - dense()).norm() / dense().norm();
+}
+BENCHMARK(fit_of_arcs)
+    ->ArgNames({"arcs", "dense"})
+    ->ArgsProduct({{9, 30, 90}, {0, 1}})
+    ->Unit(benchmark::kMicrosecond);
+
+// Shapes of an arm whose model is an elastic rod, under commands that change: an equilibrium, and the arcs
+// nearest to it. `arcs` is the number of arcs of each section. Shows how the cost grows with the sections.
+void shape_of_rod(benchmark::State& state) {
+  const auto count = static_cast<std::size_t>(state.range(0)),
+             arcs = static_cast<std::size_t>(state.range(1));
+  ArmConfig arm;
+  arm.kind = ArmKind::spatial;
+  arm.mechanics = ArmMechanics::statics;
+  arm.gravity = {0, -9.81, 0};
+  arm.section.resize(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    Section& section = arm.section[i];
+    section.length = 0.6 / static_cast<double>(count);
+    section.bend_profile.emplace(arcs, 1.0);
+    section.material = MaterialConfig{.youngs_modulus = 2.5e6,
+                                      .poisson = 0.49,
+                                      .radius = std::array{0.015, 0.015},
+                                      .density = 1070,
+                                      .modes = {.shear = 0, .stretch = 1, .bend = 2, .twist = 1}};
+    for (int t = 0; t < 3; ++t)
+      arm.tendon.push_back({.section = static_cast<int>(i) + 1,
+                            .radius = 0.011,
+                            .angle = (120 * t + 7 * static_cast<double>(i)) * std::numbers::pi / 180,
+                            .compliance = 1e-4});
+  }
+  const ArmModel model = arm_model_of(arm, std::nullopt);
+  const bool has_slopes = state.range(2) != 0;
+  ArmState command = ArmState::straight(count);
+  Eigen::MatrixXd slopes;
+  double more = 0;
+  for (auto _ : state) {
+    more = more < 0.1 ? more + 0.01 : 0;
+    for (Eigen::Vector2d& bend : command.bends)
+      bend = Eigen::Vector2d(1 + more, 0.5 - more) / static_cast<double>(count);
+    benchmark::DoNotOptimize(model.actuation().shape(command));
+    if (has_slopes) model.actuation().slopes(command, slopes);
+  }
+  state.counters["us_a_section"] =
+      benchmark::Counter(static_cast<double>(count) * 1e-6,
+                         benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+}
+BENCHMARK(shape_of_rod)
+    ->ArgNames({"sections", "arcs", "slopes"})
+    ->ArgsProduct({{3, 10, 30}, {3}, {0, 1}})
+    ->ArgsProduct({{1}, {6, 60}, {0}})
+    ->Unit(benchmark::kMicrosecond);
 
 }  // namespace
 }  // namespace flexura

@@ -55,9 +55,9 @@ inline McapChannel json_channel(const std::string& topic) {
   return {topic, "json", {"flexura" + topic, "jsonschema", R"({"type":"object"})"}, {}};
 }
 
-/// Returns a log of two channels and seven messages, in chunks of two, two, two and one.
+/// Writes a log of two channels and seven messages, in plain chunks of two, two, two and one.
 inline void write_small_log(const std::filesystem::path& path) {
-  McapWriter log(path);
+  McapWriter log(path, {.compress = false});
   const auto arm = log.add_channel(json_channel("/arm"));
   const auto events = log.add_channel(json_channel("/events"));
   for (std::uint64_t i = 0; i < 7; ++i) {
@@ -70,6 +70,19 @@ inline void write_small_log(const std::filesystem::path& path) {
 inline std::string small_log() {
   const TestFolder folder;
   write_small_log(folder / "log.mcap");
+  return file_bytes(folder / "log.mcap");
+}
+
+/// Returns a log of one channel in three compressed chunks of 20 messages each.
+inline std::string compressed_log() {
+  const TestFolder folder;
+  McapWriter log(folder / "log.mcap");
+  const auto arm = log.add_channel(json_channel("/arm"));
+  for (std::uint64_t i = 0; i < 60; ++i) {
+    log.write(arm, 1000 * i, R"({"bends":[[0.5,0.25],[0.5,0.25]],"i":)" + std::to_string(i) + "}");
+    if (i % 20 == 19) log.flush();
+  }
+  log.close();
   return file_bytes(folder / "log.mcap");
 }
 

@@ -160,6 +160,8 @@ void add_identify(CLI::App& app, Command& chosen) {
       ->type_name("S");
   identify->add_flag("--alike", arguments->alike, "All sections have the same material");
   identify->add_flag("--mass", arguments->mass, "Estimate a factor on the mass too");
+  identify->add_flag("--friction", arguments->friction,
+                     "Estimate the friction coefficient of the tendons too, one for all");
   add_set_option(*identify, arguments->sets);
   identify->add_option("--seed", arguments->seed, "Seed of the noise, 0 to 1e15")
       ->type_name("N")
@@ -171,19 +173,25 @@ void add_identify(CLI::App& app, Command& chosen) {
 }
 
 void add_export(CLI::App& app, Command& chosen) {
-  auto results = std::make_shared<std::string>();
-  auto format = std::make_shared<std::string>("csv");
+  auto arguments = std::make_shared<ExportArguments>();
   CLI::App* command =
       add_command(app, "export", command_group::experiments, "Write a run's log in another format",
-                  "flexura export results/experiment --to csv");
-  command->add_option("RESULTS", *results, "A folder made by `flexura run`")->type_name("")->required();
-  command
-      ->add_option("--to", *format, "csv: tables; mp4, png: a film of each recorded camera (png: animated)")
-      ->type_name("csv|mp4|png")
-      ->check(CLI::IsMember({"csv", "mp4", "png"}).description(""))
+                  "flexura export results/experiment --to csv\n"
+                  "flexura export results/experiment --to gltf --out arm.glb");
+  command->add_option("RESULTS", arguments->results, "A folder made by `flexura run`")
+      ->type_name("")
       ->required();
-  command->callback([&chosen, results, format] {
-    chosen = [results, format] { return export_command(*results, *format, std::cout, std::cerr); };
+  command
+      ->add_option("--to", arguments->format,
+                   "csv: tables; mp4, png: a film of each recorded camera (png: animated);\n"
+                   "gltf: the arm's motion in three dimensions")
+      ->type_name("csv|mp4|png|gltf")
+      ->check(CLI::IsMember({"csv", "mp4", "png", "gltf"}).description(""))
+      ->required();
+  command->add_option("-o,--out", arguments->out, "New file for gltf (default: RESULTS/gltf/arm.glb)")
+      ->type_name("FILE");
+  command->callback([&chosen, arguments] {
+    chosen = [arguments] { return export_command(*arguments, std::cout, std::cerr); };
   });
 }
 

@@ -1,6 +1,6 @@
 #pragma once
 
-// CLI11 is heavy: only the sources that define the command line include this header.
+// CLI11 takes long to compile, so only the sources that define the command line include this header.
 #include <CLI/CLI.hpp>
 #include <functional>
 #include <string>
@@ -21,7 +21,7 @@ inline constexpr const char* pictures = "Make and measure pictures";
 inline constexpr const char* program = "Help for files and shells";
 }  // namespace command_group
 
-/// Adds a command under a heading, with an example that can be pasted into a shell.
+/// Adds a command under the heading `group`, with an example that can be pasted into a shell.
 CLI::App* add_command(CLI::App& app, const std::string& name, const char* group, const std::string& meaning,
                       const std::string& example);
 
@@ -31,7 +31,7 @@ void add_set_option(CLI::App& command, std::vector<std::string>& sets);
 /// Adds the commands render, measure, estimate and intrinsics.
 void add_picture_commands(CLI::App& app, Command& chosen);
 
-/// Returns the description of the command line that completion and manual page need.
+/// Returns the description of the command line for the shells' completion and the manual page.
 [[nodiscard]] ProgramHelp program_help(const CLI::App& app);
 
 }  // namespace flexura

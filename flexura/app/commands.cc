@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cstddef>
 #include <cstdlib>
@@ -13,6 +14,7 @@
 #include <stdexcept>
 #include <string_view>
 
+#include "flexura/app/export_gltf.h"
 #include "flexura/app/forward.h"
 #include "flexura/app/inverse.h"
 #include "flexura/app/json_lines.h"
@@ -91,8 +93,8 @@ class WatchedRun {
   OpenViewer viewer_;
 };
 
-// A run without a viewer. The first stop signal cancels it; a second one ends the program at once, as the
-// default handler would.
+// A run or a check without a viewer. The first stop signal cancels it; a second one ends the program at once,
+// as the default handler would.
 class UnwatchedRun {
  public:
   explicit UnwatchedRun(const std::shared_ptr<RunLink>& link)
@@ -196,8 +198,14 @@ int check_command(const CheckArguments& arguments, std::ostream& out, std::ostre
   if (experiment.task.empty())
     throw input_error(arguments.experiment, "nothing to check: expected at least one [[task]]", 1, 1);
   TerminalProgress progress(err);
-  const SafetyReport report = check_experiment_safety(experiment, progress);
+  const auto link = std::make_shared<RunLink>(&progress);
+  const UnwatchedRun stoppable(link);
+  const SafetyReport report = check_experiment_safety(experiment, *link);
   progress.clear();
+  if (link->is_cancelled()) {
+    print_line(err, "cancelled", "it was stopped before the check was complete");
+    return exit_of_signal(stoppable.received_signal());
+  }
   if (arguments.json) {
     out << write_json(safety_node(report), 2) << '\n';
   } else {
@@ -229,16 +237,28 @@ int linearise_command(const std::string& arm_file, std::istream& in, std::ostrea
   return answer_about_rod<LineariseAnswers>(arm_file, in, out);
 }
 
-int export_command(const std::string& results, const std::string& format, std::ostream& out,
-                   std::ostream& err) {
-  if (format != "csv" && format != "mp4" && format != "png")
-    throw input_error("--to", fmt::format("\"{}\": expected csv, mp4 or png", format));
+int export_command(const ExportArguments& arguments, std::ostream& out, std::ostream& err) {
+  const std::string& format = arguments.format;
+  constexpr std::array formats = {"csv", "mp4", "png", "gltf"};
+  if (std::ranges::find(formats, format) == formats.end())
+    throw input_error("--to", fmt::format("\"{}\": expected csv, mp4, png or gltf", format));
+  const bool is_gltf = format == "gltf";
+  if (!is_gltf && !arguments.out.empty())
+    throw input_error("--out", fmt::format("--to {} writes a folder: expected --to gltf", format));
   TerminalProgress progress(err);
-  const ExportResult result = export_as(format, results, progress);
+  std::filesystem::path written;
+  bool truncated = false;
+  if (is_gltf) {
+    const GltfExport result = export_gltf(arguments.results, arguments.out, &progress);
+    written = result.file, truncated = result.truncated;
+  } else {
+    const ExportResult result = export_as(format, arguments.results, progress);
+    written = result.folder, truncated = result.truncated;
+  }
   progress.clear();
-  if (result.truncated)
-    err << "note: the run was cut short; exported up to the last complete chunk of its log\n";
-  print_line(out, format == "csv" ? "tables" : "films", result.folder.string());
+  if (truncated) err << "note: the run was interrupted; exported up to the last complete chunk of its log\n";
+  const char* const films_or_tables = format == "csv" ? "tables" : "films";
+  print_line(out, is_gltf ? "glTF" : films_or_tables, written.string());
   return exit_done;
 }
 

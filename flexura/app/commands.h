@@ -12,7 +12,7 @@ namespace flexura {
 
 /// The program's exit statuses (docs/command-line.md).
 enum ExitStatus : int { exit_done = 0, exit_missed = 1, exit_bad_input = 2, exit_system_failure = 3 };
-/// Returns the exit status that a shell reports for a program ended by a signal.
+/// Returns the exit status that a shell reports for a program that a signal ended.
 [[nodiscard]] constexpr int exit_of_signal(int signal) { return 128 + signal; }
 
 /// Arguments of `flexura run`.
@@ -32,8 +32,15 @@ struct CheckArguments {
   bool json = false;
 };
 
-// Each command writes its result to `out` and messages for people to `err`, and returns an exit status. It
-// throws InputError for bad input and other exceptions for system failures.
+/// Arguments of `flexura export`.
+struct ExportArguments {
+  std::string results;
+  std::string format = "csv";
+  std::string out;  ///< New file, for glTF only; "": default.
+};
+
+// Each command writes its result to `out` and messages for the user to `err`, and returns an exit status.
+// Commands throw InputError for bad input and other exceptions for system failures.
 
 int run_command(const RunArguments& arguments, std::ostream& out, std::ostream& err);
 int check_command(const CheckArguments& arguments, std::ostream& out, std::ostream& err);
@@ -41,8 +48,7 @@ int forward_command(const std::string& arm_file, std::istream& in, std::ostream&
 int inverse_command(const std::string& arm_file, std::istream& in, std::ostream& out);
 int statics_command(const std::string& arm_file, std::istream& in, std::ostream& out);
 int linearise_command(const std::string& arm_file, std::istream& in, std::ostream& out);
-int export_command(const std::string& results, const std::string& format, std::ostream& out,
-                   std::ostream& err);
+int export_command(const ExportArguments& arguments, std::ostream& out, std::ostream& err);
 int schema_command(const std::string& format, std::ostream& out);
 
 }  // namespace flexura

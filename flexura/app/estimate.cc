@@ -66,8 +66,8 @@ void add_notes(std::span<const PictureFile> pictures, std::span<const Observatio
                const EstimateConfig& config, ShapeEstimate& found) {
   if (found.is_found && !config.prior.is_base_position_known)
     found.notes.emplace_back(
-        "which end is the base is guessed: the one that the border of the first picture cuts, or the lower "
-        "one; choose with --base");
+        "the base is assumed to be the end at the border of the first picture, or the lower end: give it "
+        "with --base");
   for (std::size_t i = 0; i < pictures.size(); ++i) {
     const auto same = std::ranges::find_if(
         pictures.first(i), [&](const PictureFile& other) { return other.bytes == pictures[i].bytes; });
@@ -79,7 +79,7 @@ void add_notes(std::span<const PictureFile> pictures, std::span<const Observatio
   const auto& sections = config.prior.arm.sections;
   if (config.has_bends && !found.is_trusted() && sections.size() > 1 &&
       std::ranges::any_of(sections, &Section::can_stretch))
-    found.notes.emplace_back("its sections are taken to stretch alike");
+    found.notes.emplace_back("all sections are assumed to have equal stretches");
 }
 
 }  // namespace

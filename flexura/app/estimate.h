@@ -13,13 +13,13 @@ namespace flexura {
 
 /// A picture file.
 struct PictureFile {
-  std::string name;   ///< For messages.
-  std::string bytes;  ///< Contents, in any of the formats of docs/vision.md, "Kinds of pictures".
+  std::string name;   ///< Name of the file, for messages.
+  std::string bytes;  ///< Contents of the file, in a format of docs/vision.md, "Kinds of pictures".
 };
 
 /// The shape estimated from the pictures.
 struct ShapeAnswer {
-  Node answer;  ///< docs/estimation.md, "flexura estimate".
+  Node answer;  ///< The answer described in docs/estimation.md, "flexura estimate".
   bool is_found = false;
 };
 

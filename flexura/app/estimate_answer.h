@@ -15,7 +15,7 @@ namespace flexura {
 struct PictureReport {
   std::string image;   ///< File name.
   std::string camera;  ///< Camera name.
-  std::string reason;  ///< Why no arm was found; empty if one was.
+  std::string reason;  ///< Why no arm was found, or "".
   std::vector<std::string> notes;
 };
 

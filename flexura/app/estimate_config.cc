@@ -44,9 +44,8 @@ void check_poses(const Node& file, const std::vector<MeasuredCamera>& cameras) {
   for (std::size_t i = 0; i < tables.size(); ++i) {
     for (const std::string_view key : {"position", "rotation"})
       if (written_at(tables[i], key) == nullptr)
-        problems.push_back(
-            {tables[i].where,
-             fmt::format("camera[{}].{}: missing: expected where each camera stands", i, key)});
+        problems.push_back({tables[i].where,
+                            fmt::format("camera[{}].{}: missing: expected the pose of each camera", i, key)});
     const Node* position = written_at(tables[i], "position");
     if (position == nullptr) continue;
     const Eigen::Vector3d p_WC = cameras[i].pose().position;
@@ -54,7 +53,7 @@ void check_poses(const Node& file, const std::vector<MeasuredCamera>& cameras) {
       problems.push_back(
           {position->where, fmt::format("camera[{}].position: expected within {:g} m", i, farthest_place)});
     else if (i + 1 == tables.size() && i > 0 && stand_at_one_place(cameras))
-      problems.push_back({position->where, fmt::format("camera[{}].position: camera[0] stands there: "
+      problems.push_back({position->where, fmt::format("camera[{}].position: is that of camera[0]: "
                                                        "expected the position and rotation of each",
                                                        i)});
   }
@@ -145,7 +144,7 @@ EstimateConfig estimate_config(const EstimateArguments& arguments) {
   const auto is_alike = [&](double one, double next) { return next - one <= alike; };
   if (const auto twice = std::ranges::adjacent_find(markers, is_alike); twice != markers.end())
     throw input_error("--markers",
-                      fmt::format("a place is there twice, {:.9g} of the arm's length: expected each once",
+                      fmt::format("a position occurs twice, {:.9g} of the arm's length: expected each once",
                                   *twice / config.prior.arm.length()));
   config.threshold = threshold_config(arguments.threshold);
   config.points = static_cast<std::size_t>(arguments.points);

@@ -37,15 +37,15 @@ struct EstimateArguments {
   std::int64_t points = 101;  ///< Number of backbone points to print.
 };
 
-/// Throws InputError for arguments that are wrong whatever the files contain.
+/// Throws InputError for arguments that are wrong independent of the files' contents.
 void check_arguments(const EstimateArguments& arguments);
 
-/// Returns the settings for the arguments. Throws InputError naming the wrong argument, or the place in the
-/// arm's file.
+/// Returns the settings for the arguments. Throws InputError with the wrong argument, or with the position in
+/// the arm's file.
 [[nodiscard]] EstimateConfig estimate_config(const EstimateArguments& arguments);
 
 /// Returns the cameras of a file, checked for use in triangulation. Throws InputError for a camera without
-/// position or rotation, for cameras that are all at one position, and unless there are `count` of them.
+/// position or rotation, if all cameras are at one position, or if the file does not have `count` cameras.
 [[nodiscard]] std::vector<MeasuredCamera> standing_cameras(const Node& file, std::size_t count);
 
 }  // namespace flexura

@@ -45,14 +45,14 @@ class EstimateInput : public testing::Test {
 TEST_F(EstimateInput, SaysWhereAFileOfCamerasIsWrong) {
   const std::string side = "position = [-1.9, 0.45, 0.0]";
   EXPECT_EQ(refusal(side, "position = [0, 0.45, 1.9]"),
-            "cameras.toml:13:12: camera[1].position: camera[0] stands there: expected the position and "
+            "cameras.toml:13:12: camera[1].position: is that of camera[0]: expected the position and "
             "rotation of each");
   EXPECT_EQ(refusal(side, "position_mm = [1e200, 0, 0]"),
             "cameras.toml:13:15: camera[1].position: expected within 1e+06 m");
   EXPECT_EQ(refusal(side, ""),
-            "cameras.toml:8:1: camera[1].position: missing: expected where each camera stands");
+            "cameras.toml:8:1: camera[1].position: missing: expected the pose of each camera");
   EXPECT_EQ(refusal("\"side\"", "\"front\""),
-            "cameras.toml:9:1: camera[1].name: is that of camera[0], too: expected another");
+            "cameras.toml:9:1: camera[1].name: is also the name of camera[0]: expected another name");
   EXPECT_EQ(refusal("cx = 319.5", "cx = 1e308"),
             "cameras.toml:4:6: camera[0].cx = 1e+308: expected a number from -10000000 to 10000000");
   arguments_.images.emplace_back("third.png");

@@ -329,7 +329,7 @@ TEST_F(Estimate, SaysThatTheBaseIsGuessed) {
   const auto says = [&] {
     const Node found = answer(exit_done);
     const Node* notes = found.find("notes");
-    return notes != nullptr && write_json(*notes).find("choose with --base") != std::string::npos;
+    return notes != nullptr && write_json(*notes).find("give it with --base") != std::string::npos;
   };
   EXPECT_TRUE(says());
   arguments_.base = {0, 0, 0};

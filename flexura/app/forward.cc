@@ -32,7 +32,7 @@ struct ForwardRequest {
 
 const Table<ForwardRequest>& fields_of(const ForwardRequest*) {
   static const auto table =
-      Table<ForwardRequest>("fk request", "A shape of the arm, and where along it to answer.")
+      Table<ForwardRequest>("fk request", "Shape of the arm, and the positions along it for the answer.")
           .field("cord_angles", &ForwardRequest::cord_angles,
                  {.meaning = "cords' angles from +X", .unit = Unit::radian, .range = angle_range})
           .field("archings", &ForwardRequest::archings,
@@ -80,7 +80,7 @@ ForwardRequest read_forward_request(const ArmModel& model, std::string_view line
     const ArmState shape = model.actuation().shape(arm_state(arm, request.shape()));
     const bool has_shape =
         std::ranges::all_of(shape.bends, [](const Eigen::Vector2d& bend) { return bend.allFinite(); });
-    if (!has_shape) reader.problem("the arm comes to no rest");
+    if (!has_shape) reader.problem("the arm has no equilibrium");
     const double length = has_shape && request.at ? model.backbone_of_shape(shape).length() : 0;
     for (std::size_t i = 0; has_shape && request.at && i < request.at->size(); ++i) {
       if ((*request.at)[i] <= length * (1 + 1e-12)) continue;  // The tolerance of Backbone::pose().

@@ -51,7 +51,8 @@ void add_errors(MeasuredMotion& motion, double noise, std::int64_t seed) {
 }
 
 // Returns the period of the slowest vibration mode of the arm at rest, s; 0: no such mode.
-double slowest_period(const Rod& rod, const RodLoads& loads) {
+double slowest_period(Rod rod, const RodLoads& loads) {
+  for (TendonRoute& tendon : rod.tendons) tendon.friction = 0;
   RodStatics statics(rod);
   const Equilibrium rest = statics.solve({}, loads);
   if (!rest.converged() || !rest.q.allFinite()) return 0;
@@ -77,6 +78,7 @@ std::vector<RodParameter> parameters_of(const Rod& rod, const IdentifySettings& 
       parameters.push_back(
           {.kind = kind, .section = settings.alike ? std::nullopt : std::optional<std::size_t>(i)});
   if (settings.mass) parameters.push_back({.kind = Kind::mass});
+  if (settings.friction) parameters.push_back({.kind = Kind::friction});
   return parameters;
 }
 
@@ -99,11 +101,15 @@ IdentifiedValue damping_of(const Identification& found, Index stiffness, Index d
 // Returns the rod with the identified values; the other values stay nominal.
 Rod identified_rod(Rod rod, const IdentifiedArm& found) {
   for (const IdentifiedValue& value : found.values) {
-    if (!value.is_determined || !(value.value > 0)) continue;
+    if (!value.is_determined || !value.is_physical) continue;
+    if (value.name == "friction")
+      for (TendonRoute& tendon : rod.tendons) tendon.friction = value.value;
     for (std::size_t i = 0; i < rod.sections.size(); ++i) {
       if (value.section && *value.section != i + 1) continue;
       RodSection& section = rod.sections[i];
-      if (value.name == "damping_time") {
+      if (value.name == "friction") {
+        break;
+      } else if (value.name == "damping_time") {
         section.damping_time = value.value;
       } else if (value.name == "mass_factor") {
         section.density *= value.value;
@@ -124,6 +130,7 @@ Node value_node(const IdentifiedValue& value) {
   Node::Table line = {{"parameter", {}, text_node(value.name)}};
   if (value.section) line.push_back({"section", {}, {static_cast<std::int64_t>(*value.section), {}}});
   line.push_back({"observable", {}, {value.is_determined, {}}});
+  line.push_back({"physical", {}, value.is_determined ? Node{value.is_physical, {}} : Node{}});
   line.push_back({"value", {}, number_node(value.is_determined ? value.value : nothing)});
   line.push_back({"sigma", {}, number_node(value.is_determined ? value.sigma : nothing)});
   line.push_back({"nominal", {}, number_node(value.nominal)});
@@ -146,12 +153,13 @@ Node rest_node(const IdentifiedArm& found) {
 std::string words_of(const std::string& name) {
   if (name == "youngs_modulus") return "Young's modulus, Pa";
   if (name == "stiffness_factor") return "stiffness, factor";
+  if (name == "friction") return "tendon friction, coefficient";
   return name == "damping_time" ? "damping time, s" : "mass, factor";
 }
 
 std::string distance_words(double metres) {
   constexpr double most = 100;  // In m; beyond, the computed motion has blown up.
-  return metres < most ? fmt::format("{:.2f} mm", 1e3 * metres) : "farther than can be computed";
+  return metres < most ? fmt::format("{:.2f} mm", 1e3 * metres) : "more than can be computed";
 }
 
 void print_table(const IdentifiedArm& found, std::ostream& out) {
@@ -161,22 +169,69 @@ void print_table(const IdentifiedArm& found, std::ostream& out) {
     out << fmt::format("{:<34}", of + words_of(value.name));
     out << (value.is_determined ? fmt::format("{:>12.5g}{:>12.2g}", value.value, value.sigma)
                                 : fmt::format("{:>24}", "not observable in this motion"));
-    out << fmt::format("{:>12.5g}\n", value.nominal);
+    out << fmt::format("{:>12.5g}{}\n", value.nominal, value.is_physical ? "" : "  not physical");
   }
-  out << fmt::format("{} places at {} times, which the rod's shapes meet within {} (rms); misfit {:.2f}\n",
-                     found.places, found.samples, distance_words(found.rms), found.misfit);
   out << fmt::format(
-      "moved by its tendons alone the arm of the file is off by {} (rms), as identified by {}\n",
+      "{} positions at {} times, which the rod's shapes approximate within {} (rms); misfit {:.2f}\n",
+      found.places, found.samples, distance_words(found.rms), found.misfit);
+  out << fmt::format(
+      "simulated with its tendons' forces, the arm of the file is {} (rms) from the motion, the identified "
+      "arm {}\n",
       distance_words(found.missed_file), distance_words(found.missed));
 }
 
+// Returns the note on a determined value that no material has.
+std::string unphysical_note(const IdentifiedValue& value, const IdentifiedArm& found) {
+  const bool can_be_zero = value.name == "damping_time" || value.name == "friction";
+  const std::string of = value.section ? fmt::format("section {}: ", *value.section) : "";
+  // Within two standard deviations of the range the value says only that it is small.
+  const std::string why =
+      value.value + 2 * value.sigma > 0
+          ? "the motion hardly excites it, or it is too small to be seen"
+          : fmt::format(
+                "the samples are too far apart in time (every {:.3g} ms), or the file's arm differs "
+                "from the true one in more than these values",
+                1e3 * found.step);
+  return fmt::format("note: {}{} = {:.4g} +- {:.2g} is outside its physical range ({}): {}\n", of,
+                     words_of(value.name), value.value, value.sigma, can_be_zero ? "0 or more" : "above 0",
+                     why);
+}
+
+void print_notes(const IdentifiedArm& found, double noise, std::ostream& err) {
+  // Positions off the rod's shapes by so many times their noise are those of another geometry.
+  constexpr double far_off = 2;
+  const bool is_off = noise > 0 && found.rms > far_off * noise;
+  if (found.misfit > large_misfit)
+    err << fmt::format(
+        "note: the identified arm does not explain the motion (misfit {:.3g}, expected about 1), so values "
+        "and standard deviations may be wrong: check the section lengths, masses, tendons and loads of the "
+        "file, and whether the samples (every {:.3g} ms) are close enough in time\n",
+        found.misfit, 1e3 * found.step);
+  if (is_off)
+    err << fmt::format(
+        "note: no shape of the file's arm meets the positions: they are off by {:.3g} mm (rms), with noise "
+        "of {:.3g} mm: check the section lengths of the file, and where the positions are along the arm\n",
+        1e3 * found.rms, 1e3 * noise);
+  for (const IdentifiedValue& value : found.values)
+    if (value.is_determined && !value.is_physical) err << unphysical_note(value, found);
+  if (!found.converged)
+    err << "note: the friction did not settle in the allowed number of iterations; all values are of the "
+           "last one\n";
+}
+
 void refuse_what_is_not_known(const IdentifyArguments& arguments, const ArmConfig& arm) {
+  for (const auto& [option, value] : {std::pair{"--from", arguments.from}, std::pair{"--to", arguments.to}})
+    if (value && !std::isfinite(*value))
+      throw input_error(option, fmt::format("{}: expected a time, s", *value));
+  if (arguments.from && arguments.to && !(*arguments.from < *arguments.to))
+    throw input_error("--from", fmt::format("{} s is not before --to, {} s: expected an earlier time",
+                                            *arguments.from, *arguments.to));
   if (arm.drag)
     throw input_error(arguments.experiment,
-                      "arm.drag: a fluid is not known to identification: expected none");
+                      "arm.drag: the identification does not support a fluid: expected none");
   if (!arm.payload.empty())
     throw input_error(arguments.experiment,
-                      "arm.payload: payloads are not known to identification: expected none");
+                      "arm.payload: the identification does not support payloads: expected none");
   const auto is_good = [](double value) { return value > 0 && std::isfinite(value); };
   if (arguments.noise_mm && !is_good(*arguments.noise_mm))
     throw input_error("--noise-mm", fmt::format("{}: expected a number above 0", *arguments.noise_mm));
@@ -211,7 +266,10 @@ IdentifiedArm identify_arm(const ArmConfig& arm, const Rod& rod, const MeasuredM
                        .equations = found.equations,
                        .misfit = found.misfit,
                        .noise = record.noise,
-                       .rms = record.rms};
+                       .rms = record.rms,
+                       .step = (motion.samples.back().time - motion.samples.front().time) /
+                               static_cast<double>(motion.samples.size() - 1),
+                       .converged = found.converged};
   // Model error counts like noise.
   const double spread = std::sqrt(std::max(1.0, found.misfit));
   const auto count = static_cast<Index>(settings.alike ? 1 : rod.sections.size());
@@ -241,6 +299,19 @@ IdentifiedArm identify_arm(const ArmConfig& arm, const Rod& rod, const MeasuredM
                              .value = found.values[2 * count],
                              .sigma = spread * found.sigma[2 * count],
                              .nominal = 1});
+  if (settings.friction) {
+    const Index last = static_cast<Index>(parameters.size()) - 1;
+    result.values.push_back({.name = "friction",
+                             .unit = "",
+                             .is_determined = is_determined(last),
+                             .value = found.values[last],
+                             .sigma = spread * found.sigma[last],
+                             .nominal = rod.tendons.front().friction});
+  }
+  for (IdentifiedValue& value : result.values) {
+    const bool can_be_zero = value.name == "damping_time" || value.name == "friction";
+    value.is_physical = !value.is_determined || value.value > 0 || (can_be_zero && value.value == 0);
+  }
   result.missed_file = places_missed(rod, motion.places, motion.samples, record);
   result.missed = places_missed(identified_rod(rod, result), motion.places, motion.samples, record);
   return result;
@@ -250,8 +321,10 @@ int identify_command(const IdentifyArguments& arguments, std::ostream& out, std:
   const Experiment experiment = load_experiment(arguments.experiment, {arguments.sets, arguments.seed});
   refuse_what_is_not_known(arguments, experiment.arm);
   const Rod rod = known_rod(arguments.experiment, experiment);
+  if (arguments.friction && rod.tendons.empty())
+    throw input_error("--friction", "the arm has no tendons: expected an arm with tendons");
   MeasuredMotion motion = read_motion(arguments.motion, experiment, rod, {arguments.from, arguments.to});
-  if (motion.is_cut) err << "note: the run was cut short; its log is read up to the last complete chunk\n";
+  if (motion.is_cut) err << "note: the run was interrupted; its log is read up to the last complete chunk\n";
   const double noise = arguments.noise_mm.value_or(0) * 1e-3;
   if (motion.is_logged && noise > 0) add_errors(motion, noise, experiment.seed);
   IdentifiedArm found;
@@ -260,15 +333,12 @@ int identify_command(const IdentifyArguments& arguments, std::ostream& out, std:
                          {.noise = noise,
                           .window = arguments.window.value_or(0),
                           .mass = arguments.mass,
+                          .friction = arguments.friction,
                           .alike = arguments.alike});
   } catch (const std::invalid_argument& error) {
     throw input_error(arguments.motion, error.what());
   }
-  if (found.misfit > large_misfit)
-    err << fmt::format(
-        "note: not all of the motion is that of such an arm (misfit {:.3g}): it is sampled too "
-        "seldom, or the file's lengths, masses, tendons or loads are others\n",
-        found.misfit);
+  print_notes(found, noise, err);
   if (arguments.json) {
     for (const IdentifiedValue& value : found.values) out << write_json(value_node(value)) << '\n';
     out << write_json(rest_node(found)) << '\n';

@@ -11,7 +11,7 @@
 
 namespace flexura {
 
-/// Part of a motion to read, s; empty: from its start, to its end.
+/// Part of a motion to read, s. An empty `from` is the motion's start, an empty `to` its end.
 struct TimeSpan {
   std::optional<double> from = {}, to = {};
 
@@ -23,14 +23,14 @@ struct TimeSpan {
 struct MeasuredMotion {
   std::vector<RodPlace> places;
   std::vector<RodPlaceSample> samples;
-  bool is_logged = false;  ///< Whether a run logged them, which makes them exact.
-  bool is_cut = false;     ///< Whether the log ends where its run was cut short.
+  bool is_logged = false;  ///< Whether the positions are from a run's log, and therefore exact.
+  bool is_cut = false;     ///< Whether the log is incomplete because its run was interrupted.
 };
 
-/// Reads the motion of the arm of `experiment`, whose rod is `rod`, from `file`. The file is a results folder
-/// or a log of a run (positions and tensions of the true arm), or a table of measured places, FILE.csv
-/// (docs/command-line.md, "identify"). Throws InputError if the file is missing or damaged, has no such
-/// motion or that of another arm, or if the arm touches something.
+/// Reads the motion of the arm of `experiment`, whose rod is `rod`, from `file`. `file` is a results folder,
+/// a log of a run, or a table FILE.csv of measured positions (docs/command-line.md, "identify"). A log has
+/// positions and tensions of the true arm. Throws InputError if the file is missing or damaged, has no motion
+/// of this arm, or if the arm touches something.
 [[nodiscard]] MeasuredMotion read_motion(const std::filesystem::path& file, const Experiment& experiment,
                                          const Rod& rod, const TimeSpan& span);
 

@@ -160,6 +160,28 @@ TEST_F(Identify, SaysWhatAMotionDoesNotTell) {
     }
 }
 
+constexpr int seldom = 10;
+
+// Every tenth state of the log is too seldom for the damping.
+TEST_F(Identify, MarksValuesThatNoMaterialHas) {
+  const Experiment experiment = load_experiment(step_response);
+  const Rod rod = rod_of(experiment.arm, experiment.drive);
+  MeasuredMotion motion = read_motion(results(), experiment, rod, {});
+  std::vector<RodPlaceSample> kept;
+  for (std::size_t k = 0; k < motion.samples.size(); k += static_cast<std::size_t>(seldom))
+    kept.push_back(motion.samples[k]);
+  motion.samples = kept;
+  const IdentifiedArm found = identify_arm(experiment.arm, rod, motion, {.noise = 2e-4});
+  bool is_any = false;
+  for (const IdentifiedValue& value : found.values) {
+    if (!value.is_determined) continue;
+    EXPECT_EQ(value.is_physical, value.value >= 0) << value.name;
+    is_any = is_any || !value.is_physical;
+  }
+  EXPECT_TRUE(is_any);
+  EXPECT_NEAR(found.step, 0.01 * seldom, 1e-9);
+}
+
 TEST_F(Identify, RefusesWhatIsNoMotionOfTheArm) {
   const auto refuses = [&](const std::string& motion, const std::string& what) {
     EXPECT_THAT(refused({.experiment = step_response, .motion = motion}), HasSubstr(what));
@@ -174,6 +196,10 @@ TEST_F(Identify, RefusesWhatIsNoMotionOfTheArm) {
               HasSubstr("has no true arm states (/arm/truth)"));
   EXPECT_THAT(refused({.experiment = step_response, .motion = results(), .to = 0.05}),
               HasSubstr("samples of a motion: expected at least"));
+  EXPECT_EQ(refused({.experiment = step_response, .motion = results(), .from = 2, .to = 1}),
+            "--from: 2 s is not before --to, 1 s: expected an earlier time");
+  EXPECT_THAT(refused({.experiment = step_response, .motion = results(), .to = std::nan("")}),
+              HasSubstr("--to: nan: expected a time"));
   // The log is of another arm.
   EXPECT_THAT(
       refused({.experiment = checkout_file("examples/13_grasp/experiment.toml"), .motion = results()}),

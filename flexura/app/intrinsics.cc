@@ -37,7 +37,7 @@ void check_folder(const std::string& option, const std::string& file) {
   const auto folder = std::filesystem::path(file).parent_path();
   std::error_code error;
   if (folder.empty() || std::filesystem::is_directory(folder, error)) return;
-  throw input_error(option, fmt::format("{}: no folder {}: expected one that is there",
+  throw input_error(option, fmt::format("{}: no folder {}: expected an existing folder",
                                         text_node(file).brief(), text_node(folder.string()).brief()));
 }
 
@@ -57,8 +57,9 @@ void check(const IntrinsicsArguments& arguments) {
                       fmt::format("{}: expected 0 to 5 of k1, k2, p1, p2, k3", arguments.distortion));
   constexpr std::int64_t most = 1000000;
   if (arguments.hold_out && (*arguments.hold_out < 2 || *arguments.hold_out > most))
-    throw input_error("--hold-out",
-                      fmt::format("{}: expected 2 or more: every Nth view is left out", *arguments.hold_out));
+    throw input_error(
+        "--hold-out",
+        fmt::format("{}: expected 2 or more: every Nth view is excluded from the fit", *arguments.hold_out));
   for (const double x : arguments.position)
     if (!std::isfinite(x)) throw input_error("--position", "expected three finite numbers X,Y,Z");
   if (arguments.rotation.size() == 4) {
@@ -81,9 +82,9 @@ Node cameras_answer(const IntrinsicsArguments& arguments, const BoardTarget& boa
       arguments, is_pair ? std::vector<std::string>{"left", "right"} : std::vector<std::string>{"camera"});
   if (is_pair && board.is_ambiguous())
     throw input_error("--board",
-                      fmt::format("{}x{}: looks the same upside down, so that two cameras may take "
-                                  "different corners for the first: expected one even and one odd number "
-                                  "of a chessboard, or an odd number of rows of asymmetric circles",
+                      fmt::format("{}x{}: looks the same upside down, so two cameras may count the corners "
+                                  "from different ends: expected one even and one odd number of a "
+                                  "chessboard, or an odd number of rows of asymmetric circles",
                                   board.columns, board.rows));
   const std::vector<std::string>& first = is_pair ? arguments.left : arguments.images;
   // The fit takes about as long as the search in half of the pictures.

@@ -85,7 +85,7 @@ void add_warnings(const BoardPictures& pictures, const CameraFit& fit, std::vect
   constexpr double suspicious = 3;
   for (std::size_t i = 0; i < fit.view_rms.size(); ++i) {
     if (!fit.view_rms[i] || *fit.view_rms[i] <= suspicious * usual) continue;
-    notes.push_back(fmt::format("{} fits {:.1f} times worse than the middle one: look at it",
+    notes.push_back(fmt::format("{} fits {:.1f} times worse than the median picture: check this picture",
                                 pictures.names[i], *fit.view_rms[i] / usual));
   }
 }

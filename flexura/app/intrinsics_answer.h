@@ -26,7 +26,7 @@ namespace flexura {
 [[nodiscard]] std::vector<std::string> notes_of(const std::vector<BoardPictures>& cameras,
                                                 const IntrinsicsFit& fit);
 
-/// Adds the results of held-out views, if there are any.
+/// Adds the results of the views that were excluded from the fit, if there are any.
 void add_held_out(const IntrinsicsFit& fit, Node::Table& answer);
 
 }  // namespace flexura

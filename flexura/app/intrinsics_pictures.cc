@@ -80,8 +80,8 @@ void refuse_larger(const BoardPictures& pictures, const BoardTarget& board) {
   const auto first = std::ranges::find_if(pictures.observations, &BoardObservation::is_larger);
   throw input_error(
       "--board",
-      fmt::format("{}x{}: the board's pattern goes on beyond these in {} of {} pictures ({} is the first): "
-                  "expected the number of all its inner corners (or circles)",
+      fmt::format("{}x{}: the board's pattern continues beyond these points in {} of {} pictures ({} is the "
+                  "first): expected the number of all its inner corners (or circles)",
                   board.columns, board.rows, larger, pictures.names.size(),
                   pictures.names[static_cast<std::size_t>(first - pictures.observations.begin())]));
 }
@@ -144,9 +144,10 @@ BoardTarget board_of(const IntrinsicsArguments& arguments) {
 BoardPictures look_for_board(const std::vector<std::string>& files, const BoardTarget& board,
                              const std::string& option, Progress& progress) {
   if (files.size() < 2)
-    throw input_error(option,
-                      fmt::format("{} picture{}: expected two at least, of the board from different sides",
-                                  files.size(), files.size() == 1 ? "" : "s"));
+    throw input_error(
+        option,
+        fmt::format("{} picture{}: expected at least two, which show the board from different directions",
+                    files.size(), files.size() == 1 ? "" : "s"));
   BoardPictures pictures;
   pictures.names = files;
   std::size_t done = 0;

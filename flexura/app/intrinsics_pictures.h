@@ -26,12 +26,12 @@ struct ZoomGroup {
   std::string folder;
 };
 
-/// Returns the board given in the arguments. Throws InputError for a board that cannot be detected.
+/// Returns the board that the arguments describe. Throws InputError for a board that cannot be detected.
 [[nodiscard]] BoardTarget board_of(const IntrinsicsArguments& arguments);
 
-/// Reads pictures and looks for the board in each. Throws InputError for fewer than two pictures, unreadable
-/// ones, and differing sizes. Also throws it if more pictures show parts of a larger board than boards of
-/// this size.
+/// Reads pictures and detects the board in each of them. Throws InputError for fewer than two pictures, for
+/// unreadable pictures, and for pictures of different sizes. Also throws it if more pictures show a part of a
+/// larger board than a board of this size.
 [[nodiscard]] BoardPictures look_for_board(const std::vector<std::string>& files, const BoardTarget& board,
                                            const std::string& option, Progress& progress);
 
@@ -39,10 +39,10 @@ struct ZoomGroup {
 /// some of the groups have ratios (or counts).
 [[nodiscard]] std::vector<ZoomGroup> zoom_groups(const std::vector<std::string>& zooms);
 
-/// Returns the picture files in a folder, sorted by name. Throws InputError if it is not a folder.
+/// Returns the picture files in a folder, sorted by name. Throws InputError if the path is not a folder.
 [[nodiscard]] std::vector<std::string> pictures_in(const std::string& folder);
 
-/// Calibrates cameras whose pictures correspond one to one. Throws InputError for a picture given twice.
+/// Calibrates cameras whose pictures correspond one to one. Throws InputError if a picture is given twice.
 [[nodiscard]] IntrinsicsFit fit_pictures(const IntrinsicsArguments& arguments, const BoardTarget& board,
                                          const std::vector<BoardPictures>& pictures);
 

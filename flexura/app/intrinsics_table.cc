@@ -117,7 +117,7 @@ void print_intrinsics(const Node& answer, std::ostream& out) {
     out << fmt::format("the cameras are {:.4g} m apart; rms of the pair {} px\n",
                        *pair->find("distance")->as<double>(), rms_of(*pair));
   if (const Node* held_out = answer.find("held_out"))
-    out << fmt::format("rms in {} pictures that were held out: {} px\n",
+    out << fmt::format("rms in {} pictures that were excluded from the fit: {} px\n",
                        *held_out->find("views")->as<std::int64_t>(), rms_of(*held_out));
   print_pictures_without(cameras, out);
   for (const char* key : {"file", "rig"})

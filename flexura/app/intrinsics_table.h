@@ -6,8 +6,8 @@
 
 namespace flexura {
 
-/// Prints what `flexura intrinsics` answers as a table for people: the numbers of each camera, or of a lens
-/// at each zoom, with standard deviations, the files written, and the notes.
+/// Prints the answer of `flexura intrinsics` as a table. It has the parameters of each camera, or of a lens
+/// at each zoom, with standard deviations, and the written files and notes.
 void print_intrinsics(const Node& answer, std::ostream& out);
 
 }  // namespace flexura

@@ -274,7 +274,7 @@ TEST_F(IntrinsicsCommand, RefusesTheNumberOfAPartOfTheBoard) {
         write(fmt::format("{}.png", i), board_picture(circles, lens, X_CB, 320, 240)));
   }
   arguments_.pattern = "circles", arguments_.board = "6x5";
-  EXPECT_THAT(refusal(), HasSubstr("--board: 6x5: the board's pattern goes on"));
+  EXPECT_THAT(refusal(), HasSubstr("--board: 6x5: the board's pattern continues"));
   arguments_.board = "7x5";
   EXPECT_EQ(*entry(answer(exit_done), "cameras", 0).find("views_used")->as<std::int64_t>(), 3);
 }

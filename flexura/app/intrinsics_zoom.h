@@ -7,7 +7,7 @@
 
 namespace flexura {
 
-/// Calibrates a lens at several zoom positions (`flexura intrinsics --zoom ...`). Errors as for
+/// Calibrates a lens at several zoom positions (`flexura intrinsics --zoom ...`). Throws the exceptions of
 /// intrinsics_command().
 [[nodiscard]] Node zoom_answer(const IntrinsicsArguments& arguments, const BoardTarget& board,
                                Progress& progress);

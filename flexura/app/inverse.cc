@@ -56,7 +56,7 @@ const Table<InverseRequest>& fields_of(const InverseRequest*) {
                   .range = between(-farthest, farthest),
                   .count = {2, 10000}})
           .field("tolerance", &InverseRequest::tolerance,
-                 {.meaning = "how far the arm may be from the curve",
+                 {.meaning = "largest distance of the arm from the curve",
                   .unit = Unit::metre,
                   .range = above_up_to(0, farthest)})
           .field("prefer", &InverseRequest::objective, {.meaning = "which of many solutions to prefer"})
@@ -72,7 +72,8 @@ void check_target(const InverseRequest& request, Reader& reader) {
   }
   if (request.curve) {
     if (request.direction || request.rotation || request.all) {
-      reader.problem_at("curve", "stands alone: direction, rotation and all are for a position");
+      reader.problem_at(
+          "curve", "cannot be combined with direction, rotation or all: expected these only with a position");
     }
     const auto& points = *request.curve;
     double length = 0;
@@ -145,7 +146,7 @@ void add_state(const Arm& arm, const InverseRequest& request, const InverseResul
 
 Node answer_one(const Arm& arm, const InverseRequest& request, const InverseResult& result) {
   if (!result.tip.allFinite())
-    throw InputError(std::vector<Problem>{{{}, "the arm comes to no rest under its weight and loads"}});
+    throw InputError(std::vector<Problem>{{{}, "the arm has no equilibrium under its weight and loads"}});
   Node::Table members{{"converged", {}, {result.converged(), {}}},
                       {"reason", {}, {std::string(name_of(result.outcome)), {}}}};
   add_state(arm, request, result, members);

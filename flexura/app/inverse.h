@@ -9,19 +9,19 @@
 namespace flexura {
 
 /// Answers one line of `flexura ik`: a JSON object {"position":[x,y,z]} with an optional "direction":[x,y,z]
-/// or "rotation":[w,x,y,z], or {"curve":[[x,y,z],...]}; optional "prefer", "start" and "all"
+/// or "rotation":[w,x,y,z], or an object {"curve":[[x,y,z],...]}. Both may have "prefer", "start" and "all"
 /// (docs/command-line.md). The answer is one line of JSON without its line end:
 /// {"converged":..,"reason":..,"bends":[[bx,by],...],"stretches":[..],"position_error":..,"angle_error":..}.
-/// A planar arm has "archings" instead of "bends". If not converged, "nearest" and "distance" follow; with
-/// "all", "solutions" follows. A line that cannot be answered gives {"error":"..."}; no line throws.
+/// For a planar arm it has "archings" instead of "bends". If the search did not converge, it also has
+/// "nearest" and "distance"; with "all" it also has "solutions". A line that cannot be answered gives
+/// {"error":"..."}. Never throws because of the line's contents.
 [[nodiscard]] std::string answer_inverse(const ArmModel& arm, std::string_view line);
 /// Answers one line of `flexura ik` for an arm of arcs.
 [[nodiscard]] inline std::string answer_inverse(const Arm& arm, std::string_view line) {
   return answer_inverse(ArmModel(arm), line);
 }
 
-/// Returns what is wrong with a line of `flexura ik`, or "" if it can be answered. Never throws because of
-/// the line's contents.
+/// Returns why a line of `flexura ik` cannot be answered, or "". Never throws because of the line's contents.
 [[nodiscard]] std::string inverse_problem(const Arm& arm, std::string_view line);
 
 }  // namespace flexura

@@ -20,7 +20,8 @@ namespace {
 
 const Table<RodRequest>& fields_of(const RodRequest*) {
   static const auto table = [] {
-    Table<RodRequest> made("linearise request", "What pulls at the arm where its motion is linearised.");
+    Table<RodRequest> made("linearise request",
+                           "Forces on the arm in the equilibrium at which its motion is linearised.");
     add_rod_fields(made);
     return made;
   }();

@@ -12,14 +12,14 @@
 
 namespace flexura {
 
-/// Answers lines of `flexura linearise` about one arm: JSON objects {"tensions":[...]} or
-/// {"displacements":[...]}, or neither, with optional "tip_force", "tip_moment" and "gravity"
-/// (docs/command-line.md). All are in the frame of the arm's base. An answer depends only on its line.
+/// Answers lines of `flexura linearise` about one arm: JSON objects with at most one of "tensions":[...] and
+/// "displacements":[...]. Optional keys are "tip_force", "tip_moment" and "gravity" (docs/command-line.md).
+/// All vectors are in the frame of the arm's base. An answer depends only on its line.
 class LineariseAnswers {
  public:
-  /// Throws std::invalid_argument if the arm has no computable rod (rod_of, rod_problems) or one without
-  /// mass, which cannot move (RodDynamics). Also throws it for tendons with friction, which have no linear
-  /// model.
+  /// Throws std::invalid_argument if the arm has no computable rod (rod_of, rod_problems), or a rod without
+  /// mass, for which there is no dynamics (RodDynamics). Also throws it for tendons with friction, which have
+  /// no linear model.
   LineariseAnswers(const ArmConfig& arm, const std::optional<DriveConfig>& drive);
 
   /// Returns one line of JSON without its line end: {"converged":..,"reason":..}. If an equilibrium was

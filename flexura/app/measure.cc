@@ -60,7 +60,7 @@ MeasureConfig config_of(const MeasureArguments& arguments) {
                                            {"--radius", arguments.radius.has_value()}})
       if (is_given)
         throw input_error(
-            option, fmt::format("counts for nothing with --what {}: expected for arms only", arguments.what));
+            option, fmt::format("has no effect with --what {}: expected only for arms", arguments.what));
   }
   return config;
 }

@@ -27,19 +27,20 @@ struct MeasureConfig {
   /// The camera that took the picture, if known; its pose is not used.
   std::optional<MeasuredCamera> camera;
   std::optional<double> radius;  ///< Radius of the arm, m, if known.
-  double gamma = 1;  ///< Pixel values are light to the power 1/gamma; replaces the camera's gamma.
+  double gamma = 1;  ///< Exponent of the pixel values, which are light to the power 1/gamma; replaces the
+                     ///< camera's gamma.
 };
 
 /// The result of measuring one picture.
 struct Measurement {
-  Node answer;            ///< docs/vision.md, "flexura measure".
+  Node answer;            ///< The answer described in docs/vision.md, "flexura measure".
   bool is_found = false;  ///< Whether the object was found.
   /// RGB picture with the findings drawn over it, if requested.
   Image<std::uint8_t> overlay;
 };
 
-/// Measures a picture file, given its bytes. Throws InputError if the picture cannot be read, or has another
-/// size than its camera's description.
+/// Measures a picture file, given its bytes. Throws InputError if the picture cannot be read, or its size
+/// differs from that in its camera's description.
 [[nodiscard]] Measurement measure_picture(std::span<const std::uint8_t> file, const std::string& name,
                                           const MeasureConfig& config, bool with_overlay = false);
 
@@ -55,10 +56,10 @@ struct MeasureArguments {
   std::string overlay;       ///< Picture file to write; "": no file.
 };
 
-/// Prints the findings: one document for one picture, one line of JSON per picture for several. Returns
-/// exit_missed if something was not found. Returns exit_bad_input if one of several files is not a picture;
-/// its line then reports the error. Throws InputError for bad input, and std::runtime_error if the system
-/// refuses a file.
+/// Prints the measurements: one JSON document for one picture, or one line of JSON per picture for several.
+/// Returns exit_missed if an object was not found. Returns exit_bad_input if one of several files is not a
+/// picture; its line then has the error. Throws InputError for bad input, and std::runtime_error if a file
+/// cannot be written.
 int measure_command(const MeasureArguments& arguments, std::ostream& out);
 
 }  // namespace flexura

@@ -14,8 +14,8 @@
 #include "flexura/vision/picture_file.h"
 #include "flexura/vision/threshold.h"
 
-// Functions that measure one kind of object in a picture. Each adds to the answer and returns whether it was
-// found.
+// Functions that measure one kind of object in a picture. Each function adds to the answer and returns
+// whether the object was found.
 namespace flexura {
 
 inline constexpr PenColor axis_color = {255, 40, 40}, border_color = {40, 200, 60},
@@ -26,11 +26,12 @@ inline constexpr PenColor axis_color = {255, 40, 40}, border_color = {40, 200, 6
 /// Returns the value rounded to 1e-4 px.
 [[nodiscard]] double px(double value);
 
-/// Returns [u, v], px, each rounded.
+/// Returns [u, v], px, with both values rounded.
 [[nodiscard]] Node pixel_pair(const Eigen::Vector2d& value);
-/// Returns whether points lie roughly on an ellipse: rms distance within 3 % of its shorter semi-axis.
+/// Returns whether points are roughly on an ellipse: their rms distance is within 3 % of the shorter
+/// semi-axis.
 [[nodiscard]] bool is_on_ellipse(const std::optional<EllipseFit>& fit);
-/// Returns the fields of docs/vision.md; null without a fit.
+/// Return the fields of the fit that docs/vision.md describes; null without a fit.
 [[nodiscard]] Node circle_node(const std::optional<CircleFit>& fit);
 [[nodiscard]] Node ellipse_node(const std::optional<EllipseFit>& fit);
 
@@ -47,7 +48,7 @@ class TableMaker {
   Node::Table members_;
 };
 
-/// Adds `threshold`, `method` and `figure`.
+/// Adds the keys `threshold`, `method` and `figure`.
 void add_threshold(const Threshold& threshold, TableMaker& answer);
 
 /// A picture to be measured, its settings and its outputs.
@@ -56,7 +57,7 @@ struct Job {
   const Image<std::uint8_t>& gray;
   const MeasureConfig& config;
   TableMaker& answer;
-  Canvas* canvas;  ///< Drawing of the findings; null: draw nothing.
+  Canvas* canvas;  ///< Drawing of the measurements; null: draw nothing.
 };
 
 bool measure_arm(const Job& job);

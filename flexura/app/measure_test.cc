@@ -106,7 +106,7 @@ TEST(Measure, LooksForNoMarkersOnArmsOfFewPixels) {
       if (!found.is_found) continue;  // Too thin to be followed.
       ++found_arms;
       EXPECT_TRUE(found.answer.find("markers")->as<Node::Array>()->empty());
-      EXPECT_THAT(write_json(found.answer), HasSubstr("no markers are looked for"));
+      EXPECT_THAT(write_json(found.answer), HasSubstr("markers are not searched"));
     }
   }
   EXPECT_GE(found_arms, 2);

@@ -10,8 +10,9 @@ namespace flexura {
 /// A commented experiment file as a starting point.
 struct ExperimentTemplate {
   std::string_view kind;     ///< Name of the kind for `flexura new`.
-  std::string_view meaning;  ///< One line for the help.
-  std::string_view text;     ///< Contents; FILE in the comments is a placeholder for the file's name.
+  std::string_view meaning;  ///< Description in one line, for the help.
+  std::string_view
+      text;  ///< Contents of the file; FILE in its comments is a placeholder for the file's name.
 };
 
 /// Returns all templates, the simplest first.
@@ -23,7 +24,7 @@ struct NewArguments {
   std::string file;  ///< File to write; "": the kind's name with ".toml" in the working folder.
 };
 
-/// Writes the template and prints commands to try on it. Throws InputError if the file exists.
+/// Writes the template and prints commands that can be tried with it. Throws InputError if the file exists.
 int new_command(const NewArguments& arguments, std::ostream& out);
 
 }  // namespace flexura

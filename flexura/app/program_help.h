@@ -8,7 +8,7 @@ namespace flexura {
 /// The kinds of values of options and arguments.
 enum class Takes {
   nothing,     ///< A flag.
-  text,        ///< A number, a name.
+  text,        ///< Any text, such as a number or a name.
   choice,      ///< One of `OptionHelp::choices`.
   file,        ///< Any file.
   experiment,  ///< An experiment file (.toml).
@@ -17,29 +17,30 @@ enum class Takes {
 
 /// One option or positional argument of a command, as its help shows it.
 struct OptionHelp {
-  std::vector<std::string> names;  ///< "-h", "--help"; for a positional argument only its name, "EXPERIMENT".
-  std::string value;               ///< Placeholder of the value: "DIR"; "" for a flag.
-  std::string meaning;             ///< One sentence.
-  Takes takes = Takes::text;       ///< Kind of the value.
+  std::vector<std::string>
+      names;  ///< Names of an option, "-h", "--help"; for a positional argument its only name, "EXPERIMENT".
+  std::string value;                 ///< Placeholder of the value: "DIR"; "" for a flag.
+  std::string meaning;               ///< Description in one sentence.
+  Takes takes = Takes::text;         ///< Kind of the value.
   std::vector<std::string> choices;  ///< Allowed words, for Takes::choice.
 };
 
 /// One command, as its help shows it.
 struct CommandHelp {
   std::string name;
-  std::string group;    ///< The heading under which `flexura --help` lists it.
-  std::string meaning;  ///< One sentence.
+  std::string group;    ///< Heading under which `flexura --help` lists the command.
+  std::string meaning;  ///< Description in one sentence.
   std::string example;  ///< Lines that can be pasted into a shell.
   std::vector<OptionHelp> positionals;
   std::vector<OptionHelp> options;
 };
 
-/// The whole command line: the one source of the help, the shells' completion and the manual page.
+/// The whole command line, from which the help, the shells' completion and the manual page are made.
 struct ProgramHelp {
   std::string name;
   std::string version;
   std::string meaning;
-  std::vector<CommandHelp> commands;  ///< In the order of the help.
+  std::vector<CommandHelp> commands;  ///< Commands in the order of the help.
 };
 
 /// Returns the completion script of a shell. The script needs only the shell, not the package

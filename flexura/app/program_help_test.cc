@@ -70,7 +70,7 @@ TEST_F(Program, PrintsACompletionThatBashUnderstands) {
       "ask flexura run --se\nask flexura run an\nask flexura check not\n");
   EXPECT_EQ(std::system(("cd '" + path("") + "' && bash ask.sh > answers.txt").c_str()), 0);
   EXPECT_EQ(read_text_file(path("answers.txt"), 1 << 16),
-            "estimate,\ncsv,mp4,png,\nservo,\ncircle,\n--set,--seed,\nan arm.toml,\n,\n");
+            "estimate,\ncsv,mp4,png,gltf,\nservo,\ncircle,\n--set,--seed,\nan arm.toml,\n,\n");
 }
 
 TEST_F(Program, PrintsTheManualPageAndZshsCompletionOfEveryCommand) {

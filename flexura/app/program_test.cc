@@ -168,7 +168,7 @@ TEST_F(Program, EndsWithTwoOnBadInputAndMakesNoResults) {
   EXPECT_THAT(run("--verson").err, HasSubstr("there is no option \"--verson\""));
   EXPECT_THAT(run("measure x.png --level ''").err, HasSubstr("--level: expected no empty text"));
   EXPECT_THAT(run("measure x.png --threshold otsu --level 100").err,
-              HasSubstr("goes with --threshold fixed: \"otsu\" finds its own level"));
+              HasSubstr("needs --threshold fixed: \"otsu\" computes its own level"));
   // The arguments after an option's numbers are not read as numbers.
   for (const char* before : {"estimate --base 0,0,0", "estimate --markers 0.2,0.4 --length 1"})
     EXPECT_THAT(run(std::string(before) + " a.png b.png --cameras c.toml").err, StartsWith("c.toml: "));
@@ -271,7 +271,7 @@ TEST_F(Program, LeavesALogThatReadsWhenKilled) {
   EXPECT_EQ(wait(child).status, 128 + SIGKILL);
   const Ended ended = run("export results/long --to csv");
   EXPECT_EQ(ended.status, 0) << ended.err;
-  EXPECT_THAT(ended.err, HasSubstr("the run was cut short"));
+  EXPECT_THAT(ended.err, HasSubstr("the run was interrupted"));
   const std::string states = read_text_file(path("results/long/csv/states.csv"), std::size_t{1} << 30);
   EXPECT_GT(std::ranges::count(states, '\n'), 1000);
 }

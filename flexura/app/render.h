@@ -13,15 +13,15 @@ struct RenderArguments {
   std::string camera;
   double time = 0;  ///< Start of the exposure, s.
   std::string out;
-  bool model = false;  ///< Render the rig's model and ignore [truth].
-  bool truth = false;  ///< Also write exact depth, labels and curves.
+  bool model = false;  ///< Whether to render the rig's model and ignore [truth].
+  bool truth = false;  ///< Whether to write exact depth, labels and curves too.
   std::vector<std::string> sets;
 };
 
-/// Writes the image that a camera exposes from the given time of the experiment's run on, as the run films
-/// it. With `truth`, also writes exact data for the middle of that exposure: depth (NAME_depth.tiff, m),
-/// labels (NAME_labels.png, 16 bits) and curves (NAME_truth.json). Prints the files' names. Throws InputError
-/// for bad input, and std::runtime_error if the system refuses a file.
+/// Writes the image of a camera whose exposure starts at the given time of the experiment's run. It is the
+/// image that the run would record. With `truth`, also writes exact data for the middle of that exposure:
+/// depth (NAME_depth.tiff, m), labels (NAME_labels.png, 16 bits) and curves (NAME_truth.json). Prints the
+/// names of the files. Throws InputError for bad input, and std::runtime_error if a file cannot be written.
 int render_command(const RenderArguments& arguments, std::ostream& out);
 
 }  // namespace flexura

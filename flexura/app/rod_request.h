@@ -14,11 +14,11 @@ namespace flexura {
 /// Loads on an elastic arm in a line of `flexura statics` or `flexura linearise`, in the frame of the arm's
 /// base.
 struct RodRequest {
-  std::optional<std::vector<double>> tensions;       ///< N
-  std::optional<std::vector<double>> displacements;  ///< m
-  std::array<double, 3> tip_force = {0, 0, 0};       ///< N
-  std::array<double, 3> tip_moment = {0, 0, 0};      ///< N m
-  std::optional<std::array<double, 3>> gravity;      ///< m/s^2; missing: the arm's gravity.
+  std::optional<std::vector<double>> tensions;       ///< Tensions of the tendons at the base, N.
+  std::optional<std::vector<double>> displacements;  ///< Lengths by which the tendons are pulled in, m.
+  std::array<double, 3> tip_force = {0, 0, 0};       ///< Force at the tip, N.
+  std::array<double, 3> tip_moment = {0, 0, 0};      ///< Moment at the tip, N m.
+  std::optional<std::array<double, 3>> gravity;      ///< Gravity, m/s^2; missing: that of the arm's file.
 
   /// Returns the tendons' prescribed tensions or displacements.
   [[nodiscard]] TendonInput tendons() const;
@@ -34,7 +34,9 @@ Table<Request>& add_rod_fields(Table<Request>& table) {
       .field("tensions", &Request::tensions,
              {.meaning = "tendons' tensions at the base, N", .range = between(0, 1e9)})
       .field("displacements", &Request::displacements,
-             {.meaning = "how far tendons are pulled in", .unit = Unit::metre, .range = between(-1e6, 1e6)})
+             {.meaning = "lengths by which the tendons are pulled in",
+              .unit = Unit::metre,
+              .range = between(-1e6, 1e6)})
       .field("tip_force", &Request::tip_force, {.meaning = "force at the tip, N", .range = load_range})
       .field("tip_moment", &Request::tip_moment, {.meaning = "moment at the tip, N m", .range = load_range})
       .field("gravity", &Request::gravity,
@@ -43,7 +45,8 @@ Table<Request>& add_rod_fields(Table<Request>& table) {
               .range = between(-1e6, 1e6)});
 }
 
-/// Reports numbers of tendons that do not match the rod, and tensions given together with displacements.
+/// Reports a number of tensions or displacements that does not match the rod's tendons. Also reports tensions
+/// that are given together with displacements.
 void check_rod_request(const Rod& rod, const RodRequest& request, Reader& reader);
 
 }  // namespace flexura

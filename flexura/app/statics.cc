@@ -28,7 +28,8 @@ struct StaticsRequest : RodRequest {
 
 const Table<StaticsRequest>& fields_of(const StaticsRequest*) {
   static const auto table = [] {
-    Table<StaticsRequest> made("statics request", "What pulls at the arm, and where along it to answer.");
+    Table<StaticsRequest> made("statics request",
+                               "Forces on the arm, and the positions along it for the answer.");
     add_rod_fields(made)
         .field("target", &StaticsRequest::target,
                {.meaning = "target of the arm, instead of tensions or displacements"})
@@ -51,7 +52,7 @@ StaticsRequest read_request(const Rod& rod, std::string_view line) {
     if (request.target) {
       check_statics_target(rod, *request.target, reader);
       if (request.tensions || request.displacements)
-        reader.problem_at("target", "is given beside tensions or displacements: expected one of them");
+        reader.problem_at("target", "is given together with tensions or displacements: expected one of them");
     }
     const double length = rod.length();
     for (std::size_t i = 0; request.at && i < request.at->size(); ++i) {

@@ -13,21 +13,23 @@
 
 namespace flexura {
 
-/// Answers lines of `flexura statics` about one arm: JSON objects {"tensions":[...]} or
-/// {"displacements":[...]} or {"target":{...}} (StaticsTarget), or none of them, with optional "tip_force",
-/// "tip_moment", "gravity" and "at" (docs/command-line.md), all in the frame of the arm's base. An answer
-/// depends on its line alone.
+/// Answers lines of `flexura statics` about one arm: JSON objects with at most one of "tensions":[...],
+/// "displacements":[...] and "target":{...} (StaticsTarget). Optional keys are "tip_force", "tip_moment",
+/// "gravity" and "at" (docs/command-line.md). All vectors are in the frame of the arm's base. An answer
+/// depends only on its line.
 class StaticsAnswers {
  public:
   /// Throws std::invalid_argument if the arm has no computable rod (rod_of, rod_problems).
   StaticsAnswers(const ArmConfig& arm, const std::optional<DriveConfig>& drive);
 
-  /// Returns one line of JSON without its line end: {"converged":..,"reason":..}. If converged, it also has
+  /// Returns one line of JSON without its line end: {"converged":..,"reason":..}. If an equilibrium was
+  /// found, it also has
   /// "tip":{"position":[..],"rotation":[w,x,y,z]},"tensions":[..],"displacements":[..],"strain_energy":..,
-  /// "stable":..,"snapped":..,"ambiguous":.. and "at":[poses] where asked for. Of a target the tensions are
-  /// those of least effort that reach it, or come nearest, and there are "reached":.., "why_not":"..." if it
-  /// is not, "residual":.. (m) and, where an orientation was asked for, "residual_angle":.. (rad).
-  /// {"error":"..."} for a line that cannot be answered. Never throws on account of the line.
+  /// "stable":..,"snapped":..,"ambiguous":.. and, if requested, "at":[poses]. For a target, the tensions are
+  /// those of least effort that reach the target or come nearest. The answer then also has "reached":.. and
+  /// "residual":.. (m), "why_not":"..." if the target is not reached, and "residual_angle":.. (rad) if an
+  /// orientation was requested. A line that cannot be answered gives {"error":"..."}. Never throws because of
+  /// the line's contents.
   [[nodiscard]] std::string answer(std::string_view line);
   /// Returns why the line cannot be answered; "" if it can.
   [[nodiscard]] std::string problem(std::string_view line) const;

@@ -43,7 +43,7 @@ const Table<StaticsTarget>& fields_of(const StaticsTarget*) {
           .field("shape", &StaticsTarget::shape,
                  {.meaning = "points along the arm", .count = {1, max_statics_places}})
           .field("most_tension", &StaticsTarget::most_tension,
-                 {.meaning = "the most that each tendon may pull, N", .range = above_up_to(0, 1e9)});
+                 {.meaning = "largest tension of each tendon, N", .range = above_up_to(0, 1e9)});
   return table;
 }
 
@@ -75,9 +75,9 @@ RodTarget StaticsTarget::target(const Rod& rod) const {
 }
 
 void check_statics_target(const Rod& rod, const StaticsTarget& target, Reader& reader) {
-  if (rod.tendons.empty()) reader.problem_at("target", "is for an arm with tendons, which this one has not");
+  if (rod.tendons.empty()) reader.problem_at("target", "needs an arm with tendons");
   if (!target.tip && !target.direction && !target.rotation && !target.shape)
-    reader.problem_at("target", "asks for nothing: expected tip, direction, rotation or shape");
+    reader.problem_at("target", "is empty: expected tip, direction, rotation or shape");
   if (target.direction && target.rotation)
     reader.problem_at("target", "gives the orientation twice: expected direction or rotation, not both");
   if (target.direction && !(vector(*target.direction).norm() > 1e-9))

@@ -12,38 +12,40 @@
 
 namespace flexura {
 
-/// Each place asked for along an arm becomes a node of its rod.
+/// Largest number of requested positions along an arm. Each becomes a node of its rod.
 inline constexpr std::size_t max_statics_places = 1000;
 
-/// Where a point of an elastic arm shall be, in the frame of its base.
+/// Target position of a point of an elastic arm, in the frame of the arm's base.
 struct StaticsPoint {
   double at = 0;  ///< Arc length at rest from the base, m.
   std::array<double, 3> position = {0, 0, 0};
 };
 
-/// Where an elastic arm shall be, as a line of `flexura statics` says it, in the frame of the arm's base.
+/// Target of an elastic arm in a line of `flexura statics`, in the frame of the arm's base.
 struct StaticsTarget {
-  std::optional<std::array<double, 3>> tip;        ///< Its position, m.
-  std::optional<std::array<double, 3>> direction;  ///< Of the tip's z axis, of any length.
-  std::optional<std::array<double, 4>> rotation;   ///< (w, x, y, z) of the tip.
-  std::optional<std::vector<StaticsPoint>> shape;  ///< Points along the arm.
-  double most_tension = 1000;                      ///< Of each tendon, N.
+  std::optional<std::array<double, 3>> tip;  ///< Position of the tip, m.
+  std::optional<std::array<double, 3>>
+      direction;  ///< Direction of the tip's z axis; its length does not matter.
+  std::optional<std::array<double, 4>> rotation;   ///< Rotation of the tip as (w, x, y, z).
+  std::optional<std::vector<StaticsPoint>> shape;  ///< Target positions of points along the arm.
+  double most_tension = 1000;                      ///< Largest tension of each tendon, N.
 
-  /// Of a rod that has `places()` as nodes.
+  /// Returns the target for a rod that has places() as nodes.
   [[nodiscard]] RodTarget target(const Rod& rod) const;
-  /// Those of the shape, along the rod.
+  /// Returns the places along the rod of the points of `shape`.
   [[nodiscard]] std::vector<RodPlace> places(const Rod& rod) const;
 };
 
-/// The fields of StaticsPoint.
+/// Returns the fields of StaticsPoint.
 [[nodiscard]] const Table<StaticsPoint>& fields_of(const StaticsPoint* null);
-/// The fields of StaticsTarget.
+/// Returns the fields of StaticsTarget.
 [[nodiscard]] const Table<StaticsTarget>& fields_of(const StaticsTarget* null);
 
-/// The place of a rod at arc length s at rest, m, from 0 to its length.
+/// Returns the place of a rod at the arc length `s` at rest, m, from 0 to the rod's length.
 [[nodiscard]] RodPlace place_along(const Rod& rod, double s);
 
-/// Reports what does not fit the rod: nothing asked for, two orientations, places beyond the tip, no tendons.
+/// Reports errors of a target for the rod: no target, two orientations, positions beyond the tip, or no
+/// tendons.
 void check_statics_target(const Rod& rod, const StaticsTarget& target, Reader& reader);
 
 }  // namespace flexura

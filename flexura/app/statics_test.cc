@@ -258,7 +258,7 @@ TEST(AnswerStatics, AnswersABadLineWithItsError) {
       {R"({"tensions":[0,0,0,0,0,1e999]})", "number overflow"},
       {R"({"displacements":[0]})", "displacements: 1 given: expected 6"},
       {R"({"tensions":[0,0,0,0,0,0],"displacements":[0,0,0,0,0,0]})",
-       "displacements: are given beside tensions: expected one of them"},
+       "displacements: are given together with tensions: expected one of them"},
       {R"({"tip_force":[1,2]})", "tip_force is an array of 2: expected an array of 3"},
       {R"({"tip_force":[1,2,null]})", "tip_force[2] = nothing: expected a number"},
       {R"({"tip_moment":[1,2,1e300]})", "tip_moment[2] = 1e+300: expected a number from"},
@@ -270,7 +270,7 @@ TEST(AnswerStatics, AnswersABadLineWithItsError) {
       {R"({"target":{"tip":[1,2]}})", "target.tip is an array of 2: expected an array of 3"},
       {R"({"target":{"tip":[1,2,1e300]}})", "target.tip[2] = 1e+300: expected a number from"},
       {R"({"target":{"tip":[0,0,1]},"tensions":[0,0,0,0,0,0]})",
-       "target: is given beside tensions or displacements: expected one of them"},
+       "target: is given together with tensions or displacements: expected one of them"},
       {R"({"target":{"direction":[0,0,0]}})", "target.direction: is zero: expected a direction"},
       {R"({"target":{"rotation":[1,1,1,1]}})", "target.rotation"},
       {R"({"target":{"direction":[0,0,1],"rotation":[1,0,0,0]}})", "gives the orientation twice"},
@@ -308,8 +308,7 @@ kind = "spatial"
 length = 0.5
 material = { youngs_modulus = 1e6, radius_mm = 1 }
 )");
-  EXPECT_THAT(answers.answer(R"({"target":{"tip":[0,0,0.4]}})"),
-              HasSubstr("is for an arm with tendons, which this one has not"));
+  EXPECT_THAT(answers.answer(R"({"target":{"tip":[0,0,0.4]}})"), HasSubstr("needs an arm with tendons"));
 }
 
 TEST(StaticsCommand, RefusesAnArmThatIsNotElastic) {

@@ -109,6 +109,44 @@ TEST_F(StoppedProgram, MakesNoFilmBeforeItEnds) {
   EXPECT_FALSE(std::filesystem::exists(path("long/mp4")));
 }
 
+// A long motion of an arm whose model is a rod: its check takes far longer than a test.
+std::string endless_check() {
+  std::string text = "[record]\nreport = false\nscene = false\n[arm]\nkind = 'spatial'\nmodel = 'static'\n";
+  for (int i = 0; i < 6; ++i)
+    text += "[[arm.section]]\nlength = 0.1\nradius = 0.01\n[arm.section.material]\nyoungs_modulus = 1e6\n";
+  for (int i = 1; i <= 6; ++i)
+    for (const int angle : {0, 120, 240})
+      text += fmt::format("[[arm.tendon]]\nsection = {}\nradius = 0.008\nangle_deg = {}\n", i, angle);
+  return text + "[[task]]\nkind = 'move'\nduration = 9000\nto.bends = [" +
+         "[0.5, 0], [0.5, 0], [0.5, 0], [0.5, 0], [0.5, 0], [0.5, 0]]\n";
+}
+
+TEST_F(StoppedProgram, StopsInTheCheckBeforeTheRun) {
+  const pid_t child = running(endless_check(), 0);
+  kill(child, SIGTERM);
+  const Ended ended = wait(child);
+  EXPECT_EQ(ended.status, 128 + SIGTERM);
+  EXPECT_EQ(ended.err, "cancelled: it was stopped at 0 s\n");
+  EXPECT_THAT(summary(), HasSubstr("\"outcome\": \"cancelled\""));
+  EXPECT_THAT(summary(), HasSubstr("cancelled: not all of it is checked"));
+  EXPECT_FALSE(McapReader(path("long/log.mcap")).truncated());
+  EXPECT_FALSE(std::filesystem::exists(path("long/commands.csv")));
+}
+
+TEST_F(StoppedProgram, StopsACheck) {
+  for (const int signal : {SIGINT, SIGTERM}) {
+    std::ofstream(path("long.toml")) << endless_check();
+    const pid_t child = start("check long.toml", path("out"));
+    std::this_thread::sleep_for(std::chrono::milliseconds(1500));
+    kill(child, signal);
+    const Ended ended = wait(child);
+    EXPECT_EQ(ended.status, 128 + signal);
+    EXPECT_EQ(ended.out, "");
+    // A signal that comes before the check begins ends the program without a word.
+    EXPECT_THAT(ended.err, testing::AnyOf("", "cancelled: it was stopped before the check was complete\n"));
+  }
+}
+
 // The first signal is pending while the run is stopped; the second one does not wait for it.
 TEST_F(StoppedProgram, EndsAtOnceWhenItIsToldAgain) {
   const pid_t child = running(endless, 1'500'000);

@@ -7,17 +7,17 @@
 
 namespace flexura {
 
-/// Waits for SIGINT or SIGTERM on its own thread. While it lives, the creating thread and the threads that it
-/// starts do not receive them. Only one may exist at a time.
+/// Waits for SIGINT or SIGTERM on its own thread. During its lifetime, the creating thread and the threads
+/// started by it do not receive these signals. Only one StopSignal may exist at a time.
 class StopSignal {
  public:
-  /// Calls `on_stop` on that thread for every signal received.
+  /// Calls `on_stop` on the waiting thread for every signal received.
   explicit StopSignal(std::function<void()> on_stop = {});
   ~StopSignal();
   StopSignal(const StopSignal&) = delete;
   StopSignal& operator=(const StopSignal&) = delete;
 
-  /// Returns the first signal received; 0: none so far.
+  /// Returns the first signal received; 0 if none was received so far.
   [[nodiscard]] int come() const { return come_; }
   /// Blocks until a signal has been received.
   void wait() const;

@@ -22,7 +22,7 @@ ThresholdConfig threshold_config(const ThresholdArguments& arguments) {
   if (!is_level) throw input_error("--level", fmt::format("{}: expected 0 to 255", *arguments.level));
   if (arguments.method && config.method != ThresholdMethod::fixed)
     throw input_error(
-        "--level", fmt::format("goes with --threshold fixed: \"{}\" finds its own level", *arguments.method));
+        "--level", fmt::format("needs --threshold fixed: \"{}\" computes its own level", *arguments.method));
   config.method = ThresholdMethod::fixed;
   config.level = *arguments.level;
   return config;

@@ -60,7 +60,7 @@ ViewStart start_of(const std::string& what) {
     start.recording = std::make_shared<const Recording>(what);
     start.results = std::filesystem::path("results") / "view";
   } else if (std::filesystem::path(what).extension() == std::filesystem::path(log_file_name).extension()) {
-    throw input_error(what, "is a log: expected the folder in which it lies, as `flexura run` made it");
+    throw input_error(what, "is a log: expected the results folder of `flexura run` that contains it");
   } else if (what.empty()) {
     start.rig = std::make_shared<const ViewedRig>(
         parse_experiment(embedded::examples.front().text, "the paper's arm"));
@@ -127,7 +127,8 @@ OpenViewer::OpenViewer(ViewStart start, const ViewerArguments& arguments, std::o
   // Without output nobody would know the address.
   if (!out) throw std::runtime_error("cannot write to the standard output");
   if (listens_everywhere(arguments.address))
-    out << "it answers at every address of this machine, and at a host name given with --name\n"
+    out << "The viewer can be reached at every address of this machine, and at a host name given with "
+           "--name\n"
         << std::flush;
   if (arguments.browser) parts_->page.emplace(parts_->server->url());
 }

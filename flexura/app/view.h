@@ -17,9 +17,9 @@ inline constexpr std::string_view no_page_text =
     "This flexura was built without the viewer's page: build it with -DFLEXURA_VIEWER=ON, which needs Node "
     "and npm.\n";
 
-/// Settings of how a viewer can be reached.
+/// Settings for access to a viewer.
 struct ViewerArguments {
-  std::optional<std::uint16_t> port;  ///< Port; default: 8421, or any free one.
+  std::optional<std::uint16_t> port;  ///< Port; default: 8421, or any free port if that is in use.
   bool browser = true;                ///< Whether to open a browser if there is a display.
   std::string address = "127.0.0.1";  ///< Address of the interface to listen on.
   std::vector<std::string> names;     ///< Further host names that requests may use.
@@ -31,7 +31,7 @@ struct ViewArguments {
   ViewerArguments viewer;
 };
 
-/// Serves a viewer and prints its address to `out`. Returns normally on SIGINT or SIGTERM.
+/// Serves a viewer and prints its address to `out`. Returns after SIGINT or SIGTERM.
 int view_command(const ViewArguments& arguments, std::ostream& out, std::ostream& err);
 
 /// A viewer that starts with `start`. Prints its address to `out` and opens it in a browser.

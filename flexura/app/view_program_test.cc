@@ -117,7 +117,7 @@ TEST_F(ViewerProgram, ServesWhatARunLeft) {
   EXPECT_EQ(run("run " + paper_file + " --out results").status, 0);
   const Ended of_the_log = run("view results/log.mcap --no-browser");
   EXPECT_EQ(of_the_log.status, 2);
-  EXPECT_THAT(of_the_log.err, HasSubstr("expected the folder in which it lies"));
+  EXPECT_THAT(of_the_log.err, HasSubstr("expected the results folder"));
   std::filesystem::remove(path("out"));
   const pid_t child = start("view results --no-browser --port 0", path("out"));
   EXPECT_THAT(reported_in(path("out")), HasSubstr("viewer: "));

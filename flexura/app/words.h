@@ -14,13 +14,13 @@
 
 namespace flexura {
 
-/// Prints "label: text" as one line, even if names in the text hold line breaks.
+/// Prints "label: text" as one line, even if the text contains line breaks.
 inline void print_line(std::ostream& out, std::string_view label, std::string_view text) {
   out << label << ": " << one_line(text) << '\n';
 }
 
-/// Returns the enumeration value named by an option's word. Throws InputError listing all words if it is
-/// unknown.
+/// Returns the enumeration value named by an option's word. Throws InputError with all allowed words if the
+/// word is unknown.
 template <typename E>
 E named(const std::string& option, const std::string& word) {
   const std::vector<std::string>& names = names_of(static_cast<const E*>(nullptr));

@@ -53,7 +53,7 @@ std::optional<std::string> from_base64(std::string_view text) {
       if (value == no_digit) return std::nullopt;
       bits = bits << 6 | value;
     }
-    // The unused bits of padding are 0: one text for equal bytes.
+    // The unused bits of the padding must be 0, so that equal bytes have one text only.
     if ((bits & ((1U << (8 * padding)) - 1)) != 0) return std::nullopt;
     for (std::size_t j = 0; j < 3 - padding; ++j) data += static_cast<char>(bits >> (16 - 8 * j) & 0xff);
   }

@@ -10,14 +10,14 @@
 
 namespace flexura {
 
-/// Bytes in a message; written as base64 text (RFC 4648, with padding).
+/// Binary data in a message. In a node, the bytes are a base64 text (RFC 4648, with padding).
 struct Bytes {
   std::string data;
 
   bool operator==(const Bytes&) const = default;
 };
 
-/// Returns the bytes of a file that was read as text; valid as long as the text.
+/// Returns a view of the bytes of `text`, such as a file read as text. The view is valid as long as the text.
 [[nodiscard]] std::span<const std::uint8_t> bytes_of(std::string_view text);
 
 [[nodiscard]] std::string base64(std::string_view data);

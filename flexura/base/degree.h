@@ -4,7 +4,8 @@
 
 namespace flexura {
 
-/// A degree, rad: 25 * degree is an angle in the program, angle / degree is in degrees.
+/// One degree in radians. 25 * degree is 25 degrees in rad; angle / degree converts an angle in rad to
+/// degrees.
 inline constexpr double degree = std::numbers::pi / 180;
 
 }  // namespace flexura

@@ -1,8 +1,8 @@
 #pragma once
 
-// Forward declarations of table.h, for headers that declare tables of fields without using them. A struct's
-// header declares `const Table<S>& fields_of(const S*)`; its source and all readers and writers include
-// table.h.
+// Forward declarations for headers that declare tables of fields but do not use them. The header of a struct
+// S declares `const Table<S>& fields_of(const S*)`. The struct's source and all code that reads or writes S
+// include table.h.
 namespace flexura {
 
 struct Node;

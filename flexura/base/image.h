@@ -8,13 +8,13 @@
 
 namespace flexura {
 
-/// A picture: `height` rows of `width` pixels of `channels` values each, row after row from the top, without
-/// gaps. Colour is red, green, blue.
+/// A picture of `height` rows of `width` pixels with `channels` values each. Values are stored row by row
+/// from the top, without gaps. Three channels are red, green and blue.
 template <typename T>
 class Image {
  public:
   Image() = default;
-  /// Sets every value to `value`. Sizes must not be negative.
+  /// Makes a picture with every value equal to `value`. Width, height and channels must not be negative.
   Image(int width, int height, int channels = 1, T value = T{})
       : width_(width),
         height_(height),
@@ -27,15 +27,16 @@ class Image {
   [[nodiscard]] int height() const { return height_; }
   [[nodiscard]] int channels() const { return channels_; }
 
-  /// Pixel (u, v): column u from the left, row v from the top.
+  /// Value of pixel (u, v): column u from the left, row v from the top, both counted from 0. u and v are not
+  /// checked.
   [[nodiscard]] T& at(int u, int v, int channel = 0) { return values_[index(u, v, channel)]; }
   [[nodiscard]] const T& at(int u, int v, int channel = 0) const { return values_[index(u, v, channel)]; }
 
-  /// Row v, width() * channels() values, pixel by pixel. As in at(), v is not checked.
+  /// Values of row v, pixel by pixel: width() * channels() numbers. v is not checked.
   [[nodiscard]] std::span<T> row(int v) { return {&values_[index(0, v, 0)], row_size()}; }
   [[nodiscard]] std::span<const T> row(int v) const { return {&values_[index(0, v, 0)], row_size()}; }
 
-  /// All values, in the order above.
+  /// All values, row by row from the top.
   [[nodiscard]] std::span<T> values() { return values_; }
   [[nodiscard]] std::span<const T> values() const { return values_; }
 
@@ -55,7 +56,7 @@ class Image {
   std::vector<T> values_;
 };
 
-/// A picture from a sensor or a file: bytes up to 8 bits per value, words above.
+/// A picture from a sensor or a file: values of up to 8 bits are stored in 8 bits, longer values in 16.
 using Picture = std::variant<Image<std::uint8_t>, Image<std::uint16_t>>;
 
 }  // namespace flexura

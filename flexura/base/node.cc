@@ -20,7 +20,7 @@ struct BriefVisitor {
   std::string operator()(double value) const { return std::isnan(value) ? "nan" : fmt::format("{}", value); }
   std::string operator()(const std::string& value) const {
     constexpr std::size_t longest = 40;
-    // Does not cut a character in two.
+    // Does not split a UTF-8 character.
     std::size_t end = std::min(longest, value.size());
     while (end < value.size() && end > 0 && (static_cast<unsigned char>(value[end]) & 0xC0U) == 0x80) --end;
     std::string shown;
@@ -34,13 +34,13 @@ struct BriefVisitor {
   std::string operator()(const Node::Other& value) const { return value.name; }
 };
 
-// Makes one step of a path into `node`: a key of a table (made if missing) or an index of an array.
+// Follows one part of a path from `node`: a key of a table (made if missing) or an index of an array.
 std::string step_into(Node*& node, std::string_view part, const SourcePosition& where) {
   if (auto* array = node->as<Node::Array>()) {
     std::size_t index = 0;
     const auto [end, error] = std::from_chars(part.data(), part.data() + part.size(), index);
     if (error != std::errc{} || end != part.data() + part.size()) {
-      return fmt::format("\"{}\" stands for one of an array: expected a number counted from 0", part);
+      return fmt::format("\"{}\" names an entry of an array: expected its index, counted from 0", part);
     }
     if (index >= array->size())
       return fmt::format("index {} is outside an array of {}", index, array->size());
@@ -52,7 +52,8 @@ std::string step_into(Node*& node, std::string_view part, const SourcePosition& 
   Node* found = node->find(part);
   const auto is_digit = [](unsigned char c) { return std::isdigit(c) != 0; };
   if (found == nullptr && std::ranges::all_of(part, is_digit))
-    return fmt::format("there is no array to set entry {} of: set the whole of it, as [..., ...]", part);
+    return fmt::format(
+        "entry {} cannot be set because the array does not exist: set the whole array, as [..., ...]", part);
   if (found == nullptr) {
     table->push_back({std::string(part), where, {Node::Table{}, where}});
     found = &table->back().node;
@@ -61,8 +62,8 @@ std::string step_into(Node*& node, std::string_view part, const SourcePosition& 
   return {};
 }
 
-// Removes a value given in another unit, as length_mm replaces length; and sets the key's position to the
-// value's.
+// Removes a value of the same quantity in another unit, for example length if length_mm is set. Sets the
+// key's position to that of the value.
 void make_way(Node& node, std::string_view key, const SourcePosition& where) {
   auto* members = node.as<Node::Table>();
   if (members == nullptr) return;
@@ -118,7 +119,8 @@ void merge(Node& under, Node over) {
     if (found == below->end()) {
       below->push_back(std::move(member));
     } else {
-      // Tables keep the position of the first; other keys get that of their value.
+      // Merged tables keep the position of the table in `under`; other keys get the position of their new
+      // value.
       if (member.node.as<Node::Table>() == nullptr) found->where = member.where;
       merge(found->node, std::move(member.node));
     }
@@ -126,7 +128,7 @@ void merge(Node& under, Node over) {
 }
 
 std::string set_at_path(Node& root, std::string_view path, Node value) {
-  // Also accepts the notation of messages: section[0] is section.0.
+  // Also accepts the notation of messages: section[0] means section.0.
   std::string dotted;
   for (const char c : path) {
     if (c == '[') dotted += '.';
@@ -137,7 +139,7 @@ std::string set_at_path(Node& root, std::string_view path, Node value) {
     const std::size_t dot = rest.find('.');
     const std::string_view part = rest.substr(0, dot);
     if (part.empty())
-      return fmt::format("\"{}\" is no path: expected names and numbers joined by dots", path);
+      return fmt::format("\"{}\" is not a path: expected names and numbers joined by dots", path);
     if (dot == std::string_view::npos) make_way(*node, part, value.where);
     if (std::string error = step_into(node, part, value.where); !error.empty()) return error;
     if (dot == std::string_view::npos) break;

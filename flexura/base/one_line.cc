@@ -18,7 +18,7 @@ std::string_view first_character(std::string_view text) {
   return {};
 }
 
-// Returns whether it is a control character (C0, DEL, C1) or a line separator of Unicode.
+// Returns whether a character is a control character (C0, DEL, C1) or a line separator of Unicode.
 bool is_control(std::string_view character) {
   const auto first = static_cast<unsigned char>(character.front());
   if (character.size() == 1) return first < ' ' || first == 0x7f;

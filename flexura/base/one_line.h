@@ -5,9 +5,9 @@
 
 namespace flexura {
 
-/// Returns the text for use in a message, on one line and without terminal control. Control characters, ends
-/// of lines and bytes that are not UTF-8 become "
-/// ", "\t", "\r" or "\x1b". All else is unchanged.
+/// Returns the text in one line for use in a message. Control characters, ends of lines and bytes that are
+/// not UTF-8 become "\n", "\t", "\r" or a hexadecimal code such as "\x1b". All other characters are
+/// unchanged.
 [[nodiscard]] std::string one_line(std::string_view text);
 
 }  // namespace flexura

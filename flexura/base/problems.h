@@ -8,11 +8,11 @@
 
 namespace flexura {
 
-/// Maximum number of reported problems of one input: a hundred thousand would scroll the first away.
+/// Maximum number of problems reported for one input, so that the first ones stay visible on a terminal.
 inline constexpr std::size_t max_listed_problems = 20;
 
-/// Returns the first problems of one line of input (max_listed_problems) and the number of further ones, in
-/// one line. Positions are omitted: the caller knows the line.
+/// Returns, as one line of text, the first max_listed_problems problems of a line of input and the number of
+/// further problems. Omits the input line's number, which the caller knows.
 [[nodiscard]] std::string joined(const std::vector<Problem>& problems);
 
 }  // namespace flexura

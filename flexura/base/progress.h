@@ -4,8 +4,8 @@
 
 namespace flexura {
 
-/// Receives the progress of a long job; implementations print a line on a terminal or send a message to the
-/// viewer.
+/// Receives progress reports of a long job. Implementations print a line on a terminal or send a message to
+/// the viewer.
 class Progress {
  public:
   virtual ~Progress() = default;
@@ -13,9 +13,10 @@ class Progress {
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
-  /// Reports that `fraction` in [0, 1] is done; `what` names the present part of the job.
+  /// Reports that `fraction` of the job, in [0, 1], is done; `what` names the current part of the job.
   virtual void update(double fraction, std::string_view what) = 0;
-  /// Returns whether the job should end early, in good order. Called often, from the job's thread.
+  /// Returns whether the job should stop early and return normally. The job calls this function often, from
+  /// its own thread.
   [[nodiscard]] virtual bool is_cancelled() const { return false; }
 };
 

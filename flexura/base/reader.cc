@@ -10,7 +10,7 @@
 namespace flexura {
 namespace {
 
-// Returns "task[0].loop" as in a TOML header: "task.loop".
+// Returns a path as in a TOML header, without indices: "task.loop" for "task[0].loop".
 std::string without_indices(std::string_view path) {
   std::string names;
   bool is_index = false;
@@ -49,7 +49,8 @@ std::string Reader::below(std::string_view name) const {
 
 void Reader::problem(std::string what) { problem_at("", std::move(what)); }
 
-// Returns the position of what was written at `path`, or at its nearest written part.
+// Returns the position of the value at `path` or, if the document has no such value, of the longest part of
+// the path in the document.
 SourcePosition Reader::place_of(std::string path) const {
   auto found = written_.find(path);
   while (found == written_.end() && !path.empty()) {
@@ -113,7 +114,7 @@ bool Reader::number(const Node& node, const Spec& spec, double& value) {
     value = scaled;
     return true;
   }
-  // Only on error: a file may have millions of numbers.
+  // Makes the text only on an error, because a file may have millions of numbers.
   const std::string range = spec.range.text(spelling);
   const std::string unit = spelling.symbol.empty() ? "" : fmt::format(" in {}", spelling.symbol);
   unexpected(node, range.empty() ? "a finite number" + unit : "a number " + range);
@@ -186,7 +187,8 @@ std::string ways_to_write(const FieldInfo& field) {
   return ways;
 }
 
-// Returns the field of another unit, or with a similar name, that an unknown key may stand for; or null.
+// Returns the field that an unknown key probably means, which has another unit or a similar name; null if
+// there is none.
 const FieldInfo* field_in_another_unit(std::string_view key, const TableInfo& table) {
   const auto found = std::ranges::find_if(table.fields, [&](const FieldInfo& field) {
     return key.starts_with(field.name) &&
@@ -205,7 +207,8 @@ std::string_view nearest_spelling(std::string_view key, const TableInfo& table, 
   return nearest_name(key, names);
 }
 
-// Returns the table inside this one, or the array of tables, that has a field of this name; or null.
+// Returns the field of `table` that is a table, or an array of tables, with a field of this name; null if
+// there is none.
 const FieldInfo* table_with(std::string_view key, const TableInfo& table) {
   const auto has_key = [key](const FieldInfo& field) {
     const TableInfo* inner = field.type.item ? field.type.item->table : field.type.table;
@@ -218,13 +221,13 @@ const FieldInfo* table_with(std::string_view key, const TableInfo& table) {
   return found == table.fields.end() ? nullptr : &*found;
 }
 
-// Error text of a key that the table lacks, "did you mean ...", and the field that is probably meant.
+// Error text for an unknown key ("did you mean ..."), and the field that is probably meant.
 struct UnknownKey {
   std::string what;
   const FieldInfo* meant = nullptr;
 };
 
-// Of a key that is a field's old name, in any unit; nothing where it is not.
+// Returns the error for a key that is a field's old name, in any unit; empty for other keys.
 std::optional<UnknownKey> renamed_key(std::string_view key, const TableInfo& table) {
   for (const RenamedField& renamed : table.renamed) {
     if (!key.starts_with(renamed.old_name)) continue;
@@ -302,15 +305,15 @@ std::vector<FoundField> find_fields(const Node& node, const TableInfo& table, Re
       const Reader::Scope scope(reader, member.key, member.where);
       const SourcePosition& first = slot.member->where;
       const bool same_file = first.source == member.where.source || first.source == nullptr;
-      reader.problem(fmt::format("written twice: {} stands in line {}{} already", slot.member->key,
-                                 first.line, same_file ? "" : " of " + *first.source));
+      reader.problem(fmt::format("written twice: {} is already in line {}{}", slot.member->key, first.line,
+                                 same_file ? "" : " of " + *first.source));
       continue;
     }
     slot = {&member, spelling};
   }
   for (std::size_t i = 0; i < found.size(); ++i) {
     const FieldInfo& field = table.fields[i];
-    // One mistake, one line: a misspelt field is not also reported as missing.
+    // A misspelt field is not also reported as missing.
     if (found[i].member == nullptr && field.spec.required && std::ranges::count(meant, &field) == 0)
       reader.problem_at(field.name, missing(field));
   }

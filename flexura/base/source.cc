@@ -23,7 +23,8 @@ std::string listing(const std::vector<Problem>& problems) {
   return text;
 }
 
-// Levenshtein distance with transposition of neighbours counted as one (optimal string alignment).
+// Returns the Levenshtein distance, where a transposition of neighbours counts as one edit (optimal string
+// alignment).
 std::size_t edit_distance(std::string_view a, std::string_view b) {
   std::vector<std::size_t> before_last(b.size() + 1);
   std::vector<std::size_t> last(b.size() + 1);
@@ -64,7 +65,7 @@ InputError input_error(const std::string& source, std::string what, int line, in
 }
 
 std::string_view nearest_name(std::string_view word, const std::vector<std::string>& names) {
-  // A longer key was invented rather than misspelt; the bound also keeps huge keys cheap.
+  // A much longer key is not a misspelling. The bound also limits the time for huge keys.
   constexpr std::size_t longest_word = 64;
   if (word.empty() || word.size() > longest_word) return {};
   std::string_view best;

@@ -7,7 +7,7 @@
 namespace flexura {
 namespace {
 
-// An array that must not be empty in a file is empty if the file omits it.
+// An array that must not be empty in a file is empty by default if the file omits the array.
 bool is_default(const Node& node, const Spec& spec) {
   const auto* entries = node.as<Node::Array>();
   return node.empty() || (entries != nullptr && entries->empty() && spec.count.min > 0);
@@ -42,7 +42,7 @@ bool AnyTable::read_at(const Node& node, Reader& reader, void* value, std::strin
   for (std::size_t i = 0; i < found.size(); ++i) {
     if (found[i].member == nullptr) continue;
     const Node::Member& member = *found[i].member;
-    // That of the key, to which problems refer; texts are positioned after it.
+    // Position of the key, to which problems refer. Positions within texts are after the key.
     SourcePosition where = member.where;
     if (member.node.where.source == where.source && member.node.where.line == where.line)
       where.text_column = member.node.where.text_column;

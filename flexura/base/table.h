@@ -23,19 +23,19 @@
 
 namespace flexura {
 
-/// Reading, writing and description of a member's type. Specialised per type; a struct gets its codec from
-/// its table of fields, an enum from its names (below).
+/// Reads, writes and describes values of type T. The template is specialised for each type. The codec of a
+/// struct uses its table of fields; the codec of an enum uses the names of its values.
 template <class T>
 struct Codec;
 
-/// Reading, writing and description of values of one type, by their addresses.
+/// The functions of a Codec without its type T: values are given by their addresses.
 struct ValueCodec {
   bool (*read)(const Node& node, const Spec& spec, Reader& reader, void* value);
   Node (*write)(const void* value);
   Type (*type)();
 };
 
-/// The codec of a type.
+/// The functions of Codec<T>.
 template <class T>
 inline constexpr ValueCodec codec_of = {
     [](const Node& node, const Spec& spec, Reader& reader, void* value) {
@@ -44,8 +44,7 @@ inline constexpr ValueCodec codec_of = {
     [](const void* value) { return Codec<T>::write(*static_cast<const T*>(value)); },
     [] { return Codec<T>::type(); }};
 
-/// A table of fields without its struct's type: the part common to all, compiled once. Values are addresses
-/// of the struct.
+/// The part of Table<S> that does not depend on S, compiled once. Parameters `value` are addresses of an S.
 class AnyTable {
  public:
   [[nodiscard]] const TableInfo& info() const { return info_; }
@@ -53,8 +52,8 @@ class AnyTable {
  protected:
   AnyTable(std::string name, std::string meaning);
 
-  /// Adds a field `offset` bytes into the struct; `default_value` is the address of the member of a default
-  /// struct.
+  /// Adds a field. `offset` is the position of its member in the struct, bytes. `default_value` is the
+  /// address of this member in a default-constructed struct.
   void add(std::string name, std::size_t offset, const ValueCodec& codec, const void* default_value,
            Spec spec);
   void add_renamed(std::string old_name, std::string name);
@@ -72,18 +71,19 @@ class AnyTable {
   std::vector<std::function<void(const void*, Reader&)>> checks_;
 };
 
-/// The table of fields of a struct: each member's name, unit, range, default and meaning, defined once. The
-/// typed reader, the errors, the writer, the schema and the reference page are derived from it.
+/// The table of fields of a struct: name, unit, range, default and meaning of each member, defined once. The
+/// typed reader, the error messages, the writer, the schema and the reference page all use this table.
 ///
-/// A struct S has a table if `const Table<S>& fields_of(const S*)` is found beside it. Defaults are the
-/// members of a default-constructed S.
+/// A struct S has a table if its namespace has a function `const Table<S>& fields_of(const S*)`. Default
+/// values are the members of a default-constructed S.
 template <class S>
 class Table : public AnyTable {
  public:
-  /// `name`: the text under "kind" if this is one of several tables. `meaning`: a sentence for the reference.
+  /// `name`: the text of the key "kind" if the table is one of several alternatives. `meaning`: a sentence
+  /// for the reference page.
   Table(std::string name, std::string meaning) : AnyTable(std::move(name), std::move(meaning)) {}
 
-  /// Adds a field that fills `member`, of S or of a base of S.
+  /// Adds a field whose value is stored in `member`, a member of S or of a base of S.
   template <class M, class Base>
     requires std::derived_from<S, Base>
   Table& field(std::string name, M Base::* member, Spec spec) {
@@ -94,22 +94,23 @@ class Table : public AnyTable {
     return *this;
   }
 
-  /// Reports a field's old name, with any unit's suffix, as an error that gives the new `name`: "is now
-  /// called
-  /// ...". Add the field `name` first; else it throws std::logic_error.
+  /// Makes a field's old name, with any unit's suffix, an error that gives the new `name`: "is now called
+  /// ...". Throws std::logic_error unless the field `name` was added before.
   Table& renamed(std::string old_name, std::string name) {
     add_renamed(std::move(old_name), std::move(name));
     return *this;
   }
 
-  /// Adds a check across fields, run when every field was read without a problem; it reports to the reader.
+  /// Adds a check across fields, which reports its problems to the reader. The check runs only if every field
+  /// was read without a problem.
   template <std::invocable<const S&, Reader&> Rule>
   Table& check(Rule rule) {
     add_check([rule](const void* value, Reader& reader) { rule(*static_cast<const S*>(value), reader); });
     return *this;
   }
 
-  /// Fills `value` from a table; returns false if a problem was reported.
+  /// Fills `value` from a node that must be a table; returns false if a problem was reported. `tag` is an
+  /// additional accepted key.
   bool read(const Node& node, Reader& reader, S& value, std::string_view tag = {}) const {
     return read_at(node, reader, &value, tag);
   }
@@ -124,7 +125,7 @@ class Table : public AnyTable {
   }
 };
 
-/// Reads a whole document as an S; throws InputError with all problems found.
+/// Reads a whole document as an S. Throws InputError with all problems found, if any.
 template <class S>
 [[nodiscard]] S read_as(const Node& document) {
   Reader reader;
@@ -144,7 +145,7 @@ struct Codec<double> {
   static bool read(const Node& node, const Spec& spec, Reader& reader, double& value) {
     return reader.number(node, spec, value);
   }
-  /// An infinite value means no bound and is omitted.
+  /// Omits an infinite value, which means that there is no bound.
   static Node write(double value) { return std::isfinite(value) ? Node{value, {}} : Node{}; }
 };
 
@@ -192,7 +193,7 @@ struct Codec<E> {
   static Node write(E value) { return {name_of(value), {}}; }
 };
 
-/// Not written if empty.
+/// An empty optional is not written.
 template <class T>
 struct Codec<std::optional<T>> {
   static Type type() { return Codec<T>::type(); }
@@ -207,7 +208,7 @@ struct Codec<std::optional<T>> {
 
 namespace codec_detail {
 
-// Kind of one entry of an array.
+// Returns the kind of the entries of an array of T.
 template <class T>
 Type::Kind kind_of() {
   static const Type::Kind kind = Codec<T>::type().kind;
@@ -283,7 +284,7 @@ struct Codec<S> {
   static Node write(const S& value) { return table().write(value); }
 };
 
-/// One of several tables, identified by the key "kind", which holds the table's name.
+/// Codec of one of several tables. The key "kind" has the name of the table.
 template <HasFields... S>
 struct Codec<std::variant<S...>> {
   using Value = std::variant<S...>;

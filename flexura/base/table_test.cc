@@ -199,7 +199,7 @@ TEST(Table, NamesTheTableWhereAKeyBelongs) {
 
 TEST(Table, RefusesAQuantityWrittenInTwoUnits) {
   EXPECT_THAT(problems_of({member("tilt", 0.5, 3), member("tilt_deg", 3.0, 4)}),
-              ElementsAre("cart.toml:4:1: tilt_deg: written twice: tilt stands in line 3 already"));
+              ElementsAre("cart.toml:4:1: tilt_deg: written twice: tilt is already in line 3"));
 }
 
 TEST(Table, RefusesNumbersThatAreNotFinite) {
@@ -295,7 +295,7 @@ TEST(SetAtPath, ChangesEntriesAndMakesTables) {
   EXPECT_TRUE(*root.find("new")->find("deep")->as<bool>());
   EXPECT_EQ(set_at_path(root, "wheel.1.radius", {2.5, {}}), "index 1 is outside an array of 1");
   EXPECT_EQ(set_at_path(root, "wheel.x", {2.5, {}}),
-            "\"x\" stands for one of an array: expected a number counted from 0");
+            "\"x\" names an entry of an array: expected its index, counted from 0");
   EXPECT_EQ(set_at_path(root, "wheel.0.radius.x", {2.5, {}}), "nothing named \"x\" inside 3.5");
   EXPECT_THAT(set_at_path(root, "wheel..radius", {2.5, {}}), HasSubstr("is no path"));
 }

@@ -4,15 +4,16 @@ namespace flexura {
 
 namespace {
 
-/// Valid continuation of a first byte: the number of bytes, and the range of the first of them. The others
-/// are 80 to BF.
+/// Valid continuation of a first byte: the number of continuation bytes, and the range of the first
+/// continuation byte. Further bytes are 80 to BF.
 struct Rest {
   std::size_t count = 0;
   unsigned char low = 0x80;
   unsigned char high = 0xBF;
 };
 
-/// Returns the continuation of a first byte; for an invalid one, a count larger than any text.
+/// Returns the continuation of a first byte; for an invalid first byte, a number of bytes larger than any
+/// text.
 Rest rest_of(unsigned char first) {
   if (first < 0x80) return {};
   if (first >= 0xC2 && first <= 0xDF) return {1};

@@ -4,7 +4,7 @@
 
 namespace flexura {
 
-/// Returns the version of the library, that of the CMake project.
+/// Returns the version of the library, which is the version of the CMake project.
 [[nodiscard]] std::string_view version();
 
 }  // namespace flexura

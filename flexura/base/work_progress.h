@@ -9,19 +9,20 @@
 
 namespace flexura {
 
-/// Progress of a job of several pieces of work: its fraction is the done share of all work, whatever the
-/// order of the pieces. It never decreases.
+/// Progress of a job that consists of several pieces of work. The job's fraction is the completed share of
+/// all work, in whatever order the pieces run, and never decreases.
 class WorkProgress {
  public:
-  /// `weights`: the work of each piece, in any common unit; only their ratios count. Negative ones count as
-  /// 0.
+  /// `weights` is the amount of work of each piece, in any common unit; only the ratios matter. Negative
+  /// weights count as 0.
   WorkProgress(Progress& whole, const std::vector<double>& weights);
   WorkProgress(const WorkProgress&) = delete;
   WorkProgress& operator=(const WorkProgress&) = delete;
 
-  /// Returns the progress of one piece, valid as long as this object. Throws std::out_of_range.
+  /// Returns the progress of one piece, valid as long as this object. Throws std::out_of_range for an index
+  /// without a piece.
   [[nodiscard]] Progress& piece(std::size_t index) { return pieces_.at(index); }
-  /// Reports that a piece is done.
+  /// Reports that the piece `index` is completed.
   void finish(std::size_t index, std::string_view what) { piece(index).update(1, what); }
 
  private:

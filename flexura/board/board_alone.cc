@@ -51,7 +51,7 @@ CameraAlone fit_alone(std::span<const Vector2d> points, std::span<const BoardVie
   if (own.size() < 2) return alone;
   Intrinsics lens = start_lens(homographies, size[0], size[1]);
   alone.fit = fit_from(lens, points, own, config);
-  // A good fit has residuals of some tenths of a pixel. A larger error means a wrong start.
+  // A good fit has residuals of a few tenths of a pixel. A larger error indicates a wrong start.
   constexpr double bad = 2;
   for (const double focal : {0.6, 1.2, 2.5, 6.0}) {
     if (alone.fit.is_converged && rms_of(alone.fit.square_sum, alone.fit.points) < bad) break;

@@ -11,39 +11,41 @@
 
 namespace flexura {
 
-/// A camera calibrated alone.
+/// Result of calibrating one camera alone.
 struct CameraAlone {
-  BundleFit fit;                   ///< Fit of this camera and the boards that it saw.
-  std::vector<std::size_t> views;  ///< Indices of these boards in the given views.
+  BundleFit fit;  ///< Fit of the camera and of the boards that the camera saw.
+  std::vector<std::size_t>
+      views;  ///< Indices, in the given views, of the views in which the camera saw the board.
 };
 
-/// Returns the root mean square of `points` distances.
+/// Returns the root mean square of `points` distances from the sum of their squares.
 [[nodiscard]] double rms_of(double square_sum, std::size_t points);
 
-/// Calibrates one camera of the given image size (width, height) from the views in which it saw the board.
-/// Uses the closed form and least squares; after a bad result, also other initial focal lengths. Not
-/// converged with fewer than two views.
+/// Calibrates one camera from the views in which the camera saw the board. `size` is the image's width and
+/// height, px. Uses Zhang's closed form and least squares. After a bad result, tries other initial focal
+/// lengths. With fewer than two views the result is not converged.
 [[nodiscard]] CameraAlone fit_alone(std::span<const Eigen::Vector2d> points, std::span<const BoardView> views,
                                     std::size_t camera, const std::array<int, 2>& size,
                                     const BundleConfig& config);
 
-/// Pose of a camera in the first one, from one view in which both saw the board.
+/// Pose of a camera relative to the first camera, from one view in which both cameras saw the board.
 struct CameraStep {
-  std::size_t view = 0;  ///< Index in the given views.
+  std::size_t view = 0;  ///< Index of the view in the given views.
   Pose X_1C;
 };
 [[nodiscard]] std::vector<CameraStep> camera_steps(const CameraAlone& first, const CameraAlone& other);
 
-/// Returns X_1C, the mean over the views; empty without a view.
+/// Returns the mean pose X_1C over the views; empty if there are no views.
 [[nodiscard]] std::optional<Pose> start_camera(std::span<const CameraStep> steps);
 
-/// Disagreement of the views about a camera's pose.
+/// Disagreement of views about a camera's pose relative to the first camera.
 struct StepSpread {
-  double turn = 0, distance = 0;  ///< Largest deviation of a view from the majority, rad and m.
-  std::size_t view = 0;           ///< Index of that view in the given ones.
+  double turn = 0, distance = 0;  ///< Rotation, rad, and distance, m, by which the most deviating view
+                                  ///< differs from the majority.
+  std::size_t view = 0;           ///< Index of the most deviating view in the given views.
 };
-/// Computes the deviations from the step that is nearest to the others (smallest median of its rotations from
-/// them). Needs at least one step.
+/// Computes deviations from the central step, which has the smallest median rotation to the other steps.
+/// Needs at least one step.
 [[nodiscard]] StepSpread step_spread(std::span<const CameraStep> steps);
 
 }  // namespace flexura

@@ -9,9 +9,10 @@
 
 namespace flexura {
 
-/// Returns whether the board's pattern continues beyond the points with these pixels, by another column or
-/// row. They are then a part of a larger board, which OpenCV's search accepts. Not used for asymmetric
-/// circles, of which OpenCV hardly ever accepts a part. Needs at least 3 x 3 points.
+/// Returns whether the board's pattern continues by another column or row beyond the found points, whose
+/// pixels are given. The points then are a part of a larger board, which OpenCV's search accepts. Not used
+/// for asymmetric circles, because OpenCV hardly ever accepts a part of such a board. Needs at least 3 x 3
+/// points.
 [[nodiscard]] bool goes_on(const Image<std::uint8_t>& gray, const BoardTarget& board,
                            const std::vector<Eigen::Vector2d>& pixels);
 

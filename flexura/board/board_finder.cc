@@ -102,10 +102,10 @@ double brightness(const Image<std::uint8_t>& gray, const std::vector<Vector2d>& 
   return sum;
 }
 
-// Brings the points into an order common to all cameras, as far as the board determines it.
+// Brings the points into the same order for all cameras, as far as the board determines the order.
 void put_in_order(const Image<std::uint8_t>& gray, const BoardTarget& board, std::vector<Vector2d>& pixels) {
   const auto columns = static_cast<std::size_t>(board.columns), rows = pixels.size() / columns;
-  // Mirrored: the board would be seen from behind.
+  // The order is mirrored, as if the board were seen from behind.
   if (board.pattern != BoardPattern::asymmetric_circles &&
       turn(pixels.front(), pixels[columns - 1], pixels[(rows - 1) * columns]) < 0)
     for (std::size_t row = 0; row < rows; ++row)
@@ -119,7 +119,7 @@ void put_in_order(const Image<std::uint8_t>& gray, const BoardTarget& board, std
 }  // namespace
 
 BoardObservation find_board(const Image<std::uint8_t>& gray, const BoardTarget& board) {
-  if (is_noise(gray)) return {.pixels = {}, .reason = "the picture is nothing but noise"};
+  if (is_noise(gray)) return {.pixels = {}, .reason = "the picture contains only noise"};
   // Equal bytes on every machine, whatever its number of processors. (Also, ThreadSanitizer cannot see into
   // the packaged library and reports its locks on this stack as races.)
   cv::setNumThreads(1);
@@ -141,12 +141,14 @@ BoardObservation find_board(const Image<std::uint8_t>& gray, const BoardTarget& 
   if (!is_found ||
       corners.size() != static_cast<std::size_t>(board.columns) * static_cast<std::size_t>(board.rows) ||
       !std::ranges::all_of(corners, is_inside)) {
-    observation.reason = "no board of this size is wholly in the picture";
+    observation.reason = "no complete board of this size is in the picture";
     return observation;
   }
   for (const cv::Point2f& corner : corners) observation.pixels.emplace_back(corner.x, corner.y);
   if (goes_on(gray, board, observation.pixels))
-    return {.pixels = {}, .reason = "a part of a larger board: its pattern goes on", .is_larger = true};
+    return {.pixels = {},
+            .reason = "a part of a larger board: the pattern continues beyond the found points",
+            .is_larger = true};
   put_in_order(gray, board, observation.pixels);
   return observation;
 }

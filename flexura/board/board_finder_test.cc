@@ -50,7 +50,7 @@ TEST(BoardFinder, DoesNotSearchNoise) {
           std::clamp(std::round(level + deviation * normal_number(random)), 0.0, 255.0));
     for (const BoardPattern pattern : {BoardPattern::chessboard, BoardPattern::circles}) {
       board.pattern = pattern;
-      EXPECT_EQ(find_board(noise, board).reason, "the picture is nothing but noise")
+      EXPECT_EQ(find_board(noise, board).reason, "the picture contains only noise")
           << level << " " << deviation;
     }
   }

@@ -73,7 +73,7 @@ std::optional<Vector2d> principal_point(std::span<const Matrix3d> homographies, 
   }
   const auto [values, vectors] = symmetric_eigen(normal);
   const Eigen::Vector<double, 5> conic = vectors.col(0);
-  // Two equally good directions: the boards do not determine it.
+  // Two directions are equally good: the boards do not determine the principal point.
   if (values[1] < 1e-9 * values[4]) return std::nullopt;
   if (!(conic[0] * conic[1] > 0)) return std::nullopt;
   const Vector3d normalized(-conic[2] / conic[0], -conic[3] / conic[1], 1);

@@ -10,19 +10,20 @@ namespace flexura {
 enum class BoardPattern { chessboard, circles, asymmetric_circles };
 const std::vector<std::string>& names_of(const BoardPattern*);
 
-/// A flat calibration board. Its points, which are searched in pictures, are the inner corners of a
-/// chessboard or the centres of dark circles on a bright background.
+/// A flat calibration board. Its points are the inner corners of a chessboard, or the centres of dark circles
+/// on a bright background.
 struct BoardTarget {
   BoardPattern pattern = BoardPattern::chessboard;
-  int columns = 9, rows = 6;  ///< Numbers of columns and rows of points; for asymmetric circles, `columns`
-                              ///< are those in one row.
-  double square = 0.025;  ///< Distance of rows, and of columns, m. Columns of asymmetric circles are twice
-                          ///< that apart, and every second row is shifted by half of it.
+  int columns = 9, rows = 6;  ///< Numbers of columns and rows of points. For asymmetric circles, `columns` is
+                              ///< the number of points in one row.
+  /// Distance between neighbouring rows, and between neighbouring columns, m. Circles in a row of asymmetric
+  /// circles are 2 `square` apart, and every second row is shifted by `square`.
+  double square = 0.025;
 
-  /// Returns the points in the board's plane, m, row after row from the first corner; (0, 0) is the first.
+  /// Returns the points in the board's plane, m, row by row. The first point is (0, 0).
   [[nodiscard]] std::vector<Eigen::Vector2d> points() const;
-  /// Returns whether two opposite corners are indistinguishable as the first in a picture: two cameras may
-  /// then disagree.
+  /// Returns whether a picture cannot show which of two opposite corners is the first point. Two cameras may
+  /// then choose different corners.
   [[nodiscard]] bool is_ambiguous() const;
 };
 

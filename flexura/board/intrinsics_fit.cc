@@ -35,7 +35,7 @@ constexpr const char* untilted =
     "expected boards "
     "tilted to different sides";
 
-// Undetermined unknowns diverge although the views are explained.
+// Undetermined unknowns diverge although the fit explains the views.
 const char* why_not_converged(const BundleFit& fit) {
   constexpr double good = 2;  // px
   const bool is_explained = fit.points > 0 && rms_of(fit.square_sum, fit.points) < good;
@@ -106,7 +106,7 @@ class Calibration {
       const CameraAlone& own = alone.back();
       if (own.views.size() < 2) {
         result_.reason = camera_text(camera) +
-                         fmt::format("{} to fit: expected two at least, from different sides",
+                         fmt::format("{} to fit: expected at least two, from different directions",
                                      own.views.empty() ? "no view of the board" : "one view of the board");
       } else if (!own.fit.is_converged) {
         result_.reason = camera_text(camera) + why_not_converged(own.fit);
@@ -158,9 +158,9 @@ class Calibration {
       if (i == 0 || own.turn > spread.turn) spread = own, camera = i + 1;
     }
     return fmt::format(
-        "{}its pictures do not belong to those of camera 1: the cameras fit to {} px alone and {} together, "
-        "and view {} puts it {:.0f} degrees and {} m elsewhere than most do: expected pictures taken "
-        "together, in the same order, by cameras that stand still to each other",
+        "{}its pictures do not match those of camera 1: the cameras fit to {} px alone and {} together, "
+        "and view {} gives a pose that differs by {:.0f} degrees and {} m from most views: expected pictures "
+        "taken at the same time, in the same order, by cameras fixed to each other",
         camera_text(camera), fmt::join(rms_alone, " and "),
         fit.points > 0 ? fmt::format("to {:.3g} px", rms) : "not at all", numbers_[spread.view] + 1,
         spread.turn / degree, bounded_text(spread.distance, 100));
@@ -271,7 +271,7 @@ class Calibration {
     const auto [width, height] = sizes_[camera];
     const double largest = largest_share * std::hypot(width, height);
     own.corner_sigma = corner_sigma(own.lens, own.covariance, width, height);
-    // Perfect pictures would determine everything.
+    // Without noise, all unknowns would seem to be determined.
     const double grown = result_.noise < best_noise ? best_noise / std::max(result_.noise, 1e-12) : 1;
     const auto seen = intrinsics_effects(own.lens, seen_by(camera)),
                corners = intrinsics_effects(own.lens, image_corners(width, height));

@@ -16,55 +16,64 @@ namespace flexura {
 
 /// Settings of a camera calibration from views of a board.
 struct IntrinsicsConfig {
-  int distortion = 5;  ///< Number of estimated coefficients of k1, k2, p1, p2, k3; the others are 0.
-  int hold_out = 0;    ///< Every Nth view is held out of the fit and only predicted; 0: no views.
+  /// Number of estimated distortion coefficients in the order k1, k2, p1, p2, k3; the others are 0.
+  int distortion = 5;
+  /// Every Nth view is not fitted but only predicted (N = hold_out); 0: all views are fitted.
+  int hold_out = 0;
 };
 
-/// One camera's lens, estimated from views of a board.
+/// Lens of one camera, estimated from views of a board.
 struct CameraFit {
   Intrinsics lens;
-  /// Of the intrinsics, in the order of `intrinsics_count`; 0 for those that are not estimated. Scaled by the
-  /// residuals, assuming independent pixels.
+  /// Covariance of the intrinsics, in the order of `intrinsics_count`; 0 for intrinsics that are not
+  /// estimated. The covariance is scaled by the residuals, which are assumed to be independent.
   Eigen::Matrix<double, intrinsics_count, intrinsics_count> covariance;
-  double rms = 0;        ///< Root mean square of the distances in its pictures, px.
-  double rms_alone = 0;  ///< Root mean square of the distances when it is calibrated alone, px.
-  /// Root mean square by view, px, including held-out ones; empty if it saw no board.
+  double rms = 0;  ///< Root mean square of the distances between observed and computed pixels in the camera's
+                   ///< fitted pictures, px.
+  double rms_alone = 0;  ///< Root mean square of these distances if the camera is calibrated alone, px.
+  /// Root mean square of these distances in each view, including held-out views, px; empty for views in which
+  /// the camera did not see the board.
   std::vector<std::optional<double>> view_rms;
-  /// Standard deviation of the image position of a direction, px, in the worst corner of the image. It is
-  /// large if boards do not come near the corners.
+  /// Standard deviation of the image position of a direction, px, in the worst corner of the image. Large if
+  /// no board was near the corners.
   double corner_sigma = 0;
-  /// The undetermined intrinsics. A standard deviation of one moves observed points by more than a hundredth
-  /// of the image's diagonal. Corners count as accurate to a twentieth of a pixel at best. Or, if
-  /// corner_sigma is larger than that hundredth, it moves the image's corners that far.
+  /// Indices of undetermined intrinsics. An intrinsic parameter is undetermined if a change by one standard
+  /// deviation moves observed points by more than a hundredth of the image's diagonal. If corner_sigma
+  /// exceeds this hundredth, a parameter that moves the image's corners that far is undetermined, too.
+  /// Observed pixels are assumed to be accurate to a twentieth of a pixel at best.
   std::vector<int> undetermined;
 
-  /// Returns the standard deviation of one, by its index in the order of `intrinsics_count`, in its unit.
+  /// Returns the standard deviation of an intrinsic parameter, in its unit. `parameter` is the index in the
+  /// order of `intrinsics_count`.
   [[nodiscard]] double sigma(int parameter) const;
 };
 
-/// Result of a joint calibration of cameras fixed to each other.
+/// Result of the joint calibration of cameras that are fixed to each other.
 struct IntrinsicsFit {
-  bool is_found = false;
-  std::string reason;              ///< Why it failed.
+  bool is_found = false;           ///< Whether the calibration succeeded.
+  std::string reason;              ///< Reason why the calibration failed.
   std::vector<CameraFit> cameras;  ///< Cameras in the order of the given sizes.
-  std::vector<Pose> poses;         ///< X_1C: each camera in the first one.
-  /// Of the small motion [v; w] of X_1C (p + v, exp(w) R); 0 for the first.
+  std::vector<Pose> poses;         ///< Pose X_1C of each camera relative to the first camera.
+  /// Covariance of the small motion [v; w] of each pose X_1C (p + v, exp(w) R); 0 for the first camera.
   std::vector<Eigen::Matrix<double, 6, 6>> pose_covariance;
-  double rms = 0;                      ///< Root mean square of the distances in all fitted pictures, px.
-  double noise = 0;                    ///< Standard deviation of one coordinate of a pixel, px.
-  std::size_t points = 0;              ///< Number of fitted pixels.
-  std::vector<bool> is_held_out;       ///< Whether a view was held out, by view.
-  std::optional<double> held_out_rms;  ///< Root mean square of the distances in held-out views, px, with only
-                                       ///< their boards fitted.
-  std::vector<std::optional<Pose>> boards;  ///< X_1B by view.
-  int steps = 0;                            ///< Steps of the joint fit.
+  double rms = 0;    ///< Root mean square of the distances between observed and computed pixels in all fitted
+                     ///< pictures, px.
+  double noise = 0;  ///< Standard deviation of one coordinate of an observed pixel, px.
+  std::size_t points = 0;              ///< Number of observed pixels that were fitted.
+  std::vector<bool> is_held_out;       ///< Whether the view was held out, for each view.
+  std::optional<double> held_out_rms;  ///< Root mean square of the distances in held-out views, of which only
+                                       ///< the boards' poses are fitted, px.
+  std::vector<std::optional<Pose>>
+      boards;     ///< Pose X_1B of the board relative to the first camera, for each view.
+  int steps = 0;  ///< Number of steps of the joint fit.
 };
 
-/// Calibrates cameras of the given image sizes (width, height) from views of a board with `points` (z = 0 in
-/// B). Each is calibrated alone, by Zhang's closed form (Z. Zhang, 2000) and least squares. Then all are
-/// fitted together with their relative poses. Each camera needs at least two views that are not parallel;
-/// cameras other than the first need one together with the first. Throws std::invalid_argument for views with
-/// another number of cameras or points, or unless 0 to 5 coefficients of distortion are estimated.
+/// Calibrates cameras from views of a board with `points` (z = 0 in B, m). `sizes` has the width and height
+/// of each camera's images, px. First calibrates each camera alone, by Zhang's closed form (Z. Zhang, 2000)
+/// and least squares. Then fits all cameras together with their relative poses. Each camera needs at least
+/// two views in which the board is not parallel. Each camera except the first also needs a view in which the
+/// first camera saw the board. Throws std::invalid_argument for views with another number of cameras or
+/// points, or unless 0 to 5 distortion coefficients are estimated.
 [[nodiscard]] IntrinsicsFit fit_intrinsics(std::span<const Eigen::Vector2d> points,
                                            std::span<const BoardView> views,
                                            std::span<const std::array<int, 2>> sizes,

@@ -296,7 +296,7 @@ TEST(IntrinsicsFit, KnowsThatPicturesDoNotBelongTogether) {
     for (const auto& wrong : {shifted, one}) {
       const IntrinsicsFit fit = fit_intrinsics(points, wrong, two_sizes);
       EXPECT_FALSE(fit.is_found);
-      EXPECT_THAT(fit.reason, HasSubstr("camera 2: its pictures do not belong to those of camera 1"));
+      EXPECT_THAT(fit.reason, HasSubstr("camera 2: its pictures do not match those of camera 1"));
       EXPECT_THAT(fit.reason, ContainsRegex("0\\.1[0-9]* px alone and to [0-9.]+ px together"));
     }
     EXPECT_THAT(fit_intrinsics(points, one, two_sizes).reason, HasSubstr("view 6 puts it"));

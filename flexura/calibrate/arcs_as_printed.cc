@@ -59,14 +59,14 @@ class ArcsAsPrinted : public ArcsLoop {
         circle_->center - Eigen::Vector2d(lens.cx, lens.cy) -
         (desired.value_or(Eigen::Vector2d(ideal.cx, ideal.cy)) - Eigen::Vector2d(ideal.cx, ideal.cy));
     if (circle_->is_verified) {
-      loop_.decide(i, "circle", circle_->rms, 0, "px",
-                   fmt::format("the circle's equation is verified; the test would see a tilt of {:.2f} deg",
-                               circle_->detectable_tilt / degree));
-      loop_.result().notes.push_back(
-          fmt::format("camera {}: the circle's equation is verified, which proves no more than a tilt below "
-                      "{:.2f} deg, and nothing of where the camera looks: the circle's centre is {:.1f} px "
-                      "from where it should be",
-                      loop_.name(i), circle_->detectable_tilt / degree, off.norm()));
+      loop_.decide(
+          i, "circle", circle_->rms, 0, "px",
+          fmt::format("the circle's equation is verified; the test detects a tilt of {:.2f} deg or more",
+                      circle_->detectable_tilt / degree));
+      loop_.result().notes.push_back(fmt::format(
+          "camera {}: the circle's equation is verified. This proves only a tilt below {:.2f} deg, and does "
+          "not determine the camera's direction: the circle's centre is {:.1f} px from its ideal position",
+          loop_.name(i), circle_->detectable_tilt / degree, off.norm()));
       return std::nullopt;
     }
     next = loop_.stance(i);
@@ -78,10 +78,10 @@ class ArcsAsPrinted : public ArcsLoop {
     next.head = turned_towards(next.head, loop_.lens(i), off);
     next = loop_.commandable_stance(i, next);
     loop_.decide(i, "centre", off.norm(), loop_.config().accepted, "px",
-                 "turn until the circle's centre is where the simulator has it");
+                 "turn until the circle's centre is at its position in the ideal picture");
     if (!loop_.stands_there(i, next)) return std::nullopt;
-    return fmt::format("the head of camera {} ends {:.1f} px before the circle's centre", loop_.name(i),
-                       off.norm());
+    return fmt::format("the head of camera {} is at its limit, {:.1f} px from the circle's centre",
+                       loop_.name(i), off.norm());
   }
 
   // Moves the stage around the centre by the angle from the axis ratio, which does not give the side.
@@ -89,7 +89,8 @@ class ArcsAsPrinted : public ArcsLoop {
     Orbit& orbit = orbits_[i];
     const auto ellipse = fit_ellipse(points_);
     if (!ellipse)
-      return fmt::format("what camera {} sees is no circle's arc, and no ellipse's either", loop_.name(i));
+      return fmt::format("the curve in camera {}'s picture is neither a circle's arc nor an ellipse's",
+                         loop_.name(i));
     const double ratio = ellipse->semi_axes.y() / ellipse->semi_axes.x();
     if (ratio < orbit.last_ratio) orbit.side = -orbit.side, orbit.share = std::max(0.125, 0.7 * orbit.share);
     orbit.last_ratio = ratio;
@@ -111,8 +112,8 @@ class ArcsAsPrinted : public ArcsLoop {
                  fmt::format("around the centre by {:.3f} deg", orbit.side * tilt / degree));
     if (!loop_.stands_there(i, next)) return std::nullopt;
     return fmt::format(
-        "the circle's equation is not verified by camera {}, and the stage goes no farther: the ratio of "
-        "the axes is {:.4f}",
+        "the circle's equation is not verified by camera {}, and the stage is at its limit: the ratio of the "
+        "axes is {:.4f}",
         loop_.name(i), ratio);
   }
 

@@ -103,7 +103,8 @@ class ArcsCorrected : public ArcsLoop {
     predicted_.reset();
     if (reading_) predicted_ = angle({AskedStance{loop_.stance(0), {}}, AskedStance{loop_.stance(1), {}}});
     RigReading reading = observer_->read(before());
-    if (!reading.found.is_found) return "no two cameras explain what was seen: " + reading.found.reason;
+    if (!reading.found.is_found)
+      return "no poses of the two cameras explain the pictures: " + reading.found.reason;
     reading_ = std::move(reading);
     const RigVariables& variables = reading_->problem->variables();
     angle_ = angle({observed_stance(variables, observer_->stance(0).value()),
@@ -135,15 +136,15 @@ class ArcsCorrected : public ArcsLoop {
   [[nodiscard]] Error disagreement() const {
     if (!reading_->is_whole())
       return fmt::format(
-          "{:.0f} of {:.0f} things that were seen are not explained: expected a twentieth at most",
+          "{:.0f} of {:.0f} observations are not explained by the estimate: expected a twentieth at most",
           reading_->unexplained, reading_->things);
     if (!predicted_) return std::nullopt;
     constexpr double farthest = 6;  // Standard deviations.
     const double off = std::abs(angle_.value - predicted_->value);
     if (off <= farthest * predicted_->sigma) return std::nullopt;
     return fmt::format(
-        "the last pictures do not agree with those before: the angle between the axes is {:.3f} deg, "
-        "the prediction is {:.3f} deg with a standard deviation of {:.3f} deg",
+        "the last pictures contradict the earlier ones: the angle between the axes is {:.3f} deg, but the "
+        "prediction was {:.3f} deg with a standard deviation of {:.3f} deg",
         angle_.value / degree, predicted_->value / degree, predicted_->sigma / degree);
   }
 
@@ -215,15 +216,15 @@ class ArcsCorrected : public ArcsLoop {
     const bool is_there = loop_.stands_there(i, desired_[i]), is_far = off > allowed(i);
     if (is_far && (is_there || is_short_[i])) {
       const auto side = LookLoop::look_from_one_side(model(), {loop_.stance(0), loop_.stance(1)}, "seen");
-      return fmt::format("{}camera {}: what can be commanded ends {:.4g} px before it holds",
+      return fmt::format("{}camera {}: at the limit of its commands, {:.4g} px are left",
                          side ? *side + "; " : "", loop_.name(i), off);
     }
     std::string what;
     // Small steps that no longer shrink are below what the pictures determine.
     if (off <= loop_.config().accepted || is_there)
-      what = "holds, or nothing finer can be commanded";
+      what = "within the tolerance, or nothing finer can be commanded";
     else if (off > 0.5 * last && !is_far)
-      what = "holds: the pictures resolve nothing finer";
+      what = "within the tolerance: the pictures resolve nothing finer";
     else
       next = desired_[i];
     if (next)
@@ -263,10 +264,10 @@ class ArcsCorrected : public ArcsLoop {
       const RigStance next = loop_.zoomed(i, longer(i));
       const double times = loop_.camera(i).lens().at(next.head.zoom).fx / loop_.lens(i).fx;
       if (times < LookLoop::least_longer) {
-        loop_.result().notes.push_back(fmt::format(
-            "{}: the principal point is taken to be known within 1 px: enough of the arm is in the "
-            "picture up to {:.2f} times the focal length, expected {}",
-            loop_.name(i), std::max(1.0, times), LookLoop::least_longer));
+        loop_.result().notes.push_back(
+            fmt::format("{}: the principal point is assumed to be known within 1 px, because the arm leaves "
+                        "the picture beyond {:.2f} times the focal length: expected {}",
+                        loop_.name(i), std::max(1.0, times), LookLoop::least_longer));
         continue;
       }
       looking.push_back(i), is_centered_[i] = true;

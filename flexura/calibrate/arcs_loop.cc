@@ -18,7 +18,7 @@ LookLoop::Error ArcsLoop::run(bool aims_at_centers) {
   loop_.result().target = plan_.target;
   for (std::size_t i = 0; i < 2; ++i)
     if (auto error = loop_.begin_zoomed(i, plan_.zoom[i], "zoom as planned",
-                                        "zoom to {:.5g}, as the simulator has it"))
+                                        "zoom to {:.5g}, the zoom in the simulator"))
       return error;
   if (auto error = align()) return error;
   return equalize_zooms();
@@ -72,7 +72,7 @@ LookLoop::Error ArcsLoop::equalize_zooms() {
       const RigStance next = loop_.zoomed(i, 1 / seen.ratio);
       const double off = std::abs(std::log(seen.ratio)), accepted = loop_.config().zoom_accepted;
       if (off <= accepted)
-        end = "it holds";
+        end = "within the tolerance";
       else if (loop_.stands_there(i, next))
         end = "nothing nearer can be commanded";
       else if (round == rounds)
@@ -83,8 +83,8 @@ LookLoop::Error ArcsLoop::equalize_zooms() {
                        : fmt::format("the correlation is {:.3f}: {}", seen.peak, end));
       if (!end.empty() && off > accepted)
         loop_.result().notes.push_back(
-            fmt::format("zoom of camera {}: {:.2g} % off the ideal picture's as last correlated, where "
-                        "{:.2g} % are accepted: {}",
+            fmt::format("zoom of camera {}: the last correlation is {:.2g} % off the ideal picture, the "
+                        "tolerance is {:.2g} %: {}",
                         loop_.name(i), 100 * off, 100 * accepted, end));
       if (!end.empty()) break;
       if (auto moved = loop_.go(i, next)) return moved;

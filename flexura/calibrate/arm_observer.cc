@@ -114,7 +114,7 @@ class ArmObserver : public RigObserver {
       if (images[camera] > 0 || !reading.found.is_found) continue;
       reading.found.is_found = false;
       reading.found.reason =
-          fmt::format("the arm is recognised in no picture of camera {}", nominal_.cameras[camera].name);
+          fmt::format("no picture of camera {} has identified markers", nominal_.cameras[camera].name);
     }
     for (std::size_t i = 0; i < matches.size(); ++i)
       unknown += static_cast<double>(markers_of(rig_pictures_.looks[i].arm.scene)) -

@@ -105,7 +105,7 @@ SeenArm recognised(const ArmFigure& look, const MarkerMatch& match, const Lens& 
       ++seen.unknown;
     }
   }
-  if (seen.markers.empty()) seen.reason = "none of the arm's markers is recognised";
+  if (seen.markers.empty()) seen.reason = "no marker of the arm was identified";
   std::vector<AxisSample> axis = backbone_axis(lens, look.axis).known();
   if (match.is_reversed) std::ranges::reverse(axis);
   seen.points = spaced_points(axis);

@@ -18,7 +18,7 @@
 
 namespace flexura {
 
-/// Prior knowledge about an arm and its pictures.
+/// Known properties of an arm and its pictures.
 struct ArmPictureConfig {
   std::vector<KnownMarker> markers;  ///< Markers of the arm, base first.
   int white = 255;                   ///< Largest pixel value.
@@ -30,7 +30,7 @@ struct ArmFigure {
   std::vector<MarkerObservation> markers;  ///< Markers in order along the centerline.
   MarkerScene scene;                       ///< The markers and arm ends that can be identified.
   std::array<int, 2> size = {0, 0};        ///< Size of the picture, px.
-  std::string reason;                      ///< Why no arm was found; "" if one was.
+  std::string reason;                      ///< Why no arm was found, or "".
 };
 
 /// The arm in one picture with its markers identified.
@@ -38,7 +38,7 @@ struct SeenArm {
   std::vector<SeenMarker> markers;
   std::vector<CurvePoint> points;  ///< Points of the backbone, base to tip, with independent errors.
   std::size_t unknown = 0;         ///< Number of detected markers that were not identified.
-  std::string reason;              ///< Why there are no markers; "" if there are.
+  std::string reason;              ///< Why there are no markers, or "".
 };
 
 /// Predicts where the markers and ends of an arm appear, for the modelled arm and view. Marker positions are
@@ -55,7 +55,7 @@ struct SeenArm {
   return expected_markers(arm, state, markers, view, arm);
 }
 
-/// Returns the number of them inside the picture, at least `margin` px from its border.
+/// Returns the number of markers inside the picture, at least `margin` px from its border.
 [[nodiscard]] std::size_t markers_inside(const MarkerScene& scene, const View& view, double margin);
 
 /// Returns markers and centerline points of a picture whose markers are matched. `lens` corrects for the
@@ -63,14 +63,13 @@ struct SeenArm {
 [[nodiscard]] SeenArm recognised(const ArmFigure& look, const MarkerMatch& match, const Lens& lens,
                                  const ArmPictureConfig& config);
 
-/// Measures pictures of an arm. The result depends on the picture and the expectation alone, not on earlier
-/// pictures.
+/// Measures pictures of an arm. A result does not depend on earlier pictures.
 class ArmPicture {
  public:
   explicit ArmPicture(ArmPictureConfig config) : config_(std::move(config)) {}
 
   [[nodiscard]] ArmFigure look(const Picture& picture);
-  /// Finds the arm and identifies its markers by what is expected in this picture alone.
+  /// Finds the arm and identifies its markers by comparison with the scene expected in this picture.
   [[nodiscard]] SeenArm see(const Picture& picture, const Lens& lens, const MarkerScene& expected);
 
  private:

@@ -142,8 +142,8 @@ class EtalonAsPrinted : public EtalonLoop {
     constexpr int most = 3;
     if (++turned_away_[i] > most)
       return fmt::format(
-          "horizontal positioning of camera {} cannot stop: each time that the outer of two red axes was "
-          "turned out of the picture both were there again when the cylinder was back in its middle",
+          "horizontal positioning of camera {} cannot stop: the head turned the outer of two red axes out of "
+          "the picture, but both were in the picture again with the cylinder in the middle",
           loop_.name(i));
     const auto off = [&](double u) { return std::abs(u - counts_[i].middle); };
     const double outer = off(axes.front()) > off(axes.back()) ? axes.front() : axes.back();
@@ -157,7 +157,8 @@ class EtalonAsPrinted : public EtalonLoop {
     next = loop_.commandable_stance(i, next);
     loop_.decide(
         i, "horizontal positioning", off(outer), 0, "px",
-        fmt::format("two axes are seen: pan by {:.4f} rad, so that the outer one leaves the picture", turn));
+        fmt::format("two red axes are seen: pan by {:.4f} rad to turn the outer axis out of the picture",
+                    turn));
     return loop_.go(i, next);
   }
 
@@ -178,7 +179,7 @@ class EtalonAsPrinted : public EtalonLoop {
     if (counts_[i].above != 0 || counts_[i].below != 0) return std::nullopt;
     return fmt::format(
         "vertical calibration of camera {} stops, but the cylinder touches the upper and the lower border of "
-        "its picture: equal distances from both borders mean nothing there",
+        "the picture: its distances from both borders are zero and show no position",
         loop_.name(i));
   }
 
@@ -192,14 +193,14 @@ class EtalonAsPrinted : public EtalonLoop {
       const EtalonCounts& last = counts_[i];
       if (std::min({last.left, last.right, last.above, last.below}) == 0)
         return fmt::format(
-            "all procedures stop, but the cylinder touches the border of camera {}'s picture: a part was "
-            "counted",
+            "all procedures stop, but the cylinder touches the border of camera {}'s picture: only a part of "
+            "the cylinder was counted",
             loop_.name(i));
     }
     loop_.result().zoom_ratio.reset();  // White pixels do not measure magnification.
     loop_.result().notes.emplace_back(
-        "as printed: where the cameras stand around the cylinder was not measured, for the white pixels "
-        "beside the red axis do not depend on where the axis is");
+        "as printed: the positions of the cameras around the cylinder were not measured, because the number "
+        "of white pixels beside the red axis does not depend on the axis's position");
     return std::nullopt;
   }
 

@@ -79,7 +79,7 @@ class EtalonCorrected : public EtalonLoop {
     const bool is_vain = view.is_too_large || turns_[i]++ == most;
     return loop_.turn_towards(i, "cylinder", view.centroid,
                               is_vain ? std::numeric_limits<double>::infinity() : 0, lens(i),
-                              "camera {} cannot have all of the cylinder in its picture: {}", view.reason);
+                              "camera {} cannot show the whole cylinder: {}", view.reason);
   }
 
   // Nulls all four offsets in one picture, then again with the principal point found by a longer focal
@@ -130,10 +130,10 @@ class EtalonCorrected : public EtalonLoop {
       lens_then = loop_.camera(i).lens().at(next.head.zoom);
       times = lens_then.fx / lens.fx;
       if (times < LookLoop::least_longer) {
-        loop_.result().notes.push_back(fmt::format(
-            "{}: the principal point is taken to be where the file has it: no picture by {} times "
-            "the shortest focal length or more has all of the cylinder",
-            loop_.name(i), LookLoop::least_longer));
+        loop_.result().notes.push_back(
+            fmt::format("{}: the principal point of the file is used, because no picture with {} times the "
+                        "shortest focal length or more shows the whole cylinder",
+                        loop_.name(i), LookLoop::least_longer));
         return loop_.stands_there(i, wide) ? std::nullopt : loop_.go(i, wide);
       }
       if (auto error = loop_.go_longer(i, next)) return error;
@@ -150,7 +150,7 @@ class EtalonCorrected : public EtalonLoop {
     beside_[i] += off;
     loop_.result().principal_point[i] = beside_[i];
     loop_.decide(i, "principal point", off.norm(), 0, "px",
-                 fmt::format("it is {:.3f} px to the right of and {:.3f} px below where the file has it",
+                 fmt::format("it is {:.3f} px to the right of and {:.3f} px below its position in the file",
                              off.x(), off.y()));
     return loop_.go(i, wide);
   }
@@ -162,8 +162,10 @@ class EtalonCorrected : public EtalonLoop {
   Error finish() override {
     constexpr double visible = 0.01;
     if (std::abs(*loop_.result().zoom_ratio - 1) > visible)
-      return fmt::format("no zoom that both cameras have shows the cylinder alike: the ratio stays at {:.4f}",
-                         *loop_.result().zoom_ratio);
+      return fmt::format(
+          "the zoom ranges of the cameras do not allow equal sizes of the cylinder: the ratio stays at "
+          "{:.4f}",
+          *loop_.result().zoom_ratio);
     const auto across = [&](std::size_t i) { return views_[i].bearing + views_[i].sight; };
     const auto step = [&](std::size_t i) { return loop_.camera(i).head_axes()[0].resolution; };
     const auto best = best_steps([&](int a, int b) {
@@ -177,7 +179,7 @@ class EtalonCorrected : public EtalonLoop {
       next = loop_.commandable_stance(i, next);
       if (!loop_.stands_there(i, next)) {
         loop_.decide(i, "orthogonal axes", (across(0) - across(1)) / degree, 0, "deg",
-                     "pan by a step: together the axes are more nearly orthogonal");
+                     "pan by a step, after which the axes are more nearly orthogonal");
         if (auto error = loop_.go(i, next)) return error;
       }
       if (auto error = look(i)) return error;

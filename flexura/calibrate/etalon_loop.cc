@@ -78,7 +78,7 @@ LookLoop::Error EtalonLoop::step(std::size_t i, const Offset& offset, OffsetStep
   if (!is_printed_) {
     if (holds) return std::nullopt;
     if (falls_short(loop_.camera(i), asked, next))
-      return fmt::format("{} of camera {}: what can be commanded ends {:.4g} px before it holds", offset.step,
+      return fmt::format("{} of camera {}: at the limit of its commands, {:.4g} px are left", offset.step,
                          loop_.name(i), std::abs(offset.px));
     if (stays) return std::nullopt;  // Nothing finer can be commanded.
   }
@@ -88,8 +88,8 @@ LookLoop::Error EtalonLoop::step(std::size_t i, const Offset& offset, OffsetStep
   loop_.decide(i, offset.step, offset.px, loop_.config().accepted, "px", holds ? "holds" : what);
   if (holds) return std::nullopt;
   if (stays)
-    return fmt::format("{} of camera {}: a step more cannot be commanded, {:.3g} px before it holds",
-                       offset.step, loop_.name(i), std::abs(offset.px));
+    return fmt::format("{} of camera {}: no further step can be commanded, {:.3g} px are left", offset.step,
+                       loop_.name(i), std::abs(offset.px));
   steps = tried, is_moved = true;
   return loop_.go(i, next);
 }
@@ -122,14 +122,14 @@ LookLoop::Error EtalonLoop::zoom() {
       stance = loop_.zoomed(i, is_printed_ ? 1 + loop_.config().zoom_step : larger);
       if (!loop_.stands_there(i, stance)) next = i;
     }
-    std::string what = "both show the cylinder alike, or nothing nearer can be commanded";
+    std::string what = "both show the cylinder in equal size, or nothing nearer can be commanded";
     if (is_printed_)
       what = holds ? "stops" : fmt::format("zoom in with {}", loop_.name(chosen));
     else if (next)
       what = fmt::format("zoom of {} to {:.5g}", loop_.name(*next), stance.head.zoom);
     loop_.decide(chosen, "zoom", ratio - 1, accepted, "share", what);
     if (is_printed_ && !holds && !next)
-      return fmt::format("zoom runs away: camera {} is at the end of its zoom", loop_.name(chosen));
+      return fmt::format("the zoom diverges: camera {} is at the limit of its zoom", loop_.name(chosen));
     if (!next) return std::nullopt;
     if (auto error = loop_.go(*next, stance)) return error;
     is_new = {is_printed_ || *next == 0, is_printed_ || *next == 1};

@@ -74,7 +74,7 @@ SeenArm drawn_etalon(const EtalonObservation& seen, const EtalonConfig& etalon, 
     const double up = place ? (*place - figure.middle()).y() + 0.5 * etalon.height : 0;
     drawn.markers.push_back({point.pixel, up, point.sigma});
   }
-  if (drawn.markers.empty()) drawn.reason = "no red line can be identified among the others";
+  if (drawn.markers.empty()) drawn.reason = "no red line can be identified";
   for (const auto& [line, share] :
        {std::pair{&seen.left, -0.5}, {&seen.left, 0.5}, {&seen.right, 0.5}, {&seen.right, -0.5}})
     drawn.points.push_back({at(*line, seen, share), least_sigma});

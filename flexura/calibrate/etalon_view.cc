@@ -96,7 +96,7 @@ EtalonView view_etalon(const Image<std::uint8_t>& picture, const Intrinsics& int
   } else if (seen.lines.empty()) {
     view.reason = picture.channels() == 3
                       ? "no red line is seen on the cylinder"
-                      : "no line is seen on the cylinder: red ones hardly show in gray pictures";
+                      : "no red line is seen on the cylinder: gray pictures hardly show red lines";
   }
   if (!view.reason.empty()) return view;
   const double middle = seen.middle(seen.middle_row);

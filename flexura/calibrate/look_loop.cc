@@ -33,7 +33,7 @@ LookLoop::Error LookLoop::look_from_one_side(const RigModel& rig, const std::arr
   constexpr double farthest = std::numbers::pi / 4;
   if (std::abs(beyond) <= farthest) return std::nullopt;
   return fmt::format(
-      "both cameras look from {}: their axes are {} to be {:.1f} deg apart, expected 45 to 135",
+      "both cameras look from {}: their axes are {} to be {:.1f} deg apart, expected 45 deg to 135 deg",
       beyond < 0 ? "one side" : "opposite sides", how, 90 + beyond / degree);
 }
 
@@ -102,8 +102,9 @@ LookLoop::Error LookLoop::turn_towards(std::size_t i, const char* what,
 }
 
 LookLoop::Error LookLoop::go_longer(std::size_t i, const RigStance& stance) {
-  decide(i, "principal point", 0, 0, "px",
-         fmt::format("zoom to {:.5g}, for what stays where it is", stance.head.zoom));
+  decide(
+      i, "principal point", 0, 0, "px",
+      fmt::format("zoom to {:.5g}: the principal point is the point that does not move", stance.head.zoom));
   return go(i, stance);
 }
 

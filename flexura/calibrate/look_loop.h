@@ -14,12 +14,13 @@
 
 namespace flexura {
 
-/// Common part of the paper's loops: look, report, decide and move, with a limited number of pictures; and
-/// the way back after an error. Cameras have the numbers 0 and 1 here, as in LoopConfig::cameras.
+/// Common part of the paper's loops. A loop takes a limited number of pictures, measures, reports, decides
+/// and moves, and returns to the start after an error. Cameras have the numbers 0 and 1, in the order of
+/// LoopConfig::cameras.
 class LookLoop {
  public:
   using Error = RigCommander::Error;
-  /// Fills in the observation of a picture.
+  /// Measures a picture and fills in its observation.
   using Measure = std::function<void(CameraObservation&)>;
 
   /// Throws std::invalid_argument if the ports are for other cameras than the model's.
@@ -28,8 +29,8 @@ class LookLoop {
   LookLoop(const LookLoop&) = delete;
   LookLoop& operator=(const LookLoop&) = delete;
 
-  /// Waits for rest and stores all positions. Returns an error if the modelled cameras look from about one
-  /// side.
+  /// Waits for rest and stores all positions. Returns an error if both modelled cameras look from about the
+  /// same direction.
   Error begin();
   /// Returns an error if the optical axes of cameras in these positions are more than 45 degrees from a right
   /// angle. `how` states how the angle is known.
@@ -43,28 +44,29 @@ class LookLoop {
   /// Reports the result of a picture and the next action.
   void decide(std::size_t i, const std::string& step, double offset, double accepted, const std::string& unit,
               const std::string& next);
-  /// Moves a camera, or the arm via its initial shape, and waits.
+  /// Move a camera, or move the arm via its initial shape, and wait for rest.
   Error go(std::size_t i, const RigStance& stance);
   Error show(const ArmState& pose) { return excursion_.show(pose); }
-  /// Moves a camera's zoom to its position before the loop begins, unless it is there. `why`: format string
-  /// of the reason, with the zoom.
+  /// Moves a camera's zoom to the position `zoom` before the loop begins, unless it has this position. `why`:
+  /// format string of the reason, with the zoom.
   Error begin_zoomed(std::size_t i, double zoom, const char* step, const char* why);
-  /// Turns a camera towards a visible part (`seen`) of its target (`what`) if the picture could not be
-  /// measured for a `reason`. Returns an error if nothing is visible, if it is less than `near` px from the
-  /// middle, or if the camera cannot turn. `in_vain`: format string of that error, with the camera's name and
-  /// the reason.
+  /// Turns a camera towards the visible part (`seen`) of its target (`what`) after the picture could not be
+  /// measured for a `reason`. Returns an error if nothing is visible, if `seen` is less than `near` px from
+  /// the middle, or if the camera cannot turn. `in_vain`: format string of that error, with the camera's name
+  /// and the reason.
   Error turn_towards(std::size_t i, const char* what, const std::optional<Eigen::Vector2d>& seen, double near,
                      const Intrinsics& lens, const char* in_vain, const std::string& reason);
-  /// Smallest zoom factor that determines a principal point; noise counts eight times there.
+  /// Smallest zoom factor that determines a principal point. At this factor the noise of the principal point
+  /// is eight times that of the pictures.
   static constexpr double least_longer = 1.2;
   /// Moves a camera to the position with the longer focal length.
   Error go_longer(std::size_t i, const RigStance& stance);
-  /// Return the nearest stance that can be commanded, and whether it is the one commanded last.
+  /// Return the nearest stance that can be commanded, and whether it equals the last command.
   [[nodiscard]] RigStance commandable_stance(std::size_t i, const RigStance& stance) const {
     return commanded(cameras_[i], stance);
   }
   [[nodiscard]] bool stands_there(std::size_t i, const RigStance& stance) const;
-  /// Returns that stance with the focal length multiplied by `ratio`.
+  /// Returns the camera's stance with the focal length multiplied by `ratio`.
   [[nodiscard]] RigStance zoomed(std::size_t i, double ratio) const;
   /// Returns the result with the final positions; after an error everything returns to the start first.
   LoopResult finish(const Error& error);
@@ -76,9 +78,9 @@ class LookLoop {
     return nominal_.cameras[config_.cameras[i]];
   }
   [[nodiscard]] const std::string& name(std::size_t i) const { return model(i).name; }
-  /// As commanded.
+  /// Returns the last commanded stance.
   [[nodiscard]] const RigStance& stance(std::size_t i) const { return excursion_.stances()[i]; }
-  /// The modelled lens at the present zoom.
+  /// Returns the modelled lens at the commanded zoom.
   [[nodiscard]] Intrinsics lens(std::size_t i) const { return cameras_[i].lens().at(stance(i).head.zoom); }
   [[nodiscard]] LoopResult& result() { return result_; }
   [[nodiscard]] const CameraObservation& observed() const { return observed_; }
@@ -93,7 +95,7 @@ class LookLoop {
   CameraObservation observed_;
 };
 
-/// Returns the pair of positions of least cost, each head at its position or one step beside it.
+/// Returns the pair of head positions with the least cost, as offsets of -1, 0 or 1 step.
 [[nodiscard]] std::array<int, 2> best_steps(const std::function<double(int, int)>& cost);
 
 }  // namespace flexura

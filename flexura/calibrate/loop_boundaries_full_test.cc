@@ -73,7 +73,7 @@ void expect_end_of_turned_stage(bool is_tilted, bool is_beyond, TestRandom& rand
   ASSERT_GE(off.size(), 2U);
   // Each step multiplies the offset by 1 - cos(turned); steps that grow it are halved afterwards.
   if (is_beyond) {
-    EXPECT_THAT(result.reason, HasSubstr("al positioning of camera front runs away"));
+    EXPECT_THAT(result.reason, HasSubstr("al positioning of camera front diverges"));
     EXPECT_NEAR((is_tilted ? 2 : 1) * off[1] / off[0], 1 - std::cos(turned), 0.15);
     bench.expect_back();
     return;

@@ -20,7 +20,7 @@ LoopResult calibrate_by_loop(const RigPorts& ports, const RigModel& nominal, con
       case LoopMethod::arcs_paper:
         return arcs_as_printed(loop)->run(true);
     }
-    return "no such method";
+    return "unknown calibration method";
   };
   return loop.finish(run());
 }

@@ -18,7 +18,7 @@
 
 namespace flexura {
 
-/// The paper's two calibration methods (section 3.4), each as printed and corrected.
+/// The paper's two calibration methods (section 3.4), each as printed and in a corrected version.
 enum class LoopMethod {
   etalon,        ///< With the calibration cylinder: subpixel borders, shrinking steps.
   etalon_paper,  ///< With the cylinder as printed: counted pixels, steps of equal size.
@@ -26,7 +26,7 @@ enum class LoopMethod {
   arcs_paper,  ///< With the simulator as printed: each camera sees one arc and tests whether it is a circle.
 };
 
-/// Settings of a loop and prior knowledge of the rig.
+/// Settings of a calibration loop and prior knowledge of the rig.
 struct LoopConfig {
   LoopMethod method = LoopMethod::etalon;
   std::array<std::size_t, 2> cameras = {0, 1};  ///< Indices of the front and the side camera in the rig.
@@ -38,8 +38,8 @@ struct LoopConfig {
   double slide = 0.005;        ///< As printed: size of each stage step, m.
   double zoom_step = 0.02;     ///< As printed: relative change of the zoom per step.
   EtalonConfig etalon;         ///< Position and size of the cylinder.
-  /// Angle by which the arm is bent into an arc, rad. Beyond a quarter circle an arm seen from within its
-  /// plane covers itself.
+  /// Angle by which the arm is bent into an arc, rad. If it exceeds a quarter circle, the arm covers itself
+  /// when seen from within its plane.
   double arc = 90 * degree;
   ArmPictureConfig picture;       ///< Includes the arm's markers.
   std::optional<RigPrior> prior;  ///< Prior of the rig for `arcs`; missing: that of rough_prior().
@@ -52,27 +52,29 @@ struct LoopConfig {
 /// Result of a loop.
 struct LoopResult {
   bool is_done = false;
-  std::string reason;                                ///< Why it failed, and where the rig was left.
+  std::string reason;                                ///< Why the loop failed, and the final state of the rig.
   std::vector<LoopDecision> steps;                   ///< Decisions, in order.
   std::array<std::size_t, 2> pictures = {0, 0};      ///< Number of pictures by camera.
   Eigen::Vector3d target = Eigen::Vector3d::Zero();  ///< Target of the cameras in W, m.
   std::array<RigStance, 2> start, stances;           ///< Positions at the start and at the end, as read.
-  std::array<std::optional<double>, 2> roll;         ///< Observed roll, rad: no head can correct it.
-  /// Observed offset of each principal point to the right of and below the model's, px.
+  std::array<std::optional<double>, 2>
+      roll;  ///< Observed roll of each camera, rad; no head can correct a roll.
+  /// Observed offset of each principal point from the model's, to the right and downwards, px.
   std::array<std::optional<Eigen::Vector2d>, 2> principal_point;
-  std::optional<double> angle;       ///< Observed angle between the axes minus 90 degrees, rad.
-  std::optional<double> zoom_ratio;  ///< Observed size in the first camera relative to the second.
-  std::vector<std::string> notes;    ///< Further messages.
+  std::optional<double> angle;  ///< Observed angle between the axes minus 90 degrees, rad.
+  std::optional<double>
+      zoom_ratio;  ///< Observed size of the target in the first camera relative to the second.
+  std::vector<std::string> notes;  ///< Further messages.
   std::array<std::optional<CameraObservation>, 2> before,
       after;  ///< The first and the last picture of each camera.
 };
 
 /// Calibrates two cameras by a loop of looking, measuring, deciding and moving (docs/calibration-paper.md),
 /// through the ports alone. `nominal` gives ranges and resolutions of heads, stages and lenses, and focal
-/// lengths. Any error ends the loop, also one that never ends or diverges. Heads, stages and arm then return
-/// to the start, and the result holds the reason. Equal rigs, readings and pictures give equal results.
-/// Throws std::invalid_argument if the ports are for other cameras than the model's, or if both cameras are
-/// the same.
+/// lengths. The loop fails after an error, and if it diverges or oscillates. Heads, stages and arm then
+/// return to the start, and the result holds the reason. Equal rigs, readings and pictures give equal
+/// results. Throws std::invalid_argument if the ports are for other cameras than the model's, or if both
+/// cameras are the same.
 [[nodiscard]] LoopResult calibrate_by_loop(const RigPorts& ports, const RigModel& nominal,
                                            const LoopConfig& config, RigSessionWatcher& watcher);
 

@@ -11,7 +11,7 @@
 
 namespace flexura {
 
-/// A visible feature of an arm in a picture, px: u + i v.
+/// A visible feature of an arm in a picture: a marker or an end of the arm.
 struct MarkerFeature {
   static constexpr int end_kind = -1;  ///< Marker colours count from 0.
   std::complex<double> at;
@@ -19,7 +19,7 @@ struct MarkerFeature {
   std::size_t number = 0;  ///< Number of the marker; for ends 0 (base) or 1 (tip).
 };
 
-/// Classifies the colours that can be distinguished; a gray picture has only one kind.
+/// Classifies the distinguishable colours of markers as kinds; a gray picture has only one kind.
 class MarkerPalette {
  public:
   MarkerPalette(const MarkerScene& expected, const MarkerScene& seen);
@@ -30,20 +30,20 @@ class MarkerPalette {
   bool has_colors_ = false;
 };
 
-/// Returns the markers in order, then the ends, as far as present.
+/// Returns the visible markers in order, then the visible ends.
 [[nodiscard]] std::vector<MarkerFeature> features_of(const MarkerScene& scene, const MarkerPalette& palette);
 
-/// Returns the distance, px, within which one of its kind may be seen, for each feature. It is a third of the
-/// distance to the nearest other feature of its kind, at most 40 px.
+/// Returns, for each expected feature, the largest distance of a matching seen feature, px. It is a third of
+/// the distance to the nearest other expected feature of its kind, at most 40 px.
 [[nodiscard]] std::vector<double> tolerances(const std::vector<MarkerFeature>& expected);
 
-/// Receives a similarity that may map the expected to the seen picture: the factor `turn` (rotation and
-/// scale), and a point `from` that maps to `to`.
+/// Receives a similarity that may map the expected to the seen picture. `turn`: complex factor for rotation
+/// and scale. The point `from` maps to `to`.
 using MarkerMove = std::function<void(const std::complex<double>& turn, const std::complex<double>& from,
                                       const std::complex<double>& to)>;
-/// Calls `move` for each pair of expected features and each pair of seen ones of the same kinds. Of the seen
-/// ones it takes the most informative pairs: the farthest apart, at most a dozen, each feature in at most
-/// three.
+/// Calls `move` for each pair of expected features with each pair of seen features of the same kinds. It uses
+/// only the most informative pairs of seen features: the farthest apart, at most a dozen, each feature in at
+/// most three pairs.
 void for_likely_moves(const std::vector<MarkerFeature>& expected, const std::vector<MarkerFeature>& seen,
                       const MarkerMove& move);
 
@@ -54,13 +54,14 @@ struct MarkerPairs {
     bool operator==(const Pair&) const = default;
   };
   std::vector<Pair> pairs;  ///< In the order of the seen features.
-  double score = 0;  ///< Number of pairs, minus seen features without partner, minus half of the expected
-                     ///< ones without partner.
-  double off = 0;    ///< Sum of the pairs' squared distances, px^2.
+  double score = 0;  ///< Number of pairs, minus the number of seen features without partner, minus half the
+                     ///< number of expected features without partner.
+  double off = 0;    ///< Sum of the squared distances of all pairs, px^2.
 };
 
-/// Pairs each seen feature with the nearest expected one of its kind. It must be within `scale` times that
-/// one's tolerance, and no other seen feature may be nearer to it.
+/// Pairs each seen feature with the nearest expected feature of its kind. The distance must be at most
+/// `scale` times the expected feature's tolerance. No other seen feature may be nearer to the expected
+/// feature.
 [[nodiscard]] MarkerPairs nearest_pairs(const std::vector<MarkerFeature>& expected,
                                         const std::vector<double>& tolerance, double scale,
                                         const std::vector<MarkerFeature>& seen,

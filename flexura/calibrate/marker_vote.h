@@ -25,8 +25,8 @@ struct MarkerPicture {
 };
 
 /// Error of a camera's orientation and focal length, equal in all its pictures. The arm appears rotated about
-/// the camera by `turn` (a rotation vector in W, rad) and larger by exp(`scale`). A position error looks
-/// almost like such an error when the arm is far away.
+/// the camera by `turn` (a rotation vector in W, rad), and larger by the factor exp(`scale`). For a distant
+/// arm, an error of the camera's position has almost the same effect.
 struct PointingError {
   Eigen::Vector3d turn = {0, 0, 0};
   double scale = 0;
@@ -34,18 +34,19 @@ struct PointingError {
 
 /// Prior standard deviations of a PointingError.
 struct PointingPrior {
-  double sideways = 0.25;  ///< Rotations that shift a picture, rad.
-  double roll = 0.17;      ///< Rotations about the line of sight, rad.
+  double sideways = 0.25;  ///< Standard deviation of rotations that shift the picture, rad.
+  double roll = 0.17;      ///< Standard deviation of the rotation about the line of sight, rad.
   double scale = 0.22;
 };
 
-/// Returns what a picture of a camera with this error should show.
+/// Returns the scene expected in a picture of a camera with this error.
 [[nodiscard]] MarkerScene expected_scene(const MarkerPicture& picture, const PointingError& error);
 
-/// Returns the errors of one camera that explain most of all its pictures together, best first, at most
-/// `most`. Errors with the same marker identities count once. In a single picture, a chain of markers that
-/// leaves the picture could be matched shifted along the arm. Other bends would need another shift. Empty
-/// without pictures; no error if nothing is seen. All values of `pointing_prior` must be positive.
+/// Returns the errors of one camera that best explain all its pictures together: at most `most`, the best
+/// first. Errors with equal marker identities count once. Several pictures with different bends are needed if
+/// part of the arm is outside the picture. In a single picture the markers could then be matched shifted
+/// along the arm. Empty without pictures. If nothing is seen, the only error is zero. All values of
+/// `pointing_prior` must be positive.
 [[nodiscard]] std::vector<PointingError> likely_errors(std::span<const MarkerPicture> pictures,
                                                        const PointingPrior& pointing_prior, std::size_t most);
 

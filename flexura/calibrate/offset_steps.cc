@@ -43,12 +43,13 @@ LoopState OffsetSteps::take(double offset) {
     const auto last = std::span(offsets_).last(patience);
     if (are_alike && goes_back_and_forth(last))
       reason_ = fmt::format(
-          "goes back and forth and cannot stop: a step changes the offset by {:.3g}, and {:.3g} is accepted, "
-          "which is less than half of that",
+          "oscillates and cannot stop: a step changes the offset by {:.3g}, and the tolerance of {:.3g} is "
+          "less than half of this change",
           std::abs(offset - last[patience - 2]), accepted_);
     else if (runs_away(last))
-      reason_ = fmt::format("runs away: {} grew from {:.4g} to {:.4g} in {} steps",
-                            are_alike ? "the offset" : "what is missing", last.front(), offset, patience - 1);
+      reason_ =
+          fmt::format("diverges: {} grew from {:.4g} to {:.4g} in {} steps",
+                      are_alike ? "the offset" : "the required motion", last.front(), offset, patience - 1);
     if (!reason_.empty()) return LoopState::stuck;
   }
   move_ = are_alike ? std::copysign(1.0, offset) : std::clamp(share_ * offset, -largest_, largest_);

@@ -5,28 +5,30 @@
 
 namespace flexura {
 
-/// State of a loop that nulls one offset.
+/// State of a loop that reduces one offset to zero.
 enum class LoopState {
   holds,  ///< The offset is within the tolerance.
   moves,
-  stuck,  ///< The loop will not end; see the reason.
+  stuck,  ///< The loop will not end; reason() states why.
 };
 
-/// Nulls an offset step by step, in one of two ways (docs/calibration-paper.md, "When a loop ends").
+/// Reduces an offset to zero step by step, in one of two ways (docs/calibration-paper.md, "When a loop
+/// ends").
 class OffsetSteps {
  public:
-  /// As printed (section 3.4): steps of equal size against the offset's sign. They end from everywhere if the
-  /// tolerance is at least half of the change per step. With less they may alternate forever, which is
-  /// detected.
+  /// As printed (section 3.4): steps of equal size against the offset's sign. They always end if the
+  /// tolerance is at least half of the change per step. With a smaller tolerance they may alternate forever,
+  /// which is detected.
   explicit OffsetSteps(double accepted) : accepted_(accepted) {}
-  /// Corrected: steps in proportion to the offset, given as the motion that would null it in the model, at
-  /// most `largest`. They are halved whenever the offset changes sign without halving, or grows. They end if
-  /// the true behaviour has the sign of the modelled one.
+  /// Corrected: steps in proportion to the offset, at most `largest`. The offset is given as the motion that
+  /// would null it according to the model. Steps are halved whenever the offset grows, or changes its sign
+  /// without decreasing to half. They end if the true and the modelled effect of a motion have equal signs.
   OffsetSteps(double accepted, double largest) : accepted_(accepted), largest_(largest) {}
 
-  /// Takes the next offset. A move lowers a positive offset by a positive amount.
+  /// Processes the next measured offset. A positive motion must reduce a positive offset.
   LoopState take(double offset);
-  /// Returns the next motion with the sign of the offset: in its unit, or +-1 for steps of equal size.
+  /// Returns the next motion with the sign of the offset, in the offset's unit, or +-1 for steps of equal
+  /// size.
   [[nodiscard]] double move() const { return move_; }
   [[nodiscard]] const std::string& reason() const { return reason_; }
 

@@ -51,7 +51,7 @@ class Seeker {
         models_{&model.cameras.at(rig_goal.now[0].camera), &model.cameras.at(rig_goal.now[1].camera)},
         cameras_{Camera(*models_[0]), Camera(*models_[1])} {
     if (rig_goal.now[0].camera == rig_goal.now[1].camera)
-      throw std::invalid_argument("a target configuration of one camera with itself");
+      throw std::invalid_argument("a target configuration needs two different cameras");
   }
 
   DesiredRig seek(const RigModel& model) {
@@ -195,14 +195,15 @@ class Seeker {
                                              names[j], is[j], should[j]));
       }
     }
-    if (is_zoom_short_) result.notes.emplace_back("no zoom that both cameras have shows the target alike");
+    if (is_zoom_short_)
+      result.notes.emplace_back("the zoom ranges of the cameras do not allow equal sizes of the target");
     const double cosine = sight(0).normalized().dot(sight(1).normalized());
     constexpr double visible = 1e-3;
     if (std::abs(cosine) > visible)
-      result.notes.push_back(fmt::format(
-          "the lines of sight are {:.4f} rad off 90 degrees where the stages end: the axes pass beside the "
-          "target",
-          std::abs(std::asin(std::clamp(cosine, -1.0, 1.0)))));
+      result.notes.push_back(
+          fmt::format("the lines of sight are {:.4f} rad off 90 degrees at the limits of the stages: the "
+                      "axes pass beside the target",
+                      std::abs(std::asin(std::clamp(cosine, -1.0, 1.0)))));
   }
 
   const RigGoal& goal_;

@@ -13,23 +13,23 @@ namespace flexura {
 /// Returns the middle of the modelled arm, halfway along its length, in W, m, when commanded to `state`.
 [[nodiscard]] Eigen::Vector3d arm_middle(const RigModel& model, const ArmState& state);
 
-/// Returns pan and tilt, as the head counts them, that bring a point of W onto the optical axis, for the
-/// stance's stage and zoom. Neither clamped nor quantised. Throws std::out_of_range if the zoom is beyond the
-/// ends of the lens's table.
+/// Returns the head's pan and tilt that bring a point of W onto the optical axis, for the stance's stage and
+/// zoom. The result is neither clamped nor quantised. Throws std::out_of_range if the zoom is beyond the ends
+/// of the lens's table.
 [[nodiscard]] HeadState aimed(const CameraConfig& model, const RigStance& stance,
                               const Eigen::Vector3d& p_WP);
 
-/// Returns the stage offset, m, that brings the camera's pupil to a point of W with the head as in `stance`.
-/// Neither clamped nor quantised. With a mount rotation wrong by R it brings the pupil from an offset e to (I
-/// - R) e. This is closer if R is less than 60 degrees (docs/calibration-paper.md). Throws std::out_of_range
-/// if the zoom is beyond the ends of the lens's table.
+/// Returns the stage position, m, that brings the camera's pupil to a point of W with the head as in
+/// `stance`. The result is neither clamped nor quantised. If the modelled mount rotation has the error R, the
+/// pupil's offset e from the point becomes (I - R) e. The offset decreases if R is less than 60 degrees
+/// (docs/calibration-paper.md). Throws std::out_of_range if the zoom is beyond the ends of the lens's table.
 [[nodiscard]] Eigen::Vector3d stage_towards(const CameraConfig& model, const RigStance& stance,
                                             const Eigen::Vector3d& p_WC);
 
-/// Returns the stance clamped and quantised.
+/// Returns the stance clamped to the limits and quantised to the resolutions of head, lens and stage.
 [[nodiscard]] RigStance commanded(const Camera& camera, RigStance stance);
-/// Returns the head position that moves a point `off` px to the right of and below the principal point onto
-/// it.
+/// Returns the head position that moves an image point onto the principal point. `off`: position of the point
+/// to the right of and below the principal point, px.
 [[nodiscard]] HeadState turned_towards(HeadState head, const Intrinsics& lens, const Eigen::Vector2d& off);
 
 /// Returns the lens positions of the shortest and the longest focal length within the head's limits.
@@ -40,36 +40,37 @@ namespace flexura {
 /// within the head's limits.
 [[nodiscard]] double zoom_by(const Camera& camera, double from, double ratio);
 
-/// The configuration that section 3.4 of the paper asks for.
+/// The configuration that section 3.4 of the paper requires, and what may move to reach it.
 struct RigGoal {
   Eigen::Vector3d target = Eigen::Vector3d::Zero();  ///< Target of both cameras, in W, m.
-  std::array<RigStance, 2> now;                      ///< Start positions of two cameras.
-  bool may_use_stages = true;                        ///< Otherwise the stages stay in place.
+  std::array<RigStance, 2> now;                      ///< Start positions of the two cameras.
+  bool may_use_stages = true;                        ///< Whether stages may move; if not, they stay in place.
 };
 
-/// Deviation from that configuration, by the model.
+/// Deviation from the required configuration, according to the model.
 struct RigRemainder {
   double angle = 0;  ///< Angle between the axes minus 90 degrees, rad.
-  /// Offset of each axis from the target, to the right and downwards, m.
+  /// Offset of each optical axis from the target, to the right and downwards, m.
   std::array<Eigen::Vector2d, 2> aim;
-  double zoom_ratio = 1;                ///< First camera's magnification over the second's.
-  std::array<double, 2> roll = {0, 0};  ///< Roll of each camera about its axis, rad: no head can correct it.
+  double zoom_ratio = 1;  ///< Ratio of the first camera's magnification to the second's.
+  std::array<double, 2> roll = {0,
+                                0};  ///< Roll of each camera about its axis, rad; no head can correct a roll.
 };
 
-/// Commands for the wanted configuration, and the deviation that ranges and resolutions leave.
+/// Commands for the required configuration, and the deviation that remains due to ranges and resolutions.
 struct DesiredRig {
   std::array<RigStance, 2> stances;  ///< Positions to command, clamped and quantised.
   RigRemainder remainder;            ///< Deviation at these positions.
   std::vector<std::string> notes;    ///< What limits the result: "front: pan ends at ...".
 };
 
-/// Returns the commands after which both cameras look at the target along orthogonal axes and show it equally
-/// large: between the present two sizes. The stages make the lines of sight orthogonal by the shortest move
-/// within their travel, and the heads turn along them. What the stages cannot do, the heads do half each:
-/// orthogonal axes take priority over axes through the target. Then everything is clamped and quantised; of
-/// the positions around, those with the most nearly orthogonal axes are taken. Throws std::invalid_argument
-/// for two stances of one camera. Throws std::out_of_range for a camera that the model lacks, or a zoom
-/// beyond the ends of its table.
+/// Returns the commands after which both cameras look at the target along orthogonal axes and show it in
+/// equal size. This size is between the two present sizes. The stages make the lines of sight orthogonal by
+/// the shortest move within their travel, and the heads turn along them. If the stages do not reach
+/// orthogonality, each head turns by half of the rest: orthogonal axes take priority over axes through the
+/// target. Then all positions are clamped and quantised; of the neighbouring positions, those with the most
+/// nearly orthogonal axes are taken. Throws std::invalid_argument for two stances of one camera. Throws
+/// std::out_of_range for a camera that the model lacks, or a zoom beyond the ends of its table.
 [[nodiscard]] DesiredRig desired_rig(const RigModel& model, const RigGoal& rig_goal);
 
 /// Returns the deviation for cameras in these positions, `target` in W, m. Throws std::out_of_range for a

@@ -143,7 +143,7 @@ TEST(DesiredRig, SaysWhichAxisEndsTooEarly) {
 TEST(DesiredRig, SaysWhereNoZoomOfBothShowsTheTargetAlike) {
   TestRandom random(1);
   RigModel model = found_rig(random);
-  const std::string reported = "no zoom that both cameras have shows the target alike";
+  const std::string reported = "the zoom ranges of the cameras do not allow equal sizes of the target";
   EXPECT_THAT(desired_rig(model, goal_for(random)).notes, Not(Contains(reported)));
   model.cameras[0].head.zoom.limits = {1, 1.2}, model.cameras[1].head.zoom.limits = {2, 3};
   const DesiredRig desired = desired_rig(model, goal_for(random));

@@ -141,17 +141,18 @@ void judge(const RigProblem& problem, const RigDescent& descent, const RigCalibr
   const auto outlier_count = static_cast<double>(result.outliers.size());
   const double all = outlier_count + static_cast<double>(problem.sizes().size());
   if (!(all > 0)) {
-    result.reason = "nothing was seen";
+    result.reason = "there are no observations";
   } else if (!std::isfinite(descent.cost)) {
-    result.reason = "nothing that was seen can be seen from where the cameras are guessed to stand";
+    result.reason = "the cameras cannot see any of the observations from their initially assumed poses";
   } else if (!(outlier_count <= max_outlier_share * all)) {
-    result.reason = fmt::format("{:.0f} % of what was seen is not explained by any rig near the guess",
-                                100 * outlier_count / all);
-  } else if (!(result.rms <= config.most_rms)) {
     result.reason =
-        fmt::format("what was seen is {:.1f} times farther off than its noise explains", result.rms);
+        fmt::format("{:.0f} % of the observations are not explained by any rig near the initial guess",
+                    100 * outlier_count / all);
+  } else if (!(result.rms <= config.most_rms)) {
+    result.reason = fmt::format(
+        "the residuals of the observations are {:.1f} times larger than their noise explains", result.rms);
   } else if (!descent.is_settled) {
-    result.reason = fmt::format("the fit did not settle in {} iterations", result.iterations);
+    result.reason = fmt::format("the fit did not converge in {} iterations", result.iterations);
   }
   result.is_found = result.reason.empty();
 }

@@ -181,7 +181,7 @@ TEST(RigCalibration, IsNoneWhereNothingWasSeen) {
   RigProblem problem(nominal, rough_prior(nominal), {});
   const RigCalibration none = calibrate_rig(problem);
   EXPECT_FALSE(none.is_found);
-  EXPECT_EQ(none.reason, "nothing was seen");
+  EXPECT_EQ(none.reason, "there are no observations");
 }
 
 TEST(RigCalibration, SaysWhyWhenNothingFits) {

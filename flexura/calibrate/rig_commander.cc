@@ -80,7 +80,7 @@ RigCommander::Error RigCommander::settle() {
     if (const auto* error = std::get_if<std::string>(&moving)) return *error;
     if (!std::get<bool>(moving)) break;
     if (now() >= until)
-      return fmt::format("something still moves {:.4g} s after it was sent", patience_.settle);
+      return fmt::format("a device is still moving {:.4g} s after the last command", patience_.settle);
     ports_.clock->wait_until(now() + patience_.poll);
   }
   if (auto error = arm_elsewhere()) return error;
@@ -119,7 +119,7 @@ RigCommander::Error RigCommander::camera_elsewhere(std::size_t camera) const {
     const AxisConfig axis = i < 3 ? optics.head_axes()[i] : optics.stage_axes()[i - 3];
     const double to = places(sent)[i], is = places(reads)[i];
     if (!stands(axis, to, is))
-      return fmt::format("the {} of camera {} does not follow: {} was sent to {:.6g} and stands at {:.6g}",
+      return fmt::format("the {} of camera {} does not follow: {} was commanded to {:.6g} and reads {:.6g}",
                          i < 3 ? "head" : "stage", name(camera), names[i], commandable(axis, to), is);
   }
   return std::nullopt;
@@ -132,7 +132,7 @@ std::variant<Frame, std::string> RigCommander::frame(std::size_t camera, double 
     const auto outcome = ports_.cameras[camera].camera->wait(until - now());
     if (const auto fault = outcome.fault()) return text(*fault);
     const std::optional<Frame>& frame = outcome.value();
-    if (!frame) return fmt::format("camera {} gave no frame for {:.4g} s", name(camera), patience_.frame);
+    if (!frame) return fmt::format("camera {} sent no frame for {:.4g} s", name(camera), patience_.frame);
     const double start = frame->time - 0.5 * (last_row_delay(sensor) + frame->exposure);
     constexpr double rounding = 1e-9;
     if (start >= time - rounding) return *frame;

@@ -21,30 +21,30 @@ struct RigPatience {
   double bend = 0.02;
 };
 
-/// Commander of a rig: moves it through its ports, waits for rest, checks that commands were carried out, and
-/// takes frames at rest. Errors are returned as a sentence.
+/// Commander of a rig: moves the rig through its ports, waits for rest, checks that commands were executed,
+/// and takes frames at rest. An error is returned as a sentence.
 class RigCommander {
  public:
   using Error = std::optional<std::string>;
 
-  /// `nominal` gives ranges and resolutions of heads and stages; its cameras are those of the ports.
+  /// `nominal` gives the ranges and resolutions of heads and stages; it must have the cameras of the ports.
   RigCommander(const RigPorts& ports, const RigModel& nominal, const RigPatience& patience);
 
-  /// Return the present positions.
+  /// Return the present positions, or an error.
   [[nodiscard]] std::variant<ArmState, std::string> arm() const;
   [[nodiscard]] std::variant<RigStance, std::string> stance(std::size_t camera) const;
 
-  /// Returns why a camera cannot be moved as modelled: it has no head, or no stage.
+  /// Returns an error if the port of a camera lacks a head or stage that the model has.
   [[nodiscard]] Error must_move(std::size_t camera) const;
 
-  /// Commands; these return at once.
+  /// Send commands without waiting for their execution.
   [[nodiscard]] Error bend(const ArmState& state, double duration);
   [[nodiscard]] Error go(const RigStance& stance);
   /// Waits until nothing moves. Returns an error if anything is not at its commanded position or does not
   /// come to rest.
   [[nodiscard]] Error settle();
 
-  /// Returns the next frame whose exposure begins at `time` s or later.
+  /// Returns the next frame whose exposure begins at `time` (s) or later, or an error.
   [[nodiscard]] std::variant<Frame, std::string> frame(std::size_t camera, double time) const;
   [[nodiscard]] double now() const { return ports_.clock->now(); }
 
@@ -56,10 +56,10 @@ class RigCommander {
 
   RigPorts ports_;
   std::size_t sections_;
-  std::vector<Camera> cameras_;  // As modelled.
+  std::vector<Camera> cameras_;  // Modelled cameras.
   RigPatience patience_;
   std::optional<ArmState> sent_arm_;
-  std::vector<std::optional<RigStance>> sent_;  // By camera.
+  std::vector<std::optional<RigStance>> sent_;  // Last commanded stance of each camera.
 };
 
 }  // namespace flexura

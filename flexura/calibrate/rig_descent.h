@@ -7,17 +7,18 @@
 
 namespace flexura {
 
-/// Free variables of a descent and its bound on residuals.
+/// Settings of a descent: free variables, number of iterations and treatment of large residuals.
 struct RigDescentConfig {
-  std::vector<bool> is_free;  ///< Free columns of x; empty: all are free.
+  std::vector<bool> is_free;  ///< Whether each variable of x is free; empty: all are free.
   int most_iterations = 60;
-  double bound = 3;             ///< Residuals count linearly beyond this ...
-  bool does_bound_rise = true;  ///< ... or beyond the size of most residuals, if that is larger.
+  double bound = 3;  ///< Size of a residual, in standard deviations, beyond which its cost is linear.
+  bool does_bound_rise = true;  ///< Whether the bound rises to the size of most residuals if that is larger.
 };
 
 struct RigDescent {
   Eigen::VectorXd x;
-  double cost = 0;  ///< Cost with the configured bound; infinite if nothing is visible from the start.
+  double cost = 0;  ///< Cost with the configured bound; infinite if the rig at the start would not show the
+                    ///< observations.
   bool is_settled = false;  ///< Whether no step lowers the cost noticeably.
   int iterations = 0;
 };

@@ -84,8 +84,8 @@ std::string RigExcursion::retreat() {
   watcher_.arm_sent(commander_.now(), home_, move_duration_);
   keep(commander_.bend(home_, move_duration_));
   keep(commander_.settle());
-  if (error) return "; on the way back: " + *error;
-  return "; heads, stages and arm are back where they began";
+  if (error) return "; error on the way back: " + *error;
+  return "; heads, stages and arm have returned to the start";
 }
 
 }  // namespace flexura

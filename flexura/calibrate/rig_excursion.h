@@ -10,34 +10,35 @@
 
 namespace flexura {
 
-/// Motion of two cameras and an arm through a session. Commands them, tracks their present and initial
-/// positions, takes pictures, brings everything back, and reports each command to the session's watcher.
-/// Cameras have the numbers 0 and 1 here.
+/// Motion of two cameras and an arm during a session. This class sends commands and reports them to the
+/// session's watcher. It stores the initial and present positions, takes pictures, and returns everything to
+/// the start. Cameras have the numbers 0 and 1.
 class RigExcursion {
  public:
   using Error = RigCommander::Error;
 
-  /// `move_duration`: of the arm from one shape to the next, s. Throws std::invalid_argument if the ports are
-  /// for other cameras than the model's, or if both cameras are the same.
+  /// `move_duration`: duration of a move of the arm from one shape to the next, s. Throws
+  /// std::invalid_argument if the ports are for other cameras than the model's, or if both cameras are the
+  /// same.
   RigExcursion(const RigPorts& ports, const RigModel& nominal, const std::array<std::size_t, 2>& cameras,
                const RigPatience& patience, double move_duration, RigSessionWatcher& watcher);
 
   /// Waits for rest and stores all positions.
   [[nodiscard]] Error begin();
-  /// Moves the arm to a pose via its initial shape: these paths are known before anything moves.
+  /// Moves the arm to a pose via its initial shape, so that all paths are known before anything moves.
   [[nodiscard]] Error show(const ArmState& pose);
-  /// Commands a camera; settle() waits for it.
+  /// Sends a command to a camera. settle() waits for its execution.
   [[nodiscard]] Error send(std::size_t i, const RigStance& stance);
   [[nodiscard]] Error settle() { return commander_.settle(); }
-  /// Commands everything back to the start, as far as possible; returns a message about the outcome.
+  /// Returns everything to the start, as far as possible. Returns a message about the outcome.
   [[nodiscard]] std::string retreat();
 
-  /// Returns a new picture with the camera's position, not measured yet; or the error.
+  /// Returns a new picture with the camera's position, not measured yet, or an error.
   [[nodiscard]] std::variant<CameraObservation, std::string> picture(std::size_t i, std::size_t look) const;
   [[nodiscard]] std::variant<ArmState, std::string> arm() const { return commander_.arm(); }
   [[nodiscard]] double now() const { return commander_.now(); }
 
-  /// Initial positions, and the last commanded ones.
+  /// Return the initial positions of arm and cameras, and the last commanded positions of the cameras.
   [[nodiscard]] const ArmState& home() const { return home_; }
   [[nodiscard]] const std::array<RigStance, 2>& start() const { return start_; }
   [[nodiscard]] const std::array<RigStance, 2>& stances() const { return stands_; }

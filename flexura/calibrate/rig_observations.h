@@ -22,8 +22,8 @@ struct RigImage {
   [[nodiscard]] std::size_t things() const { return markers.size() + points.size() + etalon.size(); }
 };
 
-/// All observations. Pictures taken without moving the head share a stance, and those taken without moving
-/// the arm share a pose. The errors of stance and pose are then common to them.
+/// All observations. Pictures taken without moving the camera share a stance and its error. Pictures taken
+/// without moving the arm share a pose and its error.
 struct RigObservations {
   std::vector<ArmState> poses;     ///< Arm poses as commanded.
   std::vector<RigStance> stances;  ///< Camera stances as read.

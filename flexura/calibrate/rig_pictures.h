@@ -14,8 +14,8 @@ namespace flexura {
 /// Returns the number of visible markers.
 [[nodiscard]] std::size_t markers_of(const MarkerScene& scene);
 
-/// The pictures of a session. Their markers are identified again whenever the rig estimate improves, as a
-/// wrong rig misidentifies markers.
+/// The pictures of a session. Their markers are identified again whenever the rig estimate improves, because
+/// a wrong rig leads to wrong identities.
 class RigPictures {
  public:
   struct Look {
@@ -23,7 +23,8 @@ class RigPictures {
     ArmFigure arm;
   };
 
-  /// `marked`: the arm along which marker positions are measured; `cameras`: those of the rig that look.
+  /// `marked`: the arm along which marker positions are measured. `cameras`: indices in the rig of the
+  /// cameras that take the pictures.
   RigPictures(const Arm& marked, ArmPictureConfig config, const std::array<std::size_t, 2>& cameras)
       : marked_(marked), config_(std::move(config)), cameras_(cameras) {}
 
@@ -31,12 +32,12 @@ class RigPictures {
   std::vector<RigStance> stances;  ///< Camera stances as read.
   std::vector<Look> looks;
 
-  /// Identifies the markers in each look, if the rig is `model` up to `pointing_prior`; all looks of a camera
-  /// together determine its error. `rank` selects the likely error of each camera, 0 for the best; a camera
-  /// with fewer likely errors gets no identities.
+  /// Identifies the markers in each look. The true rig is `model` with errors of the prior `pointing_prior`,
+  /// which follow from all looks of a camera together. `rank` selects one of the likely errors of each
+  /// camera, 0 for the best. Looks of a camera with fewer likely errors get no identities.
   [[nodiscard]] std::vector<MarkerMatch> recognise(const RigModel& model, const PointingPrior& pointing_prior,
                                                    const std::array<std::size_t, 2>& rank = {0, 0}) const;
-  /// Identifies the markers of the last look alone, by the likeliest error from all looks of its camera.
+  /// Identifies the markers of the last look only, with the likeliest error from all looks of its camera.
   [[nodiscard]] MarkerMatch recognise_last(const RigModel& model, const PointingPrior& pointing_prior) const;
   /// Returns the observations of the looks with at least `fewest` identified markers.
   [[nodiscard]] RigObservations observations(const RigModel& model, const std::vector<MarkerMatch>& matches,
@@ -46,7 +47,7 @@ class RigPictures {
 
  private:
   [[nodiscard]] MarkerPicture picture(const RigModel& model, const Look& look) const;
-  // For the looks of one camera; leaves the other matches as they are.
+  // Identifies the markers in the looks of one camera; does not change the matches of other looks.
   void recognise(const RigModel& model, const PointingPrior& pointing_prior, std::size_t camera,
                  std::size_t rank, std::vector<MarkerMatch>& matches) const;
 

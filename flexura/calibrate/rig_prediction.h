@@ -12,9 +12,9 @@ struct RigPrediction {
   double sigmas = 0;
 };
 
-/// Compares a picture with the rig estimated by `problem`; stance and arm pose are those read when it was
-/// taken. `image` refers to stance 0 and pose 0. `least`: smallest standard deviation of a predicted
-/// position, px. Infinite if the rig would not show what was seen.
+/// Compares a picture with its prediction by the rig estimated from `problem`. `stance` and `pose` were read
+/// when the picture was taken. `image` refers to stance 0 and pose 0. `least`: smallest standard deviation of
+/// a predicted position, px. Infinite if the estimated rig would not show the observations.
 [[nodiscard]] RigPrediction predict_image(const RigProblem& problem, const RigCalibration& found,
                                           const RigStance& stance, const ArmState& pose,
                                           const RigImage& image, double least);

@@ -10,27 +10,27 @@
 
 namespace flexura {
 
-/// Prior standard deviations of the errors of a camera's description. 0 holds a variable, infinity leaves it
-/// without a prior.
+/// Prior standard deviations of the errors of a camera's description. With 0 a variable is fixed, with
+/// infinity it has no prior.
 struct CameraPrior {
   double position = 0.7;          ///< Mount position in each direction, m.
   double rotation = 10 * degree;  ///< Mount rotation about each axis, rad.
-  double pan_zero = 0;            ///< rad; equivalent to a rotated mount as long as the stage does not move.
-  double tilt_zero = 0.035;       ///< rad, 2 degrees.
-  double tilt_axis = 0.003;       ///< m, in each direction.
-  double pupil = 0.003;           ///< m, in each direction.
-  double pupil_shift = 0.001;     ///< m per unit of zoom ratio.
-  double focal = 0.1;             ///< Relative error of the focal length.
-  double aspect = 0.001;          ///< Relative error of fy alone.
-  double principal_point = 10;    ///< px, in each direction.
+  double pan_zero = 0;  ///< Pan zero, rad; equivalent to a rotated mount as long as the stage does not move.
+  double tilt_zero = 0.035;     ///< Tilt zero, rad.
+  double tilt_axis = 0.003;     ///< Position of the tilt axis in each direction, m.
+  double pupil = 0.003;         ///< Position of the pupil in each direction, m.
+  double pupil_shift = 0.001;   ///< Motion of the pupil with the zoom, m per unit of zoom ratio.
+  double focal = 0.1;           ///< Relative error of the focal length.
+  double aspect = 0.001;        ///< Relative error of fy alone.
+  double principal_point = 10;  ///< Principal point in each direction, px.
   std::array<double, 5> distortion = {0.02, 0, 0, 0, 0};  ///< k1, k2, p1, p2, k3.
   double zoom_row = 0.01;  ///< Relative error of the focal length of each row of a zoom table.
-  /// Error of an axis position of head or stage, in steps of its resolution: uniform within half a step. 0:
-  /// counts are exact.
+  /// Error of an axis position of head or stage, in steps of the axis's resolution. The default is that of an
+  /// error evenly distributed within half a step. 0: positions are exact.
   double steps = 0.288675134594812882;
 };
 
-/// Prior standard deviations of the errors of an arm; 0 holds a variable.
+/// Prior standard deviations of the errors of an arm. With 0 a variable is fixed.
 struct ArmPrior {
   double length = 0.005;     ///< Relative error of each section's length.
   double bend_gain = 0.01;   ///< Relative error of each section's bend, equal in all poses.
@@ -44,9 +44,10 @@ struct RigPrior {
   std::vector<CameraPrior> cameras;  ///< One per camera.
 };
 
-/// Returns the prior of a rough initial guess. Rotations have 10 degrees, positions `share` of each camera's
-/// distance from its target (`seen` in W, m; default: the arm's base). Focal lengths have 10 %, principal
-/// points 10 px. The zeros of tilt axes have 2 degrees, and so have those of pan axes whose stage can move.
+/// Returns the prior of a rough initial guess. The standard deviations are 10 degrees for rotations, 10 % for
+/// focal lengths and 10 px for principal points. For positions it is `share` of each camera's distance from
+/// its target (`seen` in W, m; default: the arm's base). For the zeros of tilt axes it is 2 degrees, also for
+/// the zeros of pan axes if the camera's stage can move.
 [[nodiscard]] RigPrior rough_prior(const RigModel& model, double share = 0.2,
                                    const std::optional<Eigen::Vector3d>& seen = {});
 

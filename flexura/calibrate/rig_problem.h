@@ -10,7 +10,7 @@
 
 namespace flexura {
 
-/// An outlier: an observation that the rig does not explain.
+/// An observation that the rig does not explain, by its indices.
 struct RigOutlier {
   std::size_t image = 0;
   std::size_t thing = 0;  ///< Index in the image's markers, then axis points, then etalon points.
@@ -18,8 +18,9 @@ struct RigOutlier {
   bool operator==(const RigOutlier&) const = default;
 };
 
-/// The cost function of a rig: half the sum of the observation residuals and the deviations of x from the
-/// prior. Residuals are in standard deviations, squared up to a bound and linear beyond (P. J. Huber, 1964).
+/// The cost function of a rig estimate. The cost is half the sum over the observation residuals and the
+/// deviations of x from the prior, in standard deviations. A residual's cost is its square up to a bound, and
+/// linear beyond (P. J. Huber, 1964).
 class RigProblem {
  public:
   RigProblem(const RigModel& guess, const RigPrior& prior, RigObservations seen);
@@ -28,26 +29,27 @@ class RigProblem {
   [[nodiscard]] const RigPrior& prior() const { return prior_; }
   [[nodiscard]] const RigObservations& observations() const { return seen_; }
 
-  /// Assigns to points of the cylinder's rims the rim halves that the cameras of the rig at x see (RimHalf).
-  /// They then stay fixed. Returns whether this changed anything.
+  /// Assigns a rim half (RimHalf) to each point of the cylinder's rims: the half that the rig's cameras at x
+  /// see. The halves then stay fixed. Returns whether any half changed.
   bool choose_rims(const Eigen::VectorXd& x);
-  /// Linearises at x. Returns false if the rig would not show what was seen.
+  /// Linearises at x. Returns false if the rig at x would not show the observations.
   [[nodiscard]] bool linearise(const Eigen::VectorXd& x);
   [[nodiscard]] const std::vector<RigRows>& rows() const { return rows_; }
 
-  /// Returns the cost at the linearisation point, with this bound on residuals.
+  /// Returns the cost at the linearisation point, with the given bound of quadratic residuals.
   [[nodiscard]] double cost(double bound) const;
   /// Computes the gradient and the Gauss-Newton matrix, of which only the lower triangle is set.
   void normal(double bound, Eigen::VectorXd& gradient, Eigen::MatrixXd& matrix) const;
 
-  /// Returns the sizes of the residuals, without outliers.
+  /// Returns the size of the residual of each observation that is not an outlier, in standard deviations.
   [[nodiscard]] std::vector<double> sizes() const;
-  /// Return the root mean square of the residual entries and their number, without outliers.
+  /// Return the root mean square of all residual entries except those of outliers, and the number of these
+  /// entries.
   [[nodiscard]] double rms() const;
   [[nodiscard]] std::size_t entries() const;
 
-  /// Marks exactly the observations whose residual is larger than `bound` as outliers. Returns whether this
-  /// changed anything.
+  /// Marks the observations whose residual is larger than `bound` as outliers, and all others as inliers.
+  /// Returns whether any mark changed.
   bool exclude_beyond(double bound);
   void include_all();
   [[nodiscard]] std::vector<RigOutlier> outliers() const;

@@ -10,18 +10,18 @@
 
 namespace flexura {
 
-/// A quantity that follows from a rig, with its gradient by the rig's variables.
+/// A quantity that follows from a rig, with its gradient with respect to the rig's variables.
 struct RigQuantity {
   std::string name;
   double value = 0;
-  Eigen::VectorXd gradient;  ///< Derivative by x.
+  Eigen::VectorXd gradient;  ///< Derivative of the value with respect to x.
 
-  /// Returns its standard deviation for a covariance of x.
+  /// Returns the quantity's standard deviation for a covariance of x.
   [[nodiscard]] double sigma(const Eigen::MatrixXd& covariance) const;
 };
 
-/// A stance to evaluate. It is either one of the observed stances at its true position, or a planned one: the
-/// error of its head then adds to the uncertainty.
+/// A stance to evaluate: an observed stance at its true position, or a planned stance. For a planned stance
+/// the error of the head adds to the uncertainty.
 struct AskedStance {
   RigStance where;
   std::optional<std::size_t> observed;  ///< Index of the observed stance; empty if planned.
@@ -31,9 +31,9 @@ struct AskedStance {
 /// The optical axis of a camera, from its pupil along C's z, in W.
 struct OpticalAxis {
   Eigen::Matrix3d R_WC;
-  Eigen::Vector3d pupil, direction;  ///< Pupil, m; unit direction.
+  Eigen::Vector3d pupil, direction;  ///< Position of the pupil, m; unit direction of the axis; both in W.
   Eigen::Matrix<double, 3, Eigen::Dynamic> pupil_by_x, direction_by_x;
-  double focal = 0;  ///< sqrt(fx fy) at the present zoom, px.
+  double focal = 0;  ///< Focal length sqrt(fx fy) at the stance's zoom, px.
   Eigen::RowVectorXd log_focal_by_x;
 };
 [[nodiscard]] OpticalAxis optical_axis(const RigVariables& variables, const Eigen::VectorXd& x,
@@ -44,11 +44,11 @@ struct OpticalAxis {
 /// Returns the distances by which a camera's axis misses a point of W: to the camera's right and downwards,
 /// m.
 [[nodiscard]] std::array<RigQuantity, 2> aim_errors(const OpticalAxis& axis, const Eigen::Vector3d& p_WP);
-/// Returns the logarithm of the magnification of `a` over that of `b` at a point of W: focal lengths over
-/// depths.
+/// Returns the logarithm of the ratio of two cameras' magnifications at a point of W: `a` to `b`. A
+/// magnification is the focal length divided by the point's depth.
 [[nodiscard]] RigQuantity log_zoom_ratio(const OpticalAxis& a, const OpticalAxis& b,
                                          const Eigen::Vector3d& p_WP);
-/// Returns the logarithm of the focal length, px.
+/// Returns the logarithm of the camera's focal length in px.
 [[nodiscard]] RigQuantity log_focal(const OpticalAxis& axis);
 
 }  // namespace flexura

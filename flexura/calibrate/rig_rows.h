@@ -13,28 +13,29 @@
 
 namespace flexura {
 
-/// Residuals of one image in standard deviations, and their derivatives by the relevant variables of x.
+/// Residuals of one image in standard deviations, and their derivatives with respect to the relevant
+/// variables of x.
 struct RigRows {
-  std::vector<Eigen::Index> columns;  ///< Columns of x.
-  Eigen::VectorXd residuals;          ///< (shown - seen)/sigma.
+  std::vector<Eigen::Index> columns;  ///< Indices of these variables in x.
+  Eigen::VectorXd residuals;          ///< (predicted - observed)/sigma.
   Eigen::MatrixXd derivatives;        ///< One row per residual, one column for each of `columns`.
-  /// Rows of each observation: 2 for a marker, 1 for an axis point, 1 for an etalon point, in this order.
+  /// Number of rows of each observation: 2 per marker, then 1 per axis point, then 1 per etalon point.
   std::vector<int> sizes;
 };
 
 /// Predicts images of the rig that x describes.
 class RigProjector {
  public:
-  /// `variables` must outlive it.
+  /// `variables` must outlive this object.
   RigProjector(const RigVariables& variables, const Eigen::VectorXd& x,
                const std::optional<EtalonConfig>& etalon = {});
 
-  /// Computes the rows of an image. Returns false if the rig would not show all that was seen: behind a
-  /// camera, or outside the range of its lens.
+  /// Computes the rows of an image. Returns false if the rig would not show an observation, because it is
+  /// behind the camera or outside the range of the lens.
   [[nodiscard]] bool rows(const RigImage& image, RigRows& rows);
 
-  /// A point of the arm as seen from a stance, with derivatives by all slots. Their order is: camera, arm,
-  /// pose, stance.
+  /// Image of a point of the arm from a stance, with derivatives with respect to all slots, in the order
+  /// camera, arm, pose, stance.
   struct Shown {
     Eigen::Vector2d pixel;
     Eigen::Matrix<double, 2, Eigen::Dynamic> by_slots;
@@ -64,7 +65,7 @@ class RigProjector {
   SpaceCurve curve_;
   CurveImage image_;
   std::optional<EtalonFigure> etalon_;
-  std::vector<Eigen::Index> picked_;  // Local slots that have columns.
+  std::vector<Eigen::Index> picked_;  // Local slots that have a column in x.
 };
 
 }  // namespace flexura

@@ -68,10 +68,10 @@ class Session {
     }
     if (!found_ || result_.steps.back().looks < result_.looks)
       if (auto error = calibrate()) return error;
-    if (!found_) return "no rig explains what was seen: " + result_.steps.back().reason;
+    if (!found_) return "no rig explains the observations: " + result_.steps.back().reason;
     if (auto error = move()) return error;
     if (auto error = calibrate()) return error;
-    if (!found_) return "what is seen after the move fits nothing: " + result_.steps.back().reason;
+    if (!found_) return "no rig explains the pictures after the move: " + result_.steps.back().reason;
     constexpr double unrecoverable = 3 * degree;
     if (const double sigma = result_.steps.back().sigmas.angle; !(sigma < unrecoverable))
       return fmt::format(
@@ -127,9 +127,10 @@ class Session {
     return nominal_.cameras[config_.cameras[i]].name;
   }
   [[nodiscard]] std::string not_found(std::size_t i, bool is_there, const std::string& why) const {
-    const std::string where = is_there ? fmt::format("camera {} does not see all of the {}", name(i), what_)
+    const std::string where = is_there ? fmt::format("camera {} does not see the whole {}", name(i), what_)
                                        : fmt::format("the {} is out of view of camera {}", what_, name(i));
-    return fmt::format("{}, also {:.3g} rad to all sides: {}", where, config_.search, why);
+    return fmt::format("{}, not even with the head turned by {:.3g} rad in every direction: {}", where,
+                       config_.search, why);
   }
 
   // Takes a picture and measures it; useful ones are added to the observations.
@@ -143,7 +144,7 @@ class Session {
     const bool is_of_use = observed_.seen.markers.size() >= fewest;
     if (!is_of_use && observed_.seen.reason.empty())
       observed_.seen.reason =
-          fmt::format("{} markers are recognised, fewer than {}", observed_.seen.markers.size(), fewest);
+          fmt::format("{} markers were identified, fewer than {}", observed_.seen.markers.size(), fewest);
     misses_[i] = is_of_use ? 0 : misses_[i] + 1;
     if (!is_of_use) missed_.push_back({observed_.pose, {observed_.stance}});
     watcher_.seen(observed_);
@@ -205,8 +206,8 @@ class Session {
     step.outliers = found.outliers.size();
     found_.reset();
     if (!found.is_found) {
-      step.next = config_.etalon ? "a little aside: nothing is known yet"
-                                 : "another pose from where the heads stand: nothing is known yet";
+      step.next = config_.etalon ? "a view to the side: no rig is known yet"
+                                 : "another pose from the present head positions: no rig is known yet";
       watcher_.known(step);
       return std::nullopt;
     }
@@ -222,8 +223,9 @@ class Session {
   void choose(RigStep& step) {
     next_.reset();
     if (result_.looks + 1 >= config_.images || is_enough()) {
-      step.next =
-          result_.looks < config_.images && !has_moved_ ? "the move, and a look that verifies it" : "";
+      step.next = result_.looks < config_.images && !has_moved_
+                      ? "the move to the target configuration, and a look that verifies it"
+                      : "";
       return;
     }
     const auto [candidate, why] = plan_.next(*problem_, *found_, desired_, excursion_.stances(), missed_);
@@ -264,10 +266,10 @@ class Session {
       result_.verified[i] = prediction.px;
       if (!(prediction.sigmas <= most))
         return fmt::format(
-            "after the move camera {} sees the {} {} px from its predicted place, {} "
-            "standard deviations: a head with backlash, or one that was pushed{}",
+            "after the move camera {} sees the {} {} px from its predicted position, which is {} standard "
+            "deviations: the head may have backlash or was pushed{}",
             name(i), what_, bounded_text(prediction.px, 1000, 3), bounded_text(prediction.sigmas, 1000, 3),
-            config_.etalon ? "" : ", or an arm that bends otherwise each time");
+            config_.etalon ? "" : ", or the arm does not bend reproducibly");
     }
     return std::nullopt;
   }
@@ -312,9 +314,8 @@ class Session {
     constexpr double suspicious_rms = 1.2;
     if (result_.found.rms > suspicious_rms)
       result_.desired.notes.push_back(fmt::format(
-          "the residuals of the best rig are {:.2g} standard deviations (root mean square): the "
-          "arm may bend differently from its model, and estimated shapes may be wrong by more than "
-          "is stated",
+          "the residuals of the best rig are {:.2g} standard deviations (root mean square): the arm may bend "
+          "differently from its model, and errors of estimated shapes may be larger than stated",
           result_.found.rms));
   }
 

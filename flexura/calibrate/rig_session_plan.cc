@@ -206,11 +206,13 @@ std::pair<std::optional<ViewCandidate>, std::string> RigSessionPlan::next(
   const auto pose =
       std::ranges::find_if(config_.poses, [&](const ArmState& one) { return one.bends == best.pose.bends; });
   const HeadState &a = best.stances[0].head, &b = best.stances[1].head;
-  return {best,
-          fmt::format("pose {}, the most informative of {} views: pan, tilt and zoom {:.2f} deg, {:.2f} "
-                      "deg, {:.3g} and {:.2f} deg, {:.2f} deg, {:.3g}; the angle's sigma will be {:.4f} deg",
-                      pose - config_.poses.begin() + 1, candidates.size(), a.pan / degree, a.tilt / degree,
-                      a.zoom, b.pan / degree, b.tilt / degree, b.zoom, choice->sigmas[0] / degree)};
+  return {
+      best,
+      fmt::format(
+          "pose {}, the most informative of {} views: pan, tilt and zoom {:.2f} deg, {:.2f} "
+          "deg, {:.3g} and {:.2f} deg, {:.2f} deg, {:.3g}; the angle's standard deviation will be {:.4f} deg",
+          pose - config_.poses.begin() + 1, candidates.size(), a.pan / degree, a.tilt / degree, a.zoom,
+          b.pan / degree, b.tilt / degree, b.zoom, choice->sigmas[0] / degree)};
 }
 
 RigCommander::Error RigSessionPlan::error_with(const RigModel& model, const DesiredRig& desired,
@@ -224,8 +226,8 @@ RigCommander::Error RigSessionPlan::error_with(const RigModel& model, const Desi
                angle = std::acos(std::clamp(cosine, -1.0, 1.0));
   if (std::min(angle, std::numbers::pi - angle) < steepest)
     return fmt::format(
-        "both cameras look {}: their lines of sight are {:.1f} deg apart where the stages end, so heads "
-        "alone cannot make the axes orthogonal",
+        "both cameras look {}: their lines of sight are {:.1f} deg apart at the limits of the stages, so "
+        "heads alone cannot make the axes orthogonal",
         angle < std::numbers::pi / 2 ? "from one side" : "from opposite sides", angle / degree);
   std::string why;
   for (const std::string& note : desired.notes) why += "; " + note;
@@ -237,7 +239,7 @@ RigCommander::Error RigSessionPlan::error_with(const RigModel& model, const Desi
     step_of_heads = std::max({step_of_heads, head.pan.resolution, head.tilt.resolution});
   }
   if (left > far_off + step_of_heads + likely * step.sigmas.angle)
-    return fmt::format("where heads and stages end the axes would be {:.1f} deg from orthogonal{}",
+    return fmt::format("at the limits of heads and stages the axes would be {:.1f} deg from orthogonal{}",
                        left / degree, why);
   // The heads make up for the stages and then look beside the arm.
   constexpr double most_aside = 0.1;  // Share of the distance.
@@ -245,9 +247,9 @@ RigCommander::Error RigSessionPlan::error_with(const RigModel& model, const Desi
     const double aside = desired.remainder.aim[i].norm();
     if (aside > most_aside * sights[i].norm())
       return fmt::format(
-          "where the stages end the lines of sight are {:.1f} deg apart: of orthogonal axes that of camera "
-          "{} would pass {:.2f} m beside the {}; mount the cameras more nearly at a right angle, or let the "
-          "stages travel farther{}",
+          "at the limits of the stages the lines of sight are {:.1f} deg apart: with orthogonal axes, that "
+          "of camera {} would pass {:.2f} m beside the {}; mount the cameras more nearly at a right angle, "
+          "or allow more travel of the stages{}",
           angle / degree, model.cameras[desired.stances[i].camera].name, aside,
           config_.etalon ? "cylinder" : "arm", why);
   }

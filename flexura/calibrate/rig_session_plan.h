@@ -11,46 +11,47 @@
 
 namespace flexura {
 
-/// Returns whether a camera would see almost the same in a candidate as in an earlier look, given by the
-/// first of `look`'s stances. The arm is bent alike within 2 degrees, the view within 2 degrees and 5 cm, the
-/// size within a tenth. Throws std::out_of_range for a look at another arm, or a zoom outside the lens's
-/// table.
+/// Returns whether a candidate would show a camera almost the same as an earlier look. `look`: the earlier
+/// pose, with the camera's stance as the first one. The bends must agree within 2 degrees, the views within 2
+/// degrees and 5 cm, and the sizes within a tenth. Throws std::out_of_range for a look at another arm, or a
+/// zoom outside the lens's table.
 [[nodiscard]] bool is_like(const RigModel& model, const ViewCandidate& candidate, const ViewCandidate& look);
 
-/// Decides a session's next action from its present knowledge; moves nothing.
+/// Decides a session's next action from the present estimate. Sends no commands.
 class RigSessionPlan {
  public:
   RigSessionPlan(const RigModel& nominal, const RigSessionConfig& config)
       : nominal_(nominal), config_(config) {}
 
-  /// Returns the first viewpoint of a camera from its initial one: for an etalon, with the shortest focal
-  /// length.
+  /// Returns the stance of a camera for the first look: its initial stance, but with the shortest focal
+  /// length for an etalon.
   [[nodiscard]] RigStance first(const RigStance& begins) const;
-  /// Returns the target of the cameras in W, m: the configured one, else the etalon's middle, else that of
-  /// the first pose.
+  /// Returns the target of the cameras in W, m. It is the configured target, else the middle of the etalon,
+  /// else the middle of the arm in the first pose.
   [[nodiscard]] Eigen::Vector3d target(const RigModel& model) const;
-  /// Returns the positions to command from the present ones.
+  /// Returns the positions to command for the required configuration, from the present positions.
   [[nodiscard]] DesiredRig desired(const RigModel& model, const std::array<RigStance, 2>& stands) const;
-  /// Fills in what is known about the wanted configuration.
+  /// Fills in the estimates for the required configuration.
   void know(const RigVariables& variables, const RigCalibration& found, const DesiredRig& desired,
             RigStep& step) const;
-  /// Returns the next look from the present positions and its expected result in words. Excludes looks
-  /// similar to one in `missed`, each of one camera, at which too little was visible.
+  /// Returns the next look from the present positions, and its expected result in words. Excludes looks that
+  /// are similar to one in `missed`: earlier looks, each of one camera, that showed too little.
   [[nodiscard]] std::pair<std::optional<ViewCandidate>, std::string> next(
       const RigProblem& problem, const RigCalibration& found, const DesiredRig& desired,
       const std::array<RigStance, 2>& stands, const std::vector<ViewCandidate>& missed) const;
-  /// Returns why the wanted configuration is not acceptable: both cameras look from about one side, or would
-  /// not see the arm. No error as long as the angle is not known.
+  /// Returns why the required configuration is not acceptable, if so: both cameras look from about the same
+  /// direction, or would not see the arm. No error as long as the angle between the axes is not known.
   [[nodiscard]] RigCommander::Error error_with(const RigModel& model, const DesiredRig& desired,
                                                const RigStep& step, const ArmState& home) const;
-  /// Returns head turns from the present position for the search of the arm: pan and tilt, rad.
+  /// Returns the turns of the head from its present position for the search of the arm: pan and tilt, rad.
   [[nodiscard]] std::vector<Eigen::Vector2d> search_directions() const;
 
  private:
   [[nodiscard]] std::vector<ViewGoal> goals(const RigVariables& variables, const RigCalibration& found,
                                             const DesiredRig& desired) const;
   [[nodiscard]] ViewGrid grid(const RigModel& model) const;
-  // Three zooms: ratio of focal length, and share of half the image beside its middle.
+  // Returns three zooms: the ratio of focal lengths, and the target's distance from the image's middle as a
+  // share of half the image.
   [[nodiscard]] std::array<std::array<double, 2>, 3> etalon_zooms(const RigModel& model,
                                                                   std::size_t camera) const;
   [[nodiscard]] bool is_in_view(const RigModel& model, const RigStance& stance, const ArmState& shown) const;

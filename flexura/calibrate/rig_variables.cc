@@ -32,16 +32,20 @@ void check_observations(const RigModel& guess, const RigObservations& seen) {
   for (std::size_t i = 0; i < seen.stances.size(); ++i) {
     const RigStance& stance = seen.stances[i];
     require(stance.camera < guess.cameras.size(),
-            fmt::format("a stance of camera {}, of {}", stance.camera, guess.cameras.size()));
+            fmt::format("a stance refers to camera {}, but there are only {} cameras", stance.camera,
+                        guess.cameras.size()));
     const std::size_t before = stance.turned_as.value_or(i);
     require(!stance.turned_as || (before < i && seen.stances[before].camera == stance.camera),
-            fmt::format("stance {} is turned as {}: expected an earlier one of its camera", i, before));
+            fmt::format(
+                "stance {} has the head position of stance {}: expected an earlier stance of the same camera",
+                i, before));
   }
   for (const RigImage& image : seen.images) {
     for (const SeenMarker& marker : image.markers) (void)material_point(guess.arm, marker.s);
-    require(image.stance < seen.stances.size() && image.pose < seen.poses.size(),
-            fmt::format("an image of stance {} and pose {}, of {} and {}", image.stance, image.pose,
-                        seen.stances.size(), seen.poses.size()));
+    require(
+        image.stance < seen.stances.size() && image.pose < seen.poses.size(),
+        fmt::format("an image refers to stance {} and pose {}, but there are only {} stances and {} poses",
+                    image.stance, image.pose, seen.stances.size(), seen.poses.size()));
   }
 }
 

@@ -11,8 +11,8 @@
 
 namespace flexura {
 
-/// Slots of the variables of a camera's description, in order. The rows of a zoom table follow, one variable
-/// each: the logarithm of the factor on their focal lengths.
+/// Slots of the variables of a camera's description, in order. They are followed by one variable for each row
+/// of a zoom table: the logarithm of the factor on its focal lengths.
 enum CameraSlot : Eigen::Index {
   mount_position_slot = 0,  // 3: m, in W
   mount_rotation_slot = 3,  // 3: rotation vector in W, from the guess, rad
@@ -28,41 +28,42 @@ enum CameraSlot : Eigen::Index {
   zoom_row_slot = 24,
 };
 
-/// Slots of a stance, offsets from what was read: pan, tilt (rad), zoom (its own unit), the stage's x, y and
-/// z (m).
+/// Number of slots of a stance. They are offsets from the reading: pan, tilt (rad), zoom (in its own unit),
+/// and the stage's x, y and z (m).
 inline constexpr Eigen::Index stance_slots = 6;
 
 /// The unknown errors of a rig and of its readings as one vector x, where x = 0 is the guess. Each variable
-/// is an offset from the guess in its own unit. Variables that the prior holds have no place in x. The order
-/// is: each camera's variables, the arm's (logarithms of the lengths, bend gains), each pose's (bend offsets
-/// from the command), each stance's. The first two groups are the rig's own, `globals()` of them; the others
-/// belong to the pictures.
+/// is an offset from the guess in its own unit. Variables that the prior fixes have no entry in x. First come
+/// the variables of each camera and of the arm (logarithms of the lengths, bend gains). Then follow those of
+/// each pose (bend offsets from the command) and of each stance. The variables of cameras and arm are the
+/// rig's own, and globals() is their number. The others belong to the pictures.
 class RigVariables {
  public:
   /// Throws std::invalid_argument unless there is one prior per camera, or if a prior is negative or NaN.
-  /// Also if observations refer to missing cameras, stances or poses, to another arm, or are in another
-  /// order. Throws std::out_of_range for a marker beyond the arm's end.
+  /// Also throws it if observations refer to missing cameras, stances or poses, to another arm, or are in
+  /// another order. Throws std::out_of_range for a marker beyond the arm's end.
   RigVariables(const RigModel& guess, const RigPrior& prior, const RigObservations& seen);
 
   /// A variable of the rig.
   struct Variable {
-    std::string name;          ///< Name, such as "front: mount, x".
-    double sigma = 0;          ///< Prior standard deviation.
-    double scale = 0;          ///< Relevant size in its unit: sigma, or a similar size if that is infinite.
-    Eigen::Index column = -1;  ///< Column in x; -1: held.
+    std::string name;  ///< Name, such as "front: mount, x".
+    double sigma = 0;  ///< Prior standard deviation.
+    double scale =
+        0;  ///< Relevant size in the variable's unit: sigma, or a similar size if sigma is infinite.
+    Eigen::Index column = -1;  ///< Index in x; -1: fixed.
   };
 
-  /// Return the number of variables in x, and of those at its beginning that are the rig's own.
+  /// Return the number of variables in x, and the number of the rig's own variables, which come first.
   [[nodiscard]] Eigen::Index count() const { return count_; }
   [[nodiscard]] Eigen::Index globals() const { return globals_; }
-  /// By column of x.
+  /// Returns the variable with this index in x.
   [[nodiscard]] const Variable& variable(Eigen::Index column) const {
     return slots_[slot_of_[static_cast<std::size_t>(column)]];
   }
-  /// The rig at x = 0.
+  /// Returns the rig at x = 0.
   [[nodiscard]] const RigModel& guess() const { return guess_; }
 
-  /// Returns a camera's first slot, for `column` and `value`.
+  /// Returns a camera's first slot, for column() and value().
   [[nodiscard]] std::size_t camera_slots(std::size_t camera) const { return cameras_.at(camera); }
   /// Returns the arm's first slot.
   [[nodiscard]] std::size_t arm_slots() const { return arm_; }
@@ -72,9 +73,9 @@ class RigVariables {
   [[nodiscard]] std::size_t stance_slots_of(std::size_t stance) const { return stances_.at(stance); }
   /// Returns a camera's number of slots.
   [[nodiscard]] Eigen::Index slots_a_camera(std::size_t camera) const;
-  /// Returns the column of a slot in x; -1: held.
+  /// Returns the index of a slot's variable in x; -1: fixed.
   [[nodiscard]] Eigen::Index column(std::size_t slot) const { return slots_[slot].column; }
-  /// Returns a slot's value in x; 0 if held.
+  /// Returns a slot's value in x; 0 if fixed.
   [[nodiscard]] double value(const Eigen::VectorXd& x, std::size_t slot) const {
     return slots_[slot].column < 0 ? 0.0 : x[slots_[slot].column];
   }
@@ -88,7 +89,7 @@ class RigVariables {
   [[nodiscard]] bool is_rig(const Eigen::VectorXd& x) const;
   /// Returns the rig described by x.
   [[nodiscard]] RigModel model(const Eigen::VectorXd& x) const;
-  /// Poses of the observations, as commanded, and stances, as read.
+  /// Return the poses of the observations as commanded, and their stances as read.
   [[nodiscard]] const std::vector<ArmState>& commanded() const { return commanded_; }
   [[nodiscard]] const std::vector<RigStance>& read() const { return read_; }
   /// Returns the estimated arm pose.
@@ -110,7 +111,7 @@ class RigVariables {
   std::vector<ArmState> commanded_;
   std::vector<RigStance> read_;
   std::vector<Variable> slots_;
-  std::vector<std::size_t> slot_of_;  // By column.
+  std::vector<std::size_t> slot_of_;  // Slot of each variable in x.
   std::vector<std::size_t> cameras_, poses_, stances_;
   std::size_t arm_ = 0;
   Eigen::Index count_ = 0, globals_ = 0;

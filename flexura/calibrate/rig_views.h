@@ -21,14 +21,14 @@ struct ViewCandidate {
 
 /// Assumed content of a picture of the visible arm, or of the problem's etalon.
 struct ViewConfig {
-  std::size_t markers = 9;  ///< Evenly spaced along the arm, from base to tip.
-  std::size_t points = 20;  ///< Axis points between them.
-  double sigma = 0.2;       ///< Standard deviation of each, px.
-  double margin = 20;       ///< Points nearer to the border than this are not counted, px.
+  std::size_t markers = 9;  ///< Number of markers, evenly spaced along the arm from base to tip.
+  std::size_t points = 20;  ///< Number of axis points between the markers.
+  double sigma = 0.2;       ///< Standard deviation of each marker and point, px.
+  double margin = 20;       ///< Distance from the picture's border within which points are not counted, px.
   std::size_t fewest = 5;   ///< Fewest markers in view for a picture to be a candidate.
 };
 
-/// A quantity of the rig's variables to be determined, and how well.
+/// A quantity to be determined, with the required accuracy.
 struct ViewGoal {
   RigQuantity quantity;
   double desired = 1;  ///< Sufficient standard deviation, in the quantity's unit; > 0.
@@ -36,37 +36,40 @@ struct ViewGoal {
 
 struct ViewChoice {
   std::size_t candidate = 0;
-  double after = 0;            ///< Sum of the goals' variances with it, in units of the wanted ones.
-  std::vector<double> sigmas;  ///< Standard deviations of the goals with it.
+  double after = 0;  ///< Sum of the goals' expected variances with this candidate, each relative to its
+                     ///< desired variance.
+  std::vector<double> sigmas;  ///< Expected standard deviations of the goals with this candidate.
 };
 
-/// Returns the candidate that will determine the goals best, the first among equals; empty if none shows the
-/// arm. The goals' quantities refer to the variables of the calibrated problem.
+/// Returns the candidate that will determine the goals best, the first among equals; empty if no candidate
+/// shows the arm. The goals' quantities refer to the variables of the calibrated problem.
 [[nodiscard]] std::optional<ViewChoice> next_best_view(const RigProblem& problem, const RigCalibration& found,
                                                        std::span<const ViewCandidate> candidates,
                                                        std::span<const ViewGoal> goals,
                                                        const ViewConfig& config = {});
 
-/// Grid of candidates.
+/// Grid of candidates for the next look.
 struct ViewGrid {
   std::vector<ArmState> poses;
-  std::vector<double> zooms = {1};  ///< Ratios; each lens has its own positions for them.
+  std::vector<double> zooms = {1};  ///< Zoom ratios; each lens has its own positions for these ratios.
   std::vector<Eigen::Vector3d> slides = {Eigen::Vector3d::Zero()};  ///< Stage offsets of each camera, m.
-  /// Offset of the target from the image's middle towards its four corners, as a share of half the image; the
-  /// middle itself is also used.
+  /// Offset of the target from the image's middle towards each of the four corners, as a share of half the
+  /// image. Candidates with the target in the middle are also included.
   double spread = 0.4;
   std::optional<Eigen::Vector3d> target = {};
-  /// Returns a camera's own ratio and spread for one of the zooms; missing: no difference.
+  /// Returns the ratio and spread of a camera for one of the zooms; missing: all cameras use `zoom` and
+  /// `spread`.
   std::function<std::array<double, 2>(std::size_t camera, double zoom)> own = {};
 };
 
-/// Returns a stance of camera `number` that shows a point of W at this place of the image. `place` is in
-/// shares of half its width and height, to the right and down from the middle. The stage offset and the ratio
-/// of the focal length are given; the result is clamped and quantised.
+/// Returns a stance of camera `number` that shows the point `target` of W at `place` in the image. `place` is
+/// in shares of half the image's width and height, to the right and downwards from its middle. The stage
+/// offset `slide` and the `ratio` of the focal length are given. The result is clamped and quantised.
 [[nodiscard]] RigStance looking_at(const RigModel& model, std::size_t number, const Eigen::Vector3d& slide,
                                    double ratio, const Eigen::Vector3d& target, const Eigen::Vector2d& place);
 
-/// Returns all candidates of a grid, clamped and quantised; every camera does the same.
+/// Returns all candidates of a grid, clamped and quantised. Unless `own` is set, all cameras of a candidate
+/// have the same zoom ratio, slide and place of the target.
 [[nodiscard]] std::vector<ViewCandidate> view_candidates(const RigModel& model, const ViewGrid& grid);
 
 }  // namespace flexura

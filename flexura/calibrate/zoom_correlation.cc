@@ -71,11 +71,11 @@ class Correlator {
 ZoomCorrelation correlate_zoom(const Image<std::uint8_t>& real, const Image<std::uint8_t>& ideal) {
   if (real.channels() != 1 || ideal.channels() != 1 || real.width() != ideal.width() ||
       real.height() != ideal.height() || real.width() < 2 || real.height() < 2)
-    throw std::invalid_argument("a correlation of pictures of two sizes, or in colours");
+    throw std::invalid_argument("a correlation needs two gray pictures of equal size");
   ZoomCorrelation found;
   const auto at = figure_middle(real), from = figure_middle(ideal);
   if (!at || !from) {
-    found.reason = "there is no figure to be correlated";
+    found.reason = "a picture has no figure to correlate";
     return found;
   }
   const Correlator correlator(real, ideal, *at, *from);
@@ -105,8 +105,8 @@ ZoomCorrelation correlate_zoom(const Image<std::uint8_t>& real, const Image<std:
   found.ratio = std::exp(0.5 * (low + high)), found.peak = std::max(at_a, at_b);
   constexpr double least = 0.5;
   if (found.peak < least)
-    found.reason =
-        fmt::format("the correlation is {:.2f} at best: what is seen is not what is expected", found.peak);
+    found.reason = fmt::format(
+        "the correlation is {:.2f} at best: the picture does not show the expected arc", found.peak);
   return found;
 }
 

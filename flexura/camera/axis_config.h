@@ -5,17 +5,19 @@
 
 namespace flexura {
 
-/// Motion limits of one motor-driven axis of a camera, in the units of its position: rad, m, or the zoom's.
+/// Motion limits of one motor-driven axis of a camera. The unit of position is rad, m, or zoom position.
 struct AxisConfig {
-  std::array<double, 2> limits = {0, 0};                              ///< Smallest and largest position.
-  double max_rate = std::numeric_limits<double>::infinity();          ///< Per second.
-  double max_acceleration = std::numeric_limits<double>::infinity();  ///< Per second squared.
-  double resolution = 0;  ///< Distance of the positions that can be commanded; 0: any.
-  double backlash = 0;    ///< Motion of the motor without effect on reversal.
+  std::array<double, 2> limits = {0, 0};  ///< Smallest and largest position.
+  /// Largest speed, units of position per second.
+  double max_rate = std::numeric_limits<double>::infinity();
+  /// Largest acceleration, units of position per second squared.
+  double max_acceleration = std::numeric_limits<double>::infinity();
+  double resolution = 0;  ///< Smallest position increment that can be commanded; 0: continuous.
+  double backlash = 0;    ///< Motor travel without motion of the axis after a reversal.
 };
 
-/// Returns the position nearest to `position` that can be commanded. It is within the limits, and a whole
-/// number of resolution steps from 0 if there is one within the limits.
+/// Returns the commandable position nearest to `position`. The result is within the limits. It is a multiple
+/// of the resolution, unless the limits contain no multiple.
 [[nodiscard]] double commandable(const AxisConfig& axis, double position);
 
 }  // namespace flexura

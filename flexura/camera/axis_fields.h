@@ -8,12 +8,13 @@
 
 namespace flexura {
 
-/// Units of an axis in a file.
+/// Units in which an axis is described in a file.
 struct AxisUnits {
   Unit position, rate, acceleration;  ///< Units of position, velocity and acceleration.
 };
 
-/// Adds the fields common to all axes: rates, resolution, backlash. S has the members of AxisConfig.
+/// Adds the fields common to all axes: largest speed and acceleration, resolution and backlash. S has these
+/// members of AxisConfig.
 template <class S, class Rate>
 void add_axis_fields(Table<S>& table, const AxisUnits& units, Rate S::* max_rate, const char* default_rate) {
   using Number = double S::*;
@@ -37,14 +38,14 @@ void add_axis_fields(Table<S>& table, const AxisUnits& units, Rate S::* max_rate
               .range = at_least(0)});
 }
 
-/// Reports limits in the wrong order.
+/// Reports limits whose first position is the larger one.
 void check_limits(const std::array<double, 2>& limits, Reader& reader);
 
-/// Of the angles of a head's axes, rad.
+/// Range of the angles of a head's axes, rad.
 inline constexpr NumberRange turn_range = {.min = -10, .max = 10};
 
-/// Returns the table of fields of an axis type S, an AxisConfig with its own defaults; its limits lie within
-/// `range`.
+/// Returns the table of fields of an axis type S, which is an AxisConfig with its own defaults. Limits in a
+/// file must be within `range`.
 template <class S>
 Table<S> axis_table(const char* name, const char* meaning, const AxisUnits& units, const NumberRange& range) {
   Table<S> table(name, meaning);

@@ -50,7 +50,7 @@ Pose Camera::pose(const CameraStance& stance) const {
 
 HeadState Camera::looking_along(const Eigen::Vector3d& direction, double zoom) const {
   const Eigen::Vector3d u = (X_WM_.rotation.transpose() * direction).normalized();
-  // Of the pans that differ by full turns, the one nearest to the middle of its limits.
+  // Among pan angles that differ by full turns, the angle nearest to the middle of the pan limits.
   const auto& [least, most] = config_.head.pan.limits;
   const double middle = 0.5 * (least + most), pan = std::atan2(-u.x(), u.z()) - config_.head.pan.zero;
   return {middle + std::remainder(pan - middle, 2 * std::numbers::pi),

@@ -13,22 +13,25 @@
 
 namespace flexura {
 
-/// Pixel of a point in W and its derivatives: px per m, rad, or unit of zoom.
+/// Pixel of a point in W, and the pixel's derivatives in px per m, px per rad or px per unit of zoom
+/// position.
 struct CameraProjection {
-  Eigen::Vector2d pixel;                 ///< Pixel (u, v), px; inside the image or not.
-  Eigen::Matrix<double, 2, 3> by_point;  ///< Derivative by the point in W.
-  /// Derivative by a small motion [v; w] of the mount, V_WM_W: p_WM + v, exp(w) R_WM, in W's axes.
+  Eigen::Vector2d pixel;                 ///< Pixel (u, v), px; may be outside the image.
+  Eigen::Matrix<double, 2, 3> by_point;  ///< Derivative with respect to the point in W, px/m.
+  /// Derivative with respect to a small motion [v; w] of the mount in W's axes (V_WM_W). The position becomes
+  /// p_WM + v, the rotation exp(w) R_WM.
   Eigen::Matrix<double, 2, 6> by_mount;
-  Eigen::Matrix<double, 2, 3> by_stage;  ///< Derivative by the stage's offset.
-  Eigen::Vector2d by_pan, by_tilt;       ///< Derivatives by pan and tilt, px/rad.
-  Eigen::Vector2d by_zoom;               ///< Derivative by the zoom, through the lens and the pupil's shift.
-  Eigen::Matrix<double, 2, 3> by_tilt_axis;  ///< Derivative by HeadConfig::tilt_axis.
-  Eigen::Matrix<double, 2, 3> by_pupil;      ///< Derivative by HeadConfig::pupil.
-  Eigen::Vector2d by_pupil_shift;            ///< Derivative by HeadConfig::pupil_shift.
-  /// Derivative by the intrinsics at this zoom: fx, fy, cx, cy, k1, ...
+  Eigen::Matrix<double, 2, 3> by_stage;  ///< Derivative with respect to the stage's offset, px/m.
+  Eigen::Vector2d by_pan, by_tilt;       ///< Derivatives with respect to pan and tilt, px/rad.
+  /// Derivative with respect to the zoom position, including the shift of the pupil.
+  Eigen::Vector2d by_zoom;
+  Eigen::Matrix<double, 2, 3> by_tilt_axis;  ///< Derivative with respect to HeadConfig::tilt_axis, px/m.
+  Eigen::Matrix<double, 2, 3> by_pupil;      ///< Derivative with respect to HeadConfig::pupil, px/m.
+  Eigen::Vector2d by_pupil_shift;            ///< Derivative with respect to HeadConfig::pupil_shift, px/m.
+  /// Derivative with respect to the intrinsics at this zoom, in the order fx, fy, cx, cy, k1, ...
   Eigen::Matrix<double, 2, intrinsics_count> by_intrinsics;
-  /// Derivative by the intrinsics at ratio 1, on which those at this zoom depend. (By a zoom table's row:
-  /// by_intrinsics * ZoomTable::by_row().asDiagonal().)
+  /// Derivative with respect to the intrinsics at ratio 1, on which the intrinsics at this zoom depend. The
+  /// derivative with respect to a row of the zoom table is by_intrinsics * ZoomTable::by_row().asDiagonal().
   Eigen::Matrix<double, 2, intrinsics_count> by_lens;
 };
 
@@ -40,44 +43,46 @@ struct CameraStance {
   bool operator==(const CameraStance&) const = default;
 };
 
-/// Returns the stance at `fraction` of the way from one to another, with pan, tilt, zoom and offset linear.
+/// Interpolates pan, tilt, zoom and stage offset linearly between two stances: `from` at fraction 0, `to` at
+/// fraction 1.
 [[nodiscard]] CameraStance interpolate(const CameraStance& from, const CameraStance& to, double fraction);
 
 /// A camera on its head and mount.
 class Camera {
  public:
-  /// Throws std::invalid_argument for an invalid lens or mount (ZoomTable, MountConfig::pose).
+  /// Throws std::invalid_argument for an invalid lens (see ZoomTable) or mount (see MountConfig::pose).
   explicit Camera(const CameraConfig& config);
 
   [[nodiscard]] const CameraConfig& config() const { return config_; }
-  /// The lens at every zoom, for this sensor's size.
+  /// The lens's intrinsics as a function of the zoom position, for the sensor's size.
   [[nodiscard]] const ZoomTable& lens() const { return lens_; }
-  /// X_WM at stage offset 0.
+  /// Pose X_WM of the mount at stage offset 0.
   [[nodiscard]] const Pose& mount() const { return X_WM_; }
 
-  /// Motion limits of pan, tilt (rad) and zoom (its own unit), with the zoom's defaults from the lens.
+  /// Motion limits of pan and tilt, rad, and of the zoom position. Omitted limits of the zoom follow from the
+  /// lens.
   [[nodiscard]] const std::array<AxisConfig, 3>& head_axes() const { return head_axes_; }
   /// Motion limits of the stage's x, y and z, m.
   [[nodiscard]] const std::array<AxisConfig, 3>& stage_axes() const { return stage_axes_; }
 
-  /// Positions at the start of a run.
+  /// Positions of the axes at the start of a run.
   [[nodiscard]] HeadState initial_head() const;
   [[nodiscard]] StageState initial_stage() const;
   [[nodiscard]] CameraStance initial_stance() const { return {initial_head(), initial_stage()}; }
 
-  /// Returns the angles of its pan and tilt axes, zeros included, rad.
+  /// Returns the true angles of the pan and tilt axes, rad: readings plus zero offsets.
   [[nodiscard]] std::array<double, 2> angles(const HeadState& head) const;
-  /// Returns the head position that looks along a direction of W (of any length but 0), with this zoom.
-  /// Neither clamped nor quantised; of the pans that differ by full turns, the one nearest to the middle of
-  /// its limits.
+  /// Returns the head position at which the camera looks along `direction`, in W, of any length above 0. The
+  /// result has the given zoom and is neither clamped to limits nor quantized. Among pan angles that differ
+  /// by full turns, it has the angle nearest to the middle of the pan limits.
   [[nodiscard]] HeadState looking_along(const Eigen::Vector3d& direction, double zoom) const;
 
-  /// Returns X_WC: the entrance pupil's position and the camera's axes. This and the following functions
-  /// throw std::out_of_range for a zoom outside the lens's table.
+  /// Returns the pose X_WC of the camera's frame, whose origin is the entrance pupil. This and the following
+  /// functions throw std::out_of_range for a zoom outside the lens's table.
   [[nodiscard]] Pose pose(const CameraStance& stance) const;
-  /// Returns the view in this stance.
+  /// Returns the camera's view in a stance.
   [[nodiscard]] View view(const CameraStance& stance) const;
-  /// Returns the pixel of a point in W with its derivatives; empty if the lens does not show it.
+  /// Returns the pixel of a point in W, m, with its derivatives; empty if the lens cannot image the point.
   [[nodiscard]] std::optional<CameraProjection> project(const Eigen::Vector3d& p_WP,
                                                         const CameraStance& stance) const;
 

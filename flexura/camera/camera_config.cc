@@ -20,7 +20,7 @@ void check_start(const AxisConfig& axis, double start, const std::string& path, 
                                       axis.limits[0], axis.limits[1]));
 }
 
-// Files and log topics are named after cameras.
+// Checks a camera's name, which is used in names of files and log topics.
 void check_name(const std::string& name, Reader& reader) {
   constexpr std::size_t longest = 100;
   const auto is_plain = [](char c) {
@@ -126,7 +126,7 @@ std::vector<CameraConfig> cameras_at(const std::array<double, 2>& distances,
 
 std::vector<CameraConfig> default_cameras(double reach, const std::array<double, 3>& center) {
   const CameraConfig camera;
-  // The ball's edge is seen at the angle asin(reach / distance).
+  // The edge of the sphere is seen at the angle asin(reach / distance) from the optical axis.
   const double half_size = 0.5 * static_cast<double>(std::min(camera.sensor.width, camera.sensor.height));
   constexpr double margin = 0.95;
   const double distance = reach * std::hypot(camera.lens.fx, margin * half_size) / (margin * half_size);

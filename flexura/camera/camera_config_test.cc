@@ -75,7 +75,7 @@ TEST(CameraConfig, SaysWhatIsWrong) {
   EXPECT_THAT(error_of(front(), "mount.look_at", Node::Array{{0.0, {}}, {9.0, {}}, {5.0, {}}}),
               HasSubstr("mount.look_at: is straight above"));
   EXPECT_THAT(error_of(front(), "mount.rotation", Node::Array{{1.0, {}}, {0.0, {}}, {0.0, {}}, {0.0, {}}}),
-              HasSubstr("mount.rotation: stands beside look_at"));
+              HasSubstr("mount.rotation: is given together with look_at"));
   EXPECT_THAT(error_of(front(), "head.pan.max_rate", -1.0), HasSubstr("expected a number above 0 rad/s"));
   EXPECT_THAT(error_of(front(), "mount.stage.x.max_rate", 0.0), HasSubstr("expected a number above 0 m/s"));
   CameraConfig counted = front();

@@ -25,7 +25,7 @@ Table<Turn> turn_table(const char* name, const char* meaning) {
 
 }  // namespace
 
-// Limits and rates: those of the paper's heads (sections 1 and 2). It gives no accelerations.
+// Limits and rates are those of the paper's heads (sections 1 and 2). The paper does not give accelerations.
 PanConfig::PanConfig()
     : AxisConfig{.limits = {-135 * degree, 135 * degree},
                  .max_rate = 50 * degree,

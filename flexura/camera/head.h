@@ -12,49 +12,53 @@
 
 namespace flexura {
 
-/// The pan axis of a head: rad, positive to the camera's left.
+/// The pan axis of a head. Angles are in rad, positive to the camera's left.
 struct PanConfig : AxisConfig {
   PanConfig();
 
-  double zero = 0;  ///< Position of the axis when the head reads 0, rad.
+  double zero = 0;  ///< Angle of the axis when the head reads 0, rad.
 };
 
-/// The tilt axis of a head: rad, positive upwards.
+/// The tilt axis of a head. Angles are in rad, positive upwards.
 struct TiltConfig : AxisConfig {
   TiltConfig();
 
-  double zero = 0;  ///< Position of the axis when the head reads 0, rad.
+  double zero = 0;  ///< Angle of the axis when the head reads 0, rad.
 };
 
-/// The zoom of a head, in positions of the lens's table: ratios, or motor counts.
+/// The zoom axis of a head. Zoom positions are ratios, or motor counts if the lens's table has counts.
 struct ZoomConfig {
-  /// Default: 1 to 10 for a linear zoom, otherwise the table's ends.
+  /// Smallest and largest zoom position. Default: 1 to 10 for a linear zoom, otherwise the range of the
+  /// lens's table.
   std::optional<std::array<double, 2>> limits;
-  std::optional<double> max_rate;  ///< Per second; default: the whole range in 3 s.
-  /// As in AxisConfig, in positions.
+  std::optional<double>
+      max_rate;  ///< Largest speed, zoom positions per second; default: the whole range in 3 s.
+  /// The meaning of the following members is as in AxisConfig, in units of zoom position.
   double max_acceleration = std::numeric_limits<double>::infinity();
   double resolution = 0;
   double backlash = 0;
 
-  /// Returns the axis of this lens's zoom, in positions of its table.
+  /// Returns the motion limits of the zoom axis with this lens, in units of zoom position.
   [[nodiscard]] AxisConfig axis(const ZoomTable& lens) const;
 };
 
-/// A pan/tilt/zoom head as described in a file: motion limits and geometry of its axes.
+/// A pan/tilt/zoom head as described in a file: motion limits and geometry of the axes.
 struct HeadConfig {
   PanConfig pan;
   TiltConfig tilt;
   ZoomConfig zoom;
-  double delay = 0;                             ///< Delay from a command to the start of its motion, s.
-  std::array<double, 3> tilt_axis = {0, 0, 0};  ///< A point of the tilt axis in the panned frame, m.
-  std::array<double, 3> pupil = {0, 0, 0};      ///< Entrance pupil at ratio 1, from there, in C's axes, m.
-  double pupil_shift = 0;                       ///< Forward shift of the pupil per unit of ratio, m.
+  double delay = 0;  ///< Delay from a command to the start of the motion, s.
+  std::array<double, 3> tilt_axis = {
+      0, 0, 0};  ///< A point on the tilt axis, in the mount's frame rotated by pan, m.
+  std::array<double, 3> pupil = {
+      0, 0, 0};            ///< Entrance pupil at zoom ratio 1, relative to `tilt_axis`, in C's axes, m.
+  double pupil_shift = 0;  ///< Forward shift of the entrance pupil per unit of zoom ratio, m.
 };
 
-/// Position of a head, as it reads.
+/// Position that a head reads.
 struct HeadState {
-  double pan = 0, tilt = 0;  ///< Angles from the axes' zeros, rad.
-  double zoom = 1;           ///< Position of the zoom in the lens's table.
+  double pan = 0, tilt = 0;  ///< Angles relative to the axes' zero offsets, rad.
+  double zoom = 1;           ///< Zoom position: ratio, or motor count if the lens's table has counts.
 
   bool operator==(const HeadState&) const = default;
 };
@@ -64,21 +68,23 @@ const Table<TiltConfig>& fields_of(const TiltConfig*);
 const Table<ZoomConfig>& fields_of(const ZoomConfig*);
 const Table<HeadConfig>& fields_of(const HeadConfig*);
 
-/// Geometry of a head's axes.
+/// Geometry of a head's axes at one zoom position.
 struct HeadGeometry {
-  Eigen::Vector3d tilt_axis = Eigen::Vector3d::Zero();  ///< Point of the tilt axis in the panned frame, m.
-  /// Pupil at the present zoom, in C's axes from the tilt axis, m.
+  /// A point on the tilt axis, in the mount's frame rotated by pan, m.
+  Eigen::Vector3d tilt_axis = Eigen::Vector3d::Zero();
+  /// Entrance pupil relative to `tilt_axis`, in C's axes, m.
   Eigen::Vector3d pupil = Eigen::Vector3d::Zero();
 };
 
-/// Returns R_pan, about M's -y by `pan` rad: turns M's z (forward) towards its -x (left).
+/// Returns R_pan, the rotation about M's -y by `pan` rad. A positive angle turns M's z (forward) towards M's
+/// -x (left).
 [[nodiscard]] Eigen::Matrix3d pan_rotation(double pan);
-/// Returns R_tilt, about x by `tilt` rad: turns z (forward) towards -y (up).
+/// Returns R_tilt, the rotation about x by `tilt` rad. A positive angle turns z (forward) towards -y (up).
 [[nodiscard]] Eigen::Matrix3d tilt_rotation(double tilt);
 
-/// Returns X_MC: pan about M's vertical axis, translation to the tilt axis, tilt, translation to the pupil.
-/// R_MC = R_pan R_tilt, p_MC = R_pan (tilt_axis + R_tilt pupil). The angles are those between the parts:
-/// readings plus zeros.
+/// Returns the camera's pose in the mount's frame, X_MC: pan about M's vertical axis, translation to the tilt
+/// axis, tilt, translation to the pupil. R_MC = R_pan R_tilt and p_MC = R_pan (tilt_axis + R_tilt pupil).
+/// `pan` and `tilt` are the true angles of the axes, rad: readings plus zero offsets.
 [[nodiscard]] Pose head_pose(const HeadGeometry& geometry, double pan, double tilt);
 
 }  // namespace flexura

@@ -21,14 +21,14 @@ void require(bool holds, const char* message) {
 double largest_radius_of(const std::array<double, 5>& distortion) {
   const double c1 = 3 * distortion[0], c2 = 5 * distortion[1], c3 = 7 * distortion[4];
   const auto slope = [&](double q) { return 1 + q * (c1 + q * (c2 + q * c3)); };
-  std::array<double, 3> ends = {infinity, infinity, infinity};  // Of the monotone pieces.
+  std::array<double, 3> ends = {infinity, infinity, infinity};  // Ends of the monotone pieces.
   int count = 0;
   const auto add_turn = [&](double q) {
     if (std::isfinite(q) && q > 0) ends[static_cast<std::size_t>(count++)] = q;
   };
   const double discriminant = c2 * c2 - 3 * c3 * c1;
   if (c3 != 0 && discriminant >= 0) {
-    // Without cancellation: of c1 + 2 c2 q + 3 c3 q^2 = 0.
+    // Roots of c1 + 2 c2 q + 3 c3 q^2 = 0, computed without cancellation.
     const double larger = -(c2 + std::copysign(std::sqrt(discriminant), c2));
     add_turn(larger / (3 * c3));
     if (larger != 0) add_turn(c1 / larger);
@@ -40,7 +40,8 @@ double largest_radius_of(const std::array<double, 5>& distortion) {
   for (std::size_t piece = 0; piece < 3; ++piece) {
     double high = ends[piece];
     if (high == infinity) {
-      // The last piece: doubled until the sign changes, or beyond any lens (89.99 degrees off the axis).
+      // The last piece: its end is doubled until the sign changes, or until 89.99 degrees from the axis,
+      // which is beyond any lens.
       constexpr double beyond = 1e8;
       for (high = std::max(1.0, 2 * low); high < beyond && slope(high) > 0;) high *= 2;
       if (slope(high) > 0) return infinity;
@@ -59,7 +60,8 @@ double largest_radius_of(const std::array<double, 5>& distortion) {
   return infinity;
 }
 
-// Returns the point whose radial distortion gives `desired`; one near the rim if no point does.
+// Returns the point that radial distortion maps to `desired`; if there is no such point, a point near the
+// rim.
 Eigen::Vector2d undistort_radially(const Eigen::Vector2d& desired, const std::array<double, 5>& distortion,
                                    double largest_radius) {
   const double radius = desired.norm();
@@ -74,7 +76,7 @@ Eigen::Vector2d undistort_radially(const Eigen::Vector2d& desired, const std::ar
     const double slope = 1 + q * (3 * k1 + q * (5 * k2 + q * 7 * k3));
     (excess > 0 ? high : low) = r;
     const double next = r - excess / slope;
-    // Newton's step if it stays in the bracket, otherwise bisection.
+    // Newton's step if the result is in the bracket, otherwise bisection.
     const double middle = 0.5 * (low + high);
     const double last = r;
     r = next > low && next < high ? next : middle;
@@ -83,7 +85,7 @@ Eigen::Vector2d undistort_radially(const Eigen::Vector2d& desired, const std::ar
   return desired * (r / radius);
 }
 
-// Distorted coordinates and their derivative by the undistorted ones.
+// Distorted coordinates, and their derivative with respect to the undistorted coordinates.
 struct Distorted {
   Eigen::Vector2d point;
   Eigen::Matrix2d by_point;
@@ -93,7 +95,8 @@ Distorted distort(const Eigen::Vector2d& normal, const std::array<double, 5>& di
   const auto [k1, k2, p1, p2, k3] = distortion;
   const double a = normal.x(), b = normal.y(), q = a * a + b * b;
   const double radial = 1 + q * (k1 + q * (k2 + q * k3));
-  const double slope = 2 * (k1 + q * (2 * k2 + q * 3 * k3));  // Of the radial factor by q, times 2.
+  // Twice the derivative of the radial factor with respect to q.
+  const double slope = 2 * (k1 + q * (2 * k2 + q * 3 * k3));
   Distorted result;
   result.point = {a * radial + 2 * p1 * a * b + p2 * (q + 2 * a * a),
                   b * radial + p1 * (q + 2 * b * b) + 2 * p2 * a * b};
@@ -148,7 +151,8 @@ std::optional<Projection> Lens::project_with_derivatives(const Eigen::Vector3d& 
   return result;
 }
 
-// Written by components: matrices written in parts and read as a whole would stall the processor.
+// Computes each component separately, because writing a matrix in parts and reading it as a whole would stall
+// the processor.
 bool Lens::project_by_point(const Eigen::Vector3d& p_CP, PointProjection& result) const {
   const double z = p_CP.z();
   if (!(z > 0)) return false;
@@ -203,7 +207,7 @@ std::optional<Eigen::Vector2d> Lens::unproject(const Eigen::Vector2d& pixel) con
     }
     if (!fell) break;
   }
-  // At the rim, rounding may keep it from coming closer than this.
+  // At the rim, rounding errors can prevent convergence beyond this tolerance.
   if (!(error <= 1e-12 * (1 + desired.norm()))) return std::nullopt;
   return normal;
 }

@@ -31,10 +31,11 @@ Eigen::Matrix3d matrix_of(const Rows& rows) {
 
 void check_measured_camera(const MeasuredCamera& camera, Reader& reader) {
   if (camera.rotation.error() > largest_error) {
-    reader.problem_at("rotation",
-                      fmt::format("rotation is {:.2g} off a rotation: expected the rows of a rotation "
-                                  "matrix or a quaternion [w, x, y, z] of norm 1",
-                                  camera.rotation.error()));
+    reader.problem_at(
+        "rotation",
+        fmt::format("rotation deviates by {:.2g} from a rotation: expected the rows of a rotation "
+                    "matrix or a quaternion [w, x, y, z] of norm 1",
+                    camera.rotation.error()));
   }
 }
 
@@ -43,7 +44,7 @@ void check_names(const MeasuredCameras& cameras, Reader& reader) {
     for (std::size_t k = 0; k < i && !cameras.camera[i].name.empty(); ++k)
       if (cameras.camera[k].name == cameras.camera[i].name)
         reader.problem_at(fmt::format("camera[{}].name", i),
-                          fmt::format("is that of camera[{}], too: expected another", k));
+                          fmt::format("is also the name of camera[{}]: expected another name", k));
 }
 
 }  // namespace

@@ -14,20 +14,21 @@
 
 namespace flexura {
 
-/// A rotation as written in a file: the rows of its matrix, or the quaternion (w, x, y, z).
+/// A rotation in a file: the rows of a rotation matrix, or a quaternion (w, x, y, z).
 struct RotationConfig {
-  /// The rows, or the quaternion; as written, not yet normalised.
+  /// The rows of the matrix, or the quaternion, as written in the file and not normalized.
   std::variant<std::array<std::array<double, 3>, 3>, std::array<double, 4>> value =
       std::array<double, 4>{1, 0, 0, 0};
 
-  /// Returns the deviation from a rotation. For a matrix, the largest entry of R R^T - 1 and of the
-  /// determinant minus 1; for a quaternion, of its norm from 1.
+  /// Returns the deviation of the written value from a rotation. For a matrix R this is the largest absolute
+  /// value among the entries of R R^T - 1 and the determinant minus 1. For a quaternion this is the deviation
+  /// of the norm from 1.
   [[nodiscard]] double error() const;
-  /// Returns the rotation: the one nearest to the matrix, or that of the normalised quaternion.
+  /// Returns the rotation nearest to the written matrix, or the rotation of the normalized quaternion.
   [[nodiscard]] Eigen::Matrix3d matrix() const;
 };
 
-/// In a file, both forms are lists: of three rows, or of four numbers.
+/// Codec of a rotation, which in a file is an array of three rows or an array of four numbers.
 template <>
 struct Codec<RotationConfig> {
   static Type type();
@@ -35,29 +36,29 @@ struct Codec<RotationConfig> {
   static Node write(const RotationConfig& value);
 };
 
-/// One `[[camera]]` of a file of measured cameras: a fixed lens and its pose.
+/// A measured camera in a file, `[[camera]]`: a camera with a fixed lens and a fixed pose.
 struct MeasuredCamera {
   std::string name;                                    ///< Name for messages.
   double fx = 800;                                     ///< Focal length, px.
   std::optional<double> fy;                            ///< Focal length, px; default: fx.
   double cx = 319.5, cy = 239.5;                       ///< Principal point, px.
-  std::array<double, 5> distortion = {0, 0, 0, 0, 0};  ///< k1, k2, p1, p2, k3: OpenCV's order.
-  std::array<double, 3> position = {0, 0, 0};          ///< p_WC, m.
-  RotationConfig rotation;                             ///< R_WC: C's x right, y down, z forward.
-  double gamma = 1;                                    ///< Its values are light to the power 1/gamma.
-  std::optional<std::array<std::int64_t, 2>> size;     ///< Width and height of the pictures meant, px.
-  ViewPrior prior;                                     ///< Of its orientation and focal lengths.
+  std::array<double, 5> distortion = {0, 0, 0, 0, 0};  ///< Distortion k1, k2, p1, p2, k3, in OpenCV's order.
+  std::array<double, 3> position = {0, 0, 0};          ///< Position p_WC of the entrance pupil, m.
+  RotationConfig rotation;                             ///< R_WC; C has x right, y down, z forward.
+  double gamma = 1;  ///< Gamma of the pictures: pixel values are light to the power 1/gamma.
+  std::optional<std::array<std::int64_t, 2>>
+      size;         ///< Width and height of the camera's pictures, px; default: any.
+  ViewPrior prior;  ///< Prior standard deviations of orientation and focal lengths.
 
-  /// Throws std::invalid_argument as Lens does.
+  /// Returns the camera's lens. Throws std::invalid_argument for invalid intrinsics (see Lens).
   [[nodiscard]] Lens lens() const;
-  /// X_WC.
+  /// Returns the pose X_WC.
   [[nodiscard]] Pose pose() const;
-  /// Returns why a picture of this size, px, does not match the camera; empty if it does, or if the camera
-  /// has no size.
+  /// Returns an error text for a picture whose size, px, differs from the camera's `size`; otherwise empty.
   [[nodiscard]] std::optional<std::string> other_size(int width, int height) const;
 };
 
-/// A file of measured cameras.
+/// Content of a file of measured cameras.
 struct MeasuredCameras {
   std::vector<MeasuredCamera> camera;
 };

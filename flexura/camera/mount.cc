@@ -23,20 +23,23 @@ struct Fault {
   std::string path, what;
 };
 
-// Returns why the mount does not have exactly one orientation; an empty text if it does.
+// Returns an error if the mount does not have exactly one valid orientation; otherwise an empty text.
 Fault orientation_fault(const MountConfig& mount) {
-  if (mount.look_at && mount.rotation) return {"rotation", "stands beside look_at: expected one of the two"};
+  if (mount.look_at && mount.rotation)
+    return {"rotation", "is given together with look_at: expected one of them"};
   if (!mount.look_at && !mount.rotation) return {"", "has no orientation: expected look_at or rotation"};
   if (mount.rotation) {
     if (std::string problem = quaternion_problem(*mount.rotation); !problem.empty())
       return {"rotation", std::move(problem)};
-    if (mount.roll != 0) return {"roll", "belongs to look_at: expected it to be part of rotation"};
+    if (mount.roll != 0) return {"roll", "is only for look_at: expected the roll to be part of rotation"};
     return {};
   }
   const Eigen::Vector3d forward = vector(*mount.look_at) - vector(mount.position);
   if (!(forward.norm() > 0)) return {"look_at", "is the mount's own position: expected another point"};
   if (!upright(forward))
-    return {"look_at", "is straight above or below, where no side is up: expected rotation instead"};
+    return {
+        "look_at",
+        "is straight above or below the mount, so that the roll is undetermined: expected rotation instead"};
   return {};
 }
 
@@ -119,7 +122,7 @@ Pose MountConfig::pose() const {
 std::optional<Eigen::Matrix3d> upright(const Eigen::Vector3d& forward) {
   const Eigen::Vector3d z = forward.stableNormalized();
   const Eigen::Vector3d across = z.cross(Eigen::Vector3d::UnitY());
-  // Nearer to the vertical than this, its direction is determined by rounding.
+  // Within 1e-9 rad from the vertical, rounding errors would determine the direction.
   if (!(across.norm() > 1e-9)) return std::nullopt;
   Eigen::Matrix3d R;
   R.col(0) = across.normalized();

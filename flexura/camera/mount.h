@@ -10,39 +10,41 @@
 
 namespace flexura {
 
-/// One axis of a stage, m. Has no travel unless limits are given.
+/// One linear axis of a stage; positions are in m. The default limits allow no travel.
 struct SlideConfig : AxisConfig {
   SlideConfig();
 };
 
-/// Translates a mount along its own axes.
+/// A linear stage that translates the mount along the mount's axes.
 struct StageConfig {
-  SlideConfig x, y, z;  ///< Right, down, forward.
-  double delay = 0;     ///< Delay from a command to the start of its motion, s.
+  SlideConfig x, y, z;  ///< Axes to the right, downwards, and forwards.
+  double delay = 0;     ///< Delay from a command to the start of the motion, s.
 
-  /// Returns whether it travels along any axis.
+  /// Returns whether any axis can travel.
   [[nodiscard]] bool can_move() const;
 };
 
-/// Position of a stage: the mount's offset along its own axes (right, down, forward), m.
+/// Position of a stage: the mount's offset along the mount's axes (right, down, forward), m.
 struct StageState {
   Eigen::Vector3d offset = Eigen::Vector3d::Zero();
 
   bool operator==(const StageState&) const = default;
 };
 
-/// Pose of a camera's mount as given in a file. The orientation is given in one of two ways.
+/// Pose of a camera's mount in a file. Either `look_at` or `rotation` gives the orientation.
 struct MountConfig {
-  std::array<double, 3> position = {0, 0, 0};    ///< Position p_WM at stage offset 0, m.
-  std::optional<std::array<double, 3>> look_at;  ///< M's z points to this point of W; M's y downwards.
-  double roll = 0;                               ///< Rotation about z after look_at, rad.
-  /// Instead of look_at, the quaternion (w, x, y, z) of R_WM.
+  std::array<double, 3> position = {0, 0, 0};  ///< Position p_WM at stage offset 0, m.
+  std::optional<std::array<double, 3>>
+      look_at;      ///< Point in W, m, to which M's z points; M's y points downwards as far as possible.
+  double roll = 0;  ///< Additional rotation about M's z, with look_at only, rad.
+  /// Unit quaternion (w, x, y, z) of R_WM, instead of look_at.
   std::optional<std::array<double, 4>> rotation;
   StageConfig stage;
 
-  /// Returns X_WM at stage offset 0. Throws std::invalid_argument for no orientation or two, or a look_at in
-  /// M's origin or exactly above or below it. Also for a quaternion whose norm is not 1 (to 1e-3), or a roll
-  /// beside a rotation.
+  /// Returns X_WM at stage offset 0. Throws std::invalid_argument unless exactly one of look_at and rotation
+  /// is given. Also throws it if look_at is M's origin, or vertically above or below this origin. Further
+  /// causes are a quaternion whose norm differs from 1 by more than 1e-3, and a roll given together with
+  /// rotation.
   [[nodiscard]] Pose pose() const;
 };
 
@@ -50,13 +52,14 @@ const Table<SlideConfig>& fields_of(const SlideConfig*);
 const Table<StageConfig>& fields_of(const StageConfig*);
 const Table<MountConfig>& fields_of(const MountConfig*);
 
-/// Returns the axes in W (columns: right, down, forward) of a camera with W's vertical upright in its image.
-/// It looks along `forward` (in W, of any length). Empty if it looks exactly up or down, or if `forward` is
-/// zero.
+/// Returns the orientation of a camera that looks along `forward` and has W's vertical upright in its image.
+/// The columns are the camera's axes in W: right, down, forward. `forward` is in W and of any length. Empty
+/// if `forward` is vertical or zero.
 [[nodiscard]] std::optional<Eigen::Matrix3d> upright(const Eigen::Vector3d& forward);
 
-/// Returns a camera's rotation about its optical axis from upright, rad in (-pi, pi], clockwise seen from
-/// behind the camera: a pan/tilt head cannot correct it. Empty if the camera looks exactly up or down.
+/// Returns a camera's rotation about its optical axis relative to the upright orientation, rad in (-pi, pi].
+/// Positive is clockwise as seen from behind the camera. A pan/tilt head cannot correct this rotation. Empty
+/// if the camera looks exactly up or down.
 [[nodiscard]] std::optional<double> roll_of(const Eigen::Matrix3d& R_WC);
 
 }  // namespace flexura

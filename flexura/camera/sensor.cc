@@ -11,7 +11,7 @@
 namespace flexura {
 namespace {
 
-// Larger than any camera's; they keep a faulty file from filling the memory.
+// Limits above those of any camera, which prevent a faulty file from exhausting memory.
 constexpr double max_side = 16384;
 constexpr double max_pixels = 1 << 26;
 
@@ -38,7 +38,7 @@ void check_sensor(const SensorConfig& sensor, Reader& reader) {
     reader.problem_at("row_time", "is missing: a rolling shutter needs the time between two rows");
   }
   if (!is_rolling && sensor.row_time > 0) {
-    reader.problem_at("row_time", "is for readout = \"rolling\" alone");
+    reader.problem_at("row_time", "is only for readout = \"rolling\"");
   }
   if (is_rolling && sensor.row_time * height > frame) {
     reader.problem_at(
@@ -48,7 +48,7 @@ void check_sensor(const SensorConfig& sensor, Reader& reader) {
   }
 }
 
-// Format and timing of frames.
+// Adds the fields for format and timing of frames.
 void add_frames(Table<SensorConfig>& table) {
   table.field("width", &SensorConfig::width, {.meaning = "Image width, px.", .range = between(1, max_side)})
       .field("height", &SensorConfig::height, {.meaning = "Image height, px.", .range = between(1, max_side)})
@@ -89,7 +89,7 @@ void add_frames(Table<SensorConfig>& table) {
               .range = between(0, 1)});
 }
 
-// Effects on the light, in this order.
+// Adds the fields for effects on the light, in physical order.
 void add_effects(Table<SensorConfig>& table) {
   table
       .field("vignetting", &SensorConfig::vignetting,
@@ -125,7 +125,7 @@ double last_row_delay(const SensorConfig& sensor) {
 }
 
 FrameTimes times_of_frame_at(const SensorConfig& sensor, double start) {
-  const double last_row = last_row_delay(sensor);  // After the first one.
+  const double last_row = last_row_delay(sensor);  // Delay of the last row after the first row.
   FrameTimes times;
   times.start = start;
   times.middle = start + 0.5 * (last_row + sensor.exposure);

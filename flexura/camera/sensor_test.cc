@@ -109,9 +109,9 @@ TEST(Sensor, HasSpansThatEndAfterTheirBeginning) {
 
 TEST(Sensor, HasRowTimesForARollingShutterAlone) {
   EXPECT_THAT(problems_of({member("row_time", 1e-5)}),
-              ElementsAre(HasSubstr("row_time: is for readout = \"rolling\"")));
+              ElementsAre(HasSubstr("row_time: is only for readout = \"rolling\"")));
   EXPECT_THAT(problems_of({member("row_time", 1e-5), member("readout", "interlaced")}),
-              ElementsAre(HasSubstr("row_time: is for readout")));
+              ElementsAre(HasSubstr("row_time: is only for readout")));
 }
 
 TEST(Sensor, KeepsEveryFieldWithinItsRange) {

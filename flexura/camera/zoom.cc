@@ -33,7 +33,8 @@ Eigen::Vector<double, intrinsics_count> numbers(const Intrinsics& lens) {
   return result;
 }
 
-// Derivative of a row's values by those of the lens at ratio 1: only values that the row omits depend on it.
+// Derivative of a row's values with respect to the values of the lens at ratio 1. Only values that the row
+// omits depend on the lens.
 Eigen::Vector<double, intrinsics_count> left_out(const ZoomRow& row) {
   const auto factor = [](bool is_written, double otherwise) { return is_written ? 0.0 : otherwise; };
   Eigen::Vector<double, intrinsics_count> result;
@@ -184,7 +185,7 @@ Eigen::Vector<double, intrinsics_count> ZoomTable::by_row(double zoom, std::size
   Eigen::Vector<double, intrinsics_count> result;
   for (int i = 0; i < intrinsics_count; ++i) {
     result[i] = curves_.at(static_cast<std::size_t>(i)).by_point(x, point);
-    if (i < 2) result[i] *= lens[i] / rows_.at(point)[i];  // The curve is that of the logarithm.
+    if (i < 2) result[i] *= lens[i] / rows_.at(point)[i];  // The curve interpolates the logarithm.
   }
   return result;
 }

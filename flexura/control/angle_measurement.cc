@@ -29,7 +29,8 @@ MeasuredCoordinates::MeasuredCoordinates(const AngleMeasurement& measurement, Ei
   if (!(measurement.step > 0) || !std::isfinite(measurement.step) || !is_amount(measurement.delay) ||
       !is_amount(measurement.noise[0]) || !is_amount(measurement.noise[1]))
     throw std::invalid_argument(
-        "a measurement's step must be above 0, its delay and noise 0 or more, and all finite");
+        "a measurement's step must be above 0, its delay and noise must be 0 or more, and all must be "
+        "finite");
 }
 
 void MeasuredCoordinates::take(const Eigen::VectorXd& x, const Eigen::VectorXd& v) {

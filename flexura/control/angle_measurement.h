@@ -17,7 +17,8 @@ enum class AngleReading : std::uint8_t {
 struct AngleMeasurement {
   double step = 0.02;  ///< Time between measurements, s; > 0.
   double delay = 0;    ///< Delay of each measurement, s; >= 0.
-  /// Standard deviations, rad; >= 0: of theta and of q at each node, or of alpha_1 and alpha_2 at each point.
+  /// Standard deviations of the noise of theta and q at each node, or of alpha_1 and alpha_2 at each point,
+  /// rad; >= 0.
   std::array<double, 2> noise = {0, 0};
   std::uint64_t seed = 1;  ///< Seed of the noise; equal seeds give equal numbers.
   AngleReading reading = AngleReading::angles;
@@ -28,17 +29,17 @@ struct AngleMeasurement {
 /// first measurement the state is that of the first one.
 class MeasuredCoordinates {
  public:
-  /// For an arm whose angles have `nodes` numbers each. Throws std::invalid_argument for numbers out of their
-  /// range or not finite.
+  /// `nodes`: number of coordinates of each angle of the arm. Throws std::invalid_argument for numbers out of
+  /// their range or not finite.
   MeasuredCoordinates(const AngleMeasurement& measurement, Eigen::Index nodes);
 
   /// Returns the time of the next measurement, s.
   [[nodiscard]] double next() const { return static_cast<double>(count_) * measurement_.step; }
   /// Adds the state (x, dx/dt) at next().
   void take(const Eigen::VectorXd& x, const Eigen::VectorXd& v);
-  /// Returns the coordinates of the newest measurement; empty before the first one.
+  /// Returns the coordinates of the newest measurement; empty before the first measurement.
   [[nodiscard]] const Eigen::VectorXd& seen() const { return seen_; }
-  /// Returns the noise of variance 1 in the `which`-th number of the newest measurement.
+  /// Returns the noise with variance 1 for number `which` of the newest measurement.
   [[nodiscard]] double deviate(std::uint64_t which) const;
 
  private:
@@ -51,7 +52,7 @@ class MeasuredCoordinates {
   AngleMeasurement measurement_;
   Eigen::Index nodes_;
   std::uint64_t count_ = 0;
-  std::deque<Moment> moments_;  // The last one that is as old as the delay, and all later ones.
+  std::deque<Moment> moments_;  // The last moment that is as old as the delay, and all later ones.
   Eigen::VectorXd seen_;
 };
 

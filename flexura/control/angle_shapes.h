@@ -5,34 +5,41 @@
 
 namespace flexura {
 
-/// Functions of arc length that represent an angle of a distributed arm by finitely many numbers.
+/// Functions of arc length that represent an angle of a distributed arm by finitely many coordinates.
 enum class AngleBasis {
-  polynomial,  ///< One polynomial along the whole arm, given by its values at Gauss-Legendre nodes.
-  sections,    ///< Linear in every section, given by its values at the sections' ends (and at the base).
+  polynomial,  ///< One polynomial along the whole arm; the coordinates are its values at Gauss-Legendre
+               ///< nodes.
+  sections,  ///< Linear in every section; the coordinates are the values at the sections' ends (and at a free
+             ///< base).
 };
 
-/// Points of the unstretched arm for integrals along it (Gauss-Legendre in each section). The shape functions
-/// P_a of an angle at these points give angle(s) = base(s) clamp + sum over a of P_a(s) x_a.
+/// Shape functions of an angle, and the Gauss-Legendre points of each section for integrals along the
+/// unstretched arm. The shape functions P_a and the coordinates x_a give angle(s) = base(s) clamp + sum over
+/// a of P_a(s) x_a.
 struct AngleShapes {
   std::vector<double> lengths;  ///< Lengths of the sections, m.
   AngleBasis basis = AngleBasis::polynomial;
-  bool is_clamped = true;  ///< The angle at s = 0 is given and not one of the numbers.
-  Eigen::VectorXd nodes;   ///< Positions of the numbers, which are the angle's values there, m of arc length.
-  Eigen::VectorXd s, weights;         ///< Of the points: m of arc length, and the integral's weights, m.
-  std::vector<std::size_t> section;   ///< Of the points, from 0.
-  Eigen::MatrixXd values, slopes;     ///< P_a and dP_a/ds (1/m): a row per point, a column per number.
-  Eigen::VectorXd base, base_slopes;  ///< Function of the clamp; 0 if the base is free.
-  /// (running f)(s_j) is the integral of f from the base to s_j, with f given at the points. Exact for
-  /// polynomials of degree points - 1 in each section.
+  bool is_clamped = true;  ///< The angle at s = 0 is given and not a coordinate.
+  Eigen::VectorXd nodes;   ///< Nodes, m of arc length: the coordinates are the angle's values at the nodes.
+  Eigen::VectorXd s,
+      weights;  ///< Positions of the points, m of arc length, and their weights in integrals, m.
+  std::vector<std::size_t> section;   ///< Section of each point, counted from 0.
+  Eigen::MatrixXd values, slopes;     ///< P_a and dP_a/ds (1/m): a row per point, a column per coordinate.
+  Eigen::VectorXd base, base_slopes;  ///< Function base(s) of the clamp and its derivative (1/m) at the
+                                      ///< points; 0 if the base is free.
+  /// (running f)(s_j) is the integral of f from the base to s_j, with f given at the points. The integral is
+  /// exact for polynomials of degree points - 1 in each section.
   Eigen::MatrixXd running;
 
-  /// Returns P_a at `at` m, a column per number; the clamp's function last.
+  /// Returns P_a at the arc length `at`, m: a column per coordinate, and the clamp's function as the last
+  /// column.
   [[nodiscard]] Eigen::RowVectorXd at(double at) const;
 };
 
-/// Returns shapes with `nodes` >= 1 numbers (polynomial basis; the other one has one per section, and one at
-/// a free base) and `points` >= 1 per section. Throws std::invalid_argument for fewer, no sections, or a
-/// length that is not positive and finite.
+/// Returns shapes with `points` >= 1 quadrature points per section. `nodes` >= 1 is the number of coordinates
+/// in the polynomial basis. The basis `sections` has one coordinate per section, and one at a free base.
+/// Throws std::invalid_argument for smaller numbers, no sections, or a length that is not positive and
+/// finite.
 [[nodiscard]] AngleShapes angle_shapes(const std::vector<double>& lengths, AngleBasis basis, bool is_clamped,
                                        int nodes, int points);
 

@@ -23,7 +23,7 @@ Eigen::Vector2d halfway(const Eigen::Vector2d& one, const Eigen::Vector2d& other
 ContourImages::ContourImages(Arm arm, const std::vector<double>& shares) : arm_(std::move(arm)) {
   for (const double share : shares) {
     const bool is_on_the_arm = share >= 0 && share <= 1;
-    if (!is_on_the_arm) throw std::invalid_argument("a contour's share of the arm is in [0, 1]");
+    if (!is_on_the_arm) throw std::invalid_argument("a contour's share of the arm must be in [0, 1]");
     points_.push_back(material_point(arm_, share * arm_.length()));
   }
   rings_.resize(points_.size());
@@ -146,7 +146,7 @@ void contour_error(const ContourImage& at, const Eigen::Ref<const Eigen::Matrix2
   const Eigen::Index count = at.pixels.cols();
   if (seen.cols() != count || desired.cols() != count || desired_normals.cols() != count ||
       error.size() != count)
-    throw std::invalid_argument("contours of different places have no difference");
+    throw std::invalid_argument("contours with different numbers of points cannot be compared");
   for (Eigen::Index i = 0; i < count; ++i) {
     const double off = halfway(at.normals.col(i), desired_normals.col(i)).dot(seen.col(i) - desired.col(i));
     error[i] = std::isfinite(off) ? off : 0;
@@ -156,7 +156,7 @@ void contour_error(const ContourImage& at, const Eigen::Ref<const Eigen::Matrix2
 void halfway_normals(const Eigen::Ref<const Eigen::Matrix2Xd>& one,
                      const Eigen::Ref<const Eigen::Matrix2Xd>& other, Eigen::Ref<Eigen::Matrix2Xd> middle) {
   if (one.cols() != other.cols() || one.cols() != middle.cols())
-    throw std::invalid_argument("normals of different places have no middle");
+    throw std::invalid_argument("normals at different numbers of points cannot be averaged");
   for (Eigen::Index i = 0; i < one.cols(); ++i) middle.col(i) = halfway(one.col(i), other.col(i));
 }
 

@@ -33,7 +33,8 @@ DistributedArm::DistributedArm(const DistributedArmModel& model)
       shapes_(angle_shapes(model.lengths, model.basis, model.clamp.has_value(), model.nodes, model.points)) {
   const auto sections = static_cast<Eigen::Index>(model.lengths.size());
   const Eigen::Index points = shapes_.s.size();
-  if (points < nodes()) throw std::invalid_argument("a distributed arm needs as many points as nodes");
+  if (points < nodes())
+    throw std::invalid_argument("a distributed arm needs at least as many points as nodes");
   lengths_at_ = 2 * nodes();
   size_ = lengths_at_ + (model.has_variable_lengths ? sections : 0);
   const double length = std::accumulate(model.lengths.begin(), model.lengths.end(), 0.0);
@@ -64,7 +65,7 @@ Eigen::VectorXd DistributedArm::coordinates(const std::function<Eigen::Vector2d(
 
 void DistributedArm::set(const Eigen::VectorXd& x, const Eigen::VectorXd& v) {
   if (x.size() != size_ || v.size() != size_)
-    throw std::invalid_argument("a distributed arm's state has another size");
+    throw std::invalid_argument("a state's size does not fit the distributed arm");
   set_angles(x, v);
   set_velocities();
   set_forces();

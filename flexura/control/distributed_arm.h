@@ -12,29 +12,31 @@
 
 namespace flexura {
 
-/// An arm with mass, weight and elasticity along it, whose direction is given by two continuous angles
-/// (docs/control.md, eq. 1): the plant of the paper's theory (its section 2).
+/// An arm with distributed mass, weight and elasticity: the plant of the theory in the paper's section 2. Two
+/// continuous angles give the arm's direction (docs/control.md, eq. 1).
 struct DistributedArmModel {
-  std::vector<double> lengths = {1};        ///< Lengths of the sections at rest, m: l_i0.
-  bool has_variable_lengths = false;        ///< The sections have lengths l_i0 + u_i(t), u_i coordinates too.
-  double density = 1;                       ///< rho: mass per length of the arm at rest, kg/m; > 0.
-  Eigen::Vector3d gravity = {0, -9.81, 0};  ///< In W, m/s^2, any direction.
+  std::vector<double> lengths = {1};  ///< Lengths of the sections at rest, m: l_i0.
+  bool has_variable_lengths =
+      false;           ///< Whether the sections have lengths l_i0 + u_i(t), with u_i as further coordinates.
+  double density = 1;  ///< rho: mass per length of the arm at rest, kg/m; > 0.
+  Eigen::Vector3d gravity = {0, -9.81, 0};  ///< Gravity in W, m/s^2, in any direction.
   double bending_stiffness = 0;             ///< EI, N m^2; >= 0.
   double axial_stiffness = 0;               ///< EA of variable lengths, N; >= 0.
-  double damping = 0;         ///< c: the medium dissipates c |de/dt|^2 per length (W/m, rad/s): N s; >= 0.
-  double length_damping = 0;  ///< For the lengths' rates, N s/m; >= 0.
+  double damping =
+      0;  ///< c: the medium dissipates the power c |de/dt|^2 per length (W/m, with rad/s), N s; >= 0.
+  double length_damping = 0;  ///< Damping of the rates of the lengths, N s/m; >= 0.
   /// theta and q at the clamped base, rad; std::nullopt: the arm turns freely about its base point.
   std::optional<std::array<double, 2>> clamp = std::array<double, 2>{0, 0};
-  AngleBasis basis = AngleBasis::polynomial;  ///< For both angles.
-  int nodes = 10;                             ///< Numbers per angle (polynomial basis).
+  AngleBasis basis = AngleBasis::polynomial;  ///< Basis for both angles.
+  int nodes = 10;                             ///< Number of coordinates per angle (polynomial basis).
   int points = 14;                            ///< Quadrature points in each section.
 };
 
-/// Equations of motion of such an arm. It is discretised along s before Lagrange's equations are derived, so
-/// that energies and forces are exactly consistent (docs/control.md, "The distributed arm"). The coordinates
-/// x are the numbers of theta (rad) and q (rad), see AngleShapes. With variable lengths the sections' u_i (m)
-/// follow. |q| must stay below pi/2, where the angles are singular. After the constructor, only functions
-/// that return vectors or matrices allocate.
+/// Equations of motion of a distributed arm. The arm is discretised along s before Lagrange's equations are
+/// derived, so that energies and forces are exactly consistent (docs/control.md, "The distributed arm"). The
+/// coordinates x are those of theta (rad), then those of q (rad), see AngleShapes. With variable lengths the
+/// sections' u_i (m) follow. |q| must stay below pi/2, where the angles are singular. After construction,
+/// only functions that return vectors or matrices by value allocate.
 class DistributedArm {
  public:
   /// Throws std::invalid_argument for numbers out of their range or not finite, or fewer points than nodes.
@@ -44,19 +46,20 @@ class DistributedArm {
   /// Returns the shape functions of both angles; "the points" in this class are the quadrature points, by arc
   /// length s.
   [[nodiscard]] const AngleShapes& shapes() const { return shapes_; }
-  /// Return the number of coordinates, and of numbers per angle.
+  /// Return the number of all coordinates, and the number of coordinates per angle.
   [[nodiscard]] Eigen::Index size() const { return size_; }
   [[nodiscard]] Eigen::Index nodes() const { return shapes_.nodes.size(); }
-  /// Returns the coordinates of angles (theta, q) at the nodes' s (m at rest), with lengths at rest.
+  /// Returns the coordinates for the angles (theta, q), rad, as functions of s (m at rest), with lengths at
+  /// rest.
   [[nodiscard]] Eigen::VectorXd coordinates(const std::function<Eigen::Vector2d(double s)>& angles) const;
 
-  /// Sets the state x and its rates v. Throws std::invalid_argument for other sizes.
+  /// Sets the state x and its rates v. Throws std::invalid_argument unless both have size() entries.
   void set(const Eigen::VectorXd& x, const Eigen::VectorXd& v);
 
   // For the current state:
 
   [[nodiscard]] double kinetic_energy() const;  ///< T, J.
-  [[nodiscard]] double gravity_energy() const;  ///< V_g, J; 0 with all mass at the base.
+  [[nodiscard]] double gravity_energy() const;  ///< V_g, J; the zero is all mass at the base.
   [[nodiscard]] double elastic_energy() const;  ///< V_e, J.
   /// Returns the dissipated power, W; >= 0.
   [[nodiscard]] double damping_power() const { return rates_.dot(damping_force_); }
@@ -67,15 +70,16 @@ class DistributedArm {
   [[nodiscard]] Eigen::MatrixXd stiffness() const;
   /// Returns the mass matrix of the coordinates, size() x size(), symmetric: T = 1/2 v . M v.
   [[nodiscard]] Eigen::MatrixXd mass_matrix() const;
-  /// Computes d^2 x/dt^2 under generalized forces. Returns false if the coordinates are singular (|q| = pi/2)
-  /// or a number is not finite.
+  /// Computes the acceleration d^2 x/dt^2 under the generalized forces `force`. Returns false if the
+  /// coordinates are singular (|q| = pi/2) or a number is not finite.
   bool accelerate(const Eigen::VectorXd& force, Eigen::VectorXd& acceleration);
 
-  /// Return the angles at the points shapes().s, rad, and the arm's direction e there, a column per point.
+  /// Return the angles theta and q at the points shapes().s, rad, and the arm's direction e at them, a column
+  /// per point.
   [[nodiscard]] const Eigen::VectorXd& theta() const { return theta_; }
   [[nodiscard]] const Eigen::VectorXd& q() const { return q_; }
   [[nodiscard]] const Eigen::Matrix3Xd& direction() const { return e_; }
-  /// Returns the lengths over those at rest, one per section.
+  /// Returns the ratio of each section's length to its length at rest.
   [[nodiscard]] const Eigen::VectorXd& stretch() const { return stretch_; }
   /// Return the positions of the points, and of the tip, relative to the base, m in W.
   [[nodiscard]] Eigen::Matrix3Xd positions() const;
@@ -99,31 +103,32 @@ class DistributedArm {
   Cholesky factor_;
 };
 
-/// Simulates the arm over time: x and v as one vector (x; v), with a force that may depend on both.
+/// Integrates the arm's motion over time, with a force that may depend on x and v.
 class DistributedMotion {
  public:
-  /// Writes the generalized forces Q on `arm`, which is set to its state (x, v). Returns a power (W) that is
-  /// integrated: the dissipation of a law's damping.
+  /// Computes the generalized forces Q on `arm`, which is set to the state (x, v). Returns a power (W) that
+  /// is integrated over time, for example the dissipation of a law's damping.
   using Force = std::function<double(double t, const DistributedArm& arm, const Eigen::VectorXd& x,
                                      const Eigen::VectorXd& v, Eigen::VectorXd& Q)>;
-  /// The tolerance is for (x; v) and both integrals. At rest at x = 0, all angles 0, until start().
+  /// `tolerance`: for (x; v) and both integrals. Until start() the arm is at rest at x = 0, where all angles
+  /// are 0.
   DistributedMotion(DistributedArm arm, Force force, const OdeTolerance& tolerance = {});
 
   /// Starts from rest at x at time 0.
   void start(const Eigen::VectorXd& x);
-  /// Advances to the time `until`, s, while go_on(), called before every step of the integrator, returns
-  /// true; empty: always. Returns false if that ended it, it could not continue (DormandPrince), or the arm
-  /// reached a singularity.
+  /// Advances to the time `until`, s. The integrator calls go_on() before every step and stops if it returns
+  /// false; an empty go_on never stops it. Returns false if go_on() stopped it, the integrator failed
+  /// (DormandPrince), or the arm reached a singularity.
   [[nodiscard]] bool advance(double until, const std::function<bool()>& go_on = {});
 
-  /// Return the time since the start, s; x and its rates at that time.
+  /// Return the time since the start, s, and the coordinates x and rates v at that time.
   [[nodiscard]] double time() const { return time_; }
   [[nodiscard]] const Eigen::VectorXd& x() const { return x_; }
   [[nodiscard]] const Eigen::VectorXd& v() const { return v_; }
   /// Returns the arm in its current state.
   [[nodiscard]] const DistributedArm& arm() const { return arm_; }
-  /// Return the energy, J, since the start: dissipated by the arm's own damping, and the integral of the
-  /// powers that the force returned.
+  /// Return two energies since the start, J: the energy dissipated by the arm's own damping, and the integral
+  /// of the powers that the force returned.
   [[nodiscard]] double damped() const { return y_[2 * arm_.size()]; }
   [[nodiscard]] double summed() const { return y_[2 * arm_.size() + 1]; }
 

@@ -17,7 +17,7 @@ std::vector<double> places_of(const FeatureSet& set) {
   for (const double share : set.points) add(share);
   for (const auto& [from, to] : set.chords) add(from), add(to);
   if (!set.has_moments) return shares;
-  if (set.moment_points < 2) throw std::invalid_argument("moments need two points of the arm or more");
+  if (set.moment_points < 2) throw std::invalid_argument("moments need at least two points of the arm");
   for (int i = 0; i < set.moment_points; ++i)
     shares.push_back(static_cast<double>(i) / (set.moment_points - 1));
   return shares;

@@ -13,8 +13,8 @@
 
 namespace flexura {
 
-/// Features of one arm's images for many states, without allocation after the first use. Derivatives are by
-/// the camera models and the backbone's Jacobian.
+/// Features of one arm's images for many states, without allocation after the first use. The derivatives
+/// follow from the camera models and the backbone's Jacobian.
 class FeatureImages {
  public:
   /// Throws std::invalid_argument for a share outside [0, 1], no features, or moments of fewer than two
@@ -22,15 +22,15 @@ class FeatureImages {
   FeatureImages(const Arm& arm, FeatureSet set);
 
   [[nodiscard]] const FeatureSet& set() const { return set_; }
-  /// Returns the points of the features, in the last state.
+  /// Returns the images of the features' points, in the last state.
   [[nodiscard]] const PointImages& points() const { return points_; }
 
   /// Computes the features in all cameras, camera by camera. Returns false if a lens does not show a needed
   /// point, or an image has no direction or length. Throws std::invalid_argument for a state that does not
   /// fit, or no cameras.
   [[nodiscard]] bool values(const ArmState& state, std::span<const View> views, Eigen::VectorXd& values);
-  /// Computes the features and their derivatives by the state; columns are each section's bend_x, bend_y
-  /// (rad), stretch.
+  /// Computes the features and their derivatives with respect to the state. The columns are each section's
+  /// bend_x, bend_y (rad) and stretch.
   [[nodiscard]] bool derive(const ArmState& state, std::span<const View> views, Eigen::VectorXd& values,
                             Eigen::MatrixXd& by_state);
 
@@ -43,7 +43,7 @@ class FeatureImages {
   // NOLINTEND(performance-unnecessary-value-param)
 
   FeatureSet set_;
-  // Indices among the points: of the points that count, and of the chords' ends.
+  // Indices in points_ of the feature points, and of the chords' ends.
   std::vector<Eigen::Index> at_;
   std::vector<std::array<Eigen::Index, 2>> ends_;
   Eigen::Index first_corner_ = 0;

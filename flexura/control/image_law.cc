@@ -100,7 +100,7 @@ ImageLaw::ImageLaw(const Arm& arm, const ImageLawGains& gains) : variables_(arm)
   if (!is_positive(gains.rate) || !is_positive(gains.most_step) || !(gains.damping >= 0) ||
       !std::isfinite(gains.damping))
     throw std::invalid_argument(
-        "a law of images needs a rate and a longest step above 0 and a damping of 0 or more");
+        "an image law needs a rate and a largest step above 0 and a damping of 0 or more");
 }
 
 Eigen::MatrixXd ImageLaw::by_variables(const Eigen::MatrixXd& by_state) const {
@@ -111,7 +111,8 @@ Eigen::MatrixXd ImageLaw::by_variables(const Eigen::MatrixXd& by_state) const {
 
 void ImageLaw::by_variables(const Eigen::MatrixXd& by_state, Eigen::MatrixXd& J) const {
   if (by_state.cols() != 3 * static_cast<Eigen::Index>(variables_.parts().size()))
-    throw std::invalid_argument("a derivative by an arm's state has three columns a section");
+    throw std::invalid_argument(
+        "a derivative with respect to an arm's state must have three columns per section");
   J.resize(by_state.rows(), variables_.size());
   Eigen::Index column = 0;
   for (const ArmVariables::Part& part : variables_.parts()) {
@@ -135,7 +136,7 @@ void ImageLaw::step(const ArmState& sent, const Eigen::VectorXd& error, const Ei
   const Eigen::Index size = variables_.size();
   if (J.cols() != size || J.rows() != error.size() || error.size() == 0 || !(dt > 0))
     throw std::invalid_argument(
-        "a law of images needs errors, their Jacobian by the arm's variables, and a time");
+        "an image law needs errors, their Jacobian with respect to the arm's variables, and a step above 0");
   variables_.pack(sent, work.x);
   step.reciprocal_condition = 0;
   normal_matrix(J, work.normal);

@@ -9,12 +9,12 @@ namespace {
 
 void require_numbers(bool are_good, const Eigen::MatrixXd& J) {
   if (!are_good || J.size() == 0 || !J.allFinite())
-    throw std::invalid_argument("an estimate of a Jacobian starts from finite numbers in their ranges");
+    throw std::invalid_argument("a Jacobian estimate needs finite initial numbers in their ranges");
 }
 
 bool teaches(const Eigen::MatrixXd& J, const Eigen::VectorXd& dx, const Eigen::VectorXd& df, double least) {
   if (dx.size() != J.cols() || df.size() != J.rows())
-    throw std::invalid_argument("a motion does not fit the estimate of its Jacobian");
+    throw std::invalid_argument("a motion's size does not fit the Jacobian estimate");
   return dx.allFinite() && df.allFinite() && dx.norm() >= least;
 }
 

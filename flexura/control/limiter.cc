@@ -42,19 +42,19 @@ CommandLimiter::CommandLimiter(ArmModel arm, LimiterConfig config, const ArmStat
   row_ = config_.list_step > 0 ? config_.list_step : config_.step;
   turning_time_ = turning_time(config_.step, row_);
   if (!fits(arm_, start) || !is_possible(start))
-    throw std::invalid_argument("a limiter starts in a finite state of its arm");
+    throw std::invalid_argument("a limiter must start in a finite state of its arm");
   last_step_.motors = motors_at(start);
   last_step_.rates = last_step_.swing = Eigen::VectorXd::Zero(last_step_.motors.size());
   std::string broken = breach({start});
   if (broken.empty() && config_.looks_ahead) broken = contact({start});
-  if (!broken.empty()) throw std::invalid_argument("a limiter starts within the limits: " + broken);
+  if (!broken.empty()) throw std::invalid_argument("a limiter must start within the limits: " + broken);
 }
 
 LimitedCommand CommandLimiter::next(const ArmState& asked) {
   asked_ = asked;
   if (!fault_) {
     if (!fits(arm_, asked))
-      fault("the law's command is not of this arm");
+      fault("the law's command does not fit this arm");
     else if (!is_possible(asked))
       fault("the law's command is not finite, or has a length that is not above 0");
   }
@@ -117,7 +117,7 @@ void CommandLimiter::fault(const std::string& reason) {
 }
 
 void CommandLimiter::reset() {
-  if (!is_at_rest()) throw std::logic_error("a limiter goes on when the arm is at rest");
+  if (!is_at_rest()) throw std::logic_error("a limiter can continue only when the arm is at rest");
   fault_.reset();
 }
 
@@ -151,7 +151,7 @@ ArmState CommandLimiter::within_limits(const ArmState& asked, std::string& reaso
     const double limit = std::min(section.max_bend, fold), bend = state.bends[i].norm();
     if (bend > limit) state.bends[i] *= limit / bend, say(limit == fold ? "folding" : "bend");
     if (arm_.kind == ArmKind::planar && state.bends[i].y() != 0)
-      state.bends[i].y() = 0, say("bend out of the plane");
+      state.bends[i].y() = 0, say("bend out of the arm's plane");
   }
   return state;
 }

@@ -15,13 +15,17 @@ namespace flexura {
 
 /// Limits of a limiter in addition to the arm's own.
 struct LimiterConfig {
-  double step = 1.0 / 30;           ///< Time between commands, s; > 0.
-  std::optional<Drive> drive = {};  ///< Limits of its motors' speed, step rate, acceleration, position.
-  /// Time between rows of the command list that the motors follow, s: rates change within that. 0: `step`.
+  double step = 1.0 / 30;  ///< Time between commands, s; > 0.
+  std::optional<Drive> drive =
+      {};  ///< Drive of the arm: limits of its motors' speed, step rate, acceleration and position.
+  /// Time between the rows of the command list that the motors follow, s; a rate changes within this time. 0:
+  /// `step`.
   double list_step = 0;
-  std::vector<Obstacle> obstacles = {};  ///< Obstacles that no path may touch, with looks_ahead.
-  bool looks_ahead = true;  ///< Checks every path for contact (check_motions) until the arm would rest.
-  int most_braking = 200;   ///< Most steps to come to rest.
+  std::vector<Obstacle> obstacles =
+      {};  ///< Obstacles that the arm must not touch on its path, checked if looks_ahead.
+  bool looks_ahead =
+      true;  ///< Checks the path for contact (check_motions) up to where the arm would be at rest.
+  int most_braking = 200;  ///< Largest number of steps in which the arm must come to rest.
 };
 
 /// Command of a limiter.
@@ -29,50 +33,53 @@ struct LimitedCommand {
   ArmState state;             ///< Command to send: the arm's state one step from now.
   bool is_untouched = false;  ///< Equal to the law's command, bit for bit.
   bool is_at_rest = false;    ///< The arm stays at the last command.
-  std::string reason;         ///< Why the law was held back, or "".
+  std::string reason;         ///< Why the law's command was changed, or "".
 };
 
 /// Record of a fault.
 struct LimiterFault {
-  double time = 0;                   ///< Time since the limiter was made, s: its steps.
-  std::string reason;                ///< Why the arm was stopped.
+  double time = 0;     ///< Time since the limiter was constructed, s: number of steps times `step`.
+  std::string reason;  ///< Why the arm was stopped.
   std::optional<ArmState> observed;  ///< Last state from observe().
-  ArmState sent;                     ///< Last command before it.
-  std::optional<ArmState> asked;     ///< Command of the law at that time.
+  ArmState sent;                     ///< Last command before the fault.
+  std::optional<ArmState> asked;     ///< Command of the law at the time of the fault.
 };
 
-/// Limits commands between a law and an arm's drives. For any command of the law, the command sent:
+/// Limits commands between a law and an arm's drives. For any command of the law, the command that is sent:
 ///   - Is finite and within the arm's bends, stretches and folding. It changes no faster than bends and
 ///     stretches may.
 ///   - Respects the motors' speeds, step rates and accelerations; their backlash and rounding are left to the
 ///     drive. It respects the motors' positions, with backlash and rounding.
-///   - Can be brought to rest from there within all of these. With `looks_ahead` there is no contact on the
-///     way. That way is kept, and followed if nothing else is allowed (docs/control.md, "The limiter").
-/// A command that is not finite or of another arm, and every fault() from outside, stops the arm. It follows
-/// that way to rest and stays there until reset().
+///   - Allows the arm to brake to rest within all these limits. With `looks_ahead` this braking path is free
+///   of contact. The limiter keeps the braking path and follows it if no other command is allowed
+///   (docs/control.md, "The limiter").
+/// A command that is not finite or does not fit the arm, and every call of fault(), stops the arm. The arm
+/// follows its braking path to rest and stays there until reset().
 class CommandLimiter {
  public:
-  /// Starts at rest in `start`, a command. Throws std::invalid_argument for a state that does not fit the
-  /// arm, breaks a limit or (with looks_ahead) touches something. Also for a step that is not positive.
+  /// `start`: the command at which the arm is at rest. Throws std::invalid_argument if this state does not
+  /// fit the arm, violates a limit or (with looks_ahead) causes a contact. Also throws it for a step that is
+  /// not positive.
   CommandLimiter(ArmModel arm, LimiterConfig config, const ArmState& start);
   CommandLimiter(const Arm& driven, LimiterConfig config, const ArmState& start)
       : CommandLimiter(ArmModel(driven), std::move(config), start) {}
 
-  /// Returns the command for the next step, as near to `asked` as possible: on the straight line in the rates
-  /// from braking to the law's.
+  /// Returns the command for the next step, as near to `asked` as possible. Its rates are on the straight
+  /// line from the rates of braking to those of the law.
   [[nodiscard]] LimitedCommand next(const ArmState& asked);
-  /// Returns a law's command, or less of it, so that every motor can still brake to its target, at half of
-  /// its acceleration. For laws that cover the share `rate` times the step of the rest in each step (rate in
-  /// 1/s). Returns `asked` if no motor has an acceleration limit.
+  /// Returns the law's command, shortened so that every motor can still brake to its target at half its
+  /// largest acceleration. It is for laws that reduce the remaining error in each step by the share `rate`
+  /// (1/s) times the step. Returns `asked` if no motor has an acceleration limit.
   [[nodiscard]] ArmState within_braking(const ArmState& asked, double rate) const;
-  /// Returns the command for the next step of an arm that has to come to rest.
+  /// Returns the command for the next step on the braking path.
   [[nodiscard]] LimitedCommand brake();
 
   /// Stores the last observation, for the record of a fault.
   void observe(const ArmState& observed) { observed_ = observed; }
-  /// Stops the arm: a port's fault, a lost estimate. Keeps the first of several faults.
+  /// Stops the arm because of a fault, such as an error of a port or a lost estimate. Keeps the first of
+  /// several faults.
   void fault(const std::string& reason);
-  /// Returns the record of a fault for this reason now.
+  /// Returns the record of a fault at the current time, with this reason.
   [[nodiscard]] LimiterFault record(std::string reason) const {
     return {static_cast<double>(steps_) * config_.step, std::move(reason), observed_, sent_, asked_};
   }
@@ -91,7 +98,7 @@ class CommandLimiter {
   struct Plan {
     std::vector<ArmState> way;  // The next state, and the following ones to rest.
     bool is_allowed = false;
-    std::string reason;  // Why not.
+    std::string reason;  // Why the plan is not allowed.
   };
   struct MotorStep {
     Eigen::VectorXd motors;        // At its end, microsteps.

@@ -302,7 +302,7 @@ TEST(Limiter, StartsWithinTheLimitsOnly) {
   lamp.looks_ahead = false;
   EXPECT_NO_THROW(CommandLimiter(arm, lamp, ArmState::straight(1)));
   CommandLimiter limiter(arm, {}, ArmState::straight(1));
-  EXPECT_THAT(limiter.next({{{0.1, 0.1}}, {1}}).reason, HasSubstr("out of the plane"));
+  EXPECT_THAT(limiter.next({{{0.1, 0.1}}, {1}}).reason, HasSubstr("out of the arm's plane"));
 }
 
 // An arm that starts nearer to a motor's stop than backlash and rounding of the list must be moved away from

@@ -35,15 +35,14 @@ LyapunovMonitor::LyapunovMonitor(double tolerance, double settled, double roundi
 void LyapunovMonitor::add(const LyapunovSample& sample) {
   for (const double number : {sample.time, sample.kinetic, sample.potential, sample.gravity, sample.elastic,
                               sample.taken, sample.damped})
-    if (!std::isfinite(number)) throw std::invalid_argument("a sample of a run's energies must be finite");
+    if (!std::isfinite(number)) throw std::invalid_argument("an energy sample must be finite");
   if (!samples_.empty() && !(sample.time > samples_.back().time))
-    throw std::invalid_argument("samples of a run's energies must follow each other in time");
+    throw std::invalid_argument("the times of energy samples must increase");
   samples_.push_back(sample);
 }
 
 LyapunovVerdict LyapunovMonitor::verdict() const {
-  if (samples_.size() < 2)
-    throw std::logic_error("a verdict on a run needs at least two samples of its energies");
+  if (samples_.size() < 2) throw std::logic_error("a verdict on a run needs at least two energy samples");
   LyapunovVerdict verdict;
   const LyapunovSample& start = samples_.front();
   double least = lyapunov_value(start);
@@ -70,11 +69,12 @@ void LyapunovMonitor::explain(LyapunovVerdict& verdict, double scale) const {
   for (std::size_t i = 1; i < samples_.size(); ++i)
     least_taken = std::min(least_taken, samples_[i].taken - samples_[i - 1].taken);
   if (least_taken < -tolerance_ * scale)
-    verdict.reasons.emplace_back("the damping K is not positive: it gave the arm energy");
+    verdict.reasons.emplace_back("the damping K is not positive: it added energy to the arm");
   else if (end.taken - start.taken + end.damped - start.damped <= tolerance_ * scale && !verdict.is_settled)
-    verdict.reasons.emplace_back("damping took none of the arm's energy");
+    verdict.reasons.emplace_back("damping removed no energy from the arm");
   if (lyapunov_value(end) < -tolerance_ * scale && end.potential < 0)
-    verdict.reasons.emplace_back("the potential has no minimum at the target: it fell below its value there");
+    verdict.reasons.emplace_back(
+        "the potential has no minimum at the target: during the run it was below its value at the target");
   if (!verdict.is_balanced) {
     const auto count = static_cast<Eigen::Index>(samples_.size());
     Eigen::MatrixX3d courses(count, 3);
@@ -95,14 +95,14 @@ void LyapunovMonitor::explain(LyapunovVerdict& verdict, double scale) const {
     };
     if (explains(0))
       verdict.reasons.emplace_back(
-          fmt::format("gravity is not compensated: {:.0f} % of it is left", 100 * shares[0]));
+          fmt::format("gravity is not fully compensated: {:.0f} % of it remains", 100 * shares[0]));
     if (explains(1))
-      verdict.reasons.emplace_back(
-          fmt::format("the arm's elasticity is not compensated: {:.0f} % of it is left", 100 * shares[1]));
+      verdict.reasons.emplace_back(fmt::format(
+          "the arm's elasticity is not fully compensated: {:.0f} % of it remains", 100 * shares[1]));
     if (explains(2))
-      verdict.reasons.push_back(fmt::format("the force does not follow the potential: {:.2f} of it, not 1{}",
-                                            1 - shares[2],
-                                            shares[2] > 1 ? " (it leads away from the target)" : ""));
+      verdict.reasons.push_back(
+          fmt::format("the law's force is {:.2f} times the potential's, not 1 times{}", 1 - shares[2],
+                      shares[2] > 1 ? " (it drives the arm away from the target)" : ""));
     if ((imbalance - courses * shares).cwiseAbs().maxCoeff() > 0.05 * verdict.imbalance)
       verdict.reasons.emplace_back("the forces on the arm are not those of the law");
   }

@@ -7,7 +7,7 @@ namespace flexura {
 
 /// Energies of a run under an artificial potential at one time, J.
 struct LyapunovSample {
-  double time = 0;       ///< In s.
+  double time = 0;       ///< Time, s.
   double kinetic = 0;    ///< T.
   double potential = 0;  ///< Pi.
   double gravity = 0;    ///< V_g; 0 if it is part of Pi, like V_e.
@@ -16,7 +16,7 @@ struct LyapunovSample {
   double damped = 0;     ///< Energy removed by the arm's own damping since the start.
 };
 
-/// Result of a run for the theory's conditions.
+/// Result of a run with respect to the conditions of the theory.
 struct LyapunovVerdict {
   bool is_monotone = false;  ///< W = T + Pi never increased.
   bool is_balanced = false;  ///< W decreased exactly by the dissipation.
@@ -24,22 +24,24 @@ struct LyapunovVerdict {
   double largest_rise = 0;   ///< Increase of W from any time to a later one, J.
   double imbalance = 0;      ///< Largest |W - W(0) + taken + damped|, J.
   /// Shares of dV_g/dx and dV_e/dx that were not compensated, and the missing share of the potential's force
-  /// (2: opposite sign), as far as these explain the imbalance (docs/control.md, eq. 11).
+  /// (2: opposite sign). They are fitted to the imbalance (docs/control.md, eq. 11).
   double gravity_share = 0, elastic_share = 0, potential_share = 0;
-  std::vector<std::string> reasons;  ///< In words; empty for a run as in theory.
+  std::vector<std::string>
+      reasons;  ///< Violated conditions in words; empty if the run agrees with the theory.
 
-  /// Returns true if the run is as in theory.
+  /// Returns true if the run agrees with the theory.
   [[nodiscard]] bool is_good() const { return reasons.empty(); }
 };
 
-/// Monitors W = T + Pi along a run; keeps every sample.
+/// Monitors W = T + Pi during a run. Keeps every sample.
 class LyapunovMonitor {
  public:
-  /// `tolerance`: for the balance of W, share of the energies in the run. `settled`: largest final W, share
-  /// of W at the start. `rounding`: uncertainty of W in any run, J.
+  /// `tolerance`: largest imbalance of W, as a share of the energies in the run. `settled`: largest final W,
+  /// as a share of W at the start. `rounding`: numerical uncertainty of W, J.
   explicit LyapunovMonitor(double tolerance = 1e-6, double settled = 1e-3, double rounding = 0);
 
-  /// Throws std::invalid_argument for a number that is not finite, or a time not after the last one.
+  /// Adds a sample. Throws std::invalid_argument for a number that is not finite, or a time not after the
+  /// previous one.
   void add(const LyapunovSample& sample);
   /// Returns the result for all samples so far. Throws std::logic_error for fewer than two.
   [[nodiscard]] LyapunovVerdict verdict() const;

@@ -62,7 +62,7 @@ using Columns23 = Eigen::Matrix<double, 2, 3>;
 PointImages::PointImages(Arm arm, const std::vector<double>& shares) : arm_(std::move(arm)) {
   for (const double share : shares) {
     const bool is_on_the_arm = share >= 0 && share <= 1;
-    if (!is_on_the_arm) throw std::invalid_argument("a feature's share of the arm is in [0, 1]");
+    if (!is_on_the_arm) throw std::invalid_argument("a feature's share of the arm must be in [0, 1]");
     const MaterialPoint point = material_point(arm_, share * arm_.length());
     points_.push_back({point.section, point.fraction});
   }

@@ -10,13 +10,13 @@
 
 namespace flexura {
 
-/// Pixels of points of an arm's material in cameras, and their derivatives by the arm's state
-/// (docs/control.md, eq. 16). Equal to BackboneJacobian's up to rounding, for positions only, for many points
-/// in a few cameras. Allocates only at the first use.
+/// Pixels of material points of an arm in cameras, and their derivatives with respect to the arm's state
+/// (docs/control.md, eq. 16). The results equal those of BackboneJacobian up to rounding. This class computes
+/// positions only, and is fast for many points in a few cameras. Allocates only at the first use.
 class PointImages {
  public:
-  /// For points at `shares` of the unstretched arm's length, from its base. Throws std::invalid_argument if
-  /// one is outside [0, 1].
+  /// `shares`: positions of the points, as shares of the unstretched arm's length from its base. Throws
+  /// std::invalid_argument if a share is outside [0, 1].
   PointImages(Arm arm, const std::vector<double>& shares);
 
   /// Returns the number of points: one per share, in their order.
@@ -24,12 +24,12 @@ class PointImages {
   /// Returns the number of columns of derivatives: each section's bend_x, bend_y (rad), stretch.
   [[nodiscard]] Eigen::Index columns() const { return 3 * static_cast<Eigen::Index>(arm_.sections.size()); }
 
-  /// Sets the arm's state. Throws std::invalid_argument if it does not fit.
+  /// Sets the arm's state. Throws std::invalid_argument if the state does not fit the arm.
   void set(const ArmState& state);
   /// Returns p_WP of point i, m.
   [[nodiscard]] Eigen::Vector3d place(Eigen::Index i) const;
 
-  /// Computes the points' pixels. Returns false if the lens does not show one of them. Requires set().
+  /// Computes the points' pixels. Returns false if the lens does not show a point. Requires set().
   [[nodiscard]] bool see(const View& view, Eigen::Matrix2Xd& pixels) const;
   // NOLINTNEXTLINE(performance-unnecessary-value-param): an Eigen::Ref is written through.
   /// Computes the pixels and their derivatives, two rows per point, into 2 count() x columns().
@@ -38,19 +38,19 @@ class PointImages {
  private:
   struct Point {
     std::size_t section = 0;
-    double fraction = 0;  // Share of the section.
+    double fraction = 0;  // Position as a share of the section's length.
     // For an arc of unit length bent by (b_x, b_y), t = |b|: the point at the fraction f is at across * b
     // sideways and `along` forwards, with across = (1 - cos ft)/t^2 and along = sin ft/t. The slopes are
-    // their derivatives by t, over t.
+    // their derivatives with respect to t, divided by t.
     double across = 0, along = 0, across_slope = 0, along_slope = 0;
   };
   // A section in a camera, in C.
   struct SeenSection {
     Eigen::Vector3d origin = {0, 0, 0}, x = {0, 0, 0}, y = {0, 0, 0}, z = {0, 0, 0};  // Its base and axes.
-    // Motion of everything beyond it with its end, by bend_x and bend_y: rotation, and velocity at C's
+    // Motion of everything beyond the section per unit of bend_x and bend_y: rotation, and velocity at C's
     // origin.
     Eigen::Vector3d turn_x = {0, 0, 0}, turn_y = {0, 0, 0}, shift_x = {0, 0, 0}, shift_y = {0, 0, 0};
-    Eigen::Vector3d stretch = {0, 0, 0};  // Motion by the stretch.
+    Eigen::Vector3d stretch = {0, 0, 0};  // Motion per unit of stretch.
   };
   static void place_in(Point& point, double bend);
   [[nodiscard]] Eigen::Vector3d place_in(const SeenSection& seen, const Point& point) const;

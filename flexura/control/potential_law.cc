@@ -63,20 +63,20 @@ PotentialLaw::PotentialLaw(const DistributedArm& arm, Eigen::VectorXd target, co
 std::vector<std::string> PotentialLaw::violations() const {
   std::vector<std::string> found;
   if (gains_.sign != 1)
-    found.push_back(
-        fmt::format("the potential's force has the sign {:+g}, not +1: it leads away", gains_.sign));
+    found.push_back(fmt::format(
+        "the potential's force has the sign {:+g}, not +1: it drives the arm away from the target",
+        gains_.sign));
   if (gains_.stiffness.minCoeff() <= 0 || (has_lengths_ && gains_.length_stiffness <= 0))
     found.emplace_back("the potential has no minimum at the target: a stiffness k is not above 0");
   const Eigen::Matrix2d K = 0.5 * (gains_.damping + gains_.damping.transpose());
   if (least_eigenvalue(K) <= 0)
-    found.push_back(
-        fmt::format("the damping K is not positive: its least eigenvalue is {:.3g}", least_eigenvalue(K)));
+    found.push_back(fmt::format("the damping K is not positive definite: its least eigenvalue is {:.3g}",
+                                least_eigenvalue(K)));
   if (has_lengths_ && gains_.length_damping <= 0)
     found.push_back(
-        fmt::format("the lengths' damping K is not positive: it is {:.3g}", gains_.length_damping));
+        fmt::format("the damping of variable lengths is not positive: it is {:.3g}", gains_.length_damping));
   if (gains_.gravity_share != 1)
-    found.push_back(
-        fmt::format("gravity is compensated to {:.3g} %, not to 100 %", 100 * gains_.gravity_share));
+    found.push_back(fmt::format("{:.3g} % of gravity is compensated, not 100 %", 100 * gains_.gravity_share));
   if (gains_.elasticity == ElasticityRule::ignored)
     found.emplace_back(
         "the arm's elasticity is neither cancelled nor part of the potential, and pulls away from the "
@@ -109,7 +109,7 @@ void PotentialLaw::force_of_errors(const DistributedArm& arm, const Eigen::Vecto
   const AngleShapes& shapes = arm.shapes();
   const Eigen::Index n = arm.nodes(), lengths = arm.size() - 2 * n;
   if (e_theta.size() != shapes.s.size() || e_q.size() != shapes.s.size())
-    throw std::invalid_argument("a potential law takes one error a point of its arm");
+    throw std::invalid_argument("a potential law needs one error for each point of its arm");
   Q.resize(arm.size());
   for (Eigen::Index a = 0; a < n; ++a) {
     double by_theta = 0, by_q = 0;

@@ -168,26 +168,26 @@ TEST(PotentialLaw, FailsWithItsReasonWhereAConditionIsViolated) {
 
   const Violated undamped = violated(arm, {.damping = Eigen::Matrix2d::Zero()});
   EXPECT_THAT(undamped.reported, Contains(HasSubstr("K is not positive")));
-  EXPECT_THAT(undamped.shown.reasons, Contains(HasSubstr("damping took none")));
+  EXPECT_THAT(undamped.shown.reasons, Contains(HasSubstr("damping removed no energy")));
   EXPECT_FALSE(undamped.shown.is_settled);
 
   const Violated heavy = violated(arm, {.gravity_share = 0});
-  EXPECT_THAT(heavy.reported, Contains(HasSubstr("gravity is compensated to 0 %")));
-  EXPECT_THAT(heavy.shown.reasons, Contains(HasSubstr("gravity is not compensated: 100 %")));
+  EXPECT_THAT(heavy.reported, Contains(HasSubstr("0 % of gravity is compensated")));
+  EXPECT_THAT(heavy.shown.reasons, Contains(HasSubstr("gravity is not fully compensated: 100 %")));
   EXPECT_GT(heavy.off, 0.05);
 
   const Violated lifted = violated(arm, {.gravity_share = -1});
-  EXPECT_THAT(lifted.shown.reasons, Contains(HasSubstr("gravity is not compensated: 200 %")));
+  EXPECT_THAT(lifted.shown.reasons, Contains(HasSubstr("gravity is not fully compensated: 200 %")));
   EXPECT_GT(lifted.off, 0.1);
 
   const Violated stiff = violated(small_arm(4), {.elasticity = ElasticityRule::ignored});
   EXPECT_THAT(stiff.reported, Contains(HasSubstr("elasticity")));
-  EXPECT_THAT(stiff.shown.reasons, Contains(HasSubstr("elasticity is not compensated: 100 %")));
+  EXPECT_THAT(stiff.shown.reasons, Contains(HasSubstr("elasticity is not fully compensated: 100 %")));
   EXPECT_GT(stiff.off, 0.05);
 
   const Violated wrong = violated(arm, {.sign = -1});
   EXPECT_THAT(wrong.reported, Contains(HasSubstr("sign")));
-  EXPECT_THAT(wrong.shown.reasons, Contains(HasSubstr("leads away")));
+  EXPECT_THAT(wrong.shown.reasons, Contains(HasSubstr("drives the arm away")));
   EXPECT_GT(wrong.off, 0.5);
 
   for (const Violated& one : {excited, undamped, heavy, lifted, stiff, wrong}) {

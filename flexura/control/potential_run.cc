@@ -38,7 +38,7 @@ PotentialRun::PotentialRun(const DistributedArm& arm, const PotentialLaw& law, c
                  Eigen::VectorXd& Q) { return force(now, x, v, Q); },
           tolerance) {
   if (start.size() != arm.size() || !start.allFinite())
-    throw std::invalid_argument("a run starts at finite coordinates of its arm");
+    throw std::invalid_argument("a run must start at finite coordinates of its arm");
   if (drives.size() > 0) {
     if (drives.rows() != arm.size() || !drives.allFinite())
       throw std::invalid_argument("a run's drives must fit its arm, in finite numbers");
@@ -105,15 +105,14 @@ std::string PotentialRun::reason() const {
   Eigen::Index point = 0;
   if (arm.q().cwiseAbs().maxCoeff(&point) > near * quarter_turn)
     return fmt::format(
-        "|q| reached 90 deg at {:.3f} s, {:.3f} m along the arm: there the two angles are no coordinates of "
-        "its direction",
+        "|q| reached 90 deg at {:.3f} s, {:.3f} m along the arm: the two angles are singular there",
         motion_.time(), arm.shapes().s[point]);
   if (arm.stretch().minCoeff() < least_stretch / near)
-    return fmt::format("a section's length came to nothing at {:.3f} s", motion_.time());
+    return fmt::format("the length of a section became zero at {:.3f} s", motion_.time());
   if (arm.theta().cwiseAbs().maxCoeff() > near * most_theta)
-    return fmt::format("the arm runs away: at {:.3f} s it had wound up farther than any arm can",
+    return fmt::format("the motion diverges: at {:.3f} s the arm was wound up farther than any arm can be",
                        motion_.time());
-  return fmt::format("beyond {:.3f} s the motion is too fast to be followed", motion_.time());
+  return fmt::format("after {:.3f} s the motion is too fast for the integration", motion_.time());
 }
 
 LyapunovSample PotentialRun::sample() const {

@@ -112,7 +112,7 @@ TEST(PotentialRun, EndsWhereTheArmRunsAway) {
   const PotentialLaw wild(arm, evenly_bent(arm, 0.3, 0), {.damping = -2 * Eigen::Matrix2d::Identity()});
   PotentialRun run(arm, wild, evenly_bent(arm, 0.6, 0));
   (void)watched(run, 60);
-  EXPECT_THAT(run.stopped(), HasSubstr("the arm runs away: at "));
+  EXPECT_THAT(run.stopped(), HasSubstr("the motion diverges: at "));
   EXPECT_GT(run.motion().arm().theta().cwiseAbs().maxCoeff(), 99);
 }
 
@@ -146,7 +146,7 @@ TEST(PotentialRun, EndsWhereItCannotBeFollowed) {
   const PotentialLaw law(arm, evenly_bent(arm, 1, 0), {.elasticity = ElasticityRule::ignored});
   PotentialRun run(arm, law, evenly_bent(arm, 0, 0), {}, {.most_steps = 500});
   EXPECT_FALSE(run.advance(1));
-  EXPECT_THAT(run.stopped(), HasSubstr("too fast to be followed"));
+  EXPECT_THAT(run.stopped(), HasSubstr("too fast for the integration"));
 }
 
 TEST(PotentialRun, RefusesNumbersThatAreNone) {

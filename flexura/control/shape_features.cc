@@ -40,7 +40,7 @@ std::vector<double> needed_shares(const FeatureSet& set) {
       shares.push_back(static_cast<double>(i) / (set.moment_points - 1));
   for (const double share : shares) {
     const bool is_on_the_arm = share >= 0 && share <= 1;
-    if (!is_on_the_arm) throw std::invalid_argument("a feature's share of the arm is in [0, 1]");
+    if (!is_on_the_arm) throw std::invalid_argument("a feature's share of the arm must be in [0, 1]");
   }
   return shares;
 }
@@ -78,7 +78,7 @@ void feature_error(const FeatureSet& set, const Eigen::VectorXd& seen, const Eig
                    Eigen::VectorXd& error) {
   const Eigen::Index rows = set.rows();
   if (seen.size() != desired.size() || rows == 0 || seen.size() % rows != 0)
-    throw std::invalid_argument("features of different sets have no difference");
+    throw std::invalid_argument("features of different sets cannot be compared");
   error = seen - desired;
   const auto first = static_cast<Eigen::Index>(2 * set.points.size()),
              angles = static_cast<Eigen::Index>(set.chords.size());

@@ -11,10 +11,11 @@
 namespace flexura {
 
 /// Identifies the observed bands as markers, by their order along `shape`, which is accurate to `sigma` m. If
-/// that is less than the distance between markers, bands are matched with each other, or with the prior's
-/// markers, by position and colour. Bands without a counterpart are omitted: false detections, or bands
-/// hidden in a picture. Otherwise bands are counted, if all observations have equally many. Empty if no match
-/// is possible. Markers seen only once are omitted unless their position is known.
+/// `sigma` is less than the distance between markers, bands are matched by position and colour. The match is
+/// with the bands of other observations, or with the markers of the prior. Bands without a counterpart are
+/// omitted: they are false detections, or are hidden in a picture. If `sigma` is larger, bands are matched by
+/// their number in order, if each observation shows equally many. Empty if no match is possible. Markers seen
+/// only once are omitted unless their position is known.
 [[nodiscard]] std::vector<BandObservation> match_bands(const ShapePrior& prior, const Shape& shape,
                                                        double sigma,
                                                        std::span<const Observation> observations);

@@ -10,14 +10,14 @@
 
 namespace flexura {
 
-/// The image of a backbone: cubic between the images of its knots with their tangents. For arcs of an eighth
-/// of a radian it is accurate to 1e-6 of their radius.
+/// The image of a backbone: a cubic curve through the images of the backbone's knots, with their tangents.
+/// For arcs of an eighth of a radian the curve is accurate to 1e-6 of the arc's radius.
 class CurveImage {
  public:
   /// Sets the curve; returns false if the lens does not see a knot.
   bool set(const View& view, const SpaceCurve& curve) { return set(view, {}, curve, -1, -1); }
-  /// Sets the curve for a view with this `error`. Derivatives by the error are in the columns from `own` on,
-  /// of `count`; -1: no such derivatives.
+  /// Sets the curve for a view with this `error`. Of the `count` columns of derivatives, those from `own` on
+  /// are with respect to the error; `own` = -1: none are.
   bool set(const View& view, const ViewError& error, const SpaceCurve& curve, Eigen::Index own,
            Eigen::Index count);
 
@@ -26,29 +26,32 @@ class CurveImage {
 
   /// A point of the image.
   struct Point {
-    double place = 0;         ///< Position, in knots.
+    double place = 0;         ///< Position along the curve: the knot's index, with a fraction between knots.
     Eigen::Vector2d pixel;    ///< Image point of the curve, px.
     Eigen::Vector2d tangent;  ///< Unit tangent.
     double speed = 0;         ///< Speed along the curve, px per knot.
     double scale = 0;         ///< Scale across the line of sight, px per metre.
   };
-  /// `place` from 0 to last(); beyond, the last piece's cubic is extended.
+  /// Returns the point at the position `place`, from 0 to last(). Beyond that range the nearest piece's cubic
+  /// is extended.
   [[nodiscard]] Point at(double place) const;
-  /// Range of a search in knots, and the interval after `likely` that is searched first.
+  /// Range of a search, as indices of knots. The interval that begins at the knot `likely` is searched first.
   struct Window {
     std::size_t first = 0, last = 0, likely = 0;
   };
   /// The whole curve, searched from the first knot.
   [[nodiscard]] Window everywhere() const { return {0, pieces_.size(), 0}; }
-  /// Returns the curve's point nearest to a pixel within a window whose direction is about `heading` (unit).
-  /// This selects the right branch of a hairpin.
+  /// Returns the curve's point nearest to a pixel, of those within a window whose tangent is near `heading`
+  /// (unit). The heading selects the right branch of a hairpin.
   [[nodiscard]] Point nearest(const Eigen::Vector2d& pixel, const Eigen::Vector2d& heading,
                               const Window& window) const;
-  /// Sets a row to direction . d pixel/d unknowns at a position.
+  /// Sets `row` to the derivative of the pixel with respect to the unknowns, projected on `direction`, at a
+  /// position.
   void along(const Eigen::Vector2d& direction, double place, Eigen::Ref<Eigen::RowVectorXd> row) const;
 
  private:
-  // From one knot to the next: a + f (da + f (c2 + f c3)) for f from 0 to 1, inside a disc.
+  // Piece from one knot to the next: a + f (da + f (c2 + f c3)) for f from 0 to 1. The piece is inside a
+  // disc.
   struct Piece {
     Eigen::Vector2d a, da, c2, c3, middle;
     double radius = 0;
@@ -62,8 +65,8 @@ class CurveImage {
 
   using Unknowns = Eigen::Matrix<double, 2, Eigen::Dynamic, Eigen::RowMajor>;
   std::vector<Piece> pieces_;
-  std::vector<Unknowns> unknowns_;  // Of the knots' pixels.
-  std::vector<double> scales_;      // At the knots, px per metre.
+  std::vector<Unknowns> unknowns_;  // Derivatives of the knots' pixels.
+  std::vector<double> scales_;      // Image scales at the knots, px per metre.
   std::size_t in_section_ = 2;      // Pieces in each section.
 };
 

@@ -15,28 +15,30 @@ namespace flexura {
 struct CurvePoint {
   Eigen::Vector2d pixel = {0, 0};  ///< Image position, px.
   double sigma = 0.1;              ///< Standard deviation across the curve, px; > 0.
-  /// Additional standard deviation of the error common to the points of a long stretch, px.
+  /// Standard deviation of an additional error that neighbouring points share along a long part of the curve,
+  /// px.
   double offset = 0;
 };
 
-/// Correlation of the errors of an axis's points along the curve: exp(-distance / reach), distances in px.
-/// Individually measured points are independent.
+/// Correlation lengths of the errors of the points along a measured axis. The correlation of two points'
+/// errors is exp(-distance / reach), with the distance in px. Individually measured points have independent
+/// errors.
 struct ErrorReach {
-  double sigma = 0;     ///< Reach of the errors of CurvePoint::sigma, px; 0: independent.
-  double offset = 120;  ///< Reach of the errors of CurvePoint::offset, px; > 0.
+  double sigma = 0;  ///< Correlation length of the error with CurvePoint::sigma, px; 0: independent errors.
+  double offset = 120;  ///< Correlation length of the error with CurvePoint::offset, px; > 0.
 };
 
 /// A marker at a known position on the arm.
 struct SeenMarker {
-  Eigen::Vector2d pixel = {0, 0};  ///< Image of the backbone at its middle.
-  double s = 0;                    ///< Position of its middle, m along the unstretched arm.
-  double sigma = 0.1;              ///< Standard deviation in each direction, px; > 0.
+  Eigen::Vector2d pixel = {0, 0};  ///< Image of the backbone at the marker's middle, px.
+  double s = 0;                    ///< Position of the marker's middle, m along the unstretched arm.
+  double sigma = 0.1;              ///< Standard deviation of the pixel in each direction, px; > 0.
 };
 
 /// A coloured band around the arm at an unknown position.
 struct SeenBand {
-  Eigen::Vector2d pixel = {0, 0};     ///< Image of the backbone in its middle.
-  Eigen::Vector2d heading = {1, 0};   ///< Unit direction of the curve there.
+  Eigen::Vector2d pixel = {0, 0};     ///< Image of the backbone at the band's middle, px.
+  Eigen::Vector2d heading = {1, 0};   ///< Unit direction of the curve at this pixel.
   double sigma = 0.2;                 ///< Standard deviation along the curve, px; > 0.
   Eigen::Vector3d color = {0, 0, 0};  ///< Red, green, blue, from 0 to 255.
 };
@@ -53,10 +55,11 @@ struct SeenBorder {
   double sigma = 0.5;              ///< Standard deviation across the border, px; > 0.
 };
 
-/// Error of a camera's view that pictures of an arm can determine for a known camera position. The true frame
-/// is rotated by exp(turn); the true focal lengths are those of the view times exp(focal).
+/// Error of a camera's view, as pictures of an arm can determine it if the camera's position is known. The
+/// true camera frame is the modelled one rotated by exp(turn). The true focal lengths are the modelled ones
+/// times exp(focal).
 struct ViewError {
-  Eigen::Vector3d turn = {0, 0, 0};  ///< About the axes of the modelled optical frame, rad.
+  Eigen::Vector3d turn = {0, 0, 0};  ///< Rotation vector in the modelled optical frame, rad.
   double focal = 0;                  ///< Logarithm of the factor on both focal lengths.
 };
 
@@ -67,34 +70,34 @@ struct ViewError {
 struct Observation {
   View view;                       ///< View as modelled.
   std::vector<CurvePoint> points;  ///< Points along the arm, from base to tip if that is known.
-  /// Base and tip; empty if the arm continues unseen (out of the picture, behind something).
+  /// Base and tip; an end is empty if it is not visible, because it is outside the picture or hidden.
   std::array<std::optional<SeenEnd>, 2> ends;
   std::vector<SeenMarker> markers;   ///< Identified markers.
   std::vector<SeenBand> bands = {};  ///< Bands in any order; the estimator identifies them.
   ViewPrior view_prior = {};         ///< Prior of the view's error.
   /// Points of the silhouette where no axis was found, in any order; for arms of known radius.
   std::vector<SeenBorder> borders = {};
-  /// The two edges of the tube where both are visible: right of the direction from base to tip in the
-  /// picture, then left. They are as measured, without correction to the backbone.
+  /// The two edges of the tube, where both are visible. The first is right of the direction from base to tip
+  /// in the picture, the second left. The points are as measured, not corrected to the backbone.
   std::array<std::vector<CurvePoint>, 2> edges = {};
-  ErrorReach reach = {};  ///< Reach of the points' errors.
+  ErrorReach reach = {};  ///< Correlation lengths of the points' errors.
   /// Sample points of the arm's foreground, px; empty if not known.
   std::vector<Eigen::Vector2d> figure = {};
-  /// Whether the lens has no ray for some of the arm's pixels; these are omitted.
+  /// Whether pixels of the arm were omitted because the lens has no ray for them.
   bool leaves_out = false;
 };
 
-/// Returns whether each of them shows the arm, and at least one its axis. In a picture without an axis the
-/// border is enough.
+/// Returns whether an estimate is possible: each observation shows the arm, and at least one shows the arm's
+/// axis. An observation without an axis needs points of the silhouette.
 [[nodiscard]] bool are_enough(std::span<const Observation> observations);
 
-/// Returns the observation in the order from the other end.
+/// Returns the observation with its points in the opposite order along the arm.
 [[nodiscard]] Observation reversed(Observation observation);
 
 /// Returns at most `most` points of a curve, evenly spaced, including the first and the last.
 [[nodiscard]] std::vector<CurvePoint> thinned(const std::vector<CurvePoint>& points, std::size_t most);
 
-/// Returns the observation with at most `most` points, borders, and points of each edge.
+/// Returns the observation with at most `most` axis points, `most` borders, and `most` points on each edge.
 [[nodiscard]] Observation thinned(Observation observation, std::size_t most);
 
 }  // namespace flexura

@@ -10,20 +10,22 @@
 
 namespace flexura {
 
-/// Two observations by their indices, ascending.
+/// Indices of two observations, in ascending order.
 using ObservationPair = std::array<std::size_t, 2>;
 
 /// Returns the two observations with the most perpendicular lines of sight and the largest visible arm, which
 /// determine positions best. Needs at least two observations.
 [[nodiscard]] ObservationPair best_pair(std::span<const Observation> observations);
 
-/// Returns the points where two observations see the arm, in W, m, in the order of `one`.
+/// Returns the points of the arm triangulated from two observations, in W, m, in the order of the points of
+/// `one`.
 [[nodiscard]] std::vector<Eigen::Vector3d> places_seen(const Observation& one, const Observation& other);
 
-/// Returns all observations in a common order. The second of the pair keeps its order or, with `against`, is
-/// reversed. The others follow the order of the points that the pair then determines. With `from_base` each
-/// starts at the base, as far as its pixel shows that, and those that show an end of the arm there stay.
-/// Otherwise the first of all stays unchanged, and all are reversed if necessary.
+/// Returns all observations with their points in a common order along the arm. The second observation of the
+/// pair keeps its order or, with `against`, is reversed. The other observations are ordered like the points
+/// that the pair then triangulates. With `from_base` the pair runs from the base, and other observations with
+/// a visible base keep their order. Without `from_base`, the very first observation keeps its order: if it
+/// was reversed, all observations are reversed again.
 [[nodiscard]] std::vector<Observation> run_alike(std::vector<Observation> observations,
                                                  const ObservationPair& pair, bool against, bool from_base);
 

@@ -10,22 +10,22 @@
 
 namespace flexura {
 
-/// Returns the observation of the backbone in a picture with this `view`. It has the centerline where both
-/// borders are visible, corrected for the lens, these borders, and the arm's ends. Pixels without a ray are
-/// omitted. Ends are omitted unless the axis covers nearly all of the silhouette, as they may be those of a
-/// fold.
+/// Returns the observation of the backbone in a picture with this `view`. The observation has these borders,
+/// the arm's ends, and the centerline where both borders are visible, corrected for the lens. Pixels for
+/// which the lens has no ray are omitted. Ends are omitted unless the axis covers nearly all of the
+/// silhouette. Otherwise an end of the axis may be a fold of the arm.
 [[nodiscard]] Observation observation_of(const ArmObservation& arm, const View& view);
 
-/// Returns this observation with the coloured bands around the arm in `picture`, in which it was found. Bands
-/// that may be two are omitted.
+/// Returns the same observation, with the coloured bands around the arm in `picture`, in which the arm was
+/// found. A band that may be two bands seen as one is omitted.
 [[nodiscard]] Observation observation_of(const ArmObservation& arm, const View& view,
                                          const Image<std::uint8_t>& picture);
 
-/// Returns whether the lens has a ray for every pixel of the picture. Checks the corners: the visible area is
-/// round, or nearly so with the tangential distortion of real lenses.
+/// Returns whether the lens has a ray for every pixel of the picture. Checks only the corners. That is enough
+/// because the area with rays is round, or nearly round with the tangential distortion of real lenses.
 [[nodiscard]] bool shows_all(const View& view);
 
-/// Note for an observation from which pixels were omitted for that reason.
+/// Note for an observation from which pixels were omitted because the lens has no ray for them.
 inline constexpr std::string_view rays_lacking =
     "the camera's distortion has no ray for some pixels of the arm: they count for nothing";
 

@@ -71,7 +71,7 @@ std::string warning_about_ends(const ShapePrior& prior, const ShapeProblem& prob
   const char* what = "either end";
   if (has_base) what = "the tip";
   if (has_tip) what = "the base";
-  return fmt::format("no picture shows {} of the arm: it may go on unseen", what);
+  return fmt::format("no picture shows {} of the arm, so the arm may continue unseen", what);
 }
 
 // Adds notes on pictures that differ from the shape by more than the arm's disks and rings, or slightly wrong
@@ -82,8 +82,10 @@ void add_misfit(std::span<const Observation> observations, ShapeEstimate& result
   for (std::size_t i = 0; i < observations.size(); ++i) {
     const double square = misfit(observations[i], error_of(result.shape, i), result.shape, with_disks);
     if (square > little + result.rms * result.rms)
-      result.notes.push_back(fmt::format(
-          "picture {} is not all as this shape would be seen: of something else, or another shape", i + 1));
+      result.notes.push_back(
+          fmt::format("parts of the foreground of picture {} do not agree with this shape: they may be "
+                      "another object, or the shape is wrong",
+                      i + 1));
   }
 }
 
@@ -100,8 +102,8 @@ void add_base_aside(const ShapePrior& prior, std::span<const Observation> observ
     const auto aside = aside_of_beginning(observations[i], *base);
     if (aside && aside->distance > most + sigmas * aside->sigma)
       result.notes.push_back(
-          fmt::format("picture {} shows the arm begin {:.2g} px aside of where its base would be: is that "
-                      "the base, and the camera as it is described?",
+          fmt::format("in picture {} the arm begins {:.2g} px beside the image of its base: is the base's "
+                      "position right, and the camera's description?",
                       i + 1, aside->distance));
   }
 }
@@ -116,7 +118,7 @@ std::string bent_beyond_arms(const Shape& shape) {
   if (most->norm() <= most_bend) return "";
   return fmt::format(
       "no shape of this arm explains the pictures: section {} would have to bend by more than a full turn. "
-      "Expected pictures of the arm as it is described, by cameras as they are described, with most of that "
+      "Expected an arm and cameras that agree with their descriptions, and pictures with most of that "
       "section in them",
       most - bends.begin() + 1);
 }
@@ -154,14 +156,15 @@ std::optional<std::size_t> picture_of_another(std::span<const Observation> obser
 void add_fit_warnings(const ShapeFit& fit, ShapeEstimate& result) {
   constexpr double poor = 3, max_outlier_share = 0.1;
   if (fit.scale > poor)
-    result.notes.push_back(fmt::format("the images are {} times farther off than their noise explains",
-                                       bounded_text(std::round(fit.scale), 1000, 4)));
-  if (!fit.is_settled) result.notes.emplace_back("the fit did not settle");
+    result.notes.push_back(
+        fmt::format("the residuals in the images are {} times larger than their noise explains",
+                    bounded_text(std::round(fit.scale), 1000, 4)));
+  if (!fit.is_settled) result.notes.emplace_back("the fit did not converge");
   if (fit.outlier_share > max_outlier_share)
     result.notes.push_back(fmt::format("{:.0f} % of the points are not the arm's", 100 * fit.outlier_share));
   if (fit.contradicted > 0)
     result.notes.push_back(fmt::format(
-        "{} of the ends and markers are seen elsewhere than the shape has them", fit.contradicted));
+        "{} of the ends and markers are observed at other positions than the shape's", fit.contradicted));
 }
 
 ShapeEstimate unseen(Shape shape) {
@@ -221,7 +224,7 @@ ShapeEstimate ShapeEstimator::estimate(std::span<const Observation> observations
   constexpr double another = 0.01;  // Of its length: nearer ones are the same shape.
   if (result.is_found && apart > another * Backbone(result.shape.arm, result.shape.state).length()) {
     result.is_found = false;
-    result.reason = fmt::format("two shapes explain the images, up to {:.2g} m apart", apart);
+    result.reason = fmt::format("two shapes, up to {:.2g} m apart, explain the images", apart);
   }
   return result;
 }
@@ -265,7 +268,7 @@ ShapeEstimate ShapeEstimator::with_bands(std::span<const Observation> observatio
   const bool is_worse = !(fit.cost < worse * cost + little);
   ShapeEstimate result = answer(problem, std::move(fit));
   if (is_worse || (first.is_found && !result.is_found)) {
-    first.notes.emplace_back("the markers speak against the axes: they are not used");
+    first.notes.emplace_back("the markers contradict the axes and are not used");
     return first;
   }
   result.markers = placed_markers(prior_, result.shape, band_observations, observations);
@@ -279,7 +282,7 @@ ShapeEstimate ShapeEstimator::answer(const ShapeProblem& problem, ShapeFit fit) 
   result.innovation = fit.innovation;
   if (!std::isfinite(fit.cost)) {
     result.reason =
-        "no shape of the arm is seen by these cameras: what they see meets nowhere before all of them";
+        "no shape of the arm explains the pictures: the lines of sight do not meet in front of all cameras";
     const auto lacks_rays = [](const Observation& seen) { return !shows_all(seen.view); };
     const auto seen = problem.observations();
     if (const auto found = std::ranges::find_if(seen, lacks_rays); found != seen.end())
@@ -301,35 +304,35 @@ ShapeEstimate ShapeEstimator::answer(const ShapeProblem& problem, ShapeFit fit) 
   }
   if (const auto view = view_elsewhere(problem.observations(), fit.shape)) {
     result.is_elsewhere = indicates_cameras(fit);
-    result.reason = result.is_elsewhere
-                        ? elsewhere(*view, fit.shape.views[*view])
-                        : "the cameras would have to be elsewhere, by far more than their priors allow";
+    result.reason = result.is_elsewhere ? elsewhere(*view, fit.shape.views[*view])
+                                        : "the pictures require camera errors far beyond their priors";
     return result;
   }
   if (const auto picture = picture_of_another(problem.observations(), fit)) {
-    result.reason = fmt::format("picture {} shows something else than the arm", *picture + 1);
+    result.reason = fmt::format("picture {} shows another object than the arm", *picture + 1);
     return result;
   }
   result.is_found =
       fit.outlier_share < 0.5 && (fit.rms < config_.most_rms || fit.scale < ShapeFit::most_scale);
   if (!result.is_found) {
     result.reason = fmt::format(
-        "no shape explains the images: {:.0f} % of the points lie elsewhere, the rest {} px off",
+        "no shape explains the images: {:.0f} % of the points are outliers, and the others are {} px off",
         100 * fit.outlier_share, fit.rms < 100 ? fmt::format("{:.2f}", fit.rms) : bounded_text(fit.rms, 100));
   }
   add_fit_warnings(fit, result);
   if (const auto section = bent_too_far(fit.shape))
-    result.notes.push_back(fmt::format("section {} would be bent by {:.0f} degrees: it goes to {:.0f}",
+    result.notes.push_back(fmt::format("section {} would be bent by {:.0f} degrees: its limit is {:.0f}",
                                        *section + 1, fit.shape.state.bends[*section].norm() / degree,
                                        fit.shape.arm.sections[*section].max_bend / degree));
   add_base_aside(prior_, problem.observations(), result);
   if (std::string warning = warning_about_ends(prior_, problem); !warning.empty())
     result.notes.push_back(std::move(warning));
   if (sigma > config_.uncertain * length)
-    result.notes.push_back(fmt::format(
-        "uncertain to {} m{}", bounded_text(sigma, length),
-        prior_.is_length_known ? ""
-                               : ", if it is this shape: of unknown length another one may fit as well"));
+    result.notes.push_back(
+        fmt::format("the shape is uncertain by {} m{}", bounded_text(sigma, length),
+                    prior_.is_length_known
+                        ? ""
+                        : ", if the shape is right: with an unknown length another shape may fit as well"));
   return result;
 }
 

@@ -15,32 +15,36 @@ namespace flexura {
 
 /// Settings of an estimate.
 struct EstimatorConfig {
-  std::size_t most_points = 100;  ///< Per observation; more are thinned out.
-  int most_iterations = 60;       ///< Per descent.
-  /// Estimates with a larger standard deviation, root mean square along the arm, get a note; share of the
-  /// length.
+  std::size_t most_points =
+      100;                   ///< Largest number of points per observation; further points are thinned out.
+  int most_iterations = 60;  ///< Largest number of iterations per descent.
+  /// Standard deviation of the shape (root mean square along the arm, share of its length) above which the
+  /// estimate gets a note.
   double uncertain = 1.1e-4;
-  /// Largest distance of the points from the shape's images, root mean square, px, unless their noise
-  /// explains it. Inaccurate cameras need more.
+  /// Largest root mean square distance of the points from the shape's images, px, beyond what their noise
+  /// explains. Inaccurate cameras need a larger value.
   double most_rms = 1;
 };
 
 /// An estimate of the arm's shape from camera observations.
 struct ShapeEstimate {
-  Shape shape;  ///< If not found, only a guess.
+  Shape shape;  ///< Only a guess if is_found is false.
   bool is_found = false;
-  std::string reason;         ///< Why it was not found.
-  bool is_elsewhere = false;  ///< Not found because the cameras' errors would be far beyond their priors.
-  std::vector<std::string> notes;  ///< Reasons against the estimate; empty if there are none.
+  std::string reason;         ///< Reason why no shape was found, or "".
+  bool is_elsewhere = false;  ///< No shape was found, because the camera errors that explain the pictures are
+                              ///< far beyond their priors.
+  std::vector<std::string> notes;  ///< Reasons to distrust the estimate; empty if there are none.
   double rms = 0;                  ///< Root mean square of the points' distances from the shape's images, px.
   double outlier_share = 0;        ///< Share of the points that are outliers.
-  double scale = 1;  ///< Scale of the residuals, in units of their sigmas: at least 1; included in `sigma`.
-  /// Standard deviation of the position at the knots `s` (m of arc length), m: the root of the trace.
+  double scale = 1;  ///< Scale of the residuals in units of their standard deviations, at least 1. `sigma`
+                     ///< includes this factor.
+  /// Knots (m of arc length), and the standard deviation of the position at each, m: root of the covariance's
+  /// trace.
   std::vector<double> s, sigma;
   Eigen::MatrixXd covariance;         ///< Covariance of the unknowns (ShapeVariables).
   double innovation = 0;              ///< Normalised innovation (ShapeFit::innovation).
   int iterations = 0;                 ///< Iterations of the final descent.
-  std::vector<PlacedMarker> markers;  ///< Markers used by the fit, from the base on.
+  std::vector<PlacedMarker> markers;  ///< Markers used by the fit, in order from the base.
 
   /// Returns the root mean square of `sigma` along the arm, m; 0 if `sigma` is empty.
   [[nodiscard]] double rms_sigma() const;
@@ -52,8 +56,8 @@ struct ShapeEstimate {
 /// with the full camera model (docs/estimation.md). Equal observations give equal results, except that
 /// `follow` depends on its start. Bands are used if a fit without them identifies them (band_match.h) and the
 /// axes do not contradict them. Points that are not finite, or with a sigma that is not positive, are
-/// ignored. If there is no answer, the estimate is not found and has a reason. Use one per thread: it keeps
-/// its storage.
+/// ignored. If no shape is found, the estimate contains the reason. Not thread-safe: use one estimator per
+/// thread.
 class ShapeEstimator {
  public:
   /// `prior` describes what is known of the arm.
@@ -61,23 +65,23 @@ class ShapeEstimator {
 
   /// Estimates without a start. Uses the two observations with the most perpendicular lines of sight and the
   /// largest visible arm. Their points are paired by epipolar geometry and order, and triangulated. If the
-  /// base's position is known, each observation is ordered from the end nearer to it. Otherwise the order of
-  /// the first one's points holds, and the others are tried both ways.
+  /// base's position is known, each observation is ordered from the end nearer to the base. Otherwise the
+  /// first observation keeps its order, and the others are tried in both orders.
   [[nodiscard]] ShapeEstimate estimate(std::span<const Observation> observations);
 
-  /// Estimates from the shape a moment ago, of the prior's arm, with any `views`.
+  /// Estimates with `before` as the start: the previous shape of the prior's arm, with or without `views`.
   [[nodiscard]] ShapeEstimate follow(std::span<const Observation> observations, const Shape& before);
 
-  /// Updates a previous belief, which is weighted like an observation. It includes the views' errors: the
-  /// observations' own priors only show which views have them.
+  /// Updates a predicted shape, which is weighted by its covariance. The prediction includes the views'
+  /// errors and replaces the priors of the observations. These priors only show which views have an error.
   [[nodiscard]] ShapeEstimate update(std::span<const Observation> observations,
                                      const ShapePrediction& before);
 
  private:
   // `problem` must be linearised at the fit's shape.
   [[nodiscard]] ShapeEstimate answer(const ShapeProblem& problem, ShapeFit fit) const;
-  // Repeats the fit `first`, made without bands, with those that it identifies. Adds a note to it if they
-  // cannot be used.
+  // Repeats the fit `first`, made without bands, with the bands that it identifies. Adds a note to `first` if
+  // the bands cannot be used.
   [[nodiscard]] ShapeEstimate with_bands(std::span<const Observation> observations, ShapeEstimate first,
                                          double cost, const ShapePrediction* prediction);
   [[nodiscard]] std::vector<Observation> prepared(std::span<const Observation> observations) const;
@@ -87,8 +91,8 @@ class ShapeEstimator {
   ShapeDescent descent_;
 };
 
-/// Returns the prior of an arm described by a file: all is known, except the length if the limits let a
-/// section stretch.
+/// Returns the prior of an arm that a file describes. Everything is known, except the length if the limits
+/// let a section stretch.
 [[nodiscard]] ShapePrior described_arm(const Arm& arm);
 
 /// Returns the prior of an arm without a kinematic model: `sections` equal, short, smooth sections.

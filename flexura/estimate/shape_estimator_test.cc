@@ -301,7 +301,7 @@ TEST(ShapeEstimator, SaysWhereASectionWouldBendFartherThanItGoes) {
   for (Section& section : prior.arm.sections) section.max_bend = 1.5;
   EXPECT_THAT(notes(), testing::IsEmpty());
   prior.arm.sections[1].max_bend = 1.2;
-  EXPECT_THAT(notes(), testing::ElementsAre("section 2 would be bent by 86 degrees: it goes to 69"));
+  EXPECT_THAT(notes(), testing::ElementsAre("section 2 would be bent by 86 degrees: its limit is 69"));
 }
 
 }  // namespace

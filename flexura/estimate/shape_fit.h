@@ -18,24 +18,26 @@ struct ShapeFit {
   double rms = 0;            ///< Root mean square of the inlier points' distances, px.
   double outlier_share = 0;  ///< Share of the points that are outliers.
   std::vector<double> outlier_share_in = {};  ///< Share of outliers in each observation.
-  double innovation = 0;  ///< Normalised innovation of a belief: root mean square of its residuals in sigmas.
-  int contradicted = 0;   ///< Number of ends and markers observed elsewhere than on the shape.
+  double innovation = 0;  ///< Normalised innovation of a prediction: root mean square of its residuals in
+                          ///< standard deviations.
+  int contradicted = 0;   ///< Number of observed ends and markers that the shape contradicts.
   /// Covariance of the unknowns; infinite if the observations do not determine them.
   Eigen::MatrixXd covariance;
 
-  static constexpr double most_scale = 8;  ///< In sigmas: a larger scale is no fit.
-  /// Returns whether no better fit is needed. `most_rms`: of inlier points, px.
+  static constexpr double most_scale = 8;  ///< Scale above which the fit is rejected, in standard deviations.
+  /// Returns whether no better fit is needed. `most_rms`: largest accepted `rms`, px.
   [[nodiscard]] bool is_good(double most_rms) const {
     return is_settled && outlier_share < 0.1 && (scale < most_scale || rms < 0.5 * most_rms);
   }
 };
 
-/// Whether all points are inliers at first, however far off the start is, or points beyond the residuals'
-/// spread are outliers from the start.
+/// Treatment of outliers at the beginning of a descent. `far`: all points are inliers at first, whatever
+/// their distance from the start. `near`: points beyond the residuals' spread are outliers from the
+/// beginning.
 enum class StartKind { far, near };
 
 /// Minimises by the Levenberg-Marquardt method from `start`, with Geman-McClure weights for residuals beyond
-/// their spread (S. Geman and D. McClure, 1985). After the first use it allocates no more.
+/// their spread (S. Geman and D. McClure, 1985). Allocates only in the first use.
 class ShapeDescent {
  public:
   [[nodiscard]] ShapeFit descend(ShapeProblem& problem, const Shape& start, int most_iterations,
@@ -46,7 +48,8 @@ class ShapeDescent {
   void weigh(const ShapeProblem& problem, double cutoff);
   bool find_step(double damping);
   void finish(const ShapeProblem& problem, double cutoff, ShapeFit& fit);
-  // Of the unknowns; `square`: of the points' weighted residuals, `weight`: of the points.
+  // Covariance of the unknowns. `square`: sum of the points' weighted squared residuals. `weight`: sum of the
+  // points' weights.
   [[nodiscard]] Eigen::MatrixXd covariance(const ShapeProblem& problem, double square, double weight);
   [[nodiscard]] Eigen::MatrixXd filtered_covariance(const ShapeProblem& problem, double square,
                                                     double weight);

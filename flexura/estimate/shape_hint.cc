@@ -97,8 +97,8 @@ std::optional<std::string> hint_of_base(std::span<const Observation> observation
     const auto base = seen.view.project(p_WB);
     if (!((seen.view.X_WC.inverse() * p_WB).z() > 0))
       return fmt::format(
-          "the base is behind the camera of picture {}: expected where it stands in the world, and how its "
-          "frame (x right, y down, z forward) is turned there",
+          "the base is behind the camera of picture {}: expected the position of the camera in the world, "
+          "and the rotation of its frame (x right, y down, z forward)",
           i + 1);
     const double width = seen.view.width, height = seen.view.height;
     const bool is_inside =

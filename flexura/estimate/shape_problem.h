@@ -21,19 +21,21 @@ struct BandObservation {
   std::optional<double> s;  ///< Position, m along the unstretched arm, if known.
 };
 
-/// Residuals of a shape, each in units of its standard deviation. These are: distances of observed points
-/// from the shape's images, of borders from its silhouettes, of ends and markers from theirs, and the prior's
-/// own.
+/// Residuals of a shape, each in units of its standard deviation. The residuals of observations are distances
+/// in pictures: of points from the shape's image, and of borders from the shape's silhouette. Ends and
+/// markers are compared with their images. Further residuals compare the unknowns with the prior or a
+/// prediction.
 class ShapeProblem {
  public:
-  /// `observations` must outlive the problem. Only the bands in `band_observations` are used. A known marker
-  /// is compared with its position along the curve, an unknown one between pictures. A belief also replaces
-  /// the priors of the observations' views; it is ignored unless its covariance is positive definite.
+  /// `observations` must outlive the problem. Only the bands in `band_observations` are used. A marker with
+  /// known position is compared with that position; a marker with unknown position is compared between
+  /// pictures. `prediction` also replaces the priors of the observations' views. It is ignored unless its
+  /// covariance is positive definite.
   ShapeProblem(const ShapePrior& prior, std::span<const Observation> observations,
                std::vector<BandObservation> band_observations = {},
                const ShapePrediction* prediction = nullptr);
 
-  /// What a row compares; the last two are not observations.
+  /// What a row of residuals compares; the last two kinds are not observations.
   enum class RowKind { point, border, end, marker, prior, prediction };
 
   /// Linearises at a shape; returns false if part of it is outside a lens's field.
@@ -45,7 +47,7 @@ class ShapeProblem {
   [[nodiscard]] auto derivatives() const { return derivatives_.topRows(count_); }
   [[nodiscard]] bool is_seen(Eigen::Index row) const { return kind(row) < RowKind::prior; }
   [[nodiscard]] RowKind kind(Eigen::Index row) const { return kinds_[static_cast<std::size_t>(row)]; }
-  /// Returns the standard deviation by which a row was divided: px, except for the prior's.
+  /// Returns the standard deviation by which a row was divided: px, except for rows of the prior.
   [[nodiscard]] double sigma(Eigen::Index row) const { return sigmas_[static_cast<std::size_t>(row)]; }
   /// Returns the observation of an observed row.
   [[nodiscard]] std::size_t observation(Eigen::Index row) const {

@@ -12,39 +12,40 @@
 
 namespace flexura {
 
-/// Returns the first view whose error would be far beyond its prior, if any.
+/// Returns the index of the first view whose estimated error is far beyond its prior, if any.
 [[nodiscard]] std::optional<std::size_t> view_elsewhere(std::span<const Observation> observations,
                                                         const Shape& shape);
 
-/// Returns the first section bent beyond its limit by more than the pictures' error, if any.
+/// Returns the first section that is bent beyond its limit by more than the pictures' noise explains, if any.
 [[nodiscard]] std::optional<std::size_t> bent_too_far(const Shape& shape);
 
 /// Searches the shape without a start: tries one shape after another until one explains the observations
-/// (docs/estimation.md, "The start"). If none does with camera errors within their priors, the result may be
-/// one with larger errors.
+/// (docs/estimation.md, "The start"). If no shape does so with camera errors within their priors, the result
+/// may have larger camera errors.
 class ShapeSearch {
  public:
-  /// `most_iterations` of each descent; `most_rms`: of a good fit (ShapeFit::is_good), px.
+  /// `most_iterations`: largest number in each descent. `most_rms`: largest rms of a good fit
+  /// (ShapeFit::is_good), px.
   ShapeSearch(const ShapePrior& prior, int most_iterations, double most_rms, ShapeDescent& descent)
       : prior_(prior), most_iterations_(most_iterations), most_rms_(most_rms), descent_(descent) {}
 
-  /// The best shape, with the observations in the corresponding order.
+  /// The best shape, with the points of the observations in its order, from base to tip.
   struct Result {
     ShapeFit fit;
     std::vector<Observation> seen;
-    /// Distance of another shape that explains everything equally well, m; 0: no such shape. Determined if an
-    /// end is displaced and nothing else decides.
+    /// Distance of another shape that explains all observations equally well, m; 0: no such shape. It is
+    /// searched only if an end is displaced and nothing else decides between the two.
     double apart = 0;
   };
-  /// Needs at least one observation. If the base is unknown, the first one keeps its order and the others are
-  /// tried both ways.
+  /// Returns the best shape for at least one observation. If the base is unknown, the first observation keeps
+  /// its order, and the others are tried in both orders.
   [[nodiscard]] Result best(const std::vector<Observation>& observations);
 
  private:
   struct Try {
     ShapeFit fit;
-    double merit = 0;        // Total unexplained, px^2.
-    double unexplained = 0;  // Of points and borders, beyond the distances of inliers, px^2.
+    double merit = 0;        // Everything that the shape does not explain, px^2.
+    double unexplained = 0;  // Squared distances of points and borders beyond those of inliers, px^2.
     double misfit = 0;       // px^2
     double ends = 0;         // Squared distances of observed ends, px^2.
     bool is_within_prior = false;
@@ -60,7 +61,7 @@ class ShapeSearch {
   [[nodiscard]] bool is_explained(const Try& one) const;
   [[nodiscard]] bool leaves_much(const Try& one) const;
   [[nodiscard]] double apart(const Result& found);
-  // Starts from the pair's information.
+  // Returns starts for descents from the observations of this pair.
   [[nodiscard]] std::vector<Shape> starts(std::span<const Observation> observations,
                                           const ObservationPair& pair) const;
   // Alternatives: shapes that look similar to one of the cameras, or have another bend of the last section.

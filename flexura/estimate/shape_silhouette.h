@@ -8,23 +8,24 @@
 
 namespace flexura {
 
-/// Returns the view error of a shape's observation `observation`; zero if it is not estimated.
+/// Returns the error of the view of observation number `observation` in a shape; zero if it is not estimated.
 [[nodiscard]] ViewError error_of(const Shape& shape, std::size_t observation);
 
-/// Returns the part of a shape's image without observation: mean square of the distances, each bounded, px^2.
-/// It is summed over the pictures with more than an axis (Observation::borders).
+/// Returns how much of the shape's image was not observed: the mean square of its points' distances from
+/// observations, each bounded, px^2. Sums over the pictures that have borders (Observation::borders).
 [[nodiscard]] double silhouette_misfit(std::span<const Observation> observations, const Shape& shape);
 
-/// Returns the misfit: how much of the foreground (Observation::figure) is not the shape's image, as the mean
-/// square of its points' distances, each bounded, px^2. The image is widened by the factor `wider`. Invisible
-/// parts of the shape do not count: they may be hidden. 0 if no foreground is known, or the arm has no
-/// radius.
+/// Returns the misfit: how much of the foreground (Observation::figure) is outside the shape's image. The
+/// value is the mean square of the foreground points' distances from that image, each bounded, px^2. The
+/// shape's image is widened by the factor `wider`. Parts of the shape without foreground do not count,
+/// because they may be hidden. 0 if no foreground is known, or the arm has no radius.
 [[nodiscard]] double misfit(const Observation& seen, const ViewError& error, const Shape& shape,
                             double wider = 1);
-/// Returns the sum over the pictures.
+/// Returns the sum of the misfits of all pictures.
 [[nodiscard]] double misfit(std::span<const Observation> observations, const Shape& shape);
 
-/// Returns whether most borders of an observation are the shape's, and the shape is inside them.
+/// Returns whether the shape explains the borders of an observation. Then most borders are on the shape's
+/// image, and nearly all of that image was observed.
 [[nodiscard]] bool explains_border(const Observation& seen, const ViewError& error, const Shape& shape);
 
 }  // namespace flexura

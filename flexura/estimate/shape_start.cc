@@ -20,7 +20,7 @@ class Polyline {
     for (std::size_t i = 0; i < points.size(); ++i)
       way_.push_back(i == 0 ? 0.0 : way_.back() + (points[i] - points[i - 1]).norm());
     if (points.size() < 2 || !(way_.back() > 0))
-      throw std::invalid_argument("a shape cannot lie along fewer than two points");
+      throw std::invalid_argument("a shape along points needs at least two different points");
   }
   [[nodiscard]] double length() const { return way_.back(); }
   [[nodiscard]] Eigen::Vector3d at(double share) const {

@@ -9,22 +9,23 @@
 
 namespace flexura {
 
-/// Returns a shape roughly along points in space, base first: each section bends from the curve's tangent at
-/// its start to that at its end. The prior's knowledge of the base is kept. Throws std::invalid_argument
-/// without two different points.
+/// Returns a shape roughly along points in space, in order from the base. Each section bends from the curve's
+/// tangent at the section's start to the tangent at its end. A base that the prior knows is kept. Throws
+/// std::invalid_argument unless two points differ.
 [[nodiscard]] Shape shape_along(const ShapePrior& prior, std::span<const Eigen::Vector3d> points);
 
-/// Returns `shape` with the part after the start of a section mirrored in the plane through that point
-/// perpendicular to the line of sight. What `view` shows stays about the same, unlike in other views.
+/// Returns `shape` with its part beyond a section's start mirrored. The mirror plane passes through that
+/// start, perpendicular to the line of sight. The image in `view` hardly changes, but the images in other
+/// views do.
 [[nodiscard]] Shape mirrored(const ShapePrior& prior, const Shape& shape, std::size_t section,
                              const View& view);
 
-/// Returns `ways` shapes with another bend of one section, `bend` rad in evenly spaced directions. For parts
-/// that are hidden or seen end-on, whose direction no picture shows at first.
+/// Returns `ways` shapes in which one section bends by `bend` rad, in evenly spaced directions. They are
+/// starts for a section that is hidden or seen end-on, so that no picture shows its direction.
 [[nodiscard]] std::vector<Shape> bent_otherwise(const Shape& shape, std::size_t section, double bend,
                                                 int ways);
 
-/// Returns the prior's arm, straight.
+/// Returns the prior's arm in its straight shape.
 [[nodiscard]] Shape straight_shape(const ShapePrior& prior);
 
 }  // namespace flexura

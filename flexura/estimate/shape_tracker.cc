@@ -17,9 +17,10 @@ ShapeTracker::ShapeTracker(ShapePrior prior, const EstimatorConfig& estimator, c
     throw std::invalid_argument("a tracker needs an arm of known base and length");
 }
 
-ShapePrediction ShapeTracker::gone_on(std::span<const Observation> observations, double time,
-                                      const ArmState& expected) const {
-  ShapePrediction prediction = *prediction_;
+void ShapeTracker::go_on(std::span<const Observation> observations, double time, const ArmState& expected,
+                         const SwingPath& path) {
+  if (!prediction_) return;
+  ShapePrediction& prediction = *prediction_;
   const double since = std::isfinite(time - time_) ? std::max(0.0, time - time_) : 0.0;
   auto variances = prediction.covariance.diagonal();
   const Eigen::Index bends = variables_.bends_a_section();
@@ -40,7 +41,21 @@ ShapePrediction ShapeTracker::gone_on(std::span<const Observation> observations,
     variances[at + 3] += focal * focal * since;
   }
   prediction.mean.state = expected;
-  return prediction;
+  time_ = time;
+  const Eigen::VectorXd change = swing_.predict(path, bends, prediction.covariance);
+  for (std::size_t i = 0; i < expected.bends.size() && change.size() > 0; ++i)
+    prediction.mean.state.bends[i].head(bends) += change.segment(3 * static_cast<Eigen::Index>(i), bends);
+}
+
+void ShapeTracker::update_swing(std::span<const Observation> observations, const ShapeEstimate& estimate) {
+  if (!prediction_ || !swing_.is_tracked()) return;
+  const ShapeVariables variables(prior_, observations);
+  if (variables.count() != prediction_->covariance.rows() || !estimate.covariance.allFinite()) {
+    swing_.forget();
+    return;
+  }
+  swing_.update(variables.minus(estimate.shape, prediction_->mean), prediction_->covariance,
+                estimate.covariance, is_updated_);
 }
 
 // View errors leave residuals that are similar in successive pictures.
@@ -49,12 +64,12 @@ bool ShapeTracker::is_as_usual(const ShapeEstimate& estimate) const {
   return estimate.is_found && estimate.rms <= std::max(few, as_usual * usual_rms_);
 }
 
-ShapeEstimate ShapeTracker::followed(std::span<const Observation> observations, double time,
-                                     const ArmState& expected) {
+ShapeEstimate ShapeTracker::followed(std::span<const Observation> observations, const ArmState& expected) {
   if (prediction_) {
-    ShapeEstimate updated = estimator_.update(observations, gone_on(observations, time, expected));
+    ShapeEstimate updated = estimator_.update(observations, *prediction_);
     is_innovation_large_ = updated.is_found && !(updated.innovation <= config_.max_innovation);
-    if (is_as_usual(updated) && !is_innovation_large_) return updated;
+    is_updated_ = is_as_usual(updated) && !is_innovation_large_;
+    if (is_updated_) return updated;
   }
   return estimator_.follow(
       observations, Shape{arm_, expected, prediction_ ? prediction_->mean.views : std::vector<ViewError>{}});
@@ -85,21 +100,24 @@ ShapeEstimate ShapeTracker::from_nothing(std::span<const Observation> observatio
   return anew;
 }
 
-ShapeEstimate ShapeTracker::found(std::span<const Observation> observations, double time,
+ShapeEstimate ShapeTracker::found(std::span<const Observation> observations,
                                   const std::optional<ArmState>& expected) {
   ShapeEstimate best;
   is_innovation_large_ = false;
   if (expected && !elsewhere_) {
-    best = followed(observations, time, *expected);
+    best = followed(observations, *expected);
     if (is_as_usual(best) && !is_innovation_large_) {
       if (!is_to_be_checked(best)) return best;
       unreliable_ = 0;
       ShapeEstimate anew = from_nothing(observations);
       const bool is_better = anew.is_found && anew.outlier_share < 0.5 * best.outlier_share;
-      return elsewhere_ || is_better ? anew : best;
+      if (!elsewhere_ && !is_better) return best;
+      is_updated_ = false;
+      return anew;
     }
   }
   unreliable_ = 0;
+  is_updated_ = false;
   ShapeEstimate anew = from_nothing(observations);
   // If none is found, the second one gives the reason, unless it could not be tried.
   const bool is_tried = !expected || std::ranges::all_of(observations, [](const Observation& seen) {
@@ -111,13 +129,34 @@ ShapeEstimate ShapeTracker::found(std::span<const Observation> observations, dou
 
 ShapeEstimate ShapeTracker::look(std::span<const Observation> observations, double time,
                                  const std::optional<ArmState>& expected) {
+  return look(observations, time, expected, {});
+}
+
+ShapeEstimate ShapeTracker::look(std::span<const Observation> observations, double time,
+                                 const std::optional<ArmState>& expected, const SwingPath& path) {
   if (!are_enough(observations)) {
     ShapeEstimate none;
     none.reason = "the arm is not seen in every image";
     return none;
   }
-  ShapeEstimate estimate = found(observations, time, expected);
-  if (!estimate.is_found) return estimate;
+  is_updated_ = false;
+  const std::optional<ShapePrediction> before = prediction_;
+  const SwingFilter swing_before = swing_;
+  const double time_before = time_;
+  std::optional<ArmState> predicted = expected;
+  if (expected && prediction_) {
+    go_on(observations, time, *expected, path);
+    predicted = prediction_->mean.state;
+  }
+  ShapeEstimate estimate = found(observations, predicted);
+  if (!estimate.is_found) {
+    prediction_ = before, swing_ = swing_before, time_ = time_before;
+    return estimate;
+  }
+  if (expected)
+    update_swing(observations, estimate);
+  else
+    swing_.forget();
   prediction_ = ShapePrediction{estimate.shape, estimate.covariance};
   time_ = time, usual_rms_ = estimate.rms;
   return estimate;

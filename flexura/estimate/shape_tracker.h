@@ -7,6 +7,7 @@
 #include "flexura/estimate/observation.h"
 #include "flexura/estimate/shape_estimator.h"
 #include "flexura/estimate/shape_variables.h"
+#include "flexura/estimate/swing_filter.h"
 
 namespace flexura {
 
@@ -14,7 +15,7 @@ namespace flexura {
 struct TrackerConfig {
   double process_noise = 0.005;  ///< Process noise of each bend, rad per root second.
   double motion_noise =
-      0.1;  ///< Motion-proportional noise of each bend: share of its section's predicted change.
+      0.1;  ///< Motion-proportional noise of each bend, as a share of the predicted change of its section.
   double turn_noise = 1e-4;   ///< Process noise of a view's rotation error, rad per root second.
   double focal_noise = 1e-4;  ///< Process noise of a view's focal error, per root second.
   /// Predictions with a larger normalised innovation (ShapeEstimate::innovation) are discarded.
@@ -25,34 +26,43 @@ struct TrackerConfig {
   int patience = 10;
 };
 
-/// Tracks the shape of an arm. Earlier observations of it, and of the view errors, count in the next
-/// estimate: a Kalman filter whose update is the estimator's fit. Information that is weak in one pair of
-/// pictures accumulates over many. Use it from one thread at a time.
+/// Tracks the shape of an arm by a Kalman filter whose update is the estimator's fit. Each estimate uses
+/// earlier observations of the shape and of the view errors. Information that is weak in one pair of pictures
+/// accumulates over many pairs. Not thread-safe.
 class ShapeTracker {
  public:
   /// Throws std::invalid_argument if the arm's base or length is not known.
   ShapeTracker(ShapePrior prior, const EstimatorConfig& estimator, const TrackerConfig& config = {});
 
-  /// Returns the shape at `time` (s). `expected` is its prediction, if any: the previous estimate, advanced
-  /// by the known motion of the arm since. Without it, earlier observations are discarded. Estimates that are
-  /// found have the views' errors in `shape.views`.
+  /// Returns the shape at `time` (s). `expected` is the predicted shape, if any: the previous estimate,
+  /// advanced by the known motion of the arm since. Without a prediction, earlier observations are discarded.
+  /// If the shape is found, `shape.views` contains the views' errors.
   [[nodiscard]] ShapeEstimate look(std::span<const Observation> observations, double time,
                                    const std::optional<ArmState>& expected);
+  /// Returns the shape of an arm that swings. `expected`: prediction without the swing's change; `path`: of
+  /// the drives since the previous estimate.
+  [[nodiscard]] ShapeEstimate look(std::span<const Observation> observations, double time,
+                                   const std::optional<ArmState>& expected, const SwingPath& path);
+  /// Returns the swing at the last estimate; not tracked for an arm without modes.
+  [[nodiscard]] const SwingFilter& swing() const { return swing_; }
 
-  /// Resets the tracker: the next observations are of an unknown arm.
-  void forget() { prediction_.reset(), usual_rms_ = 0, unreliable_ = 0, elsewhere_.reset(); }
+  /// Resets the tracker: the shape at the next observations is unknown.
+  void forget() {
+    prediction_.reset(), usual_rms_ = 0, unreliable_ = 0, elsewhere_.reset();
+    swing_.forget();
+  }
 
  private:
-  // The predicted state of the filter.
-  [[nodiscard]] ShapePrediction gone_on(std::span<const Observation> observations, double time,
-                                        const ArmState& expected) const;
+  // Advances the filter's state to these observations.
+  void go_on(std::span<const Observation> observations, double time, const ArmState& expected,
+             const SwingPath& path);
+  void update_swing(std::span<const Observation> observations, const ShapeEstimate& estimate);
   [[nodiscard]] bool is_as_usual(const ShapeEstimate& estimate) const;
   // Estimates from the prediction, and sets whether the observations contradict it.
-  [[nodiscard]] ShapeEstimate followed(std::span<const Observation> observations, double time,
-                                       const ArmState& expected);
+  [[nodiscard]] ShapeEstimate followed(std::span<const Observation> observations, const ArmState& expected);
   [[nodiscard]] bool is_to_be_checked(const ShapeEstimate& estimate);
   [[nodiscard]] ShapeEstimate from_nothing(std::span<const Observation> observations);
-  [[nodiscard]] ShapeEstimate found(std::span<const Observation> observations, double time,
+  [[nodiscard]] ShapeEstimate found(std::span<const Observation> observations,
                                     const std::optional<ArmState>& expected);
 
   ShapePrior prior_;
@@ -60,12 +70,15 @@ class ShapeTracker {
   TrackerConfig config_;
   ShapeVariables variables_;
   ShapeEstimator estimator_;
+  // The last estimate; while looking, the filter's prediction.
   std::optional<ShapePrediction> prediction_;
-  double time_ = 0;       // Of `prediction_`, s.
-  double usual_rms_ = 0;  // Of the last estimate's residuals, px.
+  SwingFilter swing_;
+  bool is_updated_ = false;  // Whether the estimate contains the prediction.
+  double time_ = 0;          // Time of `prediction_`, s.
+  double usual_rms_ = 0;     // Root mean square of the last estimate's residuals, px.
   bool is_innovation_large_ = false;
   int unreliable_ = 0;  // Number of successive observations with many outliers, up to the last one.
-  // Explanation of the last estimate without a start, if it needs camera errors beyond their priors.
+  // Shape of the last estimate without a start, if it needs camera errors beyond their priors.
   std::optional<Shape> elsewhere_;
 };
 

@@ -83,7 +83,8 @@ TEST(BadDriveFiles, EachGetsALineWithPlaceValueAndExpectation) {
        "drive.tendon = [{section = 1, angle = 0}, {section = 1, angle = 0}]\n",
        "expected at least 2 on different sides of the arm"},
       {"steps that are no multiple of the phases", drive_with("steps = 600", "steps = 200"),
-       "x.toml:10:1: drive.motor.steps: 200 full steps a turn of a motor with 3 phases: expected a multiple "
+       "x.toml:10:1: drive.motor.steps: 200 full steps per turn of a motor with 3 phases: expected a "
+       "multiple "
        "of the phases"},
       {"one phase", drive_with("steps = 600", "phases = 1"),
        "drive.motor.phases = 1: expected a whole number from 2"},
@@ -103,9 +104,9 @@ TEST(BadDriveFiles, EachGetsALineWithPlaceValueAndExpectation) {
       {"no piece between disks", drive_with("radius_mm = 15", "disks = 0"),
        "drive.disks = 0: expected a whole number from 1"},
       {"a motor of its own that does not fit", drive_with("angle_deg = 0", "angle_deg = 0\nmotor.phases = 7"),
-       "drive.tendon[0].motor.steps: 300 full steps a turn of a motor with 7 phases"},
+       "drive.tendon[0].motor.steps: 300 full steps per turn of a motor with 7 phases"},
       {"positions beyond what is counted exactly", drive_with("gear = 10", "gear = 1e6\nradius = 1e-9"),
-       "drive.tendon[0]: makes up to "},
+       "drive.tendon[0]: needs up to "},
   };
   for (const BadFile& file : files) EXPECT_THAT(error_of_file(file.text), HasSubstr(file.error)) << file.what;
 }

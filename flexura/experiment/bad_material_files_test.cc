@@ -66,10 +66,11 @@ TEST(BadMaterialFiles, EachGetsALineWithPlaceValueAndExpectation) {
       {"Poisson's ratio above a half", rods_with("poisson = 0.3", "poisson = 0.6"),
        "x.toml:10:11: arm.section[0].material.poisson = 0.6: expected a number from 0 to 0.5"},
       {"both moduli and Poisson's ratio", rods_with("poisson = 0.3", "poisson = 0.3\nshear_modulus = 2e10"),
-       "x.toml:10:1: arm.section[0].material.poisson: is given beside shear_modulus: expected one of them"},
+       "x.toml:10:1: arm.section[0].material.poisson: is given together with shear_modulus: expected one "
+       "of them"},
       {"modulus and stiffness", rods_with("mass_per_length = 0.1", "youngs_modulus = 1e9"),
-       "x.toml:23:1: arm.section[1].material.youngs_modulus: is given beside stiffness: expected one of "
-       "them"},
+       "x.toml:23:1: arm.section[1].material.youngs_modulus: is given together with stiffness: expected "
+       "one of them"},
       {"stiffness 0", rods_with("twist = 0.01", "twist = 0"),
        "arm.section[1].material.stiffness.twist = 0: expected a number above 0"},
       {"stiffness left out", rods_with(", twist = 0.01", ""),
@@ -77,7 +78,7 @@ TEST(BadMaterialFiles, EachGetsALineWithPlaceValueAndExpectation) {
       {"negative bend stiffness", rods_with("[0.01, 0.02]", "[0.01, -0.02]"),
        "arm.section[1].material.stiffness.bend[1] = -0.02: expected a number above 0"},
       {"density beside mass", rods_with("mass_per_length = 0.1", "mass_per_length = 0.1\ndensity = 1"),
-       "arm.section[1].material.mass_per_length: is given beside density: expected one of them"},
+       "arm.section[1].material.mass_per_length: is given together with density: expected one of them"},
       {"a bore as wide as the rod", rods_with("radius_mm = 0.7", "radius_mm = 0.7\ninner_radius_mm = 0.7"),
        "x.toml:13:1: arm.section[0].material.inner_radius: 0.0007 m in a rod of radius 0.0007 m: expected "
        "less"},
@@ -103,8 +104,7 @@ TEST(BadMaterialFiles, EachGetsALineWithPlaceValueAndExpectation) {
            "= 0.01 }\nmass_per_length = 0.1\n",
            ""),
        "x.toml:18:1: arm.section[1]: has no material: expected material.youngs_modulus or "
-       "material.stiffness, "
-       "for the arm's model is \"static\""},
+       "material.stiffness, because the arm's model is \"static\""},
       {"a tendon outside the tube", rods_with("radius = 0.01\n", "radius = 0.011\n"),
        "arm.tendon[0]: runs outside the tube: expected at most 0.0108 m off the backbone in section 2, 0.484 "
        "m "

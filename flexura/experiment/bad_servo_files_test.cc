@@ -38,7 +38,7 @@ TEST(BadServo, EachIsOneClearLine) {
            {"target = []\n", "empty array: expected an array of 1 to"},
            {"target = [{}]\n", "target[0]: has no shape: expected a shape in one way"},
            {"target = [{" + bends + ", position = [0, 0, 1]}]\n", "in more than one way"},
-           {"target = [{azimuths = [0, 1]}]\n", "azimuths and elevations that do not belong together"},
+           {"target = [{azimuths = [0, 1]}]\n", "different numbers of azimuths and elevations"},
            {"target = [{azimuths = [0, 1], elevations = [0]}]\n", "expected an array of 2 to"},
            {"target = [{curve = [[0, 0, 0], [0, 0, 0]]}]\n", "target[0].curve: has no length"},
            {"target = [{curve = [[0, 0, 0], [0, nan, 0]]}]\n", "nan"},
@@ -50,7 +50,7 @@ TEST(BadServo, EachIsOneClearLine) {
            {"target = [{pictures = [\"a.png\"]}]\n", "expected an array of 2"},
            {"target = [{pictures = [\"../a.png\", \"b.png\"]}]\n", "task[0].target[0].pictures: "},
            {fmt::format("target = [{{time = 1, {}}}, {{time = 1, {}}}]\n", bends, bends),
-            "expected more than the target before it"},
+            "expected more than the time of the previous target"},
            {"law = \"pts\"\ntarget = [{" + bends + "}]\n", "expected one of \"shape\""},
            {"cameras = [\"front\", \"front\"]\ntarget = [{" + bends + "}]\n", "names one camera twice"},
            {"cameras = [\"front\", \"left\"]\ntarget = [{" + bends + "}]\n", "there is no camera \"left\""},
@@ -123,10 +123,10 @@ TEST(BadServo, PicturesThatComeAfterItIsGivenUp) {
   const auto late = [](const std::string& task, const std::string& delay) {
     return complaint_of(servo_file(task + servo_target, {.sensor = "exposure = 0.002, delay = " + delay}));
   };
-  EXPECT_NE(late("", "100").find(
-                "task[0].give_up_after: 3 s: expected more than the 100.002 s after which a picture of "
-                "camera front comes"),
-            std::string::npos)
+  EXPECT_NE(
+      late("", "100").find(
+          "task[0].give_up_after: 3 s: expected more than the delay of 100.002 s of camera front's pictures"),
+      std::string::npos)
       << late("", "100");
   EXPECT_NE(late("", "2.999"), "");
   EXPECT_EQ(late("", "2.99"), "");

@@ -203,7 +203,7 @@ TEST(CalibrateTaskFully, StopsWhereTheCylinderIsSeenElsewhereAfterTheMove) {
   PushesBeforeTheMove watcher(pan);
   const RigSessionResult result = bench.calibrate_bundle(ports, watcher);
   EXPECT_FALSE(result.is_done);
-  EXPECT_NE(result.reason.find("from its predicted place"), std::string::npos) << result.reason;
+  EXPECT_NE(result.reason.find("from its predicted position"), std::string::npos) << result.reason;
   EXPECT_GT(result.verified[0], 4);  // Half a degree at 800 px is 7 px.
   CalibrationBench::expect_back(ports);
 }

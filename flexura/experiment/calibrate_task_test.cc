@@ -69,7 +69,7 @@ TEST(CalibrateTask, StopsWhereTheMoveEndsElsewhereThanPredicted) {
       "images = 8\n" + three_poses, both_heads("{ pan = { backlash_deg = 3 }, tilt = { zero_deg = 0 } }")));
   const RigSessionResult result = bench.calibrate_bundle(bench.ports());
   EXPECT_FALSE(result.is_done);
-  EXPECT_THAT(result.reason, HasSubstr("from its predicted place, "));
+  EXPECT_THAT(result.reason, HasSubstr("from its predicted position, "));
   bench.expect_back();
 }
 
@@ -83,7 +83,7 @@ TEST(CalibrateTask, StopsWhereAHeadEndsBeforeTheAxesAreOrthogonal) {
   CalibrationBench bench(file);
   const RigSessionResult result = bench.calibrate_bundle(bench.ports());
   EXPECT_FALSE(result.is_done);
-  EXPECT_THAT(result.reason, HasSubstr("where heads and stages end the axes would be"));
+  EXPECT_THAT(result.reason, HasSubstr("at the limits of heads and stages the axes would be"));
   EXPECT_THAT(result.reason, HasSubstr("pan ends at"));
 }
 
@@ -95,7 +95,7 @@ TEST(CalibrateTask, StopsWhereTheArmIsOutOfView) {
   const RigSessionResult result = bench.calibrate_bundle(bench.ports());
   EXPECT_FALSE(result.is_done);
   EXPECT_THAT(result.reason, HasSubstr("the arm is out of view of camera side"));
-  EXPECT_THAT(result.reason, HasSubstr("back where they began"));
+  EXPECT_THAT(result.reason, HasSubstr("have returned to the start"));
   bench.expect_back();
 }
 
@@ -175,7 +175,7 @@ TEST(CalibrateTask, StopsWhereBothCamerasLookFromOneSide) {
   const RigSessionResult result = bench.calibrate_bundle(bench.ports());
   EXPECT_FALSE(result.is_done);
   EXPECT_THAT(result.reason, HasSubstr("both cameras look from one side"));
-  EXPECT_THAT(result.reason, HasSubstr("back where they began"));
+  EXPECT_THAT(result.reason, HasSubstr("have returned to the start"));
   bench.expect_back();
 }
 
@@ -191,7 +191,7 @@ TEST(CalibrateTask, StopsWhereOrthogonalAxesPassBesideTheArm) {
   const RigSessionResult result = bench.calibrate_bundle(bench.ports());
   EXPECT_FALSE(result.is_done);
   EXPECT_THAT(result.reason, HasSubstr("m beside the arm"));
-  EXPECT_THAT(result.reason, HasSubstr("back where they began"));
+  EXPECT_THAT(result.reason, HasSubstr("have returned to the start"));
   bench.expect_back();
 }
 
@@ -212,7 +212,7 @@ TEST(CalibrateTask, StopsWhereAHeadDoesNotFollow) {
   ports.cameras[1].head = &stuck;
   const RigSessionResult result = bench.calibrate_bundle(ports);
   EXPECT_FALSE(result.is_done);
-  EXPECT_THAT(result.reason, HasSubstr("the head of camera side does not follow: pan was sent to"));
+  EXPECT_THAT(result.reason, HasSubstr("the head of camera side does not follow: pan was commanded to"));
   bench.expect_back();
 }
 
@@ -221,7 +221,7 @@ TEST(CalibrateTask, StopsWhereNoFrameComes) {
       small_calibration("images = 5\nframe_timeout = 1\n" + three_poses, "", ", drop = 1"));
   const RigSessionResult result = bench.calibrate_bundle(bench.ports());
   EXPECT_FALSE(result.is_done);
-  EXPECT_THAT(result.reason, HasSubstr("camera front gave no frame for 1 s"));
+  EXPECT_THAT(result.reason, HasSubstr("camera front sent no frame for 1 s"));
   bench.expect_back();
 }
 

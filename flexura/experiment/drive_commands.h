@@ -15,15 +15,16 @@
 
 namespace flexura {
 
-/// Command list of a run, as a table and in the log (docs/results.md). For every clock step it has each
-/// motor's position at that time and its mean step rate up to there. The first row has the motors' positions
-/// at the start of the run.
+/// Command list of a run, as a table and in the log (docs/results.md). For every clock step it has the
+/// position of each motor and its mean step rate since the previous clock step. The first row has the motors'
+/// positions at the start of the run.
 class DriveCommands {
  public:
-  /// Starts the new table `file`. Throws std::system_error if it exists or cannot be written.
+  /// Starts the new table `file`. Throws std::system_error if the file exists or cannot be written.
   DriveCommands(Arm arm, Drive drive, const std::filesystem::path& file);
 
-  /// Adds the arm's state that the motors have to reach by `time` s, later than the previous one.
+  /// Adds the arm's state that the motors have to reach at `time` (s), which must be later than the previous
+  /// time.
   void step(double time, const ArmState& state, Recorder& recorder);
   /// Returns the motors' positions after the arm's motion through these states.
   [[nodiscard]] std::vector<std::int64_t> positions_after(std::span<const ArmState> way) const;
@@ -36,9 +37,9 @@ class DriveCommands {
   Arm arm_;
   Drive drive_;
   AppendFile file_;
-  CsvText rows_;  // Not yet in the file.
+  CsvText rows_;  // Rows that are not yet in the file.
   double time_ = 0;
-  std::optional<MotorCommander> commander_;  // From the first state on.
+  std::optional<MotorCommander> commander_;  // Set with the first state.
 };
 
 }  // namespace flexura

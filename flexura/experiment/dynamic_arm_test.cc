@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -116,7 +117,7 @@ TEST(BadDynamicFiles, EachGetsALineWithPlaceValueAndExpectation) {
               HasSubstr("arm.section[0].material: has no mass: expected density or mass_per_length"));
   EXPECT_EQ(error_of_file(moving_with("radius = 0.01\n", "radius = 0.01\nfriction = 0.1\n")), "no error");
   EXPECT_THAT(error_of_file(moving_with("\"dynamic\"", "\"static\"")),
-              HasSubstr("arm.contact: is of arms in motion: expected model = \"dynamic\""));
+              HasSubstr("arm.contact: is only for dynamic arms: expected model = \"dynamic\""));
   EXPECT_EQ(error_of_file(moving_with("radius = 0.02\n", "radius = 0.02\nstretch_limits = [1, 2]\n")),
             "no error");
   EXPECT_THAT(error_of_file(moving_with("until = 2", "until = 0.5")),
@@ -130,6 +131,30 @@ TEST(BadDynamicFiles, EachGetsALineWithPlaceValueAndExpectation) {
               HasSubstr("task[0].method: needs an arm that its drives bend into arcs"));
   EXPECT_THAT(error_of_file(moving_with("model = \"dynamic\"", "model = \"dynamic\"\ntime_step = 0")),
               HasSubstr("arm.time_step"));
+}
+
+TEST(BadDynamicFiles, AnArmDoesNotStartInsideAnObstacle) {
+  const auto with_ball = [](double x, const std::string& more = "") {
+    return moving_rod + fmt::format(
+                            "[[obstacle]]\nkind = \"plane\"\npoint = [0, -1, 0]\n"
+                            "[[obstacle]]\nkind = \"sphere\"\nname = \"ball\"\n"
+                            "center = [{}, 0.2, 0]\nradius = 0.05\n{}",
+                            x, more);
+  };
+  // The arm stands upright, 20 mm thick: its surface and then its centerline are inside.
+  EXPECT_EQ(error_of_file(with_ball(0.071)), "no error");
+  EXPECT_EQ(error_of_file(with_ball(0.06)), "no error");
+  const std::string refused = error_of_file(with_ball(0.04));
+  EXPECT_THAT(refused, HasSubstr("obstacle[1]: at the start, the arm's centerline is inside ball (the "
+                                 "arm is 30 mm deep at 0.2 m from its base)"));
+  EXPECT_THAT(refused, HasSubstr(":26:"));
+  EXPECT_EQ(std::ranges::count(refused, '\n'), 0);
+  EXPECT_EQ(error_of_file(with_ball(0.04, "ignore_base = 0.3\n")), "no error");
+  // The true arm decides.
+  EXPECT_THAT(error_of_file(with_ball(0.06, "[truth.arm.base]\nposition = [0.02, 0, 0]\n")),
+              HasSubstr("obstacle[1]: at the start"));
+  // Without contact, the arm passes through it.
+  EXPECT_EQ(error_of_file(replaced(with_ball(0.04), "[arm.contact]\nfriction = 0.4\n", "")), "no error");
 }
 
 }  // namespace

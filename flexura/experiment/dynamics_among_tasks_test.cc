@@ -145,8 +145,8 @@ TEST_F(Dynamics, TellsWhatIsWrongAfterATaskThatFailsToo) {
                               const std::vector<std::string>& notes) {
     for (const char* name : {"second", "third"})
       EXPECT_THAT(caveats,
-                  testing::Contains(fmt::format("{}: judged by the straight way only: it is not simulated, "
-                                                "for the run ends with first",
+                  testing::Contains(fmt::format("{}: only the straight path to its target is checked: the "
+                                                "motion is not simulated, because the run ends with first",
                                                 name)));
     EXPECT_THAT(notes, testing::Contains(HasSubstr("second: the potential's force has the sign -1")));
     EXPECT_THAT(notes, testing::Contains(HasSubstr("second: the arm's elasticity is neither")));
@@ -155,7 +155,7 @@ TEST_F(Dynamics, TellsWhatIsWrongAfterATaskThatFailsToo) {
   Quiet quiet;
   const SafetyReport report = check_experiment_safety(experiment, quiet);
   is_reported(report.caveats, report.notes);
-  EXPECT_THAT(report.notes, testing::Contains("first: gravity is compensated to 50 %, not to 100 %"));
+  EXPECT_THAT(report.notes, testing::Contains("first: 50 % of gravity is compensated, not 100 %"));
   const RunResult result = run(experiment);
   const auto lines = [&](const char* key) {
     std::vector<std::string> texts;
@@ -164,7 +164,7 @@ TEST_F(Dynamics, TellsWhatIsWrongAfterATaskThatFailsToo) {
     return texts;
   };
   is_reported(lines("caveats"), lines("notes"));
-  EXPECT_THAT(result.reasons, ElementsAre("first: gravity is compensated to 50 %, not to 100 %"));
+  EXPECT_THAT(result.reasons, ElementsAre("first: 50 % of gravity is compensated, not 100 %"));
 }
 
 }  // namespace

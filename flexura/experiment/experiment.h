@@ -12,25 +12,25 @@
 
 namespace flexura {
 
-/// An experiment file: a rig and its tasks, done one after another.
+/// An experiment file: a rig and its tasks, which are executed one after another.
 struct Experiment : Setup {
-  std::vector<TaskConfig> task;  ///< Done in this order.
+  std::vector<TaskConfig> task;  ///< Tasks in the order of execution.
 };
 
 const Table<Experiment>& fields_of(const Experiment*);
 
-/// Changes of a file by the command line, before it is read.
+/// Changes that the command line makes in a file before it is read.
 struct Overrides {
-  std::vector<std::string> sets;     ///< "path=value" each, in TOML ("arm.section.0.length=2.5").
-  std::optional<std::int64_t> seed;  ///< Replaces the file's.
+  std::vector<std::string> sets;     ///< Changes "path=value" in TOML, such as "arm.section.0.length=2.5".
+  std::optional<std::int64_t> seed;  ///< Seed that replaces the file's seed.
 };
 
-/// Reads and checks an experiment (or only an arm: a file without tasks). Throws InputError with all
-/// problems.
+/// Reads and checks an experiment. The file may have no tasks and describe only an arm. Throws InputError
+/// with all problems.
 [[nodiscard]] Experiment load_experiment(const std::filesystem::path& file, const Overrides& overrides = {});
 
-/// Reads and checks an experiment from TOML text, without includes and files of keyframes; `source` names it
-/// in errors.
+/// Reads and checks an experiment from TOML text, without includes and files of keyframes. `source`: name of
+/// the text in errors.
 [[nodiscard]] Experiment parse_experiment(std::string_view text, const std::string& source,
                                           const Overrides& overrides = {});
 

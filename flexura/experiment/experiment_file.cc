@@ -4,11 +4,15 @@
 #include <filesystem>
 #include <iterator>
 #include <memory>
+#include <optional>
+#include <stdexcept>
 #include <utility>
 
 #include "flexura/base/table.h"
 #include "flexura/experiment/experiment.h"
 #include "flexura/experiment/schedule.h"
+#include "flexura/model/obstacle.h"
+#include "flexura/sim/deep_start.h"
 #include "flexura/store/text_file.h"
 #include "flexura/store/toml.h"
 
@@ -153,6 +157,32 @@ SourcePosition place_of(const Node& document, std::string_view table, std::strin
   return outer == nullptr ? document.where : outer->where;
 }
 
+// Returns the place of an obstacle, or of the document.
+SourcePosition place_of_obstacle(const Node& document, std::size_t index) {
+  const Node* list = document.find("obstacle");
+  const auto* entries = list == nullptr ? nullptr : list->as<Node::Array>();
+  return entries == nullptr || index >= entries->size() ? document.where : (*entries)[index].where;
+}
+
+// Refuses an arm in motion that starts so deep in an obstacle that contact cannot push it out.
+void check_start(const Experiment& experiment, const Node& document) {
+  const RigConfig truth = experiment.true_rig();
+  std::optional<DeepStart> deep;
+  try {
+    deep = deep_start(experiment.model_rig(), truth);
+  } catch (const std::invalid_argument&) {
+    return;  // Reported where the arm is simulated.
+  }
+  if (!deep) return;
+  throw InputError(std::vector<Problem>{
+      {place_of_obstacle(document, deep->obstacle),
+       fmt::format("obstacle[{}]: at the start, the arm's centerline is inside {} (the arm is {:.3g} mm deep "
+                   "at {:.4g} m from its base), and contact cannot push it out: expected the centerline "
+                   "outside (by the obstacle's place, its ignore_base, arm.base or arm.initial)",
+                   deep->obstacle, obstacles(truth.obstacles).at(deep->obstacle).name, 1e3 * deep->depth,
+                   deep->s_rest)}});
+}
+
 // Makes the checks that need every file; reports them at places in `document`.
 void check_whole(const Experiment& experiment, const Node& document) {
   const double duration = Schedule(experiment).duration();
@@ -173,6 +203,7 @@ void check_whole(const Experiment& experiment, const Node& document) {
            fmt::format("{:.3g} images in {:.6g} s by the cameras' frame rates: expected at most {:.6g}",
                        frames, duration, max_frames));
   }
+  check_start(experiment, document);
 }
 
 // Stores the value of `set` (path=value) in `document`.
@@ -230,7 +261,7 @@ Experiment parse_experiment(std::string_view text, const std::string& source, co
     return file != nullptr && !file->as<std::string>()->empty();
   };
   if (std::ranges::any_of(task_nodes(document), names_file))
-    throw input_error(source, "a text alone cannot name a file of keyframes");
+    throw input_error(source, "an experiment given as text cannot refer to a file of keyframes");
   check_whole(experiment, document);
   return experiment;
 }

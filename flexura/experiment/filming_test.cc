@@ -282,7 +282,7 @@ TEST(DefaultStand, HasItsCamerasAtTheDistancesOfTheFile) {
   EXPECT_EQ(cameras[1].mount.position, (std::array<double, 3>{0.1 - 4, 0.2, 0.3}));
   EXPECT_THAT(error_of_file(
                   text + "[[camera]]\nname = \"a\"\nmount = { position = [0, 0, 1], look_at = [0, 0, 0] }\n"),
-              HasSubstr("x.toml:6:1: stand.camera_distances: is for the default cameras"));
+              HasSubstr("x.toml:6:1: stand.camera_distances: applies only to the default cameras"));
   EXPECT_THAT(error_of_file(text + "[truth.stand]\ncamera_distances = [2, 2]\n"),
               HasSubstr("truth.stand.camera_distances: moves no camera"));
   EXPECT_THAT(error_of_file(arm + "[stand]\ncamera_distances = [2, 0]\n"),

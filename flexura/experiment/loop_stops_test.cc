@@ -31,7 +31,7 @@ struct StoppedLoop : testing::TestWithParam<const char*> {
                           const testing::Matcher<std::string>& reason) {
     EXPECT_FALSE(result.is_done);
     EXPECT_THAT(result.reason, reason);
-    EXPECT_THAT(result.reason, HasSubstr("back where they began"));
+    EXPECT_THAT(result.reason, HasSubstr("have returned to the start"));
     bench.expect_back();
   }
 };
@@ -45,7 +45,7 @@ TEST_P(StoppedLoop, OfWhichACameraSeesNothing) {
 
 TEST_P(StoppedLoop, OfWhichACameraGivesNoFrame) {
   CalibrationBench bench(rig({}, "frame_timeout = 1\n", ", drop = 1"));
-  expect_stop(bench, bench.calibrate(), HasSubstr("camera front gave no frame for 1 s"));
+  expect_stop(bench, bench.calibrate(), HasSubstr("camera front sent no frame for 1 s"));
 }
 
 TEST_P(StoppedLoop, WhoseHeadDoesNotTurn) {
@@ -54,7 +54,7 @@ TEST_P(StoppedLoop, WhoseHeadDoesNotTurn) {
   StuckPan stuck(*ports.cameras[0].head);
   ports.cameras[0].head = &stuck;
   expect_stop(bench, bench.calibrate(ports),
-              HasSubstr("the head of camera front does not follow: pan was sent to"));
+              HasSubstr("the head of camera front does not follow: pan was commanded to"));
 }
 
 // The arm permanently reports that it moves.
@@ -68,7 +68,7 @@ TEST_P(StoppedLoop, WhoseArmMovesOn) {
   ports.arm = &restless;
   const LoopResult result = bench.calibrate(ports);
   EXPECT_FALSE(result.is_done);
-  EXPECT_THAT(result.reason, HasSubstr("something still moves 20 s after it was sent"));
+  EXPECT_THAT(result.reason, HasSubstr("a device is still moving 20 s after the last command"));
 }
 
 INSTANTIATE_TEST_SUITE_P(OfThePaper, StoppedLoop,
@@ -87,7 +87,7 @@ TEST(ArcsLoop, StopsWhereBothCamerasTrulyLookFromOneSide) {
   const LoopResult result = bench.calibrate();
   EXPECT_FALSE(result.is_done);
   EXPECT_THAT(result.reason, HasSubstr("both cameras look from one side: their axes are seen to be"));
-  EXPECT_THAT(result.reason, HasSubstr("what can be commanded ends"));
+  EXPECT_THAT(result.reason, HasSubstr("at the limit of its commands"));
   bench.expect_back();
 }
 
@@ -117,7 +117,7 @@ struct StoppedBundle {
     const RigSessionResult result = bench.calibrate_bundle(ports);
     EXPECT_FALSE(result.is_done);
     EXPECT_THAT(result.reason, reason);
-    EXPECT_THAT(result.reason, HasSubstr("back where they began"));
+    EXPECT_THAT(result.reason, HasSubstr("have returned to the start"));
     bench.expect_back();
   }
 };
@@ -129,8 +129,7 @@ TEST(BundleEtalon, StopsWhereTheCylinderIsOutOfView) {
 
 TEST(BundleEtalon, StopsWhereTheCylinderTouchesTheBorder) {
   CalibrationBench bench(StoppedBundle::rig({}, "", "", "radius = 0.1\nheight = 2.6\n"));
-  StoppedBundle::expect_stop(bench, bench.ports(),
-                             HasSubstr("camera front does not see all of the cylinder"));
+  StoppedBundle::expect_stop(bench, bench.ports(), HasSubstr("camera front does not see the whole cylinder"));
 }
 
 // With the default screens, whose borders appear in pictures aimed aside.

@@ -119,10 +119,9 @@ TEST(MissingDevices, AServoThatFollowsSaysWhichHeadIsMissingAndSendsNothing) {
   ServoNotes notes;
   const ServoResult result = bench.servo(ports, notes);
   EXPECT_FALSE(result.is_done);
-  EXPECT_EQ(
-      result.reason,
-      "camera side has no head: it can be neither turned nor zoomed, and this servo follows the arm with "
-      "both cameras");
+  EXPECT_EQ(result.reason,
+            "camera side has no head: it cannot pan, tilt or zoom, and this servo follows the arm with "
+            "both cameras");
   EXPECT_TRUE(notes.sent.empty());
   EXPECT_FALSE(bench.ports().cameras[0].head->read().value().moving);
 }
@@ -143,13 +142,13 @@ TEST(MissingDevices, ACalibrationSaysWhatIsMissingBeforeAnythingMoves) {
     LoopResult result = bench.calibrate(ports, watcher);
     EXPECT_FALSE(result.is_done);
     EXPECT_EQ(result.reason,
-              "cannot calibrate: camera side has no head: it can be neither turned nor zoomed; nothing "
+              "cannot calibrate: camera side has no head: it cannot pan, tilt or zoom; nothing "
               "was moved");
     ports = bench.ports();
     ports.cameras[0].stage = nullptr;
     result = bench.calibrate(ports, watcher);
     EXPECT_EQ(result.reason,
-              "cannot calibrate: camera front has no stage: it cannot be slid, and its mount.stage has "
+              "cannot calibrate: camera front has no stage: it cannot be translated, but its mount.stage has "
               "travel; nothing was moved");
     EXPECT_EQ(watcher.sent, 0);
     bench.expect_back();

@@ -206,7 +206,7 @@ std::optional<std::size_t> Player::rig_task_due(double time) const {
   return std::nullopt;
 }
 
-// Returns true if the run continues after it.
+// Performs a task of the rig. Returns true if the run continues after the task.
 bool Player::perform(std::size_t task) {
   const Leg leg = schedule_.legs()[task];
   publish_up_to(leg.start);

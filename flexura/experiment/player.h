@@ -20,18 +20,18 @@ namespace flexura {
 /// Progress of a run.
 struct Played {
   std::size_t states = 0;  ///< Number of clock steps, from time 0.
-  double time = 0;         ///< Of the last one, s.
+  double time = 0;         ///< Time of the last clock step, s.
   ArmState last;
   bool is_cancelled = false;
   std::string failure;  ///< Why a task failed and ended the run, or "".
 };
 
-/// Plays an experiment's schedule step by step, and records it with a Witness.
+/// Plays an experiment's schedule step by step, and records the run with a RunRecorder.
 class Player {
  public:
-  /// A rig does nothing unsafe: its tasks are then only stepped through, and only a simulated rig moves.
   /// `make_rig` is called if cameras are recorded, a task needs a rig, or the true arm differs from the
-  /// model.
+  /// model. A rig performs nothing unsafe. If the schedule is unsafe, tasks of the rig are skipped, and only
+  /// a simulated rig moves.
   Player(const Experiment& experiment, RunRecorder& run_recorder, Progress& progress, RunWatcher* watcher,
          const RigFactory& make_rig);
 
@@ -43,8 +43,7 @@ class Player {
   /// Returns the progress of the run.
   [[nodiscard]] RunProgress& progress() { return progress_; }
 
-  /// Plays every step, or those before the first impossible state, or until the run ends with a task or is
-  /// cancelled.
+  /// Plays all steps, up to the first impossible state, the end of the run by a task, or its cancellation.
   Played play();
 
  private:
@@ -75,14 +74,14 @@ class Player {
   TaskRunners tasks_;
   RunProgress progress_;
   std::size_t finished_ = 0;             // Tasks whose progress is complete.
-  std::vector<TaskRunner*> publishing_;  // Those of tasks_ that log during the run.
+  std::vector<TaskRunner*> publishing_;  // Members of tasks_ that log during the run.
   DoneTasks done_;
-  std::optional<EndedBy> ended_by_;  // A simulated task.
+  std::optional<EndedBy> ended_by_;  // The simulated task that ends the run.
   Schedule schedule_;
   SafetyReport safety_;
-  std::unique_ptr<Rig> rig_;    // Null if no rig plays.
+  std::unique_ptr<Rig> rig_;    // Null if no rig is used.
   std::vector<Camera> optics_;  // Camera models.
-  std::vector<Event> events_;   // Pending, in the order of time.
+  std::vector<Event> events_;   // Pending events, in the order of time.
   NominalRig nominal_;
   std::size_t step_ = 0;  // Next step.
   Played played_;

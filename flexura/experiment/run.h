@@ -16,29 +16,30 @@ namespace flexura {
 /// Outcome of a run.
 enum class RunOutcome {
   done,
-  unsafe,     ///< A task would break a limit of the arm or touch something; simulated for inspection.
+  unsafe,     ///< A task would violate a limit of the arm or cause a contact; the run is simulated for
+              ///< inspection.
   failed,     ///< A calibration, a servo or a dynamics task failed, and ended the run.
   cancelled,  ///< Progress::cancelled: the log ends with the last step that was played.
 };
 
-/// Returns "done", "unsafe", "failed" or "cancelled", as in summaries.
+/// Returns "done", "unsafe", "failed" or "cancelled", the names used in summaries.
 [[nodiscard]] const char* name_of(RunOutcome outcome);
 
 /// Result of a run.
 struct RunResult {
   RunOutcome outcome = RunOutcome::done;
-  std::vector<std::string> reasons;   ///< Why it is not done, one line each.
-  std::string headline;               ///< What came of it, in one line.
-  std::vector<TaskOutcome> outcomes;  ///< What came of each task.
-  std::filesystem::path folder;       ///< As given: all files are in it.
-  Node summary;                       ///< As in summary.json.
+  std::vector<std::string> reasons;   ///< Why the run is not done, one line each.
+  std::string headline;               ///< Result of the run in one line.
+  std::vector<TaskOutcome> outcomes;  ///< Results of the tasks.
+  std::filesystem::path folder;       ///< The given folder, which has all files of the run.
+  Node summary;                       ///< Content of summary.json.
 };
 
-/// Runs an experiment and writes its results into `folder`, which must exist and be empty: the experiment as
-/// run, the log, the summary, the report and its figures (docs/results.md). Equal experiments write equal
-/// bytes, with or without a watcher. A cancelled run writes its results so far: all files except the report,
-/// its figures and tables. `make_rig` makes the rig if cameras are recorded or a task needs a rig. Throws
-/// InputError if there is no task, std::runtime_error if a file cannot be written.
+/// Runs an experiment and writes its results into `folder`, which must exist and be empty. The results are
+/// the experiment as run, the log, the summary, the report and its figures (docs/results.md). Equal
+/// experiments write equal bytes, with or without a watcher. A cancelled run writes its results so far,
+/// except the report, its figures and tables. `make_rig` makes the rig if cameras are recorded or a task
+/// needs a rig. Throws InputError if there is no task, and std::runtime_error if a file cannot be written.
 [[nodiscard]] RunResult run_experiment(const Experiment& as_read, const std::filesystem::path& folder,
                                        Progress& progress, RunWatcher* watcher = nullptr,
                                        const RigFactory& make_rig = simulated_rig);

@@ -47,7 +47,7 @@ std::vector<TaskOutcome> run_outcomes(const Player& player, const Played& played
          .kind = "truth",
          .noun = "true arm",
          .success = "",
-         .text = fmt::format("tip ends {} from where it was commanded", length_text(*true_tip_off)),
+         .text = fmt::format("tip ends {} from its commanded position", length_text(*true_tip_off)),
          .size = {}});
   std::int64_t count = 0;
   for (const auto& [camera, of_camera] : frames) count += of_camera;

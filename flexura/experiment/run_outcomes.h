@@ -12,15 +12,16 @@
 
 namespace flexura {
 
-/// Returns what came of each task, in their order, then of the true arm (if its tip ends elsewhere than
-/// commanded, and no task works by measurements) and of the recorded cameras. `true_tip_off`: distance of the
-/// true tip from the commanded one at the end, m, if known. `frames`: of each camera that the log has.
+/// Returns the results of the tasks in their order, then of the true arm and of the recorded cameras. The
+/// true arm is included if its tip ends elsewhere than commanded and no task uses measurements.
+/// `true_tip_off`: final distance of the true tip from the commanded tip, m, if known. `frames`: number of
+/// frames of each camera in the log.
 [[nodiscard]] std::vector<TaskOutcome> run_outcomes(const Player& player, const Played& played,
                                                     std::optional<double> true_tip_off,
                                                     const std::map<std::string, std::int64_t>& frames);
 
-/// Returns the whole run's outcome in one line: the total of its tasks, behind how the run ended if it is not
-/// done. `time`: of its end, s.
+/// Returns the whole run's result in one line: the total of its tasks. If the run is not done, the line
+/// begins with how the run ended. `time`: time of the end, s.
 [[nodiscard]] std::string headline_of(RunOutcome outcome, double time,
                                       const std::vector<TaskOutcome>& outcomes);
 

@@ -9,15 +9,16 @@
 
 namespace flexura {
 
-/// Progress of a run by its work: checks, what each task simulates, performs and computes, and the report.
+/// Progress of a run by its work. The parts are the checks, the report, and for each task its simulation, its
+/// execution and its results.
 class RunProgress {
  public:
   RunProgress(Progress& whole, const Experiment& experiment, const TaskRunners& tasks);
 
   [[nodiscard]] Progress& checks() { return work_.piece(0); }
   [[nodiscard]] Progress& report() { return work_.piece(1); }
-  /// Return that of task `i` while it is simulated before, played or performed, and while it computes its
-  /// results.
+  /// Return the progress of task `i`: while it is simulated beforehand, while it is played or performed, and
+  /// while it computes its results.
   [[nodiscard]] Progress& simulation(std::size_t i) { return work_.piece(2 + 3 * i); }
   [[nodiscard]] Progress& task(std::size_t i) { return work_.piece(3 + 3 * i); }     ///< See simulation().
   [[nodiscard]] Progress& results(std::size_t i) { return work_.piece(4 + 3 * i); }  ///< See simulation().

@@ -54,7 +54,7 @@ std::optional<Chapter> RodRecord::chapter(const Arm& arm, const std::vector<Obst
     series.name = std::to_string(i + 1);
     for (const std::vector<double>& at : tensions) series.values.push_back(at[i]);
   }
-  LineChart tip{.heading = "the true tip from the commanded one",
+  LineChart tip{.heading = "distance of the true tip from the commanded tip",
                 .x_label = "t (s)",
                 .value_label = "distance (mm)",
                 .least = 1,
@@ -64,10 +64,9 @@ std::optional<Chapter> RodRecord::chapter(const Arm& arm, const std::vector<Obst
   const bool is_moving = !energies.empty();
   Chapter chapter{
       .heading = "The true arm",
-      .text =
-          fmt::format("The simulated arm is an elastic rod, {} under its tendons, its weight and its loads. "
-                      "The pictures above show the arm as it was commanded.",
-                      is_moving ? "in motion" : "at rest"),
+      .text = fmt::format("The simulated arm is an elastic rod, {} under the forces of its tendons, weight "
+                          "and loads. The pictures above show the arm as commanded.",
+                          is_moving ? "in motion" : "at rest"),
       .figures = {{"true-arm", two_shapes_picture(arm, obstacles, *last, commanded,
                                                   "the true arm at the end, and as commanded (line)")}},
       .is_first_tall = false};
@@ -77,7 +76,7 @@ std::optional<Chapter> RodRecord::chapter(const Arm& arm, const std::vector<Obst
   if (std::ranges::any_of(contact_forces, [](double force) { return force > 0; })) {
     LineChart contacts{.heading = "contact forces on the true arm",
                        .x_label = "t (s)",
-                       .value_label = "sum of their sizes (N)",
+                       .value_label = "sum of magnitudes (N)",
                        .least = 1e-3,
                        .x = times};
     contacts.series.emplace_back().values = contact_forces;
@@ -99,6 +98,9 @@ void RunRecorder::draw_scene(const Experiment& experiment) {
   const SceneMessage stand = stand_message(experiment);
   log_.recorder().write({scene_topic, 0, stand});
   drawn_color_ = experiment.arm.look.color;
+  const std::vector<CameraConfig> cameras = experiment.true_rig().cameras, models = experiment.cameras();
+  for (std::size_t i = 0; i < cameras.size(); ++i)
+    camera_drawings_.emplace_back(cameras[i], models[i], log_.recorder());
 }
 
 void RunRecorder::state(std::size_t step, double time, const ArmState& state) {
@@ -198,8 +200,20 @@ void RunRecorder::readings(Rig& rig) {
   }
   recorder.reading(ports.arm->read().value());
   for (const CameraPorts& camera : ports.cameras) {
-    if (camera.head != nullptr) recorder.reading(camera.name, camera.head->read().value());
-    if (camera.stage != nullptr) recorder.reading(camera.name, camera.stage->read().value());
+    const auto drawing = std::ranges::find(camera_drawings_, camera.name, &CameraDrawing::name);
+    std::optional<CameraStance> stance;
+    if (drawing != camera_drawings_.end()) stance = drawing->first_report();
+    if (camera.head != nullptr) {
+      const HeadReading reading = camera.head->read().value();
+      recorder.reading(camera.name, reading);
+      if (stance) stance->head = reading.state;
+    }
+    if (camera.stage != nullptr) {
+      const StageReading reading = camera.stage->read().value();
+      recorder.reading(camera.name, reading);
+      if (stance) stance->stage = reading.state;
+    }
+    if (stance) drawing->report(now, *stance, recorder);
   }
 }
 
@@ -209,7 +223,7 @@ void RunRecorder::report_lost_steps(double time, const std::vector<double>& lost
     if (lost[i] != lost_[i])
       log_.event(
           time, Recorder::Level::warning, "drive",
-          fmt::format("the motor of axis {} loses {:.0f} microsteps, which its controller does not know",
+          fmt::format("the motor of axis {} loses {:.0f} microsteps without knowledge of its controller",
                       axis_names_.at(i), lost[i] - lost_[i]));
     lost_[i] = lost[i];
   }

@@ -17,20 +17,20 @@
 
 namespace flexura {
 
-/// Where an arm touches something, as logs have it.
+/// Returns the contacts of an arm as messages for the log.
 [[nodiscard]] std::vector<ContactMessage> contact_messages(const std::vector<PlantContact>& contacts);
-/// The energy of an arm in motion at `time` s, likewise; none of another.
+/// Returns the energies of an arm at `time` (s) as a message for the log; std::nullopt without energies.
 [[nodiscard]] std::optional<EnergyMessage> energy_message(double time,
                                                           const std::optional<RodEnergy>& energy);
 
-/// What the report shows of a true arm that is an elastic rod.
+/// Data of a true arm that is an elastic rod, for the report.
 struct RodRecord {
   std::vector<double> times;                  ///< In s.
-  std::vector<std::vector<double>> tensions;  ///< In N, one list per time.
-  std::vector<double> off;                    ///< Distance of its tip from the commanded one, m.
-  std::vector<RodEnergy> energies;            ///< For a rod in motion, one per time; otherwise empty.
-  std::vector<double> contact_forces;         ///< Sum of all contact forces' magnitudes, N, one per time.
-  std::optional<Backbone> last;               ///< At the last of these times.
+  std::vector<std::vector<double>> tensions;  ///< Tensions of the tendons at each time, N.
+  std::vector<double> off;             ///< Distance of the true tip from the commanded tip at each time, m.
+  std::vector<RodEnergy> energies;     ///< Energies at each time; empty for a rod without inertia.
+  std::vector<double> contact_forces;  ///< Sum of the magnitudes of all contact forces at each time, N.
+  std::optional<Backbone> last;        ///< Backbone at the last of these times.
 
   /// Returns the chapter of the report; std::nullopt for an arm that is not a rod. `commanded`: the last
   /// commanded shape of `arm`.
@@ -38,23 +38,24 @@ struct RodRecord {
                                                const Backbone& commanded) const;
 };
 
-/// Records a run while it plays: the log, and the data of the report.
+/// Records a run while it is played: writes the log and collects the data of the report.
 class RunRecorder {
  public:
   /// `watcher` receives the events and the messages of tasks; may be null.
   RunRecorder(const std::filesystem::path& folder, const ArmModel& model, RunWatcher* watcher = nullptr);
 
-  /// Sets the last clock step as far as it is known: tasks may take longer.
+  /// Sets the expected last clock step. Tasks may take longer.
   void expect(std::size_t last_step);
-  /// Logs the scene, for programs that draw logs.
+  /// Logs the scene, for programs that display logs.
   void draw_scene(const Experiment& experiment);
   void state(std::size_t step, double time, const ArmState& state);
-  /// Logs the readings of the rig's devices, and the true arm if known, once for each time of its clock.
+  /// Logs the readings of the rig's devices, and the true arm if it is known, once for each time of the rig's
+  /// clock.
   void readings(Rig& rig);
   /// Sets the axis names of a drive for events.
   void name_axes(const Drive& drive);
   void write_commands(const Drive& drive, const std::filesystem::path& file);
-  /// Adds every step, logged or not: a command list has no gaps.
+  /// Adds a step to the command list. Needed for every step, because a command list has no gaps.
   void command(double time, const ArmState& state);
   /// Returns the motor positions after the arm's motion through these states; std::nullopt without a command
   /// list.
@@ -62,8 +63,8 @@ class RunRecorder {
   /// Returns the log of tasks' messages and events.
   [[nodiscard]] RunLog& log() { return log_; }
   void close();
-  /// Returns the distance of the true tip from the commanded one at the last readings, m; std::nullopt
-  /// without a known truth.
+  /// Returns the distance of the true tip from the commanded tip at the last readings, m; std::nullopt if the
+  /// truth is unknown.
   [[nodiscard]] std::optional<double> true_tip_off() const { return true_tip_off_; }
 
   [[nodiscard]] ReportData report_data(const Experiment& experiment, const Schedule& schedule,
@@ -72,27 +73,28 @@ class RunRecorder {
  private:
   [[nodiscard]] double contact_readings(RigTruth& truth, double now);
   void rod_readings(RigTruth& truth, double now, const Backbone& backbone);
-  // Reports steps that motors have lost since the last time.
+  // Reports steps that motors have lost since the last report.
   void report_lost_steps(double time, const std::vector<double>& lost);
 
   RunLog log_;
   std::optional<DriveCommands> commands_;
   std::optional<ColorConfig> drawn_color_;  // Missing: the scene is not logged.
   SceneTimes scene_times_;
-  std::optional<std::int64_t> read_at_;  // Time of the last readings, ns.
+  std::vector<CameraDrawing> camera_drawings_;  // Empty if the scene is not logged.
+  std::optional<std::int64_t> read_at_;         // Time of the last readings, ns.
   ArmModel model_;
   std::size_t last_step_ = 0;
   std::size_t kept_every_ = 1;
   std::size_t recorded_ = 0, readings_ = 0;
   std::string warned_;    // Last warning about the arm.
-  bool touched_ = false;  // At the last readings.
+  bool touched_ = false;  // Whether the arm had a contact at the last readings.
   std::vector<double> times_;
   std::vector<ArmState> states_;
   Eigen::Vector3d commanded_tip_ = Eigen::Vector3d::Zero();
   std::optional<double> true_tip_off_;
   RodRecord rod_;
-  std::vector<double> lost_;             // Microsteps of each axis, as last reported by events.
-  std::vector<std::string> axis_names_;  // As in the command list.
+  std::vector<double> lost_;             // Lost microsteps of each axis, as last reported by an event.
+  std::vector<std::string> axis_names_;  // Names of the axes in the command list.
 };
 
 }  // namespace flexura

@@ -356,7 +356,8 @@ TEST(Overrides, ChangeValuesUnderTheSameChecks) {
   EXPECT_THAT(error("arm.section.0.length=-1"),
               HasSubstr(":1:22: arm.section[0].length = -1: expected a number from 1e-06 m"));
   EXPECT_THAT(error("arm.section.8.length=1"), HasSubstr("index 8 is outside an array of 8"));
-  EXPECT_THAT(error("arm.base.position.1=3"), HasSubstr("there is no array to set entry 1 of"));
+  EXPECT_THAT(error("arm.base.position.1=3"),
+              HasSubstr("entry 1 cannot be set because the array does not exist"));
   EXPECT_THAT(error("arm.section.0.lenght=1"), HasSubstr("did you mean \"length\"?"));
   EXPECT_THAT(error("arm.section.0.length"), HasSubstr("expected path=value"));
   EXPECT_THAT(error("=1"), HasSubstr("is no path"));

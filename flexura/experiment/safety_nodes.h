@@ -7,11 +7,13 @@
 
 namespace flexura {
 
-/// Most violations listed individually; the first and the worst of every group are always listed.
+/// Largest number of violations that are listed individually. The first and the worst violation of every
+/// group are always listed.
 inline constexpr std::size_t max_listed_violations = 500;
 
 /// Returns the result of a check, as `flexura check --json` prints it: "safe", "violation_count", and the
-/// lists "groups", "violations", "caveats" and "notes" (docs/safety.md). Sections count from 1 as in texts.
+/// lists "groups", "violations", "caveats" and "notes" (docs/safety.md). Sections are counted from 1, as in
+/// texts.
 [[nodiscard]] Node safety_node(const SafetyReport& report);
 
 }  // namespace flexura

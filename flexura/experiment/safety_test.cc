@@ -118,7 +118,8 @@ TEST(TipTargets, OutsideTheWorkspaceAreViolationsWithTheNearestDistance) {
 TEST(TipTargets, BesideAShapeAreRefused) {
   EXPECT_THAT(
       error_of_rest("[[task]]\nkind = 'move'\nto.position = [0, 1, 0]\nto.bends = [[0, 0], [0, 0]]\n"),
-      HasSubstr("task[0].to.position: stands beside a shape: expected a place for the tip or a shape"));
+      HasSubstr(
+          "task[0].to.position: is given together with a shape: expected either a position or a shape"));
   EXPECT_THAT(error_of_rest("[[task]]\nkind = 'move'\nto.position = [0, 1]\n"), HasSubstr("x.toml:9:"));
 }
 

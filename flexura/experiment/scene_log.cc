@@ -6,7 +6,7 @@
 #include <utility>
 #include <variant>
 
-#include "flexura/camera/camera.h"
+#include "flexura/log/logged_message.h"
 #include "flexura/math/arrays.h"
 #include "flexura/math/so3.h"
 #include "flexura/render/scene_maker.h"
@@ -124,7 +124,56 @@ FramesMessage frames_message(const Experiment& experiment) {
     frames.transforms.push_back(
         frame(image_topic(config.name).substr(1), camera.pose(camera.initial_stance())));
   }
+  Pose upright;
+  upright.rotation << 1, 0, 0, 0, 0, 1, 0, -1, 0;
+  frames.transforms.push_back(frame("upright", upright));
   return frames;
+}
+
+CameraCalibrationMessage calibration_message(const Camera& camera, double time, double zoom) {
+  const SensorConfig& sensor = camera.config().sensor;
+  const Intrinsics lens = camera.lens().at(zoom);
+  CameraCalibrationMessage message;
+  message.timestamp = time_message(nanoseconds(time));
+  message.frame_id = image_topic(camera.config().name).substr(1);
+  message.width = sensor.width;
+  message.height = sensor.height;
+  message.distortion.assign(lens.distortion.begin(), lens.distortion.end());
+  message.intrinsics = {lens.fx, 0, lens.cx, 0, lens.fy, lens.cy, 0, 0, 1};
+  message.rectification = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+  message.projection = {lens.fx, 0, lens.cx, 0, 0, lens.fy, lens.cy, 0, 0, 0, 1, 0};
+  return message;
+}
+
+CameraDrawing::CameraDrawing(const CameraConfig& camera, const CameraConfig& model, Recorder& recorder)
+    : camera_(camera), first_report_(Camera(model).initial_stance()), logged_(camera_.initial_stance()) {
+  log_lens(0, logged_.head.zoom, recorder);
+}
+
+void CameraDrawing::log_lens(double time, double zoom, Recorder& recorder) {
+  const CameraCalibrationMessage message = calibration_message(camera_, time, zoom);
+  recorder.write({intrinsics_topic(name()), time, message});
+}
+
+void CameraDrawing::report(double time, const CameraStance& reported, Recorder& recorder) {
+  // Reports count from the start of the model, where the true camera may stand otherwise.
+  CameraStance now = camera_.initial_stance();
+  now.head.pan += reported.head.pan - first_report_.head.pan;
+  now.head.tilt += reported.head.tilt - first_report_.head.tilt;
+  now.head.zoom += reported.head.zoom - first_report_.head.zoom;
+  now.stage.offset += reported.stage.offset - first_report_.stage.offset;
+  // Such a zoom may lie beyond the ends of the true lens.
+  now.head.zoom = std::clamp(now.head.zoom, camera_.lens().first(), camera_.lens().last());
+  constexpr double rounding = 1e-9;
+  const double interval = 1 / camera_.config().sensor.frame_rate - rounding;
+  if (now == logged_ || time < logged_at_ + interval) return;
+  if (now.head.zoom != logged_.head.zoom) log_lens(time, now.head.zoom, recorder);
+  FrameMessage moved = frame(image_topic(name()).substr(1), camera_.pose(now));
+  moved.timestamp = time_message(nanoseconds(time));
+  const FramesMessage frames{{std::move(moved)}};
+  recorder.write({frames_topic, time, frames});
+  logged_at_ = time;
+  logged_ = now;
 }
 
 SceneMessage arm_message(const ColorConfig& color, double time, const Backbone& backbone) {

@@ -1,8 +1,11 @@
 #pragma once
 
 #include <optional>
+#include <string>
 
+#include "flexura/camera/camera.h"
 #include "flexura/experiment/experiment.h"
+#include "flexura/log/recorder.h"
 #include "flexura/log/scene_messages.h"
 #include "flexura/model/arm.h"
 #include "flexura/model/backbone.h"
@@ -12,16 +15,44 @@ namespace flexura {
 /// Returns the objects around the arm at the start of a run: screens, etalon, obstacles.
 [[nodiscard]] SceneMessage stand_message(const Experiment& experiment);
 
-/// Returns the poses of the arm's base ("base") and the cameras' optical frames ("camera/NAME") at the start.
+/// Returns the poses of the arm's base ("base") and the cameras' optical frames ("camera/NAME") at the start,
+/// and the world with its Y as z ("upright"), for programs that draw z upwards.
 [[nodiscard]] FramesMessage frames_message(const Experiment& experiment);
 
-/// Returns the arm along `backbone`: strips with the mean thickness of its sections, in micrometres.
+/// Returns a camera's lens at a zoom, as at `time` s.
+[[nodiscard]] CameraCalibrationMessage calibration_message(const Camera& camera, double time, double zoom);
+
+/// Logs one camera's lens and the pose of its optical frame, for programs that draw logs: each at the start,
+/// and when it has changed, at most once per frame of the camera.
+class CameraDrawing {
+ public:
+  /// Takes the true camera and its model, by whose start its axes count. Logs the lens at the start; the pose
+  /// at the start is in frames_message.
+  CameraDrawing(const CameraConfig& camera, const CameraConfig& model, Recorder& recorder);
+
+  [[nodiscard]] const std::string& name() const { return camera_.config().name; }
+  /// Returns what the camera's axes report at the start.
+  [[nodiscard]] const CameraStance& first_report() const { return first_report_; }
+  /// Logs what has changed if the axes report this at `time` s.
+  void report(double time, const CameraStance& reported, Recorder& recorder);
+
+ private:
+  void log_lens(double time, double zoom, Recorder& recorder);
+
+  Camera camera_;
+  CameraStance first_report_;
+  CameraStance logged_;   // True.
+  double logged_at_ = 0;  // s
+};
+
+/// Returns the arm along `backbone` as polylines. Each has the mean thickness of its section, rounded to
+/// micrometres.
 [[nodiscard]] SceneMessage arm_message(const ColorConfig& color, double time, const Backbone& backbone);
 
-/// Selects the states with a drawing of the arm: the first, and then ten per second of simulated time.
+/// Selects the states at which the arm is drawn: the first, and then ten per second of simulated time.
 class SceneTimes {
  public:
-  /// Returns true if a state at `time` s, after those of all previous calls, is selected.
+  /// Returns true if the state at `time` (s) is selected. The times of successive calls must increase.
   [[nodiscard]] bool is_next(double time);
 
  private:

@@ -3,9 +3,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <map>
 #include <string>
 
+#include "flexura/base/table.h"
+#include "flexura/log/recorder.h"
 #include "tests/support/runs.h"
 
 namespace flexura {
@@ -85,10 +89,77 @@ TEST(SceneLog, DrawsTheArmNearItsBackbone) {
 
 TEST(SceneLog, SaysWhereTheFramesStand) {
   const FramesMessage frames = frames_message(experiment_of(furnished));
-  ASSERT_EQ(frames.transforms.size(), 3);
+  ASSERT_EQ(frames.transforms.size(), 4);
   EXPECT_EQ(frames.transforms[0].child_frame_id, "base");
   EXPECT_EQ(frames.transforms[1].child_frame_id, "camera/front");
   EXPECT_GT(frames.transforms[1].translation.z, 1);
+  const FrameMessage& upright = frames.transforms[3];
+  EXPECT_EQ(upright.child_frame_id, "upright");
+  const QuaternionMessage& q = upright.rotation;
+  const Eigen::Vector3d up = Eigen::Quaterniond(q.w, q.x, q.y, q.z) * Eigen::Vector3d::UnitZ();
+  EXPECT_TRUE(up.isApprox(Eigen::Vector3d::UnitY(), 1e-12)) << up.transpose();
+}
+
+// Returns the messages of a topic of a log, in order.
+template <class M>
+std::vector<M> messages_on(const McapReader& log, std::string_view topic) {
+  std::vector<M> found;
+  for (const McapMessage& message : log.messages())
+    if (message.channel->topic == topic) found.push_back(read_as<M>(parse_json(message.text(), "the log")));
+  return found;
+}
+
+TEST(SceneLog, HasEachLensAtTheStartAndWhenItsZoomHasChanged) {
+  const TemporaryFolder folder;
+  CameraConfig config;
+  config.name = "front";
+  config.mount.position = {0, 0, 2};
+  config.mount.look_at = {0, 0, 0};
+  config.sensor.frame_rate = 10;
+  config.lens.fx = 800;
+  config.lens.cx = 300;
+  config.lens.distortion = {-0.1, 0.02, 0.001, 0.002, 0};
+  const Camera camera(config);
+  CameraStance stance = camera.initial_stance();
+  {
+    Recorder recorder(folder.path() / "log.mcap", experiment_of(furnished).arm.arm());
+    CameraConfig model = config;
+    model.initial.pan = 0.25;  // The true camera stands otherwise.
+    CameraDrawing drawing(config, model, recorder);
+    CameraStance reported = drawing.first_report();
+    EXPECT_EQ(reported.head.pan, 0.25);
+    drawing.report(0.5, reported, recorder);  // Nothing has changed.
+    for (int i = 1; i <= 100; ++i) {          // Every hundredth of a second for 1 s.
+      reported.head.zoom = 1 + 0.01 * std::min(i, 90);
+      drawing.report(1 + 0.01 * i, reported, recorder);
+    }
+    reported.head.pan += 0.1;
+    drawing.report(3, reported, recorder);
+    stance.head.zoom = 1.9;
+    stance.head.pan += 0.1;
+    recorder.close();
+  }
+  const McapReader log(folder.path() / "log.mcap");
+  const auto lenses = messages_on<CameraCalibrationMessage>(log, "/intrinsics/front");
+  EXPECT_GE(lenses.size(), 10U);
+  EXPECT_LE(lenses.size(), 12U) << "at most one per frame";
+  EXPECT_EQ(lenses.front().frame_id, "camera/front");
+  EXPECT_EQ(lenses.front().width, 640);
+  EXPECT_EQ(lenses.front().height, 480);
+  EXPECT_EQ(lenses.front().distortion_model, "plumb_bob");
+  EXPECT_THAT(lenses.front().distortion, testing::ElementsAre(-0.1, 0.02, 0.001, 0.002, 0));
+  const std::array<double, 9> at_start{800, 0, 300, 0, 800, 239.5, 0, 0, 1};
+  EXPECT_EQ(lenses.front().intrinsics, at_start);
+  EXPECT_NEAR(lenses.back().intrinsics[0], 800 * 1.9, 1e-9) << "the last zoom is not lost";
+  const std::array<double, 12> projection{1520, 0, 300, 0, 0, 1520, 239.5, 0, 0, 0, 1, 0};
+  for (std::size_t i = 0; i < projection.size(); ++i)
+    EXPECT_NEAR(lenses.back().projection[i], projection[i], 1e-9) << i;
+  const auto frames = messages_on<FramesMessage>(log, "/frames");
+  ASSERT_FALSE(frames.empty());
+  EXPECT_EQ(frames.back().transforms.at(0).timestamp.sec, 3);
+  const Pose pose = camera.pose(stance);
+  const QuaternionMessage& q = frames.back().transforms.at(0).rotation;
+  EXPECT_TRUE(Eigen::Quaterniond(q.w, q.x, q.y, q.z).toRotationMatrix().isApprox(pose.rotation, 1e-9));
 }
 
 TEST(SceneLog, IsKeptTenTimesASecondUnlessItIsNotWanted) {
@@ -98,6 +169,7 @@ TEST(SceneLog, IsKeptTenTimesASecondUnlessItIsNotWanted) {
   EXPECT_EQ(counts["/arm/state"], 51U);
   EXPECT_EQ(counts["/scene"], 1U + 11U);
   EXPECT_EQ(counts["/frames"], 1U);
+  EXPECT_EQ(counts["/intrinsics/front"], 1U);
   std::map<std::string, std::string> schemas;
   const McapReader log = open_log(kept.folder);
   for (const McapMessage& message : log.messages())
@@ -109,6 +181,7 @@ TEST(SceneLog, IsKeptTenTimesASecondUnlessItIsNotWanted) {
   const auto left_out = logged_counts(runs.run("record.scene = false\n" + furnished));
   EXPECT_FALSE(left_out.contains("/scene"));
   EXPECT_FALSE(left_out.contains("/frames"));
+  EXPECT_FALSE(left_out.contains("/intrinsics/front"));
 }
 
 }  // namespace

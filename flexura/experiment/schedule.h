@@ -22,14 +22,16 @@ class Rig;
 class TaskRunner;
 struct MissedTarget;
 
-/// A task with its time.
+/// A task with its start and motion.
 struct Leg {
-  std::string name;         ///< Name of the task, or its kind (task_name).
-  std::string kind;         ///< "move", ...
-  double start = 0;         ///< In s.
-  MotionPtr motion;         ///< Never null; its times count from `start`.
-  bool is_steered = false;  ///< By cameras: a limiter decides the commands during the run.
-  bool is_planned = true;   ///< The motion is known before the run; a servo's only afterwards.
+  std::string name;  ///< Name of the task, or its kind (task_name).
+  std::string kind;  ///< Kind of the task: "move", ...
+  double start = 0;  ///< Start of the task, s.
+  MotionPtr motion;  ///< Motion of the arm, never null; its times count from `start`.
+  bool is_steered =
+      false;  ///< Whether cameras control the motion; a limiter then decides the commands during the run.
+  bool is_planned =
+      true;  ///< Whether the motion is known before the run; that of a servo is known only afterwards.
 
   [[nodiscard]] double end() const { return start + motion->duration(); }  ///< In s.
 };
@@ -38,26 +40,28 @@ using TaskRunners = std::vector<std::unique_ptr<TaskRunner>>;
 /// Returns the runners of an experiment's tasks, in their order. The experiment must outlive them.
 [[nodiscard]] TaskRunners task_runners(const Experiment& experiment);
 
-/// Motions of completed tasks that are decided during the run or simulated before (TaskMotionSource), by
-/// their numbers.
+/// Motions of completed tasks, by the tasks' numbers. These are tasks whose motion follows during the run or
+/// from a simulation (TaskMotionSource).
 using DoneTasks = std::map<std::size_t, MotionPtr>;
 
-/// Planned motion of an experiment: the arm's state at every time, known before anything moves.
+/// Planned motion of an experiment: the arm's state at every time, computed before anything moves.
 class Schedule {
  public:
-  /// Schedule before the run: tasks have their largest possible motion.
+  /// Schedule before the run. Tasks whose motion is not known have their largest possible motion.
   explicit Schedule(const Experiment& experiment);
-  /// `tasks` are its runners; those that are not in `done` have their largest possible motion.
+  /// `tasks`: runners of the experiment's tasks. Tasks whose motion is not known and not in `done` have their
+  /// largest possible motion.
   Schedule(const Experiment& experiment, const TaskRunners& tasks, const DoneTasks& done);
 
-  /// Returns the legs, at least one: without tasks, a hold of no duration.
+  /// Returns the legs, at least one. Without tasks it is a hold with duration 0.
   [[nodiscard]] const std::vector<Leg>& legs() const { return legs_; }
   [[nodiscard]] double duration() const { return duration_; }  ///< In s.
-  /// Returns the number of clock steps after time 0; the last one is at duration(), the others at whole steps
-  /// before it.
+  /// Returns the number of clock steps after time 0; the last step is at duration(), and the others are at
+  /// multiples of the clock's step.
   [[nodiscard]] std::size_t steps() const { return steps_; }
   [[nodiscard]] double time_of_step(std::size_t step) const;  ///< In s.
-  /// Returns the leg at `time`; a leg includes its start, the last one its end too.
+  /// Returns the index of the leg at `time` (s). A leg includes its start but not its end; the last leg also
+  /// includes its end.
   [[nodiscard]] std::size_t leg_at(double time) const;
   /// Returns the arm's state at the start.
   [[nodiscard]] const ArmState& initial() const { return initial_; }
@@ -65,8 +69,8 @@ class Schedule {
   [[nodiscard]] ArmState state_at(double time) const;
   /// Returns bounds on each section's rates in [start, end] s; std::nullopt if a leg has no known rates.
   [[nodiscard]] std::optional<std::vector<SectionRates>> rates(double start, double end) const;
-  /// Returns the hazards for the arm and its motors, and unreachable targets; known before anything moves.
-  /// `progress` may be null, and may end the check early.
+  /// Returns the hazards for the arm and its motors, and unreachable targets. `progress` may be null, and may
+  /// cancel the check.
   [[nodiscard]] SafetyReport check(Progress* progress = nullptr) const;
 
  private:
@@ -85,27 +89,27 @@ class Schedule {
 
 /// Task that ends a run, and the reason.
 struct EndedBy {
-  std::size_t task = 0;  ///< Its number.
+  std::size_t task = 0;  ///< Number of the task.
   std::string failure;
 };
-/// Simulates every simulated task whose start is known: those before the first task that the rig still has to
-/// do, or up to one that ends the run, which is returned. Adds their motions to `done`.
-/// `progress_of` returns the progress of one.
+/// Simulates every simulated task whose start is known, and adds its motion to `done`. The start is known for
+/// tasks before the first task that the rig still has to perform. Stops at a task that ends the run, and
+/// returns this task. `progress_of` returns the progress of a task's simulation.
 [[nodiscard]] std::optional<EndedBy> simulate_tasks(
     const Experiment& experiment, const TaskRunners& tasks, DoneTasks& done,
     const std::function<Progress&(std::size_t task)>& progress_of);
 
-/// Returns the hazards of this schedule of these tasks (Schedule::check), with the caveats that each task
-/// adds.
+/// Returns the hazards of a schedule (Schedule::check), with the caveats that each of its tasks adds.
 [[nodiscard]] SafetyReport checked(const Schedule& schedule, const TaskRunners& tasks,
                                    const std::optional<EndedBy>& ended_by, Progress* progress = nullptr);
 
-/// Returns the hazards of an experiment, after simulating the tasks for which this is possible. If the run
-/// ends with one of them, the first note has the reason.
+/// Returns the hazards of an experiment, after the simulation of all tasks whose start is known. If a
+/// simulated task ends the run, the first note has the reason.
 [[nodiscard]] SafetyReport check_experiment_safety(const Experiment& experiment, Progress& progress);
 
-/// Plays the schedule on the rig without filming. Plays from its start to its first step at `until` s or
-/// later, to its end, or to the last step before an impossible state. Returns the time of that step, s.
+/// Plays the schedule on the rig without frames. Plays from the start to the first step at `until` (s) or
+/// later. Stops earlier at the schedule's end, or at the last step before an impossible state. Returns the
+/// time of the last step played, s.
 [[nodiscard]] double play_unfilmed(double until, const Schedule& schedule, Rig& rig);
 
 }  // namespace flexura

@@ -114,8 +114,8 @@ TEST(ServoClocks, ReadingsThatAreRepeatedDoNoHarm) {
 TEST(ServoClocks, ACameraWhoseClockIsOddIsNotBelieved) {
   const std::vector<std::pair<Shown, std::string>> cases = {
       {[](double now) { return now + 1000; }, "camera side: its picture's timestamp is "},
-      {[](double now) { return now - 1000; }, "s older than the one before"},
-      {[](double) { return 0.4; }, "no pictures come"}};
+      {[](double now) { return now - 1000; }, "s older than the previous picture"},
+      {[](double) { return 0.4; }, "pictures were received"}};
   for (const auto& [shown, reason] : cases) {
     ServoBench bench(servo_file(servo_target));
     RigPorts ports = bench.ports();

@@ -116,7 +116,7 @@ TEST(ServoEnds, ACameraThatSendsNothingIsNamed) {
   ports.cameras[1].camera = &silent;
   const ServoResult result = bench.servo(ports);
   EXPECT_FALSE(result.is_done);
-  EXPECT_EQ(result.reason, "out of view: no pictures come of camera side");
+  EXPECT_EQ(result.reason, "out of view: no pictures were received from camera side");
   ASSERT_TRUE(result.fault);
   EXPECT_EQ(result.fault->reason, result.reason);
   EXPECT_NEAR(result.fault->time, bench.config().give_up_after, 0.1);

@@ -63,7 +63,7 @@ TEST(StretchingArm, SaysWhichSectionIsStretchedAsFarAsItGoes) {
   const ServoResult result = bench.servo(ports);
   EXPECT_FALSE(result.is_done);
   EXPECT_TRUE(std::ranges::any_of(result.steps, [](const ServoStep& step) {
-    return step.limited == "section 2 is stretched as far as it goes";
+    return step.limited == "section 2 is at its stretch limit";
   }));
 }
 

@@ -133,7 +133,7 @@ TEST(ServoTargets, FeaturesThatAreTooFewAreToldAsSingular) {
       servo_file("law = \"points\"\npoints = 1\ntolerance = 0.002\ntimeout = 3\n" + servo_target));
   const ServoResult result = bench.servo();
   EXPECT_FALSE(result.is_done);
-  EXPECT_TRUE(result.reason.starts_with("singular: some motion of the arm shows in nothing that is seen"))
+  EXPECT_TRUE(result.reason.starts_with("singular: some motion of the arm changes no feature"))
       << result.reason;
   for (const ServoStep& step : result.steps)
     for (const Eigen::Vector2d& bend : step.sent.bends) EXPECT_TRUE(bend.allFinite());

@@ -67,7 +67,7 @@ TEST_F(Study, BadFilesSayWhatIsWrong) {
        "x.toml:12:1: task[0].vary: names no parameter: expected one, such as orbit_deg = [-60, 60]"},
       {"no vary", study_with("vary.orbit_deg = [-60, 60]", ""), "task[0].vary: missing: expected a table"},
       {"two varied", study_with("points = 5", "vary.zoom = [1, 2]"),
-       "x.toml:13:6: task[0].vary.zoom: stands beside vary.orbit: expected one parameter"},
+       "x.toml:13:6: task[0].vary.zoom: is given together with vary.orbit: expected one parameter"},
       {"unknown parameter", study_with("orbit_deg", "orbits_deg"),
        "vary.orbits_deg: unknown key; did you mean \"orbit"},
       {"wrong unit", study_with("orbit_deg", "orbit_mm"), "vary.orbit_mm: wrong unit: expected orbit (rad)"},
@@ -94,7 +94,7 @@ TEST_F(Study, BadFilesSayWhatIsWrong) {
       {"no normal", study_with("target.radius = 0.4", "target.normal = [0, 0, 0]"),
        "task[0].target.normal: has no direction: expected a length above 0"},
       {"in the camera", study_with("target.radius = 0.4", "target.center = [0, 0, 2.5]"),
-       "task[0].target.center: is where the camera stands: it cannot orbit there"},
+       "task[0].target.center: is the camera's own position: the camera cannot orbit it"},
   };
   for (const BadFile& file : files) EXPECT_THAT(error_of_file(file.text), HasSubstr(file.error)) << file.what;
 }

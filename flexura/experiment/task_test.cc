@@ -181,8 +181,9 @@ TEST(Tasks, BadOnesGetAClearLine) {
       {"kind='keyframes'\ncolumns=['time','arching_1','arching_2','arching_3']\nrows=[[0,0,0,0],[2,0,0,0]]\n",
        "column arching_3: the arm has 2 sections"},
       {"kind='keyframes'\ncolumns=['time','arching_1','arching_2','arching_2']\nrows=[[0,0,0,0],[2,0,0,0]]\n",
-       "column arching_2 is there twice"},
-      {"kind='keyframes'\nfile='a.csv'\ncolumns=['time']\n", "task[0].file: stands beside columns or rows"},
+       "column arching_2 occurs twice"},
+      {"kind='keyframes'\nfile='a.csv'\ncolumns=['time']\n",
+       "task[0].file: is given together with columns or rows"},
       {"kind='expression'\n", "task[0]: is empty: expected cord_angles"},
       {"kind='expression'\narchings='sin(t'\n", "x.toml:7:16: task[0].archings[0]: missing parenthesis"},
       {"kind='expression'\narchings = ['t', \"2*phi + 1\"]\n",
@@ -273,7 +274,7 @@ TEST(Keyframes, BadFilesAreReportedAtTheirLine) {
       error_with("wave.csv", "time;arching_1;arching_2\n0;0,0;0\n1;0,5;0\n"),
       HasSubstr("wave.csv:1:5: columns are separated by ';': expected commas, and points in numbers"));
   EXPECT_THAT(error_with("none.csv", ""), HasSubstr("x.toml:7:8: task[0].file: no file \"none.csv\""));
-  EXPECT_THAT(error_with("../x.csv", ""), HasSubstr("lies outside the experiment's folder"));
+  EXPECT_THAT(error_with("../x.csv", ""), HasSubstr("is outside the experiment's folder"));
 }
 
 TEST(Keyframes, AMissingFileHidesNoOtherError) {

@@ -135,7 +135,7 @@ TEST(UnevenArmExample, IsNotCalibratedAsAnArmOfOneArcASection) {
   Quiet quiet;
   const RunResult result = run_experiment(experiment, folder.path(), quiet);
   EXPECT_EQ(result.outcome, RunOutcome::failed);
-  EXPECT_NE(result.reasons.front().find("no rig explains what was seen"), std::string::npos)
+  EXPECT_NE(result.reasons.front().find("no rig explains the observations"), std::string::npos)
       << result.reasons.front();
   EXPECT_FALSE(std::filesystem::exists(folder.path() / rig_file_name));
 }

@@ -7,8 +7,8 @@
 namespace flexura {
 namespace {
 
-// With t = |bend|: S = sin t/t, A = (1 - cos t)/t^2, C = (1 - S)/t^2, D = (1/2 - A)/t^2. The slopes follow
-// without a quotient: S'/t = C - A and A'/t = 2 D - C.
+// With t = |bend|: S = sin t/t, A = (1 - cos t)/t^2, C = (1 - S)/t^2, D = (1/2 - A)/t^2. Their derivatives
+// need no further division: S'/t = C - A and A'/t = 2 D - C.
 struct Coefficients {
   double S, A, C, D;
 };

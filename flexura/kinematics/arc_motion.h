@@ -4,17 +4,19 @@
 
 namespace flexura {
 
-/// End of an arc in the frame at its start, and its derivatives by the arc's bend.
+/// Pose of an arc's end frame in the arc's start frame, and its derivatives with respect to the bend.
 struct ArcMotion {
   Eigen::Matrix3d rotation;
-  Eigen::Vector3d position;             ///< In m.
-  Eigen::Matrix<double, 3, 2> linear;   ///< Velocity of the end per unit rate of bend_x, bend_y, m/rad.
-  Eigen::Matrix<double, 3, 2> angular;  ///< Angular velocity of the end per unit rate of bend_x, bend_y.
+  Eigen::Vector3d position;  ///< Position, m.
+  Eigen::Matrix<double, 3, 2>
+      linear;  ///< Derivative of the position with respect to bend_x and bend_y, m/rad.
+  Eigen::Matrix<double, 3, 2>
+      angular;  ///< Angular velocity of the end frame per unit rate of bend_x and bend_y.
 };
 
-/// Returns arc_pose (model/backbone.h) and its derivatives. Needs only one sine and cosine, and none for
-/// bends under half a radian. For solvers, which need little else. Precise to a few units in the last place
-/// of the arc's length. `bend` in rad, `length` in m.
+/// Returns arc_pose() (model/backbone.h) and its derivatives, for a bend in rad and a length in m. A fast
+/// version for solvers: it computes only one sine and cosine, and none for bends below half a radian. Errors
+/// are a few units in the last place of the length.
 [[nodiscard]] ArcMotion arc_motion(const Eigen::Vector2d& bend, double length);
 
 }  // namespace flexura

@@ -38,7 +38,7 @@ Eigen::VectorXd ArmVariables::pack(const ArmState& state) const {
 
 void ArmVariables::pack(const ArmState& state, Eigen::VectorXd& x) const {
   if (state.bends.size() != parts_.size() || state.stretches.size() != parts_.size()) {
-    throw std::invalid_argument("a state for inverse kinematics needs one bend and one stretch a section");
+    throw std::invalid_argument("a state for inverse kinematics needs one bend and one stretch per section");
   }
   x.resize(size_);
   for (std::size_t i = 0; i < parts_.size(); ++i) {

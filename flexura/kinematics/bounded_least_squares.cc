@@ -64,8 +64,8 @@ void damped_step(const MatrixXd& all, const VectorXd& residual, double damping, 
   });
 }
 
-// Adds to the held bounds those that x + step violates. Their variables move onto the bound (`offset`) and
-// lose the outward direction (columns of J). Returns true if there were any.
+// Adds bounds that x + step violates to the held bounds. Their variables are moved onto the bound (`offset`)
+// and cannot move outward (columns of J). Returns whether any bound was added.
 bool hold_broken(const Bounds& bounds, const VectorXd& x, const VectorXd& step, std::vector<char>& is_held,
                  VectorXd& offset, MatrixXd& J) {
   constexpr double slack = 1e-12;
@@ -157,7 +157,8 @@ Descent BoundedDescent::descend(const DescentLimits& limits, VectorXd& x) {
   if (problem.is_met(r)) return Descent::met;
   const auto tried = [&](double damping) -> TriedStep {
     constexpr double least_damping = 1e-14;  // Keeps the factorisation regular for a singular arm.
-    // Relative to |r|^2: vanishes towards a solution, so that the last steps are Newton's.
+    // The damping is relative to |r|^2. It vanishes towards a solution, so that the last steps are undamped
+    // Gauss-Newton steps.
     try_step(bounds, x, damping * square + least_damping);
     step = trial - x;
     const double predicted_square = predict(J, r, step, trial_r);

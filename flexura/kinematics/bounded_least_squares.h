@@ -8,54 +8,56 @@
 
 #include "flexura/kinematics/bounds.h"
 
-// Levenberg-Marquardt within bounds, for few residuals of possibly many variables.
+// Levenberg-Marquardt method within bounds, for few residuals of possibly many variables.
 //
-// Bounds are kept by projection and an active set, not by a smooth change of variables. Solutions at a limit
-// are common: a tentacle reaches far corners with its sections fully bent. There a change of variables has a
-// zero derivative, converges very slowly, and cannot identify the active limit.
+// Bounds are enforced by projection and an active set, not by a smooth change of variables. Solutions at a
+// limit are common: an arm reaches far corners with its sections fully bent. At a limit, a change of
+// variables would have a zero derivative, converge very slowly, and not identify the active limit.
 namespace flexura {
 
-/// Residuals r of variables x. With 3, 5 or 6 residuals, solving allocates no memory.
+/// A least-squares problem: residuals r as functions of variables x. With 3, 5 or 6 residuals, solving
+/// allocates no memory.
 class BoundedProblem {
  public:
   virtual ~BoundedProblem() = default;
   [[nodiscard]] virtual Eigen::Index row_count() const = 0;
-  /// Computes r at x, and its derivatives; both already have their size.
+  /// Computes the residuals r at x and their Jacobian J. r and J have the right size already.
   virtual void linearise(const Eigen::VectorXd& x, Eigen::VectorXd& r, Eigen::MatrixXd& J) = 0;
-  /// Returns true if r is small enough.
+  /// Returns whether the residuals r are small enough for a solution.
   [[nodiscard]] virtual bool is_met(const Eigen::VectorXd& r) const = 0;
 };
 
-/// Result of a descent.
+/// Reason for the end of a descent.
 enum class Descent {
-  met,         ///< The problem is met.
-  stationary,  ///< No free direction leads down: a minimum within the bounds.
-  exhausted,   ///< No iterations left.
+  met,         ///< The residuals are small enough (BoundedProblem::is_met).
+  stationary,  ///< A minimum within the bounds: no allowed direction decreases |r|.
+  exhausted,   ///< The limit on iterations was reached.
 };
 
-/// Limits of a descent that does not meet the problem.
+/// Criteria that end a descent without a solution.
 struct DescentLimits {
-  int iterations = 60;
-  double slope = 1e-4;  ///< Stationary if |free gradient| <= slope |r|.
+  int iterations = 60;  ///< Largest number of iterations.
+  double slope = 1e-4;  ///< A point is stationary if |free gradient| <= slope |r|.
 };
 
-/// Solves one problem in this number of variables by descents, and keeps their memory.
+/// Minimizes the residuals of one problem by descents, and reuses memory between descents.
 struct BoundedDescent {
   BoundedDescent(BoundedProblem& of, const Bounds& within, Eigen::Index variables);
 
-  /// Descends from x, which is within `bounds` and stays there, by damped Gauss-Newton steps. Afterwards r
-  /// and J are those of x.
+  /// Descends from x by damped Gauss-Newton steps. x must be within `bounds` and remains within them.
+  /// Afterwards r and J are those at the resulting x.
   Descent descend(const DescentLimits& limits, Eigen::VectorXd& x);
-  /// Descends by spectral projected gradients: projected Barzilai-Borwein steps, with a search that tolerates
-  /// the last few rises (Birgin, Martinez, Raydan 2000). For minima with a large residual, such as the
-  /// nearest pose to an unreachable target. There the Gauss-Newton model of the curvature is wrong by the
-  /// residual itself.
+  /// Descends by spectral projected gradients: projected Barzilai-Borwein steps with a nonmonotone line
+  /// search (Birgin, Martinez, Raydan 2000). For minima with a large residual, such as the nearest pose to an
+  /// unreachable target. There the Gauss-Newton approximation of the curvature has an error proportional to
+  /// the residual.
   Descent descend_gradient(const DescentLimits& limits, Eigen::VectorXd& x);
 
-  /// Sets `trial` to x plus the step of least |J step + r|^2 + damping |step|^2 within the bounds. Variables
-  /// that violate bounds are held, and the others compensate, until no more are violated.
+  /// Sets `trial` to x plus the step that minimizes |J step + r|^2 + damping |step|^2 within the bounds.
+  /// Variables that would violate a bound are fixed at the bound, and the other variables are solved again.
+  /// This is repeated until no bound is violated.
   void try_step(const Bounds& within, const Eigen::VectorXd& x, double damping);
-  /// Computes r, J, `square` and `gradient` at x.
+  /// Computes `r`, `J`, `square` and `gradient` at x.
   void linearise(const Eigen::VectorXd& x);
 
   BoundedProblem& problem;
@@ -65,8 +67,8 @@ struct BoundedDescent {
   Eigen::VectorXd step, offset, trial, gradient;  ///< gradient = J^T r.
   std::vector<char> is_held;
   double square = 0;   ///< |r|^2.
-  int iterations = 0;  ///< Linearisations of all descents so far.
-  /// Descents end as exhausted at this number.
+  int iterations = 0;  ///< Number of linearizations in all descents so far.
+  /// Limit on `iterations`, at which descents end as exhausted.
   int most_iterations = std::numeric_limits<int>::max();
 
  private:

@@ -6,7 +6,7 @@
 namespace flexura {
 namespace {
 
-// Share of the bound's size: values nearer than this are at the bound.
+// Fraction of the bound's size. A value within this distance is at the bound.
 constexpr double touching = 1e-9;
 
 // Returns the outward unit normal of the bound at x if the bound holds x against -gradient; otherwise zero.
@@ -38,7 +38,7 @@ void project(const Bounds& bounds, Eigen::VectorXd& x) {
     const double radius = u.norm();
     if (radius <= bound.high) continue;
     u *= bound.high / radius;
-    // Rounding may leave the norm an ulp too long.
+    // Rounding may leave the norm too large by one unit in the last place.
     while (u.norm() > bound.high) u *= 1.0 - 0x1p-52;
   }
 }

@@ -5,9 +5,9 @@
 
 namespace flexura {
 
-/// A limit on one variable (an interval) or on two consecutive ones (a disk about 0).
+/// A limit on one variable (an interval), or on two consecutive variables (a disk around 0).
 struct Bound {
-  Eigen::Index at = 0;
+  Eigen::Index at = 0;    ///< Index of the first variable.
   Eigen::Index size = 1;  ///< 1: low <= x <= high; 2: |(x, y)| <= high.
   double low = 0.0;
   double high = 0.0;
@@ -16,19 +16,19 @@ struct Bound {
   [[nodiscard]] static Bound disk(Eigen::Index at, double radius) { return {at, 2, 0.0, radius}; }
 };
 
-/// Limits on different variables.
+/// Limits on variables; each variable has at most one limit.
 using Bounds = std::vector<Bound>;
 
-/// Moves x to the nearest point within `bounds`, never outside, not even by rounding.
+/// Moves x to the nearest point within `bounds`. The result is never outside, not even by rounding.
 void project(const Bounds& bounds, Eigen::VectorXd& x);
 
-/// Returns how strongly `gradient` (of the function to minimise) presses x against its bounds. This is the
-/// norm of the outward part of -gradient at bounds that hold x.
+/// Returns the norm of the part of -gradient that points out of active bounds at x. `gradient` is that of the
+/// function to minimize.
 [[nodiscard]] double pressure(const Bounds& bounds, const Eigen::VectorXd& x,
                               const Eigen::VectorXd& gradient);
 
-/// Removes the parts of `gradient` that press x against its bounds; the rest is zero at a constrained
-/// minimum.
+/// Removes the parts of `gradient` for which -gradient points out of active bounds at x. The rest is zero at
+/// a constrained minimum.
 void free_gradient(const Bounds& bounds, const Eigen::VectorXd& x, Eigen::VectorXd& gradient);
 
 }  // namespace flexura

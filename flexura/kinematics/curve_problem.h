@@ -9,29 +9,31 @@
 
 namespace flexura {
 
-/// Residual of "the backbone follows this curve", as a function of ArmVariables' x. It compares points at
-/// evenly spaced shares f of the backbone's arc length with the polyline's points at the same shares of its
-/// length. Each difference (x, y, z in base axes) is divided by the arm's greatest length and by the root of
-/// the number of points. So |r|^2 is the mean square.
+/// Residuals of "the backbone follows a polyline", as a function of the vector x of ArmVariables. They
+/// compare points at evenly spaced fractions of the backbone's length with points at the same fractions of
+/// the polyline's length. Each difference (x, y, z in base axes) is divided by `length` and by the square
+/// root of the number of points. Hence |r|^2 is the mean square distance in units of `length`.
 class CurveProblem final : public BoundedProblem {
  public:
-  /// `points` in the base's frame, two or more with a length; `length` is the scale of distances, m.
+  /// `points` are the polyline's vertices in the base's frame, m: two or more, not all equal. `length` is the
+  /// scale of distances, m.
   CurveProblem(const ArmVariables& variables, const std::vector<Eigen::Vector3d>& points, double length);
 
   [[nodiscard]] Eigen::Index row_count() const override {
     return 3 * static_cast<Eigen::Index>(desired_.size());
   }
   void linearise(const Eigen::VectorXd& x, Eigen::VectorXd& r, Eigen::MatrixXd& J) override;
-  /// Returns true if nothing is left to gain: a curve is fitted as well as possible.
+  /// Returns whether r is zero up to rounding. A curve is always fitted as well as possible.
   [[nodiscard]] bool is_met(const Eigen::VectorXd& r) const override { return r.squaredNorm() < 1e-26; }
-  /// Returns the distance of the backbone in state x from the polyline, m. This is the largest distance of
-  /// points at equal shares of both lengths. It includes all points of the polyline and many between them,
-  /// more than the residual.
+  /// Returns the largest distance between points at equal fractions of the lengths of backbone and polyline,
+  /// m, for the variables x. The points include all vertices of the polyline and many points in between, more
+  /// than the residuals.
   [[nodiscard]] double largest_distance(const Eigen::VectorXd& x);
 
-  /// Returns the state that turns each section's end along the curve's tangent there.
+  /// Returns the variables with which the end of each section is parallel to the polyline's tangent at the
+  /// same fraction of the length.
   [[nodiscard]] Eigen::VectorXd start_along_tangents() const;
-  /// Returns the curve's last point, m.
+  /// Returns the polyline's last point in the base's frame, m.
   [[nodiscard]] const Eigen::Vector3d& end() const { return desired_.back(); }
 
  private:
@@ -40,10 +42,10 @@ class CurveProblem final : public BoundedProblem {
     Pose X_BS;
     Eigen::Vector2d bend;
     double stretch = 1.0;
-    double s = 0.0;       // Arc length of its base, m.
-    double length = 0.0;  // Stretched, m.
+    double s = 0.0;       // Arc length at the section's base, m.
+    double length = 0.0;  // Length with stretch, m.
     Eigen::Vector3d end;
-    Eigen::Matrix<double, 3, 2> linear, angular;  // Of its end, per bend.
+    Eigen::Matrix<double, 3, 2> linear, angular;  // Derivatives of the end's pose by the bend.
   };
   void place(const Eigen::VectorXd& x);
   void point_rows(double fraction, std::size_t section, Eigen::Index row, const Eigen::Vector3d& desired,
@@ -53,7 +55,7 @@ class CurveProblem final : public BoundedProblem {
 
   const ArmVariables& variables_;
   std::vector<Eigen::Vector3d> points_;
-  std::vector<double> parts_;  // Share of the polyline's length up to each point.
+  std::vector<double> parts_;  // Fraction of the polyline's length up to each point.
   std::vector<Eigen::Vector3d> desired_;
   std::vector<Placed> placed_;
   double scale_;

@@ -14,8 +14,8 @@
 namespace flexura {
 namespace {
 
-// Returns the distance of p from the arc. In the arc's plane the nearest point of the whole circle is towards
-// p from its centre. If the arc does not contain it, one of its ends is nearest.
+// Returns the distance of p from the arc. In the arc's plane, the nearest point of the whole circle is in the
+// direction from the centre to p. If the arc does not contain this point, one of the arc's ends is nearest.
 double distance(const Arc& arc, const Eigen::Vector3d& p) {
   const auto distance_at = [&](double s) { return (p - arc.pose(s).position).norm(); };
   const double nearer_end = std::min(distance_at(0.0), distance_at(arc.length));
@@ -34,8 +34,8 @@ double distance(const Backbone& backbone, const Eigen::Vector3d& p) {
   return nearest;
 }
 
-// Returns a circular arc's best tangent handle, (4/3) R tan(theta/4); with R = length / theta this has no
-// 0/0.
+// Returns the best length of a circular arc's tangent handle, (4/3) R tan(theta/4) with R = length / theta.
+// The formula here avoids 0/0.
 double handle_length(double theta, double length) {
   const double quarter = 0.25 * theta;
   return length / 3.0 * sinc(quarter) / std::cos(quarter);

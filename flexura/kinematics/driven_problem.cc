@@ -8,7 +8,7 @@
 namespace flexura {
 namespace {
 
-// A residual above that of any shape.
+// A residual that is larger than the residual of any shape.
 constexpr double far_away = 1e3;
 
 // Returns the index of each of an arm's variables among three per section (bend_x, bend_y, stretch).

@@ -8,40 +8,40 @@
 
 namespace flexura {
 
-/// Variables of inverse kinematics for an arm whose drives bend several arcs at once: commands, while targets
-/// are for shapes.
+/// Variables of inverse kinematics for an arm whose sections may be several arcs. The variables are those of
+/// commands; targets are for shapes.
 class DrivenVariables {
  public:
   explicit DrivenVariables(const ArmModel& model);
 
-  /// driven() returns the variables of commands, shaped() those of shapes.
+  /// Variables of commands (driven()) and of shapes (shaped()).
   [[nodiscard]] const ArmVariables& driven() const { return driven_; }
   [[nodiscard]] const ArmVariables& shaped() const { return shaped_; }
-  /// Computes the shape's variables from a command's, into `shape`, which it resizes if needed; NaN if the
-  /// command has no shape.
+  /// Computes the variables of the shape for the variables of a command. Resizes `shape` if needed. The
+  /// result is NaN if the arm has no equilibrium for the command.
   void shape(const Eigen::VectorXd& command, Eigen::VectorXd& shape) const;
-  /// Returns the shape's variables for a command's; NaN if the command has no shape.
+  /// Returns the variables of the shape for the variables of a command; NaN if the arm has no equilibrium.
   [[nodiscard]] Eigen::VectorXd shape(const Eigen::VectorXd& command) const {
     Eigen::VectorXd made;
     shape(command, made);
     return made;
   }
-  /// Returns the command's variables, within their limits, with the shape nearest to the given one.
+  /// Returns the variables of the command, within their limits, whose shape is nearest to `shape`.
   [[nodiscard]] Eigen::VectorXd command(const Eigen::VectorXd& shape) const;
-  /// Computes the derivatives of a shape's variables by a command's at that command, into `by_command`, which
-  /// it resizes if needed.
+  /// Computes the Jacobian of the shape's variables with respect to the command's variables, at `command`.
+  /// Resizes `by_command` if needed.
   void slopes(const Eigen::VectorXd& command, Eigen::MatrixXd& by_command) const;
 
  private:
   Actuation actuation_;
   ArmVariables driven_, shaped_;
-  Eigen::MatrixXd shares_;  // If shapes are linear in commands.
+  Eigen::MatrixXd shares_;  // Jacobian, if shapes are linear in commands.
 };
 
-/// A problem of shapes as a problem of the commands that make them.
+/// Converts a problem in the variables of shapes to a problem in the variables of commands.
 class DrivenProblem final : public BoundedProblem {
  public:
-  /// Both must outlive this object.
+  /// Both arguments must outlive this object.
   DrivenProblem(const DrivenVariables& variables, BoundedProblem& of_shape);
 
   [[nodiscard]] Eigen::Index row_count() const override { return of_shape_.row_count(); }

@@ -34,11 +34,11 @@ void check_text(const std::string& text) {
   }
   const auto odd = std::ranges::find_if(text, [](unsigned char c) { return c < ' ' || c > '~'; });
   if (odd != text.end()) {
-    throw ExpressionError("holds a character that no formula has",
+    throw ExpressionError("contains a character that is not allowed in a formula",
                           static_cast<std::size_t>(odd - text.begin()));
   }
   if (const std::size_t at = text.find('"'); at != std::string::npos) {
-    throw ExpressionError("holds a text: expected numbers, names and operators", at);
+    throw ExpressionError("contains a text: expected numbers, names and operators", at);
   }
   if (const std::size_t at = find_assignment(text); at != std::string::npos) {
     throw ExpressionError("assigns a value: expected == to compare", at);

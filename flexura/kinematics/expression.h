@@ -7,7 +7,7 @@
 
 namespace flexura {
 
-/// An error in an expression; `position` is the index of the character, from 0.
+/// An error in an expression. position() is the index of the faulty character, from 0.
 class ExpressionError : public std::runtime_error {
  public:
   /// `what` describes the error without its position.
@@ -19,9 +19,9 @@ class ExpressionError : public std::runtime_error {
   std::size_t position_;
 };
 
-/// A formula of time from a user, "0.3*sin(2*pi*t/T)". Supports muParser's operators and functions (sin, cos,
-/// exp, min, max, abs, if-then-else with ? :, ...) and pi. Variables are t (time in the task, s), T (the
-/// task's duration, s) and i (the section's number from 1). Not thread-safe.
+/// A user's formula of time, such as "0.3*sin(2*pi*t/T)". Supports pi and the operators and functions of
+/// muParser: sin, cos, exp, min, max, abs, if-then-else with ? :, ... Variables are t (time since the start
+/// of the task, s), T (duration of the task, s) and i (number of the section, from 1). Not thread-safe.
 class Expression {
  public:
   /// Throws ExpressionError for an invalid formula, an unknown name, an assignment, or more than 1000
@@ -31,8 +31,8 @@ class Expression {
   Expression(Expression&&) noexcept;
   Expression& operator=(Expression&&) noexcept;
 
-  /// Returns the value at t s of a task of T s for a section counted from 1. Not finite if the formula has no
-  /// value there (1/0, sqrt(-1)).
+  /// Returns the value at time t, s, of a task of duration T, s, for a section with a number from 1. Not
+  /// finite if the formula is undefined there (1/0, sqrt(-1)).
   [[nodiscard]] double value(double t, double T, std::size_t section_number) const;
 
  private:

@@ -21,7 +21,7 @@ namespace flexura {
 namespace {
 
 constexpr int nearest_starts = 16;
-// Most targets are solved by the first descent or two, faster than a proof of unreachability.
+// The first one or two descents solve most targets, faster than a proof that a target is out of reach takes.
 constexpr int starts_before_proof = 2;
 
 // A target in the base's frame, with all data for its solution.
@@ -46,8 +46,8 @@ struct Question {
     if (config.start) start = variables.pack(*config.start);
   }
 
-  // Limits iterations for rods. One evaluation with derivatives needs several equilibria, a thousand times as
-  // long as for arcs.
+  // Limits the iterations for rods. One evaluation with derivatives needs several equilibria, which take a
+  // thousand times as long as arcs.
   [[nodiscard]] int most_iterations() const {
     constexpr int of_rods = 400;
     return model != nullptr && !model->actuation().is_linear() ? of_rods : std::numeric_limits<int>::max();
@@ -246,7 +246,8 @@ std::vector<InverseResult> all_solutions(const Question& q) {
   InverseStarts starts = q.starts();
   SolutionList list(q, descent);
   for (int i = 0; i < config.max_starts; ++i) {
-    // The i-th start gets as many iterations as in a search for one solution, which is then among all.
+    // The i-th start gets as many iterations as in a search for one solution, so that this solution is among
+    // the results.
     Found found;
     found.starts = i;
     search(descent, starts, i + 1, found);

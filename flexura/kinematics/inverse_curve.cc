@@ -30,8 +30,8 @@ std::vector<Eigen::Vector3d> in_base(const Arm& arm, const std::vector<Eigen::Ve
   return result;
 }
 
-// Returns the iterations for all starts together. One for hundreds of sections takes a good part of a second,
-// and no_convergence is better than no result.
+// Returns the largest number of iterations for all starts together. One iteration for hundreds of sections
+// takes a considerable part of a second, and the result no_convergence is better than no result.
 int affordable_iterations(const CurveProblem& problem, const ArmVariables& variables, int most) {
   constexpr double most_products = 5e9;
   const auto size = static_cast<double>(variables.size());

@@ -7,21 +7,21 @@
 
 namespace flexura {
 
-/// Returns the points of an arm that distinguish solutions: five per section, base first, in the base's
-/// frame, m.
+/// Returns points of the backbone by which solutions are distinguished: five points per section, base first,
+/// in the base's frame, m.
 [[nodiscard]] std::vector<Eigen::Vector3d> backbone_points(const ArmVariables& variables,
                                                            const Eigen::VectorXd& x);
 
-/// Returns the largest distance between corresponding points of two arms, m.
+/// Returns the largest distance between corresponding points of two backbones, m.
 [[nodiscard]] double backbone_distance(const std::vector<Eigen::Vector3d>& a,
                                        const std::vector<Eigen::Vector3d>& b);
 
-/// Rotates the arm about its base's z until its first bent section bends towards x.
+/// Rotates the arm about its base's z axis so that the first bent section bends towards the base's x.
 void turn_to_x(const ArmVariables& variables, Eigen::VectorXd& x);
 
-/// Returns true if `a` comes before `b` in a list of solutions with the preferences `objective_a` and
-/// `objective_b`. The smaller preference comes first. If they are equal up to rounding, as for mirror images,
-/// the first variable that differs decides, the larger first.
+/// Returns whether solution `a` is listed before solution `b`. The solution with the smaller value of the
+/// objective is first. If the values are equal up to rounding, as for mirror images, the first variable that
+/// differs decides: the larger value is first.
 [[nodiscard]] bool comes_first(double objective_a, const Eigen::VectorXd& a, double objective_b,
                                const Eigen::VectorXd& b);
 

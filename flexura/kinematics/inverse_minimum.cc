@@ -112,7 +112,8 @@ class ObjectiveMinimum {
 }  // namespace
 
 void run_down_to_minimum(BoundedDescent& descent, const ObjectiveScale& scale, Eigen::VectorXd& x) {
-  // Long valleys of sections bent by a whole turn, whose direction hardly matters, take the most steps.
+  // Sections bent by a full turn need the most steps, because their direction has little influence and the
+  // objective has long valleys.
   constexpr int most_steps = 200;
   ObjectiveMinimum minimum(descent, scale);
   for (int i = 0; i < most_steps && minimum.step(x); ++i) {

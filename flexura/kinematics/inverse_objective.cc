@@ -21,7 +21,7 @@ ObjectiveScale::ObjectiveScale(const ArmVariables& variables, InverseObjective o
 
 Bounds ObjectiveScale::relative(Bounds bounds) const {
   for (Bound& bound : bounds) {
-    // A disk's two variables share their range and have their middle at 0.
+    // The two variables of a disk have the same range and the middle 0.
     bound.low = (bound.low - middle[bound.at]) / range[bound.at];
     bound.high = (bound.high - middle[bound.at]) / range[bound.at];
   }

@@ -8,7 +8,7 @@
 
 namespace flexura {
 
-/// Scale of a preference: minimises |(x - middle) / range|^2, element by element.
+/// Scaling of variables for an objective, which is the sum over all variables of ((x - middle) / range)^2.
 struct ObjectiveScale {
   ObjectiveScale(const ArmVariables& variables, InverseObjective objective);
 
@@ -21,20 +21,20 @@ struct ObjectiveScale {
   [[nodiscard]] Eigen::VectorXd absolute(const Eigen::VectorXd& y) const {
     return middle + y.cwiseProduct(range);
   }
-  /// Returns the bounds of the relative values.
+  /// Returns the bounds of the scaled variables.
   [[nodiscard]] Bounds relative(Bounds bounds) const;
 };
 
-/// Moves the solution x along its problem's solutions to a local minimum of the preference. Each step
-/// linearises the problem, for which the minimum has a closed form, and goes there or part of the way. A
-/// descent then returns to the problem. The step counts if the problem is met again and the preference is
-/// smaller. x remains a solution.
+/// Moves the solution x along the set of solutions to a local minimum of the objective. Each step linearizes
+/// the problem, computes the minimum in closed form, and moves x there or part of the way. A descent then
+/// brings x back to a solution. A step is accepted if the descent finds a solution and the objective
+/// decreased. x is always a solution.
 void follow_objective(BoundedDescent& descent, const ObjectiveScale& scale, Eigen::VectorXd& x);
 
-/// Brings a solution from follow_objective() to the minimum of the preference, by Newton steps on the surface
-/// of solutions. The result x is a solution and no worse. Without these steps, follow_objective() converges
-/// linearly, because it uses the surface's tangents but not its curvature. It ends about 1e-5 away, each time
-/// elsewhere.
+/// Refines the result of follow_objective() by Newton steps on the surface of solutions. The resulting x is a
+/// solution, and its objective is not larger than before. (Alone, follow_objective() converges only linearly,
+/// because it uses the tangents of the surface but not its curvature. Its results scatter by about 1e-5
+/// around the minimum.)
 void run_down_to_minimum(BoundedDescent& descent, const ObjectiveScale& scale, Eigen::VectorXd& x);
 
 }  // namespace flexura

@@ -19,7 +19,7 @@ bool is_level(BoundedDescent& descent, const Eigen::VectorXd& x) {
 }  // namespace
 
 void search(BoundedDescent& descent, InverseStarts& starts, int max_starts, Found& found) {
-  // Short descents solve all except tightly rolled arms, which need long ones.
+  // Short descents solve all targets except for tightly rolled arms, which need long descents.
   constexpr int patient_from = 30;
   constexpr DescentLimits brief{.iterations = 60};
   constexpr DescentLimits patient{.iterations = 250};

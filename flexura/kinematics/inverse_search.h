@@ -9,10 +9,10 @@
 
 namespace flexura {
 
-/// Most iterations to bring a state to its minimum.
+/// Largest number of iterations for bringing a state to its minimum.
 inline constexpr int settling_iterations = 6000;
 
-/// Best result of a search so far.
+/// Best result of a search up to now.
 struct Found {
   Eigen::VectorXd x;
   double square = std::numeric_limits<double>::infinity();  ///< |r|^2 at x.
@@ -28,19 +28,20 @@ struct Found {
   }
 };
 
-/// Descends from one start after another until the problem is met or `max_starts` starts are made, including
+/// Descends from one start after another until a solution is found. Stops at `max_starts` starts, including
 /// those already counted in `found`.
 void search(BoundedDescent& descent, InverseStarts& starts, int max_starts, Found& found);
 
-/// Brings an unmet result to its local minimum, within `iterations`. Gradient and Gauss-Newton steps
-/// alternate: gradients are slow in a long valley, Gauss-Newton in one whose minimum is far from the target.
+/// Brings a result that is not a solution to its local minimum, with at most `iterations` iterations.
+/// Gradient and Gauss-Newton steps alternate: gradient steps are slow in long valleys; Gauss-Newton steps are
+/// slow in valleys with a large residual at the minimum.
 void settle(BoundedDescent& descent, int iterations, Found& found);
 
-/// Returns the nearest state for a problem known to be unreachable: the best minimum from a few starts.
+/// Returns the nearest state for a target known to be out of reach: the best minimum found from a few starts.
 Found nearest(BoundedDescent& descent, InverseStarts& starts, int max_starts);
 
-/// Returns the reason why the result misses its target: the descent did not finish, limits hold it, or the
-/// target is out of reach.
+/// Returns why a result misses its target: the descent did not finish, active limits prevent a solution, or
+/// the target is out of reach.
 InverseOutcome outcome_of_missed(BoundedDescent& descent, const Found& found);
 
 }  // namespace flexura

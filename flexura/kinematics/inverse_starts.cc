@@ -33,8 +33,8 @@ void InverseStarts::next(Eigen::VectorXd& x) {
   project(variables_.bounds(), x);
 }
 
-// The chord of an arc deviates from its tangent by half the bend. Never returns an exactly straight arm: from
-// there, shortening has no preferred side to bend to.
+// The chord of an arc deviates from the tangent at its start by half the bend. The result is never exactly
+// straight, because an exactly straight arm has no preferred side to bend to.
 void InverseStarts::one_arc(Eigen::VectorXd& x) const {
   const double across = std::hypot(p_BT_.x(), p_BT_.y());
   const double bend = std::max(0.1, 2.0 * std::atan2(across, p_BT_.z()));

@@ -44,7 +44,7 @@ Columns turned(const Eigen::Matrix3d& rotation, const Columns& V) {
   Columns result;
   result.topRows<3>() = rotation * V.topRows<3>();
   result.bottomLeftCorner<3, 2>() = rotation * V.bottomLeftCorner<3, 2>();
-  result.bottomRightCorner<3, 1>().setZero();  // A stretch rotates nothing.
+  result.bottomRightCorner<3, 1>().setZero();  // A stretch does not rotate the point.
   return result;
 }
 

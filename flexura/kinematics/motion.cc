@@ -33,7 +33,8 @@ class PointToPointMotion : public Motion {
       return profile.duration() == profiles_.front().duration();
     });
     if (profiles_.size() != from_.bends.size() || profiles_.empty() || !one_duration) {
-      throw std::invalid_argument("a point to point motion needs one profile a section, all of one duration");
+      throw std::invalid_argument(
+          "a point to point motion needs one profile per section, all of the same duration");
     }
   }
   [[nodiscard]] double duration() const override { return profiles_.front().duration(); }
@@ -73,7 +74,7 @@ class SineMotion : public Motion {
         frequency_(2 * std::numbers::pi / period),
         duration_(duration) {
     if (amplitudes_.size() != from_.bends.size() || phases_.size() != from_.bends.size()) {
-      throw std::invalid_argument("a sine needs one amplitude and one phase a section");
+      throw std::invalid_argument("a sine needs one amplitude and one phase per section");
     }
   }
   [[nodiscard]] double duration() const override { return duration_; }
@@ -115,12 +116,12 @@ class KeyframeMotion : public Motion {
       : times_(std::move(times)) {
     const bool rising = std::ranges::adjacent_find(times_, std::ranges::greater_equal{}) == times_.end();
     if (times_.size() < 2 || times_.size() != states.size() || times_.front() != 0 || !rising) {
-      throw std::invalid_argument("keyframes need two or more states at times that rise from 0");
+      throw std::invalid_argument("keyframes need two or more states at times that increase from 0");
     }
     const std::size_t sections = states.front().bends.size();
     for (const ArmState& state : states) {
       if (state.bends.size() != sections || state.stretches.size() != sections) {
-        throw std::invalid_argument("keyframes need one bend and one stretch a section");
+        throw std::invalid_argument("keyframes need one bend and one stretch per section");
       }
       auto& row = values_.emplace_back();
       for (std::size_t i = 0; i < sections; ++i) row.push_back(section_vector(state, i));

@@ -11,13 +11,13 @@
 
 namespace flexura {
 
-/// Upper bounds on a section's rates.
+/// Upper bounds on the rates of a section's bend and stretch.
 struct SectionRates {
-  double bend = 0;     ///< |d bend/dt|, rad/s.
-  double stretch = 0;  ///< |d stretch/dt|, 1/s.
+  double bend = 0;     ///< Bound on |d bend/dt|, rad/s.
+  double stretch = 0;  ///< Bound on |d stretch/dt|, 1/s.
 };
 
-/// A law of motion: the arm's state over the time of one task. Immutable; safe to share.
+/// A motion: the arm's state as a function of time within one task. Immutable, so that threads can share it.
 class Motion {
  public:
   virtual ~Motion() = default;
@@ -25,43 +25,46 @@ class Motion {
   Motion(const Motion&) = delete;
   Motion& operator=(const Motion&) = delete;
 
-  [[nodiscard]] virtual double duration() const = 0;  ///< In s, >= 0.
-  /// Returns the state at `time` in [0, duration()] s. Values of a law that are not finite are returned as
-  /// they are.
+  [[nodiscard]] virtual double duration() const = 0;  ///< Duration, s; >= 0.
+  /// Returns the state at `time`, s, in [0, duration()]. Values that are not finite, as of a user's formula,
+  /// are not replaced.
   [[nodiscard]] virtual ArmState at(double time) const = 0;
-  /// Returns bounds for `section` in all of [start, end] s; std::nullopt if they are unknown.
+  /// Returns bounds on the rates of `section` that hold during all of [start, end], s; std::nullopt if
+  /// unknown.
   [[nodiscard]] virtual std::optional<SectionRates> rates(std::size_t section, double start,
                                                           double end) const = 0;
 };
 
-/// Shared by the player and the checks.
+/// A shared motion.
 using MotionPtr = std::shared_ptr<const Motion>;
 
 /// Returns a motion that stays in `state` for `duration` s.
 [[nodiscard]] MotionPtr hold_motion(ArmState state, double duration);
 
-/// Returns a motion between two states. Every section moves on a straight line in bend and stretch, each with
-/// its own time profile. Throws std::invalid_argument unless there is one profile per section, all of one
-/// duration.
+/// Returns a motion between two states. Bend and stretch of each section change along a straight line, with
+/// the section's time profile. Throws std::invalid_argument unless there is one profile per section, and all
+/// profiles have the same duration.
 [[nodiscard]] MotionPtr point_to_point_motion(ArmState from, ArmState to, std::vector<Profile> profiles);
 
-/// Returns bend_i(t) = from_i + amplitude_i (sin(2 pi t / period + phase_i) - sin(phase_i)) for `duration` s,
-/// which starts at the arm's state. Throws std::invalid_argument unless there are one amplitude (rad) and one
-/// phase (rad) per section. The period, s, is above 0.
+/// Returns a sinusoidal motion, which starts at the state `from`. The bend of section i is from_i +
+/// amplitude_i (sin(2 pi t / period + phase_i) - sin(phase_i)). Amplitudes and phases are in rad; the period,
+/// above 0, and the duration are in s. Throws std::invalid_argument unless there are one amplitude and one
+/// phase per section.
 [[nodiscard]] MotionPtr sine_motion(ArmState from, std::vector<Eigen::Vector2d> amplitudes,
                                     std::vector<double> phases, double period, double duration);
 
-/// Interpolation between keyframes: linear, or smooth. Smooth has cubic Hermite pieces with the slopes of the
-/// parabola through three neighbouring keyframes, and zero at both ends.
+/// Interpolation between keyframes. Linear: straight lines. Smooth: cubic Hermite pieces. At an inner
+/// keyframe the slope is that of the parabola through three neighbouring keyframes; at both ends the slope is
+/// zero.
 enum class Interpolation { linear, smooth };
 
-/// Returns a motion through `states` at `times` (s). Throws std::invalid_argument unless there are at least
-/// two times, increasing from 0.
+/// Returns a motion through `states` at `times`, s. Throws std::invalid_argument unless there are at least
+/// two times, which start at 0 and increase.
 [[nodiscard]] MotionPtr keyframe_motion(std::vector<double> times, const std::vector<ArmState>& states,
                                         Interpolation interpolation);
 
-/// Returns a motion by any function of the time from 0 to `duration`, s, such as a user's expression. Its
-/// rates are unknown.
+/// Returns a motion that is given by a function of time, such as a user's expression, from time 0 to
+/// `duration`, s. The bounds on its rates are unknown.
 [[nodiscard]] MotionPtr function_motion(double duration, std::function<ArmState(double time)> state_at);
 
 }  // namespace flexura

@@ -10,7 +10,7 @@
 namespace flexura {
 namespace {
 
-// Microsteps: a smaller movement is a rounding error.
+// In microsteps. A smaller movement is a rounding error.
 constexpr double rounding = 1e-6;
 // Doubles represent all integers up to this value.
 constexpr double max_position = 9007199254740992.0;

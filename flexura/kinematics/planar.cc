@@ -44,7 +44,7 @@ double arching_from_bend(const Eigen::Vector2d& bend) {
 std::vector<Eigen::Vector2d> base_points(std::span<const double> lengths, std::span<const double> archings,
                                          const Eigen::Vector2d& base_point, double base_tangent) {
   if (lengths.size() != archings.size()) {
-    throw std::invalid_argument(std::to_string(lengths.size()) + " section lengths do not go with " +
+    throw std::invalid_argument(std::to_string(lengths.size()) + " section lengths do not match " +
                                 std::to_string(archings.size()) + " archings");
   }
   std::vector<Eigen::Vector2d> points;

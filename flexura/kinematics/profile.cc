@@ -10,7 +10,7 @@ namespace flexura {
 
 Profile::Profile(Kind kind, double duration, double ramp) : kind_(kind), duration_(duration), ramp_(ramp) {
   if (!(duration > 0) || !std::isfinite(duration)) {
-    throw std::invalid_argument(fmt::format("a motion cannot take {} s", duration));
+    throw std::invalid_argument(fmt::format("a motion cannot have a duration of {} s", duration));
   }
 }
 

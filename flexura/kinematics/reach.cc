@@ -121,7 +121,7 @@ double least_angle(const Arm& arm, const Eigen::Matrix3d& R_BT) {
   double least =
       std::max(least_angle(arm, Eigen::Vector3d(R_BT.col(2))), so3_log(R_BT).norm() - total_bend(arm));
   if (arm.kind == ArmKind::planar) {
-    // A planar arm never turns its y axis.
+    // In a planar arm the y axis never rotates.
     const Eigen::Vector3d y = R_BT.col(1);
     least = std::max(least, std::atan2(std::hypot(y.x(), y.z()), y.y()));
   }

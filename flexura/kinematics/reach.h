@@ -5,9 +5,10 @@
 #include "flexura/math/pose.h"
 #include "flexura/model/arm.h"
 
-// Proofs that an arm cannot reach a target (docs/inverse-kinematics.md, "What is proven"). They use only its
-// lengths, stretch limits and largest bends, without any search. All points and directions are in the base's
-// frame B. Every bound holds for every state within the limits, and 0 proves nothing.
+// Proofs that an arm cannot reach a target (docs/inverse-kinematics.md, "What is proven"). The proofs use
+// only lengths, stretch limits and largest bends of the sections, without any search. All points and
+// directions are in the base's frame B. Each lower bound holds for every state within the limits; a bound of
+// 0 proves nothing.
 namespace flexura {
 
 /// Returns a lower bound on the distance of the tip from `p_BP`, m.
@@ -19,8 +20,8 @@ namespace flexura {
 /// Returns a lower bound on the rotation angle between the tip's frame and `R_BT`, rad.
 [[nodiscard]] double least_angle(const Arm& arm, const Eigen::Matrix3d& R_BT);
 
-/// Returns a lower bound, m, on the distance of the tip from the origin of `X_BT` if it points along the z of
-/// `X_BT`. The bound is least_distance from either end of the arm.
+/// Returns a lower bound, m, on the distance from the origin of `X_BT` of a tip that points along the z axis
+/// of `X_BT`. The bound applies least_distance() from either end of the arm.
 [[nodiscard]] double least_distance_along(const Arm& arm, const Pose& X_BT);
 
 }  // namespace flexura

@@ -5,8 +5,8 @@
 
 namespace flexura {
 
-/// Returns the motion of shapes of an arm that follows the commands `command`. Its rates are known if those
-/// of the command are.
+/// Returns the motion of the arm's shape that results from a motion of commands. Bounds on its rates are
+/// known if those of the commands are known.
 [[nodiscard]] MotionPtr shaped_motion(const Actuation& actuation, MotionPtr command);
 
 }  // namespace flexura

@@ -9,26 +9,27 @@
 
 namespace flexura {
 
-/// Computes forward kinematics without allocation. `frames` receives each section's base frame X_WS and,
-/// last, the tip X_WT. Throws std::invalid_argument unless `frames` has one more element than there are
-/// sections. Here and below, throws std::invalid_argument if `state` does not fit the arm.
+/// Computes forward kinematics without allocation. Writes the base frame X_WS of each section and, last, the
+/// tip frame X_WT to `frames`. Throws std::invalid_argument unless `frames` has one element more than the arm
+/// has sections. All functions here also throw std::invalid_argument unless `state` has one bend and one
+/// stretch per section.
 void section_frames(const Arm& arm, const ArmState& state, std::span<Pose> frames);
 
-/// Returns X_WT.
+/// Returns the tip frame X_WT.
 [[nodiscard]] Pose tip_pose(const Arm& arm, const ArmState& state);
 
 /// A point of the arm's material, which moves with stretch.
 struct MaterialPoint {
-  std::size_t section = 0;  ///< 0 at the base.
-  double fraction = 0.0;    ///< Share of the section's length, in [0, 1].
+  std::size_t section = 0;  ///< Section with the point, 0 at the base.
+  double fraction = 0.0;    ///< Position along the section as a fraction of its length, in [0, 1].
 };
 
-/// Returns the material point at `s` m from the base of the unstretched arm, s in [0, arm.length()]. Where
-/// two sections meet it is the end of the first. Values past an end by rounding count as that end. Throws
-/// std::out_of_range for values further out.
+/// Returns the material point at arc length s, m, from the base of the unstretched arm, s in [0,
+/// arm.length()]. Where two sections meet, the point is the end of the first section. Values beyond an end by
+/// rounding count as that end. Throws std::out_of_range for values further outside.
 [[nodiscard]] MaterialPoint material_point(const Arm& arm, double s);
 
-/// Returns the arc length of a material point on the stretched arm, for Backbone::pose, m.
+/// Returns the arc length of a material point on the arm with stretch, m, as Backbone::pose() uses it.
 [[nodiscard]] double arc_length_of(const Arm& arm, const ArmState& state, const MaterialPoint& point);
 
 }  // namespace flexura

@@ -27,8 +27,8 @@ void require_fit(const Arm& arm, const Drive& drive, std::size_t bends, std::siz
   }
 }
 
-// How much shorter straight pieces between disks are than the channel. Each piece of an arc that turns by
-// |bend| / n is the chord of the offset arc of the same turn.
+// Ratio of the length of straight pieces between disks to the length of the channel. Each straight piece is
+// the chord of an offset arc that turns by |bend| / n.
 struct Chords {
   double ratio = 1;                                 // 1 in a channel.
   Eigen::Vector2d slope = Eigen::Vector2d::Zero();  // Of the ratio by the bend, 1/rad.
@@ -41,7 +41,8 @@ Chords chords(const Drive& drive, const Eigen::Vector2d& bend) {
   return {sinc(half_turn), sinc_slope(half_turn) * per_angle * per_angle * bend};
 }
 
-// A section for a tendon: the tendon at `offset` has the length `centre` - offset . `turn` in it.
+// The passage of a tendon through a section: a tendon at `offset` has the length `centre` - offset . `turn`
+// in the section.
 struct Passage {
   double centre = 0;                               // m.
   Eigen::Vector2d turn = Eigen::Vector2d::Zero();  // rad.
@@ -73,7 +74,8 @@ std::vector<double> straight_lengths(const Arm& arm) {
   return sums;
 }
 
-// Returns the derivative of one section's displacement by its (bend_x, bend_y, stretch).
+// Returns the derivative of one section's contribution to the displacement with respect to its (bend_x,
+// bend_y, stretch).
 Eigen::RowVector3d displacement_slope(const Drive& drive, const Section& section, const Eigen::Vector2d& bend,
                                       double stretch, const Eigen::Vector2d& offset) {
   const auto [ratio, slope] = chords(drive, bend);
@@ -117,7 +119,7 @@ bool solve(const Unknown& unknown, Eigen::Vector2d& bend, double& stretch) {
     bend.head(bend_columns) += change.head(bend_columns);
     if (stretching) stretch += change(bend_columns);
     if (!bend.allFinite() || !std::isfinite(stretch)) return false;
-    // Near a solution the next step is the square of this one.
+    // Near a solution convergence is quadratic, so that the next step would be negligible.
     constexpr double small = 1e-10;
     if (change.norm() <= small * (1 + bend.norm())) return true;
   }

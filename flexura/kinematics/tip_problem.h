@@ -8,27 +8,29 @@
 
 namespace flexura {
 
-/// Part of the tip's pose that is targeted, by its number of residuals.
+/// Part of the tip's pose that the target determines; the value is the number of residuals.
 enum class TipRows { position = 3, direction = 5, rotation = 6 };
 
-/// Residual of "the tip is at the target", as a function of ArmVariables' x. Rows 0 to 2 are the tip's
-/// distance from the target in base axes over the arm's greatest length. The other rows are the rotation
-/// vector from the target orientation to the tip's, in the tip's axes, rad. A direction of the tip's z has
-/// two rows (about x and y), a whole rotation has three.
+/// Residuals of "the tip is at the target", as a function of the vector x of ArmVariables. Rows 0 to 2 are
+/// the tip's position minus the target's, in base axes, divided by `length`. The other rows are the rotation
+/// vector from the target's orientation to the tip's, in the tip's axes, rad. A target direction gives two
+/// rows (about x and y), a target rotation three.
 ///
-/// The orientation rows of linearise() are the angular velocity, not the derivative of the rotation vector e.
-/// The two differ by a matrix that has e as an eigenvector with eigenvalue 1. So the gradient of |e|^2 and
-/// the undamped Gauss-Newton step are equal, and the angular velocity has no singular orientation.
+/// The orientation rows of J in linearise() are the angular velocity, not the derivative of the rotation
+/// vector e. The matrix that converts between them has e as an eigenvector with eigenvalue 1. Hence the
+/// gradient of |e|^2 and the undamped Gauss-Newton step are the same for both, but the angular velocity has
+/// no singular orientation.
 class TipProblem final : public BoundedProblem {
  public:
-  /// `X_BT` is the target pose of the tip in the base's frame. A direction uses only its z axis, a position
-  /// only its position. `length` is the scale of distances, m; tolerances are in m and rad.
+  /// `X_BT` is the target pose of the tip in the base's frame. TipRows::position uses only its position;
+  /// TipRows::direction uses its position and z axis. `length` is the scale of distances, m. Tolerances are
+  /// in m and rad.
   TipProblem(TipRows rows, const ArmVariables& variables, const Pose& X_BT, double length,
              double position_tolerance, double angle_tolerance);
 
   [[nodiscard]] Eigen::Index row_count() const override { return static_cast<Eigen::Index>(rows_); }
   void linearise(const Eigen::VectorXd& x, Eigen::VectorXd& r, Eigen::MatrixXd& J) override;
-  /// Returns true if a residual is within both tolerances.
+  /// Returns whether the residuals r are within both tolerances.
   [[nodiscard]] bool is_met(const Eigen::VectorXd& r) const override;
 
  private:
@@ -40,7 +42,7 @@ class TipProblem final : public BoundedProblem {
   double scale_;
   double position_tolerance_;
   double angle_tolerance_;
-  // Per variable: velocity of the end of its section per unit rate, in base axes.
+  // For each variable: linear and angular velocity of its section's end per unit rate, in base axes.
   Eigen::Matrix3Xd linear_;
   Eigen::Matrix3Xd angular_;
   Eigen::Matrix3Xd ends_;  // End of each section.

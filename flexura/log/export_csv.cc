@@ -180,6 +180,46 @@ class EnergyTable : public LogTable {
   bool has_head_ = false;
 };
 
+// /arm/contacts: of the true arm in motion, a row per contact.
+class ContactsTable : public LogTable {
+ public:
+  [[nodiscard]] std::string file_name() const override { return "contacts.csv"; }
+  [[nodiscard]] bool takes(std::string_view topic) const override { return topic == arm_contacts_topic; }
+  void add(std::string_view /*topic*/, double time, const Node& message) override {
+    const auto touching = read_as<ContactsMessage>(message);
+    if (!has_head_) {
+      for (const char* title : {"time", "s", "with", "point_x", "point_y", "point_z", "force_x", "force_y",
+                                "force_z", "depth", "normal_force", "sticks"})
+        csv_.cell(std::string_view(title));
+      csv_.end_row();
+      has_head_ = true;
+    }
+    for (const ContactMessage& contact : touching.contacts) {
+      csv_.cells(std::array{time, contact.s});
+      csv_.cell(contact.with);
+      csv_.cells(std::array{contact.point.x, contact.point.y, contact.point.z, contact.force.x,
+                            contact.force.y, contact.force.z, contact.depth});
+      cell_or_empty(contact.normal_force);
+      cell_or_empty(contact.sticks);
+      csv_.end_row();
+    }
+  }
+  [[nodiscard]] std::string text() const override { return csv_.text(); }
+
+ private:
+  // Logs of other programs may lack the value.
+  template <typename T>
+  void cell_or_empty(const std::optional<T>& value) {
+    if (value)
+      csv_.cell(static_cast<double>(*value));
+    else
+      csv_.cell(std::string_view());
+  }
+
+  CsvText csv_;
+  bool has_head_ = false;
+};
+
 class EventsTable : public LogTable {
  public:
   EventsTable() {
@@ -224,6 +264,7 @@ ExportResult export_csv(const std::filesystem::path& results, LogTables more, Pr
   tables.push_back(std::make_unique<TruthTable>());
   tables.push_back(std::make_unique<TensionsTable>());
   tables.push_back(std::make_unique<EnergyTable>());
+  tables.push_back(std::make_unique<ContactsTable>());
   tables.push_back(std::make_unique<EventsTable>());
   std::ranges::move(more, std::back_inserter(tables));
   from_log([&] { fill(tables, log, (results / log_file_name).string(), progress); });

@@ -11,18 +11,19 @@ namespace flexura {
 /// Result of an export of a run's log.
 struct ExportResult {
   std::filesystem::path folder;  ///< New folder with the tables.
-  bool truncated = false;        ///< The run was cut short: its log ends without a summary.
+  bool truncated = false;        ///< Whether the run was interrupted, so that its log ends without a summary.
 };
 
 /// Writes a run's log as tables into the new folder RESULTS/csv (csv-2, ... if it exists):
 /// - states.csv: one row per commanded state (time; archings and cord angles of planar arms; bends,
 /// stretches; base points and tip),
-/// - events.csv,
-/// - truth.csv: the true arm, for runs that play a rig,
-/// - tensions.csv: for arms that are rods,
-/// - energy.csv: for rods in motion,
-/// - tables of `more` with messages in the log (task_tables).
-/// `progress` may be null; it cannot end the export. Throws InputError if `results` has no log,
+/// - events.csv: the events,
+/// - truth.csv: the true arm, for runs that simulate a rig,
+/// - contacts.csv: the contacts, for dynamic arms that touch something,
+/// - tensions.csv: the tendons' tensions, for arms that are elastic rods,
+/// - energy.csv: the arm's energies, for elastic rods with inertia,
+/// - the tables of `more` that have messages in the log (task_tables).
+/// `progress` may be null and cannot cancel the export. Throws InputError if `results` has no log, and
 /// std::runtime_error if the log is corrupt or a file is not writable.
 ExportResult export_csv(const std::filesystem::path& results, LogTables more, Progress* progress = nullptr);
 

@@ -26,18 +26,18 @@ class FilmWriter {
 
   /// Appends `times` equal frames, > 0. `png` is the picture as a PNG file.
   virtual void put(const std::string& png, std::int64_t times) = 0;
-  /// Called once, after the last frame. The film is complete afterwards.
+  /// Completes the film. Called once, after the last frame.
   virtual void finish() = 0;
 };
 
-/// Returns a new film of a camera. `stem`: its path without extension.
+/// Returns the writer of a new film of a camera. `stem`: the film's path without extension.
 using NewFilm =
     std::function<std::unique_ptr<FilmWriter>(const std::filesystem::path& stem, const SensorConfig& sensor)>;
 
-/// Makes a film of each camera's images in a run's log, in the new folder RESULTS/FOLDER (FOLDER-2, ... if it
-/// exists). A film has the camera's frame rate, and every frame from time 0 to the run's end. Lost frames
-/// repeat the previous one, or the first one. `cameras` are the run's true cameras. `progress` may be null.
-/// Throws InputError if `results` has no log or no images.
+/// Makes a film of each camera's images in a run's log. The films are written to the new folder
+/// RESULTS/FOLDER (FOLDER-2, ... if it exists). A film has the camera's frame rate, and every frame from time
+/// 0 to the run's end. A lost frame is replaced by the previous frame, or by the first frame. `cameras` are
+/// the run's true cameras. `progress` may be null. Throws InputError if `results` has no log or no images.
 ExportResult export_films(const std::filesystem::path& results, const std::string& folder,
                           const std::vector<CameraConfig>& cameras, const NewFilm& new_film,
                           Progress* progress = nullptr);

@@ -9,7 +9,7 @@
 
 namespace flexura {
 
-/// A table that an export makes from some messages of a log.
+/// A table that an export makes from messages of certain topics in a log.
 class LogTable {
  public:
   virtual ~LogTable() = default;
@@ -17,13 +17,14 @@ class LogTable {
   LogTable(const LogTable&) = delete;
   LogTable& operator=(const LogTable&) = delete;
 
-  [[nodiscard]] virtual std::string file_name() const = 0;  ///< Returns its name: "servo.csv".
-  /// Returns true if messages of this topic belong to it.
+  [[nodiscard]] virtual std::string file_name()
+      const = 0;  ///< Returns the name of the table's file, such as "servo.csv".
+  /// Returns true if the table is made from messages of this topic.
   [[nodiscard]] virtual bool takes(std::string_view topic) const = 0;
-  /// Adds a message of such a topic, in the order of the log: its topic, its time in the log, s, and its
-  /// text. Throws InputError or std::runtime_error if it is not a valid message.
+  /// Adds a message of such a topic, in the order of the log. `time`: time of the message in the log, s.
+  /// Throws InputError or std::runtime_error if the message is invalid.
   virtual void add(std::string_view topic, double time, const Node& message) = 0;
-  /// Returns the file's text; "" means no file.
+  /// Returns the text of the file; "" if no file is to be written.
   [[nodiscard]] virtual std::string text() const = 0;
 };
 

@@ -9,11 +9,11 @@
 
 namespace flexura {
 
-/// A message for a log, of any type with a table of fields. It refers to the message and to its topic: valid
-/// for one call.
+/// A message for a log, of any type with a table of fields. It refers to the message and the topic, so it is
+/// valid only during one call.
 class LoggedMessage {
  public:
-  /// `time`: of the log, s since the experiment's start.
+  /// `time`: time of the message in the log, s since the experiment's start.
   template <HasFields M>
   LoggedMessage(std::string_view topic, double time, const M& message)
       : topic_(topic),
@@ -26,7 +26,7 @@ class LoggedMessage {
   [[nodiscard]] std::string_view topic() const { return topic_; }
   [[nodiscard]] double time() const { return time_; }
   [[nodiscard]] const TableInfo& schema() const { return schema_; }
-  /// Returns the message as written.
+  /// Returns the message as the node that is written to the log.
   [[nodiscard]] Node node() const { return write_(message_); }
   /// Returns the message if it is an M, otherwise null.
   template <class M>

@@ -9,26 +9,26 @@ namespace flexura {
 const Table<TimeMessage>& fields_of(const TimeMessage*) {
   static const auto table = Table<TimeMessage>("foxglove.Time", "Time since the experiment's start.")
                                 .field("sec", &TimeMessage::sec, {.meaning = "Whole seconds."})
-                                .field("nsec", &TimeMessage::nsec, {.meaning = "Nanoseconds beyond them."});
+                                .field("nsec", &TimeMessage::nsec, {.meaning = "Remaining nanoseconds."});
   return table;
 }
 
 const Table<ArmStateMessage>& fields_of(const ArmStateMessage*) {
   static const auto table =
-      Table<ArmStateMessage>("flexura.ArmState", "What changes when the arm moves.")
+      Table<ArmStateMessage>("flexura.ArmState", "Commanded state of the arm.")
           .field("time", &ArmStateMessage::time, {.meaning = "Time since the experiment's start, s."})
           .field("bends", &ArmStateMessage::bends,
-                 {.meaning = "Each section's bend (bend_x, bend_y), rad, base first."})
+                 {.meaning = "Bend (bend_x, bend_y) of each section, rad, from the base."})
           .field("stretches", &ArmStateMessage::stretches,
-                 {.meaning = "The factor on each section's length."})
-          .field("archings", &ArmStateMessage::archings, {.meaning = "Planar arms: the archings, rad."})
+                 {.meaning = "Stretch of each section, as a factor on its length."})
+          .field("archings", &ArmStateMessage::archings, {.meaning = "Archings of a planar arm, rad."})
           .field("cord_angles", &ArmStateMessage::cord_angles,
-                 {.meaning = "Planar arms: the cords' angles from +X, rad."});
+                 {.meaning = "Cord angles of a planar arm from +X, rad."});
   return table;
 }
 
 const Table<VectorMessage>& fields_of(const VectorMessage*) {
-  static const auto table = Table<VectorMessage>("foxglove.Vector3", "A vector in the frame named.")
+  static const auto table = Table<VectorMessage>("foxglove.Vector3", "Vector in the frame of the message.")
                                 .field("x", &VectorMessage::x, {.meaning = "m"})
                                 .field("y", &VectorMessage::y, {.meaning = "m"})
                                 .field("z", &VectorMessage::z, {.meaning = "m"});
@@ -45,7 +45,7 @@ const Table<QuaternionMessage>& fields_of(const QuaternionMessage*) {
 }
 
 const Table<PoseMessage>& fields_of(const PoseMessage*) {
-  static const auto table = Table<PoseMessage>("foxglove.Pose", "A frame's place and orientation.")
+  static const auto table = Table<PoseMessage>("foxglove.Pose", "Position and orientation of a frame.")
                                 .field("position", &PoseMessage::position, {})
                                 .field("orientation", &PoseMessage::orientation, {});
   return table;
@@ -53,20 +53,21 @@ const Table<PoseMessage>& fields_of(const PoseMessage*) {
 
 const Table<PosesMessage>& fields_of(const PosesMessage*) {
   static const auto table =
-      Table<PosesMessage>("foxglove.PosesInFrame", "Each section's base frame and, last, the tip.")
+      Table<PosesMessage>("foxglove.PosesInFrame",
+                          "Base frame of each section and, as the last pose, the tip.")
           .field("timestamp", &PosesMessage::timestamp, {})
-          .field("frame_id", &PosesMessage::frame_id, {.meaning = "The frame the poses are in."})
+          .field("frame_id", &PosesMessage::frame_id, {.meaning = "Frame in which the poses are given."})
           .field("poses", &PosesMessage::poses, {});
   return table;
 }
 
 const Table<EventMessage>& fields_of(const EventMessage*) {
   static const auto table =
-      Table<EventMessage>("foxglove.Log", "Something that happened.")
+      Table<EventMessage>("foxglove.Log", "Event of a run.")
           .field("timestamp", &EventMessage::timestamp, {})
-          .field("level", &EventMessage::level, {.meaning = "2 info, 3 warning, 4 error."})
+          .field("level", &EventMessage::level, {.meaning = "Level: 2 info, 3 warning, 4 error."})
           .field("message", &EventMessage::message, {})
-          .field("name", &EventMessage::name, {.meaning = "What speaks."})
+          .field("name", &EventMessage::name, {.meaning = "Source of the event."})
           .field("file", &EventMessage::file, {})
           .field("line", &EventMessage::line, {});
   return table;
@@ -74,36 +75,38 @@ const Table<EventMessage>& fields_of(const EventMessage*) {
 
 const Table<DriveCommandsMessage>& fields_of(const DriveCommandsMessage*) {
   static const auto table =
-      Table<DriveCommandsMessage>("flexura.DriveCommands", "Where the motors are to go.")
-          .field("time", &DriveCommandsMessage::time,
-                 {.meaning = "Time by which to be there, since the experiment's start, s."})
+      Table<DriveCommandsMessage>("flexura.DriveCommands", "Command of the motors at one clock step.")
+          .field(
+              "time", &DriveCommandsMessage::time,
+              {.meaning = "Time at which the positions are to be reached, since the experiment's start, s."})
           .field("positions", &DriveCommandsMessage::positions,
-                 {.meaning = "Each axis's position, microsteps from the straight arm."})
+                 {.meaning = "Position of each axis, microsteps from the straight arm."})
           .field("rates", &DriveCommandsMessage::rates,
-                 {.meaning = "Each axis's mean step rate since the command before, microsteps/s."});
+                 {.meaning = "Mean step rate of each axis since the previous command, microsteps/s."});
   return table;
 }
 
 const Table<ArmReadingMessage>& fields_of(const ArmReadingMessage*) {
   static const auto table =
-      Table<ArmReadingMessage>("flexura.ArmReading", "What the simulated drives say of themselves.")
+      Table<ArmReadingMessage>("flexura.ArmReading", "Reading of the simulated drives.")
           .field("time", &ArmReadingMessage::time, {.meaning = "Time since the experiment's start, s."})
           .field("bends", &ArmReadingMessage::bends,
-                 {.meaning = "Each section's bend as the model makes it of the motors, rad."})
+                 {.meaning = "Bend of each section that the model gives for the motors' positions, rad."})
           .field("stretches", &ArmReadingMessage::stretches,
-                 {.meaning = "The factor on each section's length as the model makes it of the motors."})
+                 {.meaning = "Stretch of each section that the model gives for the motors' positions, as a "
+                             "factor on its length."})
           .field("positions", &ArmReadingMessage::positions,
-                 {.meaning = "Each axis's position, microsteps; arms with drives."})
-          .field("moving", &ArmReadingMessage::moving, {.meaning = "Whether a motion is under way."});
+                 {.meaning = "Position of each axis, microsteps; arms with drives."})
+          .field("moving", &ArmReadingMessage::moving, {.meaning = "Whether the device is moving."});
   return table;
 }
 
 const Table<TensionsMessage>& fields_of(const TensionsMessage*) {
   static const auto table =
-      Table<TensionsMessage>("flexura.Tensions", "By which the tendons of the true arm pull.")
+      Table<TensionsMessage>("flexura.Tensions", "Tensions of the true arm's tendons.")
           .field("time", &TensionsMessage::time, {.meaning = "Time since the experiment's start, s."})
           .field("tensions", &TensionsMessage::tensions,
-                 {.meaning = "Each tendon's tension at the arm's base, N."})
+                 {.meaning = "Tension of each tendon at the arm's base, N."})
           .field(
               "lost_steps", &TensionsMessage::lost_steps,
               {.meaning = "Microsteps that each motor has lost so far, unknown to its controller; arms with "
@@ -113,34 +116,38 @@ const Table<TensionsMessage>& fields_of(const TensionsMessage*) {
 
 const Table<EnergyMessage>& fields_of(const EnergyMessage*) {
   static const auto table =
-      Table<EnergyMessage>("flexura.Energy", "The energy of the true arm in motion.")
+      Table<EnergyMessage>("flexura.Energy", "Energies of the true arm with inertia.")
           .field("time", &EnergyMessage::time, {.meaning = "Time since the experiment's start, s."})
-          .field("kinetic", &EnergyMessage::kinetic, {.meaning = "Of its motion, J."})
-          .field("strain", &EnergyMessage::strain, {.meaning = "Of its strains, J."})
-          .field("gravity", &EnergyMessage::gravity,
-                 {.meaning = "Of its weight, J; 0 at the height of the arm's base."});
+          .field("kinetic", &EnergyMessage::kinetic, {.meaning = "Kinetic energy, J."})
+          .field("strain", &EnergyMessage::strain, {.meaning = "Elastic energy, J."})
+          .field(
+              "gravity", &EnergyMessage::gravity,
+              {.meaning = "Potential energy of its weight and loads, J; 0 at the height of the arm's base."});
   return table;
 }
 
 const Table<ContactMessage>& fields_of(const ContactMessage*) {
   static const auto table =
-      Table<ContactMessage>("flexura.Contact", "Where the true arm touches something.")
+      Table<ContactMessage>("flexura.Contact", "Contact of the true arm.")
           .field("s", &ContactMessage::s,
-                 {.meaning = "Place on the arm: arc length from its base at rest, m."})
-          .field("with", &ContactMessage::with, {.meaning = "The obstacle's name, or \"the arm\"."})
-          .field("point", &ContactMessage::point, {.meaning = "In the world, m."})
-          .field("force", &ContactMessage::force, {.meaning = "On the arm there, N."})
-          .field("depth", &ContactMessage::depth, {.meaning = "How deep the arm is in it, m."})
-          .field("normal_force", &ContactMessage::normal_force, {.meaning = "Across the surface, N."})
-          .field("sticks", &ContactMessage::sticks, {.meaning = "It does not slide along the other."});
+                 {.meaning = "Position on the arm: arc length from the base of the unstretched arm, m."})
+          .field("with", &ContactMessage::with, {.meaning = "Name of the obstacle, or \"the arm\"."})
+          .field("point", &ContactMessage::point, {.meaning = "Point of contact in the world frame, m."})
+          .field("force", &ContactMessage::force,
+                 {.meaning = "Force on the arm at the contact, in the world frame, N."})
+          .field("depth", &ContactMessage::depth, {.meaning = "Penetration depth, m."})
+          .field("normal_force", &ContactMessage::normal_force, {.meaning = "Normal force, N."})
+          .field("sticks", &ContactMessage::sticks,
+                 {.meaning = "Whether the surfaces do not slide along each other."});
   return table;
 }
 
 const Table<ContactsMessage>& fields_of(const ContactsMessage*) {
   static const auto table =
-      Table<ContactsMessage>("flexura.Contacts", "What the true arm in motion touches.")
+      Table<ContactsMessage>("flexura.Contacts", "Contacts of the true arm with inertia.")
           .field("time", &ContactsMessage::time, {.meaning = "Time since the experiment's start, s."})
-          .field("contacts", &ContactsMessage::contacts, {.meaning = "None: it touches nothing any more."});
+          .field("contacts", &ContactsMessage::contacts,
+                 {.meaning = "Contacts; empty after the last contact has ended."});
   return table;
 }
 
@@ -148,10 +155,10 @@ const Table<HeadReadingMessage>& fields_of(const HeadReadingMessage*) {
   static const auto table =
       Table<HeadReadingMessage>("flexura.HeadReading", "Measured pan, tilt and zoom of a camera's head.")
           .field("time", &HeadReadingMessage::time, {.meaning = "Time since the experiment's start, s."})
-          .field("pan", &HeadReadingMessage::pan, {.meaning = "rad, to the camera's left."})
-          .field("tilt", &HeadReadingMessage::tilt, {.meaning = "rad, upwards."})
-          .field("zoom", &HeadReadingMessage::zoom, {.meaning = "A ratio or a motor count."})
-          .field("moving", &HeadReadingMessage::moving, {.meaning = "Whether a motion is under way."});
+          .field("pan", &HeadReadingMessage::pan, {.meaning = "Pan, rad, to the camera's left."})
+          .field("tilt", &HeadReadingMessage::tilt, {.meaning = "Tilt, rad, upwards."})
+          .field("zoom", &HeadReadingMessage::zoom, {.meaning = "Zoom, as a ratio or a motor count."})
+          .field("moving", &HeadReadingMessage::moving, {.meaning = "Whether the device is moving."});
   return table;
 }
 
@@ -159,28 +166,29 @@ const Table<StageReadingMessage>& fields_of(const StageReadingMessage*) {
   static const auto table =
       Table<StageReadingMessage>("flexura.StageReading", "Measured position of a camera's stage.")
           .field("time", &StageReadingMessage::time, {.meaning = "Time since the experiment's start, s."})
-          .field("offset", &StageReadingMessage::offset, {.meaning = "Right, down, forward, m."})
-          .field("moving", &StageReadingMessage::moving, {.meaning = "Whether a motion is under way."});
+          .field("offset", &StageReadingMessage::offset,
+                 {.meaning = "Offset along the stage's axes (right, down, forward), m."})
+          .field("moving", &StageReadingMessage::moving, {.meaning = "Whether the device is moving."});
   return table;
 }
 
 const Table<ImageMessage>& fields_of(const ImageMessage*) {
   static const auto table =
-      Table<ImageMessage>("foxglove.CompressedImage", "A frame of a camera.")
+      Table<ImageMessage>("foxglove.CompressedImage", "Frame of a camera.")
           .field("timestamp", &ImageMessage::timestamp, {.meaning = "Middle of the exposure."})
-          .field("frame_id", &ImageMessage::frame_id, {.meaning = "The camera's optical frame."})
-          .field("data", &ImageMessage::data, {.meaning = "An image file."})
-          .field("format", &ImageMessage::format, {.meaning = "Its format."});
+          .field("frame_id", &ImageMessage::frame_id, {.meaning = "Optical frame of the camera."})
+          .field("data", &ImageMessage::data, {.meaning = "Content of the image file."})
+          .field("format", &ImageMessage::format, {.meaning = "Format of the image file."});
   return table;
 }
 
 const Table<AxisPointMessage>& fields_of(const AxisPointMessage*) {
   using M = AxisPointMessage;
   static const auto table =
-      Table<M>("flexura.AxisPoint", "A point where the backbone was seen.")
+      Table<M>("flexura.AxisPoint", "Measured point of the backbone in a picture.")
           .field("u", &M::u, {.meaning = "Column, px."})
           .field("v", &M::v, {.meaning = "Row, px."})
-          .field("sigma", &M::sigma, {.meaning = "Standard deviation across the axis, px."});
+          .field("sigma", &M::sigma, {.meaning = "Standard deviation perpendicular to the axis, px."});
   return table;
 }
 

@@ -13,10 +13,11 @@
 
 namespace flexura {
 
-// Messages of a run's log. Their tables of fields give the log's JSON schemas and read and write them. The
-// foxglove.* messages follow the layout of that collection of schemas, for display in other programs.
+// Messages of a run's log. Their tables of fields define the JSON schemas of the log, and read and write the
+// messages. Messages named foxglove.* have the layout of the Foxglove schemas, so that other programs can
+// display them.
 
-/// foxglove.Time: the experiment's time since its start.
+/// foxglove.Time: time since the experiment's start.
 struct TimeMessage {
   std::int64_t sec = 0;
   std::int64_t nsec = 0;  ///< Remainder, from 0 to 999999999.
@@ -47,8 +48,8 @@ struct PoseMessage {
   QuaternionMessage orientation;  ///< Unit quaternion; w is last.
 };
 
-/// foxglove.PosesInFrame, on /arm/poses (commanded) and /arm/truth (true): each section's base frame (for the
-/// truth, each arc's) and, last, the tip, in the world.
+/// foxglove.PosesInFrame, on /arm/poses (commanded) and /arm/truth (true): poses in the world. They are the
+/// base frame of each section (in the truth, of each arc) and, as the last pose, the tip.
 struct PosesMessage {
   TimeMessage timestamp;
   std::string frame_id;  ///< "world"
@@ -60,32 +61,32 @@ struct EventMessage {
   TimeMessage timestamp;
   std::int64_t level = 2;  ///< 2 info, 3 warning, 4 error.
   std::string message;
-  std::string name;  ///< Source: a task's name, "run".
-  std::string file;  ///< Empty, with line 0: for compatibility with other programs.
+  std::string name;  ///< Source of the event: the name of a task, or "run".
+  std::string file;  ///< Empty, and `line` is 0; both exist for compatibility with other programs.
   std::int64_t line = 0;
 };
 
-/// Returns "info", "warning" or "error" for a level of foxglove.Log. Debug messages of other programs count
-/// as information, fatal ones as errors.
+/// Returns "info", "warning" or "error" for a level of foxglove.Log. The level debug of other programs gives
+/// "info", the level fatal "error".
 [[nodiscard]] std::string level_name(std::int64_t level);
 
-/// flexura.DriveCommands, on /drive/commands: the motors' command at one clock step.
+/// flexura.DriveCommands, on /drive/commands: command of the motors at one clock step.
 struct DriveCommandsMessage {
   double time = 0;                      ///< Time at which the positions are to be reached, s.
   std::vector<std::int64_t> positions;  ///< Microsteps, one per axis.
-  std::vector<double> rates;            ///< Microsteps/s, mean since the previous command.
+  std::vector<double> rates;            ///< Mean rates since the previous command, microsteps/s.
 };
 
-/// flexura.ArmReading, on /arm/reading if a run plays the rig: reading of the simulated drives.
+/// flexura.ArmReading, on /arm/reading if a run simulates the rig: reading of the simulated drives.
 struct ArmReadingMessage {
-  double time = 0;                                     ///< In s.
-  std::vector<std::array<double, 2>> bends;            ///< In rad; by the model from the motors.
-  std::vector<double> stretches;                       ///< By the model from the motors.
+  double time = 0;                           ///< In s.
+  std::vector<std::array<double, 2>> bends;  ///< Bends that the model gives for the motors' positions, rad.
+  std::vector<double> stretches;             ///< Stretches that the model gives for the motors' positions.
   std::optional<std::vector<std::int64_t>> positions;  ///< Microsteps, one per axis; arms with drives.
   bool moving = false;
 };
 
-/// flexura.Tensions, on /arm/tensions with the true arm, if it is an elastic rod.
+/// flexura.Tensions, on /arm/tensions, logged with the true arm if that is an elastic rod.
 struct TensionsMessage {
   double time = 0;               ///< In s.
   std::vector<double> tensions;  ///< Tension of each tendon at the arm's base, N.
@@ -93,32 +94,33 @@ struct TensionsMessage {
   std::optional<std::vector<double>> lost_steps;
 };
 
-/// flexura.Energy, on /arm/energy with the true arm, if it is an elastic rod in motion.
+/// flexura.Energy, on /arm/energy, logged with the true arm if that is an elastic rod with inertia.
 struct EnergyMessage {
   double time = 0;     ///< In s.
-  double kinetic = 0;  ///< In J.
-  double strain = 0;   ///< In J.
-  double gravity = 0;  ///< Of its weight and of loads along it, J; 0 at the height of the arm's base.
+  double kinetic = 0;  ///< Kinetic energy, J.
+  double strain = 0;   ///< Elastic energy, J.
+  double gravity = 0;  ///< Potential energy of the arm's weight and of loads along it, J; 0 at the height of
+                       ///< the arm's base.
 };
 
 /// flexura.Contact: a contact of the true arm.
 struct ContactMessage {
-  double s = 0;                             ///< Place on the arm: arc length from its base at rest, m.
-  std::string with;                         ///< The obstacle's name, or "the arm".
-  VectorMessage point;                      ///< In the world, m.
-  VectorMessage force;                      ///< On the arm there, N.
-  double depth = 0;                         ///< m
-  std::optional<double> normal_force = {};  ///< Across the surface, N.
-  std::optional<bool> sticks = {};          ///< It does not slide along the other.
+  double s = 0;         ///< Position on the arm: arc length from the base of the unstretched arm, m.
+  std::string with;     ///< Name of the obstacle, or "the arm" for contact of the arm with itself.
+  VectorMessage point;  ///< Point of contact in W, m.
+  VectorMessage force;  ///< Force on the arm at the contact, in W, N.
+  double depth = 0;     ///< Penetration depth, m.
+  std::optional<double> normal_force = {};  ///< Normal force, N.
+  std::optional<bool> sticks = {};          ///< Whether the surfaces do not slide along each other.
 };
-/// flexura.Contacts, on /arm/contacts with the true arm, if it is an elastic rod in motion. Logged while it
-/// touches something, and once afterwards.
+/// flexura.Contacts, on /arm/contacts, logged with the true arm if that is an elastic rod with inertia.
+/// Logged while the arm touches something, and once afterwards.
 struct ContactsMessage {
   double time = 0;  ///< In s.
   std::vector<ContactMessage> contacts;
 };
 
-/// flexura.HeadReading, on /head/NAME if a run plays the rig: reading of a camera's head.
+/// flexura.HeadReading, on /head/NAME if a run simulates the rig: reading of a camera's head.
 struct HeadReadingMessage {
   double time = 0;           ///< In s.
   double pan = 0, tilt = 0;  ///< In rad.
@@ -126,23 +128,23 @@ struct HeadReadingMessage {
   bool moving = false;
 };
 
-/// flexura.StageReading, on /stage/NAME if a run plays the rig: reading of a camera's stage.
+/// flexura.StageReading, on /stage/NAME if a run simulates the rig: reading of a camera's stage.
 struct StageReadingMessage {
   double time = 0;                           ///< In s.
-  std::array<double, 3> offset = {0, 0, 0};  ///< Along its axes (right, down, forward), m.
+  std::array<double, 3> offset = {0, 0, 0};  ///< Offset along the stage's axes (right, down, forward), m.
   bool moving = false;
 };
 
-/// A point of the centerline as measured in a picture; `sigma` across it.
+/// A point of the arm's centerline as measured in a picture.
 struct AxisPointMessage {
   double u = 0, v = 0;  ///< In px.
-  double sigma = 0;     ///< In px.
+  double sigma = 0;     ///< Standard deviation perpendicular to the centerline, px.
 };
 
 /// foxglove.CompressedImage, on /camera/NAME: one frame of a camera.
 struct ImageMessage {
   TimeMessage timestamp;  ///< Middle of the exposure.
-  std::string frame_id;   ///< "camera/NAME"
+  std::string frame_id;   ///< "camera/NAME".
   Bytes data;             ///< A PNG file.
   std::string format = "png";
 };
@@ -178,14 +180,14 @@ const Table<AxisPointMessage>& fields_of(const AxisPointMessage*);
 
 /// Returns the topic of a camera's images.
 [[nodiscard]] std::string image_topic(std::string_view camera);
-/// Returns the topic of the readings of its head.
+/// Returns the topic of the readings of a camera's head.
 [[nodiscard]] std::string head_topic(std::string_view camera);
-/// Returns the topic of the readings of its stage.
+/// Returns the topic of the readings of a camera's stage.
 [[nodiscard]] std::string stage_topic(std::string_view camera);
 
-/// Returns `time` s >= 0 in nanoseconds, rounded to the nearest.
+/// Returns `time` (s, >= 0) in nanoseconds, rounded to the nearest integer.
 [[nodiscard]] std::uint64_t nanoseconds(double time);
-/// Returns the time as whole seconds and the remainder.
+/// Returns a time as whole seconds and the remainder in nanoseconds.
 [[nodiscard]] TimeMessage time_message(std::uint64_t nanoseconds);
 /// Returns a pose in the world as position, m, and unit quaternion, w >= 0.
 [[nodiscard]] PoseMessage pose_message(const Pose& X_WP);
@@ -197,7 +199,8 @@ const Table<AxisPointMessage>& fields_of(const AxisPointMessage*);
 
 /// Returns [x, y, z], m in the world.
 [[nodiscard]] Node point_node(const Eigen::Vector3d& p);
-/// Returns {"position": [x, y, z], "rotation": [w, x, y, z]}: a pose as in summaries and on the command line.
+/// Returns {"position": [x, y, z], "rotation": [w, x, y, z]}, the form of a pose in summaries and on the
+/// command line.
 [[nodiscard]] Node pose_node(const Pose& X_WP);
 
 }  // namespace flexura

@@ -38,7 +38,7 @@ class Recorder {
   /// Writes any other message.
   void write(const LoggedMessage& message);
 
-  /// Writes the true arm, if the rig has it.
+  /// Writes the backbone of the true arm.
   void truth(double time, const Backbone& backbone);
 
   /// Write the readings of a rig's devices.
@@ -46,12 +46,14 @@ class Recorder {
   void reading(const std::string& camera, const HeadReading& reading);
   void reading(const std::string& camera, const StageReading& reading);
 
-  /// Writes a frame. `message` is its logged_image, which takes longest to make and needs no log.
+  /// Writes a frame. `message` is its logged_image(). Making it takes most of the time, and other threads can
+  /// do that.
   void image(const std::string& camera, const Frame& frame, std::string_view message);
-  /// Writes a picture that is not a camera's.
+  /// Writes a picture that is not a camera's frame, on a topic of its own.
   void picture(const std::string& topic, double time, const Picture& picture);
 
-  /// Completes the log. Without it, as after a crash, the log is readable up to its last complete chunk.
+  /// Completes the log. A log that is not completed, as after a crash, is readable up to its last complete
+  /// chunk.
   void close();
 
  private:

@@ -4,16 +4,16 @@
 
 namespace flexura {
 
-/// Makes the new folder `desired`, or `desired`-2, -3, ... if that exists: results are never overwritten.
-/// Makes missing folders above it. Returns the new folder. Throws std::runtime_error with the path on a
-/// system error.
+/// Makes the new folder `desired`, or `desired`-2, -3, ... if that exists, because results are never
+/// overwritten. Also makes missing parent folders. Returns the new folder. Throws std::runtime_error with the
+/// path on a system error.
 [[nodiscard]] std::filesystem::path make_new_folder(const std::filesystem::path& desired);
 
-/// Returns the default folder of an experiment's results: results/NAME. NAME is the file's, or its folder's
-/// for a file named experiment.toml.
+/// Returns the default folder of an experiment's results: results/NAME. NAME is the name of the file, or the
+/// name of its folder if the file's name is experiment.toml.
 [[nodiscard]] std::filesystem::path default_results_folder(const std::filesystem::path& experiment_file);
 
-// Contents of a run's folder (docs/results.md); the last two are folders.
+// Names of the contents of a run's folder (docs/results.md); the last two are folders.
 inline constexpr const char* experiment_file_name = "experiment.toml";
 inline constexpr const char* log_file_name = "log.mcap";
 inline constexpr const char* commands_file_name = "commands.csv";

@@ -9,7 +9,7 @@
 
 namespace flexura {
 
-/// Returns the result of `read`; reports a damaged log as an input error.
+/// Returns the result of `read`. Converts the exception of a damaged log to InputError.
 template <class Read>
 auto from_log(Read&& read) {
   try {
@@ -21,11 +21,11 @@ auto from_log(Read&& read) {
   }
 }
 
-/// Returns the path of the file `name` in a results folder. Throws InputError if it is missing, or a link
-/// that leads out of the folder.
+/// Returns the path of the file `name` in a results folder. Throws InputError if the file is missing, or is a
+/// link to a place outside the folder.
 [[nodiscard]] std::filesystem::path file_of_results(const std::filesystem::path& results, const char* name);
 
-/// Opens the log of a results folder. Throws InputError if it is missing or damaged.
+/// Opens the log of a results folder. Throws InputError if the log is missing or damaged.
 [[nodiscard]] McapReader open_log(const std::filesystem::path& results);
 
 }  // namespace flexura

@@ -14,7 +14,7 @@ namespace flexura {
 
 class LoggedMessage;
 
-/// Messages of a run and its tasks, for the log and the watcher.
+/// Passes the messages of a run and its tasks to the log and the watcher.
 class RunLog {
  public:
   struct Event {
@@ -27,16 +27,16 @@ class RunLog {
       : recorder_(file, arm), watcher_(watcher) {}
 
   void event(double time, Recorder::Level level, const std::string& name, const std::string& text);
-  /// Writes a task's message, also to the watcher.
+  /// Writes a task's message to the log and passes it to the watcher.
   void publish(const LoggedMessage& message);
   /// Writes a camera's frame, with its logged_image.
   void image(const std::string& camera, const Frame& frame, std::string_view message);
   /// Reports the end of a task of the rig.
   void task_ended();
 
-  /// For messages that only the log receives.
+  /// Returns the recorder, for messages that only the log receives.
   [[nodiscard]] Recorder& recorder() { return recorder_; }
-  /// Returns the number of frames per camera, for cameras with frames.
+  /// Returns the number of frames of each camera that has frames.
   [[nodiscard]] const std::map<std::string, std::int64_t>& frames() const { return frames_; }
   /// Returns all events.
   [[nodiscard]] const std::vector<Event>& events() const { return events_; }
@@ -44,7 +44,7 @@ class RunLog {
  private:
   Recorder recorder_;
   RunWatcher* watcher_;
-  std::map<std::string, std::int64_t> frames_;  // By camera.
+  std::map<std::string, std::int64_t> frames_;  // Number of frames of each camera.
   std::vector<Event> events_;
 };
 

@@ -15,14 +15,15 @@ namespace flexura {
 
 class LoggedMessage;
 
-/// True state of a run's arm, which its ports do not give.
+/// True state of a run's arm, which the ports do not provide.
 struct TrueArm {
   Backbone backbone;
-  std::vector<double> pulled;      ///< How far its drives have each tendon pulled in, m; empty: not known.
-  std::vector<double> tensions;    ///< N; empty: of an arm without forces.
-  std::vector<double> lost_steps;  ///< Microsteps of each motor; empty: none ever.
-  std::optional<EnergyMessage> energy = {};   ///< Of an arm in motion.
-  std::vector<ContactMessage> contacts = {};  ///< Where it touches something.
+  std::vector<double>
+      pulled;  ///< Length by which the drives have pulled in each tendon, m; empty: not known.
+  std::vector<double> tensions;    ///< Tension of each tendon, N; empty for an arm without forces.
+  std::vector<double> lost_steps;  ///< Microsteps lost by each motor; empty if motors cannot lose any.
+  std::optional<EnergyMessage> energy = {};   ///< Energies of an arm with inertia.
+  std::vector<ContactMessage> contacts = {};  ///< Contacts of the arm.
 };
 
 /// Axis positions that a camera's head and stage report.
@@ -39,12 +40,12 @@ class RunWatcher {
   RunWatcher(const RunWatcher&) = delete;
   RunWatcher& operator=(const RunWatcher&) = delete;
 
-  /// Receives the arm's state at every clock step, s, and the cameras' readings at that time, in their order.
-  /// The readings are empty if the run plays no rig; its cameras are then at rest.
+  /// Receives the arm's state at every clock step (`time` in s), and the readings of all cameras at that
+  /// time, in their order. The readings are empty if the run simulates no rig; its cameras are then at rest.
   virtual void state(double time, const ArmState& state, std::span<const CameraReading> cameras) = 0;
-  /// Returns true if the truth is needed at the next step: it takes time to compute.
+  /// Returns true if truth() is to be called at the next step. The truth is computed only then.
   [[nodiscard]] virtual bool needs_truth() { return false; }
-  /// Receives the true arm at a clock step, if known, after its state.
+  /// Receives the true arm at a clock step, if it is known, after the call of state().
   virtual void truth(double /*time*/, const TrueArm& /*arm*/) {}
   /// Receives an event of the log: `time` in s, level "info", "warning" or "error", source, text.
   virtual void happened(double /*time*/, const std::string& /*level*/, const std::string& /*name*/,

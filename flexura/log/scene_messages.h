@@ -1,14 +1,16 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "flexura/base/fields.h"
 #include "flexura/log/messages.h"
 
-// Objects of the scene and their poses, for programs that draw logs. They follow the layout of the foxglove.*
-// schemas.
+// Objects of the scene and their poses, for programs that display logs. The messages have the layout of the
+// Foxglove schemas.
 namespace flexura {
 
 /// foxglove.Duration.
@@ -21,7 +23,7 @@ struct ColorMessage {
   double r = 0, g = 0, b = 0, a = 1;
 };
 
-/// foxglove.CubePrimitive: centred in its pose.
+/// foxglove.CubePrimitive: a box whose middle is at its pose.
 struct CubeMessage {
   PoseMessage pose;
   VectorMessage size;  ///< In m.
@@ -35,7 +37,7 @@ struct SphereMessage {
   ColorMessage color;
 };
 
-/// foxglove.CylinderPrimitive: centred in its pose, along its z.
+/// foxglove.CylinderPrimitive: a cylinder whose middle is at its pose, with the axis along z.
 struct CylinderMessage {
   PoseMessage pose;
   VectorMessage size;  ///< Two diameters and the length, m.
@@ -43,9 +45,9 @@ struct CylinderMessage {
   ColorMessage color;
 };
 
-/// foxglove.LinePrimitive: a strip.
+/// foxglove.LinePrimitive: a polyline.
 struct LineMessage {
-  std::int64_t type = 0;  ///< 0: a strip.
+  std::int64_t type = 0;  ///< 0: a polyline.
   PoseMessage pose;
   double thickness = 0;  ///< In m.
   bool scale_invariant = false;
@@ -55,12 +57,12 @@ struct LineMessage {
   std::vector<std::int64_t> indices;
 };
 
-/// foxglove.SceneEntity: replaces one with an equal `id`.
+/// foxglove.SceneEntity: replaces an earlier entity with an equal `id`.
 struct EntityMessage {
   TimeMessage timestamp;
   std::string frame_id = "world";
   std::string id;
-  DurationMessage lifetime;  ///< 0: until it is replaced.
+  DurationMessage lifetime;  ///< Time for which the entity is shown; 0: until it is replaced.
   bool frame_locked = false;
   std::vector<CubeMessage> cubes;
   std::vector<SphereMessage> spheres;
@@ -87,6 +89,18 @@ struct FramesMessage {
   std::vector<FrameMessage> transforms;
 };
 
+/// foxglove.CameraCalibration, on /intrinsics/NAME. For `plumb_bob`, the distortion of OpenCV.
+struct CameraCalibrationMessage {
+  TimeMessage timestamp;
+  std::string frame_id;                ///< "camera/NAME"
+  std::int64_t width = 0, height = 0;  ///< Of a picture, px.
+  std::string distortion_model = "plumb_bob";
+  std::vector<double> distortion;            ///< k1, k2, p1, p2, k3.
+  std::array<double, 9> intrinsics = {};     ///< fx 0 cx, 0 fy cy, 0 0 1, row by row, px.
+  std::array<double, 9> rectification = {};  ///< The identity: pictures are not rectified.
+  std::array<double, 12> projection = {};    ///< The intrinsics and a column of zeros, row by row, px.
+};
+
 inline constexpr std::string_view scene_topic = "/scene";
 inline constexpr std::string_view frames_topic = "/frames";
 
@@ -100,5 +114,9 @@ const Table<EntityMessage>& fields_of(const EntityMessage*);
 const Table<SceneMessage>& fields_of(const SceneMessage*);
 const Table<FrameMessage>& fields_of(const FrameMessage*);
 const Table<FramesMessage>& fields_of(const FramesMessage*);
+const Table<CameraCalibrationMessage>& fields_of(const CameraCalibrationMessage*);
+
+/// Returns the topic of a camera's intrinsics.
+[[nodiscard]] std::string intrinsics_topic(std::string_view camera);
 
 }  // namespace flexura

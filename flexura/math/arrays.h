@@ -6,15 +6,15 @@
 
 namespace flexura {
 
-// Conversions of arrays in a file to vectors and rotations.
+// Conversions of arrays, as in files, to vectors and rotations.
 
-/// Return the numbers as a vector.
+/// Convert an array to a vector.
 [[nodiscard]] inline Eigen::Vector3d vector(const std::array<double, 3>& a) { return {a[0], a[1], a[2]}; }
 [[nodiscard]] inline Eigen::Vector4d vector(const std::array<double, 4>& a) {
   return {a[0], a[1], a[2], a[3]};
 }
 
-/// Returns why (w, x, y, z) is not a unit quaternion within 1e-3, or "".
+/// Returns an error text if (w, x, y, z) is not a unit quaternion within 1e-3, otherwise "".
 [[nodiscard]] std::string quaternion_problem(const std::array<double, 4>& wxyz);
 
 /// Returns the rotation of a quaternion (w, x, y, z) of any length above 0.

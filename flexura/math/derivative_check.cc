@@ -18,11 +18,12 @@ Eigen::VectorXd central_difference(const VectorFunction& f, Eigen::VectorXd x, E
   const double upper = x[column];
   const Eigen::VectorXd ahead = f(x);
   x[column] = centre - step;
-  // Divides by the steps as rounded, not as requested.
+  // Divides by the actual steps, which differ from the requested steps by rounding.
   return (ahead - f(x)) / (upper - x[column]);
 }
 
-// Keeps, for each element, the estimate that agrees best with the two that it was computed from.
+// Keeps, for each element, the extrapolated estimate that agrees best with the two estimates from which it
+// was computed.
 void keep_best(const Eigen::VectorXd& value, const Eigen::VectorXd& error, Eigen::Index column,
                NumericalJacobian& best) {
   for (Eigen::Index row = 0; row < value.size(); ++row) {

@@ -5,18 +5,19 @@
 
 namespace flexura {
 
-/// f: R^n -> R^m.
+/// A function R^n -> R^m.
 using VectorFunction = std::function<Eigen::VectorXd(const Eigen::VectorXd&)>;
 
-/// A derivative by differences and its estimated error.
+/// A Jacobian computed by finite differences, with its estimated error.
 struct NumericalJacobian {
   Eigen::MatrixXd value;  ///< m x n.
   Eigen::MatrixXd error;  ///< m x n: estimated absolute error of each element.
 };
 
-/// Returns the Jacobian of f at x by central differences, extrapolated to step 0 (Richardson; Ridders 1982).
-/// For checking analytic derivatives. `step` > 0 is the first of a decreasing sequence of steps, in the units
-/// of x: about a tenth of the distance over which f curves.
+/// Returns the Jacobian of f at x, computed by central differences and Richardson extrapolation to step 0
+/// (Ridders 1982). Tests use this function to check analytic derivatives. `step` > 0, in the units of x, is
+/// the first of a decreasing sequence of steps. A good value is a tenth of the distance over which f deviates
+/// noticeably from linear.
 [[nodiscard]] NumericalJacobian numerical_jacobian(const VectorFunction& f, const Eigen::VectorXd& x,
                                                    double step = 0.1);
 

@@ -9,13 +9,14 @@
 
 namespace flexura {
 
-/// Tolerances for an ordinary differential equation.
+/// Tolerances and limits for solving an ordinary differential equation.
 struct OdeTolerance {
-  double relative = 1e-9;    ///< Of each component, per step.
-  double absolute = 1e-12;   ///< Of each component, per step, in the units of y; both add up.
-  double first_step = 1e-3;  ///< First step to try, in units of the time; > 0.
-  double largest_step = std::numeric_limits<double>::infinity();  ///< In units of the time.
-  int most_steps = 1'000'000;                                     ///< Of one advance, with rejected steps.
+  double relative = 1e-9;  ///< Relative error tolerance of each component per step.
+  /// Absolute error tolerance per step, in the units of y; added to the relative tolerance.
+  double absolute = 1e-12;
+  double first_step = 1e-3;  ///< First step size to try, in units of time; > 0.
+  double largest_step = std::numeric_limits<double>::infinity();  ///< Largest step size, in units of time.
+  int most_steps = 1'000'000;  ///< Largest number of steps in one advance, including rejected steps.
 };
 
 /// Solves dy/dt = f(t, y) by the explicit Runge-Kutta pair of order 5(4) with adaptive steps (J. R. Dormand,
@@ -24,7 +25,7 @@ struct OdeTolerance {
 /// constructor.
 class DormandPrince {
  public:
-  /// For `size` components.
+  /// Makes a solver for `size` components of y.
   explicit DormandPrince(Eigen::Index size, const OdeTolerance& tolerance = {})
       : tolerance_(tolerance), step_(tolerance.first_step), trial_(size) {
     for (Eigen::VectorXd& slope : slopes_) slope.resize(size);
@@ -32,14 +33,15 @@ class DormandPrince {
 
   /// Result of an advance.
   struct Progress {
-    /// False if it ran out of steps, no step is small enough, or go_on() ended it; t and y are those of the
-    /// end.
+    /// Whether the time `until` was reached. Otherwise the number of steps reached its limit, the step size
+    /// became too small, or go_on() stopped the advance. In this case t and y are those of the last accepted
+    /// step.
     bool is_there = false;
-    int steps = 0, taken_back = 0;  ///< Accepted; rejected for their error.
+    int steps = 0, taken_back = 0;  ///< Numbers of accepted steps, and of steps rejected for their error.
   };
 
-  /// Advances from (t, y) to exactly the time `until` >= t. f(t, y, slope) writes dy/dt into `slope`; go_on()
-  /// is called before every step and may end it.
+  /// Advances from (t, y) to exactly the time `until` >= t. f(t, y, slope) writes dy/dt into `slope`. Before
+  /// every step go_on() is called; if it returns false, the advance stops.
   template <class Function, class GoOn = bool (*)()>
   Progress advance(Function&& f, double& t, Eigen::VectorXd& y, double until, GoOn go_on = always) {
     Progress progress;
@@ -71,8 +73,8 @@ class DormandPrince {
  private:
   static bool always() { return true; }
 
-  // Computes trial_ = y after h, and slopes_[6], the slope there. Returns the error in units of the
-  // tolerance, root mean square.
+  // Computes trial_, which is y after a step h, and slopes_[6], which is dy/dt at its end. Returns the root
+  // mean square of the error in units of the tolerance.
   template <class Function>
   double attempt(Function& f, double t, const Eigen::VectorXd& y, double h) {
     auto& k = slopes_;

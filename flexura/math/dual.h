@@ -2,8 +2,8 @@
 
 namespace flexura {
 
-/// A number with a derivative: arithmetic on it differentiates the computation exactly (forward mode). T may
-/// be double, several doubles in an instruction (math/lanes.h), or itself a Dual, for second derivatives.
+/// Dual number: a value with a derivative, for automatic differentiation in forward mode. T may be double,
+/// several doubles per instruction (math/lanes.h), or another Dual for second derivatives.
 template <typename T>
 struct Dual {
   T value;

@@ -4,7 +4,7 @@
 
 namespace flexura {
 
-/// Returns n!, for the coefficients of power series.
+/// Returns n!.
 constexpr double factorial(std::size_t n) { return n < 2 ? 1.0 : static_cast<double>(n) * factorial(n - 1); }
 
 }  // namespace flexura

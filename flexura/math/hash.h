@@ -5,7 +5,7 @@
 namespace flexura {
 
 /// A pseudorandom permutation of the 64-bit numbers: the finalizer of SplitMix64 (Steele, Lea, Flood 2014).
-/// Hashed counters are streams of random numbers without a state.
+/// Hashes of consecutive integers form a random number stream that needs no stored state.
 constexpr std::uint64_t hash(std::uint64_t x) {
   x += 0x9e3779b97f4a7c15;
   x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9;
@@ -13,7 +13,7 @@ constexpr std::uint64_t hash(std::uint64_t x) {
   return x ^ (x >> 31);
 }
 
-/// Returns a hash of several numbers, which depends on their order.
+/// Returns a hash of several numbers. The hash depends on their order.
 template <typename... Rest>
 constexpr std::uint64_t hash(std::uint64_t first, std::uint64_t second, Rest... rest) {
   return hash(hash(first) ^ second, rest...);

@@ -8,16 +8,16 @@
 
 namespace flexura {
 
-/// Two doubles in one instruction, on every processor of the architecture.
+/// Two doubles processed by one instruction, on every processor of the architecture.
 using Lanes = double __attribute__((vector_size(16)));
 
-/// Number of values in a T.
+/// Number of numbers in a T.
 template <typename T>
 inline constexpr std::size_t lanes_of = 1;
 template <>
 inline constexpr std::size_t lanes_of<Lanes> = 2;
 
-/// The type for several numbers of this kind at once, if any.
+/// The type that processes several T at once; T itself if there is no such type.
 template <typename T>
 struct Wide {
   using type = T;
@@ -27,7 +27,7 @@ struct Wide<double> {
   using type = Lanes;
 };
 
-/// Load and store consecutive numbers in memory.
+/// Load and store numbers that are consecutive in memory.
 template <typename T>
 [[nodiscard]] inline T load_lanes(const T* from) {
   return *from;
@@ -70,7 +70,7 @@ template <typename T>
   return {value, value * dual.slope};
 }
 
-/// The angle of (x, y) from the axis x, rad; it has no derivative at (0, 0).
+/// Returns the angle of (x, y) from the x axis, rad; not differentiable at (0, 0).
 [[nodiscard]] inline double arc_tangent(double y, double x) { return std::atan2(y, x); }
 [[nodiscard]] inline Lanes arc_tangent(const Lanes& y, const Lanes& x) {
   return Lanes{std::atan2(y[0], x[0]), std::atan2(y[1], x[1])};

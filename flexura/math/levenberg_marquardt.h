@@ -2,39 +2,43 @@
 
 #include <limits>
 
-// The method of K. Levenberg (1944) and D. W. Marquardt (1963), shared by all minimisers here. The problem
-// defines the unknowns and the solution of a damped step.
+// The Levenberg-Marquardt method (K. Levenberg 1944, D. W. Marquardt 1963), which all minimizers of the
+// library share. Each problem defines its unknowns and the computation of a damped step.
 namespace flexura {
 
-/// Results of a step before its acceptance.
+/// Result of a trial step.
 struct TriedStep {
-  double cost = std::numeric_limits<double>::infinity();  ///< Cost after the step; infinite if it is invalid.
-  /// Decrease predicted by the linear model.
+  /// Cost after the step; infinite if the step is invalid.
+  double cost = std::numeric_limits<double>::infinity();
+  /// Decrease of the cost that the linear model predicts; infinite if there is no prediction.
   double promised = std::numeric_limits<double>::infinity();
 };
 
-/// Damping of the steps.
+/// Parameters of the damping.
 struct Damping {
-  double start = 1e-4;
-  double most = 1e12;  ///< Limit of the damping.
-  double rise = 10;    ///< Factor after a rejected step; multiplied by `growth` for each consecutive one.
+  double start = 1e-4;  ///< Initial damping.
+  double most = 1e12;   ///< Largest damping.
+  double rise = 10;     ///< Factor on the damping after a rejected step. Each further consecutive rejection
+                        ///< multiplies the factor by `growth`.
   double growth = 1;
-  /// Returns the damping after an accepted step, from the previous one and the ratio of actual to predicted
-  /// decrease (-1 without a predicted decrease).
+  /// Function that returns the damping after an accepted step. Its parameters are the previous damping and
+  /// the ratio of actual to predicted decrease of the cost (-1 if no decrease was predicted).
   double (*eased)(double damping, double ratio) = nullptr;
 };
 
-/// Reason for the end of a descent.
+/// Reason for the end of a minimization.
 enum class DescentEnd {
-  done,       ///< Ended by the problem.
-  stuck,      ///< No step lowers the cost.
-  exhausted,  ///< Step limit reached.
+  done,       ///< The problem's `keep` or `leave` returned true.
+  stuck,      ///< No step up to the largest damping decreases the cost.
+  exhausted,  ///< The limit on the number of steps was reached.
 };
 
-/// Tries steps from a point with this `cost` and accepts each that lowers it.
+/// Minimizes a cost, which is `cost` at the start. Accepts each trial step that decreases the cost; tries at
+/// most `most_tries` steps.
 ///
-/// - `try_step(damping)` solves for a step and returns its result, a TriedStep.
-/// - `keep(step, cost)` takes the step just tried and linearises there. It sets `cost` to the value that the
+/// - `try_step(damping)` computes a trial step and returns its TriedStep.
+/// - `keep(step, cost)` accepts the step just tried and linearizes the problem there. It sets `cost` to the
+/// cost that
 ///   next one has to lower, and returns true if it was the last.
 /// - `leave(step, cost)` returns true if smaller steps need not be tried.
 template <class Try, class Keep, class Leave>

@@ -10,8 +10,8 @@ std::array<double, 3> magnus_points() {
   return {0.5 - off, 0.5, 0.5 + off};
 }
 
-// With C = [a1, a2]: U = 20 a1 + a3 + C and V = a2 + [a1, 2 a3 - C] / 60. (The reference has X' = A X, for
-// which brackets have the opposite sign.)
+// With C = [a1, a2]: U = 20 a1 + a3 + C and V = a2 + [a1, 2 a3 - C] / 60. (In the reference X' = A X, so that
+// brackets have the opposite sign.)
 MagnusStep::MagnusStep(const Moments& moments)
     : a_(moments),
       C_(bracket(a_[0], a_[1])),

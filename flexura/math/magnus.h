@@ -7,11 +7,12 @@
 
 namespace flexura {
 
-/// Returns the positions of the three Gauss points in the interval from 0 to 1.
+/// Returns the positions of the three Gauss points in [0, 1].
 [[nodiscard]] std::array<double, 3> magnus_points();
 
-/// Returns the moments of a quantity with these values at the three points, for an interval of length h. They
-/// are its integral, and its slope and curvature terms, each times h. Linear in the values.
+/// Returns three moments of a quantity over an interval of length h, from the quantity's values at the three
+/// Gauss points. The moments are the integral, and the slope and curvature terms times h. They are linear in
+/// the values.
 template <typename Value>
 [[nodiscard]] std::array<Value, 3> magnus_moments(double h, const Value& first, const Value& second,
                                                   const Value& third) {
@@ -20,23 +21,24 @@ template <typename Value>
           Value(10.0 / 3 * h * (first - 2 * second + third))};
 }
 
-/// The twist T whose exponential is X(h) of X' = X hat(x(s)), X(0) = 1, to the sixth power of h. It is the
-/// Magnus expansion (S. Blanes, F. Casas, J. A. Oteo, J. Ros, "The Magnus expansion and some of its
-/// applications", 2009, sec. 5.5.1). Exact for a constant x. Uses the moments a of x (magnus_moments).
+/// A step of the Magnus expansion (S. Blanes, F. Casas, J. A. Oteo, J. Ros, "The Magnus expansion and some of
+/// its applications", 2009, sec. 5.5.1). Let X(s) be the pose with X' = X hat(x(s)) and X(0) = 1, where x is
+/// a strain. The step computes the twist T with X(h) = exp(T), accurate to the sixth power of h and exact for
+/// a constant x. Its input is the moments a of x (magnus_moments).
 class MagnusStep {
  public:
   using Moments = std::array<Vector6d, 3>;
   using Slopes = std::array<Matrix6d, 3>;
   using Form = std::array<std::array<Matrix6d, 3>, 3>;
 
-  /// For an interval with these moments of the strain.
+  /// Computes the twist of an interval from the moments of the strain.
   explicit MagnusStep(const Moments& moments);
 
   [[nodiscard]] const Vector6d& twist() const { return twist_; }
   /// Returns dT/da.
   [[nodiscard]] Slopes slopes() const;
-  /// Returns F for a wrench W: the second derivative of W . T by a, in any two directions d and e, is the sum
-  /// of d_i^T F_ij e_j.
+  /// Returns, for a wrench W, the second derivative F of W . T with respect to a. In any two directions d and
+  /// e the second derivative is the sum of d_i^T F_ij e_j.
   [[nodiscard]] Form form(const Vector6d& W) const;
 
  private:

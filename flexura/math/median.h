@@ -6,7 +6,8 @@
 
 namespace flexura {
 
-/// Returns the median of some values; of an even number the upper one. Reorders them. Must not be empty.
+/// Returns the median of `values`; for an even number of values, the upper median. Reorders the values.
+/// `values` must not be empty.
 template <typename Value>
 [[nodiscard]] Value median(std::span<Value> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);

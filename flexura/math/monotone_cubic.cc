@@ -9,8 +9,8 @@
 namespace flexura {
 namespace {
 
-// Returns the slope at an end of the curve: that of the parabola through three points, limited so that the
-// piece is monotone. `near` and `far` are the widths and slopes of the first and second piece.
+// Returns the slope at an end of the curve: the slope of the parabola through three points, limited so that
+// the end piece is monotone. `near` has width and slope of the end piece, `far` of the piece next to it.
 double end_slope(double near_width, double near_slope, double far_width, double far_slope) {
   const double slope =
       ((2 * near_width + far_width) * near_slope - near_width * far_slope) / (near_width + far_width);
@@ -19,14 +19,15 @@ double end_slope(double near_width, double near_slope, double far_width, double 
   return turns && std::abs(slope) > 3 * std::abs(near_slope) ? 3 * near_slope : slope;
 }
 
-// Returns the slope at a point between two pieces: their harmonic mean, weighted by widths; 0 at an extremum.
+// Returns the slope at a point between two pieces: the harmonic mean of the pieces' slopes, weighted by
+// widths; 0 at an extremum.
 double inner_slope(double width, double slope, double next_width, double next_slope) {
   if (slope == 0 || next_slope == 0 || (slope > 0) != (next_slope > 0)) return 0;
   const double weight = 2 * next_width + width, next_weight = next_width + 2 * width;
   return (weight + next_weight) / (weight / slope + next_weight / next_slope);
 }
 
-// Derivatives of these slopes by those of the two pieces.
+// Derivatives of such a slope with respect to the slopes of the two pieces.
 struct SlopeChange {
   double by_first = 0, by_second = 0;
 };
@@ -60,7 +61,7 @@ MonotoneCubic::MonotoneCubic(std::vector<double> x, std::vector<double> y)
   std::vector<double> widths, slopes;
   for (std::size_t i = 0; i + 1 < x_.size(); ++i) {
     widths.push_back(x_[i + 1] - x_[i]);
-    if (!(widths[i] > 0)) throw std::invalid_argument("the points of a curve must rise in x");
+    if (!(widths[i] > 0)) throw std::invalid_argument("the x of a curve's points must increase");
     slopes.push_back((y_[i + 1] - y_[i]) / widths[i]);
   }
   const std::size_t last = slopes.size();
@@ -90,7 +91,7 @@ double MonotoneCubic::value(double x) const {
   if (x >= x_.back()) return y_.back();
   const Piece piece = piece_at(x);
   const double u = (x - piece.start) / piece.width, v = 1 - u;
-  // Hermite cubic as the chord plus a correction.
+  // Evaluates the Hermite cubic as the chord plus a correction.
   return piece.y + u * u * (3 - 2 * u) * piece.rise +
          piece.width * u * v * (piece.slope * v - piece.end_slope * u);
 }

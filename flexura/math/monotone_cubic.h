@@ -5,26 +5,28 @@
 
 namespace flexura {
 
-/// A curve through points that does not overshoot between them. Each piece is a cubic, with a continuous
-/// slope; the curve rises only where the points rise, and falls only where they fall. From F. N. Fritsch and
-/// J. Butland, "A method for constructing local monotone piecewise cubic interpolants", 1984; slopes at the
-/// ends are from three points, with the same limit. Through points of a straight line it is the line.
+/// A piecewise cubic curve through points, with a continuous slope and without overshoot. Between two points
+/// the curve increases if the points increase, and decreases if the points decrease (F. N. Fritsch, J.
+/// Butland, "A method for constructing local monotone piecewise cubic interpolants", 1984). The slope at each
+/// end is computed from three points and limited so that the end piece is monotone. For points on a straight
+/// line the curve is this line.
 class MonotoneCubic {
  public:
-  /// Through (x[i], y[i]). A single point gives a constant. Throws std::invalid_argument for fewer than one
-  /// point, unequal counts, numbers that are not finite, or x that does not increase.
+  /// Makes the curve through the points (x[i], y[i]). A single point gives a constant. Throws
+  /// std::invalid_argument for no points, unequal numbers of x and y, numbers that are not finite, or x that
+  /// does not strictly increase.
   MonotoneCubic(std::vector<double> x, std::vector<double> y);
 
-  /// Return the first and the last x.
+  /// Smallest and largest x of the points.
   [[nodiscard]] double front() const { return x_.front(); }
   [[nodiscard]] double back() const { return x_.back(); }
 
-  /// Returns the value at x; outside [front(), back()] that of the nearest end.
+  /// Returns the value of the curve at x; outside [front(), back()], the value at the nearest end.
   [[nodiscard]] double value(double x) const;
-  /// Returns dy/dx; 0 outside.
+  /// Returns the slope dy/dx at x; 0 outside [front(), back()].
   [[nodiscard]] double slope(double x) const;
-  /// Returns d value(x) / d y[i]. Where a slope's rule is not smooth (points that turn or are level), that
-  /// slope counts as constant.
+  /// Returns the derivative of value(x) with respect to y[i]. At a local extremum or between equal values the
+  /// rule for the slope at a point is not smooth; this slope then counts as constant.
   [[nodiscard]] double by_point(double x, std::size_t i) const;
 
  private:

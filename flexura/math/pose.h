@@ -22,8 +22,8 @@ struct Pose {
   [[nodiscard]] Pose inverse() const { return {rotation.transpose(), -(rotation.transpose() * position)}; }
 };
 
-/// Returns the unit quaternion (w, x, y, z) of a rotation matrix. Of q and -q, it is the one with w > 0 or,
-/// at a half turn, with a positive first component that is not zero. No component is a negative zero.
+/// Returns the unit quaternion (w, x, y, z) of a rotation matrix. Among q and -q, returns the quaternion
+/// whose first nonzero component is positive. No component is a negative zero.
 [[nodiscard]] Eigen::Vector4d quaternion_wxyz(const Eigen::Matrix3d& rotation);
 
 }  // namespace flexura

@@ -8,13 +8,13 @@
 namespace flexura {
 namespace {
 
-// P_n and P_(n-1) at x.
+// Values of P_n and P_(n-1) at x.
 struct LegendrePair {
   double value;
   double before;
 };
 
-// Computes them by the three-term recurrence.
+// Computes P_n and P_(n-1) at x by the three-term recurrence.
 LegendrePair legendre_pair(int n, double x) {
   if (n == 0) return {1, 0};
   double before = 1.0;
@@ -41,7 +41,7 @@ Quadrature gauss_legendre(int points) {
   }
   Quadrature rule;
   for (int i = points; i >= 1; --i) {
-    // From Tricomi's estimate of the root, Newton's method converges in a few steps.
+    // Newton's method, started from Tricomi's estimate of the root, converges in a few steps.
     double x = std::cos(std::numbers::pi * (i - 0.25) / (points + 0.5));
     for (int step = 0; step < 6; ++step) {
       x -= legendre_pair(points, x).value / inner_slope(points, x);
@@ -57,13 +57,13 @@ Quadrature gauss_lobatto(int points) {
   if (points < 2) {
     throw std::invalid_argument("a Gauss-Lobatto rule cannot have " + std::to_string(points) + " points");
   }
-  // Inside, the nodes are the roots of P_n', n = points - 1.
+  // The inner nodes are the roots of P_n', with n = points - 1.
   const int n = points - 1;
   Quadrature rule;
   for (int i = n; i >= 0; --i) {
     double x = std::cos(std::numbers::pi * i / n);
     for (int step = 0; step < 8 && i > 0 && i < n; ++step) {
-      // P_n'' by Legendre's equation.
+      // P_n'' from Legendre's differential equation.
       const double slope = inner_slope(n, x), value = legendre_pair(n, x).value;
       x -= slope * (1 - x * x) / (2 * x * slope - n * (n + 1) * value);
     }

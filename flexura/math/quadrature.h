@@ -5,28 +5,28 @@
 
 namespace flexura {
 
-/// Nodes and weights of a rule on [-1, 1].
+/// Nodes and weights of a quadrature rule on [-1, 1].
 struct Quadrature {
   std::vector<double> nodes;    ///< Increasing, within [-1, 1].
-  std::vector<double> weights;  ///< One per node; their sum is 2.
+  std::vector<double> weights;  ///< One weight per node; the sum of the weights is 2.
 };
 
-/// Returns the Gauss-Legendre rule of `points` >= 1 nodes, exact for polynomials of degree 2 points - 1.
-/// Throws std::invalid_argument for fewer than one.
+/// Returns the Gauss-Legendre rule with `points` nodes, exact for polynomials up to degree 2 points - 1.
+/// Throws std::invalid_argument for points < 1.
 [[nodiscard]] Quadrature gauss_legendre(int points);
 
-/// Returns the Gauss-Lobatto rule of `points` >= 2 nodes, including the ends, exact for polynomials of degree
-/// 2 points - 3. Throws std::invalid_argument for fewer than two.
+/// Returns the Gauss-Lobatto rule with `points` nodes, which include both ends, exact for polynomials up to
+/// degree 2 points - 3. Throws std::invalid_argument for points < 2.
 [[nodiscard]] Quadrature gauss_lobatto(int points);
 
 /// Returns the Legendre polynomial P_degree(x), for x in [-1, 1].
 [[nodiscard]] double legendre(int degree, double x);
-/// Returns its derivative by x.
+/// Returns the derivative of the Legendre polynomial P_degree at x.
 [[nodiscard]] double legendre_slope(int degree, double x);
 
-/// Returns the integral of f over [a, b], divided into `panels` >= 1 equal parts with `rule` in each. The
-/// function f takes a double. It returns a double or an Eigen vector or matrix (by value, never an expression
-/// of temporaries).
+/// Returns the integral of f over [a, b], with `rule` applied to each of `panels` >= 1 equal parts. The
+/// function f takes a double. It returns a double, or an Eigen vector or matrix by value (not an Eigen
+/// expression).
 template <typename Function>
 [[nodiscard]] auto integrate(const Quadrature& rule, Function&& f, double a, double b, int panels = 1) {
   const double half = 0.5 * (b - a) / panels;

@@ -2,7 +2,7 @@
 
 namespace flexura {
 
-/// Three numbers of any kind: double, several doubles at once, numbers with derivatives.
+/// A vector of three numbers of type T: double, several doubles per instruction, or dual numbers.
 template <typename T>
 struct Triple {
   T x, y, z;
@@ -27,7 +27,7 @@ template <typename T>
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 
-/// A twist [v; w] or a wrench [f; m].
+/// A twist [v; w] or a wrench [f; m], the linear part first.
 template <typename T>
 struct Screw {
   Triple<T> linear, angular;
@@ -46,30 +46,30 @@ struct Screw {
   }
 };
 
-/// Returns [a, b] = ad(a) b.
+/// Returns the Lie bracket [a, b] = ad(a) b of two twists.
 template <typename T>
 [[nodiscard]] Screw<T> bracket(const Screw<T>& a, const Screw<T>& b) {
   return {cross(a.angular, b.linear) + cross(a.linear, b.angular), cross(a.angular, b.angular)};
 }
-/// Returns ad(a)^T W: the power of a wrench W along [a, b] is that of the result along b.
+/// Returns ad(a)^T W for a wrench W, so that W . [a, b] = (ad(a)^T W) . b for every twist b.
 template <typename T>
 [[nodiscard]] Screw<T> transposed_bracket(const Screw<T>& a, const Screw<T>& W) {
   return {cross(W.linear, a.angular), cross(W.linear, a.linear) + cross(W.angular, a.angular)};
 }
 
-/// A rotation by its rows, and a position.
+/// A pose X_AB: the rows x, y, z of the rotation matrix, and the position.
 template <typename T>
 struct Placement {
   Triple<T> x, y, z, position;
 
   [[nodiscard]] Triple<T> turn(const Triple<T>& a) const { return {dot(x, a), dot(y, a), dot(z, a)}; }
   [[nodiscard]] Triple<T> turn_back(const Triple<T>& a) const { return a.x * x + a.y * y + a.z * z; }
-  /// Converts a twist to the outer frame: V_A = adjoint(X_AB) V_B.
+  /// Converts a twist from frame B to frame A: V_A = adjoint(X_AB) V_B.
   [[nodiscard]] Screw<T> carry(const Screw<T>& V) const {
     const Triple<T> angular = turn(V.angular);
     return {turn(V.linear) + cross(position, angular), angular};
   }
-  /// Converts a wrench from the outer frame to the own one: adjoint(X_AB)^T W_A.
+  /// Converts a wrench from frame A to frame B: W_B = adjoint(X_AB)^T W_A.
   [[nodiscard]] Screw<T> fetch(const Screw<T>& W) const {
     return {turn_back(W.linear), turn_back(W.angular - cross(position, W.linear))};
   }

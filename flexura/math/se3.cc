@@ -18,7 +18,7 @@ struct JacobianCoefficients {
   std::array<double, 4> slope;  // dc_n/dt / t.
 };
 
-// Below this t^2, power series are used, with a remainder below 1e-20.
+// For t^2 below this limit power series are used, with a remainder below 1e-20.
 constexpr double square_limit = 1;
 constexpr std::size_t jacobian_terms = 10;
 
@@ -99,7 +99,7 @@ Pose se3_exp(const Vector6d& twist) {
 TwistExponential::TwistExponential(const Vector6d& given)
     : twist(given), pose(se3_exp(given)), angle_squared_(given.tail<3>().squaredNorm()), ad_(ad(given)) {
   const auto c = coefficients(angle_squared_).value;
-  // By 3 x 3 blocks: the powers of ad are [W^n, Q_n; 0, W^n].
+  // The powers of ad in 3 x 3 blocks are [W^n, Q_n; 0, W^n].
   const Eigen::Matrix3d W = ad_.topLeftCorner<3, 3>(), V = ad_.topRightCorner<3, 3>();
   const Eigen::Matrix3d W2 = W * W, mixed = W * V;
   const Eigen::Matrix3d Q2 = mixed + V * W, Q3 = W * Q2 + V * W2, Q4 = W * Q3 - angle_squared_ * V * W;

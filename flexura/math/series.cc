@@ -9,8 +9,9 @@
 namespace flexura {
 namespace {
 
-// Below this |t|, power series replace closed forms with cancellation. There the closed forms are still right
-// to a few units in the last place, and the remainder after `terms` terms is below 1e-20.
+// For |t| below this limit, power series replace closed forms that have cancellation. At the limit the closed
+// forms are still accurate to a few units in the last place, and the remainder after `terms` terms is below
+// 1e-20.
 constexpr double series_limit = 1.5;
 constexpr std::size_t terms = 13;
 using Coefficients = std::array<double, terms>;
@@ -40,7 +41,7 @@ double even_series(const Coefficients& c, double t) {
   return sum;
 }
 
-// These take sinc(t), which their callers have.
+// The following functions take sinc(t), which their callers have already computed.
 double deficit(double t, double sinc_t) {
   return std::abs(t) < series_limit ? even_series(sinc_deficit_series, t) : (1.0 - sinc_t) / (t * t);
 }

@@ -2,9 +2,9 @@
 
 namespace flexura {
 
-// Smooth functions of a bend angle t (rad) in the formulas of arcs and rotations. Each is even in t, has a
-// finite limit at 0 and is evaluated without cancellation, even at 0 and at denormal numbers. Where a value
-// crosses zero inside (0, inf) the error is a few units in the last place of the larger term there.
+// Smooth functions of an angle t, rad, in the formulas of arcs and rotations. Each function is even in t and
+// has a finite limit at 0. The evaluation has no cancellation near 0, even for denormal numbers. Near a zero
+// of a function at t > 0, the error is a few units in the last place of the larger term of the formula.
 
 /// sin t / t; 1 at 0.
 [[nodiscard]] double sinc(double t);
@@ -15,12 +15,13 @@ namespace flexura {
 /// sinc'(t) / t = (t cos t - sin t) / t^3; -1/3 at 0.
 [[nodiscard]] double sinc_slope(double t);
 
-/// All functions at one angle, with shared sines and cosines.
+/// Values of all these functions at one angle t.
 struct BendFunctions {
   double sinc, cosc, sinc_deficit, sinc_slope;
   double cosc_slope;  ///< cosc'(t) / t = (t sin t - 2 (1 - cos t)) / t^4; -1/12 at 0.
 };
-/// Returns the functions at t, with equal bits.
+/// Returns all functions at t. The values are bitwise equal to those of the single functions, but the sine
+/// and cosine are computed only once.
 [[nodiscard]] BendFunctions bend_functions(double t);
 
 }  // namespace flexura

@@ -5,24 +5,26 @@
 
 namespace flexura {
 
-/// Instruction sets of functions for many numbers at once. All give equal bits (docs/kinematic-model.md,
-/// "Many arms at once").
+/// Instruction sets of functions that process several numbers at once. Results are bitwise equal for all of
+/// them (docs/kinematic-model.md, "Many arms at once").
 enum class SimdPath {
-  baseline,  ///< On every processor of the build's architecture: SSE2 on x86-64, two doubles per instruction.
+  baseline,  ///< Available on every processor of the build's architecture. On x86-64: SSE2, two doubles per
+             ///< instruction.
   avx2,      ///< Four doubles per instruction.
-  avx512,    ///< Eight doubles per instruction. AVX-512 F and BW.
+  avx512,    ///< Eight doubles per instruction; needs AVX-512 F and BW.
 };
 
 /// Returns "baseline", "avx2" or "avx512".
 [[nodiscard]] std::string_view name_of(SimdPath path);
 
-/// Returns the paths of this build that this processor can run, narrowest first; the first is the baseline.
+/// Returns the instruction sets that this build contains and this processor supports, narrowest first. The
+/// first is the baseline.
 [[nodiscard]] std::vector<SimdPath> available_simd_paths();
 
-/// Returns the widest of them.
+/// Returns the widest of the available_simd_paths().
 [[nodiscard]] SimdPath best_simd_path();
 
-/// Throws std::invalid_argument if the path is not one of them.
+/// Throws std::invalid_argument if `path` is not among the available_simd_paths().
 void require_simd_path(SimdPath path);
 
 }  // namespace flexura

@@ -29,7 +29,7 @@ Eigen::Vector3d so3_log(const Eigen::Matrix3d& rotation) {
 
 Eigen::Matrix3d rotation_from_z(const Eigen::Vector3d& direction) {
   const Eigen::Vector3d d = direction.stableNormalized();
-  const Eigen::Vector3d axis(-d.y(), d.x(), 0.0);  // Z x d, with the length of the angle's sine.
+  const Eigen::Vector3d axis(-d.y(), d.x(), 0.0);  // Z x d; its norm is the sine of the angle.
   const double sine = axis.stableNorm();
   if (sine == 0.0)
     return Eigen::Vector3d(1.0, std::copysign(1.0, d.z()), std::copysign(1.0, d.z())).asDiagonal();

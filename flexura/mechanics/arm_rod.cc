@@ -239,7 +239,7 @@ Eigen::MatrixXd arc_displacement_slopes(const Rod& rod, const ArmState& state) {
 std::vector<double> pretension_displacements(RodStatics& statics, double tension) {
   const std::vector<double> tensions(statics.rest_lengths().size(), tension);
   const Equilibrium tight = statics.solve({.tensions = tensions}, {});
-  if (!tight.converged()) throw std::invalid_argument("the arm comes to no rest under its pretension");
+  if (!tight.converged()) throw std::invalid_argument("the arm has no equilibrium under its pretension");
   return tight.displacements;
 }
 
@@ -250,7 +250,8 @@ ArmModel arm_model_of(const ArmConfig& arm, const std::optional<DriveConfig>& dr
     if (!section.bend_profile) section.bend_profile.emplace(arcs_of_rod_section, 1.0);
   const Actuation actuation(
       driven, std::make_shared<RodResponse>(driven, rod_of(arm, drive), loads_of(arm),
-                                            drive ? std::optional(drive->drive()) : std::nullopt));
+                                            drive ? std::optional(drive->drive()) : std::nullopt,
+                                            arm.mechanics == ArmMechanics::dynamics));
   return {driven, actuation, shaped_arm(driven, actuation)};
 }
 

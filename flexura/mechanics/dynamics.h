@@ -46,6 +46,8 @@ enum class DynamicsEnd {
 /// Returns a description for users.
 [[nodiscard]] const char* words(DynamicsEnd end);
 
+struct RodStepFactor;
+
 /// State of a rod in motion: time, q, momentum and friction. The other fields are the integrator's memory.
 struct RodState {
   double time = 0;               ///< s
@@ -61,6 +63,8 @@ struct RodState {
   int middles = 0;                        ///< Number of valid entries of `middle`.
   double step = 0;                        ///< Length of the last step, s.
   double contraction = 0.1;               ///< Contraction factor of the last step's iterations.
+  /// Factored derivative of a recent step of a rod with tendon friction; null if there was none.
+  std::shared_ptr<const RodStepFactor> factor = {};
 };
 
 /// Known state of tendon friction before a time.

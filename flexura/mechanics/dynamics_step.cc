@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <utility>
 
@@ -178,7 +179,7 @@ bool RodDynamics::Work::solve_quickly(const Stage& stage) {
 bool RodDynamics::Work::solve_exactly(const Stage& stage) {
   const auto solve = [this](double* x) {
     Eigen::Map<Eigen::VectorXd> rhs(x, change_.size());
-    rhs = derivative_.solve(rhs).eval();
+    rhs = factor_->lu.solve(rhs).eval();
   };
   if (stage.by_displacement()) return solve_with_tendons(stage, solve);
   left_ = change_;
@@ -237,41 +238,53 @@ bool RodDynamics::Work::factor_exactly(const Stage& stage) {
   differentiate(q_, velocity, stage.loads, stage.stretch, 1, momentum, force);
   momentum -= stage.stretch * force;
   if (!momentum.allFinite()) return false;
-  derivative_.compute(momentum);
+  factor_ = std::make_shared<const RodStepFactor>(
+      RodStepFactor{.stretch = stage.stretch, .lu = Eigen::PartialPivLU<Eigen::MatrixXd>(momentum)});
   return true;
 }
 
 // Newton's method with the exact derivative. Each step is damped to shorten the next one (P. Deuflhard's
-// natural monotonicity test).
+// natural monotonicity test). It starts with the derivative of an earlier step, if there is one, and keeps a
+// derivative while iterations converge fast.
 bool RodDynamics::Work::iterate_exactly(const Stage& stage, RodStep& result) {
+  constexpr double similar = 0.8;
+  bool is_old =
+      factor_ && similar * factor_->stretch <= stage.stretch && similar * stage.stretch <= factor_->stretch;
   evaluate(stage);
-  if (!change_.allFinite() || !factor_exactly(stage) || !solve_exactly(stage)) return false;
+  if (!change_.allFinite() || (!is_old && !factor_exactly(stage)) || !solve_exactly(stage)) return false;
   const int most = result.iterations + config.most_iterations;
   Eigen::VectorXd step = change_, from = velocity;
   double size = greatest_change(step, chain.scales());
   while (result.iterations < most && std::isfinite(size)) {
-    double part = 1, next = 0;
+    double part = 1, next = std::numeric_limits<double>::infinity();
     for (; part > 1e-4; part /= 2) {
       velocity = from + part * step;
       evaluate(stage);
       ++result.iterations;
-      if (!change_.allFinite() || !solve_exactly(stage)) continue;
-      next = greatest_change(change_, chain.scales());
-      if (next <= (1 - part / 4) * size || change_size() <= config.tolerance) break;
+      if (change_.allFinite() && solve_exactly(stage)) {
+        next = greatest_change(change_, chain.scales());
+        if (next <= (1 - part / 4) * size || change_size() <= config.tolerance) break;
+      }
+      if (is_old) break;
     }
-    if (!(part > 1e-4) || !std::isfinite(next)) return false;
-    if (change_size() <= config.tolerance) {
+    if (change_.allFinite() && change_size() <= config.tolerance) {
       matrix.find_columns(motion);
       velocity += change_;
       return true;
     }
-    from = velocity;
     if (rubs() && part == 1 && next < slow_gain * size) {
       // If friction iterations converge, the old derivative is good enough.
+      from = velocity;
       step = change_;
       size = next;
       continue;
     }
+    if (is_old)
+      velocity = from;
+    else if (!(part > 1e-4) || !std::isfinite(next))
+      return false;
+    is_old = false;
+    from = velocity;
     evaluate(stage);
     if (!factor_exactly(stage) || !solve_exactly(stage)) return false;
     step = change_;
@@ -350,16 +363,20 @@ RodStep RodDynamics::Work::step_once(const Scheme& use, RodState& state, const T
   if (rubs()) {
     // The quick matrix does not include friction.
     hold(state.friction.data(), h);
+    factor_ = state.factor;
     if (!iterate_exactly(stage, result)) {
       begin(state, stage, h);
       velocity.setZero();
+      factor_.reset();
       if (!iterate_exactly(stage, result)) return result;
     }
+    state.factor = factor_;
   } else {
     const double turn = stage.stretch * greatest_change(velocity, chain.scales());
     if (!iterate_quickly(stage, std::max(state.contraction, turn), result, worst_gain)) {
       begin(state, stage, h);
       velocity.setZero();
+      factor_.reset();
       if (!iterate_exactly(stage, result)) return result;
     }
   }

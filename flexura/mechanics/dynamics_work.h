@@ -15,6 +15,12 @@
 
 namespace flexura {
 
+/// Factored derivative of a step's equations by the rates.
+struct RodStepFactor {
+  double stretch = 0;  ///< Step length times Scheme::stage, s.
+  Eigen::PartialPivLU<Eigen::MatrixXd> lu;
+};
+
 /// Data and methods of RodDynamics.
 struct RodDynamics::Work {
   Work(Rod rod, const RodDynamicsConfig& given, std::span<const RodPlace> places);
@@ -125,7 +131,7 @@ struct RodDynamics::Work {
   double slide_time_ = 0;
   // For iterations with the exact derivative, which few steps need; created on first use.
   std::unique_ptr<RodMotion<Dual<Lanes>>> differential_;
-  Eigen::PartialPivLU<Eigen::MatrixXd> derivative_;
+  std::shared_ptr<const RodStepFactor> factor_;
 };
 
 }  // namespace flexura

@@ -19,7 +19,8 @@ class RodCurve {
     std::array<std::size_t, 4> places{};
     Eigen::Matrix4d weights = Eigen::Matrix4d::Zero();
   };
-  /// Geometry of a segment: x(u) = sum of powers.col(k) u^k, within a ball.
+  /// Geometry of a segment: x(u) = sum of powers.col(k) u^k. It lies in the ball about `middle` of radius
+  /// `reach`.
   struct Piece {
     Eigen::Matrix<double, 3, 4> powers;
     Eigen::Vector3d middle = Eigen::Vector3d::Zero();

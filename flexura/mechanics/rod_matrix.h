@@ -37,7 +37,8 @@ class RodMatrix {
   /// factored.
   [[nodiscard]] bool has_columns_of(const RodMotion<double>& motion) const;
   /// Adds to the generalized forces the change of the surroundings' last wrenches by changes x of the rates
-  /// and `stretch` x of the modes. Requires the columns and no coupled wrench.
+  /// and `stretch` x of the modes. Requires find_columns(), and that no wrenches are coupled
+  /// (RodSurroundings).
   void add_pull_change(const RodMotion<double>& motion, double stretch, const double* x, double* force) const;
   /// Replaces x by the solution for x.
   void solve(double* x) const;

@@ -1,5 +1,6 @@
 #include "flexura/mechanics/rod_response.h"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -62,15 +63,22 @@ Rod fitting(const Arm& driven, const Rod& rod, const std::optional<Drive>& drive
   return rod;
 }
 
+Rod without_friction(Rod rod) {
+  for (TendonRoute& tendon : rod.tendons) tendon.friction = 0;
+  return rod;
+}
+
 }  // namespace
 
-RodResponse::RodResponse(const Arm& driven, const Rod& rod, RodLoads loads, std::optional<Drive> drive)
+RodResponse::RodResponse(const Arm& driven, const Rod& rod, RodLoads loads, std::optional<Drive> drive,
+                         bool swings)
     : driven_(in_its_frame(driven)),
       shaped_(shaped_arm(driven_, Actuation(driven_, nullptr))),
       loads_(std::move(loads)),
       drive_(std::move(drive)),
       variables_(shaped_),
       statics_(fitting(driven, rod, drive_)),
+      dynamics_(swings ? std::make_unique<RodDynamics>(without_friction(rod)) : nullptr),
       fine_(rod, rod_places(driven)) {
   std::size_t first = 0;
   for_places(driven_, [&](std::size_t i, std::size_t arc, std::size_t k) {
@@ -82,13 +90,16 @@ RodResponse::RodResponse(const Arm& driven, const Rod& rod, RodLoads loads, std:
     if (k + 1 == count) ends_.push_back(places_.size() - 1);
   });
   has_driven_lengths_ = !drive_ && std::ranges::any_of(driven_.sections, &Section::can_stretch);
-  J_.resize(3 * static_cast<Eigen::Index>(places_.size()), variables_.size());
+  std::vector<MaterialPoint> on_arcs;
+  on_arcs.reserve(places_.size());
+  for (const Place& place : places_) on_arcs.push_back(place.on_arcs);
+  fit_.emplace(variables_, std::move(on_arcs));
   tight_.assign(rod.tendons.size(), 0.0);
   if (drive_ && drive_->pretension > 0) tight_ = pretension_displacements(statics_, drive_->pretension);
   const ArmState straight = ArmState::straight(driven_.sections.size());
   straight_ = solved(straight, {});
   if (!straight_.converged())
-    throw std::invalid_argument("the arm comes to no rest under its weight and loads");
+    throw std::invalid_argument("the arm has no equilibrium under its weight and loads");
 }
 
 std::vector<double> RodResponse::displacements(const ArmState& command) const {
@@ -150,31 +161,21 @@ ArmState RodResponse::fitted(const Equilibrium& at, const ArmState& command) con
   fine_.place(at.q);
   ArmState shape = along_tangents(command);
   const double length = driven_.length();
-  Eigen::VectorXd r(J_.rows());
-  Jacobian columns(6, 3 * static_cast<Eigen::Index>(ends_.size()));
+  Eigen::MatrixXd missed(3 * static_cast<Eigen::Index>(places_.size()), 1), reached;
   for (int step = 0; step < max_fit_steps; ++step) {
-    jacobian_.set(shaped_, shape);
+    fit_->set(shaped_, shape);
     for (std::size_t p = 0; p < places_.size(); ++p) {
       const Place& place = places_[p];
-      const auto row = 3 * static_cast<Eigen::Index>(p);
-      r.segment<3>(row) = fine_.pose(place.node).position - jacobian_.pose(place.on_arcs).position;
-      jacobian_.at(place.on_arcs, columns);
-      for (std::size_t k = 0; k < ends_.size(); ++k) {
-        const ArmVariables::Part& part = variables_.parts()[k];
-        const auto from = 3 * static_cast<Eigen::Index>(k);
-        J_.block<3, 1>(row, part.at) = columns.block<3, 1>(0, from);
-        if (part.is_spatial) J_.block<3, 1>(row, part.at + 1) = columns.block<3, 1>(0, from + 1);
-        if (part.is_stretchable) J_.block<3, 1>(row, part.stretch_at()) = columns.block<3, 1>(0, from + 2);
-      }
+      missed.col(0).segment<3>(3 * static_cast<Eigen::Index>(p)) =
+          fine_.pose(place.node).position - fit_->position(p);
     }
-    fit_.compute(J_.transpose() * J_);
-    const Eigen::VectorXd change = fit_.solve(J_.transpose() * r);
+    const Eigen::VectorXd change = fit_->solve(missed, &reached);
     for (std::size_t k = 0; k < ends_.size(); ++k) {
       const ArmVariables::Part& part = variables_.parts()[k];
       shape.bends[k] += part.bend(change);
       if (part.is_stretchable) shape.stretches[k] += change[part.stretch_at()];
     }
-    if (change.norm() < 1e-12 || (J_ * change).norm() < 1e-13 * length) break;
+    if (change.norm() < 1e-12 || reached.norm() < 1e-13 * length) break;
   }
   return shape;
 }
@@ -206,31 +207,72 @@ void RodResponse::slopes(const ArmState& command, Eigen::MatrixXd& by_command) c
   }
 }
 
-// Derivatives of the rod's places by the command, and of the nearest arcs by the places.
-void RodResponse::analytic_slopes(RodStatics::Slack slack, Eigen::MatrixXd& by_command) const {
-  // mutex_ is held, so no other thread has changed last_.
-  const ArmState& command = last_->command;
-  const Eigen::MatrixXd q_by_command = statics_.slopes(slack).q_by_input * displacement_slopes(command);
+RodResponse::~RodResponse() = default;
+
+// Returns the changes of the nearest arcs' (bend_x, bend_y, stretch) by changes of the modes, one column
+// each, at the last answer.
+Eigen::MatrixXd RodResponse::arcs_along(const Eigen::MatrixXd& dq) const {
   fine_.place_with_columns(last_->at.q);
-  Eigen::MatrixXd places(J_.rows(), q_by_command.cols());
+  Eigen::MatrixXd places(3 * static_cast<Eigen::Index>(places_.size()), dq.cols());
   RodElement::Columns twists(6, fine_.size());
   for (std::size_t p = 0; p < places_.size(); ++p) {
     const Place& place = places_[p];
     fine_.columns_at(place.node.element, place.node.node, twists);
     const Eigen::Vector3d at = fine_.pose(place.node).position;
-    const Eigen::MatrixXd moved = twists * q_by_command;
+    const Eigen::MatrixXd moved = twists * dq;
     for (Eigen::Index c = 0; c < moved.cols(); ++c)
       places.block<3, 1>(3 * static_cast<Eigen::Index>(p), c) =
           moved.col(c).head<3>() + moved.col(c).tail<3>().cross(at);
   }
-  const Eigen::MatrixXd arcs = fit_.solve(J_.transpose() * places);
+  const Eigen::MatrixXd arcs = fit_->solve(places);
+  Eigen::MatrixXd changes = Eigen::MatrixXd::Zero(3 * static_cast<Eigen::Index>(ends_.size()), dq.cols());
   for (std::size_t k = 0; k < ends_.size(); ++k) {
     const ArmVariables::Part& part = variables_.parts()[k];
     const auto row = 3 * static_cast<Eigen::Index>(k);
-    by_command.row(row) = arcs.row(part.at);
-    if (part.is_spatial) by_command.row(row + 1) = arcs.row(part.at + 1);
-    if (part.is_stretchable) by_command.row(row + 2) = arcs.row(part.stretch_at());
+    changes.row(row) = arcs.row(part.at);
+    if (part.is_spatial) changes.row(row + 1) = arcs.row(part.at + 1);
+    if (part.is_stretchable) changes.row(row + 2) = arcs.row(part.stretch_at());
   }
+  return changes;
+}
+
+void RodResponse::analytic_slopes(RodStatics::Slack slack, Eigen::MatrixXd& by_command) const {
+  // mutex_ is held, so no other thread has changed last_.
+  by_command = arcs_along(statics_.slopes(slack).q_by_input * displacement_slopes(last_->command));
+}
+
+// With M = L L^T, the modes are the eigenvectors of L^-1 K L^-T, and a command that accelerates the
+// equilibrium q_e acts as the force -M q_e''.
+std::vector<SwingMode> RodResponse::swing(const ArmState& command, std::size_t most) const {
+  const std::lock_guard lock(mutex_);
+  const Answer& here = answer(command);
+  if (!dynamics_ || has_driven_lengths_ || !here.at.converged()) return {};
+  const RodDynamicsSlopes by =
+      dynamics_->slopes(dynamics_->rest(here.at), {.displacements = displacements(command)}, loads_);
+  const Eigen::LLT<Eigen::MatrixXd> mass(by.mass);
+  const auto across = [&](const Eigen::MatrixXd& form) {
+    const Eigen::MatrixXd half = mass.matrixL().solve(form);
+    return Eigen::MatrixXd(mass.matrixL().solve(half.transpose()));
+  };
+  const Eigen::MatrixXd K = across(-0.5 * (by.force_by_q + by.force_by_q.transpose()));
+  const SymmetricEigen eigen = symmetric_eigen(K);
+  const Eigen::MatrixXd D = eigen.vectors.transpose() * across(-by.force_by_v) * eigen.vectors;
+  const Eigen::MatrixXd shapes = mass.matrixU().solve(eigen.vectors);  // In q.
+  const Eigen::MatrixXd arcs = arcs_along(shapes);
+  const Eigen::MatrixXd kicks = -shapes.transpose() * by.mass *
+                                statics_.slopes(RodStatics::Slack::hangs).q_by_input *
+                                displacement_slopes(command);
+  std::vector<SwingMode> modes;
+  for (Eigen::Index j = 0; j < eigen.values.size() && modes.size() < most; ++j) {
+    const double size = arcs.col(j).cwiseAbs().maxCoeff();
+    if (!(eigen.values[j] > 0) || !(size > 0)) continue;
+    const double frequency = std::sqrt(eigen.values[j]);
+    modes.push_back({.frequency = frequency,
+                     .damping = 0.5 * D(j, j) / frequency,
+                     .shape = arcs.col(j) / size,
+                     .kick = size * kicks.row(j).transpose()});
+  }
+  return modes;
 }
 
 // Some commands only take up slack, and the derivative is singular. These are the commands with less than

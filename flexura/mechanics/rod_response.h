@@ -1,14 +1,16 @@
 #pragma once
 
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <cstddef>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <vector>
 
 #include "flexura/kinematics/arm_variables.h"
-#include "flexura/kinematics/jacobian.h"
+#include "flexura/kinematics/spatial.h"
+#include "flexura/mechanics/arc_fit.h"
+#include "flexura/mechanics/dynamics.h"
 #include "flexura/mechanics/rod_chain.h"
 #include "flexura/mechanics/statics.h"
 #include "flexura/model/arm.h"
@@ -27,7 +29,10 @@ class RodResponse : public ArmResponse {
   /// drive's tendons from the drive's pretension on; without a drive, those of the rod's tendons. Throws
   /// std::invalid_argument for wrong numbers of sections or tendons, an invalid rod, no equilibrium under the
   /// pretension, or none under weight and loads without a command.
-  RodResponse(const Arm& driven, const Rod& rod, RodLoads loads, std::optional<Drive> drive);
+  /// `swings`: the rod has inertia, and swing() has its modes. Then the rod must have a mass.
+  RodResponse(const Arm& driven, const Rod& rod, RodLoads loads, std::optional<Drive> drive,
+              bool swings = false);
+  ~RodResponse() override;
 
   [[nodiscard]] ArmState shape(const ArmState& command) const override;
   /// Derivatives from the equilibrium. Along commands that only take up slack they are those beyond the
@@ -35,6 +40,10 @@ class RodResponse : public ArmResponse {
   /// step `secant`.
   void slopes(const ArmState& command, Eigen::MatrixXd& by_command) const override;
   static constexpr double secant = 0.02;  ///< rad
+
+  /// Modes of the rod with held tendons, linear about its equilibrium (docs/mechanics.md, "The rod as a
+  /// model"). Empty unless `swings` was set.
+  [[nodiscard]] std::vector<SwingMode> swing(const ArmState& command, std::size_t most) const override;
 
   /// Returns the rod's equilibrium in its frame; not converged if there is none.
   [[nodiscard]] Equilibrium equilibrium(const ArmState& command) const;
@@ -53,6 +62,7 @@ class RodResponse : public ArmResponse {
   const Answer& answer(const ArmState& command) const;
   [[nodiscard]] ArmState fitted(const Equilibrium& at, const ArmState& command) const;
   [[nodiscard]] ArmState along_tangents(const ArmState& command) const;
+  [[nodiscard]] Eigen::MatrixXd arcs_along(const Eigen::MatrixXd& dq) const;
   void analytic_slopes(RodStatics::Slack slack, Eigen::MatrixXd& by_command) const;
   void go_beyond_slack(Eigen::MatrixXd& by_command) const;
   void secant_slopes(const Answer& kept, Eigen::MatrixXd& by_command) const;
@@ -74,12 +84,11 @@ class RodResponse : public ArmResponse {
 
   mutable std::mutex mutex_;
   mutable RodStatics statics_;
+  std::unique_ptr<RodDynamics> dynamics_;  // without tendon friction; null unless it swings
   mutable RodChain fine_;
   mutable Equilibrium straight_;  // of the command without bends
   mutable std::optional<Answer> last_;
-  mutable BackboneJacobian jacobian_;
-  mutable Eigen::MatrixXd J_;                 // of the places by the arcs' variables, at the fit
-  mutable Eigen::LDLT<Eigen::MatrixXd> fit_;  // of J_^T J_
+  mutable std::optional<ArcFit> fit_;  // of the arcs to the places, at the last fit
 };
 
 }  // namespace flexura

@@ -13,7 +13,8 @@
 namespace flexura {
 namespace {
 
-// Most steps from a shape to its command. Each reduces the error by a factor of about ten.
+// Largest number of correction steps from a shape to its command. Each step reduces the error by a factor of
+// about ten.
 constexpr int max_steps = 20;
 
 // Returns the section's profile. Throws std::invalid_argument if it is invalid.
@@ -22,8 +23,8 @@ std::vector<double> profile_of(const Section& section, std::size_t index) {
   double sum = 0;
   for (const double part : shares) sum += part >= 0 ? part : std::nan("");
   if (!(sum > 0) || !std::isfinite(sum))
-    throw std::invalid_argument(
-        fmt::format("section {}: a bend profile is of numbers from 0 on, one of them above", index + 1));
+    throw std::invalid_argument(fmt::format(
+        "section {}: the numbers of a bend profile must be at least 0, and one of them above 0", index + 1));
   return shares;
 }
 
@@ -31,7 +32,7 @@ std::vector<double> shares_of(const Section& section, std::size_t index) {
   std::vector<double> shares = profile_of(section, index);
   double sum = 0;
   for (const double part : shares) sum += part;
-  // A single arc has exactly all of the bend.
+  // A single arc gets exactly the whole bend.
   for (double& part : shares) part = shares.size() == 1 ? 1 : part / sum;
   return shares;
 }
@@ -76,7 +77,7 @@ Actuation::Actuation(const Arm& driven, std::shared_ptr<const ArmResponse> respo
 Actuation Actuation::with_gains(const std::vector<double>& gains) const {
   Actuation actuation = *this;
   if (gains.empty()) return actuation;
-  if (gains.size() != arcs()) throw std::invalid_argument("gains are one for each arc");
+  if (gains.size() != arcs()) throw std::invalid_argument("expected one gain for each arc");
   for (std::size_t k = 0; k < arcs(); ++k) actuation.shares_[k] *= gains[k];
   return actuation;
 }
@@ -122,7 +123,7 @@ ArmState Actuation::command(const ArmState& shape) const {
   return best;
 }
 
-// Uses only the shares.
+// Uses only the shares of the arcs, not the response.
 ArmState Actuation::linear_command(const ArmState& shape) const {
   ArmState command = ArmState::straight(sections_);
   std::vector<double> squares(sections_, 0), counts(sections_, 0);
@@ -153,6 +154,15 @@ void Actuation::slopes(const ArmState& command, Eigen::MatrixXd& by_command) con
   }
 }
 
+std::vector<SwingMode> Actuation::swing(const ArmState& command, std::size_t most) const {
+  if (!response_) return {};
+  std::vector<SwingMode> modes = response_->swing(command, most);
+  for (SwingMode& mode : modes)
+    for (std::size_t k = 0; k < arcs(); ++k)
+      mode.shape.segment<2>(3 * static_cast<Eigen::Index>(k)) *= shares_[k];
+  return modes;
+}
+
 void Actuation::by_command(const Eigen::MatrixXd& by_shape, const ArmState& command,
                            Eigen::MatrixXd& by_command) const {
   if (sections_ == 0) {
@@ -160,14 +170,14 @@ void Actuation::by_command(const Eigen::MatrixXd& by_shape, const ArmState& comm
     return;
   }
   if (by_shape.cols() != 3 * static_cast<Eigen::Index>(arcs()))
-    throw std::invalid_argument("a derivative by a shape has three columns an arc");
+    throw std::invalid_argument("a derivative with respect to a shape must have three columns per arc");
   if (response_) {
     Eigen::MatrixXd slopes_here;
     slopes(command, slopes_here);
     by_command.noalias() = by_shape * slopes_here;
     return;
   }
-  // Multiplies without a matrix of mostly zeros.
+  // Multiplies block by block, because the matrix would be mostly zeros.
   by_command.setZero(by_shape.rows(), 3 * static_cast<Eigen::Index>(sections_));
   for (std::size_t k = 0; k < arcs(); ++k) {
     const auto from = 3 * static_cast<Eigen::Index>(k), to = 3 * static_cast<Eigen::Index>(section_of_[k]);

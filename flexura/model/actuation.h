@@ -11,50 +11,58 @@
 
 namespace flexura {
 
-/// Model of an arm's drives: converts commands, one bend and one stretch per section, to shapes, one bend and
-/// one stretch per arc, and back. A section may be several arcs.
+/// Converts between commands and shapes of an arm. A command has one bend and one stretch per section; a
+/// shape has one bend and one stretch per arc. A section consists of one or more arcs.
 ///
-/// Each arc has its share of the section's bend (Section::bend_profile) and all of its stretch, so both
-/// conversions are linear. Or an ArmResponse computes the shape, as of a rod, and the profile has a factor on
-/// each arc's bend.
+/// Without an ArmResponse, each arc gets its share of the section's bend (Section::bend_profile) and the
+/// section's stretch; both conversions are then linear. With an ArmResponse, for example of an elastic rod,
+/// the response computes the shape. The profile then has a factor on each arc's computed bend.
 class Actuation {
  public:
-  /// The identity: shapes are commands, with any number of sections (sections() is 0).
+  /// Identity for any number of sections: the shape equals the command. sections() is 0.
   Actuation() = default;
-  /// Throws std::invalid_argument if a profile is empty, not finite, negative, or all zeros.
+  /// Uses the bend profiles of `driven`. Throws std::invalid_argument if a profile is empty or all zeros, or
+  /// has a number that is negative or not finite.
   explicit Actuation(const Arm& driven);
-  /// For an arm with this response, with one arc per number of its sections' profiles. Throws
+  /// Uses `response` for the arm `driven`, with one arc for each number of the sections' profiles. Throws
   /// std::invalid_argument if a profile is invalid.
   Actuation(const Arm& driven, std::shared_ptr<const ArmResponse> response);
 
-  /// Return the numbers of sections and of arcs.
+  /// Numbers of sections and of arcs.
   [[nodiscard]] std::size_t sections() const { return sections_; }
   [[nodiscard]] std::size_t arcs() const { return shares_.size(); }
-  /// Returns true if shapes are commands: every section is one arc, which bends as commanded.
+  /// Returns whether the shape equals the command: every section is one arc, which bends as commanded.
   [[nodiscard]] bool is_identity() const { return !response_ && sections_ == shares_.size(); }
-  /// Returns true if there is no response, only shares.
+  /// Returns whether there is no ArmResponse, so that both conversions are linear.
   [[nodiscard]] bool is_linear() const { return !response_; }
-  /// Returns the section of each arc.
+  /// Returns, for each arc, the index of the section that contains the arc.
   [[nodiscard]] const std::vector<std::size_t>& section_of() const { return section_of_; }
-  /// Returns the arc's share of that section's bend, of 1; with a response, the factor on the arc's bend.
+  /// Returns the fraction of the section's bend that the arc has; with a response, the factor on the arc's
+  /// computed bend.
   [[nodiscard]] double share_of(std::size_t arc) const { return shares_[arc]; }
-  /// Returns the actuation with each arc's bend multiplied by a gain; empty gains are all 1. Throws
-  /// std::invalid_argument unless there is one gain per arc.
+  /// Returns this actuation with each arc's bend multiplied by a gain. Empty `gains` mean 1 for all arcs.
+  /// Throws std::invalid_argument for another number of gains than arcs.
   [[nodiscard]] Actuation with_gains(const std::vector<double>& gains) const;
 
-  /// Returns the shape for a command; NaN if a response has none. Throws std::invalid_argument for a command
-  /// of another arm.
+  /// Returns the shape for a command. Bends are NaN if the response has no equilibrium for this command.
+  /// Throws std::invalid_argument if the command does not have one bend and one stretch per section.
   [[nodiscard]] ArmState shape(const ArmState& command) const;
-  /// Returns the command with the nearest shape: least squares over the arcs' bends. With a response, the one
-  /// with the same total bend per section, as nearly as correction steps find it. Throws
-  /// std::invalid_argument for a shape of another arm.
+  /// Returns the command whose shape is nearest to `shape`, by least squares over the arcs' bends. With a
+  /// response, iterative correction finds the command that gives each section approximately the same total
+  /// bend as `shape`. Throws std::invalid_argument if the shape does not have one bend and one stretch per
+  /// arc.
   [[nodiscard]] ArmState command(const ArmState& shape) const;
-  /// Computes the derivative of the shape's (bend_x, bend_y, stretch) by the command's, 3 arcs x 3 sections,
-  /// at a command. Resizes `by_command` if needed. Throws std::invalid_argument for a command of another arm.
+  /// Computes the Jacobian of the shape with respect to the command, at a command. It has rows (bend_x,
+  /// bend_y, stretch) for each arc and columns (bend_x, bend_y, stretch) for each section. Resizes
+  /// `by_command` if needed. Throws std::invalid_argument if the command does not have one bend and one
+  /// stretch per section.
   void slopes(const ArmState& command, Eigen::MatrixXd& by_command) const;
-  /// Converts derivatives by a shape, three columns per arc (bend_x, bend_y, stretch), to those by a command,
-  /// three columns per section, at this command. Resizes `by_command` if needed. Throws std::invalid_argument
-  /// for another number of columns.
+  /// Returns the slowest modes in which the arm swings about the equilibrium of a command
+  /// (ArmResponse::swing); empty without a response.
+  [[nodiscard]] std::vector<SwingMode> swing(const ArmState& command, std::size_t most) const;
+  /// Converts derivatives with respect to the shape to derivatives with respect to the command, at `command`.
+  /// `by_shape` has three columns per arc (bend_x, bend_y, stretch), `by_command` three per section. Resizes
+  /// `by_command` if needed. Throws std::invalid_argument if `by_shape` has another number of columns.
   void by_command(const Eigen::MatrixXd& by_shape, const ArmState& command,
                   Eigen::MatrixXd& by_command) const;
 
@@ -68,8 +76,9 @@ class Actuation {
   std::shared_ptr<const ArmResponse> response_;
 };
 
-/// Returns the arm whose sections are the arcs of `driven`, by `actuation`. Limits on bends are of the
-/// drives: arcs of a section have none, unless the section simply bends as commanded.
+/// Returns the arm that has one section for each arc of `actuation`, which belongs to `driven`. The bend
+/// limits of `driven` apply to the drives. Hence an arc has no bend limit, unless its section is one arc that
+/// bends as commanded.
 [[nodiscard]] Arm shaped_arm(const Arm& driven, const Actuation& actuation);
 
 }  // namespace flexura

@@ -12,11 +12,11 @@
 
 namespace flexura {
 
-/// Largest bend of a section, rad: hundreds of turns are a mistake.
+/// Largest bend of a section accepted in a file, rad. Larger values are certainly mistakes.
 inline constexpr double largest_bend = 1000;
 
-/// Planar: bends in one plane only, the world's XOY plane for the paper's arm. Spatial: bends in any
-/// direction.
+/// Planar: the arm bends in one plane only; for the paper's arm, the world's XOY plane. Spatial: the arm
+/// bends in any direction.
 enum class ArmKind { planar, spatial };
 
 /// An independently bent part of the arm (the paper's "segment").
@@ -27,22 +27,23 @@ struct Section {
   double max_bend_rate = std::numeric_limits<double>::infinity();  ///< Largest |d bend/dt|, rad/s.
   std::array<double, 2> stretch_limits = {1.0, 1.0};  ///< Smallest and largest factor on `length`.
   double max_stretch_rate = std::numeric_limits<double>::infinity();  ///< Largest |d stretch/dt|, 1/s.
-  /// Distribution of the bend along the section (Actuation): one arc of equal length per number, bent in
-  /// these proportions, each at least 0, one above. Default: one arc.
+  /// Distribution of the bend along the section (Actuation). The section consists of one arc for each number,
+  /// all of equal length, with bends in proportion to the numbers. Numbers are at least 0, and at least one
+  /// is above 0. Default: one arc.
   std::optional<std::vector<double>> bend_profile = {};
-  /// Material of its elastic rod. Default: it bends as commanded.
+  /// Material of the section's elastic rod. Default: no rod; the section bends as commanded.
   std::optional<MaterialConfig> material = {};
 
-  /// Returns true if its limits allow more than one length.
+  /// Returns whether the stretch limits allow more than one length.
   [[nodiscard]] bool can_stretch() const { return stretch_limits[0] < stretch_limits[1]; }
 };
 
-/// Variables of the arm: each section's bend vector and stretch, base first. bend = theta (cos phi, sin phi),
-/// rad, towards the x and y of the section's base frame. A planar arm has bend_y = 0; a planar arching b
-/// (counter-clockwise) is the bend (-2 b, 0).
+/// Configuration of the arm: bend vector and stretch of each section, base first. A bend vector is theta (cos
+/// phi, sin phi), rad, with components towards x and y of the section's base frame. For a planar arm bend_y =
+/// 0; an arching b, counter-clockwise, is the bend (-2 b, 0).
 struct ArmState {
-  std::vector<Eigen::Vector2d> bends;  ///< rad, one per section.
-  std::vector<double> stretches;       ///< Factor on each section's length, one per section.
+  std::vector<Eigen::Vector2d> bends;  ///< Bend vector of each section, rad.
+  std::vector<double> stretches;       ///< Factor on the length of each section.
 
   /// Returns a straight, unstretched arm of `count` sections.
   [[nodiscard]] static ArmState straight(std::size_t count) {
@@ -53,17 +54,18 @@ struct ArmState {
   bool operator==(const ArmState&) const = default;
 };
 
-/// Returns the default pose of B: in W's origin, with the straight arm along W's +Y. B's z is W's +Y, B's x
-/// is W's +X.
+/// Returns the default pose X_WB of the base frame B: at W's origin, with the straight arm along W's +Y. B's
+/// z is W's +Y; B's x is W's +X.
 [[nodiscard]] Pose default_base_pose();
 
 /// An arm as described by a file.
 struct Arm {
   ArmKind kind = ArmKind::planar;
-  Pose X_WB = default_base_pose();  ///< Position in m.
+  Pose X_WB = default_base_pose();  ///< Pose of the base frame in W, position in m.
   std::vector<Section> sections;    ///< Base first; at least one.
-  /// Planar arms: cord angles are relative to the base's tangent. Its angle from +X is the one nearest to
-  /// this, rad, so that 270 degrees in a file is not read as -90.
+  /// Planar arms: selects the angle of the base's tangent from +X among angles that differ by full turns. The
+  /// selected angle is the nearest to this one, rad, so that 270 degrees in a file does not become -90. Chord
+  /// angles are relative to the base's tangent.
   double near_tangent = 0;
 
   /// Returns the sum of the unstretched section lengths, m.

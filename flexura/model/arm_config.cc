@@ -13,13 +13,13 @@
 namespace flexura {
 namespace {
 
-// More than any robot has; keeps an incorrect file from filling the memory.
+// Above the number of sections of any robot. Prevents an incorrect file from exhausting memory.
 constexpr std::size_t max_sections = 1000;
 constexpr std::size_t max_arcs = 100;  // Per section.
 constexpr std::size_t max_routes = 1000;
 constexpr std::size_t max_loads = 1000;
 
-// A micrometre. Doubles still distinguish such lengths at the largest coordinates.
+// One micrometre, in m. Doubles can distinguish such lengths even at the largest coordinates.
 constexpr NumberRange size_range = {.min = 1e-6, .max = 1e6};
 
 void check_count(std::size_t given, std::size_t sections, const std::string& path, Reader& reader) {
@@ -93,7 +93,7 @@ const Table<Section>& fields_of(const Section*) {
           .check([](const Section& section, Reader& reader) {
             const auto& profile = section.bend_profile;
             if (profile && std::ranges::all_of(*profile, [](double part) { return part == 0; }))
-              reader.problem_at("bend_profile", "is all 0: expected a number above 0 among them");
+              reader.problem_at("bend_profile", "is all 0: expected at least one number above 0");
             if (section.stretch_limits[0] > section.stretch_limits[1]) {
               reader.problem_at("stretch_limits", "expected the smaller factor first");
             }
@@ -238,7 +238,7 @@ Arm ArmConfig::arm() const {
   if (kind == ArmKind::planar && base.tangent) {
     const double c = std::cos(*base.tangent);
     const double s = std::sin(*base.tangent);
-    // The columns are B's axes: z along the tangent, x to its right in the plane, y along -Z.
+    // The columns are B's axes: z along the tangent, x to the right of the tangent in the plane, y along -Z.
     arm.X_WB.rotation << s, 0, c, -c, 0, s, 0, -1, 0;
     arm.near_tangent = *base.tangent;
   } else if (base.rotation) {

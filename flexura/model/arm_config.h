@@ -16,25 +16,29 @@
 
 namespace flexura {
 
-/// Range of angles in files and requests, rad: many turns, and small enough that their sums stay exact.
+/// Range of angles in files and requests, rad. It allows many turns; sums of such angles have negligible
+/// rounding errors.
 inline constexpr NumberRange angle_range = {.min = -1e4, .max = 1e4};
-/// Ranges of angles that a section can bend by: of each component of a bend, and of its arching.
+/// Ranges of each component of a section's bend vector, and of a section's arching, rad.
 inline constexpr NumberRange bend_range = {.min = -largest_bend, .max = largest_bend};
 inline constexpr NumberRange arching_range = {.min = -largest_bend / 2, .max = largest_bend / 2};
 
-/// A shape of the arm as given by a user: bends in one of three forms, and stretches. `kinematics/shape.h`
-/// converts it for a given arm. By default the straight, unstretched arm.
+/// A shape of the arm as a user gives it: bends in one of three forms, and stretches. `kinematics/shape.h`
+/// converts the shape for a given arm. Default: the straight, unstretched arm.
 struct ShapeConfig {
-  std::optional<std::vector<double>> cord_angles;           ///< From +X, rad; planar arms.
-  std::optional<std::vector<double>> archings;              ///< Counter-clockwise, rad; planar arms.
-  std::optional<std::vector<std::array<double, 2>>> bends;  ///< (bend_x, bend_y) each, rad.
-  std::optional<std::vector<double>> stretches;             ///< Factors on the sections' lengths.
+  std::optional<std::vector<double>>
+      cord_angles;  ///< Planar arms: angle of each section's chord from +X, rad.
+  std::optional<std::vector<double>>
+      archings;  ///< Planar arms: arching of each section, counter-clockwise, rad.
+  std::optional<std::vector<std::array<double, 2>>>
+      bends;                                     ///< Bend vector (bend_x, bend_y) of each section, rad.
+  std::optional<std::vector<double>> stretches;  ///< Factor on the length of each section.
 };
 
 /// Pose of the arm's base.
 struct BaseConfig {
-  std::array<double, 3> position = {0, 0, 0};  ///< p_WB, m.
-  std::optional<double> tangent;  ///< Planar arms: angle of the base's tangent from +X, rad; default pi/2.
+  std::array<double, 3> position = {0, 0, 0};  ///< Position p_WB of the base, m.
+  std::optional<double> tangent;  ///< Planar arms: angle of the base's tangent from +X, rad; default: pi/2.
   std::optional<std::array<double, 4>> rotation;  ///< Spatial arms: quaternion (w, x, y, z) of R_WB.
 };
 
@@ -47,17 +51,19 @@ struct ArmConfig {
   LookConfig look;
   ArmMechanics mechanics = ArmMechanics::kinematic;
   std::array<double, 3> gravity = {0, 0, 0};  ///< In the world's frame, m/s^2.
-  std::vector<TendonRouteConfig> tendon;      ///< Empty: the drive's tendons, if there is a drive.
+  std::vector<TendonRouteConfig>
+      tendon;  ///< Routes of tendons. Empty: the tendons of the drive, if there is a drive.
   std::vector<LoadConfig> load;
-  double time_step = 0.005;              ///< Of rods in motion, s; the next fields are for those too.
-  double spectral_radius = 0.1;          ///< Of the integration at high frequencies, 0 to 1.
-  std::optional<ContactConfig> contact;  ///< Missing: the arm touches nothing.
-  std::optional<DragConfig> drag;        ///< Missing: no fluid.
+  /// Integration step of a dynamic arm, s. The fields from here on are for dynamic arms.
+  double time_step = 0.005;
+  double spectral_radius = 0.1;  ///< Spectral radius of the time integration at high frequencies, 0 to 1.
+  std::optional<ContactConfig> contact;  ///< Missing: no contact forces.
+  std::optional<DragConfig> drag;        ///< Missing: no surrounding fluid.
   std::vector<PayloadConfig> payload;
 
-  /// Returns the arm as its drives see it.
+  /// Returns the arm with its sections as the drives bend them.
   [[nodiscard]] Arm arm() const;
-  /// Returns the arm with the arcs of its sections.
+  /// Returns the arm together with the arcs of its sections.
   [[nodiscard]] ArmModel model() const { return ArmModel(arm()); }
 };
 
@@ -67,9 +73,9 @@ const Table<ShapeConfig>& fields_of(const ShapeConfig*);
 const Table<BaseConfig>& fields_of(const BaseConfig*);
 const Table<ArmConfig>& fields_of(const ArmConfig*);
 
-/// Reports to `reader` the errors of the shape at `path` ("initial"; "" is the current place) for an arm of
-/// this kind and number of sections. Errors are two forms at once, wrong counts, planar keys for a spatial
-/// arm, and bends out of the plane.
+/// Reports errors of a shape to `reader`, for an arm of this kind and number of sections. `path` is the
+/// shape's place in the document, such as "initial"; "" is the current place. Errors are two forms of bends
+/// at once, wrong counts, planar keys for a spatial arm, and bends out of a planar arm's plane.
 void check_shape(const ShapeConfig& shape, ArmKind kind, std::size_t sections, const std::string& path,
                  Reader& reader);
 

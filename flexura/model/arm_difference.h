@@ -14,7 +14,7 @@ struct ArmDifference {
   std::vector<double> stretches;
 };
 
-/// Returns the difference from `from` to `to`; both of one arm.
+/// Returns the difference `to` minus `from` of two states of the same arm.
 [[nodiscard]] inline ArmDifference minus(const ArmState& to, const ArmState& from) {
   ArmDifference way{to.bends, to.stretches};
   for (std::size_t i = 0; i < way.bends.size(); ++i) {
@@ -24,7 +24,7 @@ struct ArmDifference {
   return way;
 }
 
-/// Returns `state` plus a share of a difference; both of one arm.
+/// Returns `state` plus `share` times a difference, both of the same arm.
 [[nodiscard]] inline ArmState plus(ArmState state, const ArmDifference& way, double share = 1) {
   for (std::size_t i = 0; i < state.bends.size(); ++i) {
     state.bends[i] += share * way.bends[i];
@@ -33,9 +33,9 @@ struct ArmDifference {
   return state;
 }
 
-/// Computes the state at `fraction` in [0, 1] between two states, with bends and stretches linear: the
-/// paper's "linear interpolation algorithm" (section 4). It is exactly `from` at 0 and `to` at 1, unlike
-/// plus(from, minus(to, from), fraction). `between` must be a different object than both.
+/// Interpolates bends and stretches linearly between two states: the paper's "linear interpolation algorithm"
+/// (section 4). Without rounding errors the result is `from` at fraction 0 and `to` at fraction 1, unlike
+/// plus(from, minus(to, from), fraction). `between` must be a different object than `from` and `to`.
 inline void interpolate(const ArmState& from, const ArmState& to, double fraction, ArmState& between) {
   between = fraction >= 1 ? to : from;
   if (fraction <= 0 || fraction >= 1) return;

@@ -72,7 +72,7 @@ void check_motion(const ArmConfig& arm, Reader& reader) {
     const MaterialConfig& material = *arm.section[i].material;
     if (material.mass_per_length.value_or(material.density) == 0)
       reader.problem_at(fmt::format("section[{}].material", i),
-                        "has no mass: expected density or mass_per_length, for the arm's model is "
+                        "has no mass: expected density or mass_per_length, because the arm's model is "
                         "\"dynamic\"");
   }
   if (!arm.contact || !arm.contact->spacing) return;
@@ -172,7 +172,7 @@ void check_mechanics(const ArmConfig& arm, Reader& reader) {
   if (arm.mechanics != ArmMechanics::dynamics) {
     const auto refuse = [&](bool is_there, const char* what) {
       if (is_there)
-        reader.problem_at(what, "is of arms in motion: expected model = \"dynamic\" beside it, or none");
+        reader.problem_at(what, "is only for dynamic arms: expected model = \"dynamic\", or no such table");
     };
     refuse(arm.contact.has_value(), "contact");
     refuse(arm.drag.has_value(), "drag");
@@ -184,7 +184,7 @@ void check_mechanics(const ArmConfig& arm, Reader& reader) {
     if (arm.section[i].material) continue;
     reader.problem_at(fmt::format("section[{}]", i),
                       fmt::format("has no material: expected material.youngs_modulus or "
-                                  "material.stiffness, for the arm's model is \"{}\"",
+                                  "material.stiffness, because the arm's model is \"{}\"",
                                   model));
     return;
   }

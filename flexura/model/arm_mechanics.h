@@ -18,39 +18,44 @@ struct ArmConfig;
 /// their inertia.
 enum class ArmMechanics { kinematic, statics, dynamics };
 
-/// Route of a tendon in the arm's cross-sections, from the arm's base to the end of one section,
-/// `[[arm.tendon]]`. At s m of arc length from the base, at rest, its offset from the backbone is (x(s),
-/// y(s)) + r(s) (cos a(s), sin a(s)). Radius r and angle a change linearly from base to end.
+/// Route of a tendon from the arm's base to the end of one section, `[[arm.tendon]]`. Let s be the arc length
+/// from the base of the arm at rest, m. In the cross-section at s, the tendon's offset from the backbone is
+/// (x(s), y(s)) + r(s) (cos a(s), sin a(s)), m. The radius r and the angle a change linearly from the arm's
+/// base to the tendon's end.
 struct TendonRouteConfig {
-  std::int64_t section = 1;               ///< Section at whose end it ends, counted from 1 at the base.
-  double radius = 0;                      ///< Distance from the backbone at the base, m.
-  double angle = 0;                       ///< Around the backbone there, from x towards y, rad.
-  std::optional<double> end_radius = {};  ///< Distance at its end, m; default: as at the base.
-  double turns = 0;                       ///< Turns around the backbone from base to end, from x towards y.
-  std::vector<double> x = {}, y = {};     ///< Coefficients of powers of s: m, m/m, ...
-  double compliance = 0;                  ///< Elongation per tension, m/N.
-  double friction = 0;                    ///< Coulomb friction coefficient along its route.
-  std::optional<double> breaks_at = {};   ///< Time at which it breaks, s; default: never.
+  std::int64_t section = 1;  ///< Section at the end of which the tendon ends, counted from 1 at the base.
+  double radius = 0;         ///< Distance from the backbone at the base, m.
+  double angle = 0;          ///< Angle around the backbone at the base, from x towards y, rad.
+  /// Distance from the backbone at the tendon's end, m; default: `radius`.
+  std::optional<double> end_radius = {};
+  double turns = 0;  ///< Turns around the backbone from the arm's base to the tendon's end, from x towards y.
+  /// Coefficients of x(s) and y(s), from the power 0 of s up: m, m/m, ...
+  std::vector<double> x = {}, y = {};
+  double compliance = 0;                 ///< Elongation of the tendon per tension, m/N.
+  double friction = 0;                   ///< Coulomb friction coefficient along the route.
+  std::optional<double> breaks_at = {};  ///< Time at which the tendon breaks, s; default: never.
 
-  /// Returns (x, y) at arc length `s` of a tendon that ends at `end`, m.
+  /// Returns the tendon's offset from the backbone, m, at arc length `s`. The tendon ends at arc length
+  /// `end`. Arc lengths are in m from the base.
   [[nodiscard]] Eigen::Vector2d offset(double s, double end) const;
 };
 
 /// A force and a moment at the end of a section, `[[arm.load]]`.
 struct LoadConfig {
-  std::int64_t section = 1;                  ///< Counted from 1 at the base.
-  std::array<double, 3> force = {0, 0, 0};   ///< N, in the world's frame; if following, in that of the end.
-  std::array<double, 3> moment = {0, 0, 0};  ///< N m, in the same frame as the force.
-  bool following = false;                    ///< The load turns with the section's end.
+  std::int64_t section = 1;  ///< Section with the loaded end, counted from 1 at the base.
+  std::array<double, 3> force = {
+      0, 0, 0};  ///< Force in the world's frame, N; if `following`, in the frame of the section's end.
+  std::array<double, 3> moment = {0, 0, 0};  ///< Moment in the same frame as the force, N m.
+  bool following = false;                    ///< Whether force and moment rotate with the section's end.
 };
 
 const std::vector<std::string>& names_of(const ArmMechanics*);
 const Table<TendonRouteConfig>& fields_of(const TendonRouteConfig*);
 const Table<LoadConfig>& fields_of(const LoadConfig*);
 
-/// Reports errors of the tendons, loads and materials of the arm at the current place of `reader`. Errors are
-/// an end at a missing section, a tendon outside the tube, a rod's section without a material, and a moving
-/// one without a mass.
+/// Reports errors of the tendons, loads and materials of `arm`, which is at the current place of `reader`.
+/// Errors are a section number that the arm does not have and a tendon outside the tube. Further errors are a
+/// section of a static or dynamic arm without a material, and a section of a dynamic arm without a mass.
 void check_mechanics(const ArmConfig& arm, Reader& reader);
 
 }  // namespace flexura

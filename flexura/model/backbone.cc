@@ -31,7 +31,7 @@ void require_usable(const BackboneSample& sample, std::size_t index) {
       fmt::format("sample {} of the backbone is not finite, or has a radius that is not positive", index));
 }
 
-// Returns the arc from `X_WS` to `p_WP`, both on it.
+// Returns the arc that starts at the frame `X_WS` and ends at the point `p_WP`.
 Arc arc_to(const Pose& X_WS, const Eigen::Vector3d& p_WP) {
   const Eigen::Vector3d p_SP = X_WS.inverse() * p_WP;
   const double across = p_SP.head<2>().norm();
@@ -43,22 +43,23 @@ Arc arc_to(const Pose& X_WS, const Eigen::Vector3d& p_WP) {
   return arc;
 }
 
-// Returns the rotation of `to` about the tangent that it shares with `from`, rad.
+// Returns the rotation from `from` to `to` about their common tangent, rad.
 double turn_about_tangent(const Eigen::Matrix3d& from, const Eigen::Matrix3d& to) {
   constexpr double rounding = 1e-12;
   const double turn = std::atan2(from.col(1).dot(to.col(0)), from.col(0).dot(to.col(0)));
   return std::abs(turn) < rounding ? 0 : turn;
 }
 
-// Adds both halves of the biarc between two samples: the two arcs have equal tangent lengths to their joint
-// (K. M. Bolton, "Biarc curves", 1975).
+// Adds the two arcs of the biarc between two samples. Both arcs have equal tangent lengths to their joint (K.
+// M. Bolton, "Biarc curves", 1975).
 void join(const BackboneSample& from, const BackboneSample& to, std::size_t index, std::vector<Arc>& arcs) {
   const Eigen::Vector3d chord = to.X_WS.position - from.X_WS.position;
   const Eigen::Vector3d t0 = from.X_WS.rotation.col(2), t1 = to.X_WS.rotation.col(2);
   const double along = chord.dot(t0 + t1), square = chord.squaredNorm();
   if (!(to.s_rest > from.s_rest) || !(square > 0) || !(chord.dot(t0) > 0) || !(chord.dot(t1) > 0)) {
-    throw std::invalid_argument(
-        fmt::format("samples {} and {} of the backbone do not follow each other", index, index + 1));
+    throw std::invalid_argument(fmt::format(
+        "samples {} and {} of the backbone have equal positions, decreasing s_rest or a reversed tangent",
+        index, index + 1));
   }
   const double d = square / (along + std::sqrt(along * along + (t0 - t1).squaredNorm() * square));
   const Eigen::Vector3d middle = 0.5 * (from.X_WS.position + to.X_WS.position + d * (t0 - t1));
@@ -89,7 +90,7 @@ Pose arc_pose(const Eigen::Vector2d& bend, double length) {
   return arc_pose(bend, length, sinc(t), cosc(t));
 }
 
-// so3_exp((-y, x, 0)) without its zeros. Sums that begin with 0 are never -0.
+// so3_exp((-y, x, 0)) without the terms that are zero. Sums that begin with 0 are never -0.
 Pose arc_pose(const Eigen::Vector2d& bend, double length, double sinc_t, double cosc_t) {
   const double x = bend.x(), y = bend.y(), S = sinc_t, A = cosc_t;
   Pose end;
@@ -146,7 +147,7 @@ Backbone Backbone::through(std::span<const BackboneSample> samples) {
 Backbone::Backbone(const Arm& arm, const ArmState& state, std::span<const std::size_t> section_of)
     : Backbone(arm, state) {
   if (section_of.size() != arcs_.size())
-    throw std::invalid_argument("a backbone of parts needs to know of each which section it belongs to");
+    throw std::invalid_argument("a backbone of parts needs the section of each part");
   for (std::size_t i = 0; i < arcs_.size(); ++i) arcs_[i].section = section_of[i];
 }
 

@@ -11,80 +11,82 @@
 
 namespace flexura {
 
-/// Returns the frame at the end of an arc, in the frame at its start (origin there, z along the tangent). The
-/// arc is `length` m long and bent by `bend` rad; smooth through bend = 0. With t = |bend| its end is at
-/// length (bend_x (1 - cos t)/t^2, bend_y (1 - cos t)/t^2, sin t/t). It is rotated by the rotation vector
-/// (-bend_y, bend_x, 0).
+/// Returns the pose of an arc's end frame in the arc's start frame, whose z is along the tangent. The arc is
+/// `length` m long and bent by `bend` rad. With t = |bend| the position is length (bend_x (1 - cos t)/t^2,
+/// bend_y (1 - cos t)/t^2, sin t/t). The rotation vector is (-bend_y, bend_x, 0). The result is smooth
+/// through bend = 0.
 [[nodiscard]] Pose arc_pose(const Eigen::Vector2d& bend, double length);
-/// Returns the arc's end for known sinc(t) and cosc(t) (math/series.h).
+/// Returns the pose of an arc's end frame for known sinc(t) and cosc(t) (math/series.h), where t = |bend|.
 [[nodiscard]] Pose arc_pose(const Eigen::Vector2d& bend, double length, double sinc_t, double cosc_t);
 
-/// One circular arc of a backbone with its tube: discs with their centres along the arc, perpendicular to it.
-/// Their radius is linear in arc length.
+/// One circular arc of a backbone, with the tube around it. The tube consists of discs perpendicular to the
+/// arc, with centres on the arc and a radius linear in arc length.
 struct Arc {
   Pose X_WS;                                       ///< Frame at the arc's start; z is the tangent.
   double s = 0.0;                                  ///< Arc length from the arm's base to the arc's start, m.
-  double length = 0.0;                             ///< In m, with stretch.
-  Eigen::Vector2d bend = Eigen::Vector2d::Zero();  ///< In rad, over the whole arc.
+  double length = 0.0;                             ///< Length of the arc, with stretch, m.
+  Eigen::Vector2d bend = Eigen::Vector2d::Zero();  ///< Bend vector over the whole arc, rad.
   double twist = 0.0;        ///< Rotation of the material about the tangent over the whole arc, rad.
-  double s_rest = 0.0;       ///< Arc length of its start on the arm at rest (straight, not stretched), m.
-  double rest_length = 0.0;  ///< Its length at rest, m.
-  std::array<double, 2> radius = {0.02, 0.02};  ///< At the arc's start and end, m; > 0.
-  std::size_t section = 0;                      ///< Section of the arm, 0 at the base.
+  double s_rest = 0.0;       ///< Arc length of the arc's start on the arm at rest (straight, unstretched), m.
+  double rest_length = 0.0;  ///< Length of the arc at rest, m.
+  std::array<double, 2> radius = {0.02, 0.02};  ///< Radius of the tube at the arc's start and end, m; > 0.
+  std::size_t section = 0;                      ///< Section of the arm that contains the arc, 0 at the base.
 
-  /// Returns the frame at `distance` in [0, length] m along the arc, in W.
+  /// Returns the pose in W of the frame at `distance` along the arc, m, in [0, length].
   [[nodiscard]] Pose pose(double distance) const;
-  /// Returns the frame without the twist: X_WS moved along the arc, so that `bend` has the same components as
-  /// at the start.
+  /// Returns the pose in W of the frame at `distance` along the arc, m, without the twist. In this frame
+  /// `bend` has the same components as in the frame at the start.
   [[nodiscard]] Pose carried(double distance) const;
 };
 
-/// A point of a backbone of any shape.
+/// A sample of a backbone of any shape.
 struct BackboneSample {
-  Pose X_WS;          ///< z is the tangent; x and y rotate with the material.
-  double s_rest = 0;  ///< Arc length from the base along the arm at rest, m; increases from sample to sample.
-  double radius = 0.02;     ///< m; > 0.
-  std::size_t section = 0;  ///< Section of the arm, from this sample to the next.
+  Pose X_WS;  ///< Frame of the cross-section; z is the tangent, x and y rotate with the material.
+  /// Arc length from the base along the arm at rest, m; strictly increasing over the samples.
+  double s_rest = 0;
+  double radius = 0.02;     ///< Radius of the tube, m; > 0.
+  std::size_t section = 0;  ///< Section of the arm between this sample and the next.
 };
 
-/// The arm's centreline in the world: a chain of circular arcs, each tangent to the previous one. It is exact
-/// for an arm whose sections are arcs. For any other curve the error is of third order in the distance of its
-/// samples.
+/// The arm's centreline in the world: a chain of circular arcs, each tangent to the previous arc. The chain
+/// is exact for an arm whose sections are arcs. For any other curve the error is of third order in the
+/// distance between samples.
 class Backbone {
  public:
-  /// Places the arm's sections with the bends and stretches of `state`: one arc per section. Throws
-  /// std::invalid_argument if there are no sections, not one finite bend and one stretch per section, or a
-  /// length is not positive.
+  /// Makes one arc for each section of `arm`, with the bends and stretches of `state`. Throws
+  /// std::invalid_argument for an arm without sections, or unless there are one finite bend and one stretch
+  /// per section. Also throws it for a stretched length that is not positive.
   Backbone(const Arm& arm, const ArmState& state);
-  /// Places an arm whose sections are parts of another's: `section_of` has the other arm's section for each.
-  /// Also throws std::invalid_argument unless there is one for each.
+  /// Makes the backbone of an arm whose sections are parts of the sections of another arm. `section_of` has,
+  /// for each section of `arm`, the index of the other arm's section, which becomes Arc::section. Also throws
+  /// std::invalid_argument if the length of `section_of` differs from the number of sections.
   Backbone(const Arm& arm, const ArmState& state, std::span<const std::size_t> section_of);
 
-  /// Returns a smooth backbone through all samples: two arcs between each two consecutive samples, with a
-  /// common tangent (a biarc; docs/renderer.md). Samples of a circular arc give that arc. The material
-  /// rotates evenly about the tangent from sample to sample, by less than half a turn. Throws
-  /// std::invalid_argument for fewer than two samples, numbers that are not finite, a radius that is not
-  /// positive, or s_rest that does not increase. Also throws it for two samples in one place or a tangent
-  /// against the direction to the next sample.
+  /// Returns a smooth backbone through all samples: two arcs with a common tangent between consecutive
+  /// samples (a biarc; docs/renderer.md). Samples of a circular arc give this arc exactly. Between samples
+  /// the material rotates evenly about the tangent, by less than half a turn. Throws std::invalid_argument
+  /// for fewer than two samples, numbers that are not finite, a radius that is not positive, or s_rest that
+  /// does not increase. Also throws it for consecutive samples at the same position, or for a tangent at 90
+  /// degrees or more to the direction between consecutive samples.
   [[nodiscard]] static Backbone through(std::span<const BackboneSample> samples);
 
-  /// Returns the arcs from the base on; each section has one or more.
+  /// Returns the arcs, base first; each section has one or more arcs.
   [[nodiscard]] std::span<const Arc> arcs() const { return arcs_; }
-  /// Returns the length, m, with stretch.
+  /// Returns the length of the backbone, with stretch, m.
   [[nodiscard]] double length() const;
   /// Returns the length of the arm at rest, m.
   [[nodiscard]] double rest_length() const;
-  /// Returns X_WS at arc length s in [0, length()], m. Values past an end by rounding (1e-12 of the length)
-  /// count as that end. Throws std::out_of_range for values further outside.
+  /// Returns the frame X_WS at arc length s in [0, length()], m. Values beyond an end by rounding (1e-12 of
+  /// the length) count as that end. Throws std::out_of_range for values further outside.
   [[nodiscard]] Pose pose(double s) const;
-  /// Returns X_WT, the frame at s = length().
+  /// Returns X_WT, the frame at the tip (s = length()).
   [[nodiscard]] const Pose& tip() const { return X_WT_; }
 
-  /// Returns the arc length, m, on this backbone of the material that is at `s_rest` m from the base at rest.
-  /// Values before the base and beyond the tip count as those.
+  /// Returns the arc length on this backbone, m, of the material point that is `s_rest` m from the base of
+  /// the arm at rest. Values before the base or beyond the tip are clamped to the base or the tip.
   [[nodiscard]] double s_at_rest(double s_rest) const;
-  /// Returns the arc length at rest, m, of the material at arc length s of this backbone. Values before the
-  /// base and beyond the tip count as those.
+  /// Returns the arc length on the arm at rest, m, of the material point at arc length s of this backbone, m.
+  /// Values before the base or beyond the tip are clamped to the base or the tip.
   [[nodiscard]] double s_rest_at(double s) const;
 
  private:

@@ -12,7 +12,7 @@
 namespace flexura {
 namespace {
 
-// Directions that differ by less than about this, rad, count as one.
+// Angle, rad, below which two directions count as equal.
 constexpr double direction_tolerance = 1e-3;
 constexpr std::size_t max_tendons = 10000;
 // Doubles and the positions of a log represent all integers up to this value.
@@ -27,8 +27,8 @@ const char* tendons_needed(bool planar, bool stretching) {
   return "at least 2 in different directions";
 }
 
-// A tendon that ends at a section depends on the sum of the bends up to there. So the tendons of each section
-// determine one sum, and cannot be replaced by another section's.
+// The length of a tendon depends on the sum of the bends up to the section at which the tendon ends. Hence
+// the tendons of each section determine one sum, and tendons of another section cannot replace them.
 void check_section(const Drive& drive, const ArmConfig& arm, std::size_t index, const std::string& path,
                    Reader& reader) {
   const bool planar = arm.kind == ArmKind::planar;
@@ -40,7 +40,8 @@ void check_section(const Drive& drive, const ArmConfig& arm, std::size_t index, 
     offsets.push_back(tendon.offset());
     largest = std::max(largest, tendon.radius);
   }
-  // Bend in one plane or two, and stretch; motions that the section cannot make count as determined.
+  // Unknowns: the bend in one or two planes, and the stretch. Motions that the section cannot make count as
+  // determined.
   Eigen::Matrix3d gram = Eigen::Vector3d(0, planar ? 1 : 0, stretching ? 0 : 1).asDiagonal();
   gram *= largest * largest;
   for (const Eigen::Vector2d& offset : offsets) {
@@ -64,8 +65,8 @@ void check_positions(const Drive& drive, const ArmConfig& arm, const std::string
                             drive.axes[i].backlash_steps();
     if (farthest < max_position) continue;
     reader.problem_at(fmt::format("{}[{}]", path, i),
-                      fmt::format("makes up to {:.1e} microsteps: expected less than {:.1e}, by a larger "
-                                  "spool.radius, a smaller gear, fewer steps or microsteps",
+                      fmt::format("needs up to {:.1e} microsteps: expected less than {:.1e}; use a larger "
+                                  "spool.radius, a smaller gear, or fewer steps or microsteps",
                                   farthest, max_position));
   }
 }
@@ -113,11 +114,11 @@ const Table<StepperMotor>& fields_of(const StepperMotor*) {
     motor.check([](const StepperMotor& value, Reader& reader) {
       for (std::size_t i = 1; value.pull_out && i < value.pull_out->size(); ++i) {
         if ((*value.pull_out)[i][0] > (*value.pull_out)[i - 1][0]) continue;
-        reader.problem_at(fmt::format("pull_out[{}]", i), "expected a higher speed than the one before");
+        reader.problem_at(fmt::format("pull_out[{}]", i), "expected a higher speed than in the pair before");
         break;
       }
       if (value.steps % value.phases == 0) return;
-      reader.problem_at("steps", fmt::format("{} full steps a turn of a motor with {} phases: expected a "
+      reader.problem_at("steps", fmt::format("{} full steps per turn of a motor with {} phases: expected a "
                                              "multiple of the phases",
                                              value.steps, value.phases));
     });

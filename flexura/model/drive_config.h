@@ -11,12 +11,12 @@
 
 namespace flexura {
 
-/// One tendon in a file, `[[drive.tendon]]`. Omitted values are the drive's.
+/// One tendon in a file, `[[drive.tendon]]`. Omitted radius, motor and spool are those of the drive.
 struct TendonConfig {
-  std::int64_t section = 1;      ///< Section at whose end it ends, counted from 1 at the base.
-  double angle = 0;              ///< rad.
-  std::optional<double> radius;  ///< m.
-  bool reversed = false;         ///< Axis::reversed.
+  std::int64_t section = 1;      ///< Section at the end of which the tendon ends, counted from 1 at the base.
+  double angle = 0;              ///< Angle around the backbone, rad.
+  std::optional<double> radius;  ///< Distance from the backbone, m.
+  bool reversed = false;         ///< See Axis::reversed.
   /// A complete motor or spool that replaces the drive's.
   std::optional<StepperMotor> motor;
   std::optional<Spool> spool;
@@ -24,16 +24,16 @@ struct TendonConfig {
 
 /// The table [drive] of a file.
 struct DriveConfig {
-  double radius = 0.015;              ///< m.
-  std::optional<std::int64_t> disks;  ///< Drive::disks.
+  double radius = 0.015;              ///< Distance from the backbone of tendons without a radius, m.
+  std::optional<std::int64_t> disks;  ///< See Drive::disks.
   std::int64_t axes_per_controller = 4;
-  double pretension = 0;  ///< Drive::pretension.
-  /// Defaults for tendons without a motor or spool.
+  double pretension = 0;  ///< See Drive::pretension, N.
+  /// Motor and spool of tendons without their own.
   StepperMotor motor;
   Spool spool;
-  std::vector<TendonConfig> tendon;  ///< In the order of the axes.
+  std::vector<TendonConfig> tendon;  ///< Tendons, in the order of their axes.
 
-  /// Returns the drive.
+  /// Returns the drive that this table describes.
   [[nodiscard]] Drive drive() const;
 };
 
@@ -42,9 +42,9 @@ const Table<Spool>& fields_of(const Spool*);
 const Table<TendonConfig>& fields_of(const TendonConfig*);
 const Table<DriveConfig>& fields_of(const DriveConfig*);
 
-/// Reports to `reader` why the drive at `path` cannot move the arm. Errors are tendons that end at no
-/// section, sections whose bend (and stretch, if variable) their tendons do not determine, and positions
-/// beyond the motor's count.
+/// Reports to `reader` why the drive at `path` cannot move the arm. Errors are tendons that end at a section
+/// that the arm does not have, and motor positions too large to be exact integers. A further error is a
+/// section whose tendons do not determine its bend and, if variable, its stretch.
 void check_drive(const DriveConfig& config, const ArmConfig& arm, const std::string& path, Reader& reader);
 
 }  // namespace flexura

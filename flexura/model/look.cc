@@ -112,14 +112,14 @@ std::vector<Marker> LookConfig::markers(const Arm& arm) const {
 
 void check_look(const LookConfig& look, const Arm& arm, const std::string& path, Reader& reader) {
   const double length = arm.length();
-  // Rounding of sums of section lengths.
+  // Tolerance for rounding errors in sums of section lengths.
   const double slack = 1e-9 * length;
   const auto off_arm = [&](double at, double width) {
     return at - width / 2 < -slack || at + width / 2 > length + slack;
   };
   const auto report = [&](const char* list, std::size_t index) {
     reader.problem_at(fmt::format("{}.{}[{}]", path, list, index),
-                      fmt::format("does not lie on the arm: expected from 0 to {:.6g} m", length));
+                      fmt::format("is not on the arm: expected from 0 to {:.6g} m", length));
   };
   bool all_on_arm = true;
   for (std::size_t i = 0; i < look.marker.size(); ++i)
@@ -136,8 +136,9 @@ void check_look(const LookConfig& look, const Arm& arm, const std::string& path,
     if (markers[i].at + markers[i].width / 2 <= markers[i + 1].at - markers[i + 1].width / 2 + slack)
       continue;
     reader.problem_at(
-        path, fmt::format("has markers one upon the other, at {:.6g} m and {:.6g} m: expected them apart",
-                          markers[i].at, markers[i + 1].at));
+        path,
+        fmt::format("has overlapping markers at {:.6g} m and {:.6g} m: expected markers that do not overlap",
+                    markers[i].at, markers[i + 1].at));
     return;
   }
 }

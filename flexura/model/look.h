@@ -11,43 +11,44 @@
 
 namespace flexura {
 
-/// Reflected shares of red, green and blue light, each from 0 to 1.
+/// Reflected fractions of red, green and blue light, each from 0 to 1.
 using ColorConfig = std::array<double, 3>;
 
-/// End of the arm: cut straight across, or half a ball.
+/// Shape of the arm's tip: cut straight across, or a hemisphere.
 enum class TipKind { flat, round };
 
-/// A coloured band around the arm. Positions are along the unstretched arm; a band stretches with it.
+/// A coloured band around the arm. Position and width are along the unstretched arm; the band stretches with
+/// the arm.
 struct Marker {
-  double at = 0;        ///< Middle, m from the base.
-  double width = 0.01;  ///< m along the arm; > 0.
+  double at = 0;        ///< Distance of the band's middle from the base, m.
+  double width = 0.01;  ///< Width along the arm, m; > 0.
   ColorConfig color = {0.85, 0.1, 0.1};
 };
 
-/// Equal bands, evenly spaced along every section.
+/// Bands of equal width at equal distances along every section.
 struct MarkerBands {
-  std::int64_t per_section = 4;                          ///< The last one ends at the section's end.
-  std::optional<double> width;                           ///< m; default: a fifth of the spacing.
-  std::vector<ColorConfig> colors = {{0.85, 0.1, 0.1}};  ///< Used in turn, from the base on.
+  std::int64_t per_section = 4;  ///< Number of bands per section. The last band ends at the section's end.
+  std::optional<double> width;   ///< Width of a band along the arm, m; default: a fifth of the spacing.
+  std::vector<ColorConfig> colors = {{0.85, 0.1, 0.1}};  ///< Colours of the bands from the base on, repeated.
 };
 
-/// A guide disk: flat, round, across the arm.
+/// A guide disk: flat, round, perpendicular to the backbone.
 struct Disk {
-  double at = 0;             ///< Middle, m from the base along the unstretched arm.
-  double radius = 0.03;      ///< m.
-  double thickness = 0.004;  ///< m.
+  double at = 0;             ///< Distance of the disk's middle from the base along the unstretched arm, m.
+  double radius = 0.03;      ///< Radius, m.
+  double thickness = 0.004;  ///< Thickness along the arm, m.
 };
 
-/// Appearance of the arm in a camera, apart from its shape.
+/// Appearance of the arm in pictures, apart from its shape.
 struct LookConfig {
   ColorConfig color = {0.08, 0.08, 0.09};  ///< Colour of the tube.
   TipKind tip = TipKind::flat;
   std::optional<MarkerBands> bands;
-  std::vector<Marker> marker;  ///< Single markers, in addition to the bands.
+  std::vector<Marker> marker;  ///< Single markers in addition to the bands.
   std::vector<Disk> disk;
   ColorConfig disk_color = {0.35, 0.35, 0.37};
 
-  /// Returns all markers of an arm, base first: those of the bands and the single ones.
+  /// Returns all markers on an arm, those of `bands` and the single ones, base first.
   [[nodiscard]] std::vector<Marker> markers(const Arm& arm) const;
 };
 
@@ -57,7 +58,8 @@ const Table<MarkerBands>& fields_of(const MarkerBands*);
 const Table<Disk>& fields_of(const Disk*);
 const Table<LookConfig>& fields_of(const LookConfig*);
 
-/// Reports to `reader` the markers and disks at `path` that are not on the arm, or overlap.
+/// Reports to `reader` markers and disks that are not on the arm, and markers that overlap. `path` is the
+/// place of `look` in the document.
 void check_look(const LookConfig& look, const Arm& arm, const std::string& path, Reader& reader);
 
 }  // namespace flexura

@@ -42,15 +42,15 @@ TEST(Look, TellsWhatDoesNotLieOnTheArm) {
   look.marker = {{.at = 0.5, .width = 0.1}, {.at = 2.99, .width = 0.1}};
   look.disk = {{.at = 0}};
   EXPECT_THAT(problems_of(look, arm_of({1, 2})),
-              testing::ElementsAre(testing::HasSubstr("look.marker[1]: does not lie on the arm"),
-                                   testing::HasSubstr("look.disk[0]: does not lie on the arm")));
+              testing::ElementsAre(testing::HasSubstr("look.marker[1]: is not on the arm"),
+                                   testing::HasSubstr("look.disk[0]: is not on the arm")));
 }
 
 TEST(Look, TellsMarkersThatLieOneUponTheOther) {
   LookConfig look;
   look.marker = {{.at = 0.5, .width = 0.1}, {.at = 0.55, .width = 0.1}};
   EXPECT_THAT(problems_of(look, arm_of({1, 2})),
-              testing::ElementsAre(testing::HasSubstr("one upon the other")));
+              testing::ElementsAre(testing::HasSubstr("markers that overlap")));
   look.marker = {{.at = 0.5, .width = 0.1}, {.at = 0.6, .width = 0.1}};
   EXPECT_TRUE(problems_of(look, arm_of({1, 2})).empty());
 }

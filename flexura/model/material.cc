@@ -28,14 +28,14 @@ void check_ways(const MaterialConfig& material, Reader& reader) {
     for (const auto& [name, modulus] :
          {std::pair{"youngs_modulus", &material.youngs_modulus},
           std::pair{"shear_modulus", &material.shear_modulus}, std::pair{"poisson", &material.poisson}})
-      if (*modulus) reader.problem_at(name, "is given beside stiffness: expected one of them");
+      if (*modulus) reader.problem_at(name, "is given together with stiffness: expected one of them");
   } else if (!material.youngs_modulus) {
     reader.problem("has no stiffness: expected youngs_modulus, or stiffness");
   }
   if (material.shear_modulus && material.poisson)
-    reader.problem_at("poisson", "is given beside shear_modulus: expected one of them");
+    reader.problem_at("poisson", "is given together with shear_modulus: expected one of them");
   if (material.mass_per_length && material.density != 0)
-    reader.problem_at("mass_per_length", "is given beside density: expected one of them");
+    reader.problem_at("mass_per_length", "is given together with density: expected one of them");
   const ModesConfig& modes = material.modes;
   const std::int64_t least =
       std::max<std::int64_t>(2, 1 + std::max({modes.shear, modes.stretch, modes.bend, modes.twist}));

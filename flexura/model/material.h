@@ -10,50 +10,57 @@
 
 namespace flexura {
 
-/// Poisson's ratio of most metals: for a material without it and without a shear modulus.
+/// Poisson's ratio of a material in a file that gives neither Poisson's ratio nor a shear modulus. Typical of
+/// metals.
 inline constexpr double common_poisson = 0.3;
 
-/// Stiffness of a rod, given directly.
+/// Stiffness of a rod, given directly instead of computed from moduli and radii.
 struct StiffnessConfig {
-  std::array<double, 2> shear = {1, 1};  ///< GA towards the x and the y of the cross-section, N.
-  double stretch = 1;                    ///< EA, N.
-  std::array<double, 2> bend = {1, 1};   ///< EI of bends towards x and towards y, N m^2.
-  double twist = 1;                      ///< GJ, N m^2.
+  std::array<double, 2> shear = {1, 1};  ///< Shear stiffness GA towards x and y of the cross-section, N.
+  double stretch = 1;                    ///< Axial stiffness EA, N.
+  std::array<double, 2> bend = {1, 1};   ///< Bending stiffness EI for bends towards x and towards y, N m^2.
+  double twist = 1;                      ///< Torsional stiffness GJ, N m^2.
 };
 
-/// Number of Legendre polynomials of arc length in each strain of a section; 0: the strain stays as at rest.
+/// Number of Legendre polynomials in arc length for each strain of a section. With 0 the strain is fixed at
+/// its rest value.
 struct ModesConfig {
-  std::int64_t shear = 1;  ///< For each of the two directions.
+  std::int64_t shear = 1;  ///< Number for each of the two shear strains.
   std::int64_t stretch = 1;
-  std::int64_t bend = 5;  ///< For each of the two directions.
+  std::int64_t bend = 5;  ///< Number for each of the two curvatures.
   std::int64_t twist = 4;
 };
 
-/// A body fixed to a section's backbone.
+/// A rigid body fixed to a section's backbone.
 struct BodyConfig {
-  double at = 1;                             ///< Position as a share of the section's length; in [0, 1].
-  double mass = 0;                           ///< kg.
-  std::array<double, 3> offset = {0, 0, 0};  ///< Its centre of mass in the cross-section's frame, m.
+  double at = 1;    ///< Position along the section as a fraction of its length; in [0, 1].
+  double mass = 0;  ///< Mass, kg.
+  std::array<double, 3> offset = {0, 0, 0};  ///< Centre of mass in the cross-section's frame, m.
 };
 
-/// Material of the elastic rod in a section, `[arm.section.material]`: either moduli and radii, or a
-/// stiffness.
+/// Material of the elastic rod in a section, `[arm.section.material]`. Either moduli and radii or `stiffness`
+/// give the rod's stiffness.
 struct MaterialConfig {
-  std::optional<double> youngs_modulus = {};         ///< E, Pa.
-  std::optional<double> shear_modulus = {};          ///< G, Pa.
-  std::optional<double> poisson = {};                ///< nu: G = E / (2 (1 + nu)). Excludes a shear modulus.
-  double density = 0;                                ///< kg/m^3.
-  std::optional<std::array<double, 2>> radius = {};  ///< At the section's base and end, m; or the tube's.
-  std::array<double, 2> inner_radius = {0, 0};       ///< Radius of its bore, m.
-  std::optional<StiffnessConfig> stiffness = {};     ///< Instead of the moduli.
-  std::optional<double> mass_per_length = {};        ///< Instead of the density, kg/m.
-  double damping_time = 0;                           ///< Viscosity: damping over stiffness, s.
-  std::array<double, 2> rest_bend = {0, 0};          ///< Bend of the unloaded section, rad.
-  double rest_twist = 0;                   ///< Rotation of its end relative to its base without load, rad.
-  std::optional<std::int64_t> disks = {};  ///< Tendons run straight between this number of equal pieces.
+  std::optional<double> youngs_modulus = {};  ///< Young's modulus E, Pa.
+  std::optional<double> shear_modulus = {};   ///< Shear modulus G, Pa.
+  /// Poisson's ratio nu, with G = E / (2 (1 + nu)); not together with a shear modulus.
+  std::optional<double> poisson = {};
+  double density = 0;  ///< Density, kg/m^3.
+  /// Outer radius of the rod at the section's base and end, m; default: the tube's radius.
+  std::optional<std::array<double, 2>> radius = {};
+  /// Radius of the rod's bore at the section's base and end, m.
+  std::array<double, 2> inner_radius = {0, 0};
+  std::optional<StiffnessConfig> stiffness = {};  ///< Stiffness of the rod, instead of the moduli.
+  std::optional<double> mass_per_length = {};  ///< Mass per length of the rod, instead of the density, kg/m.
+  double damping_time = 0;                     ///< Ratio of damping to stiffness (Kelvin-Voigt), s.
+  std::array<double, 2> rest_bend = {0, 0};    ///< Bend vector of the unloaded section, rad.
+  /// Rotation of the unloaded section's end about the backbone relative to its base, rad.
+  double rest_twist = 0;
+  /// Number of equal pieces of the section between guide disks; tendons are straight in each piece.
+  std::optional<std::int64_t> disks = {};
   ModesConfig modes = {};
-  std::int64_t nodes = 0;             ///< Nodes of the quadrature; 0: as many as the modes need.
-  std::vector<BodyConfig> mass = {};  ///< In any order.
+  std::int64_t nodes = 0;  ///< Number of quadrature nodes along the section; 0: as many as the modes need.
+  std::vector<BodyConfig> mass = {};  ///< Bodies fixed to the section, in any order.
 };
 
 const Table<StiffnessConfig>& fields_of(const StiffnessConfig*);
@@ -61,8 +68,8 @@ const Table<ModesConfig>& fields_of(const ModesConfig*);
 const Table<BodyConfig>& fields_of(const BodyConfig*);
 const Table<MaterialConfig>& fields_of(const MaterialConfig*);
 
-/// Reports to `reader` the errors of a material at `path` in a tube of these radii, m: a bore as wide as the
-/// rod.
+/// Reports to `reader` a bore that is not narrower than the rod. `path` is the place of `material` in the
+/// document; `tube_radius` has the radii of the section's tube at its base and end, m.
 void check_material(const MaterialConfig& material, const std::array<double, 2>& tube_radius,
                     const std::string& path, Reader& reader);
 

@@ -15,34 +15,34 @@ namespace flexura {
 /// A convex body that the arm must not touch.
 struct Obstacle {
   std::string name = {};   ///< Name in messages.
-  double ignore_base = 0;  ///< Length of the unstretched arm, from its base, that may touch it, m.
-  /// Returns the signed distance of a point in W to its surface, m; negative inside. Convex.
+  double ignore_base = 0;  ///< Length of the unstretched arm, from its base, that may touch the obstacle, m.
+  /// Signed distance of a point in W from the obstacle's surface, m; negative inside. A convex function.
   std::function<double(const Eigen::Vector3d& p_W)> distance;
-  /// For a plane: its unit normal in W, along which `distance` grows.
+  /// For a plane: the unit normal in W, in whose direction `distance` increases.
   std::optional<Eigen::Vector3d> normal{};
-  /// For a box: the planes of its sides, n p_W = offset, n unit and outwards. `distance` is nowhere below the
-  /// height above any of them.
+  /// The plane of a side of a box: the points p_W with normal . p_W = offset. The normal is a unit vector in
+  /// W and points outwards; the offset is in m. `distance` is nowhere less than the height above this plane.
   struct Side {
     Eigen::Vector3d normal;
     double offset = 0;
   };
-  std::vector<Side> sides{};  ///< Empty except for boxes.
+  std::vector<Side> sides{};  ///< Sides of a box; empty for other obstacles.
 };
 
 /// Default colour of an obstacle: reflected shares of red, green and blue light.
 inline constexpr std::array<double, 3> obstacle_color = {0.4, 0.45, 0.4};
 
-/// A half space: everything on the side opposite to the plane's normal.
+/// A half space: all points on the side of a plane that is opposite to the plane's normal.
 struct PlaneConfig {
-  std::string name = {};   ///< Name in messages, for all kinds; "": its kind and position in the list.
-  double ignore_base = 0;  ///< Obstacle::ignore_base, m; for all kinds.
-  bool may_touch = false;  ///< The arm may touch it, for example to grasp it; for all kinds.
-  std::array<double, 3> point = {0, 0, 0};       ///< Point of the plane, in W, m.
-  std::array<double, 3> normal = {0, 1, 0};      ///< Outward normal, in W; of any length above 0.
-  std::array<double, 3> color = obstacle_color;  ///< For all kinds.
+  std::string name = {};   ///< Name in messages; "": the obstacle's kind and position in the list.
+  double ignore_base = 0;  ///< See Obstacle::ignore_base, m.
+  bool may_touch = false;  ///< Whether the arm may touch the obstacle, for example to grasp it.
+  std::array<double, 3> point = {0, 0, 0};   ///< A point of the plane, in W, m.
+  std::array<double, 3> normal = {0, 1, 0};  ///< Normal in W, away from the half space; any length above 0.
+  std::array<double, 3> color = obstacle_color;  ///< Reflected fractions of red, green and blue light.
 };
 
-/// A ball.
+/// A sphere. The members that PlaneConfig has too have the same meaning.
 struct SphereConfig {
   std::string name = {};
   double ignore_base = 0;
@@ -52,29 +52,32 @@ struct SphereConfig {
   std::array<double, 3> color = obstacle_color;
 };
 
-/// All points within `radius` of a segment.
+/// A capsule: all points within `radius` of a line segment. The members that PlaneConfig has too have the
+/// same meaning.
 struct CapsuleConfig {
   std::string name = {};
   double ignore_base = 0;
   bool may_touch = false;
-  std::array<double, 3> from = {0, 0, 0};  ///< Ends of the segment, in W, m; they may be equal.
+  std::array<double, 3> from = {0, 0, 0};  ///< Start of the segment, in W, m; may equal `to`.
   std::array<double, 3> to = {0, 0, 0};
   double radius = 0;  ///< m.
   std::array<double, 3> color = obstacle_color;
 };
 
-/// A box; its rotation is a quaternion (w, x, y, z) from its axes to the world's.
+/// A box. The members that PlaneConfig has too have the same meaning.
 struct BoxConfig {
   std::string name = {};
   double ignore_base = 0;
   bool may_touch = false;
-  std::array<double, 3> center = {0, 0, 0};       ///< In W, m.
-  std::array<double, 3> half_sizes = {0, 0, 0};   ///< Half its edges along its axes, m.
-  std::array<double, 4> rotation = {1, 0, 0, 0};  ///< Of norm 1.
+  std::array<double, 3> center = {0, 0, 0};  ///< In W, m.
+  /// Half the lengths of the edges along the box's x, y and z, m.
+  std::array<double, 3> half_sizes = {0, 0, 0};
+  /// Unit quaternion (w, x, y, z) from the box's axes to the world.
+  std::array<double, 4> rotation = {1, 0, 0, 0};
   std::array<double, 3> color = obstacle_color;
 };
 
-/// One `[[obstacle]]` of a file.
+/// An obstacle in a file, `[[obstacle]]`.
 using ObstacleConfig = std::variant<PlaneConfig, SphereConfig, CapsuleConfig, BoxConfig>;
 
 const Table<PlaneConfig>& fields_of(const PlaneConfig*);
@@ -82,8 +85,8 @@ const Table<SphereConfig>& fields_of(const SphereConfig*);
 const Table<CapsuleConfig>& fields_of(const CapsuleConfig*);
 const Table<BoxConfig>& fields_of(const BoxConfig*);
 
-/// Returns the obstacles of the tables. One without a name has its kind and its position in the list as its
-/// name: "plane 1".
+/// Returns the obstacles that the tables describe. An obstacle without a name is named by its kind and its
+/// position in the list, counted from 1: "plane 1".
 [[nodiscard]] std::vector<Obstacle> obstacles(const std::vector<ObstacleConfig>& configs);
 
 }  // namespace flexura

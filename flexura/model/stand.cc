@@ -127,7 +127,8 @@ const Table<StandConfig>& fields_of(const StandConfig*) {
 }
 
 std::vector<ScreenConfig> default_screens(double length, const std::array<double, 3>& base) {
-  // Just beyond the arm's reach. Wider than the view there of a camera that has the whole reach in its image.
+  // The screens are just beyond the arm's reach. They are larger than the view, at this distance, of a camera
+  // that has the whole reach in its image.
   const double away = 1.2 * length, size = 5 * length;
   ScreenConfig behind_1, behind_2;
   behind_1.center = {base[0], base[1], base[2] - away};

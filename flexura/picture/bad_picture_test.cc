@@ -108,18 +108,18 @@ TEST(BadPicture, CutShortIsCalledSo) {
       const bool is_plain = file[0] == 'P' && file[1] <= '3', is_tiff = file[0] == 'I',
                  is_named = size >= least_name(file[0]);
       if (is_plain || is_tiff || !is_named) continue;
-      EXPECT_THAT(line, HasSubstr("file is cut short"))
+      EXPECT_THAT(line, HasSubstr("file is truncated"))
           << size << " of " << file.size() << " " << file.substr(0, 2);
     }
   }
   const std::string tiff = tiff_file(Image<std::uint8_t>(21, 13), {});
   for (const std::size_t size : {4U, 6U, 7U, 8U, 50U, 281U})
-    EXPECT_EQ(complaint(tiff.substr(0, size)), "the TIFF file is cut short");
-  EXPECT_EQ(complaint("P2 2 1 9 1 "), "the PNM file is cut short");
+    EXPECT_EQ(complaint(tiff.substr(0, size)), "the TIFF file is truncated");
+  EXPECT_EQ(complaint("P2 2 1 9 1 "), "the PNM file is truncated");
 }
 
 TEST(BadPicture, HugeOrWithoutPixelsIsCalledSo) {
-  const std::string line = ": expected at most 4096 px", none = ": expected one pixel at least";
+  const std::string line = ": expected at most 4096 px", none = ": expected at least one pixel";
   const std::string png_claim = png(Image<std::uint8_t>(3, 3));
   const auto claim = [](std::string file, std::size_t at, const std::string& size) {
     return file.replace(at, size.size(), size);
@@ -146,10 +146,10 @@ TEST(BadPicture, HugeOrWithoutPixelsIsCalledSo) {
 
 TEST(BadPicture, OfAFormThatIsNotReadIsCalledSo) {
   EXPECT_EQ(complaint(jpeg_file(smooth_picture(8, 8, 2), false)),
-            "the JPEG file has 2 values a pixel: expected gray, colours or four inks (CMYK)");
+            "the JPEG file has 2 values per pixel: expected gray, colours or four inks (CMYK)");
   EXPECT_EQ(complaint(tiff(Image<float>(3, 3))),
-            "the TIFF file has floating point values of 32 bits: expected whole ones of 1, 2, 4, 8, 10, 12, "
-            "14 or 16 bits, without a sign");
+            "the TIFF file has floating point values of 32 bits: expected unsigned integers of 1, 2, 4, 8, "
+            "10, 12, 14 or 16 bits");
   EXPECT_EQ(
       complaint(tiff_file(Image<std::uint8_t>(3, 3, 3), {.photometric = PHOTOMETRIC_ICCLAB})),
       "the TIFF file has colours of kind 9: expected gray, RGB, a palette, or CMYK, YCbCr or CIELab of 8 "
@@ -161,7 +161,7 @@ TEST(BadPicture, OfAFormThatIsNotReadIsCalledSo) {
 }
 
 TEST(BadPicture, DamagedIsCalledSoWithWhatTheLibrarySays) {
-  const std::string is_damaged = "file is damaged, or of a sort that cannot be read: ";
+  const std::string is_damaged = "file is damaged, or of a kind that is not supported: ";
   std::string file = png(smooth_picture(21, 13, 1));
   file[file.size() - 13] ^= 1;  // Of the checksum before the last chunk.
   EXPECT_EQ(complaint(file), "the PNG " + is_damaged + "IDAT: CRC error");

@@ -17,7 +17,8 @@ namespace {
 
 // libjpeg passes its errors to a function that must not return.
 struct Errors {
-  jpeg_error_mgr manager;  // First: libjpeg has its address.
+  // Must be the first member, because libjpeg passes its address as that of the struct.
+  jpeg_error_mgr manager;
   std::jmp_buf back;
   char text[JMSG_LENGTH_MAX];
 };
@@ -35,7 +36,8 @@ struct Output {
   unsigned long size = 0;
 };
 
-// Returns false on an error of libjpeg, which jumps without running destructors: nothing here has one.
+// Returns false on an error of libjpeg, which leaves this function by longjmp. No local object here has a
+// destructor, because longjmp would not run it.
 bool write(const Image<std::uint8_t>& image, int quality, jpeg_compress_struct* job, Errors* errors,
            Output* out) {
   if (setjmp(errors->back) != 0) return false;
@@ -63,7 +65,7 @@ std::string jpeg(const Image<std::uint8_t>& image, JpegConfig config) {
   if (image.width() <= 0 || image.height() <= 0) throw std::invalid_argument("a JPEG file needs pixels");
   if (image.width() > JPEG_MAX_DIMENSION || image.height() > JPEG_MAX_DIMENSION)
     throw std::invalid_argument("a JPEG file has at most " + std::to_string(JPEG_MAX_DIMENSION) +
-                                " pixels a side");
+                                " pixels per side");
   if (image.channels() != 1 && image.channels() != 3)
     throw std::invalid_argument("a JPEG file is gray or RGB: not " + std::to_string(image.channels()) +
                                 " channels");

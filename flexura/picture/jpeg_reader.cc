@@ -2,7 +2,7 @@
 #include <cstdio>
 // jpeglib.h needs FILE and size_t before it.
 #include <jpeglib.h>
-// It needs jpeglib.h before it.
+// Must be included after jpeglib.h.
 #include <jerror.h>
 
 #include <array>
@@ -19,7 +19,8 @@ namespace {
 
 // libjpeg passes its errors to a function that must not return.
 struct JpegInput {
-  jpeg_error_mgr manager;  // First: libjpeg has its address.
+  // Must be the first member, because libjpeg passes its address as that of the struct.
+  jpeg_error_mgr manager;
   std::jmp_buf back;
   jpeg_progress_mgr progress;
   char text[JMSG_LENGTH_MAX];
@@ -31,7 +32,7 @@ void stop_reading(j_common_ptr job) {
   std::longjmp(input->back, 1);
 }
 
-// After these warnings libjpeg would continue with gray or with garbage. Others are harmless.
+// After these warnings libjpeg would continue with gray or wrong pixels. Other warnings are harmless.
 void weigh_warning(j_common_ptr job, int level) {
   if (level >= 0) return;
   switch (job->err->msg_code) {
@@ -49,7 +50,8 @@ void weigh_warning(j_common_ptr job, int level) {
 
 void write_nothing(j_common_ptr /*job*/) {}
 
-// A scan of ten bytes makes libjpeg process the whole picture; ordinary files have about ten scans.
+// Limit on the number of scans. A scan of ten bytes makes libjpeg process the whole picture; ordinary files
+// have about ten scans.
 void bound_scans(j_common_ptr job) {
   constexpr int most_scans = 500;
   if (reinterpret_cast<j_decompress_ptr>(job)->input_scan_number <= most_scans) return;
@@ -58,8 +60,8 @@ void bound_scans(j_common_ptr job) {
   std::longjmp(input->back, 1);
 }
 
-// These two return false on an error of libjpeg, which jumps without running destructors: nothing here has
-// one.
+// The next two functions return false on an error of libjpeg, which leaves them by longjmp. Their local
+// objects have no destructors, because longjmp would not run them.
 bool read_header(std::span<const std::uint8_t> file, jpeg_decompress_struct* job, JpegInput* input) {
   if (setjmp(input->back) != 0) return false;
   jpeg_create_decompress(job);
@@ -70,7 +72,7 @@ bool read_header(std::span<const std::uint8_t> file, jpeg_decompress_struct* job
 }
 
 // Converts cyan, magenta, yellow and black to red, green and blue. Files store inks inverted (255: no ink),
-// as introduced by Adobe; the rounding is OpenCV's.
+// as introduced by Adobe. The rounding is that of OpenCV.
 void mix_inks(std::span<const std::uint8_t> inks, std::uint8_t* to) {
   constexpr std::size_t count = 4;
   for (; !inks.empty(); inks = inks.subspan(count)) {
@@ -80,7 +82,7 @@ void mix_inks(std::span<const std::uint8_t> inks, std::uint8_t* to) {
   }
 }
 
-// `inks` has room for one row of them; it is empty if the file has none.
+// `inks` has the size of one row of inks; it is empty if the file does not use inks.
 bool read_rows(jpeg_decompress_struct* job, JpegInput* input, std::span<std::uint8_t> inks,
                Image<std::uint8_t>* image) {
   if (setjmp(input->back) != 0) return false;
@@ -128,7 +130,7 @@ Picture read_jpeg(std::span<const std::uint8_t> file, std::size_t most_pixels) {
   const int channels = reader.job.num_components;
   if (channels != 1 && channels != 3 && channels != 4)
     throw std::runtime_error("the JPEG file has " + std::to_string(channels) +
-                             " values a pixel: expected gray, colours or four inks (CMYK)");
+                             " values per pixel: expected gray, colours or four inks (CMYK)");
   constexpr std::array<J_COLOR_SPACE, 5> spaces = {JCS_UNKNOWN, JCS_GRAYSCALE, JCS_UNKNOWN, JCS_RGB,
                                                    JCS_CMYK};
   reader.job.out_color_space = spaces[static_cast<std::size_t>(channels)];

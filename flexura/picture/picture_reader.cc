@@ -22,7 +22,7 @@ Picture read_png_file(std::span<const std::uint8_t> file, std::size_t most_pixel
   return read_png({reinterpret_cast<const char*>(file.data()), file.size()}, most_pixels);
 }
 
-// The rest of PNG's signature detects a transfer as text; libpng reports that.
+// The rest of PNG's signature detects a transfer in text mode, which libpng reports.
 constexpr std::array known_kinds = {
     KnownKind{"\x89PNG"sv, read_png_file}, KnownKind{"\xFF\xD8\xFF"sv, read_jpeg},
     KnownKind{"II*\0"sv, read_tiff},       KnownKind{"MM\0*"sv, read_tiff},
@@ -39,7 +39,7 @@ struct OtherKind {
   std::size_t at = 0;
 };
 
-// Pictures of kinds that are not supported: their names help more than "not a picture".
+// Kinds of pictures that are not supported, which the error message names.
 constexpr std::array other_kinds = {OtherKind{"\0\0\0\x0CjP  "sv, "JPEG 2000"},
                                     OtherKind{"\xFF\x4F\xFF\x51"sv, "JPEG 2000"},
                                     OtherKind{"WEBPVP8"sv, "WebP", 8},
@@ -52,7 +52,7 @@ constexpr std::array other_kinds = {OtherKind{"\0\0\0\x0CjP  "sv, "JPEG 2000"},
                                     OtherKind{"#?RADIANCE"sv, "Radiance HDR"},
                                     OtherKind{"#?RGBE"sv, "Radiance HDR"}};
 
-// Identified by the first bytes; the file's name does not matter.
+// The first bytes identify the kind; the file's name does not matter.
 Picture read_any(std::span<const std::uint8_t> file, std::size_t most_pixels) {
   const std::string_view text(reinterpret_cast<const char*>(file.data()), file.size());
   if (text.empty()) throw std::runtime_error("the file is empty");
@@ -78,20 +78,20 @@ Picture read_picture(std::span<const std::uint8_t> file, const std::string& name
 
 void check_picture_size(std::int64_t width, std::int64_t height, std::size_t most_pixels) {
   if (width < 1 || height < 1)
-    throw std::runtime_error(fmt::format("{} x {} px: expected one pixel at least", width, height));
+    throw std::runtime_error(fmt::format("{} x {} px: expected at least one pixel", width, height));
   if (static_cast<std::size_t>(width) > most_pixels / static_cast<std::size_t>(height))
     throw std::runtime_error(fmt::format("{} x {} px: expected at most {} px", width, height, most_pixels));
 }
 
 std::runtime_error cut_short(std::string_view kind) {
-  return std::runtime_error(fmt::format("the {} file is cut short", kind));
+  return std::runtime_error(fmt::format("the {} file is truncated", kind));
 }
 
 std::runtime_error damaged(std::string_view kind, std::string_view text) {
   std::string line(text);
   std::ranges::replace_if(line, [](char c) { return c < ' ' || c > '~'; }, '?');
   return std::runtime_error(
-      fmt::format("the {} file is damaged, or of a sort that cannot be read: {}", kind, line));
+      fmt::format("the {} file is damaged, or of a kind that is not supported: {}", kind, line));
 }
 
 Image<std::uint8_t> painted(Image<std::uint8_t> indices, const Palette& palette) {

@@ -36,13 +36,13 @@ struct Header {
   int bits, color;
 };
 
-// How the bytes are compressed.
+// Settings of the compression.
 struct Effort {
   int level, filter, strategy;
 };
 
-// Returns the entropy of a sample of bytes, in bits: as they are, or as differences from those a pixel
-// before.
+// Returns the entropy of a sample of the picture's bytes, in bits per byte. Uses the bytes themselves, or
+// their differences from the bytes one pixel before.
 template <typename T>
 double entropy(const Image<T>& image, bool is_difference) {
   constexpr int every = 8;  // Rows.
@@ -66,8 +66,8 @@ double entropy(const Image<T>& image, bool is_difference) {
   return bits;
 }
 
-// Noise of a sensor repeats nothing, and a difference of two pixels has more of it than one. So pictures with
-// noise are then smaller, and sooner written, without filter and without a search for what repeats.
+// Sensor noise does not repeat, and the difference of two pixels has more noise than one pixel. Hence files
+// of noisy pictures are smaller, and are written faster, without filter and without search for repetitions.
 template <typename T>
 Effort effort_of(const Image<T>& image, int level) {
   constexpr int most_quick = 2;
@@ -78,7 +78,8 @@ Effort effort_of(const Image<T>& image, int level) {
   return {level, as_is < differences ? PNG_FILTER_NONE : PNG_FILTER_SUB, Z_RLE};
 }
 
-// Returns false on an error of libpng, which jumps without running destructors: nothing here has one.
+// Returns false on an error of libpng, which leaves this function by longjmp. No local object here has a
+// destructor, because longjmp would not run it.
 bool write(const Writer& writer, const Header& header, png_bytepp rows, const Effort& effort,
            std::string* out) {
   if (setjmp(png_jmpbuf(writer.png)) != 0) return false;

@@ -15,8 +15,7 @@
 namespace flexura {
 namespace {
 
-// Shared state of libpng's callbacks. libpng returns by a jump that runs no destructors: nothing here has
-// one.
+// State shared by libpng's callbacks. It has no destructor, because libpng's longjmp would not run it.
 struct PngInput {
   std::string_view rest;
   bool is_cut_short = false;
@@ -60,15 +59,16 @@ struct ReadHeader {
   int color_count = 0;
 };
 
-// These three return false on an error of libpng, after a jump: nothing in them has a destructor.
+// The next three functions return false on an error of libpng, which leaves them by longjmp. Their local
+// objects have no destructors, because longjmp would not run them.
 bool read_header(PngReader* reader, ReadHeader* header) {
   png_structp png = reader->png;
   if (setjmp(png_jmpbuf(png)) != 0) return false;
   png_set_read_fn(png, &reader->input, take);
-  // libpng's own limit is a million per side; the limit here is on the product.
+  // libpng limits each side to a million pixels; here the number of pixels is limited instead.
   constexpr png_uint_32 any_side = std::numeric_limits<std::int32_t>::max();
   png_set_user_limits(png, any_side, any_side);
-  // Texts, times and profiles are ignored.
+  // Text, time and profile chunks are ignored.
   png_set_keep_unknown_chunks(png, PNG_HANDLE_CHUNK_NEVER, nullptr, -1);
   png_read_info(png, reader->info);
   png_get_IHDR(png, reader->info, &header->width, &header->height, &header->bits, &header->color, nullptr,
@@ -76,7 +76,7 @@ bool read_header(PngReader* reader, ReadHeader* header) {
   return true;
 }
 
-// Afterwards each channel has one value of 8 or 16 bits (in this machine's byte order).
+// Makes libpng return one value of 8 or 16 bits per channel, in this machine's byte order.
 bool choose_form(const PngReader& reader, ReadHeader* header) {
   png_structp png = reader.png;
   if (setjmp(png_jmpbuf(png)) != 0) return false;
@@ -119,8 +119,8 @@ Image<T> image_of(const PngReader& reader, const ReadHeader& header) {
   return image;
 }
 
-// Checks the claimed size: libpng has its own message for a size of 0. A file that does not begin with IHDR
-// is not checked here.
+// Checks the size that the file claims, except a size of 0, for which libpng has its own message. Does not
+// check a file that does not begin with IHDR.
 void check_claim(std::string_view bytes, std::size_t most_pixels) {
   constexpr std::size_t name = 12, width = 16, height = 20, end = 24;
   if (bytes.size() < end || bytes.substr(name, 4) != "IHDR") return;

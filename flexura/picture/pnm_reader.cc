@@ -12,12 +12,12 @@ namespace {
 bool is_space(std::uint8_t c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
 bool is_digit(std::uint8_t c) { return c >= '0' && c <= '9'; }
 
-// The text of a PNM file, read from its front.
+// Reads the text of a PNM file from the front.
 class PnmText {
  public:
   explicit PnmText(std::span<const std::uint8_t> file) : file_(file) {}
 
-  // Skips spaces and comments; large numbers are returned as 2^31 or slightly more.
+  // Reads a number after spaces and comments. Returns large numbers as 2^31 or slightly more.
   std::int64_t number() {
     skip();
     std::int64_t value = 0;
@@ -25,12 +25,12 @@ class PnmText {
       value = std::min<std::int64_t>(value * 10 + (file_[at_] - '0'), std::int64_t{1} << 31U);
     return value;
   }
-  // Bits need no separators.
+  // Reads a bit; bits need no separators.
   std::int64_t bit() {
     skip();
     return file_[at_++] - '0';
   }
-  // The data after the header, separated by one space.
+  // Returns the data after the header and one separating space.
   std::span<const std::uint8_t> raster() {
     if (at_ >= file_.size()) throw cut_short("PNM");
     if (!is_space(file_[at_])) throw strange();
@@ -39,7 +39,7 @@ class PnmText {
   [[nodiscard]] std::size_t left() const { return file_.size() - at_; }
 
  private:
-  // To the next digit.
+  // Skips to the next digit.
   void skip() {
     while (at_ < file_.size() && (is_space(file_[at_]) || file_[at_] == '#')) {
       if (file_[at_] == '#')
@@ -55,13 +55,13 @@ class PnmText {
   }
 
   std::span<const std::uint8_t> file_;
-  std::size_t at_ = 2;  // After the kind.
+  std::size_t at_ = 2;  // Position after the two characters of the kind.
 };
 
 struct PnmHeader {
   bool is_plain = false, is_bits = false;
   int width = 0, height = 0, channels = 1;
-  std::int64_t most = 1;  // The value of white.
+  std::int64_t most = 1;  // Value of white.
 };
 
 PnmHeader read_header(std::uint8_t kind, PnmText& text, std::size_t most_pixels) {
@@ -81,12 +81,12 @@ PnmHeader read_header(std::uint8_t kind, PnmText& text, std::size_t most_pixels)
   return header;
 }
 
-// Converts a value from 0 to `most` to one from 0 to 255.
+// Scales a value from the range 0 to `most` to the range 0 to 255.
 std::uint8_t byte_of(std::int64_t value, std::int64_t most) {
   return static_cast<std::uint8_t>((value * 255 + most / 2) / most);
 }
 
-// `next` returns one value after another.
+// Each call of `next` returns the next value of the file.
 template <typename Value, typename Next>
 Image<Value> image_of(const PnmHeader& header, Next&& next) {
   Image<Value> image(header.width, header.height, header.channels);

@@ -11,7 +11,7 @@
 namespace flexura {
 namespace {
 
-// A file in memory with the functions that libtiff needs.
+// A file in memory, with the file functions that libtiff calls.
 struct MemoryFile {
   std::string bytes;
   std::size_t at = 0;
@@ -74,7 +74,7 @@ std::string tiff(const Image<float>& image) {
       // libtiff takes a mutable row but does not modify it when writing.
       void* row = const_cast<float*>(image.row(v).data());
       if (TIFFWriteScanline(open.get(), row, static_cast<std::uint32_t>(v)) != 1)
-        throw std::runtime_error("libtiff did not take the image");
+        throw std::runtime_error("libtiff cannot write the image");
     }
   }
   return std::move(file.bytes);

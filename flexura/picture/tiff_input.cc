@@ -35,7 +35,8 @@ toff_t seek_input(thandle_t handle, toff_t offset, int from) {
 int close_input(thandle_t /*handle*/) { return 0; }
 toff_t input_size(thandle_t handle) { return static_cast<TiffInput*>(handle)->bytes.size(); }
 
-// Keeps the first error, the relevant one; a nonzero result suppresses libtiff's own handlers, which print.
+// Keeps the first error, because later errors are consequences. A nonzero result suppresses libtiff's own
+// handlers, which print.
 int note_error(TIFF* /*open*/, void* user, const char* /*where*/, const char* format, va_list values) {
   auto* input = static_cast<TiffInput*>(user);
   if (input->text[0] == '\0') std::vsnprintf(input->text, sizeof input->text, format, values);

@@ -12,14 +12,14 @@
 
 namespace flexura {
 
-/// A TIFF file in memory for libtiff, and the first error.
+/// A TIFF file in memory, read by libtiff, and libtiff's first error.
 struct TiffInput {
   std::span<const std::uint8_t> bytes;
   std::uint64_t at = 0;
-  bool is_cut_short = false;  ///< Whether a read went beyond the end.
+  bool is_cut_short = false;  ///< Whether libtiff tried to read beyond the end.
   char text[200] = {};        ///< libtiff's first error.
 
-  /// Returns the exception to throw when libtiff failed.
+  /// Returns the exception to throw after a failure of libtiff.
   [[nodiscard]] std::runtime_error problem() const;
 };
 
@@ -28,12 +28,13 @@ struct CloseTiff {
 };
 using OpenTiff = std::unique_ptr<TIFF, CloseTiff>;
 
-/// Opens the first picture of `input`, which must outlive it. libtiff prints nothing, and allocates at most
-/// `most_bytes` at once. Throws std::runtime_error if it is not a TIFF file.
+/// Opens the first picture of `input`, which must outlive the result. libtiff then prints nothing and
+/// allocates at most `most_bytes` at once. Throws std::runtime_error if `input` is not a TIFF file.
 [[nodiscard]] OpenTiff open_tiff(TiffInput* input, std::size_t most_bytes);
 
-/// Reads red, green and blue as converted by libtiff, for files with other colours, in bytes. Sizes must have
-/// been checked. Throws std::runtime_error for a damaged file, or a form that libtiff does not convert.
+/// Reads a file with other colours than gray or RGB, converted by libtiff to red, green and blue of 8 bits
+/// each. The caller must have checked the size. Throws std::runtime_error for a damaged file, or for colours
+/// that libtiff cannot convert.
 [[nodiscard]] Image<std::uint8_t> read_mixed_tiff(TIFF* open, const TiffInput& input);
 
 }  // namespace flexura

@@ -22,7 +22,7 @@ Image<std::uint8_t> read_mixed_tiff(TIFF* open, const TiffInput& input) {
   if (TIFFRGBAImageOK(open, text) == 0 || TIFFRGBAImageBegin(&mixer, open, stops_at_errors, text) == 0)
     throw damaged("TIFF", text);
   const std::unique_ptr<TIFFRGBAImage, EndMixing> end(&mixer);
-  mixer.orientation = mixer.req_orientation = ORIENTATION_TOPLEFT;  // Nothing is rotated.
+  mixer.orientation = mixer.req_orientation = ORIENTATION_TOPLEFT;  // Prevents rotation by libtiff.
   Image<std::uint8_t> image(static_cast<int>(mixer.width), static_cast<int>(mixer.height), 3);
   std::vector<std::uint32_t> pixels(image.values().size() / 3);
   if (TIFFRGBAImageGet(&mixer, pixels.data(), mixer.width, mixer.height) == 0) throw input.problem();

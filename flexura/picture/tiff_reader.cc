@@ -14,8 +14,8 @@
 namespace flexura {
 namespace {
 
-// Layout of a TIFF picture: blocks (strips of the picture's width, or tiles), in one plane or in one per
-// channel.
+// Layout of a TIFF picture. Its blocks are strips of the picture's width or tiles. The channels are in one
+// plane, or each channel in its own plane.
 struct TiffLayout {
   std::uint32_t width = 0, height = 0, block_width = 0, block_height = 0;
   std::uint16_t bits = 1, samples = 1, photometric = 0;
@@ -53,20 +53,21 @@ void read_values(TIFF* open, TiffLayout* layout) {
   const char* name = is_whole ? "" : "signed ";
   if (format == SAMPLEFORMAT_IEEEFP) name = "floating point ";
   refuse_tiff(fmt::format("{}values of {} bits", name, layout->bits),
-              "whole ones of 1, 2, 4, 8, 10, 12, 14 or 16 bits, without a sign");
+              "unsigned integers of 1, 2, 4, 8, 10, 12, 14 or 16 bits");
 }
 
 // Reads the format of the values and checks that it is supported.
 void read_form(TIFF* open, TiffLayout* layout) {
   const auto compression = field<std::uint16_t>(open, TIFFTAG_COMPRESSION, COMPRESSION_NONE);
-  // libjbig ends the whole program if it gets no memory; the old JPEG is ambiguous.
+  // JBIG is not supported, because libjbig ends the whole program if memory is exhausted. The old JPEG
+  // compression is ambiguous.
   if (TIFFIsCODECConfigured(compression) == 0 || compression == COMPRESSION_JBIG ||
       compression == COMPRESSION_OJPEG)
     refuse_tiff(fmt::format("compression {}", compression), "a usual one");
   read_values(open, layout);
   layout->photometric = field<std::uint16_t>(open, TIFFTAG_PHOTOMETRIC,
                                              layout->samples < 3 ? PHOTOMETRIC_MINISBLACK : PHOTOMETRIC_RGB);
-  // JPEG's own colours: libtiff converts them to red, green and blue.
+  // libtiff converts the YCbCr colours of JPEG to red, green and blue.
   if (layout->photometric == PHOTOMETRIC_YCBCR && compression == COMPRESSION_JPEG && !layout->is_separate &&
       TIFFSetField(open, TIFFTAG_JPEGCOLORMODE, JPEGCOLORMODE_RGB) == 1)
     layout->photometric = PHOTOMETRIC_RGB;
@@ -77,7 +78,7 @@ void read_form(TIFF* open, TiffLayout* layout) {
   if (layout->samples < layout->channels() || layout->samples > most_samples ||
       (layout->bits < 8 && layout->samples > 1) ||
       (layout->bits > 8 && layout->photometric == PHOTOMETRIC_PALETTE))
-    refuse_tiff(fmt::format("{} values of {} bits a pixel", layout->samples, layout->bits),
+    refuse_tiff(fmt::format("{} values of {} bits per pixel", layout->samples, layout->bits),
                 "gray, RGB or a palette");
 }
 
@@ -88,22 +89,22 @@ void read_blocks(TIFF* open, TiffLayout* layout, std::size_t most_pixels) {
                              ? field<std::uint32_t>(open, TIFFTAG_TILELENGTH, 0)
                              : std::min(layout->height, field<std::uint32_t>(open, TIFFTAG_ROWSPERSTRIP, 0));
   check_picture_size(layout->block_width, layout->block_height, most_pixels);
-  if (layout->is_mixed()) return;  // Some have fewer values than pixels.
+  if (layout->is_mixed()) return;  // Such files can have fewer values than pixels.
   layout->row_size = (layout->block_width * layout->samples_in_block() * layout->bits + 7) / 8;
   layout->block_size = layout->row_size * layout->block_height;
   const auto size = static_cast<std::size_t>(layout->is_tiled ? TIFFTileSize64(open) : TIFFStripSize64(open));
   if (size != layout->block_size) throw damaged("TIFF", "blocks of another size than their pixels");
 }
 
-// Returns a value of 1 to 14 bits, the highest first, or of 16 in this machine's byte order, as set by
-// libtiff.
+// Returns a value of 1 to 14 bits, stored with the highest bit first, or of 16 bits in this machine's byte
+// order, which libtiff provides.
 template <typename Value>
 Value value_in(const std::uint8_t* row, std::size_t index, std::size_t bits) {
   Value value{};
   if (bits == 8 || bits == 16) {
     std::memcpy(&value, row + index * sizeof(Value), sizeof(Value));
   } else if (bits > 8) {
-    // All are even: a value occupies two bytes, or three if it begins late in the first.
+    // All bit counts here are even. A value occupies two bytes, or three if it begins late in the first byte.
     const std::size_t at = index * bits, end = at % 8 + bits;
     auto window = static_cast<std::uint32_t>(row[at / 8] << 16U | row[at / 8 + 1] << 8U);
     if (end > 16) window |= row[at / 8 + 2];
@@ -148,7 +149,7 @@ Image<Value> values_of(TIFF* open, const TiffLayout& layout, const TiffInput& in
   return image;
 }
 
-// Converts gray of 1 to 16 bits to bytes or words; 0 may be white.
+// Converts gray values of 1 to 16 bits to 8-bit or 16-bit values. In the file, 0 may be black or white.
 template <typename Value>
 void make_gray(Image<Value>* image, const TiffLayout& layout) {
   const int most = (1 << layout.bits) - 1, scale = sizeof(Value) == 1 ? 255 / most : 1;
@@ -169,7 +170,7 @@ Palette palette_of(TIFF* open, const TiffLayout& layout) {
 }  // namespace
 
 Picture read_tiff(std::span<const std::uint8_t> file, std::size_t most_pixels) {
-  // Tiles may extend beyond the picture; and libtiff keeps a block and its compressed bytes.
+  // Tiles may extend beyond the picture, and libtiff stores a block together with its compressed bytes.
   constexpr std::size_t usual_tile = std::size_t{1} << 20U, most_pixel_bytes = 16;
   const std::size_t most_block = std::max(most_pixels, usual_tile);
   TiffInput input{file};

@@ -9,14 +9,15 @@ namespace flexura {
 
 std::string missing_head(const CameraPorts& ports) {
   if (ports.head != nullptr) return "";
-  return fmt::format("camera {} has no head: it can be neither turned nor zoomed", ports.name);
+  return fmt::format("camera {} has no head: it cannot pan, tilt or zoom", ports.name);
 }
 
 std::string missing_stage(const CameraPorts& ports, const Camera& optics) {
   const bool travels = std::ranges::any_of(
       optics.stage_axes(), [](const AxisConfig& axis) { return axis.limits[0] < axis.limits[1]; });
   if (ports.stage != nullptr || !travels) return "";
-  return fmt::format("camera {} has no stage: it cannot be slid, and its mount.stage has travel", ports.name);
+  return fmt::format("camera {} has no stage: it cannot be translated, but its mount.stage has travel",
+                     ports.name);
 }
 
 CommandOutcome command_head(const CameraPorts& ports, const Camera& optics, const HeadState& state) {
@@ -28,7 +29,8 @@ CommandOutcome command_head(const CameraPorts& ports, const Camera& optics, cons
 CommandOutcome command_stage(const CameraPorts& ports, const Camera& optics, const StageState& state) {
   if (ports.stage != nullptr) return ports.stage->command(state);
   if (state == optics.initial_stage()) return Accepted{};
-  return PortFault{FaultKind::refused, fmt::format("camera {} has no stage: it cannot be slid", ports.name)};
+  return PortFault{FaultKind::refused,
+                   fmt::format("camera {} has no stage: it cannot be translated", ports.name)};
 }
 
 CommandOutcome halt_camera(const CameraPorts& ports) {

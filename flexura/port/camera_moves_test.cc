@@ -20,14 +20,14 @@ TEST(CameraMoves, ACameraWithoutAHeadOrAStageStaysWhereItStands) {
   EXPECT_TRUE(halt_camera(bare));
   EXPECT_EQ(measured_stance(bare, optics).value(), optics.initial_stance());
   EXPECT_EQ(text(*command_head(bare, optics, {0.2, 0, 1}).fault()),
-            "refused: camera side has no head: it can be neither turned nor zoomed");
+            "refused: camera side has no head: it cannot pan, tilt or zoom");
   EXPECT_EQ(text(*command_stage(bare, optics, {{0, 0, 0.1}}).fault()),
-            "refused: camera side has no stage: it cannot be slid");
-  EXPECT_EQ(missing_head(bare), "camera side has no head: it can be neither turned nor zoomed");
+            "refused: camera side has no stage: it cannot be translated");
+  EXPECT_EQ(missing_head(bare), "camera side has no head: it cannot pan, tilt or zoom");
   EXPECT_EQ(missing_stage(bare, optics), "") << "it was never believed to travel";
   config.mount.stage.z.limits = {0, 1};
   EXPECT_EQ(missing_stage(bare, Camera(config)),
-            "camera side has no stage: it cannot be slid, and its mount.stage has travel");
+            "camera side has no stage: it cannot be translated, but its mount.stage has travel");
 }
 
 TEST(CameraMoves, ACameraWithBothIsToldAndAskedAsItIs) {

@@ -9,16 +9,17 @@
 
 namespace flexura {
 
-/// One image of a camera. Cheap to copy.
+/// One image of a camera. Cheap to copy, because copies share the picture.
 struct Frame {
-  std::int64_t number = 0;  ///< Number of the exposure, from 0. Lost frames count.
-  double time = 0;          ///< Middle of the exposure (of the middle row with a rolling shutter), s.
-  double exposure = 0;      ///< Exposure time, s.
-  double received = 0;      ///< Time from which it was available, s.
-  std::shared_ptr<const Picture> picture;  ///< Never null.
+  std::int64_t number = 0;  ///< Number of the exposure, from 0; lost frames are counted.
+  /// Time of the middle of the exposure, s; with a rolling shutter, of the middle row's exposure.
+  double time = 0;
+  double exposure = 0;                     ///< Exposure time, s.
+  double received = 0;                     ///< Time at which the frame became available, s.
+  std::shared_ptr<const Picture> picture;  ///< The image; never null.
 };
 
-/// A camera that records frames by itself.
+/// A camera that records frames continuously.
 class CameraPort {
  public:
   virtual ~CameraPort() = default;
@@ -26,10 +27,11 @@ class CameraPort {
   CameraPort(const CameraPort&) = delete;
   CameraPort& operator=(const CameraPort&) = delete;
 
-  /// Returns the newest frame available now, or std::nullopt if it was given before. Skips older frames.
+  /// Returns the newest frame that is available now; std::nullopt if this frame was returned before. Skips
+  /// older frames.
   [[nodiscard]] virtual Outcome<std::optional<Frame>> newest() = 0;
-  /// Waits up to `timeout` s for the next frame. Returns std::nullopt after that. Refuses a timeout that is
-  /// not finite.
+  /// Waits for the next frame. Returns std::nullopt if no frame arrives within `timeout`, s. Refuses a
+  /// timeout that is not finite.
   [[nodiscard]] virtual Outcome<std::optional<Frame>> wait(double timeout) = 0;
 };
 

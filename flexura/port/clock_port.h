@@ -2,7 +2,7 @@
 
 namespace flexura {
 
-/// Time of the rig: the only clock that algorithms use.
+/// Clock of the rig, the only clock that algorithms use.
 class ClockPort {
  public:
   virtual ~ClockPort() = default;
@@ -12,7 +12,8 @@ class ClockPort {
 
   /// Returns the time since the start of the rig, s. Never decreases.
   [[nodiscard]] virtual double now() const = 0;
-  /// Returns at `time`, or at once if it has passed. Throws std::invalid_argument if `time` is not finite.
+  /// Returns when the clock reaches `time`, s, or at once if `time` has passed. Throws std::invalid_argument
+  /// if `time` is not finite.
   virtual void wait_until(double time) = 0;
 };
 

@@ -8,20 +8,21 @@
 #include "flexura/port/device_clock.h"
 #include "flexura/port/motion_ports.h"
 
-// Adapters for devices whose readings and frames have the time of their own clock. In front of such a port,
-// they convert these times to the rig's. They learn the clock from every answer. Devices with one clock may
-// share a DeviceClock if one thread calls them.
+// Adapters for devices whose readings and frames have times of the device's own clock. An adapter wraps the
+// device's port and converts these times to times of the rig's clock. It estimates the relation of the clocks
+// from every answer of the device. Devices with a common clock may share a DeviceClock if only one thread
+// calls them.
 namespace flexura {
 
-/// Converts a device's times to the rig's. If the device's times do not decrease, the results do not either,
-/// except when the previous ones turn out to be too late.
+/// Converts times of a device's clock to times of the rig's clock. If the device's times do not decrease, the
+/// results do not decrease, except when previous results turn out to be too late.
 class MappedTime {
  public:
   /// `clock` must outlive this object.
   explicit MappedTime(DeviceClock& clock) : clock_(clock) {}
 
-  /// Returns the rig's time of an answer, for the arguments of DeviceClock::add. Returns the device's time if
-  /// nothing can be learned from it.
+  /// Returns the time of an answer on the rig's clock, s. The parameters are those of DeviceClock::add().
+  /// Returns `device` as long as the relation of the clocks is unknown.
   double of(double device, double earliest, double latest) {
     (void)clock_.add(device, earliest, latest);
     if (!clock_.is_known()) return device;
@@ -36,12 +37,12 @@ class MappedTime {
   double last_device_ = std::numeric_limits<double>::infinity(), last_rig_ = 0;
 };
 
-/// An arm, a head or a stage with its own clock.
+/// Port of an arm, a head or a stage that has its own clock.
 template <class Port, class State, class Reading, class... Way>
 class ClockedDevice : public Port {
  public:
-  /// A reading was true when it was requested, or up to `age` s before, if the device answers from a cycle.
-  /// The other arguments must outlive this object.
+  /// `age`, s, is the largest age of a reading at the time of its request. It is above 0 for a device that
+  /// reports its last cyclic measurement. The other arguments must outlive this object.
   ClockedDevice(Port& port, const ClockPort& rig, DeviceClock& clock, double age = 0)
       : port_(port), rig_(rig), time_(clock), age_(age) {}
 
@@ -49,7 +50,7 @@ class ClockedDevice : public Port {
   CommandOutcome command(const State& state, Way... way) override { return port_.command(state, way...); }
   /// Forwards the halt to the device.
   CommandOutcome halt() override { return port_.halt(); }
-  /// Returns the device's reading with the rig's time.
+  /// Returns the device's reading, with the time converted to the rig's clock.
   Outcome<Reading> read() override {
     const double asked = rig_.now();
     auto outcome = port_.read();
@@ -70,11 +71,11 @@ using ClockedArm = ClockedDevice<ArmPort, ArmState, ArmReading, double>;
 using ClockedHead = ClockedDevice<HeadPort, HeadState, HeadReading>;
 using ClockedStage = ClockedDevice<StagePort, StageState, StageReading>;
 
-/// A camera with its own clock. The frames' `time` is of that clock; `received` is of the rig's clock, from
-/// the program that fetches the frames.
+/// Port of a camera that has its own clock. The wrapped port's frames have `time` on the camera's clock, and
+/// `received` on the rig's clock, set by the program that fetches the frames.
 class ClockedCamera : public CameraPort {
  public:
-  /// A frame is received `quickest` to `slowest` s after the middle of its exposure. `slowest` may be
+  /// A frame is received `quickest` to `slowest` s after the middle of its exposure. `slowest` is infinite if
   /// unknown. The other arguments must outlive this object.
   ClockedCamera(CameraPort& port, DeviceClock& clock, double quickest,
                 double slowest = std::numeric_limits<double>::infinity())

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-// Returns the argument at which a concave function is greatest (golden section search).
+// Returns the argument that maximizes a concave function (golden section search).
 double greatest(double low, double high, const std::function<double(double)>& f) {
   constexpr double golden = 0.6180339887498949;
   constexpr int steps = 40;  // To 1e-11 of the interval.
@@ -144,7 +144,8 @@ void DeviceClock::keep(double device, double earliest, double latest) {
     seconds_.pop_front();
 }
 
-// Without lower bounds, no bound is contradicted if a time is earlier than any answer can be.
+// Returns whether a time is earlier than any answer can be. Without lower bounds such a time contradicts no
+// bound.
 bool DeviceClock::is_early(double device, double latest) const {
   return is_known() && !has_lower() && latest < rig_time(device) - config_.jump;
 }

@@ -8,7 +8,7 @@
 
 namespace flexura {
 
-/// Quantity of a drive's targets and readings, one number per axis.
+/// Physical quantity of a drive's targets and readings, which have one number per axis.
 enum class DriveQuantity {
   motor_positions,  ///< Motor positions, microsteps, in each motor's own direction (kinematics/motors.h).
   tendon_displacements,  ///< Length by which each tendon is pulled in, m (TendonDisplacements).
@@ -17,17 +17,17 @@ enum class DriveQuantity {
 
 /// Reading of a drive.
 struct DriveReading {
-  double time = 0;             ///< Time at which it was true, s.
-  std::vector<double> values;  ///< Position of each axis, in the drive's quantity.
-  /// Positions behind the backlash of each axis, in the drive's quantity. Only from a drive of motor
-  /// positions that follows its backlash; otherwise empty.
+  double time = 0;             ///< Time of the measurement, s.
+  std::vector<double> values;  ///< Measured value of each axis, in the drive's quantity.
+  /// Position of each axis behind the backlash, microsteps. Only from a drive of motor positions that tracks
+  /// its backlash; otherwise empty.
   std::vector<double> carried;
-  bool moving = false;  ///< A commanded motion is in progress or pending.
+  bool moving = false;  ///< Whether a commanded motion is in progress or pending.
 };
 
-/// A motion controller: takes a target for each axis and needs no model of the arm. The axes are those of a
-/// Drive, in its order. Commands return at once; the motion takes time. A command replaces the previous one.
-/// Targets out of an axis's range are clamped.
+/// A motion controller, which moves each axis to a target and needs no model of the arm. The axes are those
+/// of a Drive, in the same order. Commands return before the motion is completed. A command replaces the
+/// previous command. Targets outside an axis's range are clamped.
 class DrivePort {
  public:
   virtual ~DrivePort() = default;
@@ -35,16 +35,16 @@ class DrivePort {
   DrivePort(const DrivePort&) = delete;
   DrivePort& operator=(const DrivePort&) = delete;
 
-  /// Returns the quantity of targets and readings. It never changes.
+  /// Returns the quantity of targets and readings, which never changes.
   [[nodiscard]] virtual DriveQuantity quantity() const = 0;
   [[nodiscard]] virtual std::size_t axes() const = 0;
-  /// Sends each axis to its target. All arrive together `duration` s from now, or each as soon after that as
-  /// possible; 0 means as soon as possible. Refused: a wrong number of targets, a target that is not finite,
-  /// or a duration that is negative or not finite.
+  /// Moves each axis to its target. All axes arrive together after `duration`, s; an axis that cannot arrive
+  /// by then arrives as soon as possible. Duration 0 means as soon as possible. The command is refused if the
+  /// number of targets is wrong, a target is not finite, or the duration is negative or not finite.
   [[nodiscard]] virtual CommandOutcome command(std::span<const double> targets, double duration) = 0;
   /// Stops as fast as the axes can.
   [[nodiscard]] virtual CommandOutcome halt() = 0;
-  /// Returns the axes' current positions. Moves nothing.
+  /// Returns the current reading of all axes, without moving anything.
   [[nodiscard]] virtual Outcome<DriveReading> read() = 0;
 };
 

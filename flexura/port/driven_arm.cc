@@ -31,8 +31,9 @@ bool all_finite(const std::vector<double>& values) {
 }  // namespace
 
 std::string command_problem(const Arm& arm, const ArmState& state, double duration) {
-  if (!is_shape_of(arm, state)) return "the shape is not one of this arm";
-  if (!std::isfinite(duration) || duration < 0) return fmt::format("a motion cannot take {} s", duration);
+  if (!is_shape_of(arm, state)) return "the shape does not fit this arm";
+  if (!std::isfinite(duration) || duration < 0)
+    return fmt::format("a motion cannot have a duration of {} s", duration);
   return "";
 }
 
@@ -76,8 +77,8 @@ DrivenArm::DrivenArm(DrivePort& port, const Arm& arm, const Drive& drive, const 
       zero_(displacements_at_zero(arm, drive, initial, commander_.positions())) {
   if (port.quantity() == DriveQuantity::tendon_tensions)
     throw std::invalid_argument(
-        "a drive of tensions cannot move this arm: which shape tensions make is a matter of statics, and "
-        "nothing is known of it; expected a drive of motor positions or of tendon displacements");
+        "a drive of tensions cannot move this arm, because no model converts tensions to shapes: expected a "
+        "drive of motor positions or of tendon displacements");
   if (port.axes() != drive.axes.size())
     throw std::invalid_argument(fmt::format("the controller has {} axes: expected {}, as the arm's drive",
                                             port.axes(), drive.axes.size()));
@@ -99,8 +100,8 @@ CommandOutcome DrivenArm::pull(const std::vector<double>& displacements, double 
   constexpr double most_microsteps = 1e15;
   for (std::size_t i = 0; i < desired.pulled.size(); ++i)
     if (!(std::abs(desired.pulled[i]) * drive_.axes[i].microsteps_a_metre() < most_microsteps))
-      return arm_refuses("a motor cannot count so far");
-  // If the controller refuses the command, the backlash stays on its side.
+      return arm_refuses("a motor position is too large to be counted");
+  // If the controller refuses the command, the backlash remains on the same side.
   MotorCommander next = commander_;
   next.follow(desired);
   const std::vector<double> targets(next.positions().begin(), next.positions().end());

@@ -13,69 +13,70 @@
 
 namespace flexura {
 
-/// Returns the reason why an arm refuses a command, or "" if it is a shape of this arm and a valid duration.
+/// Returns the reason why an arm refuses a command; "" if `state` fits the arm and `duration`, s, is valid.
 [[nodiscard]] std::string command_problem(const Arm& arm, const ArmState& state, double duration);
 
-/// Returns the motor positions, microsteps, at which a drive holds an arm in a shape by the model, with the
-/// backlash compensated for pulling in. Throws std::invalid_argument if the shape or the drive is of another
-/// arm.
+/// Returns the motor positions, microsteps, for which the model predicts the shape `state`, with the backlash
+/// compensated for pulling in. Throws std::invalid_argument if the shape or the drive does not fit the arm.
 [[nodiscard]] std::vector<std::int64_t> nominal_positions(const Arm& arm, const Drive& drive,
                                                           const ArmState& state);
 
-/// An arm behind a motion controller. The model of the arm and its drive converts shapes to targets, with
-/// backlash compensation, and the controller's readings to shapes. So a controller's driver needs neither
-/// model.
+/// Port of an arm that a motion controller drives. Converts shapes to targets of the controller, with
+/// backlash compensation, and the controller's readings to shapes, using models of arm and drive. Hence the
+/// controller's driver needs no models.
 ///
-/// A controller of motor positions is at 0 where the arm is straight and unstretched; one of displacements
-/// reports 0 there. The positions behind the backlash are followed from reading to reading, unless the
-/// controller reports them. If a motor reverses twice between two readings, the shape may be wrong by the
-/// backlash.
+/// Motor positions or displacements of the controller are 0 for the straight, unstretched arm. Unless the
+/// controller reports positions behind the backlash, these are tracked from reading to reading. If a motor
+/// then reverses twice between two readings, the shape may have an error of up to the backlash.
 class DrivenArm : public ArmPort {
  public:
-  /// The arm is in `initial`, its motors at nominal_positions(). `port` must outlive this object. Throws
-  /// std::invalid_argument if the controller takes tensions, has another number of axes than the drive, or
-  /// the drive or shape is of another arm. Tensions need statics to make a shape, which the model does not
-  /// have.
+  /// Assumes that the arm has the shape `initial` and the motors are at nominal_positions(). `port` must
+  /// outlive this object. Throws std::invalid_argument if the controller has another number of axes than the
+  /// drive, or drive or shape do not fit the arm. Also throws it for a controller of tensions, because the
+  /// shape for given tensions needs a static model, which this class does not use.
   DrivenArm(DrivePort& port, const Arm& arm, const Drive& drive, const ArmState& initial);
 
   CommandOutcome command(const ArmState& state, double duration) override;
   CommandOutcome halt() override { return port_.halt(); }
   Outcome<ArmReading> read() override;
 
-  /// Pulls in each tendon by this displacement, m, with backlash compensation, whatever shape results.
-  /// `duration` is as for command(). Refused: other than one finite displacement per tendon, or one beyond
-  /// the motor's count.
+  /// Pulls in each tendon by a displacement, m, with backlash compensation, without regard to the resulting
+  /// shape. `duration`, s, is as for command(). The command is refused unless there is one finite
+  /// displacement per tendon, and each can be counted in microsteps.
   CommandOutcome pull(const std::vector<double>& displacements, double duration);
 
  private:
   [[nodiscard]] bool counts_motors() const { return port_.quantity() == DriveQuantity::motor_positions; }
-  // Returns the reason why the reading is invalid, or "".
+  // Returns the reason why a reading is invalid, otherwise "".
   [[nodiscard]] std::string problem_of(const DriveReading& reading) const;
-  // Returns the positions of the spools, microsteps, each in its motor's direction.
+  // Returns the positions of the spools, microsteps, positive in each motor's own direction.
   [[nodiscard]] std::vector<double> carried(const DriveReading& reading);
 
   DrivePort& port_;
   Arm arm_;
   Drive drive_;
   MotorCommander commander_;
-  std::vector<double> zero_;      // Displacements where the motors are at 0, m.
-  std::vector<double> followed_;  // Behind the backlash, microsteps; for a port without carried values.
+  std::vector<double> zero_;  // Displacements at motor positions 0, m.
+  std::vector<double>
+      followed_;  // Positions behind the backlash, microsteps, if the port does not report them.
 };
 
-/// Returns the displacements, m, where the motors are at 0 if the motors at `positions`, microsteps, make
-/// this shape. They are 0 up to rounding. Throws like nominal_positions().
+/// Returns the tendon displacements at motor positions 0, m, if the motor positions `positions`, microsteps,
+/// give the shape `state`. For nominal positions these displacements are 0 up to rounding. Throws like
+/// nominal_positions().
 [[nodiscard]] std::vector<double> displacements_at_zero(const Arm& arm, const Drive& drive,
                                                         const ArmState& state,
                                                         const std::vector<std::int64_t>& positions);
 
-/// Returns the displacements of the tendons, m, with their spools at `carried`, microsteps, each in its
-/// motor's direction. At 0 the displacements are `zero`, m. Throws std::invalid_argument if the numbers of
-/// axes differ.
+/// Returns the tendon displacements, m, for spool positions `carried`, microsteps, positive in each motor's
+/// own direction. `zero` has the displacements at spool positions 0, m. Throws std::invalid_argument if the
+/// numbers of axes differ.
 [[nodiscard]] TendonDisplacements displacements_carried(const Drive& drive, const std::vector<double>& zero,
                                                         const std::vector<double>& carried);
 
-/// Returns the shape with the spools at `carried`, microsteps, each in its motor's direction. At 0 the
-/// displacements are `zero`, m. Throws std::invalid_argument if the numbers of axes differ.
+/// Returns the shape for spool positions `carried`, microsteps, positive in each motor's own direction.
+/// `zero` has the displacements at spool positions 0, m. Throws std::invalid_argument if the numbers of axes
+/// differ.
 [[nodiscard]] ArmState shape_carried(const Arm& arm, const Drive& drive, const std::vector<double>& zero,
                                      const std::vector<double>& carried);
 

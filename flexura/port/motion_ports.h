@@ -8,18 +8,18 @@
 #include "flexura/model/arm.h"
 #include "flexura/port/outcome.h"
 
-// Moving devices. Commands return at once; the motion takes time. A command replaces the previous one, even
-// during its motion. Positions out of a device's range are clamped. A command with a number that is not
-// finite is refused, and nothing moves.
+// Ports of moving devices. Commands return before the motion is completed. A command replaces the previous
+// command, even during its motion. Positions outside a device's range are clamped. A command with a number
+// that is not finite is refused, and nothing moves.
 namespace flexura {
 
 /// Reading of an arm's drives.
 struct ArmReading {
-  double time = 0;  ///< Time at which it was true, s.
+  double time = 0;  ///< Time of the measurement, s.
   /// Shape that the model computes from the drives' positions.
   ArmState state;
-  std::vector<std::int64_t> positions;  ///< Motor positions, microsteps; empty for an arm without drives.
-  bool moving = false;                  ///< A commanded motion is in progress or pending.
+  std::vector<std::int64_t> positions;  ///< Motor positions, microsteps; empty for an arm without a drive.
+  bool moving = false;                  ///< Whether a commanded motion is in progress or pending.
 };
 
 /// An arm and its drives, simulated or real.
@@ -30,24 +30,25 @@ class ArmPort {
   ArmPort(const ArmPort&) = delete;
   ArmPort& operator=(const ArmPort&) = delete;
 
-  /// Moves the drives to where the model has this shape. All arrive together `duration` s from now, or each
-  /// as soon after that as possible; 0 means as soon as possible. For continuous motion, send commands that
-  /// each last until the next one. Also refused: a duration that is negative or not finite.
+  /// Moves the drives to the positions for which the model predicts the shape `state`. All drives arrive
+  /// together after `duration`, s; a drive that cannot arrive by then arrives as soon as possible. Duration 0
+  /// means as soon as possible. For continuous motion, each command's duration should last until the next
+  /// command. A duration that is negative or not finite is also refused.
   [[nodiscard]] virtual CommandOutcome command(const ArmState& state, double duration) = 0;
   /// Stops as fast as the drives can.
   [[nodiscard]] virtual CommandOutcome halt() = 0;
-  /// Returns the drives' current reading. Moves nothing.
+  /// Returns the drives' current reading, without moving anything.
   [[nodiscard]] virtual Outcome<ArmReading> read() = 0;
 };
 
-/// Reading of a head: its motor positions, in steps of their resolution.
+/// Reading of a head: measured axis positions, with the resolution of the motors.
 struct HeadReading {
-  double time = 0;  ///< Time at which it was true, s.
+  double time = 0;  ///< Time of the measurement, s.
   HeadState state;
-  bool moving = false;  ///< A commanded motion is in progress or pending.
+  bool moving = false;  ///< Whether a commanded motion is in progress or pending.
 };
 
-/// A camera's pan/tilt head and its zoom.
+/// A camera's pan/tilt/zoom head.
 class HeadPort {
  public:
   virtual ~HeadPort() = default;
@@ -55,20 +56,19 @@ class HeadPort {
   HeadPort(const HeadPort&) = delete;
   HeadPort& operator=(const HeadPort&) = delete;
 
-  /// Commands pan and tilt (rad) and zoom (a position in the lens's table). Each axis moves by itself, as
-  /// fast as it can.
+  /// Commands pan and tilt, rad, and the zoom position. Each axis moves independently, as fast as possible.
   [[nodiscard]] virtual CommandOutcome command(const HeadState& state) = 0;
   /// Stops as fast as the motors can.
   [[nodiscard]] virtual CommandOutcome halt() = 0;
-  /// Returns the motors' current reading. Moves nothing.
+  /// Returns the motors' current reading, without moving anything.
   [[nodiscard]] virtual Outcome<HeadReading> read() = 0;
 };
 
 /// Reading of a stage.
 struct StageReading {
-  double time = 0;  ///< Time at which it was true, s.
+  double time = 0;  ///< Time of the measurement, s.
   StageState state;
-  bool moving = false;  ///< A commanded motion is in progress or pending.
+  bool moving = false;  ///< Whether a commanded motion is in progress or pending.
 };
 
 /// A stage that translates a camera's head.
@@ -79,11 +79,11 @@ class StagePort {
   StagePort(const StagePort&) = delete;
   StagePort& operator=(const StagePort&) = delete;
 
-  /// Commands the mount's offset, m along its axes. Each axis moves by itself, as fast as it can.
+  /// Commands the mount's offset along its axes, m. Each axis moves independently, as fast as possible.
   [[nodiscard]] virtual CommandOutcome command(const StageState& state) = 0;
   /// Stops as fast as the motors can.
   [[nodiscard]] virtual CommandOutcome halt() = 0;
-  /// Returns the motors' current reading. Moves nothing.
+  /// Returns the motors' current reading, without moving anything.
   [[nodiscard]] virtual Outcome<StageReading> read() = 0;
 };
 

@@ -8,27 +8,27 @@
 
 namespace flexura {
 
-/// What can fail at a port in a good run.
+/// Kind of failure of a device, which can occur without an error in the program.
 enum class FaultKind {
   link_lost,  ///< The device does not answer.
-  refused,    ///< The device answers and refuses, for example a position that is not finite or a shape of
-              ///< another arm.
+  refused,  ///< The device refuses a command, for example a position that is not finite or a shape of another
+            ///< arm.
 };
 
-/// Reason why a device did not do what was requested.
+/// Reason why a device did not execute a command or return a reading.
 struct PortFault {
   FaultKind kind = FaultKind::link_lost;
-  std::string what;  ///< Message with the device's name.
+  std::string what;  ///< Error message with the device's name.
 };
 
 /// Returns "link lost: ..." or "refused: ...".
 [[nodiscard]] std::string text(const PortFault& fault);
 
-/// Result of a port: a value, or the reason why it is missing.
+/// Result of a request to a device: a value, or the fault that prevented it.
 template <class T>
 class [[nodiscard]] Outcome {
  public:
-  /// Converts a value or a fault to an outcome.
+  /// Makes an outcome from a value or a fault.
   Outcome(T value) : held_(std::move(value)) {}          // NOLINT(google-explicit-constructor)
   Outcome(PortFault fault) : held_(std::move(fault)) {}  // NOLINT(google-explicit-constructor)
 
@@ -58,9 +58,9 @@ class [[nodiscard]] Outcome {
   std::variant<T, PortFault> held_;
 };
 
-/// Value of an accepted command.
+/// Value of the outcome of an accepted command.
 struct Accepted {};
-/// Result of a command: accepted, or the reason why not. It does not wait for the motion.
+/// Result of a command: accepted, or a fault. The result is available before the motion is completed.
 using CommandOutcome = Outcome<Accepted>;
 
 }  // namespace flexura

@@ -9,20 +9,20 @@
 
 namespace flexura {
 
-/// A camera of a rig with its moving devices. Without one, the camera stays at its initial axis positions.
-/// Use port/camera_moves.h and port/rig_readings.h for any camera.
+/// A camera of a rig with its moving devices. The axes of a missing head or stage count as fixed at their
+/// initial positions. The functions in port/camera_moves.h and port/rig_readings.h handle missing devices.
 struct CameraPorts {
-  std::string name;              ///< CameraConfig::name.
-  CameraPort* camera = nullptr;  ///< Never null.
-  HeadPort* head = nullptr;      ///< Null if the camera has no pan, tilt and zoom.
-  StagePort* stage = nullptr;    ///< Null if the camera has no translation.
+  std::string name;              ///< Name of the camera (CameraConfig::name).
+  CameraPort* camera = nullptr;  ///< Source of frames; never null.
+  HeadPort* head = nullptr;      ///< Pan/tilt/zoom head; null if the camera has none.
+  StagePort* stage = nullptr;    ///< Stage that translates the head; null if the camera has none.
 };
 
-/// All ports of a rig, simulated or real. Owned by the rig; clock and arm are never null.
+/// All ports of a rig, simulated or real. The rig owns the ports. `clock` and `arm` are never null.
 struct RigPorts {
   ClockPort* clock = nullptr;
   ArmPort* arm = nullptr;
-  std::vector<CameraPorts> cameras;  ///< One or more, in the order in which tasks count them, from 0.
+  std::vector<CameraPorts> cameras;  ///< One or more cameras; tasks refer to them by their index, from 0.
 };
 
 }  // namespace flexura

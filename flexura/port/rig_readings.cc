@@ -67,7 +67,7 @@ std::variant<StanceReading, std::string> read_camera(const RigPorts& rig, std::s
   constexpr double rounding = 1e-6;
   if (std::abs(state.zoom - known) > optics.head_axes()[2].resolution + rounding * std::abs(known))
     return fmt::format(
-        "the head of camera {} reads a zoom of {:.6g}, and its lens is known from {:.6g} to {:.6g}",
+        "the head of camera {} reads a zoom of {:.6g}, but its lens is known from {:.6g} to {:.6g}",
         ports.name, state.zoom, lens.first(), lens.last());
   state.zoom = known;
   return StanceReading{

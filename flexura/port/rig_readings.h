@@ -12,19 +12,20 @@ namespace flexura {
 
 /// Reading of a camera's axis positions.
 struct StanceReading {
-  double time = 0;  ///< Of the head, s; without a head of the stage, without both of the clock.
+  double time = 0;  ///< Time of the head's reading, s; without a head, of the stage's reading; without both,
+                    ///< the current time.
   RigStance stance;
-  bool moving = false;  ///< Head or stage is moving.
+  bool moving = false;  ///< Whether head or stage is moving.
 };
 
-/// Returns the reading of an arm with this number of sections, or the reason why it is invalid: a fault, a
-/// number that is not finite, another number of sections.
+/// Returns the reading of an arm with this number of sections, or an error message. Errors are a fault, a
+/// number that is not finite, and another number of sections.
 [[nodiscard]] std::variant<ArmReading, std::string> read_arm(ArmPort& arm, std::size_t sections);
 
-/// Returns the reading of head and stage of the rig's camera `camera`, or the reason why it is invalid.
-/// Reasons are a fault, a number that is not finite, and a zoom outside the lens's table. A zoom within one
-/// step of an end of the table counts as that end. `optics` is the model of that camera, whose initial
-/// positions replace a missing head or stage.
+/// Returns the reading of head and stage of the rig's camera with index `camera`, or an error message. Errors
+/// are a fault, a number that is not finite, and a zoom outside the lens's table. A zoom within one
+/// resolution step of an end of the table counts as that end. `optics` is the model of this camera; its
+/// initial positions replace readings of a missing head or stage.
 [[nodiscard]] std::variant<StanceReading, std::string> read_camera(const RigPorts& rig, std::size_t camera,
                                                                    const Camera& optics);
 

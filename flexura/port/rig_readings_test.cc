@@ -133,7 +133,7 @@ TEST(RigReadings, AZoomWithinAStepOfTheLensesEndIsThatEnd) {
   }
   for (const double next_reading : {0.98, 4.02, -1.0}) {
     camera.head.next_reading.state.zoom = next_reading;
-    EXPECT_THAT(camera.error(), HasSubstr("and its lens is known from 1 to 4"));
+    EXPECT_THAT(camera.error(), HasSubstr("but its lens is known from 1 to 4"));
   }
   camera.config.lens.zoom.clear();
   camera.head.next_reading.state.zoom = 0;

@@ -7,7 +7,7 @@
 #include "flexura/render/span_rim.h"
 #include "flexura/render/span_rim_divide.h"
 
-// All kernels, for the instruction set that the including source is compiled for.
+// All kernels, compiled for the instruction set of the source that includes this header.
 namespace flexura {
 namespace {
 

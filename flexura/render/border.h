@@ -8,21 +8,22 @@
 
 namespace flexura {
 
-/// Borders up to this distance are reported, px.
+/// Largest distance from a ray at which borders are reported, px.
 inline constexpr double border_reach = 3;
 
-/// A curve in the image near a point, approximated by a straight line.
+/// A border near a point of the image: a curve at which the visible surface or colour changes, approximated
+/// by a straight line.
 struct Border {
   double distance = std::numeric_limits<double>::infinity();  ///< Distance from the point, px; >= 0.
   Eigen::Vector2d towards = {1, 0};                           ///< Unit vector from the point to the line.
-  double depth = 0;                                           ///< Depth of the curve in space, m.
-  bool is_ring = false;  ///< Whether it is the edge of a coloured ring on the arm.
+  double depth = 0;                                           ///< Depth of the border in space, m.
+  bool is_ring = false;  ///< Whether the border is the edge of a coloured ring on the arm.
 
   bool operator<(const Border& other) const { return distance < other.distance; }
 };
 
-/// Returns the border where a function of the image is zero, from its `value` at the ray and its derivative
-/// by the ray's (a, b). Exact to first order.
+/// Returns the border at which a function of the image is zero. `value` is the function's value at the ray,
+/// `by_direction` its derivative with respect to the ray's (a, b). Exact to first order.
 [[nodiscard]] inline Border border_of(double value, const Eigen::Vector2d& by_direction, const Ray& ray,
                                       double depth) {
   const Eigen::Vector2d by_pixel = ray.by_pixel.transpose() * by_direction;

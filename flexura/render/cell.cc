@@ -17,8 +17,8 @@ double farthest_corner(const SquarePart& part, const Eigen::Vector2d& from) {
   return farthest;
 }
 
-// Returns the position where the trace's nearest border crosses the line through `point` along `normal`, in
-// px from the point. Empty if it is another border or has another direction.
+// Returns the position at which the nearest border of a trace crosses the line through `point` along
+// `normal`, in px from the point. Empty if this border is another border or has another direction.
 std::optional<double> crossing(const Trace& trace, const Eigen::Vector2d& normal, double most) {
   const double along = trace.nearest.towards.dot(normal);
   if (std::abs(along) < 0.9) return std::nullopt;
@@ -27,8 +27,9 @@ std::optional<double> crossing(const Trace& trace, const Eigen::Vector2d& normal
   return result;
 }
 
-// Mean height of the border over its chord in the square, px along the normal. By Simpson's rule from its two
-// ends and its middle, each measured from close by. Empty if it is not a smooth and nearly straight curve.
+// Returns the mean height of the border over its chord in the square, px along the normal. Uses Simpson's
+// rule with the border's ends and middle, each measured from a nearby ray. Empty if the border is not a
+// smooth and nearly straight curve.
 std::optional<double> mean_height(const Tracer& tracer, const Ray& middle, double half,
                                   const Division& division, const SquarePart& far) {
   const Eigen::Vector2d& normal = division.normal;
@@ -105,7 +106,7 @@ Verdict judge(const Tracer& tracer, const Ray& pixel, const Eigen::Vector2d& cen
   division.offset = here.nearest.distance;
   SquarePart far = part_beyond(half, division.normal, division.offset);
   if (far.area == 0) far.centroid = division.normal * diagonal;
-  // Well beyond the border, even if little of the square is.
+  // A point far enough beyond the border, even if only a small part of the square is beyond.
   const double beyond = far.centroid.dot(division.normal) - division.offset;
   const Eigen::Vector2d probe = far.centroid + std::max(0.0, 0.1 * half - beyond) * division.normal;
   const Trace there = tracer.trace(moved(middle, probe));

@@ -12,46 +12,49 @@
 
 namespace flexura {
 
-/// Returns the ray of the pixel point `offset` px from that of `ray`, with the lens linearised.
+/// Returns the ray of the image point at `offset`, px, from the image point of `ray`, with the lens
+/// linearized.
 [[nodiscard]] inline Ray moved(const Ray& ray, const Eigen::Vector2d& offset) {
   Ray result = ray;
   result.direction.head<2>() += ray.by_pixel * offset;
   return result;
 }
 
-/// The part of a square of side 2 half around the origin that lies beyond a straight line.
+/// The part of a square that is beyond a straight line. The square has the side 2 half and its centre at the
+/// origin.
 struct SquarePart {
   std::array<Eigen::Vector2d, 6> corners;
   std::size_t count = 0;
   double area = 0;
   Eigen::Vector2d centroid = {0, 0};
-  /// Where the line enters and leaves the square, if the area is not 0.
+  /// Points at which the line enters and leaves the square, if the area is not 0.
   std::array<Eigen::Vector2d, 2> chord;
 };
-/// The line is x . normal = offset; `normal` is a unit vector that points beyond it.
+/// Returns the part of the square beyond the line x . normal = offset. `normal` is a unit vector that points
+/// to this part.
 [[nodiscard]] SquarePart part_beyond(double half, const Eigen::Vector2d& normal, double offset);
 
 /// A square of the image that one straight border divides into two uniform parts.
 struct Division {
-  Eigen::Vector2d normal;  ///< Unit normal from the near to the far side.
+  Eigen::Vector2d normal;  ///< Unit normal of the border, from the near to the far surface.
   double offset = 0;       ///< Distance of the border from the square's centre, px.
   Hit far;
   SquarePart far_part;
 };
 
-/// Linear model of the arc length across a square of the arm's skin: (s - value in the middle) / slope is the
-/// distance along the normal, px.
+/// Linear model of the arm's arc length over a square of the image. At a distance x, px, along the normal
+/// from the square's middle, the arc length is s + slope x.
 struct Stripes {
   Eigen::Vector2d normal;
-  double slope = 0;  ///< Arc length per pixel, m/px; > 0.
-  double s = 0;      ///< Arc length in the middle, m.
+  double slope = 0;  ///< Change of arc length per pixel along the normal, m/px; > 0.
+  double s = 0;      ///< Arc length in the middle of the square, m.
 };
-/// Returns the stripes if several ring edges cross the square around `middle` as parallel lines and no other
-/// surface ends there. Empty otherwise, also if the edges bend too much.
+/// Returns the stripes if several edges of rings cross the square around `middle` as parallel lines and no
+/// other border is in the square. Empty otherwise, also if the edges are curved too much.
 [[nodiscard]] std::optional<Stripes> stripes_of(const Tracer& tracer, const Ray& middle, double half,
                                                 const Trace& here);
 
-/// Calls sink(hit, ray, area) for the stripes of the square around `middle`.
+/// Calls sink(hit, ray, area) for each stripe of the square around `middle`.
 template <typename Sink>
 void cover_stripes(const Tracer& tracer, const Ray& middle, double half, const Stripes& stripes, Hit hit,
                    Sink&& sink) {
@@ -75,21 +78,23 @@ void cover_stripes(const Tracer& tracer, const Ray& middle, double half, const S
 
 enum class Verdict { uniform, divided, unclear };
 
-/// Classifies the square of side 2 half around `center` (px from the pixel ray). Uses the trace `here` in its
-/// middle and, if needed, a few more rays. With `is_last` the best guess replaces `unclear`.
+/// Classifies the square of side 2 half, px, around `center`, px from the pixel's ray. Uses the trace `here`
+/// in the square's middle and, if needed, a few more rays. With `is_last`, the result is the best guess
+/// instead of `unclear`.
 [[nodiscard]] Verdict judge(const Tracer& tracer, const Ray& pixel, const Eigen::Vector2d& center,
                             double half, const Trace& here, bool is_last, Division& division);
 
 /// Maximum number of halvings of a square.
 inline constexpr int most_halvings = 4;
 
-/// Integrates the square of side 2 half around `center` by calling sink(hit, ray, area) for its parts. The
-/// area is in px^2, the ray is within the part or next to it. The areas add up to the square's.
+/// Integrates over the square of side 2 half around `center`: calls sink(hit, ray, area) for each uniform
+/// part. The area is in px^2; the ray is within the part or next to it. The areas add up to the square's
+/// area.
 template <typename Sink>
 void cover(const Tracer& tracer, const Ray& pixel, const Eigen::Vector2d& center, double half, int halvings,
            const Trace& seen, Sink&& sink) {
   const double area = 4 * half * half;
-  // On a border either side may be hit; a small step back makes the side unique.
+  // On a border the ray may hit either side; a small step away from the border makes the side unique.
   constexpr double step = 1e-5;
   const bool is_on_border = seen.nearest.distance < 0.01 * step;
   const Trace here = is_on_border ? tracer.trace(moved(pixel, center - step * seen.nearest.towards)) : seen;

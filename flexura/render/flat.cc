@@ -11,7 +11,7 @@
 namespace flexura {
 namespace {
 
-// Intersection of a ray with a circle's plane, times a positive factor: x^2 + y^2 = (radius z)^2 on the
+// Intersection of a ray with a circle's plane in homogeneous coordinates: x^2 + y^2 = (radius z)^2 on the
 // circle.
 struct PlanePoint {
   double x, y, z;
@@ -39,8 +39,8 @@ Border rim_border(const Circle& circle, const Ray& ray, const Eigen::Vector2d& w
   return border;
 }
 
-// Returns the borders where the circle's image crosses the line along `way`, the nearer one first; infinitely
-// far if it does not.
+// Returns the borders at which the circle's image crosses the line along `way`, the nearer border first;
+// infinitely far without a crossing.
 std::array<Border, 2> crossings(const Circle& circle, const Ray& ray, const Eigen::Vector2d& way) {
   std::array<Border, 2> borders;
   Eigen::Vector3d step(0, 0, 0);
@@ -105,7 +105,7 @@ CircleView view_of(const Circle& circle, const Ray& ray) {
   // In the middle of a flat image, the steepest direction points to its far tips.
   if (narrow[0].distance < 0.8 * view.borders[0].distance) view.borders = narrow;
   if (view.borders[0].distance == infinity) {
-    // Past the tip of a flat image.
+    // The ray is beyond the tip of a flat image.
     view.borders[0] = steepest;
     view.borders[0].depth = std::max(1e-300, circle.center.z() - circle.radius);
   }

@@ -16,7 +16,8 @@ class Carrier {
   Carrier(const Scene& from, const Scene& to) : from_(from), to_(to) {
     if (from.arm.tube.size() != to.arm.tube.size() || from.arm.disks.size() != to.arm.disks.size() ||
         from.screens.size() != to.screens.size() || from.etalon.has_value() != to.etalon.has_value())
-      throw std::invalid_argument("the two scenes do not show the same things");
+      throw std::invalid_argument(
+          "the two scenes have different numbers of arcs, disks or screens, or only one has an etalon");
   }
 
   // Returns the new position in W of the point p of `hit`'s surface.

@@ -7,7 +7,7 @@
 namespace flexura {
 namespace {
 
-// The smallest float that reaches `level`.
+// Returns the smallest float that gives `level`.
 float threshold_of(double level, double gamma, double top) {
   const auto reaches = [&](float x) {
     return std::floor(top * std::pow(static_cast<double>(x), 1 / gamma) + 0.5) >= level;
@@ -20,7 +20,7 @@ float threshold_of(double level, double gamma, double top) {
 
 }  // namespace
 
-// With the gammas of cameras, pieces of 2^-8 (2^-12) of an octave hold one or two (twenty) thresholds.
+// For usual gammas, pieces of 2^-8 (2^-12) of an octave contain one or two (twenty) thresholds.
 GammaTable::GammaTable(double gamma, int top) : shift_(top < 256 ? 15 : 11) {
   for (int level = 1; level <= top; ++level) thresholds_.push_back(threshold_of(level, gamma, top));
   thresholds_.push_back(std::numeric_limits<float>::infinity());

@@ -7,12 +7,12 @@
 
 namespace flexura {
 
-/// Lookup table of gamma-corrected levels: floor(top x^(1/gamma) + 1/2) of a float x from 0 to 1, exactly as
-/// in double precision.
+/// Lookup table of gamma-encoded levels: floor(top x^(1/gamma) + 1/2) for a float x from 0 to 1. Results are
+/// exactly as in double precision.
 class GammaTable {
  public:
   GammaTable() = default;
-  /// `top` is the highest level, at most 65535. Takes a few milliseconds above 8 bits.
+  /// `top` is the highest level, at most 65535. Construction takes a few milliseconds for more than 8 bits.
   GammaTable(double gamma, int top);
 
   [[nodiscard]] bool empty() const { return starts_.empty(); }
@@ -25,10 +25,10 @@ class GammaTable {
   }
 
  private:
-  int shift_ = 0;                      // Floats that agree down to this bit form a piece.
-  std::uint32_t first_piece_ = 0;      // Piece of the first threshold.
-  std::vector<std::uint16_t> starts_;  // By piece: the level at its beginning.
-  std::vector<float> thresholds_;      // By level: the smallest float beyond it.
+  int shift_ = 0;                      // Floats that agree in all bits from this bit up form a piece.
+  std::uint32_t first_piece_ = 0;      // Piece that contains the first threshold.
+  std::vector<std::uint16_t> starts_;  // For each piece, the level at its beginning.
+  std::vector<float> thresholds_;      // For each level, the smallest float with a higher level.
 };
 
 }  // namespace flexura

@@ -11,11 +11,11 @@
 
 namespace flexura {
 
-/// Rows or columns [begin, end).
+/// A range [begin, end) of rows or columns.
 struct PixelRange {
   int begin = 0, end = 0;
 
-  /// Returns those of `size` whose integers are in [low, high].
+  /// Returns the integers in [low, high] among 0 to size - 1.
   static PixelRange around(double low, double high, int size) {
     const double limit = size;
     const int begin = static_cast<int>(std::clamp(std::ceil(low), 0.0, limit));
@@ -23,12 +23,12 @@ struct PixelRange {
   }
 };
 
-/// Image region of balls around the points of a segment, plus some pixels, for a lens without distortion:
-/// everything within a radius of the segment's image. Never too small.
+/// A region of the image that contains the images of all balls of a radius around the points of a line
+/// segment, plus some pixels. The region is for a lens without distortion and is never too small.
 class ImageRegion {
  public:
-  /// Returns the region from p to q, C, m; empty if the camera is too near. Parts farther than `beyond`, m,
-  /// from the ends along the segment are omitted.
+  /// Returns the region for the segment from p to q, in C, m; empty if the camera is too near. Omits parts of
+  /// the balls that are farther than `beyond`, m, outside the segment's ends along the segment.
   static std::optional<ImageRegion> of(const Intrinsics& lens, const Eigen::Vector3d& p,
                                        const Eigen::Vector3d& q, double radius,
                                        double beyond = std::numeric_limits<double>::infinity()) {
@@ -39,7 +39,7 @@ class ImageRegion {
     const Eigen::Vector2d a = p.head<2>() / p.z(), b = q.head<2>() / q.z();
     const Eigen::Vector2d from(lens.fx * a.x() + lens.cx, lens.fy * a.y() + lens.cy);
     const Eigen::Vector2d to(lens.fx * b.x() + lens.cx, lens.fy * b.y() + lens.cy);
-    // At the angle t from the axis, a ball's image is longer by 1 / cos^2 t.
+    // At the angle t from the optical axis, the image of a ball is longer by the factor 1 / cos^2 t.
     const double off_axis = 1 + std::max(a.squaredNorm(), b.squaredNorm());
     const double scale = std::max(lens.fx, lens.fy) / (nearest - radius) * off_axis;
     const double aside = scale * radius + pixels_around;
@@ -53,11 +53,11 @@ class ImageRegion {
     return region;
   }
 
-  /// Smallest and largest u and v.
+  /// Smallest and largest (u, v) of the region.
   [[nodiscard]] const Eigen::Vector2d& low() const { return low_; }
   [[nodiscard]] const Eigen::Vector2d& high() const { return high_; }
 
-  /// Rows, and columns of a row, within an image of `size` pixels.
+  /// Rows of the region, and columns in row v, within an image of `size` rows or columns.
   [[nodiscard]] PixelRange rows(int size) const { return PixelRange::around(low_.y(), high_.y(), size); }
   [[nodiscard]] PixelRange columns(int v, int size) const {
     double low = low_.x(), high = high_.x();
@@ -66,7 +66,7 @@ class ImageRegion {
   }
 
  private:
-  // The band between two parallel lines: in a row, between two columns that are linear in v.
+  // The band between two parallel lines. In a row, the band is between two columns that are linear in v.
   struct Band {
     double low = -std::numeric_limits<double>::infinity(), high = -low, by_v = 0;
 

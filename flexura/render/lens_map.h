@@ -9,23 +9,25 @@
 
 namespace flexura {
 
-/// Positions of all pixels' rays in the image of the lens without distortion. Without distortion nothing is
-/// stored. With it, the map is recomputed only when the lens or the size has changed.
+/// Maps each pixel to the undistorted position of its ray: the pixel at which a lens without distortion would
+/// show the ray. For a lens without distortion nothing is stored. Otherwise the map is recomputed only after
+/// a change of the lens or the image size.
 class LensMap {
  public:
   void set(const RayField& rays, const Intrinsics& intrinsics);
 
-  /// `u` is null if the lens has no distortion.
+  /// Returns the positions of row v; LensRow::u is null if the lens has no distortion.
   [[nodiscard]] LensRow row(int v) const;
-  /// Sets the undistorted position of a pixel.
+  /// Sets entry `index` of `places` to the undistorted position of a pixel, with derivatives.
   void place(int u, int v, std::size_t index, SpanPlaces& places) const;
 
-  /// Return the rows, and the columns of a row, in which the region is visible. Never too few.
+  /// Return the rows, and the columns of row v, in which the region may be visible. No visible row or column
+  /// is missing.
   [[nodiscard]] PixelRange rows(const ImageRegion& region) const;
   [[nodiscard]] PixelRange columns(const ImageRegion& region, int v) const;
 
  private:
-  // Bounds of the positions of some neighbouring pixels of a row.
+  // Bounds of the undistorted positions of some neighbouring pixels of a row.
   struct Box {
     float low_u, low_v, high_u, high_v;
     [[nodiscard]] bool touches(const ImageRegion& region) const;

@@ -4,11 +4,11 @@
 
 namespace flexura {
 
-/// Light on the image plane of an ideal camera: each pixel holds the mean over its square.
+/// Light on the image plane of an ideal camera. Each pixel has the mean light over its square.
 struct LightImage {
-  Image<float> light;  ///< One channel (gray) or three (red, green, blue); linear, in the scene's units.
-  Image<float> depth;  ///< Depth in the middle of each pixel, along the optical axis, m; infinite where there
-                       ///< is no surface.
+  Image<float> light;  ///< Linear light, one channel (gray) or three (red, green, blue); 1 is full scale.
+  Image<float>
+      depth;  ///< Depth along the optical axis in the middle of each pixel, m; infinite without a surface.
 };
 
 }  // namespace flexura

@@ -7,12 +7,12 @@
 
 namespace flexura {
 
-/// A scene prepared for one view, ready for drawing and for queries of true values.
+/// A scene prepared for one view, for drawing and for queries of true values.
 struct PreparedScene {
   View view;
-  RayField rays;  ///< Rays of its pixels.
+  RayField rays;  ///< Rays of the view's pixels.
   Stage stage;    ///< The scene's bodies in the camera's frame.
-  Tiles tiles;    ///< Bodies that may be visible, by image region.
+  Tiles tiles;    ///< Bodies that may be visible in each image region.
 };
 
 }  // namespace flexura

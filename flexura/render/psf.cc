@@ -7,7 +7,7 @@
 namespace flexura {
 namespace {
 
-// One side of Gaussian weights of unit sum.
+// Returns one side of a Gaussian kernel of unit sum.
 std::vector<double> sampled(double deviation, int radius) {
   std::vector<double> weights;
   double sum = 0;
@@ -31,7 +31,7 @@ double variance_of(const std::vector<double>& weights) {
 std::vector<float> psf_weights(double deviation) {
   if (deviation == 0) return {1};
   const int radius = static_cast<int>(std::ceil(3.5 * deviation));
-  // The variance grows with that of the Gaussian: bisection.
+  // Uses bisection, because the variance of the kernel increases with that of the Gaussian.
   double low = 0.01, high = 2 * deviation + 1;
   for (int step = 0; step < 60; ++step) {
     const double middle = 0.5 * (low + high);

@@ -20,7 +20,8 @@ bool QuickPicture::draw(const Stage& stage, const RayField& rays, const Intrinsi
   constexpr double most = 1e6;
   const bool is_lens_known = std::abs(intrinsics.cx) < most && std::abs(intrinsics.cy) < most &&
                              intrinsics.fx < most && intrinsics.fy < most;
-  // Regions of the image are bounded across the images of axes: pixels have to be nearly square.
+  // Regions of the image are bounded perpendicular to the images of axes, so that pixels must be nearly
+  // square.
   constexpr double squarest = 4.0 / 3;
   const bool is_square = intrinsics.fx < squarest * intrinsics.fy && intrinsics.fy < squarest * intrinsics.fx;
   const bool is_known =
@@ -84,7 +85,8 @@ bool QuickPicture::leave_face(const FacePart& part) {
   return region.has_value();
 }
 
-// Leaves out a plane such as a floor: all below its horizon, with a margin. From behind it is invisible.
+// Leaves all pixels below the horizon of a plane, such as a floor, with a margin, to the reference path. A
+// plane is invisible from behind.
 void QuickPicture::leave_plane(const PlanePart& plane) {
   if (!(plane.normal.dot(plane.point) < 0)) return;
   constexpr double more = 3;  // px
@@ -97,7 +99,8 @@ void QuickPicture::leave_plane(const PlanePart& plane) {
   }
 }
 
-// Sets the positions of the pixels from number `begin` on; missing ones repeat the last pixel.
+// Sets the positions of the pixels from number `begin` on. Entries beyond the last pixel repeat the last
+// pixel.
 void QuickPicture::set_places(const std::vector<Pixel>& pixels, std::size_t begin, SpanPlaces& places) const {
   for (std::size_t i = 0; i < span_step; ++i) {
     const Pixel& pixel = pixels[std::min(begin + i, pixels.size() - 1)];

@@ -17,43 +17,45 @@
 
 namespace flexura {
 
-/// Converts to the single precision of the fast path.
+/// Converts a number to single precision, which the fast path uses.
 [[nodiscard]] inline float number(double x) { return static_cast<float>(x); }
 
-/// The fast path of the renderer. It draws simple content many pixels at a time in single precision and lists
-/// the other pixels for the reference path. It draws screens and their edges, the arm's skin, its contours in
-/// front of one surface, the rims of its ends, and marker edges. It also draws an etalon that stands alone,
-/// with its lines. It agrees with the reference path to 1/500 of full scale, except at edges of markers or
-/// lines. There, up to 0.05 of a pixel may show the other colour. Depths agree to 1e-5 relative, nearly all
-/// to 1e-6.
+/// The fast path of the renderer. It draws simple content many pixels at a time in single precision, and
+/// lists all other pixels for the reference path. Simple content is screens with edges, the arm's surface,
+/// contours in front of a single surface, rims of the arm's ends, and marker edges. A calibration cylinder
+/// that nothing covers is also simple content. The light agrees with the reference path to 1/500 of full
+/// scale, except at edges of markers or lines. At such edges up to 0.05 of a pixel may have the other colour.
+/// Depths agree to 1e-5 relative, nearly all to 1e-6.
 class QuickPicture {
  public:
   struct Pixel {
     int u, v;
   };
 
-  /// Throws std::invalid_argument if the path is not available.
+  /// Uses an instruction set. Throws std::invalid_argument if this processor does not support it.
   explicit QuickPicture(SimdPath path = best_simd_path());
 
-  /// Draws into `picture`, whose images have the right size. Returns false, with no usable result, for
-  /// unsupported cases: shadows, a camera close to a body, pictures less than span_step wide.
+  /// Draws into `picture`, whose images must have the right size. Returns false, without a usable result, for
+  /// unsupported cases: shadows, a camera close to a body, and pictures less than span_step pixels wide.
   bool draw(const Stage& stage, const RayField& rays, const Intrinsics& intrinsics, PixelKind pixels,
             LightImage& picture);
 
-  /// The pixels that draw() left out, row by row.
+  /// Pixels that draw() did not draw, row by row.
   [[nodiscard]] const std::vector<Pixel>& left_out() const { return left_out_; }
 
  private:
-  // A piece of skin, and the pixels that its contour, or the bent edge of a ring or line, may divide.
+  // A piece of the arm's surface, and the pixels that its contour, or the curved edge of a ring or line, may
+  // divide.
   struct Skin {
     SpanPiece piece{};
     ImageRegion region;
     PixelRange rows;
     std::size_t first_edge = 0;
-    int index = 0;  // Index in the stage.
+    int index = 0;  // Index of the piece in the stage.
     std::vector<Pixel> contour;
   };
-  // A flat end of the arm, the skin that ends there, and the pixels that may contain its rim.
+  // A flat end of the arm, the piece of surface that ends there, and the pixels that may contain the end's
+  // rim.
   struct Rim {
     SpanRim rim{};
     ImageRegion region;
@@ -62,22 +64,22 @@ class QuickPicture {
     double depth = 0;
     std::vector<Pixel> pixels;
   };
-  // A screen; `edges` are those of the kernel, and `margin` is the required distance inside each.
+  // A screen, with the edges as the kernels use them. `margin` is the required distance inside each edge.
   struct Panel {
     SpanScreen screen{};
     struct Edge {
       double value = 0, by_u = 0, by_v = 0, margin = 0;
     } edges[4];
-    // Inverse depth at x and y px from (u0, v0). In double precision, because where two screens cross at a
-    // small angle their difference matters.
+    // Inverse depth at x and y, px, from (u0, v0). In double precision, because the small difference of two
+    // screens that intersect at a small angle matters.
     struct Nearness {
       double value = 0, by_u = 0, by_v = 0;
       [[nodiscard]] double at(double x, double y) const { return value + by_u * x + by_v * y; }
     } nearness;
-    std::vector<float> light;  // A row of its light, if uniform.
+    std::vector<float> light;  // One row of the screen's light, if the light is uniform.
   };
 
-  // Share of a pixel, and its centroid from the pixel's middle.
+  // Fraction of a pixel, and the centroid of this part relative to the pixel's middle, px.
   struct PixelPart {
     double area = 0;
     Eigen::Vector2d centroid = {0, 0};
@@ -90,19 +92,20 @@ class QuickPicture {
   void start(const Stage& stage);
   void find_left_out();
 
-  // Returns whether the image of a point of C is near enough to the picture. Pixel distances from it in
-  // single precision must be exact to a thousandth.
+  // Returns whether the image of a point in C is near enough to the picture that single precision represents
+  // pixel distances from it to a thousandth of a pixel.
   [[nodiscard]] bool is_near_picture(const Eigen::Vector3d& p) const {
     constexpr double most = 16384;
     return std::abs(intrinsics_.fx * p.x() / p.z() + intrinsics_.cx) < most &&
            std::abs(intrinsics_.fy * p.y() / p.z() + intrinsics_.cy) < most;
   }
-  // Returns the pixel that shows a point of C, rounded.
+  // Returns the pixel of a point in C, rounded to integers.
   [[nodiscard]] Eigen::Vector2d pixel_of(const Eigen::Vector3d& p) const {
     return {std::round(intrinsics_.fx * p.x() / p.z() + intrinsics_.cx),
             std::round(intrinsics_.fy * p.y() / p.z() + intrinsics_.cy)};
   }
-  // A function of rays: scale * by . direction, relative to `pixel`.
+  // Returns the function scale * by . direction of a ray as a linear function of the image, relative to
+  // `pixel`.
   [[nodiscard]] Linear along_rays(const Eigen::Vector3d& by, const Eigen::Vector2d& pixel,
                                   double scale = 1) const {
     return {number(scale * by.dot(straight_ray(intrinsics_, pixel.x(), pixel.y()).direction)),
@@ -153,7 +156,7 @@ class QuickPicture {
     rows_[static_cast<std::size_t>(v)].has_exact = true;
   }
   void leave(const ImageRegion& region);
-  // Calls visit(u, v) for the pixels that may show part of the region.
+  // Calls visit(u, v) for the pixels that may show a part of the region.
   template <typename Visit>
   void for_pixels(const ImageRegion& region, Visit&& visit) const {
     const PixelRange rows = map_.rows(region);
@@ -169,11 +172,11 @@ class QuickPicture {
   LensMap map_;
   int width_ = 0, height_ = 0;
   std::size_t channels_ = 1;
-  double pixel_ = 0;  // Size of the largest pixel at depth 1.
+  double pixel_ = 0;  // Size of the largest pixel at depth 1, in (a, b).
   LightImage* picture_ = nullptr;
-  std::vector<std::uint8_t> states_;  // By pixel.
+  std::vector<std::uint8_t> states_;  // State of each pixel.
   std::vector<SpanRow> rows_;
-  std::vector<float> background_;  // One row of it.
+  std::vector<float> background_;  // One row of background light.
   std::vector<int> borders_;
   std::vector<Panel> panels_;
   std::size_t panel_count_ = 0;
@@ -181,8 +184,9 @@ class QuickPicture {
   std::size_t skin_count_ = 0;
   std::vector<Rim> rims_;
   std::size_t rim_count_ = 0;
-  std::vector<std::size_t> by_row_;  // Skins by their first row.
-  std::vector<std::uint8_t> meets_;  // By piece of the stage: whether another part of the arm cuts it.
+  std::vector<std::size_t> by_row_;  // Indices of skins in the order of their first rows.
+  std::vector<std::uint8_t>
+      meets_;  // For each piece of the stage, whether another part of the arm intersects the piece.
   std::vector<SpanEdge> edges_;
   std::vector<Pixel> left_out_;
 };

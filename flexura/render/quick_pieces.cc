@@ -12,10 +12,11 @@ Linear linear(double value, double by_u, double by_v, double scale = 1) {
   return {number(scale * value), number(scale * by_u), number(scale * by_v)};
 }
 
-// Sets the number of Newton steps, and the limit on the last one, for which the parabolas of H are accurate
-// enough. First to the minimum of H, from `start` radii away: a tenth of a pixel in the contour. Then to the
-// entry, from the parabola's. `bend`: curvature * radius; `pixels`: radius in pixels. The parabola's error is
-// the third derivative.
+// Sets the numbers of Newton steps, and the limits on the last step, for which the parabolas of H are
+// accurate enough. The first steps lead to the minimum of H, from `start` radii away, with an error of a
+// tenth of a pixel in the contour. The next steps lead from the parabola's entry to the entry. `bend` is
+// curvature * radius; `pixels` is the radius in pixels. The error of a parabola is due to the third
+// derivative.
 void plan_steps(double bend, double start, double pixels, SpanPiece& span) {
   constexpr int most = 6;
   const double largest = std::cbrt(0.1 / (std::max(bend, 1e-6) * pixels));
@@ -54,7 +55,7 @@ bool do_meet(const TubePiece& one, const TubePiece& other) {
          reach + sagitta(one) + sagitta(other);
 }
 
-// Returns whether the stage holds the etalon and otherwise only screens.
+// Returns whether the stage contains the etalon and otherwise only screens.
 bool is_etalon_alone(const Stage& stage) {
   return stage.pieces.size() == 1 && stage.planes.empty() &&
          std::ranges::all_of(stage.faces, [](const FacePart& face) { return face.screen >= 0; });
@@ -78,8 +79,8 @@ double kink_of(const Stage& stage, const TubePiece& piece, int neighbour, double
     return std::abs(one.widening) * bend / (1 - std::min(bend, 0.5));
   };
   const double change = std::abs(other.widening - piece.widening) + spread(piece) + spread(other);
-  // Seen at the angle a from the axis, a difference of slopes shifts the contour by cot^2 a radii times that
-  // difference.
+  // If the tube is seen at the angle a from the axis, a difference of slopes shifts the contour by cot^2 a
+  // radii times this difference.
   const bool is_at_end = neighbour == piece.after;
   const Eigen::Vector3d p_PJ = is_at_end ? 2 * piece.bound_center : Eigen::Vector3d(0, 0, 0);
   const Eigen::Vector3d tangent = is_at_end ? piece.end_tangent : Eigen::Vector3d(0, 0, 1);
@@ -107,7 +108,8 @@ bool QuickPicture::plan_pieces(const Stage& stage) {
   find_meetings(stage);
   if (!std::ranges::all_of(stage.pieces, [&](const TubePiece& piece) { return plan_piece(stage, piece); }))
     return false;
-  // Where neighbours overlap at equal depth, the first one stays: the order is from the top of the picture.
+  // Where neighbouring pieces overlap at equal depth, the piece drawn first remains. The order is from the
+  // top of the picture.
   by_row_.clear();
   for (std::size_t i = 0; i < skin_count_; ++i) {
     skins_[i].piece.edges = edges_.data() + skins_[i].first_edge;
@@ -117,8 +119,8 @@ bool QuickPicture::plan_pieces(const Stage& stage) {
   return true;
 }
 
-// Finds pieces of the arm that meet without following each other: their skins then end in a line that is no
-// contour. Gentle arcs do not come back within 2.5 radii of arc.
+// Finds pieces of the arm that intersect without being neighbours. Their surfaces then end in a line that is
+// not a contour. Slightly bent arcs do not return to themselves within 2.5 radii of arc length.
 void QuickPicture::find_meetings(const Stage& stage) {
   const auto& pieces = stage.pieces;
   meets_.assign(pieces.size(), 0);

@@ -7,7 +7,7 @@
 namespace flexura {
 namespace {
 
-// The piece of which a disc is a flat end, and which end.
+// The piece of tube whose flat end a disc is, and the side of this end.
 struct EndOf {
   int piece = -1;  // -1: not the end of a whole tube.
   bool is_base = false;
@@ -99,7 +99,7 @@ void QuickPicture::fill_rim(const Stage& stage, const DiscPart& disc, const Tube
   for (Eigen::Index c = 0; c < 3; ++c) rim.light[c] = number(channels_ == 1 ? gray_of(color) : color[c]);
 }
 
-// Excludes the rim's pixels from those drawn as skin.
+// Excludes the pixels of the rim from the pixels that are drawn as tube surface.
 void QuickPicture::find_rim(Rim& rim) {
   rim.pixels.clear();
   for (int v = rim.rows.begin; v < rim.rows.end; ++v) {

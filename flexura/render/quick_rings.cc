@@ -31,7 +31,7 @@ struct RingAspect {
   }
 };
 
-// As seen from around the middle of the piece, at the steepest.
+// Computes the edge as seen from around the middle of the piece, for the steepest view.
 RingAspect steepest_aspect(const TubePiece& piece) {
   const Eigen::Vector3d center = piece.p_CP + piece.R_CP * piece.bound_center;
   const double along = std::abs((piece.R_CP * piece.bound_center).normalized().dot(center.normalized()));
@@ -77,7 +77,8 @@ bool QuickPicture::add_edges(const Stage& stage, const TubePiece& piece, Skin& s
   bool is_fine = false;
   double s_before = -std::numeric_limits<double>::infinity();
   for (auto ring = begin; ring != end; ++ring) {
-    // Of several at one position the last counts; the faces of disks change no colour.
+    // Among several edges at one position the last one determines the colour. Faces of disks do not change
+    // the colour.
     if (ring->is_disk || std::any_of(ring + 1, end, [&](const RingEdge& other) {
           return !other.is_disk && other.s <= ring->s;
         }))
@@ -118,7 +119,7 @@ bool QuickPicture::add_lines(const Stage& stage, const TubePiece& piece, Skin& s
   // The sample points of a pixel do not resolve lines finer than a pixel; wide lines merge.
   constexpr double finest = 1.5, widest = 0.7;  // px, rad
   if (etalon.line_width < finest * pixel || half_angle > widest) return false;
-  // d px inside the contour, an edge deviates by x^2 / (4 d) within x px.
+  // At d px inside the contour, an edge deviates from a straight line by x^2 / (4 d) within x px.
   constexpr double bent = 6;  // px
   skin.piece.bent_reach = std::max(skin.piece.reach, number(std::min(piece.widest(), bent * pixel)));
   for (const int axis : {0, 2}) {

@@ -143,7 +143,8 @@ void QuickPicture::draw_panel(std::size_t index, SpanRow& row) {
     kernels_->screen(panel.screen, inner.begin, inner.end, is_first, row);
 }
 
-// Draws the second panel. It meets the first one where their inverse depths are equal: in a straight line.
+// Draws the second panel. It intersects the first panel where their inverse depths are equal, which is a
+// straight line in the image.
 void QuickPicture::draw_around_crossing(const PixelRange& inner, SpanRow& row) {
   const Panel &panel = panels_[1], &other = panels_[0];
   const SpanScreen& screen = panel.screen;
@@ -153,7 +154,7 @@ void QuickPicture::draw_around_crossing(const PixelRange& inner, SpanRow& row) {
                by_v = panel.nearness.by_v - other.nearness.by_v;
   const auto margin = static_cast<double>(screen.least_distance);
   const double slope = std::hypot(by_u, by_v);
-  if (!std::isfinite(value + slope + margin)) {  // The other one is seen edge-on.
+  if (!std::isfinite(value + slope + margin)) {  // The other panel is seen edge-on.
     for (int u = inner.begin; u < inner.end; ++u) leave(u, row.v);
     return;
   }

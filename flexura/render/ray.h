@@ -5,13 +5,14 @@
 
 namespace flexura {
 
-/// Depth where there is no surface.
+/// Depth of a ray that hits no surface.
 inline constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// A ray through a point of the image: the points depth * direction, depth > 0, in C.
+/// A ray through a point of the image: all points depth * direction with depth > 0, in C.
 struct Ray {
-  Eigen::Vector3d direction;  ///< (a, b, 1): the parameter along the ray is the depth.
-  Eigen::Matrix2d by_pixel;   ///< Derivative of (a, b) by (u, v), 1/px.
+  /// (a, b, 1) in normalized coordinates, so that the parameter along the ray is the depth.
+  Eigen::Vector3d direction;
+  Eigen::Matrix2d by_pixel;  ///< Derivative of (a, b) with respect to (u, v), 1/px.
 };
 
 }  // namespace flexura

@@ -12,32 +12,32 @@ namespace flexura {
 
 struct PreparedScene;
 
-/// Draws scenes from their exact description (docs/renderer.md). Storage is reused from frame to frame, so
-/// that a second picture of the same size allocates nothing; use it from one thread at a time. The result
+/// Draws scenes from their exact geometric description (docs/renderer.md). Memory is reused, so that a second
+/// picture of the same size allocates nothing. Only one thread at a time may use a renderer. The result
 /// depends on scene and view alone, not on earlier pictures.
 class Renderer {
  public:
-  /// `path`: the instruction set of the fast path; all give the same picture.
+  /// `path` is the instruction set of the fast path; pictures are the same for all instruction sets.
   explicit Renderer(SimdPath path = best_simd_path());
   ~Renderer();
-  /// After a move, the source supports only assignment and destruction.
+  /// A renderer that was moved from supports only assignment and destruction.
   Renderer(Renderer&&) noexcept;
   Renderer& operator=(Renderer&&) noexcept;
 
-  /// Draws `scene` as seen by `view` into `picture`, which is resized. Simple parts are drawn by the fast
-  /// path (quick_picture.h) unless `is_exact`. Throws std::invalid_argument for a scene that check() refuses,
-  /// a view that is not finite, or an image without pixels.
+  /// Draws `scene` as seen by `view` into `picture`, which is resized. The fast path (quick_picture.h) draws
+  /// simple parts unless `is_exact`. Throws std::invalid_argument for a scene that check() rejects, a view
+  /// that is not finite, or an image without pixels.
   void render(const Scene& scene, const View& view, PixelKind pixels, LightImage& picture,
               bool is_exact = false);
 
-  /// Runs the first step of render() only, for queries of true values. These read `scene`, which must stay
-  /// unchanged until the next call. Throws as render() does.
+  /// Prepares for queries of true values, without drawing. The queries read `scene`, which must remain
+  /// unchanged until the next call. Throws like render().
   void prepare(const Scene& scene, const View& view);
-  /// Returns what was prepared last, for truth.h; valid until the next call.
+  /// Returns the scene that was prepared last, for the functions in truth.h; valid until the next call.
   [[nodiscard]] const PreparedScene& prepared() const;
 
  private:
-  struct Work;  // Storage kept from picture to picture, of internal types.
+  struct Work;  // Memory that is reused from picture to picture.
   std::unique_ptr<Work> work_;
 };
 

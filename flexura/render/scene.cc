@@ -57,7 +57,7 @@ void require_near(const Eigen::Vector3d& p, const Place& place) {
 
 void require_color(const Color& color, const Place& place) {
   if (!color.allFinite() || color.minCoeff() < 0)
-    refuse("{}: ({}, {}, {}) is no colour", place.text(), color.x(), color.y(), color.z());
+    refuse("{}: ({}, {}, {}) is not a colour", place.text(), color.x(), color.y(), color.z());
 }
 
 void require_pose(const Pose& pose, const Place& place) {
@@ -69,7 +69,7 @@ void require_pose(const Pose& pose, const Place& place) {
   require_near(pose.position, place);
 }
 
-// Limited by the index of a label.
+// The index of a label limits this number.
 constexpr std::size_t most_parts = 4096;
 
 void require_few(std::size_t count, const char* what) {

@@ -13,55 +13,57 @@
 
 namespace flexura {
 
-/// Red, green and blue: light in units of the sensor's full scale, or the reflected share of a surface.
-/// Linear.
+/// Linear red, green and blue: light in units of the sensor's full scale, or the reflected fractions of a
+/// surface (albedo).
 using Color = Eigen::Vector3d;
 
-/// Returns the brightness of a colour to a gray sensor: 0.2126 red + 0.7152 green + 0.0722 blue (ITU-R
+/// Returns the brightness that a gray sensor sees of a colour: 0.2126 red + 0.7152 green + 0.0722 blue (ITU-R
 /// BT.709).
 [[nodiscard]] inline double gray_of(const Color& color) {
   return 0.2126 * color.x() + 0.7152 * color.y() + 0.0722 * color.z();
 }
 
-/// A coloured ring on the arm's skin between two arc lengths.
+/// A coloured ring on the arm's surface between two arc lengths.
 struct MarkerRing {
   double s_from = 0, s_to = 0;  ///< Range of arc lengths, m from the base; s_from < s_to.
   Color albedo = {0.9, 0.05, 0.05};
 };
 
-/// A tendon guide: a short cylinder around the backbone.
+/// A guide disk for tendons: a short cylinder around the backbone.
 struct GuideDisk {
-  double s = 0;              ///< Position of its middle, m from the base.
+  double s = 0;              ///< Arc length of the disk's middle from the base, m.
   double radius = 0.03;      ///< Radius, m; > 0.
   double thickness = 0.004;  ///< Thickness, m; > 0.
 };
 
-/// Visible properties of the arm. An empty `tube` means no arm.
+/// Visible properties of the arm. An empty `tube` means that there is no arm.
 struct ArmLook {
-  std::vector<Arc> tube;  ///< Arcs from the base on, each at the end of the previous one.
+  std::vector<Arc> tube;  ///< Arcs, base first, each starting at the end of the previous arc.
   TipKind tip = TipKind::flat;
   Color albedo = {0.16, 0.16, 0.17};
   Color disk_albedo = {0.35, 0.35, 0.37};
-  std::vector<MarkerRing> markers;  ///< Where two overlap, the later one is visible.
+  std::vector<MarkerRing>
+      markers;  ///< Coloured rings. Where two rings overlap, the later ring in the list is visible.
   std::vector<GuideDisk> disks;
 };
 
 /// A finite white screen that emits light.
 struct Screen {
-  Pose X_WS;                                ///< Pose: origin in its middle, x to its right, z out of it.
-  std::array<double, 2> size = {2, 2};      ///< Size along x and y, m; > 0.
-  Color brightness = {0.85, 0.85, 0.85};    ///< Brightness in its middle.
-  std::array<double, 2> gradient = {0, 0};  ///< Relative change from the middle to the edge at +x, +y.
-  double falloff = 0;                       ///< Relative darkening in its corners.
+  Pose X_WS;  ///< Pose of the screen: origin in the middle, x to the right, z along the front's normal.
+  std::array<double, 2> size = {2, 2};    ///< Size along x and y, m; > 0.
+  Color brightness = {0.85, 0.85, 0.85};  ///< Brightness in the screen's middle.
+  std::array<double, 2> gradient = {
+      0, 0};           ///< Relative change of brightness from the middle to the edges at +x and +y.
+  double falloff = 0;  ///< Relative loss of brightness in the corners.
 };
 
-/// The calibration cylinder: dark, with red lines along it in its +Z direction and every 90 degrees from
-/// there.
+/// The calibration cylinder: dark, with red lines parallel to its axis. The lines face +Z of the cylinder's
+/// frame E and every 90 degrees from there.
 struct Etalon {
-  Pose X_WE;             ///< Pose: origin in its middle, axis along +Y.
+  Pose X_WE;             ///< Pose of the cylinder: origin in the middle, axis along E's +Y.
   double radius = 0.05;  ///< Radius, m; > 0.
   double height = 0.3;   ///< Height, m; > 0.
-  /// Line width around the surface, m; >= 0, less than a quarter of the circumference.
+  /// Width of a line around the surface, m; >= 0 and less than a quarter of the circumference.
   double line_width = 0.004;
   Color albedo = {0.12, 0.12, 0.12};  ///< Colour of the cylinder.
   Color line_albedo = {0.8, 0.04, 0.04};
@@ -73,33 +75,37 @@ struct VisibleObstacle {
   Color albedo = {0.4, 0.45, 0.4};
 };
 
-/// A surface shows albedo * (ambient + directional * max(0, cosine of its normal to the light)).
+/// Light on surfaces. A surface has the brightness albedo * (ambient + directional * max(0, cosine of the
+/// angle between its normal and the light)).
 struct Light {
-  Eigen::Vector3d direction = {0.4, 0.8, 0.45};  ///< Direction towards the light, W; not 0.
-  double ambient = 0.45, directional = 0.55;     ///< Strengths, shares of full scale.
-  /// Share of the directional light, or of a screen's, that a shadow removes; 0: no shadows. The arm casts
-  /// shadows on everything. Disks, the etalon and obstacles other than planes cast them on screens and
-  /// planes.
+  /// Direction towards the light source, in W; any length above 0.
+  Eigen::Vector3d direction = {0.4, 0.8, 0.45};
+  /// Ambient and directional light; 1 is full scale on a white surface.
+  double ambient = 0.45, directional = 0.55;
+  /// Fraction of the directional light, and of a screen's light, that a shadow removes; 0: no shadows. The
+  /// arm casts shadows on all surfaces. Guide disks, the calibration cylinder and obstacles other than planes
+  /// cast shadows on screens and planes only.
   double shadow = 0;
-  /// Angular radius of the light, rad; > 0. Larger values give softer shadows.
+  /// Angular radius of the light source, rad; > 0. A larger source makes softer shadows.
   double angular_radius = 0.05;
 };
 
-/// All that a camera can see, in W.
+/// Everything that a camera can see, in W.
 struct Scene {
   ArmLook arm;
   std::vector<Screen> screens;
   std::optional<Etalon> etalon;
   std::vector<VisibleObstacle> obstacles;
   Light light;
-  Color background = {0.02, 0.02, 0.02};  ///< Colour where there is no surface.
+  Color background = {0.02, 0.02, 0.02};  ///< Light from directions without a surface.
 };
 
-/// Throws std::invalid_argument, naming the part and the value, for invalid scenes. Invalid are: values that
-/// are not finite, sizes that are not positive, sizes and positions beyond 1e9 m, directions of length zero.
-/// Also invalid rotations, and tube arcs that do not continue each other.
+/// Throws std::invalid_argument for an invalid scene; the message names the part and the value. Invalid are
+/// values that are not finite, sizes that are not positive, sizes and positions above 1e9 m, and directions
+/// of length zero. Also invalid are wrong rotation matrices, and tube arcs that do not start at the end of
+/// the previous arc.
 void check(const Scene& scene);
-/// Throws std::invalid_argument for an invalid camera pose.
+/// Throws std::invalid_argument for a camera pose that is not finite or not a rigid transform.
 void check_camera(const Pose& X_WC);
 
 }  // namespace flexura

@@ -11,16 +11,17 @@
 
 namespace flexura {
 
-/// Makes the scenes of an experiment from its fixed part and the arm's present shape.
+/// Makes the scenes of an experiment from the fixed bodies and the arm's current shape.
 class SceneMaker {
  public:
-  /// Takes the arm with its `look`, and the fixed bodies. Uses the paper's screens if the stand has none. If
-  /// `stand.arm` is false the scenes are without the arm.
+  /// Uses the arm with the appearance `look`, and the fixed bodies in `stand` and `obstacles`. If `stand`
+  /// does not set screens, uses the paper's screens. If `stand.arm` is false, the scenes do not contain the
+  /// arm.
   SceneMaker(const Arm& arm, const LookConfig& look, const StandConfig& stand,
              const std::vector<ObstacleConfig>& obstacles);
 
-  /// Returns the scene with the arm along `backbone`. Markers and disks move with the arm's material: bands
-  /// on a stretched section are stretched.
+  /// Returns the scene with the arm along `backbone`. Markers and disks move with the arm's material, so that
+  /// bands on a stretched section are stretched.
   [[nodiscard]] Scene scene(const Backbone& backbone) const;
 
   /// Returns the scene without the arm.

@@ -20,7 +20,7 @@ SensorConfig checked(SensorConfig config) {
     if (!holds) throw std::invalid_argument(message);
   };
   require(config.width >= 1 && config.height >= 1 && config.width <= 1 << 20 && config.height <= 1 << 20,
-          "a sensor needs from 1 to 2^20 pixels a side");
+          "a sensor needs from 1 to 2^20 pixels per side");
   require(config.bits >= 1 && config.bits <= 16, "a sensor has from 1 to 16 bits");
   for (const double strength : {config.full_well, config.read_noise, config.psf, config.vignetting})
     require(std::isfinite(strength) && strength >= 0, "a sensor's effect must be finite and not negative");
@@ -30,7 +30,7 @@ SensorConfig checked(SensorConfig config) {
   return config;
 }
 
-// In levels, rounding included; with a gamma table in units of full scale.
+// Conversion to levels, including the offset for rounding; with a gamma table, in units of full scale.
 SensorLevels levels_for(const SensorConfig& config) {
   const bool is_linear = config.gamma == 1;
   const double unit = is_linear ? config.white() : 1, gain = config.gain * unit;
@@ -87,7 +87,7 @@ Sensor::Sensor(const SensorConfig& config, SimdPath path)
   }
 }
 
-// The contribution of a column of `width_` or a row of `height_` to vignetting.
+// Returns the contribution of a column, or of a row, to vignetting.
 float Sensor::lost(int x, int n) const {
   if (config_.vignetting == 0) return 0;
   const double corner = square_from_middle(0, width_) + square_from_middle(0, height_);
@@ -140,8 +140,9 @@ void Sensor::take(const Image<float>& light, int v, bool is_first, SensorRows& r
   if (is_first) std::ranges::fill(rows.age, std::uint8_t{0});
 }
 
-// Plans the work for row v. A block is plain if all rows blurred into it are equal. It is even if it and its
-// left neighbour are plain and equal. It is known if all blocks blurred into it along the row are even.
+// Plans the work for row v. A block is plain if all rows that are blurred into the block are equal. It is
+// even if the block and its left neighbour are plain and equal. It is known if all blocks that are blurred
+// into it along the row are even.
 void Sensor::plan(int v, SensorRows& rows) const {
   const std::uint8_t *const same = rows.same.data() + slot(v) * blocks_, *const age = rows.age.data();
   std::uint8_t *const is_plain = rows.is_plain.data(), *const is_even = rows.is_even.data();

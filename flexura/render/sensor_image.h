@@ -12,29 +12,33 @@
 
 namespace flexura {
 
-/// Determines the noise of an image together with the pixel and the channel: equal streams give equal noise,
-/// different ones independent noise.
+/// Identifies the noise of an image. The noise of a pixel value depends on the stream, the pixel and the
+/// channel alone. Equal streams give equal noise; different streams give independent noise.
 struct NoiseStream {
   std::uint64_t seed = 0;    ///< Seed of the run.
   std::uint64_t camera = 0;  ///< Index of the camera.
   std::uint64_t frame = 0;   ///< Number of the frame.
 };
 
-/// Reusable working memory of a sensor; after the first use it allocates nothing more. One per thread.
+/// Reusable working memory of a sensor, one object per thread. After the first use no more memory is
+/// allocated.
 struct SensorRows {
-  std::vector<float> left, right;  ///< Light at a row's ends, with its continuation.
-  std::vector<float> conditioned;  ///< Conditioned rows: as many as the PSF needs at a time, plus one.
-  std::vector<std::uint8_t> same;  ///< SameAs of the blocks of these rows.
-  std::vector<std::uint8_t> age;   ///< By block: how many of the last rows were equal to their predecessor.
-  /// State of each block of the present row.
+  std::vector<float> left, right;  ///< Light at a row's ends, continued beyond the image's edge.
+  std::vector<float>
+      conditioned;  ///< Rows after clamping and vignetting: as many as the PSF combines, plus one.
+  std::vector<std::uint8_t> same;  ///< SameAs flags of the blocks of the rows in `conditioned`.
+  std::vector<std::uint8_t>
+      age;  ///< For each block, the number of last rows that were equal to the row before.
+  /// State of each block of the current row.
   std::vector<std::uint8_t> is_plain, is_even, is_known, is_needed;
   std::vector<BlockWork> work;       ///< Work for each block.
-  std::vector<const float*> window;  ///< The rows that the PSF combines for the present one, in order.
-  std::vector<float> light, levels;  ///< Light and levels of the present row, rounded up to whole blocks.
-  std::vector<std::uint8_t> bytes;   ///< Levels of the present row for sensors of up to 8 bits.
+  std::vector<const float*> window;  ///< Rows that the PSF combines for the current row, in order.
+  /// Light and levels of the current row, with the length rounded up to whole blocks.
+  std::vector<float> light, levels;
+  std::vector<std::uint8_t> bytes;  ///< Levels of the current row, for sensors of up to 8 bits.
 };
 
-/// A sensor that converts light into the values that a camera delivers. In physical order, for each value:
+/// An image sensor, which converts light to pixel values. The steps for each value are, in physical order:
 ///
 /// 1. Light that is negative or NaN counts as 0, and beyond 2^20 as 2^20.
 /// 2. Vignetting: times 1 - vignetting (r/R)^2, r from the middle of the image, R the corner pixel's.
@@ -44,26 +48,26 @@ struct SensorRows {
 /// 5. Read noise: normal.
 /// 6. Clamped to [0, 1], to the power 1/gamma, times 2^bits - 1, rounded half up.
 ///
-/// The noise of a value is a function of the stream, the pixel and the channel. Images are therefore equal
-/// for any number of threads and on every SimdPath.
+/// Noise depends on the stream, the pixel and the channel alone. Hence images are equal for any number of
+/// threads and every instruction set.
 class Sensor {
  public:
-  /// Throws std::invalid_argument for a size below 1 or above 2^20, a PSF above 30 px, bits outside 1 to 16,
-  /// or a negative or infinite strength. Also for a gain or gamma that is not positive, or a path that is not
-  /// available.
+  /// Throws std::invalid_argument for a size below 1 or above 2^20, a PSF above 30 px, or bits outside 1 to
+  /// 16. Also throws it for a strength of an effect that is negative or infinite. Further causes are a gain
+  /// or gamma that is not positive, and an instruction set that this processor does not support.
   explicit Sensor(const SensorConfig& config, SimdPath path = best_simd_path());
 
   [[nodiscard]] const SensorConfig& config() const { return config_; }
 
   /// Computes the image of `light`, which is in units of full scale and has the sensor's size and channels.
-  /// Sensors of up to 8 bits deliver bytes, others 16-bit words. Throws std::invalid_argument for another
-  /// size or type.
+  /// Values are of 8 bits for sensors of up to 8 bits, otherwise of 16 bits. Throws std::invalid_argument for
+  /// another size or type.
   template <typename Value>
   void read(const Image<float>& light, const NoiseStream& stream, SensorRows& rows,
             Image<Value>& image) const;
 
-  /// Computes only the rows [first, last) of it, in an image of the right size: one thread's part. Throws as
-  /// read() does, also for rows outside the image.
+  /// Computes only the rows [first, last) of the image, for example the part of one thread. The image must
+  /// already have the right size. Throws like read(), and for rows outside the image.
   template <typename Value>
   void read_rows(const Image<float>& light, const NoiseStream& stream, int first, int last, SensorRows& rows,
                  Image<Value>& image) const;
@@ -85,9 +89,10 @@ class Sensor {
   const SensorKernels* kernels_;
   int width_, height_, radius_ = 0;
   std::vector<float> weights_;
-  std::size_t channels_, count_, values_;  // Values per pixel, row and block.
-  std::size_t margin_, blocks_;            // Blocks that continue a row at each end; with them and the row's.
-  std::vector<float> lost_across_;         // By vignetting, by value.
+  std::size_t channels_, count_, values_;  // Numbers of values per pixel, per row and per block.
+  // Number of blocks that continue a row at each end; number of blocks including these.
+  std::size_t margin_, blocks_;
+  std::vector<float> lost_across_;  // Fraction of light lost by vignetting across a row, for each value.
   SensorLevels levels_;
   GammaTable gamma_;
 };

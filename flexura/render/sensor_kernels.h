@@ -6,50 +6,53 @@
 // Sensor functions that are compiled for each instruction set (kernels.h).
 namespace flexura {
 
-/// Number of pixels in a block, processed together. Rows are padded to whole blocks.
+/// Number of pixels in a block, which is processed as a unit. Rows are padded to whole blocks.
 constexpr std::size_t sensor_block = 32;
 
-/// Conversion of light to a level: light * scale + offset, with noise of the variance light * shot + read,
+/// Conversion of light to a level: light * scale + offset, plus noise of variance light * shot + read,
 /// clamped to [0, top].
 struct SensorLevels {
   float scale = 1, offset = 0, shot = 0, read = 0, top = 1;
   bool is_noisy = false;
 };
 
-/// Noise of one row: a value's deviate depends on this key and its position in the row alone.
+/// Key of the noise of one row. The noise of a value depends on this key and the value's position in the row
+/// alone.
 struct NoiseRow {
   std::uint32_t start = 0, mix = 0;
 };
 
-/// A row of light in the sensor.
+/// Properties of a row of light in the sensor.
 struct SensorRow {
   std::size_t blocks = 0;
-  const float* weights = nullptr;  ///< Weights of the PSF, nearest pixel first, without the middle one.
-  std::size_t radius = 0;          ///< Number of weights.
+  /// Weights of one side of the PSF, nearest pixel first, without the middle weight.
+  const float* weights = nullptr;
+  std::size_t radius = 0;  ///< Number of these weights.
   std::size_t channels = 1;
 };
 
-/// Neighbours to which a block is equal bit for bit.
+/// Flags for the neighbours to which a block is bitwise equal.
 enum SameAs : unsigned char { same_as_left = 1, same_as_above = 2 };
 
-/// Work for a block of a row; avoids recomputing known results.
+/// Work that a block of a row needs, to avoid recomputing known results.
 enum class BlockWork : unsigned char {
-  none,  ///< Not needed.
-  copy,  ///< All rows that are blurred into it are equal.
+  none,  ///< The block is not needed.
+  copy,  ///< All rows that are blurred into the block are equal, so that one of them is copied.
   blur,
 };
 
 /// Functions of one instruction set.
 struct SensorKernels {
-  /// to = from, clamped to [0, largest light] (NaN counts as 0), times 1 - (across + down) unless `across` is
-  /// null. `above` is the result of the previous row; `has_left`: a block precedes `to`.
+  /// Clamps light to [0, largest light], where NaN counts as 0, and multiplies it by 1 - (across + down)
+  /// unless `across` is null. `above` is the result of the previous row. `has_left` tells whether a block
+  /// precedes `to`. Writes the SameAs flags to `same`.
   void (*condition)(const SensorRow& row, const float* from, const float* across, float down,
                     const float* above, bool has_left, float* to, unsigned char* same);
-  /// Blurs across 2 * radius + 1 rows, `rows[radius]` in the middle.
+  /// Blurs across 2 * radius + 1 rows, of which `rows[radius]` is the middle.
   void (*blur_down)(const SensorRow& row, const float* const* rows, const BlockWork* work, float* to);
-  /// Blurs `light` along the row as far as there are weights, and computes its levels, unrounded or truncated
-  /// to integers. Where `is_known[block]`, the light and all that is blurred into it equal those of the
-  /// previous block and are not read.
+  /// Blurs `light` along the row with the weights, if any, and computes levels, unrounded or truncated to
+  /// integers. If `is_known[block]`, the light of the block and all light that is blurred into it equal those
+  /// of the previous block, and are not read.
   void (*to_levels)(const SensorRow& row, const float* light, const unsigned char* is_known,
                     const SensorLevels& levels, NoiseRow noise, float* to);
   void (*to_bytes)(const SensorRow& row, const float* light, const unsigned char* is_known,

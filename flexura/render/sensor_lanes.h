@@ -6,14 +6,15 @@
 #include "flexura/render/sensor_kernels.h"
 #include "flexura/render/vectors.h"
 
-// Arithmetic of the sensor, for all_kernels.h alone.
+// Arithmetic of the sensor; only all_kernels.h includes this header.
 namespace flexura {
 namespace {
 
-// Limits that keep everything finite; noise cannot bring such a level back.
+// Limits that keep all numbers finite. Levels at these limits are far above full scale, even with noise.
 constexpr float largest_light = 1048576, largest_level = 16777216, largest_deviation = 1048576;
 
-// Vectors processed together: an operation waits for its predecessor, and the other vectors fill that time.
+// Number of vectors processed together. Independent vectors fill the time in which an operation waits for its
+// predecessor.
 constexpr std::size_t in_step = vector_bytes == 64 ? 2 : 4, step_values = in_step * lanes;
 static_assert(sensor_block % step_values == 0);
 
@@ -25,7 +26,7 @@ template <typename Body>
   for (std::size_t j = 0; j < in_step; ++j) body(j);
 }
 
-// Bits in which two vectors differ.
+// Returns the bits in which two vectors differ.
 [[gnu::always_inline]] inline Words difference(const Floats& a, const Floats& b) {
   return reinterpret_cast<Words>(a) ^ reinterpret_cast<Words>(b);
 }
@@ -54,8 +55,9 @@ void condition(const SensorRow& row, const float* from, const float* across, flo
   }
 }
 
-// The middle value plus the weighted differences from it. These are exactly 0 where all values are equal, so
-// that uniform blocks can be skipped. `before` and `after` return the positions of the taps at a distance.
+// Returns the middle value plus weighted differences from the middle value. The differences are exactly 0 if
+// all values are equal, so that uniform blocks can be skipped. `before` and `after` return the positions of
+// the taps at a distance.
 template <typename Before, typename After>
 [[gnu::always_inline]] inline Step blurred(const float* middle, const SensorRow& row, Before&& before,
                                            After&& after) {
@@ -105,7 +107,7 @@ struct Expectation {
   });
 }
 
-// For a block blurred along the row.
+// Computes the expectation of a block whose light is blurred along the row.
 template <std::size_t channels>
 void expect_block(const SensorRow& row, const float* light, const SensorLevels& levels,
                   Expectation& expected) {
@@ -118,17 +120,18 @@ void expect_block(const SensorRow& row, const float* light, const SensorLevels& 
   }
 }
 
-// Constants of a standard normal deviate from the sum of a word's bytes, itself nearly normal. An odd
-// polynomial maps the quantiles of the sum's distribution to those of the normal one, fitted up to 4.6
-// standard deviations. The exact distribution then has variance 1 and fourth moment 2.998. Its probabilities
-// beyond 1, 2, 3 and 4 are correct to 0.4, 0.2, 0.8 and 7 %; it ends at 5.04. The nearly equal weights of the
-// bytes give seven million sums instead of a thousand.
+// Constants for a standard normal deviate computed from the weighted sum of a word's bytes, which is nearly
+// normal. An odd polynomial, fitted up to 4.6 standard deviations, maps the quantiles of the sum's
+// distribution to normal quantiles. The resulting distribution has variance 1 and fourth moment 2.998. Its
+// probabilities beyond 1, 2, 3 and 4 standard deviations have relative errors of 0.4, 0.2, 0.8 and 7 %; its
+// maximum is 5.04. The weights of the bytes are nearly equal but different, which gives seven million
+// different sums instead of a thousand.
 constexpr float sum_centre = 8 + 4096702.5f / 1048576;
 constexpr float normal_terms[4] = {0.841045443f, 0.0172821804f, -0.00237808649f, 0.000207595845f};
 
-// Factors of the hash of a value's position in its row: C. Wellons' lowbias32, keyed before and within. Its
-// first step does not change numbers below 2^16 and is omitted. `places` are the positions times its first
-// factor, plus a key.
+// Factors of the hash of a value's position in its row: C. Wellons' lowbias32, with a key added before and
+// within. The first step of lowbias32 is omitted, because it does not change numbers below 2^16. `places` are
+// the positions times the first factor, plus a key.
 constexpr std::uint32_t first_factor = 0x7feb352d, second_factor = 0x846ca68b;
 
 [[gnu::always_inline]] inline Step noise_of(const Words& places, std::uint32_t mix) {
@@ -139,7 +142,7 @@ constexpr std::uint32_t first_factor = 0x7feb352d, second_factor = 0x846ca68b;
   each([&](std::size_t j) { shifted[j] = x[j] >> 16; });
   each([&](std::size_t j) { x[j] = weighted_bytes(x[j] ^ shifted[j]); });
   Step y, z, sum;
-  // Below 2^23, they fit into the low bits of a float from 8 to 16.
+  // Numbers below 2^23 fit into the low bits of a float from 8 to 16.
   each([&](std::size_t j) { y.v[j] = reinterpret_cast<Floats>(x[j] | 0x41000000u) - sum_centre; });
   each([&](std::size_t j) { z.v[j] = y.v[j] * y.v[j]; });
   each([&](std::size_t j) { sum.v[j] = z.v[j] * normal_terms[3] + normal_terms[2]; });

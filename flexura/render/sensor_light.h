@@ -7,20 +7,20 @@
 
 namespace flexura {
 
-/// Rows first, first + step, ... below last.
+/// The rows first, first + step, ..., all below last.
 struct Rows {
   int first = 0, last = 0, step = 1;
 };
 
-/// Draws rows of the light on the image plane at an instant, s, into an image of the sensor's size, and
-/// leaves the other rows unchanged.
+/// Function that draws rows of the light on the image plane at a time, s, into an image of the sensor's size.
+/// Other rows remain unchanged.
 using DrawLight = std::function<void(double time, const Rows& rows, Image<float>& light)>;
 
-/// Computes the light of a frame that begins at `start`, s. Each row is the mean over `instants` instants of
-/// its exposure, in the middle of as many equal parts (at its beginning if the exposure is 0). `light` takes
-/// the sensor's size; `scratch` is used if several instants are averaged. Draws once per instant with a
-/// global shutter, twice with an interlaced one, and row by row with a rolling one. Throws
-/// std::invalid_argument for fewer than 1 instant.
+/// Computes the light of a frame that starts at `start`, s. Each row is the mean over `instants` times within
+/// the row's exposure, in the middle of equal parts of the exposure. If the exposure is 0, the time is its
+/// start. `light` is resized to the sensor's size; `scratch` is used if several times are averaged. For each
+/// time, draws once for a global shutter, twice for interlaced readout, and row by row for a rolling shutter.
+/// Throws std::invalid_argument for instants < 1.
 void gather_light(const SensorConfig& sensor, double start, int instants, const DrawLight& draw,
                   Image<float>& light, Image<float>& scratch);
 

@@ -9,14 +9,15 @@
 namespace flexura {
 namespace {
 
-// Share of a round light that is visible past a straight edge, `height` light radii above its middle.
+// Returns the fraction of a round light source that is visible beyond a straight edge at `height` light radii
+// above the source's middle.
 double share_over_edge(double height) {
   if (height >= 1) return 0;
   if (height <= -1) return 1;
   return 0.5 - (height * std::sqrt(1 - height * height) + std::asin(height)) / std::numbers::pi;
 }
 
-// Share of the light past a ball around `center`; 1 at points inside the ball.
+// Returns the fraction of the light that passes a ball around `center`; 1 for points inside the ball.
 double share_past_ball(const Eigen::Vector3d& center, double radius, const Eigen::Vector3d& p_CQ,
                        const Eigen::Vector3d& light, double width) {
   const Eigen::Vector3d way = center - p_CQ;

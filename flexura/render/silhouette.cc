@@ -29,7 +29,8 @@ struct Section2d {
     const Eigen::Vector2d n(std::cos(angle), std::sin(angle));
     return across_x * n.x() + across_y * n.y() + radius - widening / (1 - radius * curvature.dot(n)) * along;
   }
-  // Positive if such angles exist, with the distance to having none; with taper to first order.
+  // Positive if there are such angles: the distance from a section without such angles. With taper, to first
+  // order.
   [[nodiscard]] double openness() const {
     return std::hypot(across_x, across_y) - std::abs(radius - widening * along);
   }
@@ -47,8 +48,8 @@ Section2d section_at(const Arc& tube, double distance, const Pose& X_CW) {
   return section;
 }
 
-// Returns the tangent angle to one side (1, -1) of the direction away from the camera. In closed form for
-// constant radius; otherwise by Newton's method from there.
+// Returns the tangent angle on one side (1 or -1) of the direction away from the camera. Uses the closed form
+// for constant radius, otherwise Newton's method started from the closed form.
 double touching_angle(const Section2d& section, double side) {
   const double reach = std::hypot(section.across_x, section.across_y);
   const double level = -(section.radius - section.widening * section.along);
@@ -77,7 +78,7 @@ class OutlineMaker {
   std::vector<Outline> make() {
     const ArmLook& arm = renderer_.prepared().stage.scene->arm;
     for (std::size_t i = 0; i < arm.tube.size(); ++i) {
-      // A step of the radius interrupts the contour.
+      // A jump of the radius interrupts the contour.
       if (i > 0 && std::abs(arm.tube[i].radius[0] - arm.tube[i - 1].radius[1]) > 1e-12) close();
       add_arc(arm.tube[i]);
     }
@@ -157,8 +158,8 @@ class OutlineMaker {
     result_.push_back(rim);
   }
 
-  // Adds the contour of the half ball: the circle on which the line from its middle is perpendicular to the
-  // ray.
+  // Adds the contour of the hemispherical tip: the circle on which the line from the hemisphere's middle is
+  // perpendicular to the ray.
   void add_ball(const Section2d& tip) {
     const Eigen::Vector3d center = tip.X_CS.position;
     const double square = center.squaredNorm(), radius = tip.radius;
@@ -193,7 +194,7 @@ class OutlineMaker {
     Ray ray;
     ray.direction = point.p_CP / point.p_CP.z();
     ray.by_pixel = Eigen::Matrix2d::Identity() * renderer_.prepared().rays.largest_step();
-    // Through rounding, a tangent ray may enter slightly before.
+    // Because of rounding, a tangent ray may enter the tube slightly before the point.
     const double tolerance = 1e-3 * radius + 1e-6 * point.p_CP.z();
     point.is_visible = tracer_.hit(ray).depth > point.p_CP.z() - tolerance;
     return point;

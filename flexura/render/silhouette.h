@@ -8,32 +8,34 @@
 
 namespace flexura {
 
-/// A point of an outline curve on the arm's surface.
+/// A point of an outline curve, on the arm's surface.
 struct OutlinePoint {
-  double s = 0;                          ///< Arc length from the arm's base, m.
-  double angle = 0;                      ///< Angle around the backbone from the frame's x at s, rad.
-  Eigen::Vector3d p_CP = {0, 0, 0};      ///< Point in C, m.
-  std::optional<Eigen::Vector2d> pixel;  ///< Empty: behind the camera, or outside the lens's field.
-  bool is_visible = false;               ///< Whether nothing is in front of it, the arm included.
+  double s = 0;                      ///< Arc length from the arm's base, m.
+  double angle = 0;                  ///< Angle around the backbone from x of the backbone's frame at s, rad.
+  Eigen::Vector3d p_CP = {0, 0, 0};  ///< Point in C, m.
+  std::optional<Eigen::Vector2d>
+      pixel;  ///< Pixel (u, v), px; empty if the point is behind the camera or outside the lens's field.
+  bool is_visible = false;  ///< Whether nothing, including the arm, is in front of the point.
 };
 
 /// Kind of an outline curve.
 enum class OutlineKind {
-  contour,  ///< Where rays are tangent to the tube's side.
+  contour,  ///< The curve on which rays are tangent to the tube's side.
   rim,      ///< The edge of a flat end.
 };
 
-/// In order along the curve.
+/// An outline curve, with points in order along the curve.
 struct Outline {
   OutlineKind kind = OutlineKind::contour;
   std::vector<OutlinePoint> points;
 };
 
 /// Returns the arm's outline curves as seen by the prepared renderer's camera. Points are about `step` px
-/// apart (at least 8 per arc, at most 2000). First the contours in order of s: for each part of the arm whose
-/// side can be tangent to rays, one to each side. Where such a part begins or ends within the arm, both share
-/// the point. Then the rims of the flat ends, closed, starting at angle 0; a round tip's contour counts as a
-/// contour at s = L. Empty without an arm. Throws std::invalid_argument for a step that is not positive.
+/// apart, with at least 8 and at most 2000 points per arc. The first curves are contours in order of s. Each
+/// part of the arm whose side can be tangent to rays has two contours, one on each side. If such a part
+/// begins or ends within the arm, its two contours share this point. The next curves are the closed rims of
+/// flat ends, which start at angle 0. A round tip's outline is a contour at s = L. Empty without an arm.
+/// Throws std::invalid_argument for a step that is not positive.
 [[nodiscard]] std::vector<Outline> outlines(const Renderer& renderer, double step = 1);
 
 }  // namespace flexura

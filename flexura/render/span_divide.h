@@ -2,7 +2,7 @@
 
 #include "flexura/render/span_lanes.h"
 
-// Pixels divided by contours; for all_kernels.h alone.
+// Pixels that contours divide; only all_kernels.h includes this header.
 namespace flexura {
 namespace {
 
@@ -11,7 +11,8 @@ inline void store_flags(const WideMask& mask, std::uint8_t* to) {
   for (std::size_t i = 0; i < wide_lanes; ++i) to[i] = static_cast<std::uint8_t>(bits >> i & 1);
 }
 
-// Part of the pixel within the tube's contour, computed where the ray is nearest to the centerline.
+// Returns the part of the pixel within the tube's contour, computed at the point where the ray is nearest to
+// the centerline.
 template <bool is_tapered>
 [[gnu::always_inline]] inline SquarePart part_within(const SpanPiece& piece, const RayLanes<is_tapered>& ray,
                                                      const Place& place, const Lowest& lowest) {
@@ -21,8 +22,8 @@ template <bool is_tapered>
     else
       return piece.radius;
   }();
-  // Gradient of sqrt(h^2 + y^2), which equals the radius on the contour. On the centerline there is no
-  // gradient; where the tube is a few pixels wide that is far inside.
+  // Gradient of sqrt(h^2 + y^2), which equals the radius on the contour. On the centerline the gradient does
+  // not exist; for a tube of a few pixels width the centerline is far inside the contour.
   const float least = 1e-6f * piece.radius * piece.radius;
   const Wide distance = square_root(at_least(least, lowest.value + radius * radius));
   const Wide gap = distance - radius;
@@ -43,8 +44,8 @@ template <bool is_tapered>
   };
   const auto [by_u, by_v] = by_pixel(place, slope(&Linear::by_u), slope(&Linear::by_v));
   const Wide steepness = 1 / square_root(at_least(1e-30f, by_u * by_u + by_v * by_v));
-  // The contour curves like the centerline, projected on the skin's normal: mean height of a parabola in the
-  // pixel.
+  // The contour has the curvature of the centerline, projected on the surface normal. This term is the mean
+  // height of a parabola within the pixel.
   const Wide bent = 1 + k * h,
              along_ray = (k * near.z * ray.direction.x + (1 - k * near.x) * ray.direction.z) / bent;
   const Wide across = at_least(0.1f, 1 - along_ray * along_ray / dot(ray.direction, ray.direction));
@@ -61,7 +62,7 @@ template <bool is_tapered>
   return place;
 }
 
-// Whether no ring edge divides the pixel.
+// Returns whether no edge of a ring divides the pixel.
 [[gnu::always_inline]] inline WideMask is_far_from_edges(const SpanPiece& piece, const Vector& p) {
   WideMask is_far = mask_of(true);
   for (std::size_t j = 0; j < piece.edge_count; ++j)
@@ -99,7 +100,7 @@ void divide(const SpanPiece& piece, const SpanPlaces& places, BorderPixels& bord
                       : divide_pixels<false>(piece, places, borders);
 }
 
-// Points evenly spread over the pixel, relative to its middle: a lattice of the golden ratio.
+// Points evenly distributed over the pixel, relative to its middle: a golden ratio lattice.
 template <std::size_t n>
 struct Lattice {
   float x[n], y[n];
@@ -115,14 +116,15 @@ struct Lattice {
 constexpr Lattice<64> few_points;
 constexpr Lattice<256> many_points;
 
-// Results of a vector of rays.
+// Results for a vector of rays.
 struct Seen {
   WideMask is_some, is_sure;
   Wide depth, light[3];
 };
 
-// Sums what see(place) returns at the points of a pixel; returns whether all results are reliable. Sums are
-// grouped by the points' numbers modulo span_step, so that their order does not depend on the vector width.
+// Sums the results of see(place) at the points of a pixel; returns whether all results are reliable. The
+// summation is grouped by the points' numbers modulo span_step, so that its order does not depend on the
+// vector width.
 template <std::size_t n, typename See>
 [[gnu::always_inline]] inline bool sample_points(const Lattice<n>& points, const Place& middle, See&& see,
                                                  float (&light)[3], float& count) {
@@ -169,7 +171,7 @@ bool sample_skin(const Lattice<n>& points, const SpanPiece& piece, const Place& 
 }
 
 bool sample(const SpanPiece& piece, const SpanPlaces& places, std::size_t index, float* light) {
-  // Small differences of colour need few points.
+  // Few points suffice for small differences of colour.
   bool is_faint = true;
   for (std::size_t j = 0; j < piece.edge_count; ++j)
     for (const float change : piece.edges[j].change) is_faint &= change * change < 0.15f * 0.15f;

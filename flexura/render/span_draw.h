@@ -2,7 +2,7 @@
 
 #include "flexura/render/span_lanes.h"
 
-// Rows of pixels, one vector at a time; for all_kernels.h alone.
+// Draws rows of pixels, one vector at a time; only all_kernels.h includes this header.
 namespace flexura {
 namespace {
 
@@ -20,8 +20,8 @@ namespace {
   }
 }
 
-// Visits a row's pixels from `begin` to `end`, vector by vector: visit(u, is_asked) with the first column of
-// the vector. The last vector extends beyond the end, or starts earlier if it would extend beyond the
+// Visits a row's pixels from `begin` to `end`, vector by vector. Calls visit(u, is_asked) with the first
+// column of the vector. The last vector extends beyond `end`, or starts earlier if it would extend beyond the
 // picture's row.
 template <typename Visit>
 [[gnu::always_inline]] inline void for_vectors(int begin, int end, int width, Visit&& visit) {
@@ -38,8 +38,8 @@ template <typename Visit>
   row.has_exact = true;
 }
 
-// Leaves unreliable pixels to the reference path if the piece may be there. The ray's point is near the axis;
-// the ray meets a piece that leans towards the camera some radii from there.
+// Leaves unreliable pixels to the reference path if the piece may be visible there. The ray's point is near
+// the axis; the ray hits a piece that is inclined towards the camera some radii from this point.
 template <bool is_tapered>
 [[gnu::always_inline]] inline void leave_lost(const SpanPiece& piece, const RayLanes<is_tapered>& ray,
                                               const WideMask& is_unsure, int u, SpanRow& row) {
@@ -51,12 +51,13 @@ template <bool is_tapered>
     row.borders[row.border_count++] = u + __builtin_ctz(bits);
 }
 
-// Content of a pixel with a screen's edge may be in front of the screen or behind it.
+// Leaves pixels with a screen's edge to the reference path, because their content may be in front of the
+// screen or behind it.
 [[gnu::always_inline]] inline void leave_edges(const WideMask& is_there, int u, SpanRow& row) {
   if (row.has_edge) leave(is_there & wide_flag(row.state + u, state_edge), u, row);
 }
 
-// Whether a ring edge is near enough to p to divide the pixel.
+// Returns whether an edge of a ring is near enough to p to divide the pixel.
 [[gnu::always_inline]] inline WideMask is_at_edge(const SpanPiece& piece, const Vector& p) {
   WideMask is_at{};
   for (std::size_t i = 0; i < piece.edge_count; ++i)
@@ -68,7 +69,7 @@ template <bool is_tapered>
 template <bool is_tapered>
 void draw_skin(const SpanPiece piece, int begin, int end, SpanRow& row) {
   const float radius = piece.radius, reach = piece.reach;
-  // H at gaps of +reach, -reach and -bent_reach.
+  // Values of H at the gaps +reach, -reach and -bent_reach.
   const auto near_of = [=](auto r) { return reach * (2 * r + reach); };
   const auto inside_of = [=](auto r) { return -reach * (2 * r - reach); };
   const auto deep_of = [&](auto r) { return -piece.bent_reach * (2 * r - piece.bent_reach); };
@@ -95,9 +96,9 @@ void draw_skin(const SpanPiece piece, int begin, int end, SpanRow& row) {
     if (any(is_unsure)) leave_lost(piece, ray, is_unsure & is_asked, u, row);
     const WideMask is_border = is_near & ~is_inside & lowest.is_sure;
     if (any(is_border)) {
-      // Near a joint, the ray may pass outside both pieces as each of them sees it. In that fifth of a pixel
-      // both take the pixel, and pixels taken twice are left to the reference path. On a leaning piece the
-      // parabola's minimum is less accurate: one more step.
+      // Near a joint, the ray may be outside both pieces according to each of them. Within a fifth of a pixel
+      // both pieces therefore take the pixel, and pixels taken twice are left to the reference path. On an
+      // inclined piece the minimum of the parabola is less accurate, so that one more step is needed.
       const float slack = overlap * radius + 0.2f * reach;
       const Height there = height(piece, ray, lowest.t);
       const Vector passing = along(ray.point, ray.direction, lowest.t - there.slope / there.curving);
@@ -144,8 +145,8 @@ void screen(const SpanScreen& of, int begin, int end, bool is_first, SpanRow& ro
     const Wide nearness = at(screen.nearness, place), depth = 1 / nearness, before = wide_load(row.depth + u);
     WideMask is_inside = (nearness > 0) & is_asked, is_edge{};
     if (!is_straight) {
-      // Also where the pixel's middle is beyond the horizon of the screen's plane: a screen seen aslant ends
-      // near it.
+      // Includes pixels whose middle is beyond the horizon of the screen's plane, because a screen that is
+      // seen at a small angle ends near the horizon.
       WideMask is_around = is_asked;
       for (const Linear& edge : screen.edges) {
         const Wide in = at(edge, place);
@@ -154,7 +155,7 @@ void screen(const SpanScreen& of, int begin, int end, bool is_first, SpanRow& ro
       }
       is_edge = is_around & ~is_inside;
     }
-    // Where it intersects the content.
+    // Pixels where the screen intersects the present content.
     if (!is_first) is_edge |= is_inside & (size_of(nearness - 1 / before) < screen.least_distance);
     leave(is_edge, u, row);
     const WideMask is_drawn = is_inside & ((depth < before) | mask_of(is_straight && is_first));

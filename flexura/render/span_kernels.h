@@ -6,18 +6,19 @@
 // Functions of the fast path that are compiled for each instruction set (kernels.h).
 namespace flexura {
 
-/// Number of pixels that the kernels process together, whatever the vector width.
+/// Number of pixels that kernels process together, for any vector width.
 constexpr std::size_t span_step = 32;
 
 /// State of a pixel in the fast path.
 enum PixelState : std::uint8_t {
   state_behind = 0,  ///< Background or screen.
-  state_arm = 1,     ///< Skin of the arm or an end of it.
-  state_border = 2,  ///< Crossed by the arm's contour, or close to it by the bent edge of a ring or line.
-  state_exact = 4,   ///< Left to the reference path.
-  state_base = 8,    ///< May contain the rim of the arm's base.
-  state_tip = 16,    ///< May contain the rim of the arm's tip.
-  state_edge = 32,   ///< Crossed by a screen's edge, or by the line where two screens cross.
+  state_arm = 1,     ///< Surface of the arm, or an end of the arm.
+  state_border =
+      2,  ///< Crossed by the arm's contour or, close to the contour, by the curved edge of a ring or line.
+  state_exact = 4,  ///< Left to the reference path.
+  state_base = 8,   ///< May contain the rim of the arm's base.
+  state_tip = 16,   ///< May contain the rim of the arm's tip.
+  state_edge = 32,  ///< Crossed by a screen's edge, or by the line where two screens cross.
 };
 
 /// A linear function of the image: value + by_u (u - u0) + by_v (v - v0). For a lens with distortion (u, v)
@@ -26,8 +27,8 @@ struct Linear {
   float value, by_u, by_v;
 };
 
-/// Undistorted positions of the rays of a row of pixels, and their changes from pixel to pixel. A null `u`
-/// means no distortion.
+/// Undistorted positions of the rays of a row of pixels, and their derivatives. A null `u` means no
+/// distortion.
 struct LensRow {
   const float *u = nullptr, *v = nullptr;
   const float *u_by_u = nullptr, *u_by_v = nullptr, *v_by_u = nullptr, *v_by_v = nullptr;
@@ -40,82 +41,87 @@ struct SpanRow {
   float* light = nullptr;
   std::uint8_t* state = nullptr;
   LensRow lens;
-  int* borders = nullptr;        ///< Columns that a contour or a bent edge may divide, added by draw().
-  std::size_t border_count = 0;  ///< Their number.
-  bool has_edge = false;         ///< Whether a pixel has state_edge.
-  bool has_exact = false;        ///< Whether a pixel is left to the reference path.
+  int* borders = nullptr;        ///< Columns that a contour or a curved edge may divide; draw() adds them.
+  std::size_t border_count = 0;  ///< Number of entries in `borders`.
+  bool has_edge = false;         ///< Whether any pixel has state_edge.
+  bool has_exact = false;        ///< Whether any pixel is left to the reference path.
 };
 
 /// A plane where the tube's colour changes: p . normal = offset in the piece's frame.
 struct SpanEdge {
   float normal[3], offset;
   float far;        ///< Distance beyond which no pixel is divided, m.
-  float change[3];  ///< Change of the albedo beyond it.
+  float change[3];  ///< Change of the albedo beyond the plane.
 };
 
-/// A piece of tube in its own frame (docs/renderer.md), as seen by the pixels near (u0, v0). `point` and
-/// `direction` are those of the pixels' rays, at depth0.
+/// A piece of tube in its own frame (docs/renderer.md), as seen by the pixels near (u0, v0). `point` is the
+/// point at depth0 on the ray of a pixel, and `direction` is the ray's direction.
 struct SpanPiece {
   float u0, v0, depth0;
   Linear point[3], direction[3];
-  Linear way;  ///< Depth from there to about the plane along the piece's middle that faces the camera, m.
-  float curvature, radius, widening;  ///< 1/m; radius at its start, m; change of radius by arc length.
-  float widest;                       ///< Largest radius, m.
-  float kink_before, kink_after;  ///< Distances along the axis from start and end, m, within which contours
-                                  ///< are left to the reference path, as bend or taper change there; or 0.
+  Linear way;  ///< Depth from depth0 to approximately the plane that contains the piece's axis and faces the
+               ///< camera, m.
+  /// Curvature, 1/m; radius at the piece's start, m; change of the radius per arc length.
+  float curvature, radius, widening;
+  float widest;  ///< Largest radius, m.
+  /// Distances along the axis from start and end, m, within which contours are left to the reference path.
+  /// They are above 0 where curvature or taper changes.
+  float kink_before, kink_after;
   float end_sine, end_cosine, end_offset;
-  float reach;  ///< Distance within which contours may divide the pixel, m.
-  /// Distance inside a contour within which edges of rings and lines are bent, m; >= reach.
+  float reach;  ///< Distance from the surface within which contours may divide the pixel, m.
+  /// Distance inside a contour within which the images of edges of rings and lines are curved, m; >= reach.
   float bent_reach;
-  int centering;       ///< Number of Newton steps to the deepest point of the ray.
-  float largest_move;  ///< Limit on the last of these steps, m.
-  int refining;        ///< Number of Newton steps to the entry.
-  float settled;       ///< Limit on the last of these steps, m.
-  float light[3];      ///< Strength of the directional light over the radius, times the direction towards it.
+  int centering;       ///< Number of Newton steps to the point of the ray deepest in the tube.
+  float largest_move;  ///< Largest allowed length of the last of these steps, m.
+  int refining;        ///< Number of Newton steps to the ray's entry into the tube.
+  float settled;       ///< Largest allowed length of the last of these steps, m.
+  float light[3];  ///< Directional light divided by the radius, times the unit direction towards the light.
   float ambient;
-  float albedo[3];  ///< Albedo at its start.
+  float albedo[3];  ///< Albedo at the piece's start.
   const SpanEdge* edges;
   std::size_t edge_count, channels;
-  std::uint8_t rims;  ///< Ends that it has (state_base, state_tip); their rim pixels are skipped.
+  std::uint8_t rims;  ///< Flags of the arm's ends on this piece (state_base, state_tip); pixels of their rims
+                      ///< are skipped.
 };
 
-/// A flat end of the arm or of the etalon. A ray meets its plane at (x, y) / z, in radii from its centre; z
-/// is positive in front of the camera.
+/// A flat end of the arm or of the calibration cylinder. A ray intersects the end's plane at (x, y) / z, in
+/// radii from the centre; z is positive in front of the camera.
 struct SpanRim {
   float u0, v0;
   Linear x, y, z;
-  Linear nearness;  ///< 1/depth of the plane.
-  /// With l the length of (x, y), the skin at the rim is visible where
+  Linear nearness;  ///< Inverse depth of the plane, 1/m.
+  /// With l the length of (x, y), the tube's surface at the rim is visible where
   ///   (x, y) . facing < -l (radius - lean l / (l - (x, y) . bend)), m.
-  /// `radius` is the tube's radius. `lean` is the tilt of a tapered skin towards
-  /// the camera, larger where the tube bends to that side. `margin` (m) times l is a safety margin.
+  /// `radius` is the tube's radius. `lean` describes the inclination of a tapered surface towards the camera;
+  /// it is larger where the tube bends to that side. `margin`, m, times l is a safety margin.
   float facing[2], radius, lean, bend[2], margin;
   float light[3];
-  bool is_front;     ///< Whether the end itself is visible.
-  PixelState state;  ///< State of its rim pixels.
+  bool is_front;     ///< Whether the end's disc faces the camera.
+  PixelState state;  ///< State of pixels at the end's rim.
 };
 
-/// Content of pixels at the rim: of an end and its tube.
+/// Content of pixels at the rim of an end: the end and its tube together.
 struct RimPixels {
-  float share[span_step];      ///< Share of the pixel that shows them.
-  float light[3 * span_step];  ///< Their light times that share.
-  float depth[span_step];      ///< Depth in the middle of the pixel; infinite if they are not visible there.
+  float share[span_step];      ///< Fraction of the pixel that shows end or tube.
+  float light[3 * span_step];  ///< Light of end and tube times this fraction.
+  float depth[span_step];      ///< Depth in the middle of the pixel, m; infinite if neither is visible there.
   std::uint8_t is_plain[span_step];
 };
 
-/// A screen. Its points are where the inverse depth `nearness` is positive. Its light is brightness max(0, 1
-/// + gradient . (x, y)) (1 - falloff (x^2 + y^2) / 2) at the point (x, y) = depth place - middle.
+/// A screen. Its plane is in front of the camera where the inverse depth `nearness` is positive. The light at
+/// the screen's point (x, y) = depth place - middle is brightness max(0, 1 + gradient . (x, y)) (1 - falloff
+/// (x^2 + y^2) / 2).
 struct SpanScreen {
   float u0, v0;
   Linear nearness, place[2];
   float middle[2], gradient[2], falloff, brightness[3];
   Linear edges[4];       ///< Above 1: well inside the edge; below -1: well outside.
-  float least_distance;  ///< Smallest difference of inverse depth from the present content.
+  float least_distance;  ///< Smallest difference of inverse depth from the present content that is reliable.
   std::size_t channels;
-  bool is_plain;  ///< Whether it is uniform.
+  bool is_plain;  ///< Whether the screen's light is uniform.
 };
 
-/// Pixels to be divided: undistorted positions and their derivatives by the pixel.
+/// Pixels to divide: undistorted positions, and their derivatives with respect to the pixel (u, v).
 struct SpanPlaces {
   float u[span_step], v[span_step];
   float u_by_u[span_step], u_by_v[span_step], v_by_u[span_step], v_by_v[span_step];
@@ -123,10 +129,10 @@ struct SpanPlaces {
 
 /// Result for a pixel with a contour.
 struct BorderPixels {
-  float coverage[span_step];  ///< Share of the pixel inside.
+  float coverage[span_step];  ///< Fraction of the pixel inside the contour.
   float light[3 * span_step];
-  float depth[span_step];    ///< Depth in the middle of the pixel; infinite outside.
-  float contour[span_step];  ///< Depth of the contour.
+  float depth[span_step];    ///< Depth in the middle of the pixel, m; infinite if the middle is outside.
+  float contour[span_step];  ///< Depth of the contour, m.
   std::uint8_t is_simple[span_step];
   /// Whether the result is reliable; otherwise the reference path draws the pixel.
   std::uint8_t is_sure[span_step];
@@ -134,25 +140,27 @@ struct BorderPixels {
 
 /// Functions of one instruction set.
 struct SpanKernels {
-  /// Draws the piece's skin in the columns [begin, end) where it is nearest and no contour is near.
+  /// Draws the piece's surface in the columns [begin, end) where the piece is nearest and no contour is near.
   void (*draw)(const SpanPiece& piece, int begin, int end, SpanRow& row);
-  /// Draws the screen in the columns where it is nearest and none of its edges is near. `is_first`: the row
-  /// is empty; without distortion its content is then ignored, except for a plain screen's light.
+  /// Draws the screen in the columns [begin, end) where the screen is nearest and none of its edges is near.
+  /// `is_first` means that the row is empty. Without distortion its content is then ignored, except for a
+  /// plain screen's light.
   void (*screen)(const SpanScreen& screen, int begin, int end, bool is_first, SpanRow& row);
-  /// Adds the columns that may contain the rim to row.borders.
+  /// Appends the columns that may contain the rim to row.borders.
   void (*find_rim)(const SpanRim& rim, int begin, int end, SpanRow& row);
-  /// Draws the end itself where it is nearest, except in the rim's pixels.
+  /// Draws the end's disc where the disc is nearest, except in the rim's pixels.
   void (*disc)(const SpanRim& rim, std::size_t channels, int begin, int end, SpanRow& row);
-  /// Computes the rim's pixels that nothing else visible divides (is_plain); `piece` is the one that ends
-  /// there.
+  /// Computes the pixels that only the rim divides, and sets is_plain for them. `piece` is the piece of tube
+  /// that ends at the rim.
   void (*divide_rim)(const SpanRim& rim, const SpanPiece& piece, const SpanPlaces& places, RimPixels& pixels);
-  /// Computes the rim pixel with number `index` in `places` from 256 points; returns whether it is reliable.
+  /// Computes the rim pixel with number `index` in `places` from 256 points. Returns whether the result is
+  /// reliable.
   bool (*sample_rim)(const SpanRim& rim, const SpanPiece& piece, const SpanPlaces& places, std::size_t index,
                      RimPixels& pixels);
-  /// Computes pixels with contours.
+  /// Computes the pixels that the piece's contour divides.
   void (*divide)(const SpanPiece& piece, const SpanPlaces& places, BorderPixels& borders);
   /// Computes the mean light of the piece in the pixel with number `index` in `places`, from 64 or 256
-  /// points. Leaves it unchanged if no point is inside. Returns whether it is reliable.
+  /// points. Leaves `light` unchanged if no point is inside. Returns whether the result is reliable.
   bool (*sample)(const SpanPiece& piece, const SpanPlaces& places, std::size_t index, float* light);
 };
 

@@ -6,14 +6,14 @@
 #include "flexura/render/span_kernels.h"
 #include "flexura/render/vectors.h"
 
-// Rays against tubes, for all_kernels.h alone.
+// Intersection of rays with tubes; only all_kernels.h includes this header.
 //
 // The centerline's circle passes through the origin, tangent to z, with its centre at x = 1/curvature.
 // A point p is on the tube of radius r where
 //   H = h^2 + y^2 - r^2 = 0,  h = curvature (|p|^2 - r^2) / 2 - x.
-// On the tube h is the distance from the circle's cylinder, and along a ray H is a polynomial. The r of a
-// tapered tube is that at the foot of p on the centerline. Constant r has separate code without these terms,
-// for speed.
+// On the tube, h is the distance from the cylinder through the circle. Along a ray, H is a polynomial. For a
+// tapered tube, r is the radius at the point of the centerline nearest to p. Constant r has separate, faster
+// code without the terms of the taper.
 namespace flexura {
 namespace {
 
@@ -30,7 +30,8 @@ struct Vector {
   return {p.x + way * d.x, p.y + way * d.y, p.z + way * d.z};
 }
 
-// Undistorted positions of pixels relative to a reference pixel, and their derivatives by the pixel.
+// Undistorted positions of pixels relative to a reference pixel, and their derivatives with respect to the
+// pixel (u, v).
 struct Place {
   Wide u, v;
   Wide u_by_u, u_by_v, v_by_u, v_by_v;
@@ -38,7 +39,7 @@ struct Place {
 [[gnu::always_inline]] inline Wide at(const Linear& f, const Place& place) {
   return f.value + f.by_v * place.v + f.by_u * place.u;
 }
-// Derivatives by the pixel.
+// Derivatives with respect to the pixel (u, v).
 struct Slope {
   Wide by_u, by_v;
 };
@@ -64,16 +65,16 @@ struct Slope {
           wide_load(places.u_by_v + i), wide_load(places.v_by_u + i), wide_load(places.v_by_v + i)};
 }
 
-// A ray, and h along it from `point` on: h0 + h1 t + h2 t^2; for a tapered tube without the term of the
+// A ray, and h along the ray from `point` on: h0 + h1 t + h2 t^2. For a tapered tube, without the term of the
 // radius.
 template <bool is_tapered>
 struct RayLanes {
   Vector point, direction;
-  Wide depth;  // Of the point.
+  Wide depth;  // Depth of the point.
   Wide h0, h1, h2;
 };
 
-// Starts from a point close to the piece's middle.
+// Returns the ray of a place, with a point close to the piece's middle.
 template <bool is_tapered>
 [[gnu::always_inline]] inline RayLanes<is_tapered> ray_of(const SpanPiece& piece, const Place& place) {
   RayLanes<is_tapered> ray;
@@ -90,7 +91,8 @@ template <bool is_tapered>
   return ray;
 }
 
-// atan(x) / x of x^2 up to 1 (M. Abramowitz, I. Stegun, 4.4.49: to 2e-8); constant beyond.
+// Returns atan(x) / x as a function of x^2 up to 1, with an error of 2e-8 (M. Abramowitz, I. Stegun, 4.4.49);
+// constant beyond.
 [[gnu::always_inline]] inline Wide arc_by_tangent(const Wide& x_square) {
   const Wide q = choose(x_square < 1, x_square, Wide(1));
   return 1 + q * (-0.3333314528f +
@@ -101,10 +103,10 @@ template <bool is_tapered>
                                       q * (0.0429096138f + q * (-0.0161657367f + q * 0.0028662257f)))))));
 }
 
-// Radius of the tube at the foot of p.
+// Radius of the tube at the point of the centerline nearest to p.
 struct Girth {
   Wide radius;
-  Wide by_x, by_z;  // Its gradient by p.
+  Wide by_x, by_z;  // Gradient of the radius with respect to p.
 };
 [[gnu::always_inline]] inline Girth girth_at(const SpanPiece& piece, const Vector& p) {
   const Wide opposite = piece.curvature * p.z, adjacent = at_least(0.1f, 1 - piece.curvature * p.x),
@@ -114,7 +116,7 @@ struct Girth {
           slope * adjacent};
 }
 
-// H, half of its derivatives, and the radius.
+// H, half of its derivatives along the ray, and the radius.
 struct Height {
   Wide value, slope, curving, radius;
 };
@@ -126,7 +128,7 @@ struct Height {
   return {h * h + y * y - square, h * h_slope + y * ray.direction.y,
           h_slope * h_slope + 2 * h * ray.h2 + ray.direction.y * ray.direction.y, Wide(piece.radius)};
 }
-// Uses the first derivative of the radius only: along a ray it is almost linear.
+// Uses only the first derivative of the radius, because the radius is almost linear along a ray.
 [[gnu::always_inline]] inline Height height(const SpanPiece& piece, const RayLanes<true>& ray,
                                             const Wide& t) {
   const Vector& d = ray.direction;
@@ -140,7 +142,7 @@ struct Height {
           h_slope * h_slope + h * h_curving + d.y * d.y - r_slope * r_slope, r};
 }
 
-// Minimum of H along the ray, and the radius there.
+// Minimum of H along the ray, and the radius at the minimum.
 struct Lowest {
   Wide t, value, half_chord, radius;
   WideMask is_sure;
@@ -156,7 +158,7 @@ template <bool is_tapered>
   }
   const Height here = height(piece, ray, t);
   if (steps <= 1) at_start = here.value;
-  // If H is higher than at the start, this is another one of its minima.
+  // If H is larger than at the start, this is another minimum of H.
   const float rounding = 0.01f * piece.radius * piece.radius;
   const Wide scale = 1 / here.curving, move = here.slope * scale, value = here.value - here.slope * move;
   Lowest lowest{t - move, value, square_root(at_least(0, -(value * scale))), here.radius,
@@ -165,8 +167,8 @@ template <bool is_tapered>
   return lowest;
 }
 
-// Entry of the ray, if any. `move` is the last Newton step, m, or, where H does not fall, the distance from
-// the surface.
+// Entry of the ray into the tube, if any. `move` is the length of the last Newton step, m; where H does not
+// decrease, it is the distance from the surface.
 struct Entry {
   Wide t, move;
 };
@@ -184,8 +186,8 @@ template <bool is_tapered>
   return {t, move};
 }
 
-// Whether p is at most `before` outside the plane at the piece's start and at most `after` outside that at
-// its end.
+// Returns whether p is at most `before` outside the plane at the piece's start, and at most `after` outside
+// the plane at its end.
 [[gnu::always_inline]] inline WideMask is_within(const SpanPiece& piece, const Vector& p, float before,
                                                  float after) {
   const Wide beyond = piece.end_sine * p.x + piece.end_cosine * p.z - piece.end_offset;
@@ -194,10 +196,10 @@ template <bool is_tapered>
 [[gnu::always_inline]] inline WideMask is_within(const SpanPiece& piece, const Vector& p, float slack) {
   return is_within(piece, p, slack, slack);
 }
-// Overlap of pieces, as a share of their radius.
+// Overlap of neighbouring pieces as a fraction of their radius.
 constexpr float overlap = 1e-3f;
 
-// Normal of the tube at its point p, times the radius at the piece's start.
+// Returns the normal of the tube at a point p of its surface, times the radius at the piece's start.
 [[gnu::always_inline]] inline Vector normal_of(const SpanPiece& piece, const RayLanes<false>& ray,
                                                const Vector& p, const Wide& t) {
   const Wide h = ray.h0 + t * (ray.h1 + t * ray.h2);
@@ -216,7 +218,8 @@ constexpr float overlap = 1e-3f;
   return {size * out.x, size * out.y, size * out.z};
 }
 
-// View of a ray on a piece, ignoring its ends, with the given number of steps to the deepest point.
+// Relation of a ray to a piece, ignoring the piece's ends, with the given number of steps to the deepest
+// point.
 template <bool is_tapered>
 struct PieceView {
   RayLanes<is_tapered> ray;
@@ -239,7 +242,7 @@ template <bool is_tapered>
   return piece_view;
 }
 
-// Part of a pixel's square beyond a line: x . normal > offset, for a unit normal or a zero vector.
+// Part of a pixel's square beyond a line, where x . normal > offset, for a unit normal or a zero vector.
 struct SquarePart {
   Wide area, x, y;  // Centroid, where the area is not 0.
 };
@@ -247,11 +250,11 @@ struct SquarePart {
                                                      const Wide& offset) {
   const Wide size_x = size_of(normal_x), size_y = size_of(normal_y);
   const WideMask is_steep = size_x < size_y;
-  // Where nothing changes in the image there is no normal: everything is on one side.
+  // If the function is constant in the image, there is no normal, and the whole square is on one side.
   constexpr float least = 1e-6f;
   const Wide a = at_least(least, choose(is_steep, size_y, size_x)),
              b = at_least(least, choose(is_steep, size_x, size_y));
-  // The triangle at the nearer corner; then the band if the line crosses opposite sides.
+  // Area of the triangle at the nearer corner, then of the band if the line crosses opposite sides.
   const Wide far = size_of(offset);
   const Wide t = at_least(0, 0.5f * (a + b) - far);
   const Wide corner = t * t / (2 * a * b), corner_x = 0.5f - t / (3 * a), corner_y = 0.5f - t / (3 * b);
@@ -271,13 +274,14 @@ struct SquarePart {
   return part;
 }
 
-// Square of the larger component of a unit normal; for a zero vector as if it were a unit one.
+// Returns the square of the larger component of a unit normal, or at least 0.5 for a zero vector.
 [[gnu::always_inline]] inline Wide larger_square(const Wide& normal_x, const Wide& normal_y) {
   return at_least(0.5f,
                   choose(size_of(normal_x) > size_of(normal_y), normal_x * normal_x, normal_y * normal_y));
 }
 
-// Share of the pixel beyond the edge, from the distance in space and its image derivative.
+// Returns the fraction of the pixel beyond the edge, computed from the distance in space and its derivative
+// in the image.
 template <bool is_tapered>
 [[gnu::always_inline]] inline Wide share_beyond(const SpanPiece& piece, const SpanEdge& edge,
                                                 const RayLanes<is_tapered>& ray, const Place& place,
@@ -296,8 +300,8 @@ template <bool is_tapered>
   return part_beyond(by_u * scale, by_v * scale, -distance * scale).area;
 }
 
-// Light of the skin at p, in all three channels, as these cost almost nothing: mean over its pixel, or at the
-// point alone.
+// Computes the light of the surface at p: the mean over the pixel, or the light at the point alone. Always
+// computes three channels, because additional channels take almost no time.
 template <bool is_pixel, bool is_tapered>
 [[gnu::always_inline]] inline void skin_light(const SpanPiece& piece, const RayLanes<is_tapered>& ray,
                                               const Place& place, const Wide& depth, const Vector& p,
@@ -316,7 +320,7 @@ template <bool is_pixel, bool is_tapered>
   for (Wide& channel : light) channel *= factor;
 }
 
-// At the point alone.
+// Computes the light at the point alone.
 template <bool is_tapered>
 [[gnu::always_inline]] inline void skin_light(const SpanPiece& piece, const Place& place,
                                               const PieceView<is_tapered>& piece_view, Wide (&light)[3]) {

@@ -2,11 +2,12 @@
 
 #include "flexura/render/span_draw.h"
 
-// Flat ends of tubes; for all_kernels.h alone.
+// Flat ends of tubes; only all_kernels.h includes this header.
 namespace flexura {
 namespace {
 
-// Where a ray meets the plane of the end; `value` is x^2 + y^2 - z^2, negative inside the rim.
+// Intersection of a ray with the plane of the end. `value` is x^2 + y^2 - z^2, which is negative inside the
+// rim.
 struct RimPoint {
   Wide x, y, z, value;
 };
@@ -15,10 +16,11 @@ struct RimPoint {
   return {x, y, z, x * x + y * y - z * z};
 }
 
-// Local shape of the rim's image, a conic, in a pixel. `distance`: from the middle along the value's
-// gradient, positive if the middle is inside. `normal_u`, `normal_v`: direction of the gradient. `bending`:
-// curvature, 1/px. `curving`: half of the value's second derivatives along and across the gradient, summed,
-// 1/px^2. `flatness`: inverse of about half the distance to its other side, 1/px.
+// Local shape of the rim's image, a conic, in a pixel. `distance`, px, is the distance of the rim from the
+// middle along the gradient of `value`, positive if the middle is inside. `normal_u` and `normal_v` are the
+// direction of the gradient. `bending` is the curvature, 1/px. `curving` is half the sum of the second
+// derivatives of `value` along and across the gradient, 1/px^2. `flatness` is the inverse of about half the
+// distance to the other side of the rim, 1/px.
 struct RimLine {
   RimPoint at;
   Wide distance, normal_u, normal_v, bending, curving, flatness;
@@ -35,7 +37,7 @@ struct RimLine {
     const Wide by_u = place.u_by_u * u + place.u_by_v * v, by_v = place.v_by_u * u + place.v_by_v * v;
     return uu * by_u * by_u + 2 * uv * by_u * by_v + vv * by_v * by_v;
   };
-  // Half of the derivatives by the position, then by the pixel.
+  // Half of the derivatives with respect to the undistorted position, then with respect to the pixel.
   const auto slope = [&](float Linear::* by) {
     return at.x * (rim.x.*by) + at.y * (rim.y.*by) - at.z * (rim.z.*by);
   };
@@ -56,20 +58,22 @@ struct RimLine {
   return at.x * rim.facing[0] + at.y * rim.facing[1];
 }
 
-// Whether the tube's skin faces the camera at this point of the rim: the camera is beyond the skin's plane.
+// Returns whether the tube's surface faces the camera at a point of the rim: the camera is beyond the
+// surface's tangent plane.
 [[gnu::always_inline]] inline WideMask is_skin_seen(const SpanRim& rim, const RimPoint& at) {
   const Wide length = square_root(at.x * at.x + at.y * at.y);
   const Wide shrunk = length - (at.x * rim.bend[0] + at.y * rim.bend[1]);
   return facing(rim, at) < -length * (rim.radius - rim.lean * (length / shrunk));
 }
 
-// Whether the rim may cross the pixel. For an end seen from behind, only the half with visible skin counts.
+// Returns whether the rim may cross the pixel. For an end seen from behind, only the half of the rim with
+// visible tube surface is considered.
 [[gnu::always_inline]] inline WideMask is_rim(const SpanRim& rim, const Place& place) {
   constexpr float reach = 0.8f;
   const RimLine line = rim_line(rim, place);
   const RimPoint& at = line.at;
   const WideMask is_seen = facing(rim, at) < rim.margin * square_root(at.x * at.x + at.y * at.y);
-  // Between two near sides the gradient may point along them.
+  // Between two near sides of the rim the gradient may be parallel to the sides.
   const WideMask is_between = size_of(at.value) < reach * reach * line.curving;
   return ((size_of(line.distance) < reach) | is_between) & (at.z > 0) & (is_seen | mask_of(rim.is_front));
 }

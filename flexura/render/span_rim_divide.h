@@ -3,7 +3,7 @@
 #include "flexura/render/span_divide.h"
 #include "flexura/render/span_rim.h"
 
-// Pixels divided by rims; for all_kernels.h alone.
+// Pixels that rims divide; only all_kernels.h includes this header.
 namespace flexura {
 namespace {
 
@@ -12,8 +12,8 @@ namespace {
   return place;
 }
 
-// Pixels that only the rim divides: an end in front of its skin or of the background of the arm, or skin that
-// ends there. The tube's contour is far away.
+// Computes pixels that only the rim divides: an end in front of its tube or of the background, or tube
+// surface that ends at the rim. The tube's contour is far away.
 template <bool is_tapered>
 void divide_plain(const SpanRim& rim, const SpanPiece& piece, const SpanPlaces& places, RimPixels& pixels) {
   constexpr float sharpest = 0.2f, flattest = 0.8f;  // 1/px
@@ -28,8 +28,8 @@ void divide_plain(const SpanRim& rim, const SpanPiece& piece, const SpanPlaces& 
     const WideMask is_skin_side = is_skin_seen(rim, line.at), is_in_disc = line.at.value < 0;
     const PieceView<is_tapered> piece_view = see<is_tapered>(piece, place, piece.centering + 1);
     const Lowest& lowest = piece_view.lowest;
-    // The skin is outside the rim of a visible end, and inside that of a hidden one. Its light is taken at
-    // the centroid of its part of the pixel.
+    // The tube's surface is outside the rim of a visible end, and inside the rim of a hidden end. Its light
+    // is computed at the centroid of its part of the pixel.
     const Wide outside = 1 - within.area, turn = -within.area / at_least(1e-6f, outside);
     const Wide factor = rim.is_front ? turn : Wide(1);
     const WideMask is_some = rim.is_front ? outside > 1e-6f : within.area > 0;
@@ -61,7 +61,7 @@ void divide_rim(const SpanRim& rim, const SpanPiece& piece, const SpanPlaces& pl
                       : divide_plain<false>(rim, piece, places, pixels);
 }
 
-// Rays against the end and its tube.
+// Intersects rays with the end and its tube.
 template <bool is_tapered>
 [[gnu::always_inline]] inline Seen see_end(const SpanRim& rim, const SpanPiece& piece, const Place& pixel) {
   const Place on_rim = counted_from(pixel, rim.u0, rim.v0), place = counted_from(pixel, piece.u0, piece.v0);

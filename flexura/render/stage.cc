@@ -37,14 +37,14 @@ void add_ring_edge(std::span<const Arc> tube, double s, const Pose& X_CW, Stage&
   stage.ring_edges.push_back({s, circle_at(X_CS.rotation, X_CS.position, radius)});
 }
 
-// Sets which marker is visible where: of overlapping ones the last.
+// Determines which marker is visible at each arc length: among overlapping markers, the last one in the list.
 void add_rings(std::span<const MarkerRing> markers, Stage& stage) {
   for (std::size_t i = 0; i < markers.size(); ++i) {
     stage.rings.push_back({markers[i].s_from, static_cast<int>(i)});
     stage.rings.push_back({markers[i].s_to, -1});
   }
   std::ranges::sort(stage.rings, {}, &RingStretch::s);
-  std::vector<int>& open = stage.open_rings;  // A heap: the last marker is in front.
+  std::vector<int>& open = stage.open_rings;  // A heap with the last marker in front.
   open.clear();
   for (RingStretch& ring : stage.rings) {
     if (ring.marker >= 0) {

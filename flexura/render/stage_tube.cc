@@ -31,14 +31,14 @@ void complete(TubePiece& piece, double pixel) {
   piece.near_radius = piece.bound_radius + near_miss * pixel * farthest;
 }
 
-// Joins `piece` to the last one if it continues there, and adds it.
+// Adds `piece`, and links it to the last piece if it continues this piece (`goes_on`).
 void add_piece(TubePiece& piece, bool goes_on, Stage& stage) {
   const int here = static_cast<int>(stage.pieces.size());
   if (goes_on) {
     piece.before = here - 1;
     TubePiece& last = stage.pieces.back();
     last.after = here;
-    // So that no ray slips between the two through rounding.
+    // Lets the two pieces overlap, so that rounding leaves no gap for rays.
     last.end_offset += overlap * (last.length + last.radius);
   }
   complete(piece, stage.pixel);

@@ -7,17 +7,17 @@ namespace flexura {
 /// Kind of the surface that a pixel shows.
 enum class SurfaceKind : std::uint8_t {
   background,
-  section,  ///< The arm's skin; the index is the section's.
-  cap,      ///< A flat end of the arm: 0 at the base, 1 at the tip, 2 where the radius steps.
-  marker,   ///< The index is the ring's in the scene.
-  disk,     ///< A tendon guide.
+  section,  ///< The arm's surface; the index is that of the section.
+  cap,      ///< A flat end of the arm; index 0 at the base, 1 at the tip, 2 where the radius jumps.
+  marker,   ///< A marker ring; the index is that in the scene's list.
+  disk,     ///< A guide disk.
   screen,
-  etalon,       ///< 0: the skin; 1, 2: its ends at +Y, -Y.
-  etalon_line,  ///< 0 at +Z, then counter-clockwise seen from +Y.
+  etalon,       ///< The calibration cylinder; index 0: its side; 1, 2: its ends at +Y and -Y.
+  etalon_line,  ///< A red line; index 0 at +Z, then counter-clockwise as seen from +Y.
   obstacle,
 };
 
-/// Identity of a surface.
+/// Identifies a surface of the scene.
 struct SurfaceLabel {
   SurfaceKind kind = SurfaceKind::background;
   std::uint16_t index = 0;

@@ -31,7 +31,8 @@ Cone cone_of(const RayField& rays, int u0, int v0, int u1, int v1) {
   return cone;
 }
 
-// Returns whether the cone may come within `radius` of the segment from p to q, C. Never a false negative.
+// Returns whether the cone may come within `radius` of the segment from p to q, in C. False only if this is
+// certain.
 bool may_touch(const Cone& cone, const Eigen::Vector3d& p, const Eigen::Vector3d& q, double radius) {
   const double deepest = std::max(p.z(), q.z()) + radius;
   if (!(deepest > 0)) return false;
@@ -52,7 +53,7 @@ bool may_touch(const Cone& cone, const Eigen::Vector3d& p, const Eigen::Vector3d
 }
 
 bool may_touch(const Cone& cone, const TubePiece& piece) {
-  // An arc of up to 30 degrees stays within a fifteenth of its length from its chord.
+  // The distance of an arc of up to 30 degrees from its chord is at most a fifteenth of its length.
   const Eigen::Vector3d end = piece.p_CP + piece.R_CP * (2 * piece.bound_center);
   const double widest = piece.widest();
   return may_touch(cone, piece.p_CP, end, widest + piece.length * piece.length * piece.curvature / 8);

@@ -10,18 +10,18 @@
 
 namespace flexura {
 
-/// Lists the primitives that may be visible or have a border in each square of 16 x 16 px. A list is made
-/// when it is first needed.
+/// Lists, for each tile of 16 x 16 px, the primitives that may be visible or have a border there. A list is
+/// made when it is first needed.
 class Tiles {
  public:
   static constexpr int size = 16;
 
-  /// Starts a new frame. Storage is reused; `stage` and `rays` must outlive the queries.
+  /// Starts a new frame. Memory is reused. `stage` and `rays` must outlive the queries.
   void build(const Stage& stage, const RayField& rays);
 
   [[nodiscard]] int columns() const { return columns_; }
   [[nodiscard]] int rows() const { return rows_; }
-  /// Returns those of tile (column, row), in the stage's order.
+  /// Returns the primitives of tile (column, row), in the stage's order.
   [[nodiscard]] std::span<const Part> parts(int column, int row) const;
   /// Returns all primitives.
   [[nodiscard]] std::span<const Part> all_parts() const { return all_; }
@@ -32,10 +32,10 @@ class Tiles {
     bool is_known = false;
     std::span<const Part> parts;
   };
-  // Storage for lists, which do not move until it is cleared.
+  // Memory for lists, which do not move until clear().
   class Room {
    public:
-    // Returns a vector with capacity for this many more parts.
+    // Returns a vector with capacity for `parts` more elements.
     std::vector<Part>& with(std::size_t parts);
     void clear();
 

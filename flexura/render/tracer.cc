@@ -51,7 +51,7 @@ struct NearSurfaces {
   }
 };
 
-// Returns the piece that the ray enters where it leaves this one; -1: no piece.
+// Returns the piece that the ray enters when it leaves this piece; -1: no piece.
 int piece_behind(const TubePiece& piece, const DepthRange& range) {
   if (range.leaves_after) return piece.after;
   return range.leaves_before ? piece.before : -1;
@@ -139,7 +139,8 @@ void meet(const Stage& stage, Part part, const Ray& ray, NearSurfaces& near_surf
   }
 }
 
-// Returns the contour of the tube that the ray has entered: where it leaves again when the pixel moves.
+// Returns the contour of the tube that the ray has entered, at which the ray would leave the tube if the
+// pixel moved.
 Border own_contour(const Stage& stage, const Ray& ray, const Hit& hit) {
   auto index = static_cast<int>(hit.part.index);
   double depth = hit.depth;
@@ -154,8 +155,8 @@ Border own_contour(const Stage& stage, const Ray& ray, const Hit& hit) {
     depth = range.to;
     index = piece_behind(piece, range);
     if (index >= 0) continue;
-    // Out through the tube's end. Where the contour meets the end's rim nearby, at an unknown angle, the ray
-    // would not have gone much deeper.
+    // The ray leaves through the tube's end. If the contour meets the end's rim nearby, at an unknown angle,
+    // the ray would not have reached much deeper.
     const Inside at = inside_at(piece, local, depth);
     Border corner = contour_at(piece, ray, depth);
     corner.distance *= 0.7;
@@ -199,7 +200,7 @@ SurfaceLabel skin_label(const Stage& stage, const TubePiece& piece, double s, co
   return body.label;
 }
 
-// Completes a hit.
+// Computes the remaining members of a hit.
 void complete(const Stage& stage, const Ray& ray, Hit& hit) {
   if (hit.is_none()) return;
   int body = 0;
@@ -237,7 +238,7 @@ void complete(const Stage& stage, const Ray& ray, Hit& hit) {
   if (hit.label.kind == SurfaceKind::disk) hit.s = stage.scene->arm.disks[hit.label.index].s;
 }
 
-// Derivative of a hit's depth by (a, b).
+// Returns the derivative of a hit's depth with respect to (a, b).
 Eigen::Vector2d depth_slope(const Hit& hit, const Ray& ray) {
   const double towards = hit.normal.dot(ray.direction);
   if (towards == 0) return {infinity, infinity};
@@ -259,7 +260,7 @@ Border ring_border(const RingEdge& edge, double s, const Eigen::Vector2d& s_slop
   return straight;
 }
 
-// Derivative by (a, b) of a surface point's coordinate along `direction`.
+// Returns the derivative with respect to (a, b) of a surface point's coordinate along `direction`.
 Eigen::Vector2d surface_slope(const Hit& hit, const Ray& ray, const Eigen::Vector3d& direction) {
   return hit.depth * direction.head<2>() + direction.dot(ray.direction) * depth_slope(hit, ray);
 }
@@ -371,7 +372,7 @@ Trace Tracer::trace(const Ray& ray) const {
     add_meeting(stage_, parts_, ray, first, near_surfaces.third, near_surfaces);
   if (!first.is_none() && first.part.kind == Part::Kind::piece) {
     Border contour = own_contour(stage_, ray, first);
-    contour.depth = 0;  // The surface ends at the contour, however far behind the surface that is found.
+    contour.depth = 0;  // The surface ends at the contour, regardless of the depth found for the contour.
     near_surfaces.add(contour);
     add_color_edges(stage_, ray, near_surfaces);
   }

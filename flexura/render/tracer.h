@@ -21,38 +21,39 @@ struct Part {
   bool operator==(const Part&) const = default;
 };
 
-/// The surface that a ray meets first.
+/// The first surface that a ray hits.
 struct Hit {
-  double depth = std::numeric_limits<double>::infinity();  ///< Depth, m; infinite: no surface.
+  /// Depth along the optical axis, m; infinite without a surface.
+  double depth = std::numeric_limits<double>::infinity();
   Part part = {Part::Kind::piece, 0};
-  Eigen::Vector3d normal = {0, 0, -1};  ///< Unit normal, C, towards the camera's side.
-  /// On the arm, arc length from the base, m; elsewhere NaN.
+  Eigen::Vector3d normal = {0, 0, -1};  ///< Unit normal in C, on the camera's side.
+  /// Arc length from the base on the arm, m; NaN on other surfaces.
   double s = std::numeric_limits<double>::quiet_NaN();
   SurfaceLabel label;
 
   [[nodiscard]] bool is_none() const { return depth == std::numeric_limits<double>::infinity(); }
 };
 
-/// Surface at a point of the image, and its nearest borders: contours, rims, colour edges, and lines where
-/// bodies meet.
+/// Surface at a point of the image, and the nearest borders in the image: contours, rims, colour edges, and
+/// lines where bodies intersect.
 struct Trace {
   Hit hit;
-  Border nearest, second;                                  ///< Infinitely far if beyond border_reach.
-  double clear = std::numeric_limits<double>::infinity();  ///< Distance of the nearest border that is not a
-                                                           ///< ring's edge, px.
+  Border nearest, second;  ///< Nearest and second nearest border; infinitely far if beyond border_reach.
+  /// Distance of the nearest border that is not an edge of a ring, px.
+  double clear = std::numeric_limits<double>::infinity();
 };
 
-/// Intersects rays with some of a stage's primitives, in the given order. Surfaces are visible from outside
-/// only: a camera inside a body does not see that body (screens have two sides).
+/// Intersects rays with some primitives of a stage, in the given order. Surfaces are visible only from
+/// outside, so that a camera inside a body does not see this body. Screens are visible from both sides.
 class Tracer {
  public:
   Tracer(const Stage& stage, std::span<const Part> parts) : stage_(stage), parts_(parts) {}
 
-  /// Returns the first surface alone.
+  /// Returns the first surface that the ray hits, without borders.
   [[nodiscard]] Hit hit(const Ray& ray) const;
-  /// Returns the first surface with its borders.
+  /// Returns the first surface that the ray hits, with the nearest borders.
   [[nodiscard]] Trace trace(const Ray& ray) const;
-  /// Returns how many times the ray enters the arm before the depth.
+  /// Returns the number of times that the ray enters the arm before `depth`, m.
   [[nodiscard]] int entries_into_arm(const Ray& ray, double depth) const;
 
   [[nodiscard]] const Stage& stage() const { return stage_; }
@@ -62,10 +63,10 @@ class Tracer {
   std::span<const Part> parts_;
 };
 
-/// Returns what the arm's skin shows at arc length s on `piece`: a marker or the section.
+/// Returns the label of the arm's surface at arc length s, m, on `piece`: a marker or the section.
 [[nodiscard]] SurfaceLabel arm_label(const Stage& stage, const TubePiece& piece, double s);
 
-/// Returns the light from the point where the ray meets `hit`, or from the background.
+/// Returns the light that the ray gets from the surface point `hit`, or from the background.
 [[nodiscard]] Color light_of(const Stage& stage, const Hit& hit, const Ray& ray);
 
 }  // namespace flexura

@@ -14,64 +14,68 @@
 
 namespace flexura {
 
-// True values of a picture, from its geometry and without sensor effects. Each function queries a renderer
-// that is prepared for a scene and a view.
+// True values of a picture, computed from geometry, without sensor effects. Each function queries a renderer
+// that is prepared for a scene and a view (Renderer::prepare).
 
-/// Returns a label as one number: 4096 times the kind's index in SurfaceKind, plus the index.
+/// Returns a label as one number: 4096 times the value of SurfaceKind, plus the index.
 [[nodiscard]] std::uint16_t label_value(SurfaceLabel label);
-/// Returns the label of such a number.
+/// Returns the label for a number from label_value().
 [[nodiscard]] SurfaceLabel label_from_value(std::uint16_t value);
 
 /// True values in the middle of one pixel.
 struct PixelTruth {
   SurfaceLabel label;
-  double depth = std::numeric_limits<double>::infinity();  ///< Depth as in TruthMaps, m.
-  double s = std::numeric_limits<double>::quiet_NaN();     ///< Arc length as in TruthMaps, m.
+  /// Depth along the optical axis, m; infinite without a surface.
+  double depth = std::numeric_limits<double>::infinity();
+  /// Arc length from the base on the arm, m; NaN on other surfaces.
+  double s = std::numeric_limits<double>::quiet_NaN();
 };
-/// Throws std::out_of_range unless (u, v) is in the image.
+/// Returns the true values of pixel (u, v). Throws std::out_of_range unless (u, v) is in the image.
 [[nodiscard]] PixelTruth pixel_truth(const Renderer& renderer, int u, int v);
 
 /// True values in the middle of each pixel.
 struct TruthMaps {
-  Image<float> depth;          ///< Depth along the optical axis, m; infinite where there is no surface.
-  Image<std::uint16_t> label;  ///< label_value() of the surface.
-  Image<float> s;              ///< Arc length from the base on the arm, m; NaN elsewhere.
+  Image<float> depth;          ///< Depth along the optical axis, m; infinite without a surface.
+  Image<std::uint16_t> label;  ///< Label of the surface (label_value()).
+  Image<float> s;              ///< Arc length from the base on the arm, m; NaN on other surfaces.
 };
-/// Resizes `maps` to the renderer's view and fills them.
+/// Computes `maps`, resized to the view's image.
 void truth_maps(const Renderer& renderer, TruthMaps& maps);
 
-/// Returns the share of each pixel's square that shows surfaces of `kind`, 0 to 1; with an index, that
-/// surface alone. One channel, of the view's size.
+/// Returns the fraction of each pixel's square that shows surfaces of `kind`, from 0 to 1. With an index,
+/// only the surface with this index counts. The image has one channel and the view's size.
 [[nodiscard]] Image<float> coverage(const Renderer& renderer, SurfaceKind kind,
                                     std::optional<std::uint16_t> index = std::nullopt);
 
-/// A point of the arm's backbone in the image.
+/// A point of the arm's backbone, projected into the image.
 struct AxisPoint {
-  double s = 0;                          ///< Arc length from the base, m.
-  std::optional<Eigen::Vector2d> pixel;  ///< Empty: behind the camera, or outside the lens's field.
-  double depth = 0;                      ///< Depth along the optical axis, m; negative behind the camera.
-  /// Whether the camera sees the arm's surface there: the line from the camera to the point enters the arm
-  /// once and meets nothing else before.
+  double s = 0;  ///< Arc length from the base, m.
+  std::optional<Eigen::Vector2d>
+      pixel;  ///< Pixel (u, v), px; empty if the point is behind the camera or outside the lens's field.
+  double depth = 0;  ///< Depth along the optical axis, m; negative behind the camera.
+  /// Whether the camera sees the arm's surface in front of the point. The line from camera to point then
+  /// enters the arm exactly once, and hits nothing else before.
   bool is_visible = false;
 };
-/// Returns the points at these arc lengths, m, clamped to the arm. Empty without an arm.
+/// Returns the backbone points at arc lengths `s`, m, clamped to the arm. Empty without an arm.
 [[nodiscard]] std::vector<AxisPoint> projected_axis(const Renderer& renderer, std::span<const double> s);
 
-/// A marker ring in the image.
+/// A marker ring as seen in the image.
 struct MarkerView {
-  AxisPoint center;                   ///< The backbone at the middle of the ring.
+  AxisPoint center;                   ///< Backbone point at the middle of the ring.
   double area = 0;                    ///< Visible area in the image, px^2.
   Eigen::Vector2d centroid = {0, 0};  ///< Centroid of the visible area, px; undefined if the area is 0.
 };
-/// Returns one view for each of the scene's markers, in order.
+/// Returns the views of all markers of the scene, in the scene's order.
 [[nodiscard]] std::vector<MarkerView> marker_views(const Renderer& renderer);
 
-/// Returns the optical flow in two channels (u, v), px: how the surface point in the middle of each pixel
-/// moves in the image. The motion is from the prepared scene and view to the given ones. NaN for the
-/// background and for points that leave the lens's field. Points of the arm keep their section, their share
-/// of its length, and their position in the cross-section. Screens and the etalon move their points;
-/// obstacles are fixed. Visibility in the other view does not matter. Throws std::invalid_argument for a
-/// scene that check() refuses, with other numbers of tube arcs, disks or screens, or without the etalon.
+/// Returns the optical flow in two channels (u, v), px: the image motion of the surface point in the middle
+/// of each pixel. The motion is from the prepared scene and view to the given scene and view. NaN for the
+/// background, and for points that leave the lens's field. Points of the arm keep their section, their
+/// fraction of its length, and their position in the cross-section. Points of screens and of the calibration
+/// cylinder move with these bodies; obstacles are fixed. Points need not be visible in the second view.
+/// Throws std::invalid_argument for a scene that check() rejects, or that has other numbers of tube arcs,
+/// disks or screens. Also throws it if only one of the scenes has the cylinder.
 [[nodiscard]] Image<float> optical_flow(const Renderer& renderer, const Scene& scene, const View& view);
 
 }  // namespace flexura

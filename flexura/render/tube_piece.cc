@@ -9,7 +9,8 @@
 namespace flexura {
 namespace {
 
-// Arc length from the piece's start to the foot of (x, z), smooth through curvature 0.
+// Returns the arc length from the piece's start to the point of the centerline nearest to (x, z). Smooth
+// through curvature 0.
 double arc_length(double curvature, double x, double z) {
   const double opposite = curvature * z, adjacent = 1 - curvature * x;
   if (std::abs(opposite) > 1e-3 * adjacent) return std::atan2(opposite, adjacent) / curvature;
@@ -17,7 +18,8 @@ double arc_length(double curvature, double x, double z) {
   return z / adjacent * (1 - square * (1.0 / 3 - square * (1.0 / 5 - square / 7)));
 }
 
-// Narrows the range to where offset + slope * depth >= 0; returns whether its end is then there.
+// Narrows the range to depths with offset + slope * depth >= 0; returns whether this moved the end of the
+// range.
 bool keep_positive(double offset, double slope, DepthRange& range) {
   if (slope == 0) {
     if (offset < 0) range.to = -infinity;
@@ -199,14 +201,15 @@ double entry_in_convex(const TubePiece& piece, const LocalRay& ray, double low, 
   return root_between(piece, ray, low, lowest, lowest - back);
 }
 
-// Returns the minimum in such a range; infinity if the value still falls at its end.
+// Returns the minimum in a convex range; infinity if the value still decreases at the end.
 double minimum_in_convex(const TubePiece& piece, const LocalRay& ray, double low, double high) {
   if (inside_at(piece, ray, high).slope < 0) return infinity;
   if (inside_at(piece, ray, low).slope >= 0) return low;
   return minimum_between(piece, ray, low, high);
 }
 
-// Returns the entry in a concave range: it exists if the range ends inside and the highest point is outside.
+// Returns the entry in a concave range. There is an entry if the range ends inside the tube and its highest
+// point is outside.
 double entry_in_concave(const TubePiece& piece, const LocalRay& ray, double low, double high) {
   const Inside at_low = inside_at(piece, ray, low), at_high = inside_at(piece, ray, high);
   if (at_high.value >= 0) return infinity;

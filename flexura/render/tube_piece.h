@@ -11,46 +11,48 @@
 
 namespace flexura {
 
-/// A part of a tube that turns by no more than 30 degrees, or a ball at a tube's end, for intersection with
-/// rays. docs/renderer.md has the equations.
+/// A piece of a tube that turns by at most 30 degrees, or a ball at a tube's end, for intersection with rays.
+/// For the equations see docs/renderer.md.
 ///
-/// Its frame P has its origin at the start of its centerline, z along the tangent, x towards the centre of
-/// curvature. It owns the part of space between the planes perpendicular to its centerline at its two ends;
-/// the space beyond belongs to the neighbours.
+/// The piece's frame P has its origin at the start of the centerline, z along the tangent, and x towards the
+/// centre of curvature. The piece's part of space is between the planes perpendicular to the centerline at
+/// both ends. The space beyond belongs to the neighbouring pieces.
 struct TubePiece {
   Eigen::Matrix3d R_CP = Eigen::Matrix3d::Identity();
-  Eigen::Vector3d p_CP = Eigen::Vector3d::Zero();  ///< Start of the centerline, C.
-  Eigen::Vector3d p_PC = Eigen::Vector3d::Zero();  ///< The camera in P.
+  Eigen::Vector3d p_CP = Eigen::Vector3d::Zero();  ///< Start of the centerline, in C, m.
+  Eigen::Vector3d p_PC = Eigen::Vector3d::Zero();  ///< Position of the camera in P, m.
   double curvature = 0, length = 0;                ///< Curvature, 1/m, >= 0; length, m.
-  double radius = 0, widening = 0;                 ///< Radius at the start, m, and its change by arc length.
-  double s = 0;                                    ///< Arc length of its start on the whole tube, m.
-  bool is_ball = false;                            ///< Everything within `radius` of the origin instead.
-  bool is_cut_before = true,
-       is_cut_after = true;  ///< Whether the plane at its start, or end, cuts it (never for a ball).
-  Eigen::Vector3d end_tangent = {0, 0, 1};  ///< Unit tangent at the end, P.
+  double radius = 0, widening = 0;  ///< Radius at the start, m, and change of the radius per arc length.
+  double s = 0;                     ///< Arc length of the piece's start on the whole tube, m.
+  bool is_ball = false;  ///< Whether the piece is a ball of `radius` around the origin of P instead.
+  /// Whether the plane at the start, or at the end, cuts the piece (never for a ball).
+  bool is_cut_before = true, is_cut_after = true;
+  Eigen::Vector3d end_tangent = {0, 0, 1};  ///< Unit tangent at the end, in P.
   double end_offset = 0;                    ///< Offset of the end's plane along end_tangent, m.
-  int before = -1, after = -1;              ///< Continuing pieces at its ends; -1: a true end.
+  int before = -1, after = -1;  ///< Neighbouring pieces at start and end; -1: the tube ends there.
   int body = 0;
-  Eigen::Vector3d bound_center = Eigen::Vector3d::Zero();  ///< Center of a ball that contains it, P.
-  double bound_radius = 0;                                 ///< Radius of that ball, m.
-  double near_radius = 0;    ///< Radius of a ball that also contains all that is near it in the image, m.
-  std::size_t tube_arc = 0;  ///< Arc from which it was cut.
-  double start_in_arc = 0;   ///< Its start, m from that arc's start.
+  /// Center of a ball that contains the piece, in P, m.
+  Eigen::Vector3d bound_center = Eigen::Vector3d::Zero();
+  double bound_radius = 0;   ///< Radius of this ball, m.
+  double near_radius = 0;    ///< Radius of a ball with the same center that also contains everything near the
+                             ///< piece in the image, m.
+  std::size_t tube_arc = 0;  ///< Arc of the tube from which the piece was cut.
+  double start_in_arc = 0;   ///< Distance of the piece's start from this arc's start, m.
 
-  /// Return the radius at the end, the largest and the smallest radius, m.
+  /// Return the radius at the end, the largest radius, and the smallest radius, m.
   [[nodiscard]] double end_radius() const { return radius + widening * length; }
   [[nodiscard]] double widest() const { return std::max(radius, end_radius()); }
   [[nodiscard]] double narrowest() const { return std::min(radius, end_radius()); }
 };
 
-/// A ray in a piece's frame; `depth` multiplies its direction.
+/// A ray in a piece's frame P: the points origin + depth * direction.
 struct LocalRay {
   Eigen::Vector3d origin, direction;
   double square = 0;  ///< Squared length of the direction.
-  /// Rate of rotation around the centre of curvature (docs/renderer.md), constant along it.
+  /// Rate of rotation around the centre of curvature (docs/renderer.md), which is constant along the ray.
   double cross = 0;
 };
-/// From the camera; or from any point in C in any direction.
+/// Return a ray from the camera, or from any point in C in any direction, in the piece's frame.
 [[nodiscard]] LocalRay local_ray(const TubePiece& piece, const Ray& ray);
 [[nodiscard]] LocalRay local_ray(const TubePiece& piece, const Eigen::Vector3d& p_CQ,
                                  const Eigen::Vector3d& direction_C);
@@ -58,48 +60,52 @@ struct LocalRay {
 /// The part of a ray between two depths.
 struct DepthRange {
   double from = 0, to = 0;
-  /// Whether it leaves at `to` through the plane at the start or at the end.
+  /// Whether the ray leaves the piece's part of space at `to` through the plane at the start, or at the end.
   bool leaves_before = false, leaves_after = false;
   [[nodiscard]] bool is_empty() const { return !(from < to); }
 };
-/// Returns where the ray is in the piece's part of space and within `radius` of its bound's centre.
+/// Returns the range of depths in which the ray is in the piece's part of space and within `radius`, m, of
+/// bound_center.
 [[nodiscard]] DepthRange range_of(const TubePiece& piece, const LocalRay& local, double radius);
 
-/// The squared distance to the centerline minus the squared radius, negative inside, and its derivatives by
-/// depth. The second derivative omits the contribution of the taper.
+/// The squared distance from the centerline minus the squared radius, which is negative inside, and its
+/// derivatives with respect to depth. The second derivative omits the contribution of the taper.
 struct Inside {
   double value, slope, curving;
 };
 [[nodiscard]] Inside inside_at(const TubePiece& piece, const LocalRay& ray, double depth);
 
-/// A point near the piece, in C.
+/// Relation of a point in C to a piece near the point.
 struct TubePoint {
-  double s = 0;    ///< Arc length of the nearest point of the centerline, m from the start of the whole tube.
-  double gap = 0;  ///< Signed distance to the surface (in the cross-section), m; negative inside.
-  Eigen::Vector3d normal;   ///< Unit normal of the surfaces of equal gap, C.
-  Eigen::Vector3d outward;  ///< Unit direction from the centerline, C.
-  Eigen::Vector3d tangent;  ///< Unit tangent of the centerline, C.
-  double shrink = 1;        ///< 1 - curvature * distance towards the centre: length along it by arc length.
+  double s = 0;  ///< Arc length of the nearest point of the centerline, from the start of the whole tube, m.
+  double gap = 0;          ///< Signed distance from the surface within the cross-section, m; negative inside.
+  Eigen::Vector3d normal;  ///< Unit normal of the surface of equal gap, in C.
+  Eigen::Vector3d outward;  ///< Unit direction from the centerline to the point, in C.
+  Eigen::Vector3d tangent;  ///< Unit tangent of the centerline, in C.
+  /// 1 - curvature * distance towards the centre of curvature: length at the point per arc length.
+  double shrink = 1;
 };
 [[nodiscard]] TubePoint tube_point(const TubePiece& piece, const Eigen::Vector3d& p_CQ);
 
-/// Depths at which a ray is nearest to a piece without touching it; at most two before it meets it.
+/// Depths at which a ray is nearest to a piece without touching it; at most two before the ray hits the
+/// piece.
 struct NearMisses {
   std::array<double, 2> depths = {0, 0};
   int count = 0;
 };
-/// Returns the depth in the range at which the ray first enters the piece; infinity if it does not. Adds the
-/// near misses before.
+/// Returns the depth in the range at which the ray first enters the piece; infinity if the ray does not
+/// enter. Adds the near misses before this depth to `misses`.
 [[nodiscard]] double first_entry(const TubePiece& piece, const LocalRay& ray, const DepthRange& range,
                                  NearMisses& misses);
 
-/// Returns the first depth in the range where a ray is deepest, if it is inside at `depth` and going inwards.
-/// Infinity if it still goes inwards at the range's end.
+/// Returns the first depth in the range at which a ray is deepest in the piece. The ray must be inside at
+/// `depth` and move inwards. Infinity if the ray still moves inwards at the end of the range.
 [[nodiscard]] double first_minimum(const TubePiece& piece, const LocalRay& ray, double depth,
                                    const DepthRange& range);
 
-/// As first_minimum, but also returns a point where the ray's inward motion slows down and speeds up again. A
-/// small step in the image opens a gap there. `has_entered`: `depth` is in the previous piece.
+/// Like first_minimum(), but also returns a depth at which the ray's inward motion is slowest and then
+/// becomes faster again. A small step in the image can open a gap at such a depth. `has_entered` means that
+/// `depth` is in the previous piece.
 [[nodiscard]] double first_slowdown(const TubePiece& piece, const LocalRay& ray, double depth,
                                     const DepthRange& range, bool has_entered);
 

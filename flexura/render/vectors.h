@@ -7,10 +7,10 @@
 #include <cstddef>
 #include <cstdint>
 
-// Vectors of floats with the compiler's operators (vector extensions of GCC and clang), and the missing
-// functions. Each lane is computed by itself and rounded once, so that the width changes no bit. For
-// all_kernels.h alone: in an unnamed namespace each source that is compiled for an instruction set has its
-// own copy.
+// Vectors of floats with the operators of the compiler's vector extensions (GCC and clang), and additional
+// functions. Each lane is computed independently and each operation is rounded, so that results are bitwise
+// equal for all vector widths. Only all_kernels.h includes this header. The unnamed namespace gives each
+// source that is compiled for an instruction set its own copy.
 namespace flexura {
 namespace {
 
@@ -24,7 +24,7 @@ constexpr std::size_t vector_bytes = 16;
 constexpr std::size_t lanes = vector_bytes / 4;
 using Floats = float __attribute__((vector_size(vector_bytes)));
 using Words = std::uint32_t __attribute__((vector_size(vector_bytes)));
-using Mask = decltype(Floats{} < Floats{});  // All ones or zeros.
+using Mask = decltype(Floats{} < Floats{});  // All bits of a lane are ones or zeros.
 
 #define FLEXURA_INLINE [[gnu::always_inline]] inline
 FLEXURA_INLINE Floats all(float value) { return value - Floats{}; }
@@ -34,7 +34,7 @@ FLEXURA_INLINE Floats load(const float* from) {
   return v;
 }
 FLEXURA_INLINE void store(float* to, const Floats& v) { __builtin_memcpy(to, &v, sizeof v); }
-// max(low, v), and low where v is NaN.
+// Returns max(low, v), and low where v is NaN.
 FLEXURA_INLINE Floats at_least(float low, const Floats& v) {
 #if defined(__AVX512BW__)
   return _mm512_max_ps(v, all(low));
@@ -53,7 +53,7 @@ FLEXURA_INLINE Floats square_root(const Floats& v) {
   return root;
 }
 
-// One bit per lane, the first one lowest.
+// Returns one bit per lane, with the first lane in the lowest bit.
 FLEXURA_INLINE std::uint32_t bits_of(const Mask& mask) {
 #if defined(__AVX512BW__)
   const auto m = reinterpret_cast<__m512i>(mask);
@@ -69,7 +69,7 @@ FLEXURA_INLINE std::uint32_t bits_of(const Mask& mask) {
 #endif
 }
 
-// Sets `flag` in the bytes whose lanes are set.
+// Sets `flag` in the bytes whose lanes are set in the mask.
 FLEXURA_INLINE void set_flag(const Mask& mask, std::uint8_t flag, std::uint8_t* bytes) {
   const Words flags = reinterpret_cast<Words>(mask) & flag;
 #if defined(__AVX512BW__)
@@ -85,7 +85,7 @@ FLEXURA_INLINE void set_flag(const Mask& mask, std::uint8_t flag, std::uint8_t* 
   for (std::size_t i = 0; i < lanes; ++i) bytes[i] = static_cast<std::uint8_t>(bytes[i] | flags[i]);
 #endif
 }
-// Whether the bytes have the flag.
+// Returns the mask of bytes that have the flag.
 FLEXURA_INLINE Mask has_flag(const std::uint8_t* bytes, std::uint8_t flag) {
 #if defined(__AVX512BW__)
   const auto words =
@@ -100,7 +100,8 @@ FLEXURA_INLINE Mask has_flag(const std::uint8_t* bytes, std::uint8_t flag) {
   return (words & flag) != 0;
 }
 
-// Sum of a word's four bytes with the weights 64 * 128, 63 * 128, 64 * 125 and 63 * 125, lowest byte first.
+// Returns the sum of a word's four bytes with the weights 64 * 128, 63 * 128, 64 * 125 and 63 * 125, lowest
+// byte first.
 FLEXURA_INLINE Words weighted_bytes(const Words& x) {
 #if defined(__AVX512BW__)
   const auto pairs = _mm512_maddubs_epi16(reinterpret_cast<__m512i>(x), _mm512_set1_epi16(64 | 63 << 8));
@@ -109,7 +110,7 @@ FLEXURA_INLINE Words weighted_bytes(const Words& x) {
   const auto pairs = _mm256_maddubs_epi16(reinterpret_cast<__m256i>(x), _mm256_set1_epi16(64 | 63 << 8));
   return reinterpret_cast<Words>(_mm256_madd_epi16(pairs, _mm256_set1_epi32(128 | 125 << 16)));
 #else
-  // The weighted sum of two bytes stays below 2^16, so that each half of a word holds one.
+  // The weighted sum of two bytes is below 2^16, so that each half of a word contains one sum.
   const Words pairs = (x & 0x00ff00ffu) * 64 + ((x >> 8) & 0x00ff00ffu) * 63;
 #if defined(__SSE2__)
   return reinterpret_cast<Words>(
@@ -152,7 +153,8 @@ FLEXURA_INLINE void store_bytes(const Floats (&v)[n], std::uint8_t* to) {
 #endif
 }
 
-// Two vectors as one: an operation waits for its predecessor, and the other vector fills that time.
+// Two vectors used as one. The second vector fills the time in which an operation on the first waits for its
+// predecessor.
 constexpr std::size_t wide_lanes = 2 * lanes;
 template <typename V, typename Number>
 struct Pair {
@@ -201,7 +203,7 @@ FLEXURA_INLINE Wide at_least(float low, const Wide& v) {
 FLEXURA_INLINE Wide square_root(const Wide& v) { return {square_root(v.low), square_root(v.high)}; }
 FLEXURA_INLINE Wide wide_load(const float* from) { return {load(from), load(from + lanes)}; }
 FLEXURA_INLINE void store(float* to, const Wide& v) { store(to, v.low), store(to + lanes, v.high); }
-// 0, 1, 2, ...
+// Returns the numbers 0, 1, 2, ... in the lanes.
 FLEXURA_INLINE Wide counted() {
   Wide count;
   for (std::size_t i = 0; i < lanes; ++i) count.low[i] = static_cast<float>(i);

@@ -11,23 +11,24 @@
 
 namespace flexura {
 
-/// The two parallel views of the paper's cameras: X to the right and Y up (camera 1), Z to the right and Y up
-/// (camera 2).
+/// The two parallel projections of the paper's cameras. XOY has X to the right and Y up (camera 1); ZOY has Z
+/// to the right and Y up (camera 2).
 enum class PlotView : std::uint8_t { xoy, zoy };
 
-/// Returns a world point's coordinates in a view, m.
+/// Returns the coordinates of a point of W in a view, m.
 [[nodiscard]] Eigen::Vector2d seen(PlotView view, const Eigen::Vector3d& p_W);
 
 /// Returns true if the arm bends in a plane parallel to XOY, so that the first view shows its true shape.
 [[nodiscard]] bool lies_in_xoy(const Arm& arm);
 
-/// Returns the page points of an arc in a view. They are moved aside (to the left of its direction) by an
-/// offset from aside[0] to aside[1] (page units). Precise to a tenth of a page unit for arcs that fit a page.
+/// Returns the page points of an arc in a view. The points are displaced to the left of the arc's direction
+/// by an offset that changes from aside[0] to aside[1] (page units). They are precise to a tenth of a page
+/// unit for arcs that fit a page.
 [[nodiscard]] std::vector<Eigen::Vector2d> arc_points(const Arc& arc, PlotView view, const PlotFrame& frame,
                                                       std::array<double, 2> aside = {});
 
-/// Returns the outline of a tube as path data, with a radius from radius[0] to radius[1] (page units) along
-/// the arc.
+/// Returns the outline of a tube along the arc as path data. The tube's radius changes from radius[0] to
+/// radius[1] (page units).
 [[nodiscard]] std::string tube_path(const Arc& arc, PlotView view, const PlotFrame& frame,
                                     std::array<double, 2> radius);
 

@@ -9,30 +9,31 @@
 
 namespace flexura {
 
-/// Returns the arm in state i with its end effector's coordinates, as in the paper's Figs. 6 to 8. `when`
-/// names the state: "start", "middle", "end".
+/// Returns a drawing of the arm in state i with its end effector's coordinates, as in the paper's Figs. 6 to
+/// 8. `when` names the state: "start", "middle", "end".
 [[nodiscard]] Drawing arm_picture(const ReportMotion& motion, const PlotScene& scene, std::size_t i,
                                   std::string_view when);
 
-/// Returns two shapes of one arm among obstacles: the current one, and behind it the other one as a line,
-/// "ghost".
+/// Returns a drawing of two shapes of one arm among obstacles. `shape` is drawn as the arm, and `ghost` as a
+/// line behind it.
 [[nodiscard]] Drawing two_shapes_picture(const Arm& arm, const std::vector<ObstacleConfig>& obstacles,
                                          const Backbone& shape, const Backbone& ghost,
                                          std::string_view heading);
 
-/// Returns the violations at a moment: "0 s to 2 s: section 1: bend 62 deg, limit 60 deg; ...", at most four.
+/// Returns the violations at a moment as text, at most four: "0 s to 2 s: section 1: bend 62 deg, limit 60
+/// deg; ...".
 [[nodiscard]] std::string moment_text(const ReportMotion& motion, const UnsafeMoment& moment);
 
-/// Returns the arm at the worst moment of violations.
+/// Returns a drawing of the arm at the worst moment of violations.
 [[nodiscard]] Drawing unsafe_picture(const ReportMotion& motion, const PlotScene& scene,
                                      const UnsafeMoment& moment);
 
-/// Returns the tip's path from start to end.
+/// Returns a drawing of the tip's path from start to end.
 [[nodiscard]] Drawing tip_path_picture(const ReportMotion& motion);
 
-/// Returns the drawing for the player: axes, start and end as ghosts, the tip's path, and an empty group with
-/// the class "view" for each view. The group has the conversion from metres to the page: x = data-x +
-/// data-scale X, y = data-y - data-scale Y.
+/// Returns the drawing for the page's player: axes, the first and last shape as lines, the tip's path, and an
+/// empty group for each view. Each group has the class "view". Its attributes convert metres to page units: x
+/// = data-x + data-scale X, y = data-y - data-scale Y.
 [[nodiscard]] Drawing player_picture(const ReportMotion& motion, const PlotScene& scene);
 
 }  // namespace flexura

@@ -7,11 +7,12 @@
 
 namespace flexura {
 
-/// Most sections in a chart; more are thinned out.
+/// Largest number of sections in a chart; further sections are left out.
 inline constexpr std::size_t max_series = 32;
 
-/// Returns the charts of a report over time: bends, archings and cord angles (an arm in XOY), stretches (if
-/// they change) and the tip's coordinates, with these names. Angles in degrees, lengths in m.
+/// Returns the charts of a report over time: bends, archings and cord angles (of an arm in XOY), stretches
+/// (if they change) and the tip's coordinates. Each figure has the name of its quantity. Angles are in
+/// degrees, lengths in m.
 [[nodiscard]] std::vector<ReportFigure> charts_of(const ReportMotion& motion);
 
 }  // namespace flexura

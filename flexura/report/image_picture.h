@@ -8,31 +8,32 @@
 
 namespace flexura {
 
-/// Lines in an image that belong together.
+/// A group of lines in an image, with one entry in the legend.
 struct ImageOutline {
-  /// One line: its points, px, and its style classes in addition to the outline's.
+  /// One line with its points, px, and its style classes in addition to those of the outline.
   struct Line {
     std::vector<Eigen::Vector2d> points;
     std::string css_class = {};
   };
 
-  std::string name;  ///< For the legend.
+  std::string name;  ///< Name in the legend.
   std::string css_class;
   std::vector<Line> lines;
 };
 
-/// Content of an image of `width` by `height` px, as lines.
+/// Content of an image of `width` by `height` px, drawn as lines.
 struct ImagePlot {
   std::string heading;
-  std::string legend;  ///< Meaning of the outlines; may be empty.
+  std::string legend;  ///< Title of the legend; may be empty.
   int width = 0, height = 0;
   std::vector<ImageOutline> outlines;
-  /// The image itself, "data:image/jpeg;base64,...". If given, the whole image is shown, below the outlines.
+  /// The image as a data URL, "data:image/jpeg;base64,...". If it is given, the whole image is shown behind
+  /// the outlines.
   std::string background = {};
 };
 
-/// Draws the part of the image with the outlines, at one scale along both axes: columns to the right, rows
-/// downwards.
+/// Draws the part of the image that contains the outlines. Both axes have the same scale, with columns to the
+/// right and rows downwards.
 [[nodiscard]] Drawing image_picture(const ImagePlot& plot);
 
 }  // namespace flexura

@@ -8,13 +8,14 @@
 
 namespace flexura {
 
-/// Returns the box extended by the obstacles near it: their parts within a quarter of its diagonal. Planes do
-/// not extend it. m, world axes.
+/// Returns the box (m, axes of W) extended by the parts of obstacles within a quarter of the box's diagonal.
+/// Planes do not extend the box.
 [[nodiscard]] Eigen::AlignedBox3d with_obstacles(Eigen::AlignedBox3d box,
                                                  const std::vector<ObstacleConfig>& obstacles);
 
 /// Draws the outlines of the run's obstacles in view `v` of the scene, clipped at the plot's border. A plane
-/// is drawn if it is seen edge-on; for an arm in a plane, where it cuts that plane.
+/// obstacle is drawn if the view shows it edge-on. For an arm in a plane, its intersection with the arm's
+/// plane is drawn.
 void draw_obstacles(XmlWriter& svg, const PlotScene& scene, std::size_t v, const ReportMotion& motion);
 
 }  // namespace flexura

@@ -57,7 +57,7 @@ std::string summary_html(const ReportMotion& motion) {
          moment("middle", motion.middle) + moment("end", motion.end());
 }
 
-// Returns what came of the run, and of its tasks if there are several.
+// Returns the results of the run, and of its tasks if there are several.
 std::string outcome_html(const ReportData& data) {
   if (data.headline.empty()) return "";
   std::string html = fmt::format("<p class=\"outcome\">{}</p>\n", xml_escape(data.headline));

@@ -14,21 +14,21 @@
 
 namespace flexura {
 
-/// A table in a chapter. Any texts.
+/// A table in a chapter, with any texts.
 struct ChapterTable {
   std::vector<std::string> columns;            ///< Headings.
-  std::vector<std::vector<std::string>> rows;  ///< A cell per column.
+  std::vector<std::vector<std::string>> rows;  ///< Rows with a cell per column.
 };
 
-/// A part of a report for measurements other than the motion.
+/// A part of a report about something other than the arm's motion.
 struct Chapter {
-  std::string heading;                     ///< Any text.
-  std::string text;                        ///< Any text: a paragraph.
-  std::vector<ReportFigure> figures;       ///< Names that are valid file names and unique in the report.
-  std::vector<std::string> points = {};    ///< Any text: a list below the paragraph.
-  bool is_first_tall = true;               ///< The first figure is as high as two.
-  std::optional<ChapterTable> table = {};  ///< Below the paragraph, above the list.
-  /// A list that is folded in below the other one; shown if it has items.
+  std::string heading;                ///< Any text.
+  std::string text;                   ///< Paragraph; any text.
+  std::vector<ReportFigure> figures;  ///< Figures; their names are valid file names and unique in the report.
+  std::vector<std::string> points = {};    ///< List below the paragraph; any texts.
+  bool is_first_tall = true;               ///< Whether the first figure is as high as two figures.
+  std::optional<ChapterTable> table = {};  ///< Table between the paragraph and the list.
+  /// A collapsed list below the list `points`; shown if it has items.
   struct Details {
     std::string heading;
     std::vector<std::string> points;
@@ -38,7 +38,7 @@ struct Chapter {
 
 /// Data of a finished run for its report.
 struct ReportData {
-  /// A task's start or end, or an event.
+  /// A mark in time: the start or end of a task, or an event.
   struct Mark {
     double time = 0.0;  ///< In s.
     std::string kind;
@@ -48,15 +48,16 @@ struct ReportData {
   /// Violations and contacts of the motion, and remarks.
   struct Safety {
     struct Violation {
-      double start = 0.0;                 ///< In s.
-      double end = 0.0;                   ///< In s.
-      std::vector<std::size_t> sections;  ///< From 0; drawn with a warning in that time.
-      std::string text;                   ///< Shown beside its picture.
-      /// Time of a separate picture, s; it should be among the report's times.
+      double start = 0.0;  ///< In s.
+      double end = 0.0;    ///< In s.
+      std::vector<std::size_t>
+          sections;      ///< Indices of sections that are marked with a warning during that time.
+      std::string text;  ///< Text beside the drawing of the violation.
+      /// Time at which the violation has a separate drawing, s; it should be one of the report's times.
       std::optional<double> pictured_at = {};
-      std::optional<Eigen::Vector3d> target = {};  ///< Target of the tip, world, m; drawn too.
+      std::optional<Eigen::Vector3d> target = {};  ///< Target of the tip in W, m, which is also drawn.
     };
-    /// A listed line: for one violation, or for all of a kind.
+    /// An entry of the list, for one violation or for all violations of a kind.
     struct Line {
       double start = 0.0;  ///< In s.
       std::string text;
@@ -66,48 +67,52 @@ struct ReportData {
     std::vector<std::string> remarks;
   };
 
-  /// What came of a task.
+  /// Result of a task.
   struct Outcome {
-    std::string task;        ///< Any text: its name.
-    std::string text;        ///< Any text: one line.
-    bool is_reached = true;  ///< Otherwise marked.
+    std::string task;        ///< Name of the task; any text.
+    std::string text;        ///< Result in one line; any text.
+    bool is_reached = true;  ///< Whether the task reached its aim; if not, the line is marked.
   };
 
   std::string title;            ///< Any text.
   std::string condition = {};   ///< "done", "unsafe" or "failed", shown as a badge; "": none.
-  std::string reason = {};      ///< Why it is not done; any text.
+  std::string reason = {};      ///< Why the run is not done; any text.
   std::string version;          ///< Version of Flexura.
-  std::string experiment_text;  ///< The experiment file as run, shown unchanged.
+  std::string experiment_text;  ///< Text of the experiment file that was run, shown unchanged.
   Arm arm;
-  std::optional<ArmModel> model = {};  ///< Model of the commands. Default: the arcs of its sections.
-  std::vector<double> times;           ///< In s, increasing; one per state, at least one.
-  std::vector<ArmState> states;        ///< As run; finite.
-  std::vector<Mark> events;            ///< In the order of time.
-  std::size_t recorded = 0;            ///< States in the run's log, if more than the given ones.
-  std::optional<Safety> safety;        ///< Missing: not checked, not shown.
+  std::optional<ArmModel> model = {};  ///< Model from commands to shapes; default: each section is an arc.
+  std::vector<double> times;           ///< Times of the states, s, increasing; at least one.
+  std::vector<ArmState> states;        ///< States of the arm in the run; finite.
+  std::vector<Mark> events;            ///< Events in the order of time.
+  std::size_t recorded =
+      0;  ///< Number of states in the run's log, if it is larger than the number of given states.
+  std::optional<Safety> safety;  ///< Violations and contacts; missing: not checked and not shown.
   std::vector<ObstacleConfig> obstacles;
-  CurveKind curve = CurveKind::arcs;  ///< Drawn as a line along the arm; the arm itself is drawn as its arcs.
-  double tension = 0.5;               ///< Of CurveKind::catmull_rom.
+  CurveKind curve =
+      CurveKind::arcs;   ///< Curve that is drawn as a line along the arm; the arm itself is drawn as arcs.
+  double tension = 0.5;  ///< Tension of CurveKind::catmull_rom.
   std::vector<Chapter> chapters = {};
-  std::string headline = {};           ///< Any text: what came of the run, below the title. "": not shown.
-  std::vector<Outcome> outcomes = {};  ///< Listed below it if there are several.
+  std::string headline = {};  ///< Result of the run, below the title; any text; "": not shown.
+  std::vector<Outcome> outcomes =
+      {};  ///< Results of the tasks, listed below `headline` if there are several.
 };
 
 /// A picture as a file.
 struct FigureFile {
-  std::string file_name;  ///< "arm-start.svg".
-  std::string svg;        ///< The file's text.
+  std::string file_name;  ///< Name of the file, such as "arm-start.svg".
+  std::string svg;        ///< Text of the file.
 };
 
-/// Returns the whole report as one HTML page that loads nothing, which its content security policy enforces.
-/// The embedded data is limited: for a long run some 2000 states are kept, and the page states this. Throws
+/// Returns the whole report as one HTML page. It loads no other files, which its content security policy
+/// enforces. For a long run the page has only about 2000 states, and states this. Throws
 /// std::invalid_argument if times and states do not match or do not fit the arm.
 [[nodiscard]] std::string report_html(const ReportData& data);
 
 /// Returns the report's pictures and charts, for papers. All runs have arm-start, arm-middle, arm-end,
-/// tip-path, tip and the figures of the chapters. Violations have arm-unsafe-1 and on, at their worst
-/// moments, those of one moment together. Spatial arms have bends-x and bends-y; planar arms have bends,
-/// archings and cord-angles. Stretches that change have stretches. Throws like report_html.
+/// tip-path, tip and the figures of the chapters. Runs with violations have arm-unsafe-1, arm-unsafe-2, ...,
+/// one for each of the worst moments. Runs of spatial arms have bends-x and bends-y; those of planar arms
+/// have bends, archings and cord-angles. Runs in which stretches change have stretches. Throws the exceptions
+/// of report_html().
 [[nodiscard]] std::vector<FigureFile> report_figures(const ReportData& data);
 
 }  // namespace flexura

@@ -10,32 +10,32 @@
 
 namespace flexura {
 
-/// One plot per view, side by side, all at one scale along both axes.
+/// Plots of the views side by side, all with the same scale along both axes.
 struct PlotScene {
   std::vector<PlotView> views;
   std::vector<PlotFrame> frames;  ///< One per view.
   double width = 0.0;   ///< Width of the whole picture with room for axes and a heading, page units.
-  double height = 0.0;  ///< Page units.
+  double height = 0.0;  ///< Height of the whole picture, page units.
 
-  /// Returns true if marks at the section borders do not overlap, for an arm of `sections` and `length` m.
+  /// Returns true if marks at the section borders would not overlap, for an arm of `length` m with this
+  /// number of sections.
   [[nodiscard]] bool has_room_for_joints(double length, std::size_t sections) const {
     return scale() * length > 14.0 * static_cast<double>(sections);
   }
-  /// Returns page units per metre.
+  /// Returns the scale, page units per metre.
   [[nodiscard]] double scale() const { return frames.front().scale().x(); }
 };
 
-/// Returns a scene that shows `box` (m, world axes) with a border, in XOY only or in both views. The shown
-/// range is at least `least` m wide.
+/// Returns a scene that shows `box` (m, axes of W) with a margin. It has only the view XOY if `one_view`,
+/// otherwise both views. The shown range is at least `least` m wide.
 [[nodiscard]] PlotScene scene_of(const Eigen::AlignedBox3d& box, bool one_view, double least);
 
-/// Extends a box by an arm's tube, m.
+/// Extends a box (m, axes of W) by an arm's tube.
 void extend_by_tube(Eigen::AlignedBox3d& box, const Backbone& backbone);
-/// Returns the volume swept by the arm's tube during the motion, m.
+/// Returns the bounding box of the arm's tube over the whole motion, m, axes of W.
 [[nodiscard]] Eigen::AlignedBox3d swept_box(const ReportMotion& motion);
 
-/// Returns the box extended by the missed targets: all within half of its diagonal, and as far towards
-/// others.
+/// Returns the box extended towards the missed targets, by at most half of its diagonal.
 [[nodiscard]] Eigen::AlignedBox3d with_targets(Eigen::AlignedBox3d box, const ReportMotion& motion);
 
 /// Draws the heading and the axes of every view.

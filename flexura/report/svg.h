@@ -18,7 +18,7 @@ namespace flexura {
 /// Returns "x y" for a page point.
 [[nodiscard]] std::string page_point(const Eigen::Vector2d& point);
 
-/// Returns a number with fixed decimals; zero has no sign.
+/// Returns a number with `decimals` decimals; zero has no sign.
 [[nodiscard]] std::string fixed(double value, int decimals);
 
 /// Returns the vertices of an open polyline within `tolerance` of every point (Douglas and Peucker 1973). The
@@ -29,13 +29,13 @@ namespace flexura {
 /// Returns path data "M x y L x y ..." through the points, or "" without points.
 [[nodiscard]] std::string polyline_path(const std::vector<Eigen::Vector2d>& points);
 
-/// An attribute of an element; the value is escaped when written.
+/// An attribute of an element. The value is escaped when it is written.
 struct XmlAttribute {
   std::string_view name;
   std::string value;
 };
 
-/// Writes nested elements. text() closes all open ones.
+/// Writes nested elements. text() closes all open elements.
 class XmlWriter {
  public:
   using Attributes = std::initializer_list<XmlAttribute>;
@@ -45,8 +45,8 @@ class XmlWriter {
   void leaf(std::string_view tag, Attributes attributes = {});
   /// Writes an element with escaped text in it.
   void leaf(std::string_view tag, Attributes attributes, std::string_view content);
-  /// Writes a one-line text at a page point. `css_class` contains "middle" or "end" for another anchor than
-  /// the start.
+  /// Writes a one-line text at a page point. The anchor is the text's start, unless `css_class` contains
+  /// "middle" or "end".
   void label(const Eigen::Vector2d& at, std::string_view css_class, std::string_view content);
   void circle(const Eigen::Vector2d& at, std::string_view css_class, double radius);
   void rect(const Eigen::Vector2d& corner, const Eigen::Vector2d& size, std::string_view css_class);
@@ -62,16 +62,16 @@ class XmlWriter {
 
 /// A finished picture, styled by the classes of figure.css.
 struct Drawing {
-  double width = 0.0;   ///< Page units (px at scale 1).
-  double height = 0.0;  ///< Page units.
+  double width = 0.0;   ///< Width, page units (px at scale 1).
+  double height = 0.0;  ///< Height, page units.
   std::string label;    ///< Description of the picture for screen readers.
   std::string body;     ///< SVG elements.
 };
 
-/// Returns a separate file, with its style and a white page.
+/// Returns the drawing as a separate SVG file with its style and a white background.
 [[nodiscard]] std::string standalone_svg(const Drawing& drawing);
 
-/// Returns an element for an HTML page, which has the style.
+/// Returns the drawing as an element for an HTML page that has the style.
 [[nodiscard]] std::string inline_svg(const Drawing& drawing);
 
 }  // namespace flexura

@@ -10,12 +10,14 @@
 
 namespace flexura {
 
-/// Motion of the arm as commanded by a task since a time: linear from shape to shape.
+/// Motion of the arm as a task commands it, from a start time on. It is linear from one commanded shape to
+/// the next.
 class CommandedMotion {
  public:
   CommandedMotion(double start, ArmState state);
 
-  /// Adds a command to `state`, from where the previous commands lead at `time` s, in `duration` s.
+  /// Adds a command sent at `time` (s) to reach `state` in `duration` s. The motion begins at the commanded
+  /// shape of that time.
   void send(double time, const ArmState& state, double duration);
   [[nodiscard]] ArmState at(double time) const;
   /// Returns the motion up to `time`.
@@ -23,11 +25,11 @@ class CommandedMotion {
 
  private:
   double start_;
-  std::vector<double> times_ = {0};  // Since the start.
+  std::vector<double> times_ = {0};  // Times since the start, s.
   std::vector<ArmState> states_;
 };
 
-/// Ports of a rig for a task that commands the arm: records the run's steps as the clock advances.
+/// Ports of a rig for a task that commands the arm. Records the run's steps as the clock advances.
 class RecordedPorts : private ClockPort {
  public:
   /// `from`: last commanded state of the arm. The devices and `record` must outlive this object.
@@ -35,7 +37,7 @@ class RecordedPorts : private ClockPort {
 
   [[nodiscard]] const RigPorts& ports() const { return ports_; }
   [[nodiscard]] CommandedMotion& motion() { return motion_; }
-  /// Records the remaining steps up to now, the task's end, and returns that time, s.
+  /// Records the remaining steps up to the present time, at which the task ends. Returns this time, s.
   [[nodiscard]] double finish();
 
  private:

@@ -15,30 +15,31 @@
 
 namespace flexura {
 
-/// Simulated rig of an experiment, filmed by its cameras. The frames do not depend on the number of threads.
+/// Simulated rig of an experiment, with frames rendered for its cameras. The frames do not depend on the
+/// number of threads.
 class Filming : public Rig, private RigTruth {
  public:
   /// Uses one thread per camera.
   explicit Filming(const Setup& setup);
   Filming(const Setup& setup, std::size_t threads);
 
-  /// The clock is at the last call's time.
+  /// Returns the ports. Their clock shows the time of the last call of a function that advances the rig.
   [[nodiscard]] RigPorts ports() override { return rig_->ports(); }
   [[nodiscard]] RigTruth* truth() override { return this; }
   [[nodiscard]] bool is_simulated() const override { return true; }
-  /// Renders the frames of one call in parallel.
+  /// Plays the rig as in Rig. The frames of one call are rendered in parallel.
   void play_to(double time, const ArmState& state, const TakeFrame& take) override;
   void pass_to(double time, const ArmState& state) override;
   void skip_to_now() override;
 
-  /// Returns the exposure of a camera from `start` s on, up to which the motion must have been played. At the
-  /// start of a frame it is that frame.
+  /// Returns the exposure of a camera that begins at `start` (s). The motion must have been played up to this
+  /// time. If a frame begins at `start`, the exposure is that of the frame.
   [[nodiscard]] Shot shot(std::size_t camera, double start);
   [[nodiscard]] Picture take(const Shot& shot) { return photographers_[shot.camera]->take(shot); }
-  /// Returns the simulated rig as it stands when nobody plays it any more: it goes on without this, but its
-  /// cameras must not be asked for frames. Afterwards this can only be destroyed.
+  /// Returns the simulated rig in its present state. The rig remains usable without this object, but must not
+  /// be asked for frames. This object can then only be destroyed.
   [[nodiscard]] std::unique_ptr<SimulatedRig> give_away() { return std::move(rig_); }
-  /// Returns the scene before the camera of `shot` at a time since its start.
+  /// Returns the scene and the view of the camera of `shot`. `time`: s since the start of the exposure.
   [[nodiscard]] ShownScene shown(const Shot& shot, double time) const {
     return {photographers_[shot.camera]->scene(shot.backbone(time)), shot.view(time)};
   }
@@ -64,9 +65,9 @@ class Filming : public Rig, private RigTruth {
 
   std::vector<CameraConfig> cameras_;
   std::vector<std::unique_ptr<Photographer>> photographers_;  // One per camera, to render in parallel.
-  std::unique_ptr<SimulatedRig> rig_;                         // Null once given away.
+  std::unique_ptr<SimulatedRig> rig_;                         // Null after give_away().
   std::uint64_t seed_;
-  double stretch_;  // Time filmed at once, s: a few frames of the fastest camera.
+  double stretch_;  // Duration that is rendered at once, s: a few frames of the fastest camera.
   ThreadPool thread_pool_;
 };
 

@@ -60,9 +60,12 @@ Pixels pixels_at(const Shot& shot, const std::vector<Eigen::Vector3d>& points, d
 }  // namespace
 
 double fastest_image_motion(const Shot& shot, const Scene& stand) {
-  constexpr int parts = 16;
   const double span = shot.sensor->exposure + last_row_delay(*shot.sensor);
   if (span <= 0) return 0;
+  // No arm turns back within less than a millisecond.
+  constexpr double least_part = 0.5e-3;  // s
+  constexpr double fewest = 2, most = 16;
+  const int parts = static_cast<int>(std::clamp(std::ceil(span / least_part), fewest, most));
   const std::vector<Eigen::Vector3d> points = stand_points(stand, shot.view(shot.start));
   double farthest = 0;  // From one time to the next, px.
   Pixels before = pixels_at(shot, points, shot.start);

@@ -14,8 +14,8 @@
 
 namespace flexura {
 
-/// Makes the pictures of an experiment's cameras: true scene, light, sensor. A picture depends only on its
-/// shot.
+/// Makes the pictures of an experiment's cameras from the true scene, its light and the sensor. A picture
+/// depends only on its shot.
 class Photographer {
  public:
   explicit Photographer(const Setup& setup);
@@ -35,7 +35,7 @@ class Photographer {
   LightImage instant_;
   Image<float> light_, scratch_;
   SensorRows rows_;
-  std::map<std::size_t, Sensor> sensors_;  // By camera.
+  std::map<std::size_t, Sensor> sensors_;  // Sensor of each camera.
 };
 
 }  // namespace flexura

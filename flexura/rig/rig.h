@@ -23,10 +23,10 @@ namespace flexura {
 struct FilmedFrame {
   std::string camera;
   Frame frame;
-  std::string message = {};  ///< Its logged_image if already made; otherwise "", and the log makes it.
+  std::string message = {};  ///< logged_image() of the frame; "" if it is not made yet.
 };
 
-/// True state of a rig, which its ports do not give: not for algorithms.
+/// True state of a rig, which its ports do not provide. Algorithms must not use it.
 class RigTruth {
  public:
   virtual ~RigTruth() = default;
@@ -38,23 +38,23 @@ class RigTruth {
   [[nodiscard]] virtual RigStance stance(std::size_t camera) = 0;
   /// Returns the arm's true backbone at a recent time, s.
   [[nodiscard]] virtual Backbone backbone(double time) = 0;
-  /// Returns the tension of each tendon at that time, N; empty for an arm without forces.
+  /// Returns the tension of each tendon at a recent time, N; empty for an arm without forces.
   [[nodiscard]] virtual std::vector<double> tensions(double /*time*/) { return {}; }
-  /// Returns the true displacement of each tendon at that time, m; empty if unknown.
+  /// Returns the true displacement of each tendon at a recent time, m; empty if unknown.
   [[nodiscard]] virtual std::vector<double> pulled(double /*time*/) { return {}; }
-  /// Returns the energies of its motion, strains and weight at that time; std::nullopt if it has no inertia,
-  /// or they are unknown.
+  /// Returns the kinetic, elastic and gravitational energy of the arm at a recent time. std::nullopt if the
+  /// arm has no inertia, or the energies are unknown.
   [[nodiscard]] virtual std::optional<RodEnergy> energy(double /*time*/) { return std::nullopt; }
-  /// Returns its contacts at that time.
+  /// Returns the arm's contacts at a recent time.
   [[nodiscard]] virtual std::vector<PlantContact> contacts(double /*time*/) { return {}; }
-  /// Returns a one-line warning about its state at that time, or "".
+  /// Returns a one-line warning about the arm's state at a recent time, or "".
   [[nodiscard]] virtual std::string warning(double /*time*/) { return {}; }
-  /// Returns the microsteps that each motor had lost by that time, unknown to its controller; empty if it
-  /// never loses any.
+  /// Returns the number of microsteps that each motor had lost by a recent time, unknown to its controller.
+  /// Empty if motors cannot lose any.
   [[nodiscard]] virtual std::vector<double> lost_steps(double /*time*/) { return {}; }
 };
 
-/// A rig of an experiment, simulated or real: its ports, and its passage of time.
+/// A rig of an experiment, simulated or real: its ports, and functions that advance it in time.
 class Rig {
  public:
   virtual ~Rig() = default;
@@ -66,28 +66,29 @@ class Rig {
   [[nodiscard]] virtual RigPorts ports() = 0;
   /// Returns the true state; null for real equipment.
   [[nodiscard]] virtual RigTruth* truth() { return nullptr; }
-  /// Returns true if nothing can be damaged: unsafe motions are then played too.
+  /// Returns true if nothing can be damaged, so that unsafe motions may be played.
   [[nodiscard]] virtual bool is_simulated() const { return false; }
 
   using TakeFrame = std::function<void(const FilmedFrame&)>;
-  /// Commands the arm to be in `state` at `time` s, not before the previous call's, and waits until then.
-  /// Gives every frame received in between, in the order of time and then of the cameras.
+  /// Commands the arm to be in `state` at `time` (s) and waits until then. `time` must not be before that of
+  /// the previous call. Passes every frame received meanwhile to `take`, in the order of time, then of the
+  /// cameras.
   virtual void play_to(double time, const ArmState& state, const TakeFrame& take) = 0;
-  /// Plays to `time` without giving frames.
+  /// Plays to `time` like play_to(), but without frames.
   virtual void pass_to(double time, const ArmState& state) = 0;
   /// Discards frames received up to now.
   virtual void skip_to_now() = 0;
 };
 
-/// Makes the rig of an experiment, which must outlive it.
+/// Makes the rig of an experiment. The Setup must outlive the rig.
 using RigFactory = std::function<std::unique_ptr<Rig>(const Setup&)>;
 
 /// Returns a simulated rig (rig/filming.h).
 [[nodiscard]] std::unique_ptr<Rig> simulated_rig(const Setup& setup);
 
-/// Returns the axis positions that the cameras of a rig report now. `optics` are the models of these cameras,
-/// whose initial positions replace missing heads or stages. Throws std::runtime_error with the reason if one
-/// does not report.
+/// Returns the axis positions that the heads and stages of a rig's cameras report now. `optics`: models of
+/// these cameras; their initial positions are used for missing heads or stages. Throws std::runtime_error
+/// with the reason if a head or stage does not report.
 [[nodiscard]] std::vector<CameraReading> camera_readings(const RigPorts& ports,
                                                          const std::vector<Camera>& optics);
 

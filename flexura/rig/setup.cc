@@ -49,7 +49,7 @@ void check_setup(const Setup& setup, Reader& reader) {
   check_cameras(setup.camera, "camera", reader);
   if (setup.stand.camera_distances && !setup.camera.empty())
     reader.problem_at("stand.camera_distances",
-                      "is for the default cameras: expected no [[camera]] beside it");
+                      "applies only to the default cameras: expected no [[camera]]");
   if (setup.truth && setup.truth->stand &&
       setup.truth->stand->camera_distances != setup.stand.camera_distances) {
     reader.problem_at("truth.stand.camera_distances",

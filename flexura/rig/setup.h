@@ -24,16 +24,17 @@ struct ClockConfig {
 
 /// The table [record]: recorded data of a run.
 struct RecordConfig {
-  std::int64_t every = 1;             ///< Steps between states in the log; the last one is always logged.
-  bool report = true;                 ///< Write report.html and figures/.
-  bool cameras = false;               ///< Log the cameras' images.
-  bool scene = true;                  ///< Log the scene, for programs that draw it.
-  CurveKind curve = CurveKind::arcs;  ///< Drawn over the arm in the report.
-  double tension = 0.5;               ///< Of the Catmull-Rom curve.
+  std::int64_t every =
+      1;  ///< Number of clock steps from one logged state to the next; the last state is always logged.
+  bool report = true;                 ///< Whether to write report.html and figures/.
+  bool cameras = false;               ///< Whether to log the cameras' images.
+  bool scene = true;                  ///< Whether to log the scene, for programs that display it.
+  CurveKind curve = CurveKind::arcs;  ///< Curve that is drawn over the arm in the report.
+  double tension = 0.5;               ///< Tension of the Catmull-Rom curve.
 };
 
-/// The table [truth]: differences of the simulated world from the model in the rest of the file. Omitted
-/// values equal the model's; a file may write parts of these tables, which the reader completes.
+/// The table [truth]: differences of the simulated world from the model in the rest of the file. A file may
+/// contain only parts of these tables; the reader takes omitted values from the model.
 struct TruthConfig {
   std::optional<ArmConfig> arm;
   std::optional<DriveConfig> drive;
@@ -43,30 +44,33 @@ struct TruthConfig {
 
 /// An experiment file without its tasks: the rig, the clock, the true values and the recorded data.
 struct Setup {
-  std::string flexura;               ///< Version that ran it; written into results.
-  std::string title;                 ///< For the report.
-  std::int64_t seed = 1;             ///< Seed of every random number of the run; from 0 on.
-  std::vector<std::string> include;  ///< Resolved by the file reader; empty afterwards.
+  std::string flexura;    ///< Version of Flexura that ran the experiment; written into results.
+  std::string title;      ///< Title of the report.
+  std::int64_t seed = 1;  ///< Seed of all random numbers of the run; >= 0.
+  std::vector<std::string>
+      include;  ///< Files to include; the file reader resolves them and leaves this empty.
   ClockConfig clock;
   RecordConfig record;
-  ArmConfig arm;                     ///< Model used by the tasks.
-  std::optional<DriveConfig> drive;  ///< Missing: bends follow commands at their own rates.
+  ArmConfig arm;  ///< Model of the arm that the tasks use.
+  std::optional<DriveConfig>
+      drive;  ///< Drive of the arm; missing: bends follow commands at the rates of the arm.
   std::vector<ObstacleConfig> obstacle;
   StandConfig stand;
-  std::vector<CameraConfig> camera;  ///< Empty: the paper's two (cameras()).
-  std::optional<TruthConfig> truth;  ///< Missing: the world equals the model.
-  std::filesystem::path folder;      ///< Folder of the file; not a part of it.
+  std::vector<CameraConfig> camera;  ///< Cameras; empty: the paper's two cameras (see cameras()).
+  std::optional<TruthConfig> truth;  ///< Differences of the simulated world from the model; missing: none.
+  std::filesystem::path folder;      ///< Folder of the experiment file; not a field of the file.
 
   /// Returns the arm model. Throws InputError for an elastic arm without an equilibrium.
   [[nodiscard]] ArmModel arm_model() const;
   /// Return the model of the rig and the true rig.
   [[nodiscard]] RigConfig model_rig() const;
   [[nodiscard]] RigConfig true_rig() const;
-  /// Returns the true surroundings; by default its screens are where the arm model has them.
+  /// Returns the true surroundings. Their default screens are at the positions that follow from the arm
+  /// model.
   [[nodiscard]] StandConfig true_stand() const;
 
-  /// Returns the file's cameras, or the paper's two, at the stand's distances or with the arm's whole reach
-  /// in view.
+  /// Returns the cameras of the file, or the paper's two cameras if the file has none. These are at the
+  /// stand's distances, or at distances that show the arm's whole reach.
   [[nodiscard]] std::vector<CameraConfig> cameras() const;
 };
 
@@ -75,7 +79,7 @@ const Table<ClockConfig>& fields_of(const ClockConfig*);
 const Table<RecordConfig>& fields_of(const RecordConfig*);
 const Table<TruthConfig>& fields_of(const TruthConfig*);
 
-/// Reports inconsistencies of the setup.
+/// Reports inconsistencies of the setup to `reader`.
 void check_setup(const Setup& setup, Reader& reader);
 
 }  // namespace flexura

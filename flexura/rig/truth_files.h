@@ -16,8 +16,8 @@ struct ShownScene {
   View view;    ///< View of the camera.
 };
 
-/// Writes the true values of the picture of `shown` in the file `image`, from the geometry and without sensor
-/// effects. The files beside NAME.png:
+/// Writes the true values of the picture of `shown` in the file `image`. They are computed from the geometry,
+/// without sensor effects. The files beside NAME.png are:
 ///   NAME_depth.tiff   Depth along the optical axis, m; infinite without an object.
 ///   NAME_s.tiff       Arc length on the arm, m; not a number elsewhere.
 ///   NAME_labels.png   Visible object, 16 bits.

@@ -14,8 +14,8 @@ namespace {
 
 constexpr double time_resolution = 1e-7;     // Smallest interval for limits, s.
 constexpr double contact_resolution = 1e-4;  // Smallest interval for contacts, s.
-// Most intervals for one limit; for one section (or pair) and what it may touch, which takes longer. Also per
-// clock step, and for all contacts together.
+// Largest numbers of intervals: for one limit, and for one section (or pair) and one object, which takes
+// longer. Further numbers are per clock step, and for all contacts together.
 constexpr std::size_t limit_intervals = 200'000;
 constexpr std::size_t contact_intervals = 5'000;
 constexpr std::size_t intervals_of_step = 4;
@@ -32,7 +32,7 @@ constexpr std::size_t worst_intervals = 200'000;
 constexpr std::size_t least_worst_intervals = 100;
 constexpr std::size_t worst_depth_intervals = 50'000;
 constexpr std::size_t least_worst_depth_intervals = 10;
-// Shares of a check's progress: for the limits, and up to the contacts' worst values.
+// Fractions of a check's progress: after the limits, and before the worst values of contacts.
 constexpr double limits_share = 0.3;
 constexpr double contacts_share = 0.9;
 
@@ -98,7 +98,8 @@ class BoundedCheck {
     if (uncertainty > 0) report_uncertain(what, violation.hazard, uncertainty);
   }
 
-  // Finds where a law with known rates is faster than anything that moves: between keyframes a moment apart.
+  // Finds spans in which a motion with known rates counts as a jump, for example between keyframes at almost
+  // the same time.
   void check_jumps(std::size_t section, bool is_of_stretch) {
     const auto rate = is_of_stretch ? stretch_rate(motion_, section) : bend_rate(motion_, section);
     const FoundSpans found =
@@ -185,7 +186,7 @@ class BoundedCheck {
   void report_undecided(const std::string& what, const Span& span, double sampled_every,
                         std::size_t intervals) {
     checked_.report.caveats.push_back(
-        fmt::format("{} undecided, {}: more than {} intervals to look into, sampled every {:.3g} s", what,
+        fmt::format("{} undecided, {}: more than {} intervals, therefore sampled every {:.3g} s", what,
                     span_text(span, checked_.timed.start), most_intervals(intervals), sampled_every));
   }
 

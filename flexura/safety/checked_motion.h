@@ -13,14 +13,15 @@
 
 namespace flexura {
 
-/// A motion under check and the report for its findings. The referenced objects must outlive it.
+/// A motion to check, and the report that receives the violations. The referenced objects must outlive this
+/// object.
 struct CheckedMotion {
   const Arm& arm;
   const std::vector<ContactWatch>& contacts;
   const TimedMotion& timed;
   double step = 0;  ///< Clock step, s.
   SafetyReport& report;
-  /// Receives the completed share of this motion's check; returns false to end the check.
+  /// Called with the completed fraction of this motion's check; returns false to stop the check.
   std::function<bool(double done)> go_on;
 
   [[nodiscard]] const Motion& motion() const { return *timed.motion; }
@@ -28,10 +29,10 @@ struct CheckedMotion {
   [[nodiscard]] std::size_t last_step() const {
     return static_cast<std::size_t>(std::ceil(motion().duration() / step));
   }
-  /// Returns the times of the clock at which the motion is sampled, in the motion's time: its start, all
-  /// clock steps within it, and its end. The first interval may be shorter than a step.
+  /// Returns the times at which the motion is sampled, s since the motion's start: the start, all clock steps
+  /// within the motion, and the end. The first and the last interval may be shorter than a step.
   [[nodiscard]] std::vector<double> clock_times() const {
-    constexpr double part = 1e-9;  // Share of a step: closer times count as one.
+    constexpr double part = 1e-9;  // Fraction of a step; times closer than this count as equal.
     const double duration = motion().duration();
     std::vector<double> times = {0};
     for (double k = std::floor(timed.start / step + part) + 1;; ++k) {
@@ -43,7 +44,7 @@ struct CheckedMotion {
     return times;
   }
 
-  /// Adds a violation. Its span and worst time are in the motion's time.
+  /// Adds a violation to the report. `span` and `worst.time` are in s since the motion's start.
   void add(Violation violation, const Span& span, const WorstValue& worst, double sign = 1) const {
     violation.start = timed.start + span.start;
     violation.end = timed.start + span.end;
@@ -55,17 +56,18 @@ struct CheckedMotion {
     add({.hazard = Hazard::jump, .section = section, .name = timed.name, .is_of_stretch = is_of_stretch},
         span, size);
   }
-  /// Adds a violation: the law has no value, or no length, at `time`.
+  /// Adds a violation for a state that is impossible at `time`, s: a value is not finite, or a length is not
+  /// above 0.
   void add_impossible(double time) const {
     add({.hazard = Hazard::not_finite, .section = impossible_section(motion().at(time)), .name = timed.name},
         {time, time}, {time, 0});
   }
 };
 
-/// Returns the threshold of a bend rate for this limit.
+/// Returns the rate above which a rate limit counts as violated.
 [[nodiscard]] inline double threshold_of_rate(double limit) { return limit * (1 + limit_tolerance); }
 
-/// Returns a contact's violation without times and depth.
+/// Returns the violation for a contact, without times and depth.
 [[nodiscard]] inline Violation contact_violation(const ContactWatch& watch, const Contact& place) {
   return {.hazard = watch.hazard(),
           .section = place.section,
@@ -73,10 +75,10 @@ struct CheckedMotion {
           .name = watch.obstacle_name()};
 }
 
-/// Checks a law with known rates, from a possible state at its start (docs/safety.md).
+/// Checks a motion with known bounds on its rates, which must start in a possible state (docs/safety.md).
 void check_bounded(const CheckedMotion& checked);
 
-/// Checks any law at every clock step.
+/// Checks any motion at every clock step.
 void check_sampled(const CheckedMotion& checked);
 
 }  // namespace flexura

@@ -7,18 +7,19 @@
 namespace flexura {
 namespace {
 
-constexpr double deepest = -contact_tolerance;  // Least clearance that is not a contact, m.
+constexpr double deepest = -contact_tolerance;  // Smallest clearance that is not a contact, m.
 constexpr QuantityBounds free_of_contact{-no_distance, -no_distance};
 constexpr QuantityBounds in_contact{no_distance, no_distance};
 
 QuantityBounds undecided(double moved) { return {-no_distance, contact_tolerance + moved}; }
 
-// Returns the distance of a pair of points at the same place. No pair is deeper.
+// Returns the clearance of two backbone points at the same position, which is the smallest possible
+// clearance.
 double deepest_pair(const SectionTube& a, const SectionTube& b) {
   return -std::max(a.radius[0], a.radius[1]) - std::max(b.radius[0], b.radius[1]);
 }
 
-// Returns the fraction of each section that is ignored, if `ignore_base` m of the arm are.
+// Returns the fraction of each section that is ignored if `ignore_base`, m, of the arm is ignored.
 std::vector<double> ignored_fractions(const Arm& arm, double ignore_base) {
   std::vector<double> fractions;
   for (const Section& section : arm.sections) {
@@ -28,8 +29,8 @@ std::vector<double> ignored_fractions(const Arm& arm, double ignore_base) {
   return fractions;
 }
 
-// Returns the share of the arm's motion that changes its distance to an obstacle. It is 1, except for a
-// planar arm and a plane: there it is the sine of the angle between both planes.
+// Returns the fraction of the arm's motion that can change its distance to an obstacle. For a planar arm and
+// a plane this is the sine of the angle between both planes, otherwise 1.
 double share_of_motion(const Arm& arm, const Obstacle& obstacle) {
   if (arm.kind != ArmKind::planar || !obstacle.normal) return 1;
   const Eigen::Vector3d own = arm.X_WB.rotation.col(1);

@@ -15,25 +15,27 @@
 
 namespace flexura {
 
-/// Depth up to which the arm may touch something without a contact. Distances are right to half of it.
+/// Penetration depth up to which a touch does not count as a contact. The error of distances is at most half
+/// of it.
 inline constexpr double contact_tolerance = 1e-6;  // m.
 
-/// Largest motion of the arm between two samples where a contact is undecided.
+/// Largest motion of the arm between two samples during which a contact may remain undecided.
 inline constexpr double contact_motion = 1e-4;  // m.
 
-/// Point of least clearance.
+/// Place of the smallest clearance.
 struct Contact {
-  double clearance = no_distance;              ///< In m; negative: depth.
-  std::size_t section = 0;                     ///< From 0.
-  std::optional<std::size_t> other_section{};  ///< Other section of a self-contact, possibly the same one.
+  double clearance = no_distance;  ///< Clearance, m; a negative clearance is a penetration depth.
+  std::size_t section = 0;         ///< Section, 0 at the base.
+  std::optional<std::size_t>
+      other_section{};  ///< Other section of a self-contact, which may be the same section.
 };
 
-/// Watches one object that the arm may touch: itself or an obstacle.
+/// Computes clearances and contacts of the arm with one object: the arm itself or an obstacle.
 ///
-/// For self-contact, all pairs of backbone points count between which the backbone turns by half a turn (pi)
-/// or more. If a section of the pair or between them is thinner than the two on average, other pairs count.
-/// These have more than half a circle of their mean radius between them. All other pairs cannot meet, or are
-/// neighbours (docs/safety.md).
+/// For self-contact, a pair of backbone points is considered if the backbone between them turns by pi or
+/// more. Further pairs are considered if a section of the pair, or between the pair, is thinner than the two
+/// sections on average. In these pairs the backbone between the points is longer than half a circle of their
+/// mean radius. All other pairs cannot touch, or are neighbours (docs/safety.md).
 class ContactWatch {
  public:
   explicit ContactWatch(Arm arm);
@@ -41,23 +43,24 @@ class ContactWatch {
 
   [[nodiscard]] Hazard hazard() const { return obstacle_ ? Hazard::obstacle : Hazard::self_contact; }
   [[nodiscard]] std::string obstacle_name() const { return obstacle_ ? obstacle_->name : ""; }
-  /// Returns the least clearance in a possible state, or `cap` if it is not below that.
+  /// Returns the smallest clearance in a possible state, or `cap` if the clearance is not below `cap`, m.
   [[nodiscard]] Contact contact(const ArmState& state, double cap = no_distance) const;
-  /// Returns all sections, or pairs of sections, in contact in a state: deeper than `contact_tolerance`.
+  /// Returns all sections, or pairs of sections, that are in contact in a state: their depth is above
+  /// `contact_tolerance`.
   [[nodiscard]] std::vector<Contact> contacts(const ArmState& state) const;
 
-  /// Visits every section that may touch the obstacle, or every pair of sections that may touch each other,
-  /// in the order of chains. A chain is from the base to the section, or from the pair's first section to the
-  /// other.
+  /// Visits every section that may touch the obstacle, or every pair of sections that may touch each other.
+  /// The parameters of a visit are the ends of a chain of sections: base and section, or both sections of the
+  /// pair.
   void for_each_chain(const std::function<void(std::size_t first, std::size_t last)>& visit) const;
-  /// Returns the contact of a chain's last section, without clearance.
+  /// Returns the contact that belongs to a chain from section `first` to `last`, without clearance.
   [[nodiscard]] Contact place_of(std::size_t first, std::size_t last) const;
-  /// Returns the least possible clearance of the last section in the chain's swing, m, as precisely as
-  /// `query` requires. For an arm at rest it is the clearance.
+  /// Returns the smallest possible clearance of the chain's last section during the chain's swing, m, as
+  /// precisely as `query` requires. For an arm at rest this is the clearance.
   [[nodiscard]] double clearance(const Chain& chain, const DistanceQuery& query) const;
-  /// Returns bounds on the depth of the contact in the chain's swing, m (`contact_tolerance` without a deeper
-  /// one). They only distinguish surely free, surely in contact and undecided. If undecided, the upper bound
-  /// exceeds `contact_tolerance` by the section's possible motion.
+  /// Returns bounds on the depth of the contact during the chain's swing, m; `contact_tolerance` if there is
+  /// no deeper contact. The bounds only distinguish certainly free, certainly in contact and undecided. If
+  /// undecided, the upper bound is `contact_tolerance` plus the section's possible motion.
   [[nodiscard]] QuantityBounds bounds(const Chain& chain) const;
 
  private:
@@ -68,24 +71,24 @@ class ContactWatch {
 
   Arm arm_;
   std::optional<Obstacle> obstacle_;
-  std::vector<double> ignored_;  // Fraction of each section that is ignored for the obstacle.
-  double share_ = 1;             // Share of the arm's motion that changes its distance to the obstacle.
+  std::vector<double> ignored_;  // Fraction of each section, from its base, that may touch the obstacle.
+  double share_ = 1;             // Fraction of the arm's motion that can change its distance to the obstacle.
 };
 
-/// Depths of the contacts of every section, or pair of sections, with each watched object, m
-/// (`contact_tolerance` if none is deeper). For motions with known rates. For many quantities together
-/// only contact or no contact matters. So `find_values` returns any depth that occurs above the tolerance,
-/// which is much faster than finding the largest one.
+/// Depths of the contacts of every section, or pair of sections, with each watched object, m;
+/// `contact_tolerance` if there is no deeper contact. For motions with known bounds on their rates. A search
+/// over many quantities only needs to know whether there is a contact. Hence `find_values` returns any
+/// existing depth above the tolerance, which is much faster than finding the largest depth.
 class ContactDepths : public WatchedQuantities {
  public:
-  /// Watch number `watch`, and the chain from section `first` to `last`.
+  /// Quantity of the watch with index `watch`, for the chain from section `first` to `last`.
   struct Part {
     std::size_t watch = 0;
     std::size_t first = 0;
     std::size_t last = 0;
   };
 
-  /// The arguments must outlive this object.
+  /// All arguments must outlive this object.
   ContactDepths(const Arm& arm, const std::vector<ContactWatch>& watches, const Motion& motion);
 
   [[nodiscard]] std::size_t count() const override { return parts_.size(); }
@@ -93,7 +96,7 @@ class ContactDepths : public WatchedQuantities {
   void find_values(double time, std::span<const std::size_t> which, std::span<double> values) const override;
   void find_bounds(const Span& span, std::span<const std::size_t> which,
                    std::span<QuantityBounds> bounds) const override;
-  /// Returns one of the quantities, with bounds on its depth.
+  /// Returns the quantity number i, whose value is the largest depth, as a single quantity.
   [[nodiscard]] WatchedQuantity depth(std::size_t i) const;
 
  private:

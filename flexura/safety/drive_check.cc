@@ -24,7 +24,7 @@ namespace {
 // Doubles represent all integers up to this value; motor positions must not exceed it.
 constexpr double max_countable = 9007199254740992.0;
 
-// One limit of one axis. Joins violations in consecutive rows.
+// Checks one limit of one axis. Joins violations in consecutive rows.
 class AxisLimit {
  public:
   AxisLimit(Hazard hazard, const Drive& drive, std::size_t axis, double limit)
@@ -34,7 +34,7 @@ class AxisLimit {
                .limit = limit} {}
 
   [[nodiscard]] bool is_beyond(double value) const { return value > found_.limit * (1 + limit_tolerance); }
-  // Returns true if the limit is broken.
+  // Returns whether the limit is violated.
   bool add(Span span, double value, SafetyReport& report) {
     if (!is_beyond(value)) {
       close(report);
@@ -64,9 +64,9 @@ struct MotorPlace {
 // Facts for the caveats of an axis, in addition to its violations.
 struct AxisNotes {
   bool has_single_steps = false;       // Rows of one microstep were accepted.
-  bool is_rounded_over = false;        // Only the rounding breaks a limit.
+  bool is_rounded_over = false;        // Only the rounding violates a limit.
   bool takes_up_backlash = false;      // The backlash compensation is too fast or too sudden.
-  bool is_over_while_steered = false;  // By backlash or rounding alone.
+  bool is_over_while_steered = false;  // Only backlash or rounding violates a limit while the arm is servoed.
 };
 
 // Checks one axis from row to row.
@@ -213,7 +213,7 @@ void prove(const Arm& arm, const Drive& drive, Span span, double shortest, const
   prove(arm, drive, {middle, span.end}, shortest, rates, is_unproven);
 }
 
-// Returns the axes with a speed limit that the law may exceed between rows, by its rates.
+// Returns the axes with a speed limit that the motion may exceed between rows according to its rates.
 std::vector<char> unproven_axes(const Arm& arm, const Drive& drive, const Span& span,
                                 const RateBounds& rates) {
   constexpr double shortest_part = 1.0 / 16384;
@@ -244,7 +244,7 @@ void report_sampled(std::vector<char> is_unproven, const Drive& drive, std::size
   const std::string names = names_of(is_unproven, drive);
   if (names.empty()) return;
   report.caveats.push_back(fmt::format(
-      "motor speed and step rate of {}: sampled every {:.6g} s; the law may be faster between two steps",
+      "motor speed and step rate of {}: sampled every {:.6g} s; the motion may be faster between two steps",
       names, step));
 }
 
@@ -257,20 +257,17 @@ void report_notes(const std::vector<AxisCheck>& axes, const Drive& drive, double
     if (!names.empty()) report.caveats.push_back(fmt::format(fmt::runtime(what), names, step));
   };
   say(&AxisNotes::has_single_steps,
-      "motor speed and step rate of {}: one microstep in a row of {:.6g} s is beyond the limit already; "
-      "single ones pass where the motion that they are rounded from keeps to it");
+      "motor speed and step rate of {}: a single microstep in a row of {:.6g} s already exceeds the limit; "
+      "it is accepted where the motion before rounding is within the limit");
   say(&AxisNotes::is_rounded_over,
-      "motor speed and step rate of {}: the motion keeps to the limit, rounded to microsteps it does not: up "
-      "to one more in {:.6g} s");
+      "motor speed and step rate of {}: the motion is within the limit, but exceeds it after rounding, by up "
+      "to one microstep in {:.6g} s");
   say(&AxisNotes::takes_up_backlash,
-      "motors of {}: where a tendon reverses, its backlash is taken up within one step of the clock, {:.6g} "
-      "s; "
-      "the shorter that is, the more it asks");
+      "motors of {}: where a tendon reverses, its backlash is compensated within one clock step, {:.6g} s; a "
+      "shorter step requires more speed and acceleration");
   say(&AxisNotes::is_over_while_steered,
-      "motors of {}: while the arm is steered, speeds and accelerations count without backlash and rounding, "
-      "as "
-      "its limiter counts them; with these the list asks for more than a limit within one step of the clock, "
-      "{:.6g} s");
+      "motors of {}: while the arm is servoed, speeds and accelerations are checked without backlash and "
+      "rounding, as in its limiter; with both, the list exceeds a limit within one clock step, {:.6g} s");
 }
 
 }  // namespace
@@ -309,8 +306,8 @@ void check_drive(const Arm& arm, const Drive& drive, const std::function<ArmStat
   report_notes(axes, drive, step, report);
   if (!std::ranges::any_of(report.violations, is_acceleration)) return;
   report.caveats.push_back(
-      fmt::format("motor acceleration: from one step of the clock to the next, {:.6g} s; of a law that "
-                  "starts or turns at once the value goes with that step",
+      fmt::format("motor acceleration: computed from one clock step to the next, {:.6g} s; for a motion that "
+                  "starts or reverses instantly, the value depends on this step",
                   step));
 }
 

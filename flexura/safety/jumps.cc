@@ -29,7 +29,7 @@ std::optional<Jump> jump_between(const Motion& motion, Sample a, Sample b) {
     const double second = largest_change(middle.state, b.state);
     size = std::max(first, second);
     (first > second ? b : a) = std::move(middle);
-    // The change of a smooth law would be about 1/64 by then.
+    // The change of a smooth motion would have decreased to about 1/64.
     if (n == few && size < whole / 32) return std::nullopt;
   }
   if (size <= smallest_jump) return std::nullopt;
@@ -57,7 +57,8 @@ bool changes_stretch(const ArmState& a, const ArmState& b, std::size_t section) 
   return std::abs(a.stretches[section] - b.stretches[section]) > (a.bends[section] - b.bends[section]).norm();
 }
 
-std::vector<Jump> find_jumps(const Motion& motion, double step, double until) {
+std::vector<Jump> find_jumps(const Motion& motion, double step, double until,
+                             const std::function<bool(double done)>& go_on) {
   const double end = std::min(until, motion.duration());
   std::vector<Jump> jumps;
   const auto count = static_cast<std::size_t>(std::ceil(end / step));
@@ -65,6 +66,7 @@ std::vector<Jump> find_jumps(const Motion& motion, double step, double until) {
   for (std::size_t k = 1; k <= count; ++k) {
     Sample next{std::min(static_cast<double>(k) * step, end), {}};
     next.state = motion.at(next.time);
+    if (go_on && !go_on(static_cast<double>(k) / static_cast<double>(count))) break;
     if (const auto jump = jump_between(motion, last, next)) jumps.push_back(*jump);
     last = std::move(next);
   }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <limits>
 #include <vector>
 
@@ -9,34 +10,38 @@
 
 namespace flexura {
 
-/// Rate of a bend (rad/s) or a stretch (1/s) from which any law counts as a jump: a turn in less than a
-/// thousandth of a second.
+/// Rate of a bend (rad/s) or a stretch (1/s) from which a change counts as a jump. It is more than a full
+/// turn within a thousandth of a second.
 inline constexpr double jump_rate = 1e4;
 
-/// Smallest jump that counts: rad, or a factor of stretch.
+/// Smallest jump that is reported: rad for a bend, a factor for a stretch.
 inline constexpr double smallest_jump = 1e-6;
 
-/// A law has two states at one time.
+/// A jump of a motion: two states at one time.
 struct Jump {
-  double time = 0;          ///< In s.
-  double size = 0;          ///< Largest change of a bend (rad) or a stretch.
-  std::size_t section = 0;  ///< Section with that change, from 0.
-  bool is_of_stretch = false;
+  double time = 0;             ///< Time of the jump, s.
+  double size = 0;             ///< Largest change of a bend (rad) or a stretch.
+  std::size_t section = 0;     ///< Index of the section with the largest change.
+  bool is_of_stretch = false;  ///< Whether the stretch of this section changes most, not its bend.
 };
 
-/// Returns the largest change of a bend (rad) or a stretch (factor) of any section.
+/// Returns the largest change of a bend (rad) or a stretch (factor) of any section between two states.
 [[nodiscard]] double largest_change(const ArmState& a, const ArmState& b);
 
-/// Returns the section that changes most between two states, from 0.
+/// Returns the index of the section that changes most between two states.
 [[nodiscard]] std::size_t most_changed(const ArmState& a, const ArmState& b);
 
-/// Returns true if a section's stretch (factor) changes by more than its bend (rad).
+/// Returns whether the change of a section's stretch (factor) between two states is larger than that of its
+/// bend (rad).
 [[nodiscard]] bool changes_stretch(const ArmState& a, const ArmState& b, std::size_t section);
 
-/// Returns the jumps of any law. Searches every interval of `step` s by halving it towards its larger change:
-/// a jump keeps its size, and a fast change does not. Finds a jump if it is at least 1/32 of the law's change
-/// in its step. Ignores changes that are not finite. `until`: end of the search, s.
+/// Returns the jumps of any motion up to the time `until`, s. Repeatedly halves every interval of `step` s
+/// and continues in the half with the larger change. The change of a jump keeps its size; a fast change does
+/// not. A jump is found if it is at least 1/32 of the change of the motion within its step. Changes that are
+/// not finite are ignored.
+/// `go_on` may be empty; it receives the completed share, and returns false to end the search.
 [[nodiscard]] std::vector<Jump> find_jumps(const Motion& motion, double step,
-                                           double until = std::numeric_limits<double>::infinity());
+                                           double until = std::numeric_limits<double>::infinity(),
+                                           const std::function<bool(double done)>& go_on = {});
 
 }  // namespace flexura

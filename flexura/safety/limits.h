@@ -10,34 +10,35 @@
 
 namespace flexura {
 
-/// Share of a limit by which a value may exceed it: limits are given in degrees, and values computed in
-/// radians.
+/// Fraction of a limit by which a value may exceed the limit. It allows for rounding, because limits are
+/// given in degrees and values computed in radians.
 inline constexpr double limit_tolerance = 1e-9;
 
 /// A limited quantity of one section.
 struct LimitWatch {
   Hazard hazard = Hazard::bend;
-  std::size_t section = 0;                             ///< From 0.
-  double limit = 0;                                    ///< As reported.
-  double sign = 1;                                     ///< -1: the value must not fall below the limit.
-  std::function<double(const ArmState& state)> value;  ///< Returns the value in the hazard's unit.
-  /// Returns a bound on |d value/dt| in [start, end] of a motion with known rates.
+  std::size_t section = 0;                             ///< Section, 0 at the base.
+  double limit = 0;                                    ///< Limit in the hazard's unit, as reported.
+  double sign = 1;                                     ///< 1 for an upper limit, -1 for a lower limit.
+  std::function<double(const ArmState& state)> value;  ///< Returns the limited value in the hazard's unit.
+  /// Returns a bound on |d value/dt| during [start, end], s, of a motion with known bounds on its rates.
   std::function<double(const Motion& motion, double start, double end)> rate;
 
-  /// Returns the threshold: the limit is broken if sign * value exceeds it. A tube folds at its limit; all
-  /// other values may reach theirs.
+  /// Returns the threshold: the limit is violated if sign * value exceeds the threshold. Folding is a
+  /// violation already at its limit; all other values may reach their limits.
   [[nodiscard]] double threshold() const;
 };
 
-/// Returns all limits on the states of the arm: bends, stretches, folding (curvature times radius below 1).
+/// Returns all limits on the states of the arm: on bends, on stretches, and on folding (curvature times
+/// radius below 1).
 [[nodiscard]] std::vector<LimitWatch> limit_watches(const Arm& arm);
 
-/// Returns the bounds of `motion` in [start, end] s of its time, or 0 if it has none.
+/// Returns the bounds on the rates of a section of `motion` during [start, end], s; 0 if unknown.
 [[nodiscard]] SectionRates rates_of(const Motion& motion, std::size_t section, double start, double end);
 
-/// Returns a section's bend rate in a motion with known rates, rad/s.
+/// Returns a section's bend rate, rad/s, as a quantity of a motion with known bounds on its rates.
 [[nodiscard]] WatchedQuantity bend_rate(const Motion& motion, std::size_t section);
-/// Returns a section's stretch rate in a motion with known rates, 1/s.
+/// Returns a section's stretch rate, 1/s, as a quantity of a motion with known bounds on its rates.
 [[nodiscard]] WatchedQuantity stretch_rate(const Motion& motion, std::size_t section);
 
 }  // namespace flexura

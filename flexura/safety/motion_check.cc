@@ -31,7 +31,7 @@ void note_singular(const Arm& arm, const ArmState& state, double time, SafetyRep
   const Eigen::MatrixXd velocities = tip_jacobian(arm, state).topRows<3>()(Eigen::all, free);
   const Eigen::VectorXd speeds = singular_values(velocities);
   const auto now = static_cast<std::size_t>((speeds.array() > 1e-9 * speeds.maxCoeff()).count());
-  // One spatial section without stretch reaches only a surface.
+  // The tip of one spatial section without stretch reaches only a surface.
   const std::size_t usual = std::min<std::size_t>(arm.kind == ArmKind::planar ? 2 : 3, free.size());
   if (now == usual) return;
   report.notes.push_back(
@@ -85,7 +85,7 @@ SafetyReport check_with(const Arm& arm, const std::vector<ContactWatch>& contact
     before = motion.at(motion.duration());
     note_singular(arm, before, motions[i].start + motion.duration(), report);
   }
-  if (!report.is_complete) report.caveats.emplace_back("cancelled: not all of it is checked");
+  if (!report.is_complete) report.caveats.emplace_back("cancelled: the motion is not completely checked");
   report.sort();
   report.notes.erase(std::ranges::unique(report.notes).begin(), report.notes.end());
   return report;
@@ -139,7 +139,7 @@ SafetyReport check_motions(const ArmModel& model, const std::vector<Obstacle>& o
   }
   report.is_complete = of_shape.is_complete;
   if (!report.is_complete) report.caveats = of_shape.caveats;
-  // A rod has no known rates: its shape is sampled.
+  // Rates of a rod's shape are unknown, so that the shape is sampled.
   if (report.is_complete && !actuation.is_linear())
     report.caveats.insert(report.caveats.end(), of_shape.caveats.begin(), of_shape.caveats.end());
   report.sort();

@@ -14,33 +14,33 @@
 
 namespace flexura {
 
-/// A motion and its start, s.
+/// A motion with its start time.
 struct TimedMotion {
   MotionPtr motion;
-  double start = 0;
-  std::string name = {};  ///< Name of its task, for messages.
+  double start = 0;       ///< Start time, s.
+  std::string name = {};  ///< Name of the motion's task, for messages.
 };
 
-/// Returns the hazards of motions played one after another from the state `initial`: bends, bend rates,
-/// stretches, folding, contact with itself and with obstacles, jumps. For a law with known bounds on its
-/// rates, nothing between two samples is missed (spans.h). Other laws are sampled every `step` s, and the
-/// report states this. See docs/safety.md. `progress` may be null. It can end the check early; the report is
-/// then incomplete.
+/// Checks motions that are executed one after another from the state `initial` (docs/safety.md). Hazards are
+/// bends, bend rates, stretches, stretch rates, folding, self-contact, contact with obstacles, and jumps. For
+/// a motion with known bounds on its rates, the check misses nothing between samples (spans.h). Other motions
+/// are sampled every `step` s, which the report states. `progress` may be null. If it cancels the check, the
+/// report is incomplete.
 [[nodiscard]] SafetyReport check_motions(const Arm& arm, const std::vector<Obstacle>& obstacles,
                                          const ArmState& initial, const std::vector<TimedMotion>& motions,
                                          double step, Progress* progress = nullptr);
 
-/// Returns the hazards for an arm whose sections may be several arcs. The motions are commands (states of
-/// model.driven()), whose bends, stretches and rates have limits. Folding and contact are those of the
-/// resulting shape. A violation names the section.
+/// Checks motions of an arm whose sections may be several arcs. The motions are commands (states of
+/// model.driven()), whose bends, stretches and rates are checked. Folding and contact are checked for the
+/// resulting shape. Violations refer to sections, not to arcs.
 [[nodiscard]] SafetyReport check_motions(const ArmModel& model, const std::vector<Obstacle>& obstacles,
                                          const ArmState& initial, const std::vector<TimedMotion>& motions,
                                          double step, Progress* progress = nullptr);
 
-/// Returns true if the arm can have this state: bends up to `largest_bend`, finite lengths above 0.
+/// Returns whether a state is possible: bends are at most `largest_bend`, and lengths are finite and above 0.
 [[nodiscard]] bool is_possible(const ArmState& state);
 
-/// Returns the first section with an impossible state, from 0.
+/// Returns the index of the first section with an impossible state, if any.
 [[nodiscard]] std::optional<std::size_t> impossible_section(const ArmState& state);
 
 }  // namespace flexura

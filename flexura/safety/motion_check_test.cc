@@ -202,15 +202,26 @@ TEST(MotionCheck, FindsJumpsInFormulasAndNoneWhereTheyAreOnlyFast) {
   });
 }
 
+TEST(MotionCheck, TheSearchForJumpsCanBeEnded) {
+  int asked = 0;
+  const auto motion = function_motion(2, [&](double) { return ++asked, bent(0); });
+  std::vector<double> shares;
+  (void)find_jumps(*motion, 0.01, 2, [&](double done) { return shares.push_back(done), shares.size() < 5; });
+  EXPECT_EQ(shares, (std::vector<double>{0.005, 0.01, 0.015, 0.02, 0.025}));
+  EXPECT_LE(asked, 6);
+}
+
 TEST(MotionCheck, SaysWhatItOnlySampled) {
   const auto formula = function_motion(3, [](double t) { return bent(0.1 * t); });
   const SafetyReport report = check(short_section(), formula, 0.05);
   EXPECT_TRUE(report.is_safe());
-  EXPECT_THAT(report.caveats,
-              testing::ElementsAre("0 s to 3 s: sampled every 0.05 s: the law has no bound on its rates"));
-  EXPECT_THAT(check(short_section(), formula, 1000).caveats,
-              testing::ElementsAre(
-                  "0 s to 3 s: sampled at its start and its end alone: the law has no bound on its rates"));
+  EXPECT_THAT(
+      report.caveats,
+      testing::ElementsAre("0 s to 3 s: sampled every 0.05 s: no bound on the rates of the motion is known"));
+  EXPECT_THAT(
+      check(short_section(), formula, 1000).caveats,
+      testing::ElementsAre(
+          "0 s to 3 s: sampled only at its start and its end: no bound on the rates of the motion is known"));
   EXPECT_TRUE(check(short_section(), hold_motion(bent(0), 1)).caveats.empty());
 }
 

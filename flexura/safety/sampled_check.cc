@@ -53,9 +53,9 @@ class SampledCheck {
   void run() {
     const bool is_short = times_.size() <= 2;
     checked_.report.caveats.push_back(fmt::format(
-        "{}: sampled {}: the law has no bound on its rates",
+        "{}: sampled {}: no bound on the rates of the motion is known",
         span_text(checked_.whole(), checked_.timed.start),
-        is_short ? "at its start and its end alone" : fmt::format("every {:.6g} s", checked_.step)));
+        is_short ? "only at its start and its end" : fmt::format("every {:.6g} s", checked_.step)));
     std::optional<double> last_possible;
     std::optional<ArmState> before;
     for (std::size_t k = 0; k < times_.size(); ++k) {
@@ -73,7 +73,10 @@ class SampledCheck {
     }
     add_found();
     if (!last_possible || !checked_.report.is_complete) return;
-    for (const Jump& jump : find_jumps(checked_.motion(), checked_.step, *last_possible))
+    const auto go_on = [&](double done) {
+      return checked_.go_on(samples_share + (1 - samples_share) * done);
+    };
+    for (const Jump& jump : find_jumps(checked_.motion(), checked_.step, *last_possible, go_on))
       checked_.add_jump({jump.time, jump.time}, jump.section, jump.is_of_stretch, {jump.time, jump.size});
   }
 

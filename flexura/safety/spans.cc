@@ -114,7 +114,7 @@ class Halving {
     if (!looked_at_.empty()) judge(span, halves);
   }
 
-  // Leaves an interval to samples, which decide.
+  // Decides an interval by samples.
   void leave(const Span& span) {
     sample(span, sampled_);
     for (std::size_t k = 0; k < sampled_.size(); ++k) {

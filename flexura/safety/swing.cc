@@ -46,8 +46,9 @@ void Chain::restart(std::size_t first) {
   add(first);
 }
 
-// A section that bends by d turns what is beyond it by at most d. It moves its own end by at most d length /
-// 2. In between that is convex, so a line from start to end bounds it.
+// If the bend of a section changes by d, everything beyond the section rotates by at most d, and the
+// section's end moves by at most d length / 2. The motion along the section is convex, so that a straight
+// line from start to end bounds it.
 void Chain::add(std::size_t section) {
   last_ = section;
   const SectionTube& tube = last_tube();
@@ -69,9 +70,9 @@ SectionTube Chain::grown(double sign, double share) const {
   return tube;
 }
 
-// Returns the pairs that count. Pairs with less than half a turn between them cannot meet in two cases.
-// Either nothing is thinner than the two on average, or the backbone bends no more sharply than a circle of
-// that radius.
+// Returns the rule for pairs of points. Pairs with less than half a turn between them cannot touch in two
+// cases. Either no section between is thinner than the average of the two, or the curvature is at most that
+// of a circle with this radius.
 PairRule Chain::rule(double sign) const {
   constexpr double rounding = 1e-9;
   const double mean = (largest_radius(first_tube()) + largest_radius(last_tube())) / 2;

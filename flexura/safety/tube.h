@@ -9,27 +9,28 @@
 #include "flexura/model/arm.h"
 #include "flexura/model/obstacle.h"
 
-// Distances between the arm's tubes and to obstacles. A tube is the union of balls around the backbone, so
-// its ends are hemispheres. Distances are right to `distance_tolerance`: the result is a distance that
-// occurs, and no distance is less by more.
+// Distances between the arm's tubes, and from the tubes to obstacles. A tube is the union of balls around the
+// backbone, so that its ends are hemispheres. A computed smallest distance exceeds the true smallest distance
+// by at most `distance_tolerance`.
 namespace flexura {
 
-inline constexpr double distance_tolerance = 5e-7;  ///< m.
+inline constexpr double distance_tolerance = 5e-7;  ///< Accuracy of distances, m.
 inline constexpr double no_distance = std::numeric_limits<double>::infinity();
 
-/// The tube of one section in a state.
+/// The tube of one section in a state of the arm.
 struct SectionTube {
-  Pose X_WS;                          ///< Frame at its start; z is the tangent.
-  Eigen::Vector2d bend;               ///< rad.
-  double length = 0;                  ///< In m, with stretch.
-  std::array<double, 2> radius = {};  ///< In m, at its start and end.
-  double turn = 0;   ///< Turn of the backbone from the base to its start: sum of |bend|, rad.
-  double start = 0;  ///< Length of the backbone up to its start, m.
-  /// A quarter of the circumference, pi/2 times its radius, at its start and end, m: for PairRule. Unchanged
-  /// for thicker or thinner copies of a tube.
+  Pose X_WS;                          ///< Frame at the section's start; z is the tangent.
+  Eigen::Vector2d bend;               ///< Bend vector, rad.
+  double length = 0;                  ///< Length with stretch, m.
+  std::array<double, 2> radius = {};  ///< Radius at the section's start and end, m.
+  /// Turn of the backbone from the arm's base to the section's start: the sum of |bend|, rad.
+  double turn = 0;
+  double start = 0;  ///< Length of the backbone from the arm's base to the section's start, m.
+  /// A quarter of the circumference (pi/2 times the radius) at the section's start and end, m, for PairRule.
+  /// Unchanged in thicker or thinner copies of a tube.
   std::array<double, 2> girth = {};
 
-  /// Returns the backbone point at the fraction `u` in [0, 1] of the section.
+  /// Returns the backbone point at the fraction `u` of the section, in [0, 1].
   [[nodiscard]] Eigen::Vector3d point(double u) const;
   [[nodiscard]] double radius_at(double u) const { return radius[0] + u * (radius[1] - radius[0]); }
   [[nodiscard]] double turn_at(double u) const { return turn + u * bend.norm(); }
@@ -37,52 +38,57 @@ struct SectionTube {
   [[nodiscard]] double girth_at(double u) const { return girth[0] + u * (girth[1] - girth[0]); }
 };
 
-/// Returns the arm's tubes, one per section. Throws std::invalid_argument if `state` does not fit the arm.
+/// Returns the arm's tubes, one per section. Throws std::invalid_argument unless `state` has one bend and one
+/// stretch per section.
 [[nodiscard]] std::vector<SectionTube> tube_arcs(const Arm& arm, const ArmState& state);
 
-/// Rule for the pairs of backbone points that count. Either the backbone turns by `turn` rad or more between
-/// them. Or it is longer between them than half a circle of their mean radius, by `gap` m or more.
+/// Rule that selects pairs of backbone points. A pair is selected if the backbone between its points turns by
+/// `turn`, rad, or more. A pair is also selected if this piece of backbone is at least `gap`, m, longer than
+/// half a circle of the pair's mean radius.
 struct PairRule {
   double turn = 0;
   double gap = no_distance;
 };
 
-/// Required precision of a least distance: values at or above `cap` do not matter, and any value below
-/// `enough` suffices.
+/// Required precision of a smallest distance: values at or above `cap` do not matter, and any value below
+/// `enough` suffices, m.
 struct DistanceQuery {
   double cap = no_distance;
   double enough = -no_distance;
 };
 
-/// Returns the least distance between the surfaces of `a` and `b`, m, over the pairs of backbone points that
-/// count. `a` is nearer to the base, or the same arc. Negative if they overlap; the cap if there are no
-/// pairs, or none nearer.
+/// Returns the smallest distance between the surfaces of `a` and `b`, m, over the pairs of backbone points
+/// that `rule` selects. `a` is nearer to the base than `b`, or the same section. Negative if the tubes
+/// overlap; query.cap if no selected pair is nearer.
 ///
-/// Branch and bound: a piece of an arc of length l that turns by psi stays within l min(psi/8, 1/2) of its
-/// chord. So the distance of two chords bounds that of the pieces, more tightly as they get shorter.
+/// The method is branch and bound. A piece of an arc, of length l and turn psi, is within l min(psi/8, 1/2)
+/// of its chord. Hence the distance of two chords bounds the distance of their pieces, more tightly for
+/// shorter pieces.
 [[nodiscard]] double tube_distance(const SectionTube& a, const SectionTube& b, const PairRule& rule,
                                    const DistanceQuery& query = {});
 
-/// Returns true if all these pairs are proved to be at least this far apart; false if the proof takes too
-/// long.
+/// Returns true if all pairs that `rule` selects are proved to be at least `distance`, m, apart. False if no
+/// proof is found within the limit on steps.
 [[nodiscard]] bool stay_apart(const SectionTube& a, const SectionTube& b, const PairRule& rule,
                               double distance);
 
-/// Returns true if some of these pairs are proved to be nearer; false if the proof takes too long.
+/// Returns true if a pair that `rule` selects is proved to be nearer than `distance`, m. False if no proof is
+/// found within the limit on steps.
 [[nodiscard]] bool come_within(const SectionTube& a, const SectionTube& b, const PairRule& rule,
                                double distance);
 
-/// Returns the least distance from the tube's surface to the obstacle, m, negative if they overlap, for the
-/// tube from the fraction `from` on. Exact for a plane.
+/// Returns the smallest distance between the obstacle and the tube's surface, from the fraction `from` of the
+/// section on, m. Negative if tube and obstacle overlap. Exact for a plane.
 [[nodiscard]] double obstacle_distance(const SectionTube& tube, double from, const Obstacle& obstacle,
                                        const DistanceQuery& query);
 
-/// Returns true if the tube is proved to stay at least this far from the obstacle; false if the proof takes
-/// too long.
+/// Returns true if the tube is proved to be at least `distance`, m, from the obstacle. False if no proof is
+/// found within the limit on steps.
 [[nodiscard]] bool stays_clear(const SectionTube& tube, double from, const Obstacle& obstacle,
                                double distance);
 
-/// Returns true if the tube is proved to come nearer to the obstacle; false if the proof takes too long.
+/// Returns true if the tube is proved to be nearer to the obstacle than `distance`, m. False if no proof is
+/// found within the limit on steps.
 [[nodiscard]] bool comes_within(const SectionTube& tube, double from, const Obstacle& obstacle,
                                 double distance);
 

@@ -8,7 +8,8 @@
 namespace flexura {
 namespace {
 
-constexpr int few_cuts = 60;  // Cuts of an arc near an obstacle; each takes longer than one of a pair.
+constexpr int few_cuts = 60;  // Largest number of subdivisions of an arc near an obstacle. Each takes longer
+                              // than a subdivision for a pair.
 
 struct Least {
   double value = 0;  // Below the least by at most a part of the tolerance.
@@ -117,7 +118,7 @@ class ObstacleSearch {
     if (low < best_ - distance_tolerance) open_.push({piece, low});
   }
 
-  // Returns the least height of the piece above the plane of a side.
+  // Returns the smallest height of the piece above the plane of a side.
   [[nodiscard]] double above_side(const Piece& piece, const Obstacle::Side& side) const {
     double least = no_distance;
     for (const double u : lowest_places(tube_, side.normal, piece.from, piece.to))

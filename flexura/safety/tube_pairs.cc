@@ -23,7 +23,7 @@ struct Chords {
   double x = 0;
   double y = 0;
 
-  // Returns the x in [0, 1] where |p + x along| - grow x is least.
+  // Returns the x in [0, 1] that minimizes |p + x along| - grow x.
   static double least(const Eigen::Vector3d& p, const Eigen::Vector3d& along, double grow) {
     const double squared = along.squaredNorm();
     if (!(squared > grow * grow)) return grow > 0 ? 1 : 0;

@@ -7,13 +7,14 @@
 
 #include "flexura/safety/tube.h"
 
-// Shared by the searches for least distances (tube_pairs.cc, tube_obstacles.cc).
+// Shared by the searches for smallest distances (tube_pairs.cc, tube_obstacles.cc).
 namespace flexura {
 
-// Thousands are rare; this keeps an unexpected case from filling the memory.
+// Limit on the steps of a search. Searches with thousands of steps are rare; the limit prevents an unexpected
+// case from exhausting memory.
 inline constexpr int most_steps = 200'000;
 
-// A piece of a tube between two fractions.
+// A piece of a tube between two fractions of its section.
 struct Piece {
   double from = 0;
   double to = 1;
@@ -28,13 +29,13 @@ inline Piece piece_of(const SectionTube& tube, double from, double to) {
   return {from, to, tube.point(from), tube.point(to)};
 }
 
-// Returns a bound on the distance of the backbone from the chord.
+// Returns a bound on the distance of the backbone from the piece's chord, m.
 inline double slack_of(const SectionTube& tube, const Piece& piece) {
   const double part = piece.to - piece.from;
   return tube.length * part * std::min(tube.bend.norm() * part / 8, 0.5);
 }
 
-// Queue of nodes, the one with the least bound first.
+// Priority queue of nodes, the node with the smallest lower bound first.
 template <class Node>
 class Queue {
  public:

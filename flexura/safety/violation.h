@@ -9,41 +9,43 @@
 
 namespace flexura {
 
-/// Kinds of violations of a motion.
+/// Kinds of violations; each has a unit for value and limit.
 enum class Hazard : std::uint8_t {
   bend,                ///< A section bends more than allowed; rad.
   bend_rate,           ///< A section bends faster than allowed; rad/s.
   stretch,             ///< A section is longer or shorter than allowed; factor.
   stretch_rate,        ///< A section changes its length faster than allowed; 1/s.
-  folding,             ///< The inner side of the tube folds: curvature times radius reaches 1.
-  jump,                ///< The law has two states at one time; rad (or a factor).
-  not_finite,          ///< The law's formula has no finite value, or no length above 0.
-  self_contact,        ///< The arm touches itself; m of depth.
-  obstacle,            ///< The arm touches an obstacle; m of depth.
+  folding,             ///< The inner side of the tube folds: curvature times radius reaches 1; no unit.
+  jump,                ///< The motion has two states at one time; rad for a bend, a factor for a stretch.
+  not_finite,          ///< A value of the motion's formula is not finite, or a length is not above 0.
+  self_contact,        ///< The arm touches itself; depth in m.
+  obstacle,            ///< The arm touches an obstacle; depth in m.
   motor_speed,         ///< A motor turns faster than its limit; rad/s.
-  step_rate,           ///< Its controller gives more microsteps per second than its limit; 1/s.
+  step_rate,           ///< A motor's controller gives more microsteps per second than its limit; 1/s.
   motor_acceleration,  ///< A motor accelerates or decelerates faster than its limit; rad/s^2.
   motor_position,      ///< A motor exceeds its position limit; microsteps.
-  workspace,           ///< The tip's target is outside the workspace; m from the nearest pose.
+  workspace,  ///< The tip's target is outside the workspace; distance from the nearest reachable pose in m.
 };
 
 /// A violation and its time span.
 struct Violation {
   Hazard hazard = Hazard::bend;
-  double start = 0;                               ///< In s.
-  double end = 0;                                 ///< In s.
-  double worst_time = 0;                          ///< Time of `value`, s.
-  std::optional<std::size_t> section = {};        ///< From 0; for a motor, the section of its tendon.
-  std::optional<std::size_t> other_section = {};  ///< From 0; the section that `section` touches.
+  double start = 0;       ///< Start of the span, s.
+  double end = 0;         ///< End of the span, s.
+  double worst_time = 0;  ///< Time of `value`, s.
+  /// Section, 0 at the base; for a motor, the section of its tendon.
+  std::optional<std::size_t> section = {};
+  std::optional<std::size_t> other_section = {};  ///< Section that `section` touches, 0 at the base.
   std::string name = {};                          ///< Name of the obstacle, the motor's axis or the task.
   double value = 0;                               ///< Worst value in the span, in the hazard's unit.
   double limit = 0;                               ///< Limit, in the hazard's unit.
-  bool is_of_stretch = false;                  ///< A jump of the stretch (a factor), not of the bend (rad).
-  std::optional<Eigen::Vector3d> target = {};  ///< Position that the tip does not reach, world, m.
+  bool is_of_stretch = false;  ///< Whether a jump is of the stretch (a factor), not of the bend (rad).
+  std::optional<Eigen::Vector3d> target = {};  ///< Position that the tip does not reach, in W, m.
 
-  /// Returns "0.5 s to 2 s: section 1: bend 62 deg, limit 60 deg". Times are as in span_text (spans.h).
+  /// Returns "0.5 s to 2 s: section 1: bend 62 deg, limit 60 deg". The times are formatted by span_text()
+  /// (spans.h).
   [[nodiscard]] std::string text() const;
-  /// Returns the text without the times.
+  /// Returns text() without the times.
   [[nodiscard]] std::string what() const;
 
  private:
@@ -53,26 +55,27 @@ struct Violation {
 
 /// Result of the check of a motion.
 struct SafetyReport {
-  std::vector<Violation> violations;  ///< By time, then section.
-  /// Reasons why the check may have missed something between two steps: "sampled every 0.02 s from ...".
+  std::vector<Violation> violations;  ///< Violations, ordered by time, then by section.
+  /// Reasons why the check may have missed a violation between two samples: "sampled every 0.02 s from ...".
   std::vector<std::string> caveats;
-  std::vector<std::string> notes;  ///< Remarks that are not violations.
-  bool is_complete = true;         ///< False if the check was cancelled.
+  std::vector<std::string> notes;  ///< Remarks that do not affect safety.
+  bool is_complete = true;         ///< Whether the check was completed, not cancelled.
 
   [[nodiscard]] bool is_safe() const { return violations.empty() && is_complete; }
   /// Sorts the violations.
   void sort();
 };
 
-/// Returns the most informative violations, at most `most`: the worst of every hazard, then that of every
-/// other obstacle, then the rest. Those of a section come before those of a motor or a task. The result has
-/// indices in `report.violations`, ascending. Of several with the same worst time only the first is included.
+/// Returns the indices in `report.violations`, ascending, of at most `most` most informative violations. The
+/// worst violation of each hazard has priority, then the worst of each further obstacle, then all others.
+/// Violations of sections have priority over violations of motors or tasks. Among violations with the same
+/// worst time only the first is included.
 [[nodiscard]] std::vector<std::size_t> most_relevant(const SafetyReport& report, std::size_t most);
 
-/// Returns true if the hazard is a motor's.
+/// Returns whether a hazard concerns a motor.
 [[nodiscard]] bool is_of_motor(Hazard hazard);
 
-/// Returns an amount in the unit of the hazard's texts: "1.5 deg".
+/// Returns the text of an amount, converted from the hazard's unit to the unit of messages: "1.5 deg".
 [[nodiscard]] std::string amount_text(Hazard hazard, double amount);
 
 /// Returns the hazard's name in reports: "bend", "bend rate", ...

@@ -8,23 +8,23 @@ namespace flexura {
 
 /// Largest value of a quantity and its time.
 struct WorstValue {
-  double time = 0;  ///< In s.
+  double time = 0;  ///< Time, s.
   double value = 0;
-  /// By how much the true maximum may exceed `value`, if the search ran out of intervals; 0: as precise as
-  /// required.
+  /// Amount by which the true maximum may exceed `value` if the search reached its limit on intervals; 0 if
+  /// `value` is as precise as required.
   double uncertainty = 0;
 };
 
-/// Required precision of a worst value.
+/// Required precision of a worst value, and limit of the search.
 struct WorstSearch {
-  double tolerance = 0;  ///< By how much the quantity may exceed it somewhere.
-  double part = 0;       ///< Share of the value that it may exceed it by; the larger of both counts.
-  std::size_t most_intervals = 2000;  ///< Most intervals of a search.
+  double tolerance = 0;  ///< Absolute tolerance: amount by which the true maximum may exceed the result.
+  double part = 0;       ///< Tolerance as a fraction of the result; the larger of both tolerances applies.
+  std::size_t most_intervals = 2000;  ///< Largest number of intervals.
 };
 
-/// Returns the largest value of a quantity in a span, which occurs. Branch and bound: halves the interval
-/// with the highest upper bound. Ends when no bound exceeds the largest value of the middles and ends by more
-/// than the tolerance.
+/// Returns the largest value of a quantity in a span, and a time at which the quantity has this value. The
+/// method is branch and bound, which halves the interval with the largest upper bound. It ends when no upper
+/// bound exceeds the largest value at interval ends and middles by more than the tolerance.
 [[nodiscard]] WorstValue worst_in(const WatchedQuantity& quantity, const Span& span,
                                   const WorstSearch& search);
 

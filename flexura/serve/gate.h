@@ -12,24 +12,26 @@ namespace flexura {
 /// Access control of the server: its host names, allowed pages and the token.
 class Gate {
  public:
-  /// `names`: further hosts, each with this port unless it has its own ("name", "name:port").
+  /// `names`: further host names of this server ("name" or "name:port"). A name without a port has the port
+  /// `port`.
   Gate(std::uint16_t port, const std::vector<std::string>& names, std::string token);
 
   /// Returns true if a Host header names this server. `local` is the local address of the connection, without
-  /// port; "localhost" is one of its names if it is loopback. A browser attacked by DNS rebinding sends the
-  /// attacker's name.
+  /// port; "localhost" is accepted if this address is a loopback address. The check prevents DNS rebinding,
+  /// in which a browser sends the attacker's host name.
   [[nodiscard]] bool knows_host(std::string_view host, std::string_view local) const;
-  /// Returns true if an Origin header is a page of this server. It is compared with the list and not with
-  /// Host. The port counts, because cookies are shared between ports.
+  /// Returns true if an Origin header is the origin of a page of this server. The header is compared with the
+  /// known host names, not with the Host header. The port must agree too, because browsers share cookies
+  /// between ports.
   [[nodiscard]] bool knows_origin(std::string_view origin, std::string_view local) const;
   /// Returns true if the request has the token: "Bearer TOKEN" in its Authorization header, or a cookie of
-  /// any name with it as value.
+  /// any name with the token as value.
   [[nodiscard]] bool has_token(const RequestHead& head) const;
-  /// Returns true if its Authorization header has the token.
+  /// Returns true if the request's Authorization header has the token.
   [[nodiscard]] bool has_bearer(const RequestHead& head) const;
   /// Returns the cookie with the token for a page that uses `host` for this server. Scripts cannot read it,
-  /// and pages of other hosts do not send it. Cookies ignore ports: its name includes the port of `host`, so
-  /// that two programs on a host have different cookies.
+  /// and pages of other hosts do not send it. The cookie's name includes the port of `host`: browsers share
+  /// cookies between ports, so two programs on a host need different names.
   [[nodiscard]] std::string cookie(std::string_view host) const;
   [[nodiscard]] const std::string& token() const { return token_; }
 
@@ -40,8 +42,8 @@ class Gate {
 };
 
 /// Returns true if a browser can use this name for a server. It is a name of letters, digits, - and _ between
-/// single dots, or an IP address (version 6 in brackets), with or without ":port". Everything else in an
-/// address is refused.
+/// single dots, or an IP address (version 6 in brackets), with or without ":port". Returns false for
+/// everything else.
 [[nodiscard]] bool is_host(std::string_view text);
 
 /// Returns the address as in a URL: "127.0.0.1" or "[::1]".

@@ -21,33 +21,34 @@ struct Site {
   std::size_t longest_header = std::size_t{16} * 1024;
 };
 
-/// Next action of a connection.
+/// Next action of a connection: read more bytes.
 struct ReadMore {};
-/// Ask the host, then pass its answer to HttpSession::format.
+/// Next action of a connection: ask the host, then pass its answer to HttpSession::format.
 struct Question {
   std::string target;
 };
-/// Continue as a WebSocket; HttpSession::refuse if that is impossible.
+/// Next action of a connection: continue as a WebSocket. If that is impossible, call HttpSession::refuse.
 struct Upgrade {
   std::string key;  ///< Client's Sec-WebSocket-Key.
 };
 using Step = std::variant<ReadMore, Answer, Question, Upgrade>;
 
-/// One HTTP connection without its socket: bytes are the input, actions the output. Requests that arrive
-/// together are answered one after the other.
+/// The protocol of one HTTP connection, without a socket: its input is bytes, its output actions. Requests
+/// that arrive together are answered one after the other.
 class HttpSession {
  public:
   /// `local`: the local address of the connection, without its port.
   HttpSession(const Site& site, std::string local);
 
-  /// Adds bytes from the client; at most the length of a header more before next() requests them.
+  /// Adds bytes from the client. Before next() returns ReadMore again, at most `longest_header` bytes may be
+  /// added.
   void feed(std::string_view bytes);
-  /// Returns ReadMore until a request is complete. After a Question or an Upgrade, call format or refuse;
-  /// after an Answer that is the last, nothing.
+  /// Returns the next action: ReadMore until a request is complete. After a Question call format(); after an
+  /// Upgrade that fails call refuse(). After an Answer with `last`, call nothing more.
   Step next();
-  /// Returns the HTTP answer for the host's answer to the last Question.
+  /// Returns the HTTP answer with the host's answer to the last Question.
   [[nodiscard]] Answer format(HttpAnswer host) const;
-  /// Returns the answer to an impossible Upgrade.
+  /// Returns the answer for an Upgrade that is impossible.
   [[nodiscard]] Answer refuse(int status) const;
   /// Returns true if a request has begun to arrive.
   [[nodiscard]] bool begun() const { return !buffer_.empty(); }
@@ -55,7 +56,8 @@ class HttpSession {
   [[nodiscard]] std::size_t held() const { return buffer_.size(); }
 
  private:
-  /// Returns 0 or the status of a refusal; 0 without a `head` means that more bytes are needed.
+  /// Reads the head of the next request. Returns 0, or the status with which to refuse the request. With 0
+  /// and an empty `head`, more bytes are needed.
   int read_head(std::optional<RequestHead>* head);
   [[nodiscard]] Step decide(const RequestHead& head) const;
   [[nodiscard]] Step secret(const RequestHead& head, std::string_view path) const;
@@ -67,7 +69,8 @@ class HttpSession {
   std::string buffer_;
   std::size_t looked_ = 0;  // Position in buffer_ up to which there is no end of a head.
   bool last_ = false;       // The current request is the last.
-  std::string cookie_;      // Header line for its answer, if the request had the token in its header.
+  std::string
+      cookie_;  // Header line that sets the cookie in the answer, if the request had the token in its header.
 };
 
 }  // namespace flexura

@@ -18,23 +18,24 @@ class Outbox {
     bool text = false;
   };
 
-  /// Limits of the waiting texts.
+  /// `texts`, `bytes`: largest number and total size of waiting texts.
   Outbox(std::size_t texts, std::size_t bytes) : texts_limit_(texts), bytes_limit_(bytes) {}
 
-  /// Returns true if the client may request more: less than a quarter of the limits waits.
+  /// Returns true if the client may send further requests, because the waiting texts are below a quarter of
+  /// both limits.
   [[nodiscard]] bool has_room() const {
     return texts_.size() < texts_limit_ / 4 && text_bytes_ < bytes_limit_ / 4;
   }
-  /// Returns false if too much would wait: the client does not read.
+  /// Adds a text. Returns false if the waiting texts exceed a limit, because the client does not read them.
   [[nodiscard]] bool push(std::string text);
-  /// Replaces an unsent older message of the stream.
+  /// Sets the newest message of a stream, which replaces an older message that was not sent.
   void post(std::uint32_t stream, std::shared_ptr<const std::string> message);
-  /// Returns the next message to send, until done(). Texts and messages of streams alternate while there are
-  /// both; streams take turns.
+  /// Returns the next message to send; call done() after it was sent. Texts and messages of streams alternate
+  /// if there are both, and so do different streams.
   std::optional<Message> next();
-  /// The message from next() has been sent.
+  /// Reports that the message from next() was sent.
   void done();
-  /// Returns the bytes of all messages, with the one being sent.
+  /// Returns the number of bytes of all messages, including the one being sent.
   [[nodiscard]] std::size_t bytes() const { return text_bytes_ + stream_bytes_ + sending_bytes_; }
   /// Returns true if a message is being sent.
   [[nodiscard]] bool is_sending() const { return sending_bytes_ > 0; }

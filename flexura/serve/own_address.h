@@ -9,9 +9,9 @@ namespace flexura {
 /// system does not provide them.
 [[nodiscard]] std::vector<std::string> own_addresses();
 
-/// Returns an address for other machines to reach this one, which listens on all addresses. It is the first
-/// of the same kind (IPv6 or not) that is reachable from outside and needs no interface name. "127.0.0.1" if
-/// there is no such address.
+/// Returns an address by which other machines reach this machine, for a server that listens on all addresses.
+/// It is the first of `addresses` of the required kind (IPv6 if `v6`, else IPv4) that is reachable from
+/// outside and needs no interface name. "127.0.0.1" if there is no such address.
 [[nodiscard]] std::string outward_address(const std::vector<std::string>& addresses, bool v6);
 
 }  // namespace flexura

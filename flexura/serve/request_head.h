@@ -17,15 +17,16 @@ struct RequestHead {
   };
 
   std::string method;
-  std::string target;  ///< As received.
-  int minor = 1;       ///< Of HTTP/1.minor.
+  std::string target;  ///< Target as received, not decoded.
+  int minor = 1;       ///< Minor version of HTTP/1.
   std::vector<Field> fields;
-  bool keep_alive = false;  ///< The client wants to keep the connection.
+  bool keep_alive = false;  ///< Whether the client wants to keep the connection.
 
   /// Returns the value of a field, by its name in lower case; null if missing. Fields that affect decisions
   /// occur at most once.
   [[nodiscard]] const std::string* find(std::string_view name) const;
-  /// Returns true if a field with a list of tokens contains this one; both in lower case.
+  /// Returns true if the field `name`, a list of tokens, contains `token`. Both arguments must be in lower
+  /// case.
   [[nodiscard]] bool lists(std::string_view name, std::string_view token) const;
 };
 
@@ -35,9 +36,9 @@ struct Refusal {
 };
 
 /// Parses a head, from its first line to its last CRLF, without the empty line. Refuses everything that two
-/// programs could interpret differently, where RFC 9112 permits this. These are bare line feeds, folded
-/// lines, blanks around a name, a repeated length, two Hosts. No request here has a body: one of any length
-/// or encoding gets 413.
+/// programs could interpret differently, where RFC 9112 permits this. This includes bare line feeds, folded
+/// lines, blanks around a field's name, a repeated length, and two Host fields. A request with a body, of any
+/// length or encoding, is refused with status 413.
 std::variant<RequestHead, Refusal> parse_request_head(std::string_view text);
 
 /// Returns the text with ASCII letters in lower case, independent of the locale.

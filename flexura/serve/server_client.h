@@ -21,18 +21,18 @@ class Server::Loop::Client : public std::enable_shared_from_this<Client> {
   /// Closes the connection immediately; pending operations then fail.
   void cut_off();
 
-  Outbox outbox;  // Guarded by the loop's mutex, like the next member.
+  Outbox outbox;  // This and the next member are guarded by the loop's mutex.
   bool overflowed = false;
 
  private:
-  struct Stream;  // Beast's stream.
+  struct Stream;  // Stream of the library Beast.
 
   void begin();
-  /// Reads the next message when the client has read enough of its messages.
+  /// Reads the next message, if the client has read enough of the messages sent to it.
   void read();
   void heard(const ErrorCode& error);
   void wrote(const ErrorCode& error);
-  /// Closes with one of WebSocket's codes.
+  /// Closes the connection with a status code of the WebSocket protocol.
   void close(int code);
   void end();
 

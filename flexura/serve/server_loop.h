@@ -16,7 +16,7 @@
 #include "flexura/serve/http_session.h"
 #include "flexura/serve/server.h"
 
-// Only for the server's sources: includes Boost.Asio.
+// Includes Boost.Asio; only for the server's source files.
 namespace flexura {
 
 namespace net = boost::asio;
@@ -26,7 +26,7 @@ using ErrorCode = boost::system::error_code;
 /// Ignores an error of an operation that may fail, such as closing a closed socket.
 inline void disregard(const ErrorCode&) {}
 
-/// The server's thread and its data; data used by other threads are guarded by `mutex_`.
+/// The server's thread and its data. Data that other threads use are guarded by `mutex_`.
 class Server::Loop {
  public:
   Loop(ServerConfig config, std::span<const Asset> assets, Host& host);

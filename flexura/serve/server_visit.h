@@ -43,7 +43,8 @@ class Server::Loop::Visit : public std::enable_shared_from_this<Visit> {
   net::steady_timer timer_;
   std::array<char, 16384> bytes_{};
   Answer answer_;
-  bool begun_ = true;  // The deadline is that of a request; otherwise that of a pause.
+  bool begun_ =
+      true;  // Whether the deadline is for a request; otherwise it is for the pause between requests.
 };
 
 }  // namespace flexura

@@ -7,14 +7,14 @@
 namespace flexura {
 
 /// Returns 128 bits from the system's secure random source as 32 hexadecimal digits. Throws std::system_error
-/// if it fails.
+/// if that source fails.
 std::string new_token();
 
-/// Returns the bits that differ in any byte of two texts of equal length. Reads each byte of both, wherever
-/// the first difference is. `at(text, i)` returns a byte.
+/// Returns the bits that differ in any byte of two texts of equal length. Always reads all bytes of both
+/// texts, so that the time does not depend on their content. `at(text, i)` returns a byte.
 template <class At>
 unsigned char difference_of(std::string_view a, std::string_view b, At&& at) {
-  // volatile: keeps the compiler from leaving the loop early.
+  // volatile prevents the compiler from leaving the loop early.
   volatile unsigned char difference = 0;
   for (std::size_t i = 0; i < a.size(); ++i)
     difference = static_cast<unsigned char>(difference | (at(a, i) ^ at(b, i)));

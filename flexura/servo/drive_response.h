@@ -10,16 +10,16 @@
 namespace flexura {
 
 /// Learned matrix that maps motions of the drives to motions of the observed shape (docs/control.md, eq.
-/// 21a). It is the identity if the arm follows its model. The image of a shape is geometry and changes from
-/// shape to shape; this matrix changes much less, so each motion teaches it for all shapes. Derivatives of
-/// features by the drives are their derivatives by the shape times this matrix.
+/// 21a). The matrix is the identity if the arm follows its model. It hardly depends on the shape, unlike the
+/// derivatives of image features, so each motion improves it for all shapes. The derivatives of features with
+/// respect to the drives are their derivatives with respect to the shape, times this matrix.
 class DriveResponse {
  public:
-  /// For this number of the arm's variables. ServoJacobian::model learns nothing.
+  /// `variables`: number of the arm's variables. With ServoJacobian::model nothing is learned.
   DriveResponse(ServoJacobian how, Eigen::Index variables);
 
-  /// Learns from the drives' reading x and the shape y observed at that time (rad; stretches). Skips values
-  /// that are not finite.
+  /// Learns from the drives' reading x and the shape y observed at that time (bends in rad, stretches). Skips
+  /// values that are not finite.
   void learn(const Eigen::VectorXd& x, const Eigen::VectorXd& y);
   [[nodiscard]] bool is_learned() const { return !std::holds_alternative<std::monostate>(estimate_); }
   /// Returns dy/dx.

@@ -51,7 +51,8 @@ FeatureMarker::FeatureMarker(ServoLawKind law, Arm arm, std::int64_t points)
 
 std::array<std::vector<FeatureMark>, 2> FeatureMarker::of(const ServoObservation& observed) {
   std::array<std::vector<FeatureMark>, 2> marks;
-  if (law_ == ServoLawKind::shape || !observed.estimate.is_found) return marks;
+  if (law_ == ServoLawKind::shape || law_ == ServoLawKind::predictive || !observed.estimate.is_found)
+    return marks;
   const std::array<View, 2> views = {observed.seen[0].view, observed.seen[1].view};
   if (!features_->measured(observed.estimate.shape.state, observed.seen, seen_) ||
       !features_->predict(observed.desired, views, desired_))
@@ -60,6 +61,7 @@ std::array<std::vector<FeatureMark>, 2> FeatureMarker::of(const ServoObservation
   for (std::size_t i = 0; i < 2; ++i) {
     switch (law_) {
       case ServoLawKind::shape:
+      case ServoLawKind::predictive:
         break;
       case ServoLawKind::points:
         marks[i] = points_in(i);

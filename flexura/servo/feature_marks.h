@@ -20,7 +20,7 @@ struct FeatureMark {
 
 /// Draws what a law compares into the pictures.
 ///
-/// - `points`, `silhouettes`: pixels of the points, or of the edges.
+/// - `points`, `silhouettes`: the pixels of the points, or of the edges.
 /// - `chords`, `potential`: chords. Each target chord is rotated about the middle of the measured one,
 /// because
 ///   the law compares only directions.
@@ -30,8 +30,9 @@ class FeatureMarker {
  public:
   FeatureMarker(ServoLawKind law, Arm arm, std::int64_t points);
 
-  /// Returns the marks in both pictures of an observation, at its time; empty if it gives no shape. Chords
-  /// are as measured in these pictures, even if the law carries their angles by optical flow.
+  /// Returns the marks in both pictures of an observation, with the target at its time. Empty if the
+  /// observation gives no shape. Chords are drawn as measured in these pictures, even if the law carries
+  /// their angles by optical flow.
   [[nodiscard]] std::array<std::vector<FeatureMark>, 2> of(const ServoObservation& observed);
 
  private:

@@ -7,12 +7,13 @@
 
 namespace flexura {
 
-/// Weight of a stretch of 1 among features in px (about the motion of a section's end) and in rad.
+/// Weight of a stretch of 1 among features in px and among features in rad. The weight in px is about the
+/// motion of a section's end.
 inline constexpr double stretch_px = 100, stretch_rad = 1;
 
-/// Returns features that extend `features` by each section's stretch as estimated from the pictures. A
-/// stretch of 1 counts as `weight` in the features' unit. Use it for features with little information on
-/// lengths; angles contain no such information. If the arm cannot stretch, returns `features` unchanged.
+/// Returns `features` extended by each section's stretch as estimated from the pictures. A stretch of 1
+/// counts as `weight` in the features' unit. It is for features with little information on lengths; angles
+/// have none. If the arm cannot stretch, returns `features` unchanged.
 [[nodiscard]] std::unique_ptr<ServoFeatures> with_lengths(std::unique_ptr<ServoFeatures> features,
                                                           const Arm& arm, double weight);
 

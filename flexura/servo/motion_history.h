@@ -4,6 +4,7 @@
 #include <deque>
 #include <optional>
 #include <utility>
+#include <vector>
 
 namespace flexura {
 
@@ -22,8 +23,16 @@ class MotionHistory {
     while (readings_.size() > 2 && readings_[1].first < time - span_) readings_.pop_front();
   }
 
-  /// Returns the time of the first reading, s. Requires a reading.
+  /// Returns the time of the first kept reading, s. Requires a reading.
   [[nodiscard]] double since() const { return readings_.front().first; }
+
+  /// Returns the times of the readings after `from` and before `to`, s, in order.
+  [[nodiscard]] std::vector<double> times_between(double from, double to) const {
+    std::vector<double> times;
+    for (const auto& reading : readings_)
+      if (reading.first > from && reading.first < to) times.push_back(reading.first);
+    return times;
+  }
 
   [[nodiscard]] bool is_empty() const { return readings_.empty(); }
 

@@ -20,8 +20,8 @@ class PictureMeter {
  public:
   PictureMeter(const RigModel& nominal, const ServoConfig& config);
 
-  /// Returns an observation without a shape: what each picture shows of the arm, or the reason why it shows
-  /// no arm.
+  /// Returns an observation without an estimated shape. For each picture it has the measured arm, or the
+  /// reason why no arm was found.
   [[nodiscard]] ServoObservation measure(const PicturePair& pair);
 
  private:

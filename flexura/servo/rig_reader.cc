@@ -58,7 +58,8 @@ std::string RigReader::invalid_time(const Frame& frame, const std::deque<Frame>&
   if (frame.time > now() + ahead)
     return fmt::format("its picture's timestamp is {:.4g} s in the future", frame.time - now());
   if (!before.empty() && frame.time < before.back().time)
-    return fmt::format("its picture is {:.4g} s older than the one before", before.back().time - frame.time);
+    return fmt::format("its picture is {:.4g} s older than the previous picture",
+                       before.back().time - frame.time);
   return "";
 }
 
@@ -107,7 +108,7 @@ std::string RigReader::no_pair(double since) const {
     const bool has_come = !recent_[i].empty() && recent_[i].back().received > since;
     if (!has_come) whose += (whose.empty() ? "camera " : " and ") + name(i);
   }
-  return whose.empty() ? "no pictures come that belong together" : "no pictures come of " + whose;
+  return whose.empty() ? "no simultaneous pictures were received" : "no pictures were received from " + whose;
 }
 
 std::string RigReader::by_name(std::string reason) const {

@@ -6,6 +6,7 @@
 #include <deque>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "flexura/camera/camera.h"
 #include "flexura/port/rig_model.h"
@@ -24,35 +25,40 @@ struct PicturePair {
 };
 
 /// Reads a rig's devices: the newest two simultaneous pictures, and the readings of arm, heads and stages at
-/// that time.
+/// their time.
 class RigReader {
  public:
   struct Times {
-    double span = 0;      ///< How long readings are kept, s.
+    double span = 0;      ///< Time for which readings are kept, s.
     double together = 0;  ///< Largest time between two pictures that count as simultaneous, s.
-    double silent = 0;    ///< Older readings count as no answer, s.
+    double silent = 0;    ///< Age of a reading beyond which the device counts as silent, s.
   };
   /// `nominal` must outlive this object.
   RigReader(const RigPorts& ports, const RigModel& nominal, const std::array<std::size_t, 2>& cameras,
             const Times& times);
 
   using Error = std::optional<std::string>;
-  /// Reads arm, heads and stages. Returns an error if one is unknown (rig_readings.h), or its time is in the
-  /// future or too old.
+  /// Reads arm, heads and stages. Returns an error if a reading is missing (rig_readings.h), or its time is
+  /// in the future or too old.
   [[nodiscard]] Error read();
-  /// Requests pictures from the cameras. Returns a pair if there is a new one. A camera that does not answer
-  /// has no picture, nor one whose timestamp is not finite, in the future, or out of order. silence() then
-  /// returns the reason.
+  /// Requests pictures from the cameras. Returns a new pair of pictures, if there is one. A picture is
+  /// refused if its timestamp is not finite, in the future, or out of order. If a camera did not answer or
+  /// its picture was refused, silence() returns the reason.
   [[nodiscard]] std::optional<PicturePair> newest_pair();
-  /// Returns the reason why a camera gave no picture at the last request, with its name, or "" if both
-  /// answered.
+  /// Returns the name of a camera that gave no picture at the last request, with the reason, or "" if both
+  /// gave one.
   [[nodiscard]] std::string silence() const;
-  /// Returns the reason why there is no pair: the cameras without a picture since this time, s.
+  /// Returns the reason why there is no pair of pictures: the cameras without a picture since the time
+  /// `since`, s.
   [[nodiscard]] std::string no_pair(double since) const;
 
-  /// said() returns the drives' shape at a time; believed() the model's shape for it.
+  /// measured() returns the drives' reading at a time, a command; nominal() the model's shape for it.
   [[nodiscard]] ArmState measured(double time) const { return *arm_.at(time); }
   [[nodiscard]] ArmState nominal(double time) const { return model_.bent(measured(time)); }
+  /// Returns the times of the drives' readings after `from` and before `to`, s, in order.
+  [[nodiscard]] std::vector<double> readings_between(double from, double to) const {
+    return arm_.times_between(from, to);
+  }
   /// Returns the nominal views of the cameras at a time.
   [[nodiscard]] std::array<View, 2> views(double time) const { return {view(0, time), view(1, time)}; }
   /// Returns the axis positions that a camera's head and stage reported.
@@ -63,7 +69,7 @@ class RigReader {
   /// Returns the port of one of the two cameras.
   [[nodiscard]] const CameraPorts& camera(std::size_t i) const { return ports_.cameras[cameras_[i]]; }
   [[nodiscard]] const std::string& name(std::size_t i) const { return camera(i).name; }
-  /// Returns the reason with the cameras' names instead of the estimator's picture numbers.
+  /// Returns `reason` with the cameras' names instead of the estimator's picture numbers.
   [[nodiscard]] std::string by_name(std::string reason) const;
 
  private:

@@ -26,6 +26,7 @@ TEST(ServoLaw, AllocatesNothingButItsAnswer) {
     observed.seen[0].view = servo_views()[0], observed.seen[1].view = servo_views()[1];
     observed.estimate.shape.state = {{{0.4, 0.1}, {-0.2, 0.5}, {0.1, 0.3}}, {1, 1, 1}};
     const ArmState& state = observed.estimate.shape.state;
+    observed.rest = state;
     const TargetShape desired{{{{0.5, 0.1}, {-0.2, 0.1}, {0.3, 0.3}}, {1, 1, 1}}, {}};
     const ServoLaw::Input input{.observed = observed,
                                 .is_fresh = false,

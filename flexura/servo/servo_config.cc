@@ -32,8 +32,8 @@ const Table<ServoCameraPrior>& fields_of(const ServoCameraPrior*) {
 }
 
 const std::vector<std::string>& names_of(const ServoLawKind*) {
-  static const std::vector<std::string> names = {"shape",   "points",    "chords",
-                                                 "moments", "potential", "silhouettes"};
+  static const std::vector<std::string> names = {"shape",     "points",      "chords",    "moments",
+                                                 "potential", "silhouettes", "predictive"};
   return names;
 }
 
@@ -52,18 +52,17 @@ void check_servo(const ServoConfig& config) {
   double before = 0;
   for (const ServoGoal& goal : config.goals) {
     require(&goal == &config.goals.front() ? goal.time >= 0 : goal.time > before,
-            "a servo's goals follow each other in time");
+            "the times of a servo's goals must increase from 0");
     before = goal.time;
   }
   require(config.measure == ServoMeasure::picture || has_chords(config.law),
-          "only the laws chords and potential measure angles by flow");
-  require(config.anchor > 0, "a servo's anchor is above 0");
-  require(
-      config.settle >= 0 && config.hold_after > 0 && config.give_up_after > config.hold_after &&
-          config.timeout > config.settle,
-      "a servo settles in no less than 0 s and sooner than it is given up, and given up later than it holds");
+          "only the laws chords and potential can use measure = flow");
+  require(config.anchor > 0, "a servo's anchor must be above 0");
+  require(config.settle >= 0 && config.hold_after > 0 && config.give_up_after > config.hold_after &&
+              config.timeout > config.settle,
+          "a servo needs 0 <= settle < timeout and hold_after < give_up_after");
   require(config.points >= 1 && config.rate > 0 && config.tolerance > 0 && config.step > 0,
-          "a servo's points, rate, tolerance and step are above 0");
+          "a servo's points, rate, tolerance and step must be above 0");
 }
 
 double slower_frame_rate(const std::vector<CameraConfig>& cameras, const std::array<std::size_t, 2>& two) {

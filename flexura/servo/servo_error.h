@@ -13,23 +13,23 @@ namespace flexura {
 /// base to tip, m.
 [[nodiscard]] std::array<double, 51> shape_distances(const Backbone& shape, const Backbone& desired);
 
-/// Distance of a shape from another: shape_distances(), as shares of the arm's length.
+/// Distance of a shape from another one, by shape_distances(), as shares of the arm's length.
 struct ServoError {
-  double rms = 0, most = 0, tip = 0;  ///< Root mean square; maximum; at the tip.
+  double rms = 0, most = 0, tip = 0;  ///< Root mean square along the arm, maximum, and distance at the tip.
 };
 /// Returns the distance of `shape` from `desired`. `length`: of the arm, m.
 [[nodiscard]] ServoError servo_error(const Backbone& shape, const Backbone& desired, double length);
 [[nodiscard]] ServoError servo_error(const Arm& arm, const ArmState& shape, const ArmState& desired);
 
-/// Errors of the recent past.
+/// Errors of the recent past, for their mean.
 class LateErrors {
  public:
   /// Drops errors that are older than the newest one by more than `span`, s.
   explicit LateErrors(double span) : span_(span) {}
 
-  /// Adds an error. `time`: at least that of the previous one, s.
+  /// Adds an error. `time`: s, at least that of the previous error.
   void add(double time, const ServoError& error);
-  /// Returns the mean error, or std::nullopt before the first one.
+  /// Returns the mean of the kept errors, or std::nullopt before the first error.
   [[nodiscard]] std::optional<ServoError> mean() const;
 
  private:

@@ -199,6 +199,7 @@ std::unique_ptr<ServoFeatures> servo_features(ServoLawKind law, const Arm& arm, 
   const int points = static_cast<int>(places);
   switch (law) {
     case ServoLawKind::shape:
+    case ServoLawKind::predictive:
       return std::make_unique<EstimatedShape>();
     case ServoLawKind::points:
       return std::make_unique<ImageFeatures>(arm, FeatureSet::of_points(points));

@@ -15,7 +15,7 @@
 
 namespace flexura {
 
-/// The target at one time.
+/// The target shape at one time.
 struct TargetShape {
   ArmState state;
   /// Difference between the recorded pictures' features and those of `state` for nominal cameras; empty:
@@ -23,24 +23,25 @@ struct TargetShape {
   Eigen::VectorXd offset;
 };
 
-/// Targets of a servo as shapes. Recorded pictures are measured once, with the cameras at their current axis
-/// positions.
+/// Target shapes of a servo over time. A target given as recorded pictures is measured once, with the cameras
+/// at their current axis positions.
 class ServoGoals {
  public:
-  /// problem() returns the reason why the targets are unusable, or "".
+  /// Measures recorded pictures. problem() then returns the reason why the targets are unusable, or "".
   ServoGoals(const std::vector<ServoGoal>& goals, const Arm& arm, PictureMeter& meter,
              ShapeObserver& observer, ServoFeatures& features, const std::array<View, 2>& views);
 
   [[nodiscard]] const std::string& problem() const { return problem_; }
   /// Returns the time of the last target, s from the servo's start.
   [[nodiscard]] double last() const { return times_.back(); }
-  /// Returns the target, linearly interpolated between two given ones; the first one before all of them.
+  /// Returns the target at a time, linearly interpolated between the given targets. Before the first target
+  /// it is the first one.
   [[nodiscard]] TargetShape at(double time) const;
 
  private:
   void measure(const PicturePair& recorded, const Arm& arm, PictureMeter& meter, ShapeObserver& observer,
                ServoFeatures& features);
-  // Returns the reason why pictures with these views have to be given in the other order, or "".
+  // Returns the reason why the recorded pictures appear to be in the wrong order, or "".
   [[nodiscard]] std::string wrong_order(const ServoObservation& observed, const PicturePair& recorded,
                                         PictureMeter& meter, const ShapeObserver& observer) const;
 

@@ -47,19 +47,20 @@ void ServoJudge::add_error(const ServoStep& step) {
   } else if (!worse_since_) {
     worse_since_ = time;
   } else if (time - *worse_since_ > patience) {
-    failure_ =
-        fmt::format("diverging: {:.2g} % of the length off, after {:.2g} %", 100 * latest_, 100 * best_);
+    failure_ = fmt::format("diverging: the error is {:.2g} % of the length, after {:.2g} %", 100 * latest_,
+                           100 * best_);
     // If the arm may not turn as fast as the law requests, it passes the target again and again.
-    if (limited_for_ > 0) *failure_ += fmt::format("; held back by {}", limited_by_);
+    if (limited_for_ > 0) *failure_ += fmt::format("; limited by {}", limited_by_);
   }
 }
 
 std::string ServoJudge::why_not() const {
-  const std::string off = fmt::format("still {:.3g} % of the length off {:.4g} s after the target's time",
-                                      100 * latest_, config_.timeout);
+  const std::string off =
+      fmt::format("the error is still {:.3g} % of the length {:.4g} s after the target's time", 100 * latest_,
+                  config_.timeout);
   constexpr double long_enough = 0.5;  // s
   if (limited_for_ > long_enough) return fmt::format("saturated: {}; {}", limited_by_, off);
-  if (is_singular_) return "singular: some motion of the arm shows in nothing that is seen; " + off;
+  if (is_singular_) return "singular: some motion of the arm changes no feature; " + off;
   return "not settled: " + off;
 }
 

@@ -11,10 +11,10 @@
 
 namespace flexura {
 
-/// Decides when a servo has reached its target, and when it cannot.
+/// Decides whether a servo has reached its target, or can no longer reach it.
 class ServoJudge {
  public:
-  /// `begun`: start of the session; `last_goal`: time of the last target, s from there.
+  /// `begun`: start of the session, s. `last_goal`: time of the last target, s after `begun`.
   ServoJudge(const ServoConfig& config, double begun, double last_goal)
       : config_(config), goal_time_(begun + last_goal) {}
 
@@ -22,7 +22,7 @@ class ServoJudge {
   void add(const ServoStep& step);
 
   [[nodiscard]] bool is_done() const { return is_done_; }
-  /// Returns the reason to end the servo; std::nullopt while it can still succeed.
+  /// Returns the reason to end the servo; std::nullopt while the target can still be reached.
   [[nodiscard]] const std::optional<std::string>& failure() const { return failure_; }
 
  private:
@@ -34,26 +34,25 @@ class ServoJudge {
   bool is_done_ = false;
   std::optional<std::string> failure_;
   std::optional<double> below_since_, worse_since_;
-  double seen_at_ = -1e300;           // Time of the last new observation used, s.
-  double best_ = 1e300, latest_ = 0;  // Shares of the length.
+  double seen_at_ = -1e300;           // Time of the last new observation that was used, s.
+  double best_ = 1e300, latest_ = 0;  // Smallest and latest error, shares of the length.
   ArmState desired_;                  // Target at the previous observation.
-  double limited_for_ = 0;            // Recent, s.
+  double limited_for_ = 0;            // Recent time with limited commands, s.
   std::string limited_by_;
   bool is_singular_ = false;
 };
 
-/// Statistics of a servo's steps, updated with each step. Keeps the last `settle` s of errors, however long
-/// the servo runs.
+/// Statistics of a servo's steps, updated with each step. Keeps only the errors of the last `settle` s.
 class ServoTally {
  public:
-  /// `begun`: start of the session; `last_goal`: time of the last target, s from there. `arm` must outlive
-  /// this object.
+  /// `begun`: start of the session, s. `last_goal`: time of the last target, s after `begun`. `arm` must
+  /// outlive this object.
   ServoTally(const Arm& arm, const ServoConfig& config, double begun, double last_goal)
       : arm_(arm), begun_(begun), last_goal_(last_goal), late_(config.settle) {}
 
   /// Adds a completed step.
   void add(const ServoStep& step);
-  /// Fills in these statistics in a result.
+  /// Writes these statistics into a result.
   void finish(ServoResult& result) const;
 
  private:
@@ -63,7 +62,7 @@ class ServoTally {
   double begun_, last_goal_;
   std::optional<double> settled_;
   LateErrors late_;
-  // Position of the tip at the time of the last target, and its way to the target.
+  // Position of the tip at the time of the last target, and the vector from there to the target, m.
   std::optional<Eigen::Vector3d> tip_;
   Eigen::Vector3d way_ = Eigen::Vector3d::Zero();
   double overshoot_ = 0;

@@ -47,8 +47,21 @@ void ServoLaw::by_variables(const Eigen::MatrixXd& by_shape, const ArmState& com
   law_.by_variables(by_command_, J);
 }
 
+// The law controls the equilibrium of the arm, so its features are those without the swing.
+bool ServoLaw::find_features(const ServoObservation& observed) {
+  const ArmState& estimate = observed.estimate.shape.state;
+  if (!features_.measured(estimate, observed.seen, seen_)) return false;
+  if (observed.rest == estimate) return true;
+  const std::array<View, 2> views = {observed.seen[0].view, observed.seen[1].view};
+  Eigen::VectorXd swung, rest;
+  if (!features_.predict(estimate, views, swung) || !features_.predict(observed.rest, views, rest))
+    return false;
+  seen_ += rest - swung;
+  return true;
+}
+
 bool ServoLaw::find_error(const Input& input, const TargetShape& desired, FeatureError& result) {
-  const ArmState& estimate = input.observed.estimate.shape.state;
+  const ArmState& estimate = input.observed.rest;
   const std::array<View, 2> views = {input.observed.seen[0].view, input.observed.seen[1].view};
   if (!features_.predict(desired.state, views, desired_)) return false;
   if (desired.offset.size() == desired_.size()) desired_ += desired.offset;
@@ -70,10 +83,9 @@ void ServoLaw::go_along(const ArmState& desired, const ArmState& next, ArmState&
 }
 
 ServoLaw::Output ServoLaw::step(const Input& input) {
-  const ArmState& estimate = input.observed.estimate.shape.state;
+  const ArmState& estimate = input.observed.rest;
   if (input.is_fresh) features_.look(input.observed);
-  if (!features_.measured(estimate, input.observed.seen, seen_) || !find_error(input, input.desired, is_))
-    return {input.sent, 0, true};
+  if (!find_features(input.observed) || !find_error(input, input.desired, is_)) return {input.sent, 0, true};
   double potential = 0.5 * is_.error.squaredNorm();
   if (!is_same(input.then, input.desired)) {
     if (!find_error(input, input.then, was_)) return {input.sent, 0, true};

@@ -24,27 +24,30 @@ class ServoLaw {
   /// Input of a step.
   struct Input {
     const ServoObservation& observed;  ///< Last observation of the arm.
-    bool is_fresh = false;             ///< The observation is new since the last step.
-    const ArmState& measured;          ///< Drives' reading at its time.
+    bool is_fresh = false;             ///< Whether the observation is new since the last step.
+    const ArmState& measured;          ///< Drives' reading at the time of the observation.
     const ArmState& sent;              ///< The last command.
     const TargetShape& then;           ///< Target at the time of the observation.
     const TargetShape& desired;        ///< Current target.
-    const ArmState& next;              ///< Target one step from now.
+    const ArmState& next;              ///< Target one step later.
   };
   struct Output {
     ArmState asked;
     double potential = 0;  ///< Half the squared error at the time of the observation.
     bool is_singular = false;
   };
-  /// Returns the command. Keeps the current one if the observation gives no error.
+  /// Returns the next command. It is the last command if the observation gives no error.
   [[nodiscard]] Output step(const Input& input);
 
  private:
-  // Converts derivatives by the shape to derivatives by the law's variables at a command.
+  // Converts derivatives with respect to the shape to derivatives with respect to the law's variables at a
+  // command.
   void by_variables(const Eigen::MatrixXd& by_shape, const ArmState& command, Eigen::MatrixXd& J);
-  // Packs the variables of a command, within the limits or not.
+  // Writes the variables of a command into x. They need not be within the limits.
   void pack(const ArmState& state, Eigen::VectorXd& x) const;
-  // Computes the error of the measured features, which it writes to seen_.
+  // Computes the measured features into seen_.
+  [[nodiscard]] bool find_features(const ServoObservation& observed);
+  // Computes the error of the measured features, and writes the features to seen_.
   [[nodiscard]] bool find_error(const Input& input, const TargetShape& desired, FeatureError& result);
   // Adds the motion of the drives that follows the target's motion.
   void go_along(const ArmState& desired, const ArmState& next, ArmState& asked);

@@ -14,13 +14,17 @@ namespace flexura {
 /// Observation from two simultaneous pictures.
 struct ServoObservation {
   double time = 0;   ///< Middle of the exposures, s.
-  ArmState desired;  ///< Target at that time.
-  /// For targets from recorded pictures: their offset from what nominal cameras would observe, in the law's
-  /// features; empty: zero.
+  ArmState desired;  ///< Target at the time of the observation.
+  /// Offset of the features in a target's recorded pictures from those that nominal cameras would observe;
+  /// empty: zero.
   Eigen::VectorXd desired_offset;
-  std::array<Frame, 2> frames;         ///< Of both cameras.
-  std::array<Observation, 2> seen;     ///< Centerlines, bands, borders; views corrected by their errors.
-  ShapeEstimate estimate;              ///< Shape of the arm at that time.
+  std::array<Frame, 2> frames;  ///< Frames of both cameras.
+  std::array<Observation, 2>
+      seen;  ///< Measured arm in each picture; the views are corrected by their estimated errors.
+  ShapeEstimate estimate;  ///< Estimated shape of the arm at the time of the observation.
+  /// Shape of the arm without its swing about the equilibrium. For an arm that does not swing it equals the
+  /// shape of `estimate`.
+  ArmState rest;
   std::array<std::string, 2> reasons;  ///< Reason why a picture shows no arm, or "".
 };
 

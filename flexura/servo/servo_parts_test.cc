@@ -235,7 +235,7 @@ TEST(ServoJudge, KnowsTheEnd) {
     for (int k = 0; k < 300 && !judge.failure(); ++k) judge.add(step_at(k / 30.0, 0.02 + 0.1 * k / 30.0));
     ASSERT_TRUE(judge.failure());
     EXPECT_TRUE(judge.failure()->starts_with("diverging")) << *judge.failure();
-    EXPECT_EQ(judge.failure()->find("held back"), std::string::npos) << *judge.failure();
+    EXPECT_EQ(judge.failure()->find("limited by"), std::string::npos) << *judge.failure();
   }
   {
     ServoJudge judge(config, 0, 0);
@@ -246,7 +246,7 @@ TEST(ServoJudge, KnowsTheEnd) {
     }
     ASSERT_TRUE(judge.failure());
     EXPECT_TRUE(judge.failure()->starts_with("diverging")) << *judge.failure();
-    EXPECT_TRUE(judge.failure()->ends_with("; held back by motor A: acceleration")) << *judge.failure();
+    EXPECT_TRUE(judge.failure()->ends_with("; limited by motor A: acceleration")) << *judge.failure();
   }
   {
     ServoJudge judge(config, 0, 0);

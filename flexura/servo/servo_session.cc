@@ -11,6 +11,8 @@
 #include <variant>
 
 #include "flexura/camera/camera.h"
+#include "flexura/control/predictive_law.h"
+#include "flexura/model/arm_difference.h"
 #include "flexura/port/camera_moves.h"
 #include "flexura/servo/picture_meter.h"
 #include "flexura/servo/rig_reader.h"
@@ -31,6 +33,13 @@ void check(const RigPorts& ports, const RigModel& nominal, const ServoConfig& co
     throw std::invalid_argument("a servo needs the ports of two cameras of the model");
 }
 
+// Returns the sum of the squared bends, rad^2.
+double square(const ArmDifference& difference) {
+  double sum = 0;
+  for (const Eigen::Vector2d& bend : difference.bends) sum += bend.squaredNorm();
+  return sum;
+}
+
 class Session {
  public:
   Session(const RigPorts& ports, const RigModel& nominal, const ServoConfig& config,
@@ -47,7 +56,11 @@ class Session {
         observer_(rig_, nominal, config),
         features_(servo_features(config, nominal)),
         law_(nominal_arm_, config, *features_),
-        keeper_(nominal, config.cameras) {}
+        keeper_(nominal, config.cameras) {
+    if (config.law == ServoLawKind::predictive)
+      predictive_.emplace(nominal_arm_.driven(), model_.arm,
+                          PredictiveLawConfig{.step = config.step, .rate = 1.5 * config.rate});
+  }
 
   ServoResult run() {
     result_.start = rig_.now();
@@ -118,10 +131,11 @@ class Session {
     }
     sent_ = rig_.measured(result_.start);
     if (config_.sent && is_near(*config_.sent, sent_)) sent_ = *config_.sent;
+    sent_before_ = sent_;
     try {
       limiter_.emplace(nominal_arm_, limiter_config(config_), sent_);
     } catch (const std::invalid_argument& error) {
-      return fmt::format("the arm cannot be steered from where it is: {}", error.what());
+      return fmt::format("the arm cannot be controlled from its present state: {}", error.what());
     }
     judge_.emplace(config_, result_.start, goals_->last());
     tally_.emplace(model_.arm, config_, result_.start, goals_->last());
@@ -156,9 +170,9 @@ class Session {
     if (!(passed < most)) passed = 0, fault("the clock's time is out of range for a servo");
     const long next = std::max(ticks_ + 1, static_cast<long>(passed));
     if (next > ticks_ + 1 && result_.missed_steps == 0)
-      watcher_.reported(rig_.now(),
-                        fmt::format("a step took longer than its {:.4g} s: those that it missed are left out",
-                                    config_.step));
+      watcher_.reported(
+          rig_.now(),
+          fmt::format("a step took longer than {:.4g} s: the missed steps are skipped", config_.step));
     result_.missed_steps += next - ticks_ - 1;
     ticks_ = next;
     rig_.ports().clock->wait_until(result_.start + config_.step * static_cast<double>(ticks_));
@@ -236,6 +250,28 @@ class Session {
     send(now, std::move(command.state), std::move(step));
   }
 
+  // Returns the command of the predictive law.
+  [[nodiscard]] ArmState predicted(double now) {
+    const double since = now - result_.start;
+    PredictiveState state{.sent = sent_,
+                          .rate = sent_,
+                          .rest = observer_.expected(model_.bent(sent_)),
+                          .desired = goals_->at(since).state};
+    for (std::size_t i = 0; i < sent_.bends.size(); ++i) {
+      state.rate.bends[i] = (sent_.bends[i] - sent_before_.bends[i]) / config_.step;
+      state.rate.stretches[i] = (sent_.stretches[i] - sent_before_.stretches[i]) / config_.step;
+    }
+    if (since < goals_->last())
+      for (int k = 1; k <= PredictiveLawConfig().horizon; ++k)
+        state.desired_later.push_back(goals_->at(since + k * config_.step).state);
+    state.modes = observer_.swing().modes();
+    state.swing = observer_.swing().after(observer_.path_until(now, state.modes));
+    state.frequency_factor = observer_.swing().frequency_factor();
+    Eigen::MatrixXd by_command;
+    nominal_arm_.actuation().slopes(sent_, by_command);
+    return predictive_->step(state, by_command);
+  }
+
   // Returns the law's command for the last observation.
   [[nodiscard]] ArmState asked(double now, ServoStep& step) {
     const ServoObservation& observed = *observer_.last();
@@ -246,6 +282,10 @@ class Session {
     step.sigma = observer_.sigma();
     const double since = now - result_.start;
     step.ahead = servo_error(model_.arm, observer_.expected(model_.bent(sent_)), goals_->at(since).state);
+    if (predictive_) {
+      step.potential = 0.5 * square(minus(seen, step.desired));
+      return predicted(now);
+    }
     const ArmState measured = rig_.measured(observed.time);
     const ServoLaw::Output output = law_.step({.observed = observed,
                                                .is_fresh = step.is_fresh,
@@ -264,10 +304,10 @@ class Session {
     for (std::size_t i = 0; i < state.bends.size(); ++i) {
       const Section& section = nominal_arm_.driven().sections[i];
       if (state.bends[i].norm() >= nearly * section.max_bend)
-        return fmt::format("section {} is bent as far as it goes", i + 1);
+        return fmt::format("section {} is at its bend limit", i + 1);
       const auto& [least, most] = section.stretch_limits;
       if (least < most && (state.stretches[i] * nearly <= least || state.stretches[i] >= nearly * most))
-        return fmt::format("section {} is stretched as far as it goes", i + 1);
+        return fmt::format("section {} is at its stretch limit", i + 1);
     }
     return "";
   }
@@ -297,6 +337,7 @@ class Session {
       return;
     }
     watcher_.arm_sent(now, state, config_.step);
+    sent_before_ = sent_;
     sent_ = state;
   }
 
@@ -336,6 +377,7 @@ class Session {
   ShapeObserver observer_;
   std::unique_ptr<ServoFeatures> features_;
   ServoLaw law_;
+  std::optional<PredictiveLaw> predictive_;  // Instead of law_.
   ViewKeeper keeper_;
   std::optional<ServoGoals> goals_;
   std::optional<CommandLimiter> limiter_;
@@ -345,7 +387,7 @@ class Session {
   bool is_deaf_ = false;        // The arm has refused a command.
   std::string unseen_because_;  // "" if the newest pictures gave a shape.
   std::optional<LimiterFault> kept_;
-  ArmState sent_;
+  ArmState sent_, sent_before_;
   ServoResult result_;
 };
 

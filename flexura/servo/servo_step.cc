@@ -142,11 +142,11 @@ struct Limited {
 
 const Table<HeadCommand>& fields_of(const HeadCommand*) {
   using M = HeadCommand;
-  static const auto table = Table<M>("flexura.HeadCommand", "Where a camera's head was sent to.")
-                                .field("camera", &M::camera, {.meaning = "The camera's name."})
-                                .field("pan", &M::pan, {.meaning = "rad, to the camera's left."})
-                                .field("tilt", &M::tilt, {.meaning = "rad, upwards."})
-                                .field("zoom", &M::zoom, {.meaning = "A ratio or a motor count."});
+  static const auto table = Table<M>("flexura.HeadCommand", "Command of a camera's head.")
+                                .field("camera", &M::camera, {.meaning = "Name of the camera."})
+                                .field("pan", &M::pan, {.meaning = "Pan, rad, to the camera's left."})
+                                .field("tilt", &M::tilt, {.meaning = "Tilt, rad, upwards."})
+                                .field("zoom", &M::zoom, {.meaning = "Zoom, as a ratio or a motor count."});
   return table;
 }
 
@@ -154,48 +154,46 @@ const Table<ServoStep>& fields_of(const ServoStep*) {
   using S = ServoStep;
   using E = ServoError;
   static const auto table =
-      StepTable("flexura.ServoStep", "A command of a servo, and what it was made of.")
-          .field("time", &S::time, {.meaning = "When it was sent, since the experiment's start, s."})
-          .field("seen_at", &S::seen_at, {.meaning = "Middle of the exposure of the pictures it goes by, s."})
-          .part<BendsOf<&S::desired>>("desired",
-                                      {.meaning = "Target bend of each section at their time, rad."})
-          .part<StretchesOf<&S::desired>>("desired_stretches",
-                                          {.meaning = "Target stretch of each section then."})
-          .part<SeenBends>("seen", {.meaning = "Each section's bend as seen in them, rad."})
-          .part<SeenStretches>("seen_stretches", {.meaning = "Each section's stretch as seen."})
-          .part<BendsOf<&S::sent>>("sent", {.meaning = "Each section's bend as commanded, rad."})
-          .part<StretchesOf<&S::sent>>("sent_stretches", {.meaning = "Each section's stretch as commanded."})
-          .part<Heads>("heads",
-                       {.meaning = "Where heads that follow the arm were sent to with this command."})
+      StepTable("flexura.ServoStep", "One command of a servo and its inputs.")
+          .field("time", &S::time, {.meaning = "Time of the command since the experiment's start, s."})
+          .field("seen_at", &S::seen_at, {.meaning = "Middle of the exposure of the pictures used, s."})
+          .part<BendsOf<&S::desired>>(
+              "desired", {.meaning = "Target bend of each section at the time of the pictures, rad."})
+          .part<StretchesOf<&S::desired>>(
+              "desired_stretches", {.meaning = "Target stretch of each section at the time of the pictures."})
+          .part<SeenBends>("seen", {.meaning = "Bend of each section estimated from the pictures, rad."})
+          .part<SeenStretches>("seen_stretches",
+                               {.meaning = "Stretch of each section estimated from the pictures."})
+          .part<BendsOf<&S::sent>>("sent", {.meaning = "Commanded bend of each section, rad."})
+          .part<StretchesOf<&S::sent>>("sent_stretches", {.meaning = "Commanded stretch of each section."})
+          .part<Heads>("heads", {.meaning = "Commands of heads that follow the arm, sent with this command."})
           .field("lengths", &S::lengths, {.meaning = "Model length of each section without stretch, m."})
           .part<TrueBends>(
-              "truth",
-              {.meaning = "Each section's bend in the simulated truth, at the time of the pictures, rad."})
-          .part<TrueLengths>(
-              "true_lengths",
-              {.meaning = "Each section's length in the simulated truth then, with its stretch, m."})
-          .part<SeenError<&E::rms>>(
-              "rms",
-              {.meaning =
-                   "Distance along the arm from seen to desired, root mean square, share of its length."})
-          .part<SeenError<&E::most>>(
-              "most",
-              {.meaning = "Distance along the arm from seen to desired, largest, share of its length."})
+              "truth", {.meaning = "Simulated true bend of each section at the time of the pictures, rad."})
+          .part<TrueLengths>("true_lengths", {.meaning = "Simulated true length of each section, including "
+                                                         "its stretch, at the time of the pictures, m."})
+          .part<SeenError<&E::rms>>("rms", {.meaning = "Distance of the observed shape from the target: root "
+                                                       "mean square along the arm, share of its length."})
+          .part<SeenError<&E::most>>("most", {.meaning = "Distance of the observed shape from the target: "
+                                                         "maximum along the arm, share of its length."})
           .part<SeenError<&E::tip>>(
-              "tip", {.meaning = "Distance of the tip from seen to desired, share of the length."})
-          .part<TrueError<&E::rms>>("true_rms", {.meaning = "As rms, from the simulated truth to desired."})
-          .part<TrueError<&E::most>>(
-              "true_most",
-              {.meaning = "Distance along the arm from the simulated truth to desired, largest."})
-          .part<TrueError<&E::tip>>("true_tip",
-                                    {.meaning = "Distance of the tip from the simulated truth to desired."})
+              "tip", {.meaning = "Distance of the observed tip from its target, share of the arm's length."})
+          .part<TrueError<&E::rms>>("true_rms",
+                                    {.meaning = "Distance of the simulated true shape from the target: root "
+                                                "mean square along the arm, share of its length."})
+          .part<TrueError<&E::most>>("true_most",
+                                     {.meaning = "Distance of the simulated true shape from the target: "
+                                                 "maximum along the arm, share of its length."})
+          .part<TrueError<&E::tip>>(
+              "true_tip",
+              {.meaning = "Distance of the simulated true tip from its target, share of the arm's length."})
           .field("potential", &S::potential,
-                 {.meaning =
-                      "Half the square of the law's error: rad^2 for shape and potential, px^2 otherwise."})
-          .field("fresh", &S::is_fresh, {.meaning = "Whether the pictures are new."})
+                 {.meaning = "Half the squared error of the law: rad^2 for the laws shape and potential, "
+                             "otherwise px^2."})
+          .field("fresh", &S::is_fresh, {.meaning = "Whether the pictures are new since the last command."})
           .field("singular", &S::is_singular,
-                 {.meaning = "Whether some motion shows in nothing that is seen."})
-          .part<Limited>("limited", {.meaning = "What held the law back."});
+                 {.meaning = "Whether the law is singular: some motion of the arm changes no feature."})
+          .part<Limited>("limited", {.meaning = "Why the limiter changed the law's command."});
   return table;
 }
 

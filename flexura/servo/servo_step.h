@@ -18,36 +18,38 @@ struct HeadCommand {
   double zoom = 0;           ///< Position in the lens's table.
 };
 
-/// True shape of the arm, where known.
+/// True shape of the arm, if it is known.
 struct TrueShape {
-  std::vector<Eigen::Vector2d> bends;  ///< Of each arc, rad.
+  std::vector<Eigen::Vector2d> bends;  ///< Bend_x and bend_y of each arc, rad.
   std::vector<double> lengths;         ///< Stretched length of each arc, m.
   ServoError error;                    ///< Error relative to the target.
 };
 
-/// One command of a servo and its inputs: for the loop, for the log (flexura.ServoStep, on /servo/steps), and
-/// for readers of either.
+/// One command of a servo and its inputs. It is used in the loop and written to the log (flexura.ServoStep,
+/// topic /servo/steps).
 struct ServoStep {
   double time = 0;                  ///< Time of the command, s.
-  std::optional<double> seen_at;    ///< Time of the observation used, s; empty before the first.
+  std::optional<double> seen_at;    ///< Time of the observation used, s; empty before the first observation.
   ArmState desired;                 ///< Target at the time of the observation.
-  std::optional<ArmState> seen;     ///< Shape of the observation.
+  std::optional<ArmState> seen;     ///< Shape estimated from the observation.
   ArmState sent;                    ///< Command of the limiter to the drives.
   std::vector<HeadCommand> heads;   ///< Commands of the heads in this step.
   std::vector<double> lengths;      ///< Nominal lengths of the unstretched sections, m.
   std::optional<ServoError> error;  ///< Error of the observed shape relative to the target.
   /// True shape at the time of the observation. Unknown to the servo; the simulator of the rig adds it.
   std::optional<TrueShape> truth;
-  /// Half the squared error of the law: a Lyapunov function if the arm follows its commands. In the law's
-  /// units: rad^2 for `shape` and `potential`, otherwise px^2 (docs/servo.md).
+  /// Half the squared error of the law: a Lyapunov function if the arm follows its commands. Its unit is
+  /// rad^2 for the laws `shape` and `potential`, otherwise px^2 (docs/servo.md).
   double potential = 0;
-  bool is_fresh = false;     ///< The observation is new.
-  bool is_singular = false;  ///< The law is singular: some motion does not change any feature.
-  std::string limited;       ///< Reason why the law was held back, or "".
+  bool is_fresh = false;     ///< Whether the observation is new since the last step.
+  bool is_singular = false;  ///< Whether the law is singular: some motion of the arm changes no feature.
+  std::string limited;       ///< Reason why the limiter changed the law's command, or "".
 
-  // Not in logs.
-  double sigma = 0;  ///< Standard deviation of the observed shape along the arm, share of its length.
-  /// Error of the shape expected after all commands, relative to the target at the time of the command.
+  // The following members are not in logs.
+  double sigma =
+      0;  ///< Standard deviation of the observed shape, root mean square along the arm, share of its length.
+  /// Error of the shape expected after all commands so far, relative to the target at the time of this
+  /// command.
   std::optional<ServoError> ahead;
 };
 

@@ -35,6 +35,18 @@ void tolerate_view_error(Observation& seen) {
     if (end) end->sigma = std::max(end->sigma, nominal_view_error);
 }
 
+// Modes of the arm's swing that are estimated. Faster ones move less, and pictures at camera rates do not
+// show them.
+constexpr std::size_t swing_modes = 6;
+
+// Returns (bend_x, bend_y, stretch) of each section.
+Eigen::VectorXd numbers_of(const ArmState& state) {
+  Eigen::VectorXd numbers(3 * static_cast<Eigen::Index>(state.bends.size()));
+  for (std::size_t i = 0; i < state.bends.size(); ++i)
+    numbers.segment<3>(3 * static_cast<Eigen::Index>(i)) << state.bends[i], state.stretches[i];
+  return numbers;
+}
+
 // Returns the mean noise of the pictures, px.
 double noise_of(const std::array<Observation, 2>& seen) {
   double sum = 0, count = 0;
@@ -47,31 +59,64 @@ double noise_of(const std::array<Observation, 2>& seen) {
 
 ShapeObserver::ShapeObserver(const RigReader& rig, const RigModel& nominal, const ServoConfig& config)
     : rig_(rig),
+      nominal_(nominal),
       length_(nominal.arm.length()),
       view_prior_(config.camera_prior),
       prior_(prior_of(nominal.arm, config.markers)),
       tracker_(prior_, patient_estimator(view_prior_)) {}
 
 bool ShapeObserver::observe(const std::shared_ptr<ServoObservation>& observed, double now) {
-  estimate(*observed, expected(rig_.nominal(observed->time)));
+  const SwingPath path = path_until(
+      observed->time,
+      last_ ? nominal_.actuation.swing(rig_.measured(observed->time), swing_modes) : std::vector<SwingMode>());
+  estimate(*observed, predicted(observed->time), path);
   if (!first_) first_ = observed;
   if (!observed->estimate.is_found) return false;
+  observed->rest = observed->estimate.shape.state;
+  const Eigen::VectorXd swing = tracker_.swing().shape();
+  for (std::size_t i = 0; i < observed->rest.bends.size() && swing.size() > 0; ++i)
+    observed->rest.bends[i] -= swing.segment<2>(3 * static_cast<Eigen::Index>(i));
   seen_since_ = now, last_ = observed;
+  if (path.last_rate.size() > 0) rate_ = path.last_rate;
   return true;
+}
+
+// A part is a time between two readings, with the mean rate of the drives.
+SwingPath ShapeObserver::path_until(double time, const std::vector<SwingMode>& modes) const {
+  SwingPath path;
+  if (!last_ || !(time > last_->time) || modes.empty()) return path;
+  path.modes = modes;
+  std::vector<double> ends = rig_.readings_between(last_->time, time);
+  ends.push_back(time);
+  double from = last_->time;
+  Eigen::VectorXd at = numbers_of(rig_.measured(from)), rate = rate_;
+  if (rate.size() != at.size()) rate = Eigen::VectorXd::Zero(at.size());
+  for (const double end : ends) {
+    const Eigen::VectorXd next = numbers_of(rig_.measured(end)), now = (next - at) / (end - from);
+    SwingPath::Part part{.duration = end - from,
+                         .kicks = Eigen::VectorXd(static_cast<Eigen::Index>(path.modes.size()))};
+    for (std::size_t j = 0; j < path.modes.size(); ++j)
+      part.kicks[static_cast<Eigen::Index>(j)] = path.modes[j].kick.dot(now - rate);
+    path.parts.push_back(std::move(part));
+    path.last_rate = rate = now;
+    at = next, from = end;
+  }
+  return path;
 }
 
 void ShapeObserver::estimate_alone(ServoObservation& observed) {
   forget();
-  estimate(observed, std::nullopt);
+  estimate(observed, std::nullopt, {});
   forget();
 }
 
-void ShapeObserver::estimate(ServoObservation& observed, const std::optional<ArmState>& expected) {
+void ShapeObserver::estimate(ServoObservation& observed, const std::optional<ArmState>& expected,
+                             const SwingPath& path) {
   if (!are_enough(observed.seen)) {
     observed.estimate.reason = "the arm is not seen in every image";
     return;
   }
-  observed.estimate = shape_of(observed, expected);
+  observed.estimate = shape_of(observed, expected, path);
   if (!observed.estimate.is_found) return;
   const std::vector<ViewError>& errors = observed.estimate.shape.views;
   for (std::size_t i = 0; i < errors.size(); ++i)
@@ -81,14 +126,14 @@ void ShapeObserver::estimate(ServoObservation& observed, const std::optional<Arm
 // Fallback for cameras without a prior that fit no shape within the pictures' noise: estimates the nearest
 // shape. Stays in this mode until forget().
 ShapeEstimate ShapeObserver::shape_of(const ServoObservation& observed,
-                                      const std::optional<ArmState>& expected) {
+                                      const std::optional<ArmState>& expected, const SwingPath& path) {
   ShapeEstimate found;
-  if (!uses_nominal_views_) found = tracker_.look(observed.seen, observed.time, expected);
+  if (!uses_nominal_views_) found = tracker_.look(observed.seen, observed.time, expected, path);
   if (found.is_found || view_prior_.is_any()) return found;
   std::array<Observation, 2> seen = observed.seen;
   for (Observation& one : seen) tolerate_view_error(one);
   if (!uses_nominal_views_) tracker_.forget();
-  ShapeEstimate nearest = tracker_.look(seen, observed.time, expected);
+  ShapeEstimate nearest = tracker_.look(seen, observed.time, expected, path);
   if (!nearest.is_found && !uses_nominal_views_) {
     tracker_.forget();
     return found;
@@ -106,6 +151,11 @@ ShapeEstimate ShapeObserver::with_nominal_views(const ServoObservation& observed
 }
 
 ArmState ShapeObserver::expected(ArmState driven) const {
+  return last_ ? plus(std::move(driven), minus(last_->rest, rig_.nominal(last_->time))) : driven;
+}
+
+ArmState ShapeObserver::predicted(double time) const {
+  ArmState driven = rig_.nominal(time);
   return last_ ? plus(std::move(driven), minus(last_->estimate.shape.state, rig_.nominal(last_->time)))
                : driven;
 }

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <array>
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "flexura/camera/view.h"
 #include "flexura/estimate/shape_tracker.h"
@@ -14,54 +16,65 @@
 
 namespace flexura {
 
-/// State observer of the arm: estimates its shape from measurements and the drives' motion since, and counts
-/// the time without observations.
+/// State observer of the arm. It estimates the shape from measured pictures and the drives' motion since
+/// then, and counts the time without observations.
 class ShapeObserver {
  public:
-  /// `rig`, which gives the drives' motion, must outlive this object.
+  /// `rig` reports the drives' motion. It and `nominal` must outlive this object.
   ShapeObserver(const RigReader& rig, const RigModel& nominal, const ServoConfig& config);
 
-  /// The time without observations counts from `time`, s of the rig's clock.
+  /// Starts to count the time without observations at `time`, s of the rig's clock.
   void begin(double time) { seen_since_ = time; }
-  /// Estimates the arm's shape at the observation's time, at `now`, s of the rig's clock. Returns true and
-  /// sets `last` to this observation if the shape is found. Returns false if a picture shows no arm. The
-  /// views of a found observation are corrected by the errors estimated with it.
+  /// Estimates the arm's shape at the observation's time. `now`: current time, s of the rig's clock. If the
+  /// shape is found, returns true, and last() becomes this observation. Its views are then corrected by the
+  /// errors estimated with the shape. Returns false if no shape is found, for example if a picture shows no
+  /// arm.
   bool observe(const std::shared_ptr<ServoObservation>& observed, double now);
-  /// Estimates the shape from these pictures alone, of an arm in any shape. Keeps nothing of it.
+  /// Estimates the shape from these pictures alone, without a prediction. Resets the tracker before and
+  /// afterwards.
   void estimate_alone(ServoObservation& observed);
-  /// Returns the shape estimated from the measurements with these views taken as exact.
+  /// Returns the shape estimated from the observation's measurements, with `views` taken as exact.
   [[nodiscard]] ShapeEstimate with_nominal_views(const ServoObservation& observed,
                                                  const std::array<View, 2>& views) const;
 
-  /// First observation, and newest one with a shape; null before.
+  /// Return the first and the newest observation with a shape; null before the first.
   [[nodiscard]] const std::shared_ptr<const ServoObservation>& first() const { return first_; }
   [[nodiscard]] const std::shared_ptr<const ServoObservation>& last() const { return last_; }
   /// Returns the time since an observation last gave a shape, s.
   [[nodiscard]] double blind_for(double now) const { return now - seen_since_; }
   [[nodiscard]] double seen_since() const { return seen_since_; }
 
-  /// Returns the expected shape if the model gives `driven` for the drives: the last estimate plus the
-  /// drives' motion since.
+  /// Returns the expected shape of the arm at rest: the last estimate without its swing, plus the drives'
+  /// motion since then. `driven`: the model's shape for the drives' position.
   [[nodiscard]] ArmState expected(ArmState driven) const;
+  /// Returns the swing of the arm at the last observation; not tracked for an arm that does not swing.
+  [[nodiscard]] const SwingFilter& swing() const { return tracker_.swing(); }
+  /// Returns the motion of the drives from the last observation until `time`, s, by their readings, with
+  /// kicks of these modes.
+  [[nodiscard]] SwingPath path_until(double time, const std::vector<SwingMode>& modes) const;
   /// Returns the standard deviation of the last shape from the pictures' noise, root mean square along the
-  /// arm, share of its length. Errors of cameras without a prior are equal in every picture and are not
-  /// included.
+  /// arm, share of its length. It does not include errors of cameras without a prior, which are equal in
+  /// every picture.
   [[nodiscard]] double sigma() const;
-  /// The same by the last pictures alone, without earlier ones. The filter takes the errors of
-  /// successive pictures as independent. Those of an arm at rest are not, and do not average: its `sigma()`
-  /// is then too small, several times so if camera errors are estimated. This one holds there.
+  /// Returns the standard deviation of the last shape from the last pictures alone, without earlier pictures.
+  /// The filter assumes independent errors in successive pictures. For an arm at rest the errors are equal in
+  /// all pictures and do not average. Then sigma() is too small, by a factor of several if camera errors are
+  /// estimated, and sigma_of_last() is correct.
   [[nodiscard]] double sigma_of_last() const;
 
  private:
   // Standard deviation of the shape along the arm, share of its length.
   [[nodiscard]] double relative_sigma(const ShapeEstimate& estimate) const;
-  void estimate(ServoObservation& observed, const std::optional<ArmState>& expected);
+  void estimate(ServoObservation& observed, const std::optional<ArmState>& expected, const SwingPath& path);
   [[nodiscard]] ShapeEstimate shape_of(const ServoObservation& observed,
-                                       const std::optional<ArmState>& expected);
+                                       const std::optional<ArmState>& expected, const SwingPath& path);
 
   void forget() { tracker_.forget(), uses_nominal_views_ = false; }
+  // Returns the predicted shape at the time of an observation, without the change of the swing.
+  [[nodiscard]] ArmState predicted(double time) const;
 
   const RigReader& rig_;
+  const RigModel& nominal_;
   double length_;  // m
   ViewPrior view_prior_;
   ShapePrior prior_;
@@ -69,6 +82,7 @@ class ShapeObserver {
   bool uses_nominal_views_ = false;
   double seen_since_ = 0;
   std::shared_ptr<const ServoObservation> first_, last_;
+  Eigen::VectorXd rate_;  // Of the drives' motion at the last observation, (bends, stretch) a section, 1/s.
 };
 
 }  // namespace flexura

@@ -11,14 +11,15 @@
 
 namespace flexura {
 
-/// Keeps an arm in two cameras' pictures by turning their heads.
+/// Keeps an arm in the pictures of two cameras by commands of their heads.
 class ViewKeeper {
  public:
   ViewKeeper(const RigModel& nominal, const std::array<std::size_t, 2>& cameras);
 
-  /// Returns the command for the head of the first or second camera, which is at `stands` and observes the
-  /// arm in `state` by `view`. It brings the middle of the arm's image to the picture's middle, with a zoom
-  /// that shows all of it. Returns std::nullopt while the arm is well inside. Respects the head's limits.
+  /// Returns the command for the head of camera i (0 or 1), whose position is `stands`. It brings the middle
+  /// of the arm's image to the picture's middle, with a zoom that shows the whole arm. `view` is the camera's
+  /// current view, `state` the shape of the arm. Returns std::nullopt while the arm's image is well inside
+  /// the picture. Respects the head's limits.
   [[nodiscard]] std::optional<HeadState> turned(std::size_t i, const ArmState& state, const HeadState& stands,
                                                 const View& view) const;
 

@@ -66,8 +66,7 @@ DynamicPlant::DynamicPlant(const PlantSetup& setup)
   const Equilibrium rest =
       statics.solve({.displacements = inputs().displacements(0, inputs().nothing_lost())}, inputs().loads(0));
   if (!rest.converged())
-    throw SimulationError(
-        fmt::format("the arm comes to no rest from which it could begin: {}", words(rest.end)));
+    throw SimulationError(fmt::format("the arm has no equilibrium to start from: {}", words(rest.end)));
   snapshots_.push_back({0, dynamics_.rest(rest), rotors_at_rest(inputs(), rest.tensions), carried_});
   hand_over(snapshots_.back(), 0);
 }
@@ -102,7 +101,8 @@ std::optional<RodPlace> DynamicPlant::grabbed_at(double time) const {
 
 void DynamicPlant::forget() {
   const std::lock_guard lock(mutex_);
-  answer_.reset();
+  answers_.clear();
+  next_answer_ = 0;
 }
 
 void DynamicPlant::advance(double time) {
@@ -212,9 +212,14 @@ const DynamicPlant::Snapshot& DynamicPlant::snapshot(double time) const {
   return snapshots_[from];
 }
 
+DynamicPlant::Answer* DynamicPlant::answer_at(double time) const {
+  const auto found = std::ranges::find(answers_, time, &Answer::time);
+  return found == answers_.end() ? nullptr : &*found;
+}
+
 DynamicPlant::Snapshot DynamicPlant::at(double time) const {
   const std::lock_guard lock(mutex_);
-  if (answer_ && answer_->time == time) return answer_->at;
+  if (const Answer* kept = answer_at(time)) return kept->at;
   Snapshot then = snapshot(time);
   const double start = time_of(then.index);
   grab(grabbed_at(start));
@@ -222,7 +227,12 @@ DynamicPlant::Snapshot DynamicPlant::at(double time) const {
     go_on(then, start, time);
     hand_over(then, time);
   }
-  answer_ = {.time = time, .at = then};
+  Answer answer{.time = time, .at = then};
+  if (answers_.size() < most_answers)
+    answers_.push_back(std::move(answer));
+  else
+    answers_[next_answer_] = std::move(answer);
+  next_answer_ = (next_answer_ + 1) % most_answers;
   return then;
 }
 
@@ -302,11 +312,11 @@ std::vector<PlantContact> DynamicPlant::contacts(double time) const {
   if (!contact_) return {};
   const Snapshot then = at(time);
   const std::lock_guard lock(mutex_);
-  if (answer_ && answer_->time == time && answer_->contacts) return *answer_->contacts;
+  if (const Answer* kept = answer_at(time); kept && kept->contacts) return *kept->contacts;
   carry(then.carried);
   set_lengths(time);
   std::vector<PlantContact> result = found(contact_->find(dynamics_.point_motions(then.state)));
-  if (answer_ && answer_->time == time) answer_->contacts = result;
+  if (Answer* kept = answer_at(time)) kept->contacts = result;
   return result;
 }
 

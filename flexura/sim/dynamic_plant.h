@@ -86,7 +86,11 @@ class DynamicPlant : public RodPlant {
     Snapshot at;
     std::optional<std::vector<PlantContact>> contacts = {};  // Filled on the first query.
   };
-  mutable std::optional<Answer> answer_;  // The last answer; empty after a change.
+  // The last answers, of a few times that several cameras ask for; empty after a change.
+  static constexpr std::size_t most_answers = 8;
+  mutable std::vector<Answer> answers_;
+  mutable std::size_t next_answer_ = 0;                // Index of the one to be replaced.
+  [[nodiscard]] Answer* answer_at(double time) const;  // Null if none; requires mutex_.
   mutable RodDynamics dynamics_;
   mutable std::vector<char> carried_;  // Payloads that dynamics_ carries.
   // Built on the nodes of dynamics_, which include the pushed point.

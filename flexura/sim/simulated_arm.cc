@@ -10,6 +10,8 @@
 #include <string>
 #include <vector>
 
+#include "flexura/sim/start_command.h"
+
 namespace flexura {
 namespace {
 
@@ -68,19 +70,24 @@ CommandOutcome SimulatedBends::pull(const std::vector<double>& displacements, do
   return Accepted{};
 }
 
+Eigen::VectorXd start_command(const ArmSetup& model, const ArmSetup& truth) {
+  if (!truth.drive) return plant_command(truth.initial);
+  const std::vector<std::int64_t> start = nominal_positions(model.arm, model.drive.value(), model.initial);
+  Eigen::VectorXd u(static_cast<Eigen::Index>(start.size()));
+  for (std::size_t i = 0; i < start.size(); ++i)
+    u[static_cast<Eigen::Index>(i)] = static_cast<double>(start[i]);
+  return u;
+}
+
 SimulatedArm::SimulatedArm(const ArmSetup& model, const ArmSetup& truth, const ClockPort& clock,
                            double horizon, const MakePlant& make_plant) {
   require_same_kind(model, truth);
+  plant_ = make_plant({truth, start_command(model, truth), horizon});
   if (!truth.drive) {
-    plant_ = make_plant({truth, plant_command(truth.initial), horizon});
     port_ = &bends_.emplace(model, truth, *plant_, clock, horizon);
     return;
   }
   const std::vector<std::int64_t> start = nominal_positions(model.arm, *model.drive, model.initial);
-  Eigen::VectorXd u(static_cast<Eigen::Index>(start.size()));
-  for (std::size_t i = 0; i < start.size(); ++i)
-    u[static_cast<Eigen::Index>(i)] = static_cast<double>(start[i]);
-  plant_ = make_plant({truth, u, horizon});
   drive_.emplace(*model.drive, *truth.drive, start, *plant_, clock, horizon);
   port_ = &driven_.emplace(*drive_, model.arm, *model.drive, model.initial);
 }

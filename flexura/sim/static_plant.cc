@@ -124,8 +124,8 @@ Equilibrium StaticPlant::solved(double time, const Equilibrium& near, const std:
   statics_.stretch_rest(inputs().rest_stretches(time));
   Equilibrium at = statics_.settle(input, loads, near);
   if (!at.converged())
-    throw SimulationError(fmt::format("at {:.3f} s the arm comes to no rest under its tendons and loads: {}",
-                                      time, words(at.end)));
+    throw SimulationError(fmt::format(
+        "at {:.3f} s the arm has no equilibrium under its tendons and loads: {}", time, words(at.end)));
   return at;
 }
 

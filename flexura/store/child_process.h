@@ -12,15 +12,15 @@ class ChildProcess {
  public:
   /// Starts `arguments[0]` from the PATH. Throws std::runtime_error if there is no such program.
   explicit ChildProcess(const std::vector<std::string>& arguments);
-  /// Closes its input and waits for it.
+  /// Closes the program's input and waits for the program to end.
   ~ChildProcess();
   ChildProcess(const ChildProcess&) = delete;
   ChildProcess& operator=(const ChildProcess&) = delete;
 
-  /// Returns false if it no longer reads.
+  /// Writes to the program's input. Returns false if the program no longer reads.
   [[nodiscard]] bool write(std::string_view bytes);
-  /// Closes its input, waits for it, and returns its exit status; 128 plus the signal's number if a signal
-  /// killed it.
+  /// Closes the program's input, waits for its end, and returns its exit status. If a signal killed the
+  /// program, the status is 128 plus the signal's number.
   int finish();
 
  private:

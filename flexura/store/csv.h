@@ -6,17 +6,18 @@
 
 namespace flexura {
 
-/// A table as CSV (RFC 4180 with "
-/// " line ends): texts are quoted if needed, numbers read back exactly.
+/// A table as CSV (RFC 4180 with " " line ends): texts are quoted if needed, and numbers keep their exact
+/// values.
 class CsvText {
  public:
-  /// Adds a cell to the current row. Quoted if it contains a comma, a quote or a line end.
+  /// Adds a cell to the current row. The cell is quoted if it contains a comma, a quote or a line end.
   void cell(std::string_view text);
-  /// Uses as few digits as read back exactly; a number that is not finite is "nan", "inf" or "-inf".
+  /// Adds a number with the fewest digits that keep its exact value. A number that is not finite is written
+  /// as "nan", "inf" or "-inf".
   void cell(double value);
   /// Adds a cell for each value.
   void cells(std::span<const double> values);
-  /// Ends the row; the next cell begins a new one. Every table must end with it.
+  /// Ends the row; the next cell begins a new row. Must also be called after the last row.
   void end_row();
 
   /// Returns all rows so far, as a reference into this object.

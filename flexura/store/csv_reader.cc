@@ -103,7 +103,7 @@ class CsvParser {
     for (const Cell& cell : cells) {
       if (cell.text.empty()) problem(number, cell.column, "a column without a name");
       if (std::ranges::count(table_.columns, cell.text) > 0) {
-        problem(number, cell.column, fmt::format("column {} is there twice", Node{cell.text, {}}.brief()));
+        problem(number, cell.column, fmt::format("column {} occurs twice", Node{cell.text, {}}.brief()));
       }
       table_.columns.push_back(cell.text);
     }
@@ -112,7 +112,7 @@ class CsvParser {
   void row(const std::vector<Cell>& cells, int number) {
     if (cells.size() != table_.columns.size()) {
       problem(number, 1,
-              fmt::format("{} values: expected {}, one a column", cells.size(), table_.columns.size()));
+              fmt::format("{} values: expected {}, one per column", cells.size(), table_.columns.size()));
       return;
     }
     if (table_.rows.size() == max_rows) {

@@ -30,9 +30,10 @@ TEST(ParseCsv, ReadsNamesAndNumbers) {
 TEST(ParseCsv, SaysWhatIsWrongAndWhere) {
   EXPECT_EQ(csv_error_of(""), "x.csv:1:1: empty: expected a line of column names");
   EXPECT_EQ(csv_error_of("a,,a\n"),
-            "x.csv:1:3: a column without a name\nx.csv:1:4: column \"a\" is there twice");
-  EXPECT_EQ(csv_error_of("a,b\n1\n1,2,3\n"),
-            "x.csv:2:1: 1 values: expected 2, one a column\nx.csv:3:1: 3 values: expected 2, one a column");
+            "x.csv:1:3: a column without a name\nx.csv:1:4: column \"a\" occurs twice");
+  EXPECT_EQ(
+      csv_error_of("a,b\n1\n1,2,3\n"),
+      "x.csv:2:1: 1 values: expected 2, one per column\nx.csv:3:1: 3 values: expected 2, one per column");
   EXPECT_EQ(csv_error_of("a,b\n1,x\n,2\n"),
             "x.csv:2:3: \"x\": expected a finite number\nx.csv:3:1: \"\": expected a finite number");
   for (const char* bad : {"nan", "inf", "-inf", "1e999", "1.2.3", "0x10", "1 2", "+-1", "+"}) {

@@ -6,7 +6,7 @@
 
 namespace flexura {
 
-/// Returns the bytes as a gzip file (RFC 1952), without a name or a date: equal bytes give equal files.
+/// Returns the bytes as a gzip file (RFC 1952). It has no name and no date, so equal bytes give equal files.
 /// Throws std::runtime_error if there is not enough memory.
 [[nodiscard]] std::vector<std::uint8_t> gzip(std::string_view bytes);
 

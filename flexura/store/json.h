@@ -12,9 +12,9 @@ namespace flexura {
 /// integers.
 [[nodiscard]] Node parse_json(std::string_view text, const std::string& source);
 
-/// Returns the node as JSON: keys in their order, doubles that read back exactly, `null` for values that JSON
-/// lacks. `indent` < 0 gives one line, otherwise that many spaces per level, with containers of only plain
-/// values on one line.
+/// Returns the node as JSON: keys in their order, doubles with their exact values, and `null` for values that
+/// JSON lacks. `indent` < 0 gives one line; otherwise `indent` is the number of spaces per level. Containers
+/// of only plain values are on one line.
 [[nodiscard]] std::string write_json(const Node& node, int indent = -1);
 
 }  // namespace flexura

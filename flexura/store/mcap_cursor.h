@@ -10,8 +10,8 @@
 
 namespace flexura {
 
-/// A part of a log, read from its start. Every step is checked against the part's end. Throws
-/// std::runtime_error with the log's name and the byte in the log if it does not fit.
+/// Reads a part of a log from its start. Every read is checked against the part's end. Throws
+/// std::runtime_error with the log's name and the position in the log, in bytes, if a read exceeds the part.
 class McapCursor {
  public:
   McapCursor(std::span<const std::byte> log, const std::string& name)
@@ -23,7 +23,7 @@ class McapCursor {
   [[nodiscard]] bool done() const { return remaining() == 0; }
   /// Returns the unread bytes.
   [[nodiscard]] std::span<const std::byte> rest() const { return log_.subspan(position_, remaining()); }
-  /// Returns the log from byte `from` up to here.
+  /// Returns the log from byte `from` up to the current position.
   [[nodiscard]] std::span<const std::byte> since(std::size_t from) const {
     return log_.subspan(from, position_ - from);
   }
@@ -41,7 +41,7 @@ class McapCursor {
   /// Takes a text preceded by its length.
   std::string take_text();
 
-  /// Throws the error `what` at the current position, or at another one.
+  /// Throw the error `what` at the current position, or at the position `at`.
   [[noreturn]] void fail(const std::string& what) const { fail(what, position_); }
   [[noreturn]] void fail(const std::string& what, std::size_t at) const;
 

@@ -7,7 +7,7 @@
 
 namespace flexura {
 
-/// A new file that only grows, and never replaces another.
+/// A new file to which bytes are appended. It never replaces an existing file.
 class AppendFile {
  public:
   /// Creates the file. Throws std::system_error with the path if it already exists, its folder does not
@@ -18,15 +18,17 @@ class AppendFile {
   AppendFile& operator=(const AppendFile&) = delete;
 
   [[nodiscard]] const std::filesystem::path& path() const { return path_; }
-  /// Returns the number of bytes appended so far: the position of the next ones.
+  /// Returns the number of bytes appended so far, which is the position of the next byte.
   [[nodiscard]] std::uint64_t size() const { return size_; }
   /// Returns false after close() or a failure.
   [[nodiscard]] bool is_open() const { return descriptor_ >= 0; }
 
-  /// Passes the bytes to the operating system before it returns: they outlive the process. If they do not all
-  /// fit, removes the written ones, closes the file and throws std::system_error with the path.
+  /// Passes the bytes to the operating system before it returns, so that they outlive the process. If not all
+  /// bytes can be written, removes the written ones, closes the file and throws std::system_error with the
+  /// path.
   void append(std::span<const std::byte> bytes);
-  /// Throws std::system_error with the path if the system reports a late failure. May be called twice.
+  /// Closes the file. Throws std::system_error with the path if the system reports a late failure. May be
+  /// called twice.
   void close();
 
  private:
@@ -38,13 +40,13 @@ class AppendFile {
 /// Content of a file, mapped into memory: only the accessed pages are read.
 class MappedFile {
  public:
-  /// Throws std::system_error with the path if it cannot be read or is not a regular file.
+  /// Throws std::system_error with the path if the file cannot be read or is not a regular file.
   explicit MappedFile(const std::filesystem::path& path);
   ~MappedFile();
   MappedFile(const MappedFile&) = delete;
   MappedFile& operator=(const MappedFile&) = delete;
 
-  /// Returns the bytes, as many as the file had when opened; valid as long as this object.
+  /// Returns the bytes that the file had when it was opened; valid as long as this object.
   [[nodiscard]] std::span<const std::byte> bytes() const { return bytes_; }
 
  private:

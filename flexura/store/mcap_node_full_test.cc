@@ -31,6 +31,7 @@ class McapCore : public testing::Test {
  protected:
   void SetUp() override {
     const bool there = std::filesystem::exists(node_folder / "node_modules/@mcap/core") &&
+                       std::filesystem::exists(node_folder / "node_modules/fzstd") &&
                        std::system("node --version > /dev/null 2>&1") == 0;
     if (there) return;
     if (std::getenv("FLEXURA_REQUIRE_NODE") != nullptr) FAIL() << "needs node and `npm ci` in tests/node";
@@ -42,12 +43,15 @@ class McapCore : public testing::Test {
         output_of("node '" + (node_folder / "read_mcap.mjs").string() + "' '" + log.string() + "'"));
   }
 
+  void write_and_read(bool compress);
+
   TestFolder folder_;
 };
 
-TEST_F(McapCore, ReadsWhatWasWritten) {
+/// Writes a log of 3001 messages, and expects @mcap/core to read them.
+void McapCore::write_and_read(bool compress) {
   {
-    McapWriter log(folder_ / "log.mcap", {.chunk_size = 10'000});
+    McapWriter log(folder_ / "log.mcap", {.chunk_size = 10'000, .compress = compress});
     const auto arm = log.add_channel(json_channel("/arm"));
     const auto tip = log.add_channel({"/tip", "json", json_channel("/arm").schema, {{"unit", "m"}}});
     const auto raw = log.add_channel({"/raw", "x-text"});
@@ -74,6 +78,14 @@ TEST_F(McapCore, ReadsWhatWasWritten) {
   EXPECT_EQ(
       read_back["streamed"],
       json({{"channels", channels}, {"start", "5"}, {"end", "30990"}, {"first", first}, {"last", raw}}));
+}
+
+TEST_F(McapCore, ReadsWhatWasWritten) {
+  for (const bool compress : {true, false}) {
+    SCOPED_TRACE(compress);
+    std::filesystem::remove(folder_ / "log.mcap");
+    write_and_read(compress);
+  }
 }
 
 TEST_F(McapCore, ReadsAnEmptyLog) {

@@ -12,6 +12,13 @@ namespace {
 /// channels, which no real writer produces.
 constexpr std::size_t max_copied_schemas = std::size_t{64} << 20;
 
+/// Limit on the content of all compressed chunks. It bounds the memory for messages, and the time, that a
+/// small file can cost: a chunk of the shortest messages may expand a thousand times.
+std::size_t most_content(std::size_t file_size) {
+  constexpr std::size_t always = std::size_t{64} << 20, most_ratio = 256;
+  return always + most_ratio * file_size;
+}
+
 /// Kind of a record, its start and its content.
 struct Record {
   McapOp op;
@@ -52,7 +59,14 @@ bool has_end(std::span<const std::byte> log) {
 class McapScan {
  public:
   McapScan(std::span<const std::byte> log, const std::string& name, McapCheck check, McapReader& to)
-      : cursor_(log, name), check_(check), has_end_(has_end(log)), to_(to) {}
+      : name_(name),
+        cursor_(log, name_),
+        check_(check),
+        has_end_(has_end(log)),
+        content_left_(most_content(log.size())),
+        to_(to) {
+    to_.chunks_ = std::make_unique<McapChunks>(log, name_);
+  }
 
   void run() {
     to_.truncated_ = true;  // Until the end is found.
@@ -97,7 +111,8 @@ class McapScan {
   }
 
   void take_top(Record& record) {
-    if (data_end_ && is_data(record.op)) cursor_.fail("the data go on after their end", record.start);
+    if (data_end_ && is_data(record.op))
+      cursor_.fail("there are data after the end of the data section", record.start);
     switch (record.op) {
       case McapOp::header:
         record.content.take_text();  // The profile.
@@ -137,18 +152,38 @@ class McapScan {
     const auto crc = in.take<std::uint32_t>();
     const std::size_t compression_at = in.position();
     const std::string compression = in.take_text();
-    if (!compression.empty()) {
-      in.fail("a chunk is compressed (" + shown(compression) + "); only plain chunks are read",
+    if (!compression.empty() && compression != mcap_zstd) {
+      in.fail("a chunk is compressed (" + shown(compression) + "); only plain and zstd chunks are read",
               compression_at);
     }
-    McapCursor records = in.take_part(in.take<std::uint64_t>());
-    if (records.remaining() != size) in.fail("a plain chunk gives two sizes", records.position());
-    check_crc(crc, records.rest(), records, "a chunk's");
+    McapCursor stored = in.take_part(in.take<std::uint64_t>());
+    if (compression.empty()) {
+      if (stored.remaining() != size) in.fail("a plain chunk has two different sizes", stored.position());
+      check_crc(crc, stored.rest(), stored, "a chunk's");
+      take_records(stored);
+      return;
+    }
+    if (size > mcap_most_chunk)
+      in.fail("a compressed chunk has more than 128 MiB, " + std::to_string(size), stored.position());
+    if (size > content_left_) in.fail("the compressed chunks have too much content", stored.position());
+    content_left_ -= size;
+    chunk_ = to_.chunks_->add(stored.rest(), size);
+    const auto content = to_.chunks_->content(chunk_);
+    check_crc(crc, content->bytes(), stored, "a chunk's");
+    const std::string name = name_ + ": content of the chunk at byte " + std::to_string(stored.position());
+    McapCursor records(content->bytes(), name);
+    take_records(records);
+    chunk_ = McapChunks::plain;
+  }
+
+  /// Takes the records of a chunk.
+  void take_records(McapCursor& records) {
     while (!records.done()) {
       const std::size_t start = records.position();
       const auto op = McapOp{records.take<std::uint8_t>()};
       Record record{op, start, records.take_part(records.take<std::uint64_t>())};
-      if (!take_inner(record) && op <= McapOp::data_end) in.fail("no place for this in a chunk", start);
+      if (!take_inner(record) && op <= McapOp::data_end)
+        records.fail("this record is not allowed in a chunk", start);
     }
   }
 
@@ -179,7 +214,8 @@ class McapScan {
     const auto schema = schemas_.find(schema_id);
     if (schema != schemas_.end()) {
       copied_schemas_ += schema->second.data.size();
-      if (copied_schemas_ > max_copied_schemas) in.fail("the channels' schemas take too much", record.start);
+      if (copied_schemas_ > max_copied_schemas)
+        in.fail("the channels' schemas need too much memory", record.start);
       channel.schema = schema->second;
     } else if (schema_id != 0) {
       in.fail("a channel has an unknown schema, " + std::to_string(schema_id), record.start);
@@ -198,7 +234,8 @@ class McapScan {
     if (channel == to_.channels_.end()) {
       in.fail("a message is on an unknown channel, " + std::to_string(id), record.start);
     }
-    to_.messages_.push_back({&channel->second, log_time, sequence, in.rest()});
+    to_.messages_.push_back(
+        {&channel->second, log_time, sequence, chunk_, to_.chunks_.get(), in.position(), in.remaining()});
   }
 
   void take_data_end(Record& record) {
@@ -214,13 +251,13 @@ class McapScan {
     if (in.remaining() != mcap_footer_length) in.fail("a footer has 20 bytes", record.start);
     const auto summary_start = in.take<std::uint64_t>();
     if (summary_start != 0 && summary_start != *data_end_) {
-      in.fail("the footer does not know where the summary starts", record.start);
+      in.fail("the footer has a wrong position of the summary", record.start);
     }
     in.take_bytes(sizeof(std::uint64_t));  // Start of the summary's offsets.
     const auto summary = in.since(*data_end_);
     check_crc(in.take<std::uint32_t>(), summary, in, "the summary's");
     if (!take_magic("the log's last bytes are wrong")) return;
-    if (!cursor_.done()) cursor_.fail("the log goes on after its end");
+    if (!cursor_.done()) cursor_.fail("there are bytes after the end of the log");
     to_.truncated_ = false;
   }
 
@@ -231,18 +268,22 @@ class McapScan {
     if (mcap_crc(0, bytes) != expected) where.fail(whose + " CRC is wrong");
   }
 
+  const std::string& name_;
   McapCursor cursor_;
   McapCheck check_;
   bool has_end_;
   std::optional<std::size_t> data_end_;  ///< End of the data section's last record.
   std::map<std::uint16_t, McapSchema> schemas_;
-  std::size_t copied_schemas_ = 0;  ///< Bytes.
+  std::size_t copied_schemas_ = 0;           ///< Bytes.
+  std::size_t content_left_;                 ///< Bytes that further compressed chunks may have.
+  std::uint32_t chunk_ = McapChunks::plain;  ///< The compressed chunk that is being read.
   McapReader& to_;
 };
 
 McapReader::McapReader(const std::filesystem::path& path, McapCheck check)
     : file_(std::make_unique<const MappedFile>(path)) {
-  McapScan(file_->bytes(), path.string(), check, *this).run();
+  const std::string name = path.string();
+  McapScan(file_->bytes(), name, check, *this).run();
 }
 
 McapReader::McapReader(std::span<const std::byte> bytes, const std::string& name, McapCheck check) {

@@ -7,9 +7,9 @@
 #include <memory>
 #include <span>
 #include <string>
-#include <string_view>
 #include <vector>
 
+#include "flexura/store/mcap_chunks.h"
 #include "flexura/store/mcap_file.h"
 #include "flexura/store/mcap_records.h"
 
@@ -18,24 +18,31 @@ namespace flexura {
 /// One message of a log; valid as long as its McapReader.
 struct McapMessage {
   const McapChannel* channel;
-  std::uint64_t log_time;           ///< Simulated time, ns.
-  std::uint32_t sequence;           ///< As counted by the writer; it may wrap.
-  std::span<const std::byte> data;  ///< As written: JSON in the logs of runs.
+  std::uint64_t log_time;    ///< Simulated time, ns.
+  std::uint32_t sequence;    ///< As counted by the writer; it may wrap.
+  std::uint32_t chunk;       ///< The compressed chunk with its data, or McapChunks::plain.
+  const McapChunks* chunks;  ///< Of the reader.
+  std::size_t offset;        ///< Start of its data in the chunk or in the file.
+  std::size_t size;          ///< Of its data, bytes.
 
-  /// Returns the data as text.
-  [[nodiscard]] std::string_view text() const {
-    return {reinterpret_cast<const char*>(data.data()), data.size()};
-  }
+  /// Returns the data as written: JSON in the logs of runs. Decompresses the chunk if it is not among the
+  /// last ones used: read messages in the file's order. Threads may call it at once. Throws
+  /// std::runtime_error if the file has changed since it was opened.
+  [[nodiscard]] std::string text() const { return chunks->text(chunk, offset, size); }
 };
 
-/// Whether to verify checksums. Without them, a damaged log gives what its structure still contains.
+/// Whether to verify checksums (`crc`) or only the structure. With `structure` all messages of a damaged log
+/// are read whose structure is intact.
 enum class McapCheck : std::uint8_t { crc, structure };
 
-/// Reads a whole log, from this or another program, by its data section from start to end. Memory grows only
-/// with the number of messages; their data stay in the file's pages. A log whose writer was killed has no
-/// end: it is read up to its last complete chunk, and `truncated` is set. Constructors throw
-/// std::runtime_error with the log's name and the byte of the error. Errors are no log at all, a record that
-/// does not fit, a wrong CRC, a message without channel, a compressed chunk.
+/// Reads a whole log, from this or another program, by its data section from start to end. Chunks may be
+/// plain or compressed by zstd. Memory grows only with the number of messages: plain data stay in the file's
+/// pages, and a few decompressed chunks are held at once. A log whose writer was killed has no end: it is
+/// read up to its last complete chunk, and `truncated` is set. Constructors throw std::runtime_error with the
+/// log's name and the byte of the error. Errors are no log at all, a record that does not fit, a wrong CRC, a
+/// message without channel, another compression, a chunk that does not decompress to the size it gives, a
+/// size above mcap_most_chunk, and compressed chunks with more than 64 MiB and 256 times the file's size in
+/// all.
 class McapReader {
  public:
   /// Also throws std::system_error if the file cannot be read.
@@ -43,7 +50,7 @@ class McapReader {
   /// `bytes` must outlive the reader; `name` identifies them in errors.
   McapReader(std::span<const std::byte> bytes, const std::string& name, McapCheck check = McapCheck::crc);
 
-  /// By identifier.
+  /// Returns the channels by their identifiers.
   [[nodiscard]] const std::map<std::uint16_t, McapChannel>& channels() const { return channels_; }
   /// Returns the messages in the file's order, which may differ from the order of time.
   [[nodiscard]] const std::vector<McapMessage>& messages() const { return messages_; }
@@ -55,6 +62,7 @@ class McapReader {
   friend class McapScan;
 
   std::unique_ptr<const MappedFile> file_;
+  std::unique_ptr<McapChunks> chunks_;             // At a fixed place, because messages point to it.
   std::map<std::uint16_t, McapChannel> channels_;  // A map, because messages point into it.
   std::vector<McapMessage> messages_;
   std::string library_;

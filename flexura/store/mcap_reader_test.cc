@@ -129,7 +129,7 @@ TEST(McapReader, NamesTheChecksumThatIsWrong) {
 
 TEST(McapReader, RefusesWhatIsNoLog) {
   EXPECT_EQ(refusal("PNG and so on"), "a.mcap: byte 0: not an MCAP log");
-  EXPECT_THAT(refusal(small_log() + "x"), HasSubstr("the log goes on after its end"));
+  EXPECT_THAT(refusal(small_log() + "x"), HasSubstr("there are bytes after the end of the log"));
   const TestFolder folder;
   EXPECT_THROW(McapReader(folder / "none.mcap"), std::system_error);
   EXPECT_THROW(McapReader(folder / ""), std::system_error) << "a folder";
@@ -139,8 +139,8 @@ TEST(McapReader, RefusesWhatIsNoLog) {
 }
 
 TEST(McapReader, NamesTheCompressionItDoesNotRead) {
-  const auto log = by_hand([](McapBytes& out) { put_chunk(out, "zstd", {}); });
-  EXPECT_THAT(refusal(log), HasSubstr(R"(a chunk is compressed ("zstd"))"));
+  const auto log = by_hand([](McapBytes& out) { put_chunk(out, "lz4", {}); });
+  EXPECT_THAT(refusal(log), HasSubstr(R"(a chunk is compressed ("lz4"))"));
 }
 
 TEST(McapReader, RefusesMessagesWithoutAChannel) {
@@ -163,7 +163,7 @@ TEST(McapReader, RefusesSchemasThatWouldFillTheMemory) {
     put_schema(out, 1, {"big", "jsonschema", std::string(1'000'000, ' ')});
     for (std::uint16_t id = 1; id < 100; ++id) put_channel(out, id, {{.topic = "/t"}, 1, 0});
   });
-  EXPECT_THAT(refusal(log), HasSubstr("schemas take too much"));
+  EXPECT_THAT(refusal(log), HasSubstr("schemas need too much memory"));
 }
 
 TEST(McapReader, ReadsMessagesOutsideChunksAndSkipsUnknownRecords) {

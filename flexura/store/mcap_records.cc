@@ -15,7 +15,7 @@ void McapBytes::put(std::span<const std::byte> data) {
 
 void McapBytes::put(std::string_view text) {
   if (text.size() > std::numeric_limits<std::uint32_t>::max()) {
-    throw std::length_error("a text in a log holds less than 4 GiB");
+    throw std::length_error("a text in a log must have less than 4 GiB");
   }
   put(static_cast<std::uint32_t>(text.size()));
   put(std::as_bytes(std::span(text)));

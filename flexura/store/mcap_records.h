@@ -13,11 +13,11 @@
 
 namespace flexura {
 
-/// The first and the last eight bytes of a log. Source of everything in this file: MCAP specification, major
+/// The first and the last eight bytes of a log. Everything in this file follows the MCAP specification, major
 /// version 0 (https://mcap.dev/spec).
 inline constexpr std::string_view mcap_magic{"\x89MCAP0\r\n", 8};
 
-/// Kind of a record; its first byte.
+/// Kind of a record, which is its first byte.
 enum class McapOp : std::uint8_t {
   header = 0x01,
   footer = 0x02,
@@ -41,10 +41,14 @@ inline constexpr std::size_t mcap_record_header = 9;
 /// Length of the footer's content: starts of the summary and its offsets (8 + 8), and the summary's CRC (4).
 inline constexpr std::size_t mcap_footer_length = 20;
 
+/// Name of the compression of a chunk by Zstandard; plain chunks have an empty one. A chunk's CRC and
+/// uncompressed size are those of the plain records.
+inline constexpr std::string_view mcap_zstd = "zstd";
+
 /// Format of a channel's messages.
 struct McapSchema {
   std::string name;
-  std::string encoding;  ///< "jsonschema", ...; empty without a schema.
+  std::string encoding;  ///< Encoding of the schema, such as "jsonschema"; empty without a schema.
   std::string data;
 
   bool operator==(const McapSchema&) const = default;
@@ -55,16 +59,17 @@ struct McapChannel {
   std::string topic;
   std::string encoding = "json";
   McapSchema schema{};
-  // The braces avoid GCC's -Wmissing-field-initializers for those who omit it.
+  // The braces avoid GCC's warning -Wmissing-field-initializers where this member is omitted.
   std::map<std::string, std::string> metadata{};  // NOLINT(readability-redundant-member-init)
 
   bool operator==(const McapChannel&) const = default;
 };
 
-/// Returns the CRC-32 of bytes after others with the CRC `crc` (0: without others).
+/// Returns the CRC-32 of earlier bytes, whose CRC is `crc`, followed by `bytes`. With `crc` 0 there are no
+/// earlier bytes.
 [[nodiscard]] std::uint32_t mcap_crc(std::uint32_t crc, std::span<const std::byte> bytes);
 
-/// Bytes in MCAP's order, little-endian, in a growing buffer.
+/// Growing buffer of bytes in MCAP's byte order, which is little-endian.
 class McapBytes {
  public:
   [[nodiscard]] const std::vector<std::byte>& bytes() const { return bytes_; }
@@ -76,7 +81,8 @@ class McapBytes {
     put_at(grow(sizeof value), value);
   }
   void put(std::span<const std::byte> data);
-  /// Puts the length in four bytes, then the text. Throws std::length_error if it has 2^32 bytes or more.
+  /// Puts the length in four bytes, then the text. Throws std::length_error if the text has 2^32 bytes or
+  /// more.
   void put(std::string_view text);
   void put(const std::string& text) { put(std::string_view(text)); }
 

@@ -28,9 +28,9 @@ void put_chunk_index(McapBytes& out, const McapChunkIndex& chunk) {
     out.put(chunk.length);
     put_map(out, chunk.message_index_offsets);
     out.put(chunk.message_index_length);
-    out.put(mcap_compression);
-    out.put(chunk.records_size);  // Compressed.
-    out.put(chunk.records_size);  // Uncompressed.
+    out.put(chunk.compression);
+    out.put(chunk.stored_size);
+    out.put(chunk.records_size);
   });
 }
 

@@ -2,13 +2,14 @@
 
 #include <cstdint>
 #include <map>
+#include <string_view>
 #include <vector>
 
 #include "flexura/store/mcap_records.h"
 
 namespace flexura {
 
-/// The earliest and the latest of some times, ns.
+/// The earliest and the latest of a set of times, ns.
 struct McapTimeRange {
   std::uint64_t start = UINT64_MAX, end = 0;
   void add(std::uint64_t time);
@@ -21,11 +22,13 @@ struct McapChunkIndex {
   std::uint64_t start = 0;                 ///< Start of the chunk's record in the file.
   std::uint64_t length = 0;                ///< Length of the whole record.
   std::uint64_t records_size = 0;          ///< Size of its messages.
+  std::string_view compression;            ///< mcap_zstd, or empty.
+  std::uint64_t stored_size = 0;           ///< Size of its messages as stored.
   std::uint64_t message_index_length = 0;  ///< Length of all message indexes, which follow the chunk.
   std::map<std::uint16_t, std::uint64_t> message_index_offsets;  ///< By channel; in the file.
 };
 
-/// Content of a log as listed at its end.
+/// Content of a log, as listed in the summary at its end.
 struct McapSummary {
   struct Channel {
     McapChannel description;
@@ -36,10 +39,6 @@ struct McapSummary {
   std::vector<Channel> channels;
   std::vector<McapChunkIndex> chunks;
 };
-
-/// Chunks are not compressed. Compression would set another name here; a chunk's CRC and uncompressed size
-/// would stay those of the plain records.
-inline constexpr std::string_view mcap_compression;
 
 void put_schema(McapBytes& out, std::uint16_t id, const McapSchema& schema);
 void put_channel(McapBytes& out, std::uint16_t id, const McapSummary::Channel& channel);

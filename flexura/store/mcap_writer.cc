@@ -6,6 +6,9 @@
 #include <string>
 #include <utility>
 
+#include "flexura/store/mcap_chunks.h"
+#include "flexura/store/zstd.h"
+
 namespace flexura {
 namespace {
 
@@ -103,8 +106,11 @@ void McapWriter::flush() {
   require_open();
   if (records_.size() == 0) return;
   McapBytes out;
-  put_chunk(out);
-  McapChunkIndex chunk{chunk_time_, file_.size(), out.size(), records_.size(), 0, {}};
+  McapChunkIndex chunk;
+  chunk.time = chunk_time_;
+  chunk.start = file_.size();
+  chunk.records_size = records_.size();
+  put_chunk(out, chunk);
   put_message_indexes(out, chunk);
   append(out);
   summary_.chunks.push_back(std::move(chunk));
@@ -113,16 +119,23 @@ void McapWriter::flush() {
   for (auto& entries : chunk_index_) entries.clear();
 }
 
-void McapWriter::put_chunk(McapBytes& out) const {
+void McapWriter::put_chunk(McapBytes& out, McapChunkIndex& chunk) const {
+  std::vector<std::byte> frame;
+  if (config_.compress && records_.size() <= mcap_most_chunk) frame = zstd(records_.bytes());
+  const bool is_compressed = !frame.empty() && frame.size() < records_.size();
+  const std::span<const std::byte> stored(is_compressed ? frame : records_.bytes());
+  if (is_compressed) chunk.compression = mcap_zstd;
+  chunk.stored_size = stored.size();
   out.record(McapOp::chunk, [&] {
     out.put(chunk_time_.start);
     out.put(chunk_time_.end);
     out.put(std::uint64_t{records_.size()});
     out.put(mcap_crc(0, records_.bytes()));
-    out.put(mcap_compression);
-    out.put(std::uint64_t{records_.size()});
-    out.put(std::span(records_.bytes()));
+    out.put(chunk.compression);
+    out.put(chunk.stored_size);
+    out.put(stored);
   });
+  chunk.length = out.size();
 }
 
 void McapWriter::put_message_indexes(McapBytes& out, McapChunkIndex& chunk) const {

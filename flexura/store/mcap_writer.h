@@ -14,10 +14,11 @@
 namespace flexura {
 
 /// Writes a new log (docs/log-format.md): messages on channels, collected into chunks. A full chunk is passed
-/// to the operating system in one write. So a process killed at any moment leaves a log that is readable up
-/// to its last complete chunk. Equal calls give equal bytes. Every call that writes throws std::system_error
-/// with the path on a system error, such as a full disk. The content written by then stays readable, and the
-/// writer accepts nothing more.
+/// to the operating system in one write. If the process is killed, the log is therefore readable up to its
+/// last complete chunk. Equal calls give equal bytes
+/// with the same version of libzstd. Every call that writes throws std::system_error with
+/// the path on a system error, such as a full disk. The content written before stays readable, and the writer
+/// accepts nothing more.
 class McapWriter {
  public:
   /// Layout of the file.
@@ -25,10 +26,12 @@ class McapWriter {
     /// A chunk is closed when its messages reach this number of bytes (1 to 2^30); a larger message is a
     /// separate chunk.
     std::size_t chunk_size = std::size_t{256} * 1024;
+    /// Compresses chunks by zstd where that makes them smaller. Otherwise every chunk is plain.
+    bool compress = true;
   };
 
-  /// Creates the file; never overwrites one. Throws std::system_error with the path if it already exists or
-  /// cannot be created, std::invalid_argument for a chunk size out of range.
+  /// Creates the file. Never overwrites an existing file. Throws std::system_error with the path if it
+  /// already exists or cannot be created, std::invalid_argument for a chunk size out of range.
   explicit McapWriter(const std::filesystem::path& path) : McapWriter(path, Config{}) {}
   McapWriter(const std::filesystem::path& path, Config config);
   /// Closes the log and ignores failures; call close() to detect them.
@@ -36,7 +39,7 @@ class McapWriter {
   McapWriter(const McapWriter&) = delete;
   McapWriter& operator=(const McapWriter&) = delete;
 
-  /// Returns the new channel's number, counted from 1. Channels with equal schemas share one record of it.
+  /// Returns the new channel's number, counted from 1. Channels with equal schemas share one schema record.
   /// Throws std::invalid_argument if the topic is empty or exists, std::length_error beyond 65535 channels.
   std::uint16_t add_channel(McapChannel channel);
 
@@ -55,21 +58,22 @@ class McapWriter {
 
  private:
   struct IndexEntry {
-    std::uint64_t time, offset;  ///< From the start of the chunk's records.
+    std::uint64_t time, offset;  ///< Log time, ns, and position from the start of the chunk's records, bytes.
   };
 
   void append(const McapBytes& out);
   void require_open() const;
-  void put_chunk(McapBytes& out) const;
+  /// Puts the current chunk and completes its entry in the summary.
+  void put_chunk(McapBytes& out, McapChunkIndex& chunk) const;
   void put_message_indexes(McapBytes& out, McapChunkIndex& chunk) const;
 
   Config config_;
   AppendFile file_;
-  std::uint32_t crc_ = 0;  ///< Of every byte appended so far.
+  std::uint32_t crc_ = 0;  ///< CRC of all bytes appended so far.
   McapSummary summary_;
   McapBytes records_;  ///< Messages of the current chunk.
   McapTimeRange chunk_time_;
-  std::vector<std::vector<IndexEntry>> chunk_index_;  ///< Their positions, by channel.
+  std::vector<std::vector<IndexEntry>> chunk_index_;  ///< Positions of the chunk's messages, by channel.
 };
 
 }  // namespace flexura

@@ -7,8 +7,8 @@
 
 namespace flexura {
 
-/// Returns the JSON Schema (draft 7) of a document described by `info`, which editors use to complete and
-/// check files. A quantity has one property per spelling of its unit, each with the range in that unit.
+/// Returns the JSON Schema (draft 7) of a document described by `info`. Editors use it to complete and check
+/// files. A quantity has one property per spelling of its unit, each with the range in that unit.
 [[nodiscard]] Node json_schema(const TableInfo& info);
 
 /// Returns a Markdown reference of the document: a section per table, a row per field. A table that occurs

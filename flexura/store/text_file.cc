@@ -78,12 +78,14 @@ std::filesystem::path file_inside(const std::filesystem::path& folder, const std
   if (error) fail(fmt::format("cannot read \"{}\": {}", name, error.message()));
   const auto from_root = target.lexically_relative(root);
   if (from_root.empty() || *from_root.begin() == "..") {
-    fail(fmt::format("\"{}\" lies outside the experiment's folder: expected a file in it or below", name));
+    fail(fmt::format("\"{}\" is outside the experiment's folder: expected a file in that folder or below",
+                     name));
   }
   // Checks the path as written: a path through a missing folder and back is invalid, even if its target
   // exists.
   if (!std::filesystem::exists(root / name, error)) fail(fmt::format("no file \"{}\"", name));
-  if (!std::filesystem::is_regular_file(target, error)) fail(fmt::format("\"{}\" is no regular file", name));
+  if (!std::filesystem::is_regular_file(target, error))
+    fail(fmt::format("\"{}\" is not a regular file", name));
   return folder / name;
 }
 

@@ -7,24 +7,24 @@
 
 namespace flexura {
 
-/// Returns true if nothing exists at a path. A path that cannot be checked (a link to itself) counts as
-/// existing: opening it gives the reason.
+/// Returns true if nothing exists at a path. A path that cannot be checked, such as a link to itself, counts
+/// as existing; the attempt to open it then reports the reason.
 [[nodiscard]] bool is_missing(const std::filesystem::path& path);
 
-/// Returns the bytes of a file. Throws InputError if it cannot be read, is not a regular file or has more
-/// than `max_bytes`.
+/// Returns the bytes of a file. Throws InputError if the file cannot be read, is not a regular file or has
+/// more than `max_bytes`.
 [[nodiscard]] std::string read_text_file(const std::filesystem::path& file, std::size_t max_bytes);
 
-/// Returns the file `name` in `folder` or below it, after resolving links. Throws InputError, without a
-/// position, if it is outside or not a file.
+/// Returns the path of the file `name` in `folder` or below it, after resolving links. Throws InputError,
+/// without a position, if the file is outside `folder` or is not a regular file.
 [[nodiscard]] std::filesystem::path file_inside(const std::filesystem::path& folder, const std::string& name);
 
-/// Writes a new file completely or not at all. Throws std::runtime_error with the path if it exists or cannot
-/// be written.
+/// Writes a new file completely or not at all. Throws std::runtime_error with the path if the file exists or
+/// cannot be written.
 void write_new_file(const std::filesystem::path& file, std::string_view text);
 
-/// Writes a file that may exist: it keeps its old content until the new one is complete. Throws
-/// std::runtime_error with the path on a system error.
+/// Writes a new or an existing file. An existing file keeps its old content until the new content is
+/// complete. Throws std::runtime_error with the path on a system error.
 void replace_file(const std::filesystem::path& file, std::string_view text);
 
 }  // namespace flexura

@@ -220,7 +220,7 @@ std::string plain_words(std::string_view description) {
     return "no value: expected a number, a text in quotes, true or false, an array or a table";
   constexpr std::string_view before = "Error while parsing ", after = ": encountered end-of-file";
   if (description.starts_with(before) && description.ends_with(after))
-    return fmt::format("the end comes within this {}: expected the rest of it",
+    return fmt::format("the file ends within this {}: expected its end",
                        description.substr(before.size(), description.size() - before.size() - after.size()));
   if (!description.starts_with(before)) return std::string(description);
   const std::string_view rest = description.substr(before.size());

@@ -11,27 +11,29 @@
 
 namespace flexura {
 
-/// Largest file, bytes: experiments are smaller, and a wrong file should not fill the memory.
+/// Largest size of a file, bytes. Experiments are smaller, and a wrong file should not fill the memory.
 inline constexpr std::size_t max_toml_bytes = std::size_t{16} << 20;
 
 /// Parses a TOML document into nodes with positions. Throws InputError (source:line:column) at the first
 /// error: invalid TOML, text that is not UTF-8, nesting that is too deep. Repeated keys are reported
-/// together, up to 20. If `repeated` is given, they are appended there instead. The document is then read
-/// with only the first of each key, so that the rest can be checked in the same run.
+/// together, up to 20. If `repeated` is given, repeated keys are appended to it instead of being thrown. The
+/// document then has only the first value of each key, so that its other values can be checked.
 [[nodiscard]] Node parse_toml(std::string_view text, const std::string& source,
                               std::vector<Problem>* repeated = nullptr);
 
-/// Parses one TOML value, as given by `--set path=value`; a bare word is a text.
+/// Parses one TOML value, as given by `--set path=value`. A word without quotes is a text.
 [[nodiscard]] Node parse_toml_value(std::string_view text, const std::string& source, int line, int column);
 
-/// Reads a TOML file. `include = ["rig.toml", ...]` overlays the file's own values on those of the named
-/// files, which must be in the file's folder or below. Tables are merged key by key, arrays are replaced.
-/// Throws InputError for the errors of parse_toml, a missing or unreadable file, and an include outside the
-/// folder, in a circle or too deep. `repeated`: as for parse_toml, for all files.
+/// Reads a TOML file. `include = ["rig.toml", ...]` takes values from the named files, which must be in the
+/// file's folder or below. The file's own values replace included ones: tables are merged key by key, arrays
+/// are replaced. Throws InputError for the errors of parse_toml, for a missing or unreadable file, and for an
+/// include that is outside the folder, circular or nested too deeply. `repeated`: see parse_toml(), for all
+/// files.
 [[nodiscard]] Node read_toml_file(const std::filesystem::path& file,
                                   std::vector<Problem>* repeated = nullptr);
 
-/// Returns the table as a TOML document that parses back to equal values. `info` gives the units in comments.
+/// Returns the table as a TOML document that parses to equal values, with comments. `info` gives the units in
+/// the comments.
 [[nodiscard]] std::string write_toml(const Node& table, const TableInfo& info);
 
 }  // namespace flexura

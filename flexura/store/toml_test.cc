@@ -161,7 +161,7 @@ TEST_F(TomlFile, IncludesNothingOutsideItsFolder) {
   std::filesystem::create_symlink("../secret.toml", folder_.path() / "sub/link.toml");
   write("sub/z.toml", "include = ['link.toml']");
   for (const char* name : {"sub/x.toml", "sub/y.toml", "sub/z.toml"}) {
-    EXPECT_THAT(error(name), HasSubstr("lies outside the experiment's folder")) << name;
+    EXPECT_THAT(error(name), HasSubstr("is outside the experiment's folder")) << name;
     EXPECT_THAT(error(name), HasSubstr(":1:12: include:")) << name;
   }
 }
@@ -214,7 +214,7 @@ TEST_F(TomlFile, RefusesBadIncludesWithALine) {
   EXPECT_THAT(error("missing.toml"), HasSubstr("no file \"nothing.toml\""));
   EXPECT_THAT(error("number.toml"), HasSubstr("expected file names in quotes"));
   EXPECT_THAT(error("word.toml"), HasSubstr("expected an array of file names"));
-  EXPECT_THAT(error("folder.toml"), HasSubstr("\".\" is no regular file"));
+  EXPECT_THAT(error("folder.toml"), HasSubstr("\".\" is not a regular file"));
 }
 
 TEST_F(TomlFile, MustExistBeAFileAndOfBoundedSize) {

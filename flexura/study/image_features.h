@@ -11,28 +11,29 @@
 
 namespace flexura {
 
-/// Features of the image of a study's target: lengths in px, and last the ratio of the axes of the circle's
-/// ellipse. Edges and the circle's top are named for a camera that faces the target upright.
+/// Names of the features that a study measures in the image of its target. All features are lengths in px,
+/// except the last, which is the ratio of the axes of the circle's ellipse. Edges and the circle's top are
+/// named as seen by an upright camera that faces the target.
 inline constexpr std::array<std::string_view, 9> feature_names{
     "top",
     "bottom",
     "left",
-    "right",  // Edges of the square.
+    "right",  // Lengths of the square's edges.
     "height",
-    "width",  // Between the middles of opposite edges.
+    "width",  // Distances between the middles of opposite edges.
     "corner_to_center",
-    "top_to_center",  // Of the top right corner; of the circle's top.
-    "axes_ratio"};    // Smaller over larger.
+    "top_to_center",  // Distances of the top right corner and of the circle's top from the centre.
+    "axes_ratio"};    // Smaller axis divided by larger axis.
 inline constexpr std::size_t length_features = feature_names.size() - 1;
 
-/// One value per feature; std::nullopt if a required point is not in the image.
+/// Value of each feature; std::nullopt if a required point is not in the image.
 using ImageFeatures = std::array<std::optional<double>, feature_names.size()>;
 [[nodiscard]] ImageFeatures features_of(const TargetImage& image);
 
-/// Returns the smaller axis over the larger of the best-fit ellipse of the points. It is the least-squares
-/// fit of the conic's equation, in coordinates with equal spread of the points. Exact for points on an
-/// ellipse, 0 for points on a line. Returns std::nullopt for fewer than five points, and if another conic
-/// fits best.
+/// Returns the ratio of the smaller to the larger axis of the ellipse that fits the points best. The fit
+/// minimizes the squared residuals of the conic's equation, in coordinates in which the points have equal
+/// spread. The result is exact for points on an ellipse, and 0 for points on a line. Returns std::nullopt for
+/// fewer than five points, or if the best conic is not an ellipse.
 [[nodiscard]] std::optional<double> axes_ratio(std::span<const Eigen::Vector2d> points);
 
 }  // namespace flexura

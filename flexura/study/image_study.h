@@ -16,31 +16,34 @@
 
 namespace flexura {
 
-/// Features from one source, one item per value of the parameter.
+/// Features from one source, for all values of the study's parameter.
 struct StudyColumn {
-  std::string_view source;  ///< "formula", "rendered", "measured"; its features are "top_formula", ...
-  std::vector<ImageFeatures> features;
+  /// Source: "formula", "rendered" or "measured". Result files name features "top_formula", ...
+  std::string_view source;
+  std::vector<ImageFeatures> features;  ///< Features for each value of the parameter.
 };
 
-/// Result of a study.
+/// Result of a study of a target's image.
 struct ImageStudy {
   std::string name;
   std::string camera;
   Variation variation;
-  int width = 0, height = 0;         ///< Size of the camera's image, px.
-  std::vector<double> values;        ///< Values of the parameter, in base units.
-  std::vector<TargetImage> images;   ///< By the formulas, one per value.
-  std::vector<StudyColumn> columns;  ///< By the formulas, the renderer's truth, and optionally in pictures.
+  int width = 0, height = 0;   ///< Size of the camera's image, px.
+  std::vector<double> values;  ///< Values of the parameter, in base units.
+  std::vector<TargetImage>
+      images;  ///< Image of the target for each value, computed by the projection formulas.
+  std::vector<StudyColumn> columns;  ///< Features from the projection formulas, from the renderer's geometry,
+                                     ///< and optionally measured in pictures.
 
-  /// Returns true if the whole target is inside the image at value i.
+  /// Returns whether the whole target is inside the image for the value i.
   [[nodiscard]] bool in_image(std::size_t i) const;
-  /// Returns true if every feature has a value there, by the formulas.
+  /// Returns whether the projection formulas give every feature for the value i.
   [[nodiscard]] bool is_seen(std::size_t i) const;
-  /// Returns the largest differences between formulas and renderer: of the lengths, px, and of the ratio of
-  /// axes. Infinite if only one of them has a value.
+  /// Returns the largest differences between formulas and renderer: of lengths, px, and of the ratio of axes.
+  /// Infinite if only one of the two has a value.
   [[nodiscard]] std::array<double, 2> largest_difference() const;
-  /// Number of lengths measured in pictures, and the root mean square of their differences from the
-  /// formulas', px; zeros without measurements.
+  /// Number of lengths measured in pictures, and the root mean square of their differences from the formulas,
+  /// px. Both are 0 without measurements.
   struct Measured {
     std::size_t count = 0;
     double rms = 0;
@@ -48,9 +51,9 @@ struct ImageStudy {
   [[nodiscard]] Measured measured_difference() const;
 };
 
-/// Makes a study that check_study has accepted, with the camera of that name among `cameras` at its initial
-/// axis positions. The noise of its pictures depends on `seed`, the camera's index and the value's.
-/// `progress` may be null; it cannot end the study.
+/// Runs a study for which check_study() reported no error. The study's camera is in `cameras` and has its
+/// initial axis positions. The noise in pictures depends on `seed`, the camera's index and the value's index.
+/// `progress` may be null; it cannot cancel the study.
 [[nodiscard]] ImageStudy study_images(const StudyTask& task, const std::vector<CameraConfig>& cameras,
                                       std::uint64_t seed, Progress* progress = nullptr);
 

@@ -10,17 +10,18 @@
 
 namespace flexura {
 
-/// Measures a study's target in pictures. Its square, dark on a bright background, is rendered, read out by
-/// the camera's sensor (gray, 8 bits) and found by its border. Its four edges are fitted with lines, with the
-/// lens's distortion removed. The corners define the plane, which gives the centre and the circle in the
-/// image.
+/// Measures a study's target in rendered pictures. A picture shows the target's square, dark on a bright
+/// background, with the effects of the camera's sensor (gray, 8 bits). The square is found by its border.
+/// After correction of the lens's distortion, lines are fitted to the four edges. The resulting corners
+/// determine the homography of the target's plane, which gives the centre and the circle in the image.
 class MeasuredTarget {
  public:
-  /// `stream` has the seed and the camera of the pictures' noise.
+  /// `stream` determines the noise of the pictures by a seed and a camera index.
   MeasuredTarget(const StudyTarget& target, const SensorConfig& sensor, const NoiseStream& stream);
 
-  /// Returns the target in picture number `frame`, with independent noise. Empty if the square is not
-  /// entirely in the image, or is seen edge-on. The positions by the formulas identify the edges.
+  /// Measures the target in picture number `frame`; each picture has independent noise. The result has no
+  /// points if the square is not entirely in the image, or is seen edge-on. The positions from the projection
+  /// formulas identify the edges.
   [[nodiscard]] TargetImage image(const View& view, std::uint64_t frame);
 
  private:

@@ -81,7 +81,7 @@ const std::vector<Parameter>& parameters() {
 
 void check_values(const Variation& variation, const Camera& camera, const std::string& path, Reader& reader) {
   if (variation.values[0] == variation.values[1])
-    reader.problem_at(path, "has the same value twice: expected a first and a last one");
+    reader.problem_at(path, "has the same value twice: expected different first and last values");
   const AxisConfig* axis = moved_axis(camera, variation.parameter);
   if (axis == nullptr) return;
   for (std::size_t i = 0; i < 2; ++i) {
@@ -117,8 +117,8 @@ const Table<VaryConfig>& fields_of(const VaryConfig*) {
 const Table<StudyTargetConfig>& fields_of(const StudyTargetConfig*) {
   static const auto table =
       Table<StudyTargetConfig>("target",
-                               "A circle and its inscribed square with level and upright edges: parallel to "
-                               "OX and OY in the XOY plane.")
+                               "A circle and its inscribed square with horizontal and vertical edges: "
+                               "parallel to OX and OY in the XOY plane.")
           .field("center", &StudyTargetConfig::center,
                  {.meaning = "Centre.", .unit = Unit::metre, .range = between(-1e6, 1e6)})
           .field(
@@ -176,7 +176,7 @@ void check_study(const StudyTask& task, const std::vector<CameraConfig>& cameras
   }
   for (std::size_t i = 1; i < varied.size(); ++i) {
     reader.problem_at(fmt::format("{}.vary.{}", path, varied[i].name),
-                      fmt::format("stands beside vary.{}: expected one parameter", varied[0].name));
+                      fmt::format("is given together with vary.{}: expected one parameter", varied[0].name));
   }
   if (varied.size() > 1) return;
   const CameraConfig* config = camera_of(task, cameras);
@@ -192,7 +192,7 @@ void check_study(const StudyTask& task, const std::vector<CameraConfig>& cameras
       varied.front().parameter == &VaryConfig::orbit || varied.front().parameter == &VaryConfig::distance;
   if (needs_distance && eye == Eigen::Vector3d(task.target.center.data())) {
     reader.problem_at(path + ".target.center",
-                      "is where the camera stands: it cannot orbit there, nor move away from it");
+                      "is the camera's own position: the camera cannot orbit it or move away from it");
   }
 }
 

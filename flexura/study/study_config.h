@@ -13,44 +13,45 @@
 
 namespace flexura {
 
-/// Parameter of a study, from the first to the second value. Exactly one is given.
+/// Camera parameter that a study varies, as first and last value. Exactly one member must be given.
 struct VaryConfig {
-  using Values = std::optional<std::array<double, 2>>;  ///< From, to.
-  Values pan, tilt, roll, orbit;                        ///< In rad.
-  Values distance;                                      ///< From the target's centre, m.
-  Values mount_x, mount_y, mount_z;     ///< MountConfig::position, m; the camera keeps its orientation.
-  Values zoom;                          ///< Position in the lens's table.
-  Values stage_x, stage_y, stage_z;     ///< In m.
-  Values focal_length, fx, fy, cx, cy;  ///< In px, at the current zoom.
-  Values k1, k2, p1, p2, k3;            ///< The lens's distortion at the current zoom.
-  Values tilt_axis_x, tilt_axis_y, tilt_axis_z;  ///< HeadConfig::tilt_axis, m.
-  Values pupil_x, pupil_y, pupil_z;              ///< HeadConfig::pupil, m.
+  using Values = std::optional<std::array<double, 2>>;  ///< First and last value.
+  Values pan, tilt, roll, orbit;                        ///< Angles, rad.
+  Values distance;  ///< Distance of the camera from the target's centre, m.
+  /// Coordinates of MountConfig::position, m; the camera keeps its orientation.
+  Values mount_x, mount_y, mount_z;
+  Values zoom;                          ///< Zoom position.
+  Values stage_x, stage_y, stage_z;     ///< Stage offset, m.
+  Values focal_length, fx, fy, cx, cy;  ///< Intrinsics at the initial zoom, px; focal_length sets fx and fy.
+  Values k1, k2, p1, p2, k3;            ///< Distortion of the lens at the initial zoom.
+  Values tilt_axis_x, tilt_axis_y, tilt_axis_z;  ///< Coordinates of HeadConfig::tilt_axis, m.
+  Values pupil_x, pupil_y, pupil_z;              ///< Coordinates of HeadConfig::pupil, m.
   Values pupil_shift;                            ///< HeadConfig::pupil_shift, m.
 };
 
 /// The parameter of a study.
 struct Variation {
-  std::string_view name;                                 ///< As in the file: "orbit".
-  Unit unit = Unit::none;                                ///< Unit of its values.
-  VaryConfig::Values VaryConfig::* parameter = nullptr;  ///< The member that has `values`.
-  std::array<double, 2> values = {0, 0};                 ///< First and last, in base units.
+  std::string_view name;                                 ///< Key in the file, such as "orbit".
+  Unit unit = Unit::none;                                ///< Unit of the values.
+  VaryConfig::Values VaryConfig::* parameter = nullptr;  ///< Member of VaryConfig with the values.
+  std::array<double, 2> values = {0, 0};                 ///< First and last value, in base units.
 };
 
 /// Target of a study: a circle with an inscribed square.
 struct StudyTargetConfig {
-  std::array<double, 3> center = {0, 0, 0};  ///< In m, in W.
-  std::array<double, 3> normal = {0, 0, 1};  ///< Normal of its front, in W; not 0.
-  double radius = 0.5;                       ///< In m; at least 1e-6.
+  std::array<double, 3> center = {0, 0, 0};  ///< Centre in W, m.
+  std::array<double, 3> normal = {0, 0, 1};  ///< Normal of the target's front, in W; any length above 0.
+  double radius = 0.5;                       ///< Radius of the circle, m; at least 1e-6.
 };
 
-/// `kind = "study"`: the image of a target while one of a camera's parameters varies. The arm stays at rest,
-/// and no time passes.
+/// A task with `kind = "study"`: computes the image of a target for different values of one camera parameter.
+/// The arm is at rest, and no time passes.
 struct StudyTask {
   std::string name;
-  std::string camera;  ///< Its name; if empty, the first camera.
+  std::string camera;  ///< Name of the camera; "" for the first camera.
   VaryConfig vary;
-  std::int64_t points = 101;  ///< Number of values, evenly from the first to the last.
-  bool measure = false;       ///< Measure also in pictures of the square.
+  std::int64_t points = 101;  ///< Number of evenly spaced values, ends included.
+  bool measure = false;       ///< Whether features are also measured in rendered pictures of the square.
   StudyTargetConfig target;
 };
 
@@ -58,13 +59,14 @@ const Table<VaryConfig>& fields_of(const VaryConfig*);
 const Table<StudyTargetConfig>& fields_of(const StudyTargetConfig*);
 const Table<StudyTask>& fields_of(const StudyTask*);
 
-/// Returns the parameters that `vary` gives values to: one, in a checked study.
+/// Returns the parameters for which `vary` has values. A valid study has exactly one.
 [[nodiscard]] std::vector<Variation> variations(const VaryConfig& vary);
 
-/// Returns the camera of a study; null if no camera has that name.
+/// Returns the camera of a study; null if no camera has the study's camera name.
 [[nodiscard]] const CameraConfig* camera_of(const StudyTask& task, const std::vector<CameraConfig>& cameras);
 
-/// Reports why the study at `path` ("task[2]") is impossible with these cameras.
+/// Reports to `reader` why a study is impossible with the given cameras. `path` is the study's place in the
+/// document, such as "task[2]".
 void check_study(const StudyTask& task, const std::vector<CameraConfig>& cameras, const std::string& path,
                  Reader& reader);
 

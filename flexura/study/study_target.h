@@ -12,40 +12,41 @@
 
 namespace flexura {
 
-/// Number of points on a study's circle: every 5 degrees, counter-clockwise from its lowest one.
+/// Number of points on a study's circle: every 5 degrees, counter-clockwise from the lowest point.
 inline constexpr std::size_t circle_points = 72;
 
-/// Indices of the square's corners and of the circle's top among them.
+/// Indices, among these points, of the square's corners and of the circle's top.
 inline constexpr std::size_t bottom_right = 9, top_right = 27, circle_top = 36, top_left = 45,
                              bottom_left = 63;
 
-/// Positions of the target's points in an image, px; std::nullopt for points that the lens does not show.
+/// Pixels (u, v) of the target's points in an image, px; std::nullopt for points that the lens cannot image.
 struct TargetImage {
   std::optional<Eigen::Vector2d> center;
   std::array<std::optional<Eigen::Vector2d>, circle_points> circle;
 };
 
-/// A study's circle and square in the world. The target's frame F has a level x axis, y as upright as the
-/// plane allows, and z along the normal. For a level plane, x is W's X.
+/// A study's target in the world: a circle with an inscribed square. The target's frame F has a horizontal x
+/// axis, y as vertical as the plane allows, and z along the normal. For a horizontal plane, x is W's X.
 class StudyTarget {
  public:
   explicit StudyTarget(const StudyTargetConfig& config);
 
   [[nodiscard]] const Eigen::Vector3d& center() const { return X_WF_.position; }
-  /// Returns the level axis in the plane, unit, W.
+  /// Returns the unit vector in W of the horizontal axis in the target's plane.
   [[nodiscard]] Eigen::Vector3d level_axis() const { return X_WF_.rotation.col(0); }
   [[nodiscard]] const Pose& frame() const { return X_WF_; }
   [[nodiscard]] double radius() const { return radius_; }
-  /// Return the circle's point number i, in W, and along the target's x and y, m.
+  /// Return point number i of the circle, in W, m, and in the target's x and y, m.
   [[nodiscard]] Eigen::Vector3d point(std::size_t i) const;
   [[nodiscard]] Eigen::Vector2d plane_point(std::size_t i) const;
 
-  /// Returns the image by the projection formulas.
+  /// Returns the target's image, computed by the projection formulas.
   [[nodiscard]] TargetImage projected(const View& view) const;
 
-  /// Returns the image by the renderer: the image points whose rays, traced to a screen in the target's
-  /// plane, meet the target's points. The search starts at the middle of the nearest pixel. Points are
-  /// std::nullopt if the rays pass along the screen. `renderer` must be prepared again before other uses.
+  /// Returns the target's image, computed by the renderer: the image points whose rays, traced to a screen in
+  /// the target's plane, hit the target's points. The search for a point starts at the middle of the nearest
+  /// pixel. Points are std::nullopt if the rays are parallel to the screen. `renderer` must be prepared again
+  /// before other uses.
   [[nodiscard]] TargetImage rendered(const View& view, Renderer& renderer) const;
 
  private:

@@ -48,19 +48,19 @@ CameraConfig with_offset(CameraConfig config, VariedList parameter, double value
   return config;
 }
 
-// Returns the camera at this distance from the target's centre, on its line through it.
+// Returns the camera moved to a distance from the target's centre, along the line through camera and centre.
 Pose at_distance(Pose X_WC, const StudyTarget& target, double distance) {
   const Eigen::Vector3d way = X_WC.position - target.center();
-  if (!(way.norm() > 0)) throw std::invalid_argument("a camera cannot move away from its own place");
+  if (!(way.norm() > 0)) throw std::invalid_argument("a camera cannot move away from its own position");
   X_WC.position = target.center() + distance * way.stableNormalized();
   return X_WC;
 }
 
-// Returns the camera turned by the shortest rotation to look at the target's centre, and then rotated about
-// its level axis.
+// Returns the camera rotated to look at the target's centre by the shortest rotation, and then rotated about
+// the target's horizontal axis.
 Pose orbited(const Pose& X_WC, const StudyTarget& target, double angle) {
   const Eigen::Vector3d way = target.center() - X_WC.position;
-  if (!(way.norm() > 0)) throw std::invalid_argument("a camera cannot orbit its own place");
+  if (!(way.norm() > 0)) throw std::invalid_argument("a camera cannot orbit its own position");
   const Eigen::Matrix3d R_aim = X_WC.rotation * rotation_from_z(X_WC.rotation.transpose() * way);
   const Eigen::Matrix3d R_rise = so3_exp(-angle * target.level_axis());
   return {R_rise * R_aim, target.center() - R_rise * way};

@@ -10,12 +10,12 @@
 
 namespace flexura {
 
-/// Returns the indices among `cameras` of the two that a task names, or of the first two if it names none.
-/// Requires checked names.
+/// Returns the indices in `cameras` of the two cameras that a task names. A task without names uses the first
+/// two cameras. Requires checked names.
 [[nodiscard]] std::array<std::size_t, 2> two_cameras(const std::vector<std::string>& names,
                                                      const std::vector<CameraConfig>& cameras);
 
-/// Reports why the task at `path` does not have two cameras.
+/// Reports why the task at `path` cannot use two cameras, if so.
 void check_two_cameras(const std::vector<std::string>& names, const std::vector<CameraConfig>& cameras,
                        const std::string& path, Reader& reader);
 

@@ -8,10 +8,10 @@
 
 namespace flexura {
 
-/// Returns a camera's picture for reports: outlines are drawn over it.
+/// Returns a plot for reports with a camera's picture, over which outlines can be drawn.
 [[nodiscard]] ImagePlot photograph(const Picture& picture, const SensorConfig& sensor, std::string heading);
 
-/// Returns a cross at a point of the picture, px, with arms of `size` px: for its outlines.
+/// Returns a cross at a point `at` of the picture, px, with arms of `size` px, for use in an outline.
 [[nodiscard]] ImageOutline::Line cross(const Eigen::Vector2d& at, double size);
 
 }  // namespace flexura

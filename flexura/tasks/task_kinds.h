@@ -19,11 +19,11 @@
 
 namespace flexura {
 
-/// One `[[task]]` of a file, with all kinds. For each kind, its header of keys declares its table of fields
-/// and functions that those below call.
+/// One `[[task]]` of a file, of any kind. The configuration header of each kind declares its table of fields,
+/// and these functions, which the functions below call:
 ///   void check_keys(const KIND&, const Setup&, const std::string& path, Reader&);
 ///   std::unique_ptr<TaskRunner> runner_of(const KIND&, const Setup&, TaskLabel);
-/// These are optional.
+/// Two further functions are optional:
 ///   void read_files(KIND&, const Setup&, const Node& written, const std::string& path,
 ///                   std::vector<Problem>&);
 ///   LogTables log_tables(const KIND*);
@@ -31,18 +31,19 @@ namespace flexura {
 using TaskConfig = std::variant<MoveTask, HoldTask, SineTask, KeyframesTask, ExpressionTask, StudyTask,
                                 CalibrateTask, ServoTask, DynamicsTask>;
 
-[[nodiscard]] std::string task_name(const TaskConfig& task);       ///< Returns its name, otherwise its kind.
-[[nodiscard]] std::string_view task_kind(const TaskConfig& task);  ///< Returns "move", "servo", ...
+[[nodiscard]] std::string task_name(
+    const TaskConfig& task);  ///< Returns the task's name, or its kind if it has no name.
+[[nodiscard]] std::string_view task_kind(const TaskConfig& task);  ///< Returns the kind: "move", "servo", ...
 
 /// Reports why the task at `path` ("task[2]") does not fit the setup.
 void check_task(const TaskConfig& task, const Setup& setup, const std::string& path, Reader& reader);
 
-/// Reads the files that the task at `path`, written as `written`, names, from the setup's folder or below.
-/// Adds their errors to the problems.
+/// Reads the files that the task at `path` names, from the setup's folder or below. `written`: the task as
+/// written in the file. Adds errors in these files to `problems`.
 void read_task_files(TaskConfig& task, const Setup& setup, const Node& written, const std::string& path,
                      std::vector<Problem>& problems);
 
-/// Returns the runner of a checked task. Task and setup must outlive it.
+/// Returns the runner of a checked task. Task and setup must outlive the runner.
 [[nodiscard]] std::unique_ptr<TaskRunner> task_runner(const TaskConfig& task, const Setup& setup,
                                                       std::size_t number);
 

@@ -10,8 +10,8 @@ class TaskRunner;
 
 /// Name and position of a task in a file.
 struct TaskLabel {
-  std::string name;        ///< Its name, or its kind.
-  std::size_t number = 0;  ///< From 0.
+  std::string name;        ///< Name of the task, or its kind if it has no name.
+  std::size_t number = 0;  ///< Number of the task in the file, from 0.
 };
 
 }  // namespace flexura

@@ -8,17 +8,18 @@
 
 namespace flexura {
 
-/// What came of one task, in words. The terminal, the report and the summary show the same ones.
+/// Result of one task in words, for the terminal, the report and the summary.
 struct TaskOutcome {
-  std::string task;            ///< Name of the task.
-  std::string kind;            ///< "servo"
-  std::string noun;            ///< Of such tasks in a total: "servo", "motion".
-  std::string success;         ///< What those in a total that are reached have done: "converged".
-  bool is_reached = true;      ///< The task did what it was asked to do.
-  std::string text;            ///< One line without the name: "converged in 1.9 s, ...".
-  std::optional<double> size;  ///< Error to compare with tasks of this noun; missing: not compared.
-  std::string brief = {};      ///< Shorter text for totals of several tasks; "": the text.
-  std::string size_text = {};  ///< That error: "0.08 % of the length rms".
+  std::string task;        ///< Name of the task.
+  std::string kind;        ///< Kind of the task, such as "servo".
+  std::string noun;        ///< Noun for such tasks in a total, such as "servo" or "motion".
+  std::string success;     ///< Verb for successful tasks in a total, such as "converged".
+  bool is_reached = true;  ///< Whether the task was successful.
+  std::string text;        ///< Result in one line without the name: "converged in 1.9 s, ...".
+  std::optional<double>
+      size;  ///< Size of the error, for comparison with other tasks of this noun; missing: not compared.
+  std::string brief = {};      ///< Shorter text for totals of several tasks; "": `text` is used.
+  std::string size_text = {};  ///< The error `size` in words: "0.08 % of the length rms".
 
   /// Returns "NAME: TEXT".
   [[nodiscard]] std::string line() const;
@@ -28,14 +29,14 @@ struct TaskOutcome {
 [[nodiscard]] TaskOutcome not_begun(std::string task, std::string kind, std::string noun,
                                     std::string success);
 
-/// Returns all outcomes in one line, in the order of their nouns: of one task its line; of several with one
-/// noun "3 of 3 servos converged, worst 0.08 % of the length rms". "" without outcomes.
+/// Returns all outcomes in one line, grouped by nouns. A noun with one task has that task's line. A noun with
+/// several tasks has a total, "3 of 3 servos converged, worst 0.08 % of the length rms". "" without outcomes.
 [[nodiscard]] std::string total_of(const std::vector<TaskOutcome>& outcomes);
 
 /// Returns the outcomes as a list of tables: `task`, `kind`, `reached`, `text`.
 [[nodiscard]] Node outcomes_node(const std::vector<TaskOutcome>& outcomes);
 
-/// Returns a length in words: "0.81 mm", "1.2 m", "less than 0.001 mm".
+/// Returns a length with a suitable unit: "0.81 mm", "1.2 m", "less than 0.001 mm".
 [[nodiscard]] std::string length_text(double metres);
 
 }  // namespace flexura

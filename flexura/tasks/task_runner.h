@@ -34,21 +34,24 @@ struct MissedTarget {
   std::string place;    ///< Place of the target in the task: "target[1]"; "" if there is only one.
   double distance = 0;  ///< Remaining distance, m.
   double limit = 0;     ///< Largest accepted distance, m.
-  std::optional<Eigen::Vector3d> position = {};  ///< World, m; for a position of the tip.
+  std::optional<Eigen::Vector3d> position =
+      {};  ///< Target of the tip in W, m; missing if the target is not a tip position.
 };
 
 /// Planned motion of a task.
 struct TaskPlan {
-  MotionPtr motion;         ///< Never null; its times count from the task's start.
-  bool is_steered = false;  ///< By cameras: a limiter decides the commands during the run.
-  bool is_planned = true;   ///< The motion is known before the run; a servo's only afterwards.
+  MotionPtr motion;  ///< Motion of the arm, never null; its times count from the task's start.
+  bool is_steered =
+      false;  ///< Whether cameras control the motion; a limiter then decides the commands during the run.
+  bool is_planned =
+      true;  ///< Whether the motion is known before the run; that of a servo is known only afterwards.
   std::vector<MissedTarget> missed = {};
 };
 
-/// Model of a rig in the course of a run.
+/// Model of a rig during a run, which calibrations update.
 struct NominalRig {
-  RigModel model;         ///< From the file, or from calibrations.
-  bool is_found = false;  ///< Calibrated by the default method, with mounts and lenses.
+  RigModel model;         ///< Model from the file, or from a calibration.
+  bool is_found = false;  ///< Whether mounts and lenses were calibrated by the default method.
 };
 
 /// Resources of a task that the rig performs.
@@ -65,13 +68,14 @@ struct TaskStage {
 
 /// Result of a task.
 struct TaskEnd {
-  MotionPtr motion;                    ///< Commanded motion of the arm, from the task's start. Never null.
-  std::optional<std::string> failure;  ///< Why the run ends with this task; std::nullopt: it continues.
+  MotionPtr motion;  ///< Commanded motion of the arm, with times from the task's start; never null.
+  std::optional<std::string>
+      failure;  ///< Why the run ends with this task; std::nullopt if the run continues.
 };
 
-/// Estimated work of a task, for progress: only ratios count.
+/// Estimated work of a task, for the display of progress. Only the ratios matter.
 struct TaskWork {
-  double duration = 0;    ///< Time that is played, s; the rig's part of the work depends on it.
+  double duration = 0;    ///< Duration of the task, s, on which the rig's part of the work depends.
   double simulating = 0;  ///< Computing time of TaskRunner::simulate, s.
   double performing = 0;  ///< Computing time of TaskRunner::perform, s.
   double finishing = 0;   ///< Computing time of TaskRunner::finish, s.
@@ -79,13 +83,13 @@ struct TaskWork {
 
 /// Time at which a task's motion is known.
 enum class TaskMotionSource : std::uint8_t {
-  known,      ///< From the state at its start.
-  simulated,  ///< After its simulation from the state at its start (TaskRunner::simulate).
-  by_rig,     ///< After the rig has performed it (TaskRunner::perform).
+  known,      ///< Known from the state at the task's start.
+  simulated,  ///< Known after a simulation from the state at the task's start (TaskRunner::simulate).
+  by_rig,     ///< Known after the rig has performed the task (TaskRunner::perform).
 };
 
-/// One task of an experiment, from its plan to its results. A kind of task is a folder of tasks/ with one of
-/// these; tasks/task_kinds.h lists them.
+/// One task of an experiment, from its plan to its results. Each kind of task has a folder in tasks/ with a
+/// derived class; tasks/task_kinds.h lists the kinds.
 class TaskRunner {
  public:
   /// The setup must outlive this object.
@@ -96,45 +100,47 @@ class TaskRunner {
 
   [[nodiscard]] const std::string& name() const { return label_.name; }
   [[nodiscard]] virtual TaskMotionSource motion_source() const { return TaskMotionSource::known; }
-  /// Returns an estimate of its work.
+  /// Returns an estimate of the task's work.
   [[nodiscard]] virtual TaskWork work() const = 0;
 
-  /// Returns the plan for an arm in the state `from`. `done`: the performed motion if known, otherwise null;
-  /// the plan then has the largest possible motion.
+  /// Returns the plan for an arm in the state `from`. `done`: the performed motion if it is known, otherwise
+  /// null. With null the plan has the largest possible motion.
   [[nodiscard]] virtual TaskPlan plan(const ArmState& from, const MotionPtr& done) const = 0;
 
-  /// For simulated tasks: simulates it from `start` s on.
+  /// For simulated tasks: simulates the task, which begins at `start` (s).
   [[nodiscard]] virtual TaskEnd simulate(const ArmState& /*from*/, double /*start*/, Progress& /*progress*/) {
     throw std::logic_error("this task is not simulated");
   }
-  /// For tasks of the rig: performs it now. `from`: last commanded state of the arm.
+  /// For tasks of the rig: performs the task now. `from`: last commanded state of the arm.
   [[nodiscard]] virtual TaskEnd perform(const ArmState& /*from*/, TaskStage& /*stage*/) {
     throw std::logic_error("this task is not done by the rig");
   }
 
-  /// Adds caveats and notes to the check of its motion. `ended_by`: the task that ends the run before this
-  /// one is simulated, or "".
+  /// Adds caveats and notes to the check of the task's motion. `ended_by`: the task that ends the run before
+  /// this one is simulated, or "".
   virtual void add_caveats(const ArmState& /*from*/, const std::string& /*ended_by*/,
                            SafetyReport& /*report*/) const {}
 
-  /// For simulated tasks: logs its results up to `time` s, when the run has played up to there.
+  /// For simulated tasks: logs the task's results up to `time` (s). Called when the run has reached this
+  /// time.
   virtual void publish_up_to(double /*time*/, RunLog& /*log*/) {}
 
-  /// Writes its files into the results. `is_cancelled`: the run was cancelled, and computations still open
-  /// are skipped.
+  /// Writes the task's files into the results folder. `is_cancelled`: the run was cancelled, so that
+  /// remaining computations are skipped.
   virtual void finish(const std::filesystem::path& /*results*/, bool /*is_cancelled*/,
                       Progress& /*progress*/) {}
 
-  /// Returns what came of it. A task that did not begin is not reached, with the text "not begun". `motion`:
-  /// commanded motion, from its start; of tasks with a motion known from their start, which the caller knows
-  /// to be played.
+  /// Returns the result of the task in words. A task that did not begin is not reached, with the text "not
+  /// begun". `motion`: commanded motion with times from the task's start. If the task's motion is known from
+  /// its start, the caller ensures that it was played.
   [[nodiscard]] virtual TaskOutcome outcome(const Motion& motion) const = 0;
-  /// Returns the summary's list of its kind: "servos"; "" if there is no list.
+  /// Returns the name of the list for tasks of this kind in the summary, such as "servos"; "" if there is no
+  /// list.
   [[nodiscard]] virtual std::string_view summary_list() const { return ""; }
-  /// Returns its item in the list; std::nullopt without a result.
+  /// Returns the task's item in that list; std::nullopt without a result.
   [[nodiscard]] virtual std::optional<Node> summary() const { return std::nullopt; }
-  /// Returns its chapter of the report; std::nullopt without a result. `number` counts tasks of its kind,
-  /// from 0, for names of figures.
+  /// Returns the task's chapter of the report; std::nullopt without a result. `number`: index among the tasks
+  /// of this kind, from 0, for names of figures.
   [[nodiscard]] virtual std::optional<Chapter> chapter(std::size_t /*number*/) const { return std::nullopt; }
 
  protected:

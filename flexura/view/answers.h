@@ -11,12 +11,13 @@ namespace flexura {
 
 /// Returns an empty table, {}.
 [[nodiscard]] Node nothing();
-/// Returns the answer to `point`: the backbone at `s` m along the unstretched arm. Throws ViewRefusal beyond
-/// its ends.
+/// Returns the answer to the request `point`: the pose of the backbone at `s` (m along the unstretched arm).
+/// Throws ViewRefusal if `s` is beyond the arm's ends.
 [[nodiscard]] Node point_answer(const Backbone& backbone, double s);
-/// Returns the answer to `backbone`.
+/// Returns the answer to the request `backbone`.
 [[nodiscard]] Node backbone_answer(const Backbone& backbone);
-/// Returns the answer to `tip`: the solution, and the reason why the arm does not go there ("" if it does).
+/// Returns the answer to the request `tip`: the solution, and the reason why the arm does not move to it, or
+/// "".
 [[nodiscard]] Node tip_answer(const InverseResult& found, const std::string& danger);
 /// Returns [[bend_x, bend_y], ...] without negative zeros.
 [[nodiscard]] Node bends_answer(const ArmState& state);

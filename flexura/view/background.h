@@ -5,7 +5,7 @@
 
 namespace flexura {
 
-/// Lanes of background work beside a session's thread. Jobs of one lane run one after another.
+/// Lanes of work outside a session's thread. Jobs of one lane run one after another.
 enum class Lane : std::uint8_t { pictures, measures, checks, tasks };
 inline constexpr std::size_t lane_count = 4;
 

@@ -9,11 +9,11 @@
 
 namespace flexura {
 
-/// Measurement of a calibration in one picture, as logged.
+/// Observation of a calibration in one picture, as logged.
 struct CalibrationPicture {
   CalibrationObservationMessage observation;
   std::optional<std::int64_t> number =
-      {};  ///< Picture number for clients; missing if clients do not get the picture.
+      {};  ///< Number of the picture for clients; missing if clients do not get the picture.
 };
 
 /// State of a calibration at one time: its last decision, and the last picture of each camera.

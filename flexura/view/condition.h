@@ -7,25 +7,25 @@ namespace flexura {
 
 /// The condition of a rig, or of a recorded run at one time.
 enum class Condition : std::uint8_t {
-  idle,     ///< Nothing happens.
-  moving,   ///< Somebody moves the arm.
+  idle,     ///< Nothing moves, and no tasks run.
+  moving,   ///< A client moves the arm.
   running,  ///< Tasks run.
-  done,     ///< They are done, and nobody has moved anything since.
-  halted,   ///< Somebody, or the program, has stopped it.
+  done,     ///< Tasks are done, and nothing was moved since.
+  halted,   ///< A client or the program has stopped the motion.
   failed,   ///< Tasks have failed.
-  unsafe,   ///< The arm is where it must not be, or has been in these tasks.
+  unsafe,   ///< The arm violates a limit or has a forbidden contact, now or during these tasks.
 };
 
-/// Returns its name in messages, such as "unsafe".
+/// Returns the name of a condition in messages, such as "unsafe".
 [[nodiscard]] const char* name_of(Condition condition);
-/// Returns the condition after a run with this outcome ("done", "unsafe", "failed", "cancelled"), as results
-/// name it; idle for an unknown one.
+/// Returns the condition after a run with this outcome in its results: "done", "unsafe", "failed" or
+/// "cancelled". Returns `idle` for an unknown outcome.
 [[nodiscard]] Condition condition_after(const std::string& outcome);
 
-/// A condition, and why it is so.
+/// A condition and its reason.
 struct Conditioned {
   Condition condition = Condition::idle;
-  std::string text;  ///< One line; may be "".
+  std::string text;  ///< Reason in one line; may be "".
   bool operator==(const Conditioned&) const = default;
 };
 

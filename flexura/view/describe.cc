@@ -205,7 +205,7 @@ Node task_nodes(const Experiment& experiment) {
 }  // namespace
 
 const Table<Mark>& fields_of(const Mark*) {
-  static const auto table = Table<Mark>("mark", "Something at a time of a recording.")
+  static const auto table = Table<Mark>("mark", "Marked time of a recording.")
                                 .field("time", &Mark::time, {.meaning = "s"})
                                 .field("end", &Mark::end, {.meaning = "s"})
                                 .field("level", &Mark::level, {})
@@ -215,7 +215,7 @@ const Table<Mark>& fields_of(const Mark*) {
 }
 
 const Table<Quantity>& fields_of(const Quantity*) {
-  static const auto table = Table<Quantity>("quantity", "Something that a recording knows over time.")
+  static const auto table = Table<Quantity>("quantity", "Quantity of a recording over time.")
                                 .field("name", &Quantity::name, {})
                                 .field("unit", &Quantity::unit, {})
                                 .field("group", &Quantity::group, {});

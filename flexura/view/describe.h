@@ -14,7 +14,7 @@ namespace flexura {
 
 /// A marked time of a recording.
 struct Mark {
-  double time = 0, end = 0;  ///< s
+  double time = 0, end = 0;  ///< Start and end, s.
   std::string level;         ///< "info", "warning" or "error".
   std::string name;
   std::string text;
@@ -24,7 +24,8 @@ struct Mark {
 struct Quantity {
   std::string name;
   std::string unit;
-  std::optional<std::string> group = {};  ///< Group in which it is shown; missing: derived from its name.
+  std::optional<std::string> group =
+      {};  ///< Group in which the quantity is shown; missing: derived from its name.
 };
 
 const Table<Mark>& fields_of(const Mark*);
@@ -33,14 +34,15 @@ const Table<Quantity>& fields_of(const Quantity*);
 /// Returns [x, y, z, qw, qx, qy, qz].
 [[nodiscard]] Node flat_pose_node(const Pose& X_WP);
 
-/// Returns SCENE: the true scene.
+/// Returns the part SCENE of the description: the true scene.
 [[nodiscard]] Node scene_node(const ViewedRig& rig);
 
-/// Returns CONTROLS: what can be moved and its ranges by the model, and the tasks. The range of a tendon
-/// follows from its sections' limits; a section without a limit bends by a whole turn.
+/// Returns the part CONTROLS of the description: the controls with their ranges according to the model, and
+/// the tasks. The range of a tendon follows from its sections' limits; a section without a limit counts with
+/// a whole turn.
 [[nodiscard]] Node controls_node(const ViewedRig& rig);
-/// Returns CONTROLS of a live rig. If there are actuators and switches for clients, these are included, and
-/// tendons that are coupled are omitted.
+/// Returns CONTROLS for a live rig. Actuators and switches for clients are included, if there are any;
+/// coupled tendons are then omitted.
 [[nodiscard]] Node live_controls_node(const ViewedRig& rig);
 
 }  // namespace flexura

@@ -6,8 +6,8 @@
 
 namespace flexura {
 
-/// Returns the document requested by an address: "/image/CAMERA.png[?time=T]", "/series?names=a,b&points=N",
-/// or "/report". Throws ViewRefusal for any other address, and nothing else that depends on the address.
+/// Returns the document that an address requests: "/image/CAMERA.png[?time=T]", "/series?names=a,b&points=N",
+/// or "/report". Throws ViewRefusal for any other address.
 [[nodiscard]] Document read_document(std::string_view text);
 
 }  // namespace flexura

@@ -11,10 +11,10 @@
 #include "flexura/view/state_message.h"
 
 // Drawings beside the arm and on its pictures at one instant (docs/viewer-protocol.md, "Extras"). Each source
-// of drawings creates an Extras (for example servo_extras.h); one message serves all of them.
+// of drawings, such as servo_extras.h, creates an Extras. All sources use one kind of message.
 namespace flexura {
 
-/// Another arm in the 3D view.
+/// A second arm drawn in the 3D view, such as the target shape.
 struct GhostArm {
   std::string id, label;
   std::string color;               ///< "#rrggbb"
@@ -24,10 +24,10 @@ struct GhostArm {
 /// Layers on a camera's picture.
 struct PictureLayers {
   std::string camera;
-  /// Number of the picture, as in image messages; missing: any picture.
+  /// Number of the picture in image messages; missing: any picture.
   std::optional<std::int64_t> number;
-  std::string reason;  ///< Why nothing was found in the picture; "" if something was found.
-  Node::Array layers;  ///< LAYER
+  std::string reason;  ///< Why nothing was found in the picture, or "".
+  Node::Array layers;  ///< Layers, each a LAYER of the protocol.
 };
 
 /// Values at equally spaced points along the arm, from base to tip.
@@ -46,14 +46,14 @@ struct ExtraName {
 inline constexpr ExtraName true_arm{"truth", "True", "#51cf66"};
 
 struct Extras {
-  double time = 0;          ///< s
-  std::string title, text;  ///< What this shows, and its status, one line each.
+  double time = 0;          ///< Time, s.
+  std::string title, text;  ///< Title of these drawings, and their status; one line each.
   std::vector<GhostArm> ghosts;
   std::vector<PictureLayers> overlays;
   std::string along_label, along_unit;  ///< Label and unit of all curves.
-  double length = 0;                    ///< Length of the arm along which the curves run, m.
+  double length = 0;                    ///< Length of the arm along which the curves are drawn, m.
   std::vector<AlongCurve> along;
-  std::vector<std::pair<std::string, double>> values;  ///< Quantities by the names used in series.
+  std::vector<std::pair<std::string, double>> values;  ///< Quantities with their names in series.
 };
 
 /// Returns a line on a picture, rounded to a hundredth of a pixel. `id` and `color` match those of the ghost
@@ -72,9 +72,9 @@ struct LayerMark {
 [[nodiscard]] Node lines_layer(const LayerMark& mark, const std::vector<std::vector<Eigen::Vector2d>>& lines,
                                bool is_dashed = false);
 
-/// Stream number of these messages to a client.
+/// Stream number of extras messages to a client.
 inline constexpr std::uint32_t extras_stream = 0xffffffff;
-/// Returns the binary message. Empty extras remove the previous drawings.
+/// Returns the binary message with the extras. Empty extras remove the previous drawings.
 [[nodiscard]] std::string extras_message(const Extras& extras);
 
 }  // namespace flexura

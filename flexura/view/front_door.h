@@ -21,24 +21,25 @@
 namespace flexura {
 
 /// Connects a server and a viewer. Takes events from the server's thread without blocking, and passes them to
-/// the viewer on its own thread. That thread advances the viewer 60 times a second while a client is
-/// connected. Errors there are reported to the affected clients, and do not stop the thread.
+/// the viewer on its own thread. This thread advances the viewer 60 times a second while a client is
+/// connected. Errors in this thread are reported to the affected clients and do not stop it.
 class FrontDoor : public Host {
  public:
   struct Config {
-    std::function<double()> clock;          ///< Time in s, never decreasing; callable from any thread.
-    double interval = 1.0 / 60;             ///< Interval between advances of the viewer, s.
-    std::size_t waiting_of_a_client = 256;  ///< Limit of unanswered requests per client; more are refused.
+    std::function<double()> clock;  ///< Time in s, never decreasing; callable from any thread.
+    double interval = 1.0 / 60;     ///< Interval between advances of the viewer, s.
+    std::size_t waiting_of_a_client =
+        256;  ///< Largest number of unanswered requests per client; further requests are refused.
     std::size_t waiting_documents = 64;
   };
 
   explicit FrontDoor(Config config);
   ~FrontDoor() override;
 
-  /// Starts the viewer; call once, before or after the first client connects. `messenger` must exist until
-  /// stop(). Rethrows exceptions of the viewer's construction.
+  /// Starts the viewer. Must be called once, before or after the first client connects. `messenger` must
+  /// exist until stop(). Rethrows exceptions of the viewer's construction.
   void start(ViewStart start, Messenger& messenger);
-  /// Stops the viewer: the messenger is not used afterwards. Waits for jobs under way; cancels a run.
+  /// Stops the viewer, after which the messenger is not used. Waits for active jobs and cancels a run.
   void stop();
 
   void opened(ClientId client) override;
@@ -50,7 +51,7 @@ class FrontDoor : public Host {
   struct Item {
     std::function<void(Viewer&)> act;
     std::optional<ClientId> client = {};  // Client to inform about a failure; missing: all clients.
-    bool is_request = false;              // Its answer needs room in the client's queue.
+    bool is_request = false;              // Whether the answer needs room in the client's queue.
   };
   using Counter = std::shared_ptr<std::atomic<std::size_t>>;
 

@@ -11,8 +11,8 @@
 
 namespace flexura {
 
-/// Decides which client gets images of which camera, and when. Each stream has its own rate, and the next
-/// image is due only after the client has acknowledged the last one.
+/// Decides when which client gets images of which camera. Each stream has its own rate. The next image is due
+/// only after the client has acknowledged the previous image.
 class ImageStreams {
  public:
   struct Key {
@@ -26,8 +26,8 @@ class ImageStreams {
   void ack(const Key& key, std::int64_t number);
   void close(ClientId client);
 
-  /// Returns whether image `number` of the camera is due at `now` s, which requires that it differs from the
-  /// last one sent.
+  /// Returns whether image `number` of the camera is due at `now` (s). An image is not due if it was the last
+  /// image sent.
   [[nodiscard]] bool is_due(const Key& key, std::int64_t number, double now) const;
   /// Returns the streams of a camera for which its image `number` is due.
   [[nodiscard]] std::vector<Key> due(std::size_t camera, std::int64_t number, double now) const;
@@ -41,11 +41,11 @@ class ImageStreams {
 
  private:
   struct Stream {
-    double interval = 0;  // s
+    double interval = 0;  // Time between images, s.
     int quality = 80;
     std::optional<std::int64_t> last;
     bool is_acknowledged = true;
-    double due = 0;  // Time of the next image, s.
+    double due = 0;  // Time at which the next image is due, s.
   };
   std::map<Key, Stream> streams_;
 };

@@ -13,8 +13,9 @@
 
 namespace flexura {
 
-/// Questions of which only the newest counts. For each client and kind, one question is being answered and
-/// one waits. To be used from one thread; the answers are computed on another.
+/// Questions of clients, of which only the newest matters. For each client and kind, at most one question is
+/// being answered and at most one waits. All calls must be from one thread; answers are computed on another
+/// thread.
 class LatestJobs {
  public:
   /// The client and the kind of its question.
@@ -43,7 +44,7 @@ class LatestJobs {
 
   Background& background_;
   Lane lane_;
-  // Waiting questions of the keys whose question is being answered.
+  // Keys with a question that is being answered, and their waiting questions.
   std::map<Key, std::optional<Question>> waiting_;
   std::shared_ptr<const bool> alive_ = std::make_shared<const bool>(true);
 };

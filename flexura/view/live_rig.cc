@@ -101,7 +101,7 @@ void LiveRig::take_over(std::unique_ptr<SimulatedRig> rig, double now) {
 
 void LiveRig::restart(double now, const ArmState& state) {
   RigConfig model = rig_->experiment.model_rig(), truth = rig_->experiment.true_rig();
-  // As far off as at the start.
+  // Keeps the initial difference between true and modelled state.
   const ArmDifference off = minus(ArmSetup(truth).initial, ArmSetup(model).initial);
   model.arm.initial = shape_of(state);
   truth.arm.initial = shape_of(plus(state, off));

@@ -233,9 +233,9 @@ void LiveSession::follow_run() {
   news_ = run_->news();
   if (pace_) run_->pace_to(pace_->next(clock_ - paced_at_, news_.time.value_or(0)));
   paced_at_ = clock_;
-  // From the rig to the run's start.
+  // The state jumps from that of the rig to the run's start.
   if (news_.time && !was_shown) ++leaps_;
-  // A page's time goes on, that of a watched run is its own: as that of states.
+  // Messages have the time of the live rig; for a watched run, they have the time of the run.
   const std::optional<double> now = is_watched_run() ? std::nullopt : std::optional(rig_.now());
   if (news_.end && !is_watched_run()) stay_where_it_ended();
   reporter_.report(*run_, news_, clock_, now, clients_);
@@ -246,7 +246,7 @@ void LiveSession::follow_run() {
   pace_.reset();
 }
 
-// What tasks have done stays done: the arm lies as they leave it, and cameras stand where they were moved.
+// Keeps the final state of a run: the arm and the cameras stay at their last positions.
 void LiveSession::stay_where_it_ended() {
   if (!news_.time) return;  // It never began.
   ++generation_;
@@ -284,7 +284,7 @@ Backbone LiveSession::shown_backbone() {
   return run_truth() != nullptr ? run_truth()->backbone : viewed()->truth.backbone(news_.state);
 }
 
-// Returns the true arm of a run; null if the arm lies as commanded, as far as reported.
+// Returns the last reported true arm of a run; null if none was reported.
 const TrueArm* LiveSession::run_truth() const { return news_.truth.get(); }
 
 // Returns the cameras' axis positions in the run, as far as reported.
@@ -302,13 +302,13 @@ void LiveSession::send_states() {
   StateMessage state = is_running && news_.time
                            ? still_state(*viewed(), *news_.time, news_.state, run_stances(), run_truth())
                            : rig_.state();
-  // At rest steps of a motor lie between that and what it reports.
+  // Commanded positions differ from readings by the steps of the motors.
   for (std::size_t i = 0; i < state.cameras.size() && !is_run_shown(); ++i) {
     state.cameras[i].commanded_head = head_targets_.at(i);
     state.cameras[i].commanded_stage = stage_targets_.at(i).offset;
   }
   if (is_running) state.pace = pace_ ? pace_->slowness() : std::nullopt;
-  // A page's time goes on; that of a run which it watches from the start to the end is the run's.
+  // States have the time of the live rig; for a watched run, they have the time of the run.
   if (!is_watched_run()) state.time = rig_.now();
   state.is_running = is_running;
   state.is_moving = state.is_moving || is_running;
@@ -319,7 +319,8 @@ void LiveSession::send_states() {
   for (const ClientId client : clients_) messenger().post(client, state_stream, message);
 }
 
-// The picture of a camera in which a servo or a calibration has measured what is drawn; null: none is.
+// Returns the picture of a camera to which the drawn measurements of a servo or calibration belong; null if
+// there is none.
 const RunLink::Measured* LiveSession::measured(std::size_t camera) const {
   if (!is_run_shown()) return nullptr;
   const std::string& name = viewed()->cameras.at(camera).config().name;

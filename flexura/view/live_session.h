@@ -23,19 +23,20 @@
 
 namespace flexura {
 
-/// A simulated rig that clients move and see. During a run it shows the run's newest state.
+/// Session with a simulated rig that clients can move. During a run the session shows the run's newest state.
 class LiveSession : public PictureSession {
  public:
   struct Config {
-    double start = 0;               ///< Initial time, s by the clock of advance().
-    std::filesystem::path results;  ///< Folder for the results of `run`; -2, ... is appended if it exists.
-    /// A run started outside this session. Clients cannot move anything during it, nor cancel or halt it.
+    double start = 0;               ///< Initial time of the clock of advance(), s.
+    std::filesystem::path results;  ///< Folder for the results of runs; -2, ... is appended if it exists.
+    /// A run started outside this session. Clients cannot cancel or halt this run, or move anything during
+    /// it.
     std::shared_ptr<RunLink> run = {};
   };
 
   LiveSession(const ViewedRigPtr& rig, Messenger& messenger, Background& background, Config config);
 
-  /// Cancels a run that this session has started, without waiting.
+  /// Cancels a run that this session has started. Does not wait for its end.
   void cancel();
 
   [[nodiscard]] Hello hello() const override;
@@ -45,22 +46,22 @@ class LiveSession : public PictureSession {
   void take(const Document& document, std::function<void(HttpAnswer)> answer) override;
   void advance(double now) override;
 
-  /// Returns the results of the last finished run that left any.
+  /// Returns the results folder of the last finished run that has results.
   [[nodiscard]] const std::optional<std::filesystem::path>& results() const { return results_; }
-  /// Returns whether tasks are running, whoever started them.
+  /// Returns whether tasks are running, started in this session or outside.
   [[nodiscard]] bool is_running() const { return run_ != nullptr; }
   /// Returns whether a run started outside this session has ended.
   [[nodiscard]] bool is_over() const { return is_watched_run() && run_ == nullptr; }
 
  private:
   struct Taker;
-  // A requested move that is being checked, or waits for the check.
+  // A requested move that is being checked or waits for its check.
   struct Move {
     std::variant<ArmState, TipRequest, TendonPull> target;
     double duration = 0;
     Reply reply;
   };
-  // The result of the check.
+  // The result of the check of a move.
   struct Judged {
     ArmState state;
     std::optional<InverseResult> found;
@@ -117,17 +118,17 @@ class LiveSession : public PictureSession {
   std::optional<Move> waiting_;
   std::uint64_t generation_ = 0;  // Moves of an older generation are discarded.
   bool is_touching_ = false;
-  std::optional<ClientId> pushing_client_;  // The client that pushes the arm.
+  std::optional<ClientId> pushing_client_;  // Client that pushes the arm.
   bool is_slow_ = false;
-  double warned_ = -1;   // s
-  std::string warning_;  // Last warning about the arm's state, as sent.
+  double warned_ = -1;   // Time of the last warning, s.
+  std::string warning_;  // Last warning sent about the arm's state.
   std::shared_ptr<RunLink> run_;
-  RunLink::News news_;           // of the run
-  std::optional<RunPace> pace_;  // of one that is started here
-  double paced_at_ = 0;          // s, of advance()
+  RunLink::News news_;           // Newest news of the run.
+  std::optional<RunPace> pace_;  // Pace of a run that was started in this session.
+  double paced_at_ = 0;          // Time of advance() at the last pacing, s.
   RunReporter reporter_;
   std::optional<std::filesystem::path> results_;
-  // What tasks or a halt have left, until somebody moves something; and what clients know.
+  // Condition after tasks or a halt, valid until something is moved; and the condition that clients know.
   std::optional<Conditioned> left_;
   Conditioned reported_;
 };

@@ -109,7 +109,7 @@ void LiveSession::halt() {
   left_ = {Condition::halted, "everything was stopped"};
 }
 
-// What cameras say of themselves is what they are to do from now on: what commands add to.
+// Takes the readings of the cameras as their commanded positions, to which further commands are relative.
 void LiveSession::aim_at_readings() {
   head_targets_.clear();
   stage_targets_.clear();
@@ -135,12 +135,11 @@ void LiveSession::reset() {
 
 // Switches weight and loads on or off. They change at once, since they have no inertia.
 void LiveSession::weigh(bool on) {
-  if (!viewed()->has_weight)
-    throw ViewRefusal("weight: nothing pulls at this arm that could be switched off");
+  if (!viewed()->has_weight) throw ViewRefusal("weight: this arm has no weight or loads to switch off");
   try {
     rig_.weigh(on);
   } catch (const std::runtime_error& error) {
-    throw ViewRefusal(fmt::format("weight: the arm stays as it is: {}", error.what()));
+    throw ViewRefusal(fmt::format("weight: nothing was changed: {}", error.what()));
   }
   const std::string text = touched(rig_.backbone(rig_.now()), viewed()->forbidden);
   if (!text.empty() && !is_touching_) notice("error", "safety", text);
@@ -150,7 +149,7 @@ void LiveSession::weigh(bool on) {
 void LiveSession::push(ClientId client, const PushRequest& request) {
   const std::optional<PushScale>& scale = viewed()->push;
   if (!scale)
-    throw ViewRefusal("push: this arm yields to no force: expected [arm] model = \"static\" or \"dynamic\"");
+    throw ViewRefusal("push: forces do not move this arm: expected [arm] model = \"static\" or \"dynamic\"");
   constexpr double rounding = 1e-6;  // A page has positions from states in single precision.
   if (request.s > (1 + rounding) * scale->length)
     throw ViewRefusal(fmt::format("s = {:.6g}: expected 0 to {:.6g} m", request.s, scale->length));
@@ -171,7 +170,7 @@ void LiveSession::push(ClientId client, const PushRequest& request) {
   try {
     rig_.push(push);
   } catch (const std::exception& error) {
-    throw ViewRefusal(fmt::format("push: the arm stays as it is: {}", error.what()));
+    throw ViewRefusal(fmt::format("push: nothing was changed: {}", error.what()));
   }
   pushing_client_ = client;
   left_.reset();
@@ -200,8 +199,7 @@ void LiveSession::watch_yielding() {
 void LiveSession::report_pace() {
   const std::optional<double> pace = rig_.pace();
   if (pace && !is_slow_)
-    event("warning", "clock",
-          "its steps take longer than they last: the arm moves more slowly than in real time");
+    event("warning", "clock", "the simulation is slower than real time: the arm moves more slowly");
   is_slow_ = pace.has_value();
 }
 
@@ -244,7 +242,7 @@ void LiveSession::move_on(double next) {
   }
 }
 
-// What of a run is unsafe where it is now; "": nothing.
+// Returns what is unsafe in the present state of a run, or "".
 std::string LiveSession::run_danger() {
   const std::string limit = beyond_limits(viewed()->model.driven(), news_.state);
   return limit.empty() ? touched(shown_backbone(), viewed()->forbidden) : limit;
@@ -261,7 +259,7 @@ Conditioned LiveSession::condition() {
   return {rig_.is_arm_moving() || rig_.is_yielding() ? Condition::moving : Condition::idle, ""};
 }
 
-// When it changes, and not each word of a run's progress.
+// Reports the condition to the clients if it has changed.
 void LiveSession::report_condition() {
   const Conditioned now = condition();
   const bool is_new = now.condition != reported_.condition ||

@@ -17,7 +17,7 @@ class Messenger {
   Messenger(const Messenger&) = delete;
   Messenger& operator=(const Messenger&) = delete;
 
-  /// As Server::send, Server::post and Server::has_room.
+  /// See Server::send, Server::post and Server::has_room.
   virtual void send(ClientId client, std::string text) = 0;
   virtual void post(ClientId client, std::uint32_t stream, std::shared_ptr<const std::string> message) = 0;
   [[nodiscard]] virtual bool has_room(ClientId /*client*/) const { return true; }

@@ -12,21 +12,21 @@
 #include "flexura/sim/tendon_pull.h"
 #include "flexura/view/request.h"
 
-// Checks and conversions of requested arm moves: pure functions, callable from other threads.
+// Checks and conversions of requested arm moves. All functions are pure and callable from any thread.
 namespace flexura {
 
 /// Returns the shape that a client requests, clamped to the arm's limits. Throws ViewRefusal with the reason
-/// if it does not fit this arm.
+/// if the request does not fit this arm.
 [[nodiscard]] ArmState requested_shape(const Arm& arm, const std::optional<Drive>& drive,
                                        const ArmRequest& request);
 [[nodiscard]] ArmState requested_shape(const Arm& arm, const ShapeConfig& shape);
 
 /// Displacements of tendons that are pulled individually.
 struct TendonPull {
-  std::vector<double> displacements;  ///< m
+  std::vector<double> displacements;  ///< Displacement of each tendon, m.
 };
 /// Returns the displacements that a client requests for a rig's actuators. Throws ViewRefusal if their number
-/// is wrong, or if one is out of range.
+/// is wrong, or if a displacement is out of range.
 [[nodiscard]] TendonPull requested_pull(const std::vector<PulledTendon>& actuators,
                                         const std::vector<double>& displacements);
 
@@ -36,7 +36,8 @@ void require_travel(const Camera& camera, const StageRequest& request);
 /// Returns the shape nearest to `state` within the sections' limits.
 [[nodiscard]] ArmState within_limits(const Arm& arm, ArmState state);
 
-/// Returns a command that reaches the tip request, searched from `from`. Fast enough to follow a hand.
+/// Returns a command that reaches the tip request, or comes nearest. The search starts at `from` and is fast
+/// enough to follow a dragging hand.
 [[nodiscard]] InverseResult shape_for_tip(const ArmModel& arm, const ArmState& from,
                                           const TipRequest& request);
 
@@ -45,10 +46,10 @@ void require_travel(const Camera& camera, const StageRequest& request);
 [[nodiscard]] std::string danger_on_path(const ArmModel& arm, const std::vector<Obstacle>& obstacles,
                                          const ArmState& from, const ArmState& to);
 
-/// Which section is bent or stretched beyond its limits, one line; "" when none.
+/// Returns in one line which section is bent or stretched beyond its limits, or "".
 [[nodiscard]] std::string beyond_limits(const Arm& arm, const ArmState& state);
 
-/// What an arm touches that lies so, one line; "" when nothing.
+/// Returns in one line what an arm with this backbone touches, or "".
 [[nodiscard]] std::string touched(const Backbone& backbone, const std::vector<Obstacle>& obstacles);
 
 }  // namespace flexura

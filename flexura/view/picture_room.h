@@ -19,39 +19,39 @@
 
 namespace flexura {
 
-/// The stream of Messenger::post for states; images of camera i use stream 1 + i.
+/// Stream number of states in Messenger::post. Images of camera i use the stream 1 + i.
 inline constexpr std::uint32_t state_stream = 0;
 [[nodiscard]] inline std::uint32_t image_stream(std::size_t camera) {
   return 1 + static_cast<std::uint32_t>(camera);
 }
 
-/// Renders a session's pictures away from its thread. A camera's next picture is rendered only after its last
-/// one is done. A picture that is certain to equal the last one is not rendered again.
+/// Renders a session's pictures outside the session's thread. A camera's next picture is rendered only after
+/// its previous picture is done. A picture that is certain to equal the previous one is not rendered again.
 class PictureRoom {
  public:
   PictureRoom(ViewedRigPtr rig, Messenger& messenger, Background& background, ImageStreams& streams);
 
-  /// Returns whether a picture of the camera is being rendered for streams.
+  /// Returns whether a picture of this camera is being rendered for streams.
   [[nodiscard]] bool is_busy(std::size_t camera) const { return busy_.contains(camera); }
-  /// Renders a picture and sends it to these streams of one camera.
+  /// Renders a picture of one camera and sends it to the streams `to`.
   void show(const ValueShot& shot, const std::vector<ImageStreams::Key>& to, double now);
-  /// Answers what a pixel shows in the picture last sent to the client, or in `newest` before the first.
-  /// Throws ViewRefusal if too many requests wait.
+  /// Answers what a pixel shows in the last picture sent to the client; in `newest` if no picture was sent
+  /// yet. Throws ViewRefusal if too many requests wait.
   void pixel(const ImageStreams::Key& key, const ValueShot& newest, int u, int v, Reply reply);
-  /// Answers with the picture as PNG. Returns false if too many requests wait.
+  /// Answers with the picture in PNG format. Returns false if too many requests wait.
   [[nodiscard]] bool file(const ValueShot& shot, std::function<void(HttpAnswer)> answer);
   /// A picture and its shot.
   struct Shown {
     ValueShot shot;
     std::shared_ptr<const Picture> picture;
   };
-  /// Returns the picture last sent to the client; std::nullopt before the first.
+  /// Returns the last picture sent to the client; std::nullopt if no picture was sent yet.
   [[nodiscard]] std::optional<Shown> last_sent(const ImageStreams::Key& key) const;
   void close(ClientId client);
 
  private:
   struct Tools;
-  struct Sent;  // Data for a picture's streams.
+  struct Sent;  // Data for the streams of a picture.
   void deliver(const Sent& sent);
 
   ViewedRigPtr rig_;

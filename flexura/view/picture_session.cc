@@ -39,8 +39,9 @@ std::size_t PictureSession::place_of(const std::string& camera) const {
 PictureSession::Look PictureSession::look_at_sent(const ImageStreams::Key& key) {
   const auto sent = room_.last_sent(key);
   if (!sent)
-    throw ViewRefusal(fmt::format("no picture of the camera {} was sent yet: expected one before, by images",
-                                  Node{viewed_->cameras[key.camera].config().name, {}}.brief()));
+    throw ViewRefusal(
+        fmt::format("no picture of the camera {} was sent yet: expected a request for images before",
+                    Node{viewed_->cameras[key.camera].config().name, {}}.brief()));
   return [sent = *sent, rig = viewed_] {
     const Shot& shot = sent.shot.shot;
     return SeenPicture{shot.camera, shot.frame, shot.sensor->white(), sent.picture,

@@ -16,7 +16,8 @@
 
 namespace flexura {
 
-/// Common base of sessions with live rigs and recordings: cameras whose pictures are sent to the clients.
+/// Common base class of sessions with live rigs and with recordings. It sends the cameras' pictures to the
+/// clients.
 class PictureSession : public Session {
  public:
   void closed(ClientId client) override;
@@ -24,7 +25,8 @@ class PictureSession : public Session {
  protected:
   PictureSession(const ViewedRigPtr& rig, Messenger& messenger, Background& background);
 
-  /// Handles the requests that are common to both sessions. Their own takers derive from it.
+  /// Handles the requests that are common to both kinds of session. Their own handlers derive from this
+  /// struct.
   struct Taker {
     PictureSession& pictures;
     ClientId client;
@@ -38,11 +40,12 @@ class PictureSession : public Session {
     void operator()(const PingRequest& ping) const;
   };
 
-  /// Gets a picture, on the lane of measures; throws if it is not available.
+  /// Function that gets a picture, called on the lane of measures. Throws an exception if there is no
+  /// picture.
   using Look = std::function<SeenPicture()>;
-  /// Returns a Look at the picture that a client sees. Throws ViewRefusal if it sees none.
+  /// Returns a Look at the picture that a client sees. Throws ViewRefusal if the client sees no picture.
   [[nodiscard]] virtual Look look(const ImageStreams::Key& key) = 0;
-  /// Returns a Look at the picture that the room sent last.
+  /// Returns a Look at the last picture that room() sent to the client.
   [[nodiscard]] Look look_at_sent(const ImageStreams::Key& key);
 
   [[nodiscard]] const ViewedRigPtr& viewed() const { return viewed_; }
@@ -50,9 +53,9 @@ class PictureSession : public Session {
   [[nodiscard]] Background& background() { return background_; }
   [[nodiscard]] ImageStreams& streams() { return streams_; }
   [[nodiscard]] PictureRoom& room() { return room_; }
-  /// Expires with this session; for jobs that finish later.
+  /// Returns a pointer that expires with this session, for jobs that may finish later.
   [[nodiscard]] std::weak_ptr<const bool> alive() const { return alive_; }
-  /// Returns the index of the camera with this name. Throws ViewRefusal if there is none.
+  /// Returns the index of the camera with this name. Throws ViewRefusal if there is no such camera.
   [[nodiscard]] std::size_t place_of(const std::string& camera) const;
 
  private:

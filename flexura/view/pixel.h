@@ -14,19 +14,19 @@
 
 namespace flexura {
 
-/// What a pixel shows, according to the geometry.
+/// What a pixel of a picture shows, according to the geometry.
 struct SeenPixel {
-  std::string label;            ///< "section 2", "marker 1", "background", or an obstacle's name.
-  std::optional<double> depth;  ///< Along the optical axis, m; missing where there is no surface.
+  std::string label;  ///< Visible object: "section 2", "marker 1", "background", or an obstacle's name.
+  std::optional<double> depth;  ///< Depth along the optical axis, m; missing if there is no surface.
   std::optional<double> s;      ///< For the arm: arc length along the unstretched arm, m.
 };
 
-/// Determines what a camera's pixels show. To be used by one thread at a time.
+/// Determines what a camera's pixels show. Not thread-safe.
 class PixelProbe {
  public:
   explicit PixelProbe(ViewedRigPtr rig);
 
-  /// Returns what is seen in the centre of a pixel of the image, at mid-exposure of the frame.
+  /// Returns what the centre of a pixel shows at mid-exposure of the frame.
   [[nodiscard]] SeenPixel look(const Shot& shot, int u, int v);
 
  private:
@@ -37,7 +37,7 @@ class PixelProbe {
   Renderer renderer_;
 };
 
-/// Returns the answer to `pixel`: the picture's own values, of `bits` bits, and what is known about them.
+/// Returns the answer to the request `pixel`: the pixel's values, with `bits` bits, and what the pixel shows.
 /// Throws std::out_of_range for a pixel outside the picture.
 [[nodiscard]] Node pixel_node(const Picture& picture, std::int64_t bits, int u, int v, std::int64_t number,
                               const std::optional<SeenPixel>& seen);

@@ -113,11 +113,12 @@ void Recording::read_marks() {
   }
   read_summary();
   if (log_.truncated())
-    marks_.push_back({duration(), duration(), "warning", "log", "the run was cut short: its log ends here"});
+    marks_.push_back(
+        {duration(), duration(), "warning", "log", "the run was interrupted: its log ends here"});
 }
 
-// The log says when something begins to be unsafe, the summary how long it lasts. One that is damaged (a disk
-// was full, say) keeps nobody from looking at the log.
+// Reads from the summary how long violations last; the log has only their starts. A damaged summary, for
+// example after a full disk, is ignored.
 void Recording::read_summary() {
   if (is_missing(folder_ / summary_file_name)) return;
   const auto file = file_of_results(folder_, summary_file_name);
@@ -235,7 +236,7 @@ std::optional<Recording::PictureEntry> Recording::observation_at(const Entries& 
     const double exposed = message_of<Observation>(*entry.message).time;
     return PictureEntry{entry.message, static_cast<std::int64_t>(state_at(exposed))};
   }
-  // Both stand in the log at the time when the picture came.
+  // The picture and its observation are logged at the time when the picture was received.
   const auto place = image_at(camera, time);
   if (!place) return std::nullopt;
   const auto [first, last] =
@@ -257,7 +258,7 @@ std::optional<std::size_t> Recording::measured_state(std::size_t camera, double 
     if (const auto shown = servo(time)) return number_in(shown->pictures);
     if (const auto shown = calibration(time)) return number_in(shown->pictures);
   } catch (const InputError&) {
-    return std::nullopt;  // What is damaged measures nothing.
+    return std::nullopt;  // Damaged observations are ignored.
   }
   return std::nullopt;
 }

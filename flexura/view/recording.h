@@ -19,74 +19,79 @@
 
 namespace flexura {
 
-/// Results of a run, ready for viewing: its log by time. Immutable and shared by threads. For a run that was
-/// killed, it holds the log up to the last complete chunk.
+/// Results of a run, prepared for viewing: the content of its log by time. Immutable, so that threads can
+/// share it. For a run that was killed, it has the log up to the last complete chunk.
 class Recording {
  public:
-  /// Opens a folder created by `flexura run`. Throws InputError if it is not one, or if its log is damaged or
-  /// has no state.
+  /// Opens a results folder of `flexura run`. Throws InputError if the folder is no such folder, or if its
+  /// log is damaged or has no state.
   explicit Recording(const std::filesystem::path& folder);
 
   [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }
   [[nodiscard]] const ViewedRigPtr& rig() const { return rig_; }
+  /// Returns whether the log has no end: the run was killed.
+  [[nodiscard]] bool is_truncated() const { return log_.truncated(); }
   [[nodiscard]] const std::vector<Mark>& marks() const { return marks_; }
-  [[nodiscard]] double duration() const { return seconds(states_.back().time); }  ///< s
-  /// Returns the median time between consecutive states, s; 0 if there is only one.
+  [[nodiscard]] double duration() const {
+    return seconds(states_.back().time);
+  }  ///< Time of the last state, s.
+  /// Returns the median time between consecutive states, s; 0 if there is only one state.
   [[nodiscard]] double interval() const { return interval_of(states_); }
 
-  /// Returns the number of states, never 0, and the index of the state at or just before `time` s, or the
-  /// first.
+  /// Return the number of states, which is never 0, and the index of the last state at or before `time` (s).
+  /// Before the first state the index is 0.
   [[nodiscard]] std::size_t states() const { return states_.size(); }
   [[nodiscard]] std::size_t state_at(double time) const;
-  /// Returns the time of a state, s, and the arm's shape. Throws InputError if the log has no shape that fits
-  /// the arm.
+  /// Return the time of a state, s, and the arm's shape in that state. Throws InputError if the logged shape
+  /// does not fit the arm.
   [[nodiscard]] double time_of_state(std::size_t place) const { return seconds(states_.at(place).time); }
   [[nodiscard]] ArmState state(std::size_t place) const;
-  /// The run's condition at a time, s: unsafe while a limit is broken, at its end as its results say, else
-  /// running.
+  /// Returns the run's condition at a time, s. It is `unsafe` while a limit is violated, at the end that of
+  /// the results, and otherwise `running`.
   [[nodiscard]] Conditioned condition(double time) const;
 
-  /// How many images the log has of a camera; the place of the one that came at or just before `time` s; none
-  /// before the first.
+  /// Return the number of a camera's images in the log, and the index of its last image at or before `time`
+  /// (s). Before the first image there is no index.
   [[nodiscard]] std::size_t images(std::size_t camera) const { return images_.at(camera).size(); }
   [[nodiscard]] std::optional<std::size_t> image_at(std::size_t camera, double time) const;
   struct LoggedImage {
-    double time = 0;  ///< Middle of its exposure, s.
+    double time = 0;  ///< Middle of the exposure, s.
     std::string png;
   };
-  /// Throws InputError if the log has no such image.
+  /// Returns an image. Throws InputError if the log has no such image.
   [[nodiscard]] LoggedImage image(std::size_t camera, std::size_t place) const;
-  /// Returns whether the log has a servo, and its last command at a time, s, while a servo controls the arm.
-  /// Throws InputError if the log has no readable command.
+  /// Return whether the log has commands of a servo, and the last command at a time, s, while a servo
+  /// controls the arm. Throws InputError if the logged command is invalid.
   [[nodiscard]] bool has_servo() const { return !servo_steps_.empty(); }
   [[nodiscard]] std::optional<ServoStep> servo_step(double time) const;
-  /// Returns the servo's command, with its observations in the pictures shown at that time.
+  /// Returns the servo's last command at a time, s, with its observations in the pictures shown at that time.
   [[nodiscard]] std::optional<ShownServo> servo(double time) const;
-  /// The place of the state that a camera without film saw when a servo or a calibration, while one goes on,
-  /// measured what is drawn at a time, s; none at other times.
+  /// Returns the index of the state in which a servo or calibration took the picture whose measurements are
+  /// drawn at a time, s. For a camera without logged images; std::nullopt while neither is active.
   [[nodiscard]] std::optional<std::size_t> measured_state(std::size_t camera, double time) const;
-  /// Whether the log has a calibration; and what it had decided at a time, s, and measured in the pictures
-  /// that are shown then, while one goes on. InputError likewise.
+  /// Return whether the log has a calibration, and its last decision at a time, s, with its observations in
+  /// the pictures shown then. std::nullopt while no calibration is active. Throws InputError if the logged
+  /// decision is invalid.
   [[nodiscard]] bool has_calibration() const { return !decisions_.empty(); }
   [[nodiscard]] std::optional<ShownCalibration> calibration(double time) const;
-  /// Returns whether the log has the true arm, and its samples at a time, s, from base to tip. Returns
-  /// std::nullopt if the log has none near that time. Throws InputError if the logged arm is invalid.
+  /// Return whether the log has the true arm, and the arm's samples at a time, s, from base to tip.
+  /// std::nullopt if the log has no true arm near that time. Throws InputError if the logged arm is invalid.
   [[nodiscard]] bool has_truth() const { return !truths_.empty(); }
   [[nodiscard]] std::optional<std::vector<ArmSample>> truth(double time) const;
   /// Forces of an elastic-rod arm, as logged at or just before a time.
   struct LoggedForces {
     std::optional<EnergyMessage> energy;   ///< Missing: unknown at that time.
-    std::vector<double> tensions;          ///< N; empty: unknown at that time.
-    std::vector<double> lost_steps;        ///< Microsteps of each motor; empty: unknown at that time.
+    std::vector<double> tensions;          ///< Tension of each tendon, N; empty: unknown at that time.
+    std::vector<double> lost_steps;        ///< Microsteps lost by each motor; empty: unknown at that time.
     std::vector<ContactMessage> contacts;  ///< Empty: no contacts.
   };
-  /// Returns the forces at a time, s. Messages that cannot be read count as unknown.
+  /// Returns the forces at a time, s. Values of invalid messages count as unknown.
   [[nodiscard]] LoggedForces forces(double time) const;
-  /// Whether the log has energies at all.
+  /// Returns whether the log has energies.
   [[nodiscard]] bool has_energy() const { return !energies_.empty(); }
-  /// Whether the log has contacts at all.
+  /// Returns whether the log has contacts.
   [[nodiscard]] bool has_contacts() const { return !contacts_.empty(); }
-  /// Whether the log has tensions at all.
+  /// Returns whether the log has tensions.
   [[nodiscard]] bool has_tensions() const { return !tensions_.empty(); }
   /// Returns the camera axis positions logged at a time, s. Without a message, or with a damaged one, returns
   /// the positions at the start of the experiment.
@@ -104,8 +109,8 @@ class Recording {
   [[nodiscard]] static double interval_of(const Entries& entries);
   struct PictureEntry {
     const McapMessage* message = nullptr;
-    std::int64_t number =
-        0;  // of the picture: its place among the camera's, or of an unfilmed one the state's
+    std::int64_t number = 0;  // Number of the picture: its index among the camera's images or, for a camera
+                              // without images, that of the state.
   };
   template <class Observation>
   [[nodiscard]] std::optional<PictureEntry> observation_at(const Entries& observations, std::size_t camera,
@@ -118,12 +123,12 @@ class Recording {
   ViewedRigPtr rig_;
   McapReader log_;
   Entries states_;
-  std::vector<Entries> images_, heads_, stages_;  // By camera.
+  std::vector<Entries> images_, heads_, stages_;  // Entries of each camera.
   template <class M>
   [[nodiscard]] static std::optional<M> newest(const Entries& entries, double time);
   Entries truths_, energies_, tensions_, contacts_;
   Entries servo_steps_;
-  std::vector<Entries> servo_observations_, calibration_observations_;  // By camera.
+  std::vector<Entries> servo_observations_, calibration_observations_;  // Entries of each camera.
   Entries decisions_;                                                   // Decisions of calibrations.
   double servo_interval_ = 0;  // Interval between commands of a servo, s.
   std::vector<Mark> marks_;

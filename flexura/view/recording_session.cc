@@ -251,7 +251,7 @@ void RecordingSession::show_state(const ImageStreams::Key& key, std::int64_t pla
   }
 }
 
-// What was shown before is of another time. Nobody acknowledges it.
+// Tells the client that there is no image, because the previous image has another time. Not acknowledged.
 void RecordingSession::send_no_image(const ImageStreams::Key& key, double time) {
   streams().sent(key, no_image, clock_);
   streams().failed(key);
@@ -260,7 +260,7 @@ void RecordingSession::send_no_image(const ImageStreams::Key& key, double time) 
                        image_message(static_cast<std::uint8_t>(key.camera), ImageFormat::png, 0, time, "")));
 }
 
-// A logged image goes as it is.
+// Sends a logged image unchanged.
 void RecordingSession::send_image(const ImageStreams::Key& key, std::int64_t place) {
   streams().sent(key, place, clock_);
   background().run(Lane::pictures,

@@ -15,7 +15,7 @@
 
 namespace flexura {
 
-/// A finished run. Each client moves through it independently.
+/// Session with the recording of a run. Each client has its own time in the recording.
 class RecordingSession : public PictureSession {
  public:
   RecordingSession(RecordingPtr recording, Messenger& messenger, Background& background);
@@ -29,7 +29,7 @@ class RecordingSession : public PictureSession {
 
  private:
   struct Taker;
-  struct Table;  // Table of the series; used on the lane of checks only.
+  struct Table;  // Table of the series, used only on the lane of checks.
 
   [[nodiscard]] Look look(const ImageStreams::Key& key) override;
   void send_extras(ClientId client);
@@ -39,10 +39,10 @@ class RecordingSession : public PictureSession {
   void send_image(const ImageStreams::Key& key, std::int64_t place);
   void send_no_image(const ImageStreams::Key& key, double time);
   void report_pixel(const ImageStreams::Key& key, int u, int v, Reply reply);
-  /// The place of the image to be shown at a time, s: among the logged ones, none before the first; or where
-  /// there are none of this camera among the states.
+  /// Returns the number of the image shown at a time, s: its index among the camera's logged images;
+  /// std::nullopt before the first. For a camera without logged images it is the index of a state.
   [[nodiscard]] std::optional<std::int64_t> image_place(std::size_t camera, double time) const;
-  /// The same; throws ViewRefusal if there is none.
+  /// Returns the number of the image shown at a time, s. Throws ViewRefusal if there is no image.
   [[nodiscard]] std::int64_t require_image(std::size_t camera, double time) const;
   [[nodiscard]] bool is_filmed(std::size_t camera) const { return recording_->images(camera) > 0; }
   [[nodiscard]] ValueShot shot(std::size_t camera, std::int64_t number) const;
@@ -52,7 +52,7 @@ class RecordingSession : public PictureSession {
 
   RecordingPtr recording_;
   std::shared_ptr<Table> table_;
-  std::map<ClientId, double> times_;  // at which clients are, s
+  std::map<ClientId, double> times_;  // Time of each client in the recording, s.
   std::map<ClientId, std::optional<Conditioned>> reported_;
   std::uint32_t sequence_ = 0;
   double clock_ = 0;  // Time of advance(), s.

@@ -325,7 +325,7 @@ TEST_F(RecordingSessionTest, OpensNoFileThatALinkLeadsOutTo) {
       open();
       ADD_FAILURE() << name;
     } catch (const InputError& refusal) {
-      EXPECT_THAT(refusal.what(), HasSubstr(std::string(name) + "\" lies outside"));
+      EXPECT_THAT(refusal.what(), HasSubstr(std::string(name) + "\" is outside"));
     }
     // A link to a file inside the folder counts as part of the folder.
     std::filesystem::remove(folder_.path() / name);

@@ -88,8 +88,8 @@ std::string read(Node document, Request& request) {
     request.id = *number;
   const Node name = taken(*table, "do");
   const auto* text = name.as<std::string>();
-  if (name.empty()) return "do is missing: expected what to do";
-  if (text == nullptr) return fmt::format("do = {}: expected what to do in quotes", name.brief());
+  if (name.empty()) return "do is missing: expected a command";
+  if (text == nullptr) return fmt::format("do = {}: expected a command in quotes", name.brief());
   if (!request.id && !id.empty())
     return fmt::format("id = {}: expected a whole number from -2^53 to 2^53", id.brief());
   if (!request.id && *text != "ack") return "id is missing: expected a whole number";
@@ -105,13 +105,13 @@ std::string read(Node document, Request& request) {
 
 const Table<ArmRequest>& fields_of(const ArmRequest*) {
   static const auto table =
-      with_shape<ArmRequest>("arm", "The arm goes to a shape.")
+      with_shape<ArmRequest>("arm", "Moves the arm to a shape.")
           .field("tendons", &ArmRequest::tendons,
                  {.meaning = "displacements", .range = any_place, .count = {0, most_sections}})
           .field("duration", &ArmRequest::duration, {.meaning = "s", .range = between(0, 1e6)})
           .check([](const ArmRequest& arm, Reader& reader) {
             if (arm.tendons && (arm.bends || arm.cord_angles || arm.archings || arm.stretches))
-              reader.problem_at("tendons", "are given beside another shape: expected tendons alone");
+              reader.problem_at("tendons", "are given together with another shape: expected tendons alone");
             if (!arm.tendons && !arm.bends && !arm.cord_angles && !arm.archings && !arm.stretches)
               reader.problem("has no shape: expected bends, cord_angles, archings, tendons or stretches");
           });
@@ -120,7 +120,7 @@ const Table<ArmRequest>& fields_of(const ArmRequest*) {
 
 const Table<TipRequest>& fields_of(const TipRequest*) {
   static const auto table =
-      Table<TipRequest>("tip", "The tip goes to a place.")
+      Table<TipRequest>("tip", "Moves the tip to a position.")
           .field("position", &TipRequest::position,
                  {.meaning = "of the tip", .range = any_place, .required = true})
           .field("direction", &TipRequest::direction, {.meaning = "of its z axis", .range = any_place})
@@ -133,7 +133,7 @@ const Table<TipRequest>& fields_of(const TipRequest*) {
 
 const Table<HeadRequest>& fields_of(const HeadRequest*) {
   static const auto table =
-      Table<HeadRequest>("head", "A camera turns and zooms.")
+      Table<HeadRequest>("head", "Turns and zooms a camera.")
           .field("camera", &HeadRequest::camera, {.required = true})
           .field("pan", &HeadRequest::pan, {.range = angle_range})
           .field("tilt", &HeadRequest::tilt, {.range = angle_range})
@@ -144,7 +144,7 @@ const Table<HeadRequest>& fields_of(const HeadRequest*) {
 
 const Table<StageRequest>& fields_of(const StageRequest*) {
   static const auto table =
-      Table<StageRequest>("stage", "A camera's stage goes to a place.")
+      Table<StageRequest>("stage", "Moves a camera's stage to a position.")
           .field("camera", &StageRequest::camera, {.required = true})
           .field("x", &StageRequest::x, {.range = any_place})
           .field("y", &StageRequest::y, {.range = any_place})
@@ -157,13 +157,13 @@ const Table<HaltRequest>& fields_of(const HaltRequest*) { return bare<HaltReques
 const Table<ResetRequest>& fields_of(const ResetRequest*) { return bare<ResetRequest>("reset"); }
 const Table<WeightRequest>& fields_of(const WeightRequest*) {
   static const auto table =
-      Table<WeightRequest>("weight", "The simulated arm is with or without its weight and loads.")
+      Table<WeightRequest>("weight", "Switches weight and loads of the simulated arm on or off.")
           .field("on", &WeightRequest::on, {.required = true});
   return table;
 }
 const Table<PushRequest>& fields_of(const PushRequest*) {
   static const auto table =
-      Table<PushRequest>("push", "Something pushes the simulated arm at a point.")
+      Table<PushRequest>("push", "Pushes the simulated arm at a point.")
           .field("s", &PushRequest::s, {.meaning = "m", .range = between(0, farthest), .required = true})
           .field("to", &PushRequest::to, {.meaning = "where a spring draws it, m", .range = any_place})
           .field("force", &PushRequest::force, {.meaning = "N", .range = any_place})
@@ -180,14 +180,14 @@ const Table<PushRequest>& fields_of(const PushRequest*) {
 const Table<ReleaseRequest>& fields_of(const ReleaseRequest*) { return bare<ReleaseRequest>("release"); }
 const Table<RunRequest>& fields_of(const RunRequest*) {
   static const auto table =
-      Table<RunRequest>("run", "The experiment's tasks run.")
+      Table<RunRequest>("run", "Runs the experiment's tasks.")
           .field("task", &RunRequest::task,
                  {.meaning = "the place of one, from 0", .range = between(0, farthest)})
           .field("speed", &RunRequest::speed, {.meaning = speed_meaning, .range = speed_range});
   return table;
 }
 const Table<SpeedRequest>& fields_of(const SpeedRequest*) {
-  static const auto table = Table<SpeedRequest>("speed", "A run of tasks plays faster or slower.")
+  static const auto table = Table<SpeedRequest>("speed", "Changes the speed of a run of tasks.")
                                 .field("speed", &SpeedRequest::speed,
                                        {.meaning = speed_meaning, .range = speed_range, .required = true});
   return table;
@@ -195,7 +195,7 @@ const Table<SpeedRequest>& fields_of(const SpeedRequest*) {
 const Table<CancelRequest>& fields_of(const CancelRequest*) { return bare<CancelRequest>("cancel"); }
 const Table<OpenRequest>& fields_of(const OpenRequest*) {
   static const auto table =
-      Table<OpenRequest>("open", "The recording of the last run, or an example.")
+      Table<OpenRequest>("open", "Opens the recording of the last run, or an example.")
           .field("example", &OpenRequest::example, {.meaning = "The name of one of the viewer's examples."});
   return table;
 }
@@ -204,7 +204,7 @@ const Table<PingRequest>& fields_of(const PingRequest*) { return bare<PingReques
 
 const Table<AtRequest>& fields_of(const AtRequest*) {
   static const auto table =
-      Table<AtRequest>("at", "The state of a recording at a time.")
+      Table<AtRequest>("at", "Goes to a time of a recording.")
           .field("time", &AtRequest::time, {.meaning = "s", .range = any_place, .required = true});
   return table;
 }
@@ -221,7 +221,7 @@ const Table<ImagesRequest>& fields_of(const ImagesRequest*) {
 
 const Table<AckRequest>& fields_of(const AckRequest*) {
   static const auto table =
-      Table<AckRequest>("ack", "An image has come.")
+      Table<AckRequest>("ack", "Acknowledges an image.")
           .field("camera", &AckRequest::camera, {.required = true})
           .field("number", &AckRequest::number, {.range = between(0, 4294967295.0), .required = true})
           .check([](const AckRequest& ack, Reader& reader) { check_camera(ack.camera, reader); });
@@ -230,7 +230,7 @@ const Table<AckRequest>& fields_of(const AckRequest*) {
 
 const Table<PixelRequest>& fields_of(const PixelRequest*) {
   static const auto table =
-      Table<PixelRequest>("pixel", "What a pixel shows.")
+      Table<PixelRequest>("pixel", "Asks what a pixel shows.")
           .field("camera", &PixelRequest::camera, {.required = true})
           .field("u", &PixelRequest::u, {.range = between(0, 65535), .required = true})
           .field("v", &PixelRequest::v, {.range = between(0, 65535), .required = true})
@@ -240,7 +240,7 @@ const Table<PixelRequest>& fields_of(const PixelRequest*) {
 
 const Table<MeasureRequest>& fields_of(const MeasureRequest*) {
   static const auto table =
-      Table<MeasureRequest>("measure", "What a picture shows of the arm.")
+      Table<MeasureRequest>("measure", "Measures the arm in a picture.")
           .field("camera", &MeasureRequest::camera, {.required = true})
           .field("layers", &MeasureRequest::layers,
                  {.meaning = "what is to be drawn", .count = {0, layer_names().size()}})
@@ -261,13 +261,13 @@ const Table<ShapeRequest>& fields_of(const ShapeRequest*) { return bare<ShapeReq
 
 const Table<PointRequest>& fields_of(const PointRequest*) {
   static const auto table =
-      Table<PointRequest>("point", "A point of the backbone.")
+      Table<PointRequest>("point", "Asks for a point of the backbone.")
           .field("s", &PointRequest::s, {.meaning = "m", .range = any_place, .required = true});
   return table;
 }
 
 const Table<BackboneRequest>& fields_of(const BackboneRequest*) {
-  static const auto table = with_shape<BackboneRequest>("backbone", "Where the arm would lie.");
+  static const auto table = with_shape<BackboneRequest>("backbone", "Asks for the backbone of a shape.");
   return table;
 }
 

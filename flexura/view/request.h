@@ -14,15 +14,15 @@
 // Requests of clients (docs/viewer-protocol.md, "From the page").
 namespace flexura {
 
-/// Moves the arm to a shape given by bends or by tendon displacements. With actuators, tendon displacements
-/// are applied individually, whatever the resulting shape.
+/// Moves the arm to a shape given by bends or by tendon displacements. If the rig has actuators, each tendon
+/// is pulled to its displacement, whatever the resulting shape.
 struct ArmRequest : ShapeConfig {
-  std::optional<std::vector<double>> tendons;  ///< m
-  double duration = 0;                         ///< s
+  std::optional<std::vector<double>> tendons;  ///< Tendon displacements, m.
+  double duration = 0;                         ///< Duration of the move, s.
 };
 struct TipRequest {
-  std::array<double, 3> position = {0, 0, 0};      ///< m
-  std::optional<std::array<double, 3>> direction;  ///< Not zero.
+  std::array<double, 3> position = {0, 0, 0};      ///< Tip position in W, m.
+  std::optional<std::array<double, 3>> direction;  ///< Direction of the tip's z axis in W, not zero.
 };
 struct HeadRequest {
   std::string camera;
@@ -30,28 +30,28 @@ struct HeadRequest {
 };
 struct StageRequest {
   std::string camera;
-  std::optional<double> x, y, z;  ///< m
+  std::optional<double> x, y, z;  ///< Offsets along the stage's axes, m.
 };
 struct HaltRequest {};
 struct ResetRequest {};
 struct WeightRequest {
   bool on = true;
 };
-/// Pushes the simulated arm at a point of its middle line, by a spring to a place or by a force.
+/// Pushes the simulated arm at a point of its backbone, by a spring to a fixed point or by a force.
 struct PushRequest {
   double s = 0;                                ///< Arc length along the unstretched arm, m.
-  std::optional<std::array<double, 3>> to;     ///< The spring's other end, m; excludes `force`.
-  std::optional<std::array<double, 3>> force;  ///< Constant force, N; excludes `to`.
-  std::optional<double> stiffness;  ///< Stiffness of the spring, N/m; default: that of the controls.
+  std::optional<std::array<double, 3>> to;     ///< The other end of the spring in W, m; excludes `force`.
+  std::optional<std::array<double, 3>> force;  ///< Constant force in W, N; excludes `to`.
+  std::optional<double> stiffness;  ///< Stiffness of the spring, N/m; default: the stiffness in the controls.
 };
 struct ReleaseRequest {};
 struct RunRequest {
-  std::optional<std::int64_t> task;  ///< Its place, from 0; all of them where it is left out.
-  double speed = 1;                  ///< Of real time; 0: as fast as possible.
+  std::optional<std::int64_t> task;  ///< Index of the task, from 0; missing: all tasks.
+  double speed = 1;                  ///< Speed relative to real time; 0: as fast as possible.
 };
-/// A run of tasks that goes on plays faster or slower.
+/// Changes the speed of an active run of tasks.
 struct SpeedRequest {
-  double speed = 1;  ///< Of real time; 0: as fast as possible.
+  double speed = 1;  ///< Speed relative to real time; 0: as fast as possible.
 };
 struct CancelRequest {};
 struct OpenRequest {
@@ -59,11 +59,11 @@ struct OpenRequest {
 };
 struct LiveRequest {};
 struct AtRequest {
-  double time = 0;  ///< s
+  double time = 0;  ///< Time in the recording, s.
 };
 struct ImagesRequest {
   std::string camera;
-  double rate = 0;  ///< 1/s; 0 ends the stream.
+  double rate = 0;  ///< Images per second; 0 ends the stream.
   std::int64_t quality = 80;
 };
 struct AckRequest {
@@ -76,7 +76,7 @@ struct PixelRequest {
 };
 struct MeasureRequest {
   std::string camera;
-  std::optional<std::vector<std::string>> layers;  ///< Default: all layers.
+  std::optional<std::vector<std::string>> layers;  ///< Names of the layers; default: all layers.
 };
 struct ShapeRequest {};
 struct PointRequest {
@@ -118,10 +118,11 @@ using Ask = std::variant<ArmRequest, TipRequest, HeadRequest, StageRequest, Halt
 struct Request {
   std::optional<std::int64_t> id;  ///< Echoed in the reply; may be missing only for `ack`.
   Ask ask = PingRequest{};
-  std::string error;  ///< One line; "" if `ask` is valid.
+  std::string error;  ///< Reason why the request is invalid, in one line; "" if `ask` is valid.
 };
 
-/// Parses a message. Throws nothing that depends on its content. The session checks whether it fits the rig.
+/// Parses a message. Never throws because of its content. The session checks whether the request fits the
+/// rig.
 [[nodiscard]] Request read_request(std::string_view text);
 
 }  // namespace flexura

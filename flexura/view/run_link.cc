@@ -63,7 +63,7 @@ void RunLink::state(double time, const ArmState& state, std::span<const CameraRe
   news_.time = time;
   news_.state = state;
   news_.cameras.assign(cameras.begin(), cameras.end());
-  // What is measured was seen a while ago.
+  // Keeps steps of the last seconds, because pictures are measured some time after their exposure.
   constexpr double remembered = 3, between = 1e-3;  // s
   if (!steps_.empty() && time - steps_.back().time < between) steps_.pop_back();
   steps_.push_back({time, state, news_.cameras});
@@ -79,7 +79,7 @@ const RunLink::Step* RunLink::step_at(double time) const {
   return &*(after - 1);
 }
 
-// `seen` has what its sighting says; the rest is as it was then.
+// Completes `seen` by the state, readings and truth at its time.
 void RunLink::measured(Measured seen) {
   const Step* step = step_at(seen.time);
   if (step == nullptr) return;

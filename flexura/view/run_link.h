@@ -24,47 +24,50 @@
 
 namespace flexura {
 
-/// What connects a run on its own thread with those who watch: the run reports, they ask when they have time.
-/// The run waits for nobody, unless it is paced (pace_to). All methods can be called from any thread.
+/// Connection between a run on its own thread and its viewers. The run reports its state here, and viewers
+/// query it. The run never waits for viewers, unless it is paced (pace_to). All methods can be called from
+/// any thread.
 class RunLink : public Progress, public RunWatcher {
  public:
   /// How a run ended.
   struct End {
     std::string outcome;           ///< "done", "unsafe", "cancelled" or "failed".
     std::string text;              ///< Reason, one line; may be "".
-    std::filesystem::path folder;  ///< Folder with its results; "" if it left none.
+    std::filesystem::path folder;  ///< Folder with the results; "" if the run has no results.
   };
   /// An event, as logged.
   struct Event {
-    double time = 0;  ///< s
+    double time = 0;  ///< Time, s.
     std::string level, name, text;
   };
-  /// What a camera saw in the picture that was measured last.
+  /// State of a camera and the arm at the last picture of the camera that was measured.
   struct Measured {
     std::string camera;
-    std::int64_t frame = 0;                ///< Its number.
-    double time = 0;                       ///< Middle of its exposure, s.
-    ArmState state;                        ///< As commanded then.
-    std::optional<CameraReading> reading;  ///< Of the camera then, as the measurement says; may be missing.
-    std::vector<CameraReading> readings;   ///< Else of all cameras; empty: they stood as at the start.
-    std::shared_ptr<const TrueArm> truth;  ///< Near that time; null: not known.
+    std::int64_t frame = 0;                ///< Number of the frame.
+    double time = 0;                       ///< Middle of the exposure, s.
+    ArmState state;                        ///< Commanded state of the arm at this time.
+    std::optional<CameraReading> reading;  ///< Reading of the camera in the measurement; may be missing.
+    std::vector<CameraReading>
+        readings;  ///< Readings of all cameras at this time, if `reading` is missing; empty: as at the start.
+    std::shared_ptr<const TrueArm> truth;  ///< True arm near this time; null: unknown.
   };
-  /// The newest of everything.
+  /// The newest data of a run.
   struct News {
     double fraction = 0;
     std::string what;
-    std::optional<double> time;  ///< Time of `state`, s; missing before the first one.
+    std::optional<double> time;  ///< Time of `state`, s; missing before the first state.
     ArmState state;
-    std::shared_ptr<const TrueArm> truth;  ///< The newest that was told since truth was wanted; or null.
-    std::vector<CameraReading> cameras;  ///< As read then, by camera; empty where they stand as at the start.
-    std::optional<ShownServo> servo;     ///< While one steers the arm.
-    std::optional<ShownCalibration> calibration;  ///< While one goes on.
-    std::vector<Measured> measured;               ///< While one of them goes on, of each camera one.
-    std::uint64_t changes = 0;                    ///< Counts what came of both.
+    std::shared_ptr<const TrueArm> truth;  ///< Newest true arm since the last request_truth(), or null.
+    std::vector<CameraReading> cameras;    ///< Readings of the cameras at this time; empty: as at the start.
+    std::optional<ShownServo> servo;       ///< State of a servo while it controls the arm.
+    std::optional<ShownCalibration> calibration;  ///< State of a calibration while it is active.
+    std::vector<Measured>
+        measured;  ///< Last measured picture of each camera, while a servo or calibration is active.
+    std::uint64_t changes = 0;  ///< Number of changes of `servo` and `calibration` so far.
     std::optional<End> end;
   };
 
-  /// `also` receives the progress too; may be null.
+  /// `also`: also receives the progress; may be null.
   explicit RunLink(Progress* also = nullptr) : also_(also) {}
 
   void update(double fraction, std::string_view what) override;
@@ -79,24 +82,25 @@ class RunLink : public Progress, public RunWatcher {
   void task_ended() override;
 
   void cancel();
-  /// From now on the run waits before each state that is later than `time` s.
+  /// From now on the run waits before each state that is later than `time` (s).
   void pace_to(double time);
-  /// Keeps the simulated rig of the run as it stands at its end; a run without one leaves none.
+  /// Stores the simulated rig of the run in its final state. Not called for a run without a simulated rig.
   void leave(std::unique_ptr<SimulatedRig> rig);
-  /// Returns that rig once; null if there is none, or before the end.
+  /// Returns the stored rig once; null if there is none, or before the run's end.
   [[nodiscard]] std::unique_ptr<SimulatedRig> take_rig();
-  /// The next news is to have how the arm truly stands: once, for each call.
+  /// Requests the true arm in the next news, once for each call.
   void request_truth() { is_truth_requested_ = true; }
   void finish(End end);
   [[nodiscard]] News news() const;
-  /// Returns and removes the oldest events, at most `most`. If there are very many, only the last are kept.
+  /// Returns and removes the oldest events, at most `most`. If there are very many events, only the last ones
+  /// are kept.
   [[nodiscard]] std::vector<Event> take_events(std::size_t most);
 
  private:
   void decided(const CalibrationDecisionMessage& decision);
-  // What stood then, as far as it is remembered; null: nothing is.
+  // Returns the stored step at a time, s; null if there is none.
   struct Step {
-    double time = 0;  // s
+    double time = 0;  // Time, s.
     ArmState state;
     std::vector<CameraReading> cameras;
   };
@@ -107,16 +111,16 @@ class RunLink : public Progress, public RunWatcher {
   std::atomic<bool> cancelled_ = false, is_truth_requested_ = false;
   mutable std::mutex mutex_;
   std::condition_variable may_go_;
-  double allowed_ = std::numeric_limits<double>::infinity();  // s
+  double allowed_ = std::numeric_limits<double>::infinity();  // Time up to which the run may advance, s.
   std::unique_ptr<SimulatedRig> rig_;
   News news_;
   std::vector<ServoPicture> pictures_;  // Newest picture of each camera of a servo.
   std::deque<Event> events_;
-  std::deque<Step> steps_;  // of the last seconds
+  std::deque<Step> steps_;  // Steps of the last seconds.
   std::deque<std::pair<double, std::shared_ptr<const TrueArm>>> truths_;
 };
 
-/// Runs an experiment into an existing empty folder, and reports to `link` how it ends. Never throws.
+/// Runs an experiment, with results in an existing empty folder, and reports its end to `link`. Never throws.
 void run_linked(const Experiment& experiment, const std::filesystem::path& folder, RunLink& link);
 
 }  // namespace flexura

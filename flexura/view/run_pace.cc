@@ -7,7 +7,7 @@
 namespace flexura {
 
 void RunPace::set_speed(double speed) {
-  // What it did as fast as it could is not waited for.
+  // Time gained without a speed limit is not waited for.
   if (speed_ == 0) allowed_ = reached_;
   speed_ = speed;
   behind_ = 0, rate_ = speed;

@@ -20,13 +20,14 @@ class RunReporter {
  public:
   RunReporter(ViewedRigPtr rig, Messenger& messenger) : rig_(std::move(rig)), messenger_(messenger) {}
 
-  /// Pictures of the last reported measurement: overlays belong to them.
+  /// Returns the pictures of the last reported measurement, to which overlays belong.
   [[nodiscard]] const std::vector<RunLink::Measured>& measured() const { return measured_; }
-  /// Forgets the last run: nothing is reported of the next one yet.
+  /// Resets the reporter for the next run.
   void begin();
-  /// Makes extras be sent again, for a new client.
+  /// Sends the extras again in the next report, for a new client.
   void repeat() { are_extras_known_ = false; }
-  /// Reports news to the clients at `clock` s. Events carry the time `now`, s, if given; otherwise their own.
+  /// Reports news to the clients. `clock`: present time, s. `now`: time of events in messages, s; if it is
+  /// missing, events have their own times.
   void report(RunLink& run, const RunLink::News& news, double clock, std::optional<double> now,
               const std::set<ClientId>& clients);
 
@@ -40,11 +41,11 @@ class RunReporter {
   Messenger& messenger_;
   double reported_fraction_ = -1;
   std::string reported_what_;
-  double reported_at_ = -1;  // s, of the clock
+  double reported_at_ = -1;  // Time of the clock at the last progress report, s.
   std::vector<RunLink::Measured> measured_;
   bool are_extras_known_ = true;
   std::uint64_t changes_ = 0;
-  double drawn_at_ = -1;  // s, of the clock
+  double drawn_at_ = -1;  // Time of the clock at the last extras, s.
 };
 
 }  // namespace flexura

@@ -11,14 +11,14 @@
 
 namespace flexura {
 
-/// Returns the indices, in ascending order, of the values to draw with at most `points` points. These are the
-/// first and the last, and for each interval of equal length the minima and maxima of all curves. Borders of
-/// gaps (NaN) are added. Returns all indices if there are few, and never fewer than both ends. All curves
-/// have the same length.
+/// Returns ascending indices of the values to draw, at most `points`. They are the first and the last value,
+/// and the minima and maxima of all curves in intervals of equal length. The values at the borders of gaps
+/// (NaN) are added. Returns all indices if there are few values, and always both ends. All curves must have
+/// the same length.
 [[nodiscard]] std::vector<std::size_t> thinned(std::span<const std::vector<double>> curves,
                                                std::size_t points);
 
-/// Quantities of a recording over time: bends, cord angles and archings, stretches, and the tip. Also a
+/// Quantities of a recording over time: bends, cord angles and archings, stretches, and the tip. Also has a
 /// servo's errors, which are null while no servo controls the arm.
 class SeriesTable {
  public:
@@ -30,8 +30,8 @@ class SeriesTable {
   [[nodiscard]] Node answer(const std::vector<std::string>& names, std::size_t points) const;
 
  private:
-  std::vector<double> times_;                          // s
-  std::map<std::string, std::vector<double>> curves_;  // By name.
+  std::vector<double> times_;                          // Times, s.
+  std::map<std::string, std::vector<double>> curves_;  // Values of each quantity, by its name.
 };
 
 }  // namespace flexura

@@ -18,7 +18,7 @@ namespace flexura {
 struct ServoPicture {
   ServoObservationMessage observation;
   std::optional<std::int64_t> number =
-      {};  ///< Picture number for clients; missing if clients do not get the picture.
+      {};  ///< Number of the picture for clients; missing if clients do not get the picture.
 };
 
 /// State of a servo at one time: its last command, and the pictures used for it.
@@ -27,12 +27,13 @@ struct ShownServo {
   std::vector<ServoPicture> pictures;
 };
 
-/// Returns the extras of a servo. They hold target shape, observed shape and simulated truth as ghosts,
-/// measured centerlines, images of the target shape, and distances along the arm. The truth is omitted if it
-/// has other arcs than the rig's arm (a rod). Throws InputError if the shapes do not fit the rig's arm.
+/// Returns the extras of a servo. They have the target shape, the observed shape and the simulated truth as
+/// ghosts. They also have measured centerlines, images of the target shape, and distances along the arm. The
+/// truth is omitted if its arcs are not those of the rig's arm, as for a rod. Throws InputError if the shapes
+/// do not fit the rig's arm.
 [[nodiscard]] Extras servo_extras(const ViewedRig& rig, const ShownServo& servo);
 
-/// Returns a servo's errors over time, in percent of the arm's length, and their values at one command.
+/// Return the names of a servo's errors, in percent of the arm's length, and their values at one command.
 [[nodiscard]] std::vector<Quantity> servo_quantities();
 [[nodiscard]] std::vector<std::optional<double>> servo_values(const ServoStep& step);
 

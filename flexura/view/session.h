@@ -12,7 +12,7 @@
 
 namespace flexura {
 
-/// Thrown by sessions: why a request is refused, in one line.
+/// Exception of sessions that refuse a request, with the reason in one line.
 class ViewRefusal : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -31,7 +31,7 @@ struct Hello {
   std::string title;
   Node scene;
   Node controls;
-  double duration = 0;  ///< s
+  double duration = 0;  ///< Duration of a recording, s.
   double interval = 0;  ///< Typical interval between two states of a recording, s.
   std::vector<Mark> marks;
   std::vector<Quantity> quantities;
@@ -42,7 +42,7 @@ struct Hello {
 /// A request for a picture by its address.
 struct ImageAsk {
   std::string camera;
-  std::optional<double> time;  ///< s
+  std::optional<double> time;  ///< Time in the recording, s.
 };
 struct SeriesAsk {
   std::vector<std::string> names;
@@ -51,7 +51,7 @@ struct SeriesAsk {
 struct ReportAsk {};
 using Document = std::variant<ImageAsk, SeriesAsk, ReportAsk>;
 
-/// A live rig or a recording that clients view. To be used by one thread.
+/// A live rig or a recording that clients view. Not thread-safe.
 class Session {
  public:
   virtual ~Session() = default;
@@ -62,11 +62,13 @@ class Session {
   [[nodiscard]] virtual Hello hello() const = 0;
   virtual void opened(ClientId client) = 0;
   virtual void closed(ClientId client) = 0;
-  /// Handles a client's request, and calls `reply` once, now or later on this thread. Or throws ViewRefusal.
+  /// Handles a client's request, and calls `reply` once on this thread, at once or later. Throws ViewRefusal
+  /// instead to refuse the request.
   virtual void take(ClientId client, const Ask& ask, Reply reply) = 0;
-  /// Calls `answer` once, now or later on any thread. Or throws ViewRefusal.
+  /// Calls `answer` once with the document on any thread, at once or later. Throws ViewRefusal instead to
+  /// refuse the request.
   virtual void take(const Document& document, std::function<void(HttpAnswer)> answer) = 0;
-  /// Advances to `now`, s by a clock that never decreases, and sends due messages to the clients.
+  /// Advances to the time `now` (s), which never decreases, and sends due messages to the clients.
   virtual void advance(double now) = 0;
 };
 

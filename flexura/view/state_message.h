@@ -26,25 +26,25 @@ struct ArmSample {
 /// Pose, axis positions and intrinsics of a camera.
 struct CameraSample {
   Pose X_WC;
-  HeadState head;                                   ///< As it truly is.
-  Eigen::Vector3d stage = Eigen::Vector3d::Zero();  ///< Likewise, m.
-  double fx = 0, fy = 0, cx = 0, cy = 0;            ///< px
-  /// What head and stage are commanded to, or report: what commands and the model count in.
+  HeadState head;                                   ///< True position of the head.
+  Eigen::Vector3d stage = Eigen::Vector3d::Zero();  ///< True position of the stage, m.
+  double fx = 0, fy = 0, cx = 0, cy = 0;            ///< Intrinsics, px.
+  /// Commanded or reported position of the head, in the coordinates of commands and the model.
   HeadState commanded_head = {};
-  Eigen::Vector3d commanded_stage = Eigen::Vector3d::Zero();  ///< m
+  Eigen::Vector3d commanded_stage = Eigen::Vector3d::Zero();  ///< Commanded or reported stage position, m.
 };
 
 /// State of an actuator that clients can move individually: a tendon that is pulled in.
 struct ActuatorSample {
   double value = 0;  ///< Commanded displacement, m.
-  double force = 0;  ///< Tension, N; 0: slack.
-  double lost = 0;   ///< Microsteps lost by its motor.
+  double force = 0;  ///< Tension, N; 0 for a slack tendon.
+  double lost = 0;   ///< Number of microsteps that its motor has lost.
 };
 
 /// A push at a point of the arm.
 struct PushSample {
   double s = 0;  ///< Pushed point: arc length along the unstretched arm, m.
-  /// The spring's other end, or without a spring the pushed point, m.
+  /// The other end of the spring, or the pushed point if there is no spring, in W, m.
   Eigen::Vector3d to = Eigen::Vector3d::Zero();
   Eigen::Vector3d force = Eigen::Vector3d::Zero();  ///< Force on the arm, N.
 };
@@ -61,32 +61,32 @@ struct ContactSample {
   Slip slip = Slip::unknown;
 };
 
-/// Everything that moves, at one time.
+/// State of everything that moves, at one time.
 struct StateMessage {
   bool is_moving = false;
-  bool is_running = false;  ///< A run of tasks is active.
+  bool is_running = false;  ///< Whether a run of tasks is active.
   bool is_recording = false;
   bool is_unsafe = false;
-  bool is_weightless = false;  ///< Weight and loads are switched off.
-  /// Number of discontinuous changes of everything's position; increments at each, and wraps around.
+  bool is_weightless = false;  ///< Whether weight and loads are switched off.
+  /// Number of discontinuous changes of the whole state so far; it wraps around.
   std::uint16_t leaps = 0;
   std::uint32_t sequence = 0;
-  double time = 0;  ///< s
+  double time = 0;  ///< Time, s.
   ArmState arm;
-  std::vector<ArmSample> samples;  ///< From base to tip.
+  std::vector<ArmSample> samples;  ///< Points of the backbone, from base to tip.
   std::vector<CameraSample> cameras;
   std::vector<double> displacements;  ///< Tendon displacements, m.
   std::vector<ActuatorSample> actuators;
-  std::optional<RodEnergy> energy;  ///< For an arm with inertia.
+  std::optional<RodEnergy> energy;  ///< Energies of an arm with inertia.
   std::optional<PushSample> push;
-  std::optional<double> pace;  ///< Speed relative to real time, if slower.
+  std::optional<double> pace;  ///< Speed relative to real time, if it is slower.
   std::vector<ContactSample> contacts;
 };
 
 /// Returns the samples of a state message: the ends of every arc, and points between them. Each piece between
 /// two samples is one arc that turns by at most a right angle.
 [[nodiscard]] std::vector<ArmSample> arm_samples(const Backbone& backbone);
-/// Returns the samples of these arcs, which lead from the base to the tip's frame.
+/// Returns the samples of consecutive arcs from the base to the frame `tip`.
 [[nodiscard]] std::vector<ArmSample> arm_samples(std::span<const Arc> arcs, const Pose& tip);
 
 /// Returns the binary message. Throws std::length_error for more than 65535 items of any kind.
@@ -97,7 +97,7 @@ struct StateMessage {
 /// Formats of images.
 enum class ImageFormat : std::uint16_t { jpeg = 0, png = 1 };
 
-/// Returns an image message for a client: the header and the file.
+/// Returns an image message for a client, which is a header followed by the image file.
 [[nodiscard]] std::string image_message(std::uint8_t camera, ImageFormat format, std::uint32_t number,
                                         double time, std::string_view file);
 

@@ -87,7 +87,7 @@ void add_true_arm(const std::vector<ArmSample>& truth, const Backbone& commanded
   if (!extras.title.empty()) return;
   extras.title = "Truth";
   extras.text =
-      fmt::format("up to {:.1f} mm from where it is commanded, the tip {:.1f} mm", 1000 * most, 1000 * last);
+      fmt::format("up to {:.1f} mm from the commanded shape, the tip {:.1f} mm", 1000 * most, 1000 * last);
 }
 
 }  // namespace flexura

@@ -11,20 +11,21 @@
 // The true arm in a run's log (/arm/truth).
 namespace flexura {
 
-/// The ends of an arm's arcs, from base to tip.
+/// Poses of the ends of an arm's arcs, from base to tip.
 using LoggedArm = std::vector<Pose>;
 
 /// Converts a logged message. Throws InputError for fewer than two poses, or an invalid pose.
 [[nodiscard]] LoggedArm logged_arm(const PosesMessage& message);
-/// Interpolates at fraction `part` between two arms; returns the nearer one if their numbers of arcs differ.
+/// Interpolates between two arms at the fraction `part`. Returns the nearer arm if the numbers of arcs
+/// differ.
 [[nodiscard]] LoggedArm between(const LoggedArm& from, const LoggedArm& to, double part);
-/// Returns samples of the arm with one arc from each end to the next. Throws InputError if these do not form
-/// an arm.
+/// Returns samples of the arm with one arc from each pose to the next. Throws InputError if these arcs do not
+/// form an arm.
 [[nodiscard]] std::vector<ArmSample> samples_of(const LoggedArm& arm);
 
-/// Adds the true arm as a ghost if it differs from the commanded one. That is if a sample, including the tip,
-/// is more than 0.1 mm from the point at the same fraction of the commanded arm's length. Adds nothing if
-/// there is a ghost of the truth already.
+/// Adds the true arm as a ghost if it differs from the commanded arm. It differs if a sample is more than 0.1
+/// mm from the point at the same fraction of the commanded arm's length. Adds nothing if there is a ghost of
+/// the truth already.
 void add_true_arm(const std::vector<ArmSample>& truth, const Backbone& commanded, Extras& extras);
 
 }  // namespace flexura

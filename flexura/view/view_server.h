@@ -13,10 +13,10 @@
 
 namespace flexura {
 
-/// A viewer behind a server, running as long as this object exists.
+/// A viewer with its server, which runs as long as this object exists.
 class ViewServer {
  public:
-  /// Throws std::system_error if it cannot listen at the configured address.
+  /// Throws std::system_error if the server cannot listen at the configured address.
   ViewServer(ViewStart start, ServerConfig config, std::span<const Asset> assets);
   ~ViewServer();
   ViewServer(const ViewServer&) = delete;
@@ -25,7 +25,7 @@ class ViewServer {
   [[nodiscard]] std::string url() const { return server_.url(); }
   [[nodiscard]] std::uint16_t port() const { return server_.port(); }
   [[nodiscard]] const std::string& token() const { return server_.token(); }
-  /// As the functions of Server.
+  /// See the functions of Server.
   [[nodiscard]] std::size_t waiting_bytes() const { return server_.waiting_bytes(); }
   [[nodiscard]] std::size_t busy_clients() const { return server_.busy_clients(); }
 

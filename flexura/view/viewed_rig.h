@@ -21,27 +21,28 @@
 
 namespace flexura {
 
-/// Returns the pose at fraction `part` of the way from one pose to another.
+/// Interpolates between two poses at the fraction `part`.
 [[nodiscard]] Pose interpolate(const Pose& from, const Pose& to, double part);
 
-/// Arm and camera at one instant, as a picture shows them.
+/// State of the arm and a camera at one instant, for a picture.
 struct Instant {
-  double time = 0;  ///< s
+  double time = 0;  ///< Time, s.
   ArmState arm;     ///< State that the drives impose.
   CameraStance stance;
-  /// Backbone of a rod; null: the arcs of the true arm in state `arm`.
+  /// Backbone of a rod; null: the arcs of the true arm in the state `arm`.
   std::shared_ptr<const Backbone> shape = {};
 };
 
-/// Scales for pushing an arm: forces that move it visibly, within what it can bear.
+/// Scales for pushing an arm with forces that move it visibly but not too far.
 struct PushScale {
   double length = 0;  ///< Length of the arm at rest, m.
   /// Stiffness of the push spring, N/m: five times that of the arm's tip at the start.
   double stiffness = 0;
-  double most = 0;  ///< Force limit, N: it would move that tip by the arm's length if the arm were linear.
+  double most =
+      0;  ///< Force limit, N. This force would move the tip by the arm's length if the arm were linear.
 };
 
-/// A rig of an experiment, prepared for viewing. Immutable and shared by threads.
+/// A rig of an experiment, prepared for viewing. Immutable, so that threads can share it.
 class ViewedRig {
  public:
   explicit ViewedRig(Experiment read);
@@ -49,11 +50,11 @@ class ViewedRig {
   Experiment experiment;
   ArmModel model, truth;  ///< Model and truth of the arm.
   ArmState initial;       ///< Initial state of the true arm.
-  bool is_rod;            ///< Whether the true arm is a rod, whose backbone its plant computes, not `truth`.
+  bool is_rod;  ///< Whether the true arm is a rod. Its plant then computes the backbone instead of `truth`.
   std::vector<PulledTendon> actuators;  ///< Tendons that can be pulled individually.
   bool has_weight = false;              ///< Whether weight or loads act on the true arm.
-  std::optional<PushScale> push = {};   ///< Present for an arm that yields to forces.
-  bool touches = false;                 ///< Whether obstacles push back on the true arm.
+  std::optional<PushScale> push = {};   ///< Scales for pushes; missing if forces do not move the arm.
+  bool touches = false;                 ///< Whether obstacles exert forces on the true arm.
   bool has_inertia = false;             ///< Whether the true arm has inertia and can swing.
   std::vector<Obstacle> obstacles;
   std::vector<Obstacle> forbidden;  ///< Obstacles that the arm must not touch.
@@ -65,47 +66,49 @@ class ViewedRig {
   /// Returns the index of the camera with this name; std::nullopt if there is none.
   [[nodiscard]] std::optional<std::size_t> camera(std::string_view name) const;
 
-  /// Returns the readings of a camera's head and stage at the start, and their true positions.
+  /// Return the readings of a camera's head and stage at the start, and their true positions at the start.
   [[nodiscard]] CameraReading first_reading(std::size_t camera) const;
   [[nodiscard]] CameraStance first_stance(std::size_t camera) const;
-  /// Convert between readings and true positions, except for backlash and quantisation. Readings count from
-  /// the model's start.
+  /// Convert between readings and true positions of a camera's head and stage, without backlash and
+  /// quantisation. Readings count from the initial positions of the model.
   [[nodiscard]] CameraStance stance(std::size_t camera, const CameraReading& reading) const;
   [[nodiscard]] CameraReading reading(std::size_t camera, const CameraStance& stance) const;
-  /// Returns the camera's view according to the model and its readings.
+  /// Returns the camera's view according to its model and a reading.
   [[nodiscard]] View nominal_view(std::size_t camera, const CameraReading& reading) const;
 };
 
 using ViewedRigPtr = std::shared_ptr<const ViewedRig>;
 
-/// How a camera of the rig stands; as what it says of itself, its readings there.
+/// Returns the sample of a camera at the true position `stance`, with the readings at this position as
+/// commanded positions.
 [[nodiscard]] CameraSample camera_sample(const ViewedRig& rig, std::size_t camera,
                                          const CameraStance& stance);
 
-/// A frame that can be rendered without references to changing data.
+/// A frame that can be rendered on any thread, because it refers to no changing data.
 struct ValueShot {
   Shot shot;
-  std::shared_ptr<const std::vector<Instant>> instants;  ///< What the frame shows.
+  std::shared_ptr<const std::vector<Instant>> instants;  ///< States that the frame shows.
 };
 
-/// Returns the frame that shows `instants` (one or more, in ascending order), interpolated between them. Its
-/// exposure starts at `start` s.
+/// Returns the frame that shows `instants` (one or more, in ascending order of time) and interpolates between
+/// them. The exposure starts at `start` (s).
 [[nodiscard]] ValueShot value_shot(const ViewedRigPtr& rig, std::size_t camera, std::int64_t frame,
                                    double start, std::vector<Instant> instants);
 
-/// Returns the shot with the lens covered if the sensor configuration covers it at `time`, s since a run's
-/// start. (The page's own time has no covers.)
+/// Returns the shot, with the lens covered if the sensor configuration covers it at `time` (s since a run's
+/// start).
 [[nodiscard]] ValueShot with_covers(ValueShot shot, double time);
 
-/// Returns the camera axis positions at mid-exposure of the frame.
+/// Returns the axis positions of the camera at mid-exposure of the frame.
 [[nodiscard]] CameraStance stance_in(const ValueShot& shot);
 
-/// Returns whether two frames are certain to be the same picture: everything is at rest, in the same place,
-/// and no noise differs.
+/// Returns whether two frames are certain to give equal pictures: everything is at rest in equal positions,
+/// and the noise is equal.
 [[nodiscard]] bool show_the_same(const ValueShot& a, const ValueShot& b);
 
-/// Returns the times, s, of the instants that `value_shot` needs for a frame that starts at `start` s. This
-/// is one time for an instantaneous exposure, otherwise enough that motion in between is nearly straight.
+/// Returns the times of the instants that value_shot() needs for a frame that starts at `start` (s). It is
+/// one time for an instantaneous exposure. Otherwise there are so many that the motion between them is nearly
+/// linear.
 [[nodiscard]] std::vector<double> times_of_instants(const SensorConfig& sensor, double start);
 
 }  // namespace flexura

@@ -123,7 +123,7 @@ bool Viewer::has_rig() const { return start_.run == nullptr || live_ == nullptr 
 bool Viewer::has_recording() const { return recording_ != nullptr || (live_ != nullptr && live_->results()); }
 
 void Viewer::open_last(Reply reply) {
-  if (!has_recording()) throw ViewRefusal("there is no recording yet: expected a run before");
+  if (!has_recording()) throw ViewRefusal("there is no recording yet: expected a finished run");
   if (live_ != nullptr && live_->results()) {
     open(*live_->results(), std::move(reply));
   } else {
@@ -182,7 +182,7 @@ void Viewer::go_live(const Reply& reply) {
     live_ = std::make_unique<LiveSession>(start_.rig, messenger_, background_,
                                           LiveSession::Config{clock_, start_.results, start_.run});
   } else if (!has_rig()) {
-    throw ViewRefusal("the run is over, and its rig with it");
+    throw ViewRefusal("the run has ended, and its rig no longer exists");
   }
   reply({nothing(), ""});
   show(*live_);

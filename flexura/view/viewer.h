@@ -21,36 +21,35 @@ namespace flexura {
 struct ViewExample {
   std::string name;                    ///< Name that clients use to request it.
   std::string title;                   ///< Title for users.
-  std::function<ViewedRigPtr()> load;  ///< Loads its rig; never returns null.
-  std::filesystem::path results;       ///< Folder for the results of its tasks' runs.
+  std::function<ViewedRigPtr()> load;  ///< Loads the example's rig; never returns null.
+  std::filesystem::path results;       ///< Folder for the results of runs of this experiment.
 };
 
-/// Initial content of a viewer: a recording, or else a rig.
+/// Initial content of a viewer: a recording or a rig.
 struct ViewStart {
-  std::string session;                     ///< Differs for each start of the program.
-  ViewedRigPtr rig = {};                   ///< Never null without a recording.
-  RecordingPtr recording = {};             ///< May be null.
+  std::string session;                     ///< Identifier that differs for each start of the program.
+  ViewedRigPtr rig = {};                   ///< The rig; null only if there is a recording.
+  RecordingPtr recording = {};             ///< The recording; may be null.
   std::filesystem::path results = {};      ///< Folder for the results of task runs.
-  std::shared_ptr<RunLink> run = {};       ///< An active run, whose recording is opened at its end.
+  std::shared_ptr<RunLink> run = {};       ///< An active run; its recording is opened at its end.
   std::vector<ViewExample> examples = {};  ///< Other experiments to open; empty if a file was given.
 };
 
-/// Parses the requests of clients, answers them, and switches between rig and recording. To be used by one
-/// thread.
+/// Parses the requests of clients, answers them, and switches between rig and recording. Not thread-safe.
 class Viewer {
  public:
-  /// `now` is in s by the clock of advance().
+  /// `now`: present time of the clock of advance(), s.
   Viewer(ViewStart start, Messenger& messenger, Background& background, double now);
 
   void opened(ClientId client);
   void closed(ClientId client);
-  /// `debt` is released when the client has its answer, or can get none any more.
+  /// `debt` is released when the client has its answer, or can no longer get an answer.
   void on_message(ClientId client, const std::string& text,
                   const std::shared_ptr<const void>& debt = nullptr);
   void asked(const std::string& target, const std::function<void(HttpAnswer)>& answer);
   void advance(double now);
 
-  /// Reports to a client, or to all, what failed while sending to them; a repeated failure is reported once.
+  /// Reports an error to a client, or to all clients. A repeated error is reported once.
   void failed(std::optional<ClientId> client, std::string why);
 
   /// Cancels a run of tasks.
@@ -67,7 +66,7 @@ class Viewer {
   void open_example(const std::string& name, const Reply& reply);
   void open(const std::filesystem::path& folder, Reply reply);
   void go_live(const Reply& reply);
-  /// Returns whether there is a live rig; false if the watched run is over.
+  /// Returns whether there is a live rig; false after the end of a watched run.
   [[nodiscard]] bool has_rig() const;
   [[nodiscard]] bool has_recording() const;
   void show(Session& session);
@@ -79,7 +78,7 @@ class Viewer {
   std::set<ClientId> clients_;
   std::map<ClientId, std::string> failures_;     // Last failure reported to each client.
   std::unique_ptr<LiveSession> live_;            // May be null if a recording was opened first.
-  std::unique_ptr<RecordingSession> recording_;  // The last one opened; may be null.
+  std::unique_ptr<RecordingSession> recording_;  // The last opened recording; may be null.
   Session* shown_ = nullptr;                     // Points to *live_ or *recording_.
   bool is_opening_ = false;
   std::shared_ptr<const bool> alive_ = std::make_shared<const bool>(true);

@@ -14,9 +14,9 @@ namespace flexura {
 /// Background work with a thread for each lane.
 class Workers : public Background {
  public:
-  /// `back` gets the functions to be called on the session's thread; it is called from any thread.
+  /// `back` receives the functions that must be called on the session's thread. It is called from any thread.
   explicit Workers(std::function<void(After)> back);
-  /// Finishes the jobs under way, and drops those that wait.
+  /// Finishes active jobs and drops waiting ones.
   ~Workers() override;
 
   void run(Lane lane, Job job) override;

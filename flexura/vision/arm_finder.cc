@@ -31,24 +31,24 @@ namespace {
 // Arms of less contrast may be lost in noise.
 constexpr double least_blurred = 2, blurred_share = 0.12, faint = 30;
 
-// This many pixels separate a histogram's two classes well enough: the borders are measured separately.
+// Number of pixels that suffice for the histogram. The borders are measured separately.
 constexpr std::size_t histogram_samples = 12288;
 
-// Smaller figures are dust.
+// Smaller figures are ignored as dust.
 constexpr std::int64_t least_area = 24;
 
 // Smallest ratio of length to width of a tube.
 constexpr double least_slenderness = 2.5;
 
-// An axis that covers less of its figure is some edge of it, not an arm.
+// If an axis covers less than this fraction of its figure, it is an edge of the figure, not an arm.
 constexpr double least_covered = 0.3;
 
 constexpr std::size_t most_tries = 4, most_seeds = 4;
 
-// If the axis covers more, the rest is its ends and noise.
+// If the axis covers more than this fraction, the rest is due to the ends and noise.
 constexpr double all_but_ends = 0.95;
 
-// Returns whether a point of the border lies beside the axis, at the distance of the axis's width.
+// Returns whether a point of the border belongs to the axis: its distance from the axis is half the width.
 bool is_explained(const BorderPoint& point, const std::vector<AxisSample>& axis) {
   constexpr double close = 1.5;  // px, across and along the axis.
   return std::ranges::any_of(axis, [&](const AxisSample& sample) {
@@ -65,7 +65,7 @@ double merit(const ArmObservation& seen) {
   return std::min(seen.covered, 1.0) + 0.2 * static_cast<double>(std::ranges::count_if(seen.ends, is_known));
 }
 
-// Returns whether no other seed would show more.
+// Returns whether no other seed can give a better result.
 bool shows_all(const ArmObservation& seen) {
   constexpr double whole = 0.85;
   const auto is_lost = [](const AxisEnd& end) { return end.kind == AxisEndKind::lost; };
@@ -165,8 +165,8 @@ void ArmFinder::Work::find_axis(const Image<Value>& picture, double scale) {
   seen.reason = first_reason;
 }
 
-// Follows the tube of a component from the first seed that leads to both its ends, or else from the one that
-// leads farthest.
+// Tracks the tube of a component from the first seed that leads to both ends; if there is none, from the seed
+// that leads farthest.
 template <typename Value>
 bool ArmFinder::Work::follow(const Image<Value>& picture, double scale, const Component& component) {
   tube_seeds(components, component, seeds);
@@ -178,7 +178,7 @@ bool ArmFinder::Work::follow(const Image<Value>& picture, double scale, const Co
   if (static_cast<double>(component.area) < least_slenderness * width * width ||
       component.on_border > 6 * width + 12) {
     seen.reason = fmt::format(
-        "the largest figure is no tube: {} px large, about {:.0f} px across, {} px of it on the picture's "
+        "the largest figure is not a tube: {} px large, about {:.0f} px across, {} px of it on the picture's "
         "border",
         component.area, width, component.on_border);
     return false;
@@ -187,7 +187,7 @@ bool ArmFinder::Work::follow(const Image<Value>& picture, double scale, const Co
   least_blur = std::numeric_limits<double>::infinity();
   try_seeds(picture, scale, component);
   if (best.axis.empty()) {
-    // Where hairs form more of the figure than the arm does, the arm is the thickest.
+    // If hairs form a larger part of the figure than the arm, the arm is the thickest tube.
     std::ranges::stable_sort(seeds, std::ranges::greater{}, &TubeSeed::width);
     try_seeds(picture, scale, component);
   }
@@ -209,12 +209,12 @@ std::string ArmFinder::Work::reason_against_following(double width) const {
     return fmt::format("they are blurred by some {:.0f} px", least_blur);
   const double contrast = seen.threshold.bright - seen.threshold.dark;
   if (contrast < faint)
-    return fmt::format("it is no tube, points at the camera, or is too faint (a contrast of {:.0f} of 255)",
-                       contrast);
-  return "it is no tube, or points at the camera";
+    return fmt::format(
+        "it is not a tube, points at the camera, or is too faint (a contrast of {:.0f} of 255)", contrast);
+  return "it is not a tube, or points at the camera";
 }
 
-// Tries the first few seeds; the result of the best one is in `best`.
+// Tries the first few seeds. Stores the result of the best seed in `best`.
 template <typename Value>
 void ArmFinder::Work::try_seeds(const Image<Value>& picture, double scale, const Component& component) {
   for (std::size_t i = 0; i < std::min(seeds.size(), most_seeds); ++i) {
@@ -224,7 +224,7 @@ void ArmFinder::Work::try_seeds(const Image<Value>& picture, double scale, const
   }
 }
 
-// Follows the tube from a seed in both directions.
+// Tracks the tube from a seed in both directions.
 template <typename Value>
 bool ArmFinder::Work::follow_from(const Image<Value>& picture, double scale, const Component& component,
                                   const TubeSeed& rough) {
@@ -274,7 +274,7 @@ void ArmFinder::Work::order_ends() {
     for (AxisSample& sample : seen.axis) sample.normal = -sample.normal;
   }
   if (seen.is_closed) {
-    seen.notes.emplace_back("the tube comes back to where it starts: it has no ends");
+    seen.notes.emplace_back("the tube is closed and has no ends");
     return;
   }
   for (const AxisEnd& end : seen.ends) {
@@ -283,8 +283,8 @@ void ArmFinder::Work::order_ends() {
       seen.notes.push_back(fmt::format("the picture's border cuts the arm at its {}", name));
     if (end.kind == AxisEndKind::lost)
       seen.notes.push_back(
-          fmt::format("at ({:.1f}, {:.1f}) the arm's borders are seen no more: it lies along another "
-                      "figure, or points at the camera",
+          fmt::format("at ({:.1f}, {:.1f}) the arm's borders are no longer visible: the arm is beside "
+                      "another figure, or points at the camera",
                       end.pixel.x(), end.pixel.y()));
   }
 }
@@ -303,13 +303,12 @@ void ArmFinder::Work::note_others() {
         static_cast<double>(components.list[i].area) > 0.2 * area)
       ++others;
   if (others > 0)
-    seen.notes.push_back(fmt::format("{} other figure{} of a like size: the largest tube is measured", others,
-                                     others > 1 ? "s" : ""));
+    seen.notes.push_back(fmt::format("{} other figure{} of similar size: the largest tube is measured",
+                                     others, others > 1 ? "s" : ""));
   if (seen.covered < 0.8)
-    seen.notes.push_back(
-        fmt::format("the tube explains {:.0f} % of its silhouette: something else touches it, or it "
-                    "crosses itself",
-                    100 * seen.covered));
+    seen.notes.push_back(fmt::format(
+        "the tube covers {:.0f} % of the silhouette: something touches the tube, or the tube crosses itself",
+        100 * seen.covered));
 }
 
 // Adds enough places to test whether a shape covers the figure. Parts thinner than a third of the arm may
@@ -323,7 +322,7 @@ void ArmFinder::Work::add_places() {
   strew(components, followed, spacing, seen.places);
 }
 
-// For the figure that was followed, or the largest.
+// Uses the figure that was tracked, or the largest figure.
 void ArmFinder::Work::add_unexplained(const Image<std::uint8_t>& gray) {
   if (order.empty() || (seen.is_found() && seen.covered >= all_but_ends)) return;
   const std::uint32_t component = seen.is_found() ? followed : order.front();

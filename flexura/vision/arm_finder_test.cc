@@ -112,7 +112,7 @@ TEST(ArmFinder, GivesAReasonWhereThereIsNoArm) {
   for (int v = 0; v < 200; ++v)
     for (int u = 0; u < 200; ++u)
       if (std::hypot(u - 100, v - 100) < 60) disc.at(u, v) = 20;
-  EXPECT_THAT(finder.find(disc).reason, HasSubstr("no tube"));
+  EXPECT_THAT(finder.find(disc).reason, HasSubstr("not a tube"));
   EXPECT_THROW((void)finder.find(Image<std::uint8_t>(4, 4, 3)), std::invalid_argument);
 }
 

@@ -11,36 +11,38 @@
 
 namespace flexura {
 
-/// Returns red, green, blue (0 to 255) at a subpixel position by bilinear interpolation; for a gray picture
-/// its value three times.
+/// Returns red, green and blue (0 to 255) at a subpixel position, px, by bilinear interpolation. For a gray
+/// picture, returns the gray value three times.
 [[nodiscard]] Eigen::Vector3d color_at(const Image<std::uint8_t>& picture, const Eigen::Vector2d& pixel);
 
 /// Returns the median of each channel. `colors` must not be empty.
 [[nodiscard]] Eigen::Vector3d median_color(const std::vector<Eigen::Vector3d>& colors);
 
-/// Samples [first, last) of a line along the arm.
+/// A range of samples [first, last) on a line along the arm.
 struct Stretch {
   std::size_t first, last;
 };
-/// Returns the stretches whose colour is more than `bound` away from the arm's `own`.
+/// Returns the ranges of samples whose colour differs by more than `bound` from the arm's colour `own`.
 [[nodiscard]] std::vector<Stretch> stretches(const std::vector<Eigen::Vector3d>& colors,
                                              const Eigen::Vector3d& own, double bound);
 
-/// The arm's skin unrolled: positions and colours along its axis and beside it, a pixel apart.
+/// The arm's visible surface in arm coordinates: positions and colours on lines along the centerline, sampled
+/// one pixel apart.
 struct ArmSkin {
-  /// Lines along the arm, in half widths from its axis.
+  /// Distances of the lines from the centerline, in half widths of the arm.
   static constexpr std::array<double, 7> lines = {-0.72, -0.5, -0.25, 0, 0.25, 0.5, 0.72};
   static constexpr std::size_t middle_line = 3;
 
   std::vector<Eigen::Vector2d> axis, normals;
   std::vector<double> half_widths;
-  std::vector<bool> is_seen;  ///< Whether both borders are visible; otherwise the axis is extrapolated here.
+  std::vector<bool> is_seen;  ///< Whether both borders are visible at the sample; otherwise the centerline is
+                              ///< extrapolated there.
   std::array<std::vector<Eigen::Vector3d>, lines.size()> colors;
 
   ArmSkin(const Image<std::uint8_t>& picture, const ArmObservation& arm);
 
   [[nodiscard]] std::size_t size() const { return axis.size(); }
-  /// Returns the axis point at the sample position `along`.
+  /// Returns the point of the centerline at the sample position `along`, which need not be an integer, px.
   [[nodiscard]] Eigen::Vector2d at(double along) const;
 };
 

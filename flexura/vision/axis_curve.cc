@@ -30,7 +30,8 @@ double strength_of(double reach, double step) {
 // distance of 20 widths widens by 0.06 if it points to within 25 degrees of the camera.)
 constexpr double most_bend = 0.7, most_widening = 0.06;
 
-// Samples this near to an invisible one count as invisible: smoothing spreads its error.
+// Samples within this distance of an invisible sample count as invisible, because smoothing spreads its
+// error.
 constexpr std::size_t spread = 2;
 
 // Number of sections over which the residuals of smoothing must average out.
@@ -95,8 +96,8 @@ void AxisCurve::take(std::span<const CrossSection> sections, double step, double
       toward = (front - 2 * here + back) / (0.25 * (front - back).squaredNorm());
     const double squared = std::min(blur * blur, 1.0);
     const double share = std::pow(strengths_[i], 1.0 / 6.0);
-    // A tube that bends so tightly for its width, or widens so fast, points towards the camera: its borders
-    // belong to other positions than this.
+    // A tube that bends this tightly for its width, or widens this fast, points towards the camera. Its
+    // borders then belong to other positions.
     const std::size_t span = std::max<std::size_t>(1, after - before);
     const double widening = (smooth_[after] - smooth_[before])[2] / (static_cast<double>(span) * step);
     const bool is_plain = toward.norm() * smooth_[i][2] < most_bend && std::abs(widening) < most_widening;
@@ -133,7 +134,7 @@ bool AxisCurve::fit(TubeTracker<Value>& tracker, const std::array<TrackEnd, 2>& 
                    (smooth_[after] - smooth_[before])[2] /
                        (tracker.step() * static_cast<double>(std::max<std::size_t>(1, after - before))));
   }
-  // Sections at the ends without both borders lie beyond the arm's ends.
+  // Sections at the ends without both borders are beyond the arm's ends.
   std::size_t first = 0, last = sections.size();
   while (first < last && !sections[first].is_whole()) ++first;
   while (last > first && !sections[last - 1].is_whole()) --last;

@@ -13,13 +13,13 @@
 
 namespace flexura {
 
-/// Makes a smooth centerline from the cross-sections of a tube. The normals are those of the curve; the
-/// sections are measured again along them and smoothed as far as the noise allows. After the first pictures
-/// it allocates no more.
+/// Makes a smooth centerline from the cross-sections of a tube. The cross-sections are measured again along
+/// the normals of the curve, and smoothed according to the noise. After the first pictures it allocates no
+/// more memory.
 class AxisCurve {
  public:
-  /// Fills axis and ends of `seen`, in the order of the sections; returns false if no axis is left. `stops`:
-  /// why the sections end, at the first and the last one.
+  /// Computes axis and ends of `seen`, in the order of `sections`. `stops` has the reasons why tracking
+  /// ended, at the first and at the last section. Returns false if no centerline remains.
   template <typename Value>
   bool fit(TubeTracker<Value>& tracker, const std::array<TrackEnd, 2>& stops,
            std::vector<CrossSection>& sections, ArmObservation& seen);

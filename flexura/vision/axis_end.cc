@@ -19,7 +19,7 @@ using Eigen::Vector2d;
 // Lines beside the axis along which an end is searched, in half widths.
 constexpr std::array<double, 9> end_lines = {-0.8, -0.6, -0.4, -0.2, 0, 0.2, 0.4, 0.6, 0.8};
 
-// In half widths: ends that bulge more are round, or seen from the front or from behind.
+// In half widths. An end with a larger bulge is round, or seen from the front or from behind.
 constexpr double bulging = 0.6;
 
 // Relative to the half width, and px: a silhouette that deviates more from the end of a tube is rejected.
@@ -32,7 +32,7 @@ struct Way {
 
   [[nodiscard]] double half_width_at(double x) const { return half_width + widening * x; }
 
-  // After x px along the arc.
+  // Direction after x px along the arc.
   [[nodiscard]] Vector2d tangent_at(double x) const {
     return std::cos(curvature * x) * tangent + std::sin(curvature * x) * normal;
   }
@@ -177,8 +177,8 @@ std::optional<Shape> shape_of_end(const TubeTracker<Value>& tracker, const Way& 
   return shape;
 }
 
-// Removes from the axis what lies beyond its end, or so near that the blur of the end reaches the borders.
-// Then extends the axis to its end.
+// Removes samples beyond the end, or so near to the end that its blur reaches the borders. Then extends the
+// axis to the end.
 void end_axis_at(const Way& way, const Shape& shape, double margin, bool is_last,
                  std::vector<AxisSample>& axis) {
   const double x = shape.x;
@@ -189,8 +189,8 @@ void end_axis_at(const Way& way, const Shape& shape, double margin, bool is_last
   };
   if (!is_last) std::ranges::reverse(axis);
   while (axis.size() > 3 && is_beyond(axis.back())) axis.pop_back();
-  // An end that bulges may belong to an arm that turns towards the camera there: its borders near the end are
-  // not where its sides are.
+  // A bulging end may belong to an arm that turns towards the camera at its end. The borders near the end are
+  // then not those of the sides.
   for (std::size_t i = axis.size(); shape.bulge > bulging * way.half_width && i-- > 0;) {
     if ((axis[i].pixel - end).norm() > way.half_width) break;
     axis[i].is_seen = false;

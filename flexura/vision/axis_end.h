@@ -8,10 +8,11 @@
 
 namespace flexura {
 
-/// Finds the ends of the axis of `seen` and fills them in. At a free end the silhouette is measured along
-/// lines beside the axis. Over the tube's half width h, the image of a flat or round end is half an ellipse,
+/// Finds the ends of the centerline in `seen` and sets seen.ends. At a free end, the silhouette is measured
+/// along lines parallel to the centerline. With the tube's half width h, the image of a flat or round end is
+/// half an ellipse,
 ///   reach(y) = x + bulge sqrt(1 - (y/h)^2).
-/// The sides, and hence the backbone, end at x. The axis is extended along its arc to there.
+/// The tube's sides, and hence the backbone, end at x. The centerline is extended along its arc to x.
 template <typename Value>
 void find_ends(const TubeTracker<Value>& tracker, const std::array<TrackEnd, 2>& stops, ArmObservation& seen);
 

@@ -45,8 +45,8 @@ bool to_backbone_image(const Lens& lens, std::vector<AxisSample>& axis) {
     const auto &here = borders[i], &before = borders[last], &after = borders[next];
     const Vector3d first = after[0] - before[0], second = after[1] - before[1], tangent = first + second;
     const Vector3d chord = here[0] - here[1];
-    // Where both borders belong to one arc length, their angles from the tangent's direction are equal. So
-    // slide along them until the chord is perpendicular to the axis.
+    // Border points that belong to the same arc length have equal angles to the tangent's direction. Hence
+    // the points are moved along the borders until the chord is perpendicular to the axis.
     const double desired = chord.dot(tangent) / tangent.squaredNorm();
     const double most = 0.2 * chord.norm() / std::max(first.norm(), second.norm());
     // Without a measured width this is unknown.

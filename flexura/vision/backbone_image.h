@@ -8,39 +8,40 @@
 
 namespace flexura {
 
-/// Moves a centerline to the image of the backbone, exactly for a tube of constant radius. Two planes through
-/// the camera are tangent to the tube at arc length s. They are symmetric about the plane through the camera
-/// and the backbone's tangent at s. Hence the backbone's direction is half-way between those of the two
-/// borders, on the sphere around the camera and not in the picture (docs/vision.md). Samples with a border
-/// pixel without a ray are unchanged, and so are fewer than 3 samples. Returns whether all samples have rays.
+/// Moves a centerline to the image of the backbone (docs/vision.md). The result is exact for a tube of
+/// constant radius. Two planes through the camera are tangent to the tube at arc length s. They are symmetric
+/// about the plane through the camera and the backbone's tangent at s. Hence the viewing direction to the
+/// backbone is the mean of the viewing directions to the two borders. This is not the middle in the picture.
+/// A sample is unchanged if the lens has no ray for a border pixel; fewer than 3 samples are all unchanged.
+/// Returns whether all samples have rays.
 bool to_backbone_image(const Lens& lens, std::vector<AxisSample>& axis);
 
 /// Returns whether the lens has rays for both borders of a measured sample.
 [[nodiscard]] bool has_rays(const Lens& lens, const AxisSample& sample);
 
-/// A centerline at the image of the backbone, as far as the lens determines it.
+/// A centerline that was moved to the image of the backbone wherever the lens has rays.
 struct BackboneAxis {
-  std::vector<AxisSample> samples;  ///< Samples, as many as were measured.
-  /// By sample: whether it, its neighbours and its new position have rays. The others stay on the tube's
-  /// middle.
+  std::vector<AxisSample> samples;  ///< Samples, one for each sample of the measured centerline.
+  /// For each sample, whether it is on the backbone's image: the lens has rays for the sample, its neighbours
+  /// and its new position. Other samples are in the middle of the tube's image.
   std::vector<bool> is_backbone;
 
   [[nodiscard]] bool is_whole() const;
-  /// Returns the samples that lie on the backbone's image.
+  /// Returns the samples that are on the backbone's image.
   [[nodiscard]] std::vector<AxisSample> known() const;
 };
 
-/// Computes it from a measured axis. If rays are missing and fewer than three samples are visible and on the
-/// backbone's image, all samples count as not on it.
+/// Computes the centerline on the backbone's image from a measured centerline. If rays are missing and fewer
+/// than three visible samples are on the backbone's image, is_backbone is false for all samples.
 [[nodiscard]] BackboneAxis backbone_axis(const Lens& lens, const std::vector<AxisSample>& axis);
 
-/// Message for an axis that is not whole.
+/// Message for a result that is not BackboneAxis::is_whole().
 inline constexpr std::string_view middle_in_places =
     "the camera's distortion has no ray for some pixels of the arm: there the axis is its middle";
 
-/// Returns the depth of the backbone at each sample of such an axis, along the optical axis, m, from the
-/// tube's width and its radius, m. Exact to first order in radius over distance squared. NaN where the lens
-/// has no ray. Throws std::invalid_argument for a radius that is not positive.
+/// Returns the depth of the backbone along the optical axis at each sample, m. It is computed from the width
+/// of the tube's image and the tube's radius, m. The result is exact to first order in (radius / distance)^2.
+/// NaN for samples without a ray. Throws std::invalid_argument for a radius that is not positive.
 [[nodiscard]] std::vector<double> backbone_depths(const Lens& lens, const std::vector<AxisSample>& axis,
                                                   double radius);
 

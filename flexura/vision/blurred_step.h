@@ -12,48 +12,53 @@ namespace flexura {
 
 /// Result of an edge fit.
 struct StepFit {
-  double offset = 0;    ///< Distance from the expected position, in sample distances.
+  double offset = 0;    ///< Distance of the edge from the expected position, in units of the sample distance.
   double contrast = 0;  ///< Brightness after the edge minus that before it.
-  double residual = 0;  ///< Standard deviation of the samples from the model.
+  double residual = 0;  ///< Standard deviation of the samples' difference from the model.
 };
 
-/// Maximum-likelihood position of a brightness step along a line of samples with uniform noise. The step is
-/// blurred by a Gaussian. Both brightnesses are unknown; the one before the edge has an unknown slope, as a
-/// round tube is shaded towards its border. The model
+/// Maximum-likelihood estimator of the position of a brightness step along a line of samples with uniform
+/// noise. The step is blurred by a Gaussian. The brightness on both sides is unknown. On the side before the
+/// edge the brightness also has an unknown slope, because a round tube is shaded towards its border. The
+/// model
 ///   a + g min(x - p, 0) + C H(x - p), both blurred,
-/// is linearised at the expected position of the edge.
+/// is linearized at the expected position of the edge.
 class BlurredStep {
  public:
   static constexpr int before = 6, after = 5, taps = before + 1 + after;
 
-  /// Samples have unit distance; the last one before or at the edge is at -phase. `blur`: standard deviation
-  /// of the total blur, in that unit; > 0. `first`: number of samples used before that one (1 to `before`);
-  /// with fewer than 4 there is no slope.
+  /// Lengths are in units of the sample distance. `phase` is the distance from the last sample before or at
+  /// the expected edge to this edge. `blur` > 0 is the standard deviation of the total blur. `first` is the
+  /// number of samples used before this last sample, 1 to `before`; with fewer than 4 samples the model has
+  /// no slope.
   BlurredStep(double blur, double phase, int first);
 
-  /// Returns the standard deviation of the offset, for independent noise as large as the contrast.
+  /// Returns the standard deviation of the offset for independent noise whose standard deviation equals the
+  /// contrast.
   [[nodiscard]] double sigma() const { return 1 / bell_scale_; }
 
-  /// Returns the fit; unused samples are ignored but must be finite.
+  /// Fits the model to samples. Unused samples are ignored but must be finite.
   [[nodiscard]] StepFit fit(const std::array<float, taps>& values) const;
 
  private:
   using Column = std::array<float, taps>;
 
-  // The model's columns, orthonormalised in this order: constant, slope, step, and the bell of a shift.
+  // Columns of the model, orthonormalized in this order: constant, slope, step, and the bell-shaped
+  // derivative of a shift.
   Column constant_{}, slope_{}, step_{}, bell_{}, used_{};
   float used_count_ = 1, step_scale_ = 1, bell_scale_ = 1, step_of_bell_ = 0;
   int free_ = 1;
 };
 
-/// Steps for all blurs and phases, made when first needed. Their spacing is a thirty-second of a unit of
-/// phase and 4 % of blur, finer than necessary.
+/// Cache of BlurredStep objects for all blurs and phases, made when first needed. The spacing, 1/32 in phase
+/// and 4 % in blur, is finer than necessary.
 class BlurredSteps {
  public:
   static constexpr int phases = 32;
   static constexpr double least_blur = 0.4, ratio = 1.04;
 
-  /// `phase`: from -0.5 to 0.5. Sets `at` to the phase of the returned step.
+  /// Returns the step with the nearest blur and phase. `phase` is from -0.5 to 0.5. Sets `at` to the phase of
+  /// the returned step.
   const BlurredStep& of(double blur, double phase, int first, double& at);
 
  private:
@@ -66,13 +71,14 @@ class BlurredSteps {
   static std::vector<std::uint8_t> blur_places();
 };
 
-/// A geometric series of blurs to find that of a picture.
+/// A geometric series of blurs that are tried to find the blur of a picture.
 struct BlurSeries {
   double first = 0.4, ratio = 1.25;
 
   [[nodiscard]] double at(std::size_t i) const { return first * std::pow(ratio, static_cast<double>(i)); }
-  /// Returns the blur with the smallest residual `left`, interpolated by a parabola through the smallest
-  /// residual and its neighbours. `left` must not be empty; infinite entries count as not tried.
+  /// Returns the blur of smallest residual, interpolated by a parabola through the smallest residual and its
+  /// neighbours. `left` has the residual of each tried blur and must not be empty; infinite entries count as
+  /// not tried.
   [[nodiscard]] double least(std::span<const double> left) const;
 };
 

@@ -122,7 +122,7 @@ FigureBorder largest_figure(const Image<std::uint8_t>& gray, const ThresholdConf
   result.threshold = segment(gray, config, components, blocks);
   result.reason = result.threshold.reason;
   if (!result.reason.empty()) return result;
-  // The largest one that does not touch the picture's border; if all do, the largest.
+  // The largest component that does not touch the picture's border; if all touch it, the largest.
   std::size_t best = components.list.size();
   const auto key = [&](std::size_t i) {
     return std::pair(components.list[i].on_border == 0, components.list[i].area);

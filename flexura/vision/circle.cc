@@ -79,7 +79,7 @@ void go_around(std::span<const Vector2d> points, CircleFit& fit) {
     gap = std::max(gap, misfits[i].first - misfits[i - 1].first);
     products += misfits[i - 1].second * misfits[i].second;
   }
-  // A gap of the order of the points' spacing does not count.
+  // A gap of about the spacing of the points is not a gap.
   fit.arc = gap < 3 * 2 * pi / static_cast<double>(misfits.size()) ? 2 * pi : 2 * pi - gap;
   fit.misfit_correlation = squares > 0 ? products / squares : 0;
 }
@@ -117,12 +117,13 @@ void test_circle(std::span<const Vector2d> points, double sigma, CircleFit& fit)
   fit.detectable_tilt = tilt < 0.5 * pi ? tilt : 0.5 * pi;
 }
 
-// Information of the points on a circle's center and radius, to first order. It depends on their directions
-// from the center. On a flat arc these are almost equal, so they are taken relative to their mean. This makes
-// the center (`spread`, `gradient`) and the radius at that mean (`miss`) independent.
+// Information that the points give about a circle's center and radius, to first order. It depends on the
+// directions of the points from the center. On a flat arc the directions are almost equal, so that they are
+// taken relative to their mean. This makes the center (`spread`, `gradient`) and the radius in the mean
+// direction (`miss`) independent.
 struct Facing {
   Vector2d mean = Vector2d::Zero();                  // Mean direction.
-  Eigen::Matrix2d spread = Eigen::Matrix2d::Zero();  // Sum of their squares about the mean.
+  Eigen::Matrix2d spread = Eigen::Matrix2d::Zero();  // Sum of squares of the directions about the mean.
   // Gradient of the points' distances from the circle, relative to the mean direction.
   Vector2d gradient = Vector2d::Zero();
   double miss = 0, squares = 0;  // Sum of the distances from the circle, px, and of their squares.

@@ -18,7 +18,7 @@ namespace flexura {
 namespace {
 
 using Eigen::Vector2d;
-// OpenCV only reads it.
+// OpenCV only reads the picture.
 cv::Mat mat_of(const Image<std::uint8_t>& image) {
   return {image.height(), image.width(), CV_8U, const_cast<std::uint8_t*>(image.values().data())};
 }
@@ -40,7 +40,7 @@ std::vector<std::optional<Vector2d>> flow_at(const Image<std::uint8_t>& before,
   check_pictures(before, after);
   std::vector<std::optional<Vector2d>> flows(places.size());
   if (places.empty() || before.values().empty()) return flows;
-  // Equal bytes on every machine, whatever its number of processors.
+  // Makes results equal on every machine, for any number of processors.
   cv::setNumThreads(1);
   std::vector<cv::Point2f> from, to;
   for (const Vector2d& place : places)
@@ -61,7 +61,7 @@ void AngleIntegrator::add(std::span<const double> turns) {
       angles_[i] += turns[i];
       continue;
     }
-    // The nearest known ones to both sides.
+    // The nearest known values on both sides.
     double sum = 0, count = 0;
     for (std::size_t j = i; j-- > 0;)
       if (std::isfinite(turns[j])) {

@@ -6,7 +6,7 @@
 
 namespace flexura {
 
-/// Converts a picture to 8 bits: `white`, its largest value, becomes 255, and so do larger ones. Throws
+/// Converts a picture to 8 bits per value. The value `white`, and all larger values, become 255. Throws
 /// std::invalid_argument if `white` is below 1.
 [[nodiscard]] Image<std::uint8_t> eight_bits(const Picture& picture, int white);
 [[nodiscard]] Image<std::uint8_t> eight_bits(const Image<std::uint16_t>& picture, int white);

@@ -48,7 +48,7 @@ double nearest(const Vector2d& axes, const Vector2d& point) {
   return point.x() < 0 ? std::numbers::pi - upper : upper;
 }
 
-// Signed distance of a point, and its derivative by centre, semi-axes and angle.
+// Signed distance of a point, and its derivative with respect to centre, semi-axes and angle.
 double distance_row(const EllipseFit& ellipse, const Vector2d& point, Vector5* row) {
   const Eigen::Matrix2d R = turn(ellipse.angle);
   const Vector2d local = R.transpose() * (point - ellipse.center);
@@ -128,7 +128,7 @@ struct Linearized {
   double squares = 0;
 };
 
-// Least-squares ellipse near a start, through points of that size.
+// Finds the least-squares ellipse near a start, for points of size 1.
 EllipseFit nearest_to(std::span<const Vector2d> points, double size, const EllipseFit& start) {
   Linearized here(start, points), there = here;
   const auto try_step = [&](double damping) -> TriedStep {
@@ -173,7 +173,7 @@ std::optional<EllipseFit> fit_ellipse(std::span<const Vector2d> points) {
   put_in_order(*fit);
   fit = nearest_to(points, size, *fit);
   put_in_order(*fit);
-  // A line is no ellipse, however thin.
+  // A very thin ellipse counts as a line.
   if (fit->semi_axes.y() < 1e-4 * fit->semi_axes.x()) return std::nullopt;
   Linearized last(*fit, points);
   const auto count = static_cast<double>(points.size());

@@ -225,7 +225,8 @@ EtalonObservation find_etalon(const Image<std::uint8_t>& picture, const Image<st
   seen.reason = seen.threshold.reason;
   if (!seen.reason.empty()) return seen;
   if (seen.threshold.figure != Figure::dark) {
-    seen.reason = "what stands before the ground is bright: expected a dark cylinder before a bright screen";
+    seen.reason =
+        "the figure is brighter than the background: expected a dark cylinder in front of a bright screen";
     return seen;
   }
   const auto largest = std::ranges::max_element(components.list, {}, &Component::area);
@@ -254,7 +255,8 @@ EtalonObservation find_etalon(const Image<std::uint8_t>& picture, const Image<st
   seen.width_above = width_at(seen.top + inset), seen.width_below = width_at(seen.bottom - inset);
   if (std::max(left->rms, right->rms) > 0.05 * width_at(seen.middle_row)) {
     seen.reason = fmt::format(
-        "the largest figure is no upright cylinder: its sides are {:.2g} and {:.2g} px off straight lines",
+        "the largest figure is not an upright cylinder: its sides deviate by {:.2g} and {:.2g} px from "
+        "straight lines",
         left->rms, right->rms);
     return seen;
   }

@@ -12,33 +12,36 @@
 
 namespace flexura {
 
-/// A straight line in the picture: u = at + slope (v - middle row of the figure).
+/// A straight, nearly vertical line in the picture: u = at + slope (v - middle_row).
 struct UprightLine {
-  double at = 0, slope = 0;  ///< px, at the middle row; px per row.
-  double rms = 0;            ///< px
-  int count = 0;             ///< Number of rows in which it was found.
+  double at = 0, slope = 0;  ///< u at the middle row, px; change of u per row, px.
+  double rms = 0;            ///< Root mean square of the distances of points from the line, px.
+  int count = 0;             ///< Number of rows in which the line was found.
 };
 
-/// Observation of the calibration cylinder (section 3.4): dark, upright, with red lines along it.
+/// Observation of the calibration cylinder (paper, section 3.4), which is dark and upright, and has red lines
+/// parallel to its axis.
 struct EtalonObservation {
-  Threshold threshold;      ///< Includes the reason if it separates nothing.
-  std::string reason;       ///< Why no cylinder was found; "" if one was.
+  Threshold threshold;      ///< Threshold, with the reason if it separates nothing.
+  std::string reason;       ///< Reason why no cylinder was found; otherwise "".
   int top = 0, bottom = 0;  ///< First and last row of the silhouette.
-  double middle_row = 0;    ///< Half-way between top and bottom: reference row of the lines' `at`.
-  UprightLine left, right;  ///< The silhouette's sides.
-  /// Width of the silhouette a tenth of its height inside each end, px (docs/vision.md).
+  double middle_row = 0;    ///< Row half-way between top and bottom, the reference row of UprightLine.
+  UprightLine left, right;  ///< Left and right side of the silhouette.
+  /// Width of the silhouette at a tenth of its height below the upper end and above the lower end, px
+  /// (docs/vision.md).
   double width_above = 0, width_below = 0;
-  std::optional<double> upper_edge, lower_edge;  ///< v of the silhouette's ends, near its middle, px.
-  std::vector<UprightLine> lines;                ///< The red lines, left to right.
-  bool touches_border = false;  ///< Whether the silhouette reaches into the picture's outermost ring.
+  /// v of the silhouette's upper and lower end, measured near its middle, px.
+  std::optional<double> upper_edge, lower_edge;
+  std::vector<UprightLine> lines;  ///< The red lines, from left to right.
+  bool touches_border = false;     ///< Whether a pixel of the silhouette is in the picture's outermost ring.
 
-  /// Returns its middle, u, at row v, px.
+  /// Returns u of the silhouette's middle at row v, px.
   [[nodiscard]] double middle(double v) const {
     return 0.5 * (left.at + right.at + (left.slope + right.slope) * (v - middle_row));
   }
 };
 
-/// Finds the cylinder in a picture, gray or red, green, blue; `gray` is the same picture in gray
+/// Finds the calibration cylinder in a picture, gray or red, green, blue. `gray` is the same picture in gray
 /// (gray_picture()). In a gray picture the lines are found by their brightness.
 [[nodiscard]] EtalonObservation find_etalon(const Image<std::uint8_t>& picture,
                                             const Image<std::uint8_t>& gray,

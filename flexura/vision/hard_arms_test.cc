@@ -114,7 +114,7 @@ TEST(HardArms, MeasuresTheLargerOfTwoArmsAndSaysSo) {
   const ArmObservation& found = finder.find(both);
   ASSERT_TRUE(found.is_found()) << found.reason;
   EXPECT_LT(rms_error(one, found.axis), 0.1);
-  EXPECT_THAT(found.notes, testing::Contains(HasSubstr("1 other figure of a like size")));
+  EXPECT_THAT(found.notes, testing::Contains(HasSubstr("1 other figure of similar size")));
 }
 
 TEST(HardArms, FollowsAnArmAcrossItself) {

@@ -226,7 +226,7 @@ void look_for_merged(std::vector<MarkerObservation>& markers) {
       if (marker.is_band == are_bands) lengths.push_back(marker.length);
     if (lengths.size() < 2) continue;
     std::ranges::sort(lengths);
-    // Of two, the shorter one counts as single.
+    // With only two markers, the shorter length is the usual length of a single marker.
     const double usual = lengths[lengths.size() < 4 ? (lengths.size() - 1) / 2 : lengths.size() / 2];
     for (MarkerObservation& marker : markers)
       if (marker.is_band == are_bands && marker.length > 1.8 * usual) marker.may_be_merged = true;
@@ -267,7 +267,7 @@ void note_left_out(const std::vector<Stretch>& others, const std::vector<MarkerO
   const auto dropped = std::ranges::count_if(others, [&](const Stretch& other) { return !is_spot(other); });
   if (dropped > 0)
     notes.push_back(
-        fmt::format("{} spot{} of another colour left out: at an end of the arm, half hidden, touching "
+        fmt::format("{} spot{} of another colour omitted: at an end of the arm, half hidden, touching "
                     "another, or too small to be a marker",
                     dropped, dropped > 1 ? "s" : ""));
 }
@@ -285,8 +285,8 @@ MarkerObservations find_markers(const Image<std::uint8_t>& picture, const ArmObs
   std::vector<double> half_widths = skin.half_widths;
   const double thickness = 2 * median(std::span(half_widths));
   if (thickness < thinnest) {
-    found.notes.push_back(fmt::format("the arm is {:.1f} px thick: no markers are looked for below {} px",
-                                      thickness, thinnest));
+    found.notes.push_back(
+        fmt::format("the arm is {:.1f} px thick: markers are not searched below {} px", thickness, thinnest));
     return found;
   }
   const double bound = std::max(least_difference, 5 * arm.noise);
@@ -302,7 +302,7 @@ MarkerObservations find_markers(const Image<std::uint8_t>& picture, const ArmObs
       continue;
     }
     MarkerObservation band = band_of(parts, skin.half_widths[middle]);
-    if (!std::isfinite(band.sigma)) continue;  // On an arm that is no wider than a line there.
+    if (!std::isfinite(band.sigma)) continue;  // The arm is no wider than a line at this position.
     band.pixel = skin.at(band.along);
     band.color = color;
     band.may_be_merged = has_dip(skin.colors[middle_line], stretch, finder.own(), arm.noise);

@@ -50,8 +50,8 @@ bool has_two_values(const Image<Value>& picture) {
   return least < most && std::ranges::all_of(picture.values(), is_either);
 }
 
-// Stretches a mask to 0 and 255 and blurs it by a pixel: a staircase has no subpixel position, but its mean
-// over several steps has.
+// Scales a mask to 0 and 255 and blurs it by one pixel. A pixel staircase has no subpixel position, but its
+// mean over several steps has one.
 Image<std::uint8_t> softened_mask(const Image<std::uint8_t>& mask) {
   constexpr std::array<int, 5> kernel = {1, 4, 6, 4, 1};
   const std::uint8_t most = std::ranges::max(mask.values());
@@ -99,7 +99,7 @@ Photograph decode_picture(std::span<const std::uint8_t> file, const std::string&
     photograph.bytes = eight_bits(photograph.words, photograph.white);
   }
   const Image<std::uint8_t> gray = without_colors(photograph.bytes);
-  // Little contrast in 16 bits may leave two values in 8.
+  // A picture of little contrast in 16 bits may have only two values in 8 bits.
   photograph.is_mask = gray.channels() == 1 && has_two_values(gray) &&
                        (photograph.words.values().empty() || has_two_values(photograph.words));
   if (photograph.is_mask) photograph.bytes = softened_mask(gray), photograph.words = {};

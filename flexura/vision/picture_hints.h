@@ -9,12 +9,12 @@
 
 namespace flexura {
 
-/// Returns a hint if a lens seems to be described for pictures of another size than these, px. The hint names
-/// that size as far as the principal point indicates it.
+/// Returns a hint if the intrinsics of a lens seem to be for pictures of another size than width x height px.
+/// The hint gives the size that the principal point suggests, if any.
 [[nodiscard]] std::optional<std::string> hint_of_size(const Lens& lens, int width, int height);
 
-/// Returns a hint if much of a picture is saturated: clipping at white shifts borders. For pictures, not for
-/// masks.
+/// Returns a hint if a large part of a picture is saturated, because clipping at white shifts borders. Not
+/// for masks.
 [[nodiscard]] std::optional<std::string> hint_of_exposure(const Image<std::uint8_t>& gray);
 
 }  // namespace flexura

@@ -15,7 +15,8 @@ namespace {
 
 constexpr int word_pixels = 64;
 
-// Bit i of the word: whether pixel i is at or above the level; `levels` holds one for all or one per pixel.
+// Returns a word whose bit i tells whether pixel i is at or above the level. `levels` has one level for all
+// pixels, or one per pixel.
 struct BrightBits {
   std::uint8_t level = 0;
   const std::uint8_t* levels = nullptr;
@@ -72,7 +73,8 @@ void Components::find(const Image<std::uint8_t>& gray, const Threshold& threshol
   runs.clear();
   row_start_.clear();
   const double least = std::clamp(std::ceil(threshold.level), 0.0, 256.0);
-  // At 256 nothing is bright, which a byte cannot represent: the level is then one that no run depends on.
+  // At level 256 no pixel is bright. A byte cannot represent this level, so that another level is used that
+  // affects no run.
   const bool nothing_bright = least > 255;
   BrightBits bright{static_cast<std::uint8_t>(std::min(least, 255.0)), nullptr};
   for (int v = 0; v < gray.height(); ++v) {
@@ -163,7 +165,7 @@ Threshold segment(const Image<std::uint8_t>& gray, const ThresholdConfig& config
                   BlockThresholds& blocks, std::size_t samples) {
   components.runs.clear(), components.list.clear();
   Threshold threshold = threshold_of(gray, config, samples);
-  // A thin arm may fall between the samples.
+  // A subset of pixels may miss a thin arm.
   if (!threshold.reason.empty() && samples < gray.values().size()) threshold = threshold_of(gray, config);
   // In front of an uneven screen, the two classes may separate in blocks but not in the whole picture.
   const bool by_block = config.method == ThresholdMethod::by_block && blocks.make(gray, config);

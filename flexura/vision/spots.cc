@@ -16,7 +16,7 @@ namespace {
 
 using Eigen::Vector2d, Eigen::Vector3d;
 
-constexpr double least_spot_area = 8;  // Smaller ones are specks, px^2.
+constexpr double least_spot_area = 8;  // Smaller spots are ignored as specks, px^2.
 constexpr double longest = 4;          // Length over width, or width over length.
 constexpr double least_sigma = 0.03;   // The samples are a pixel apart, px.
 

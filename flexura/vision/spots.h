@@ -13,8 +13,9 @@
 
 namespace flexura {
 
-/// Finds spots anywhere on the visible skin. Excludes those that reach one of the `bands` (stretches of the
-/// middle line) or both sides of the arm. Also excludes colours within `bound` of the adjacent skin.
+/// Finds spots anywhere on the arm's visible surface. A spot must differ by more than `bound` from the
+/// adjacent surface colour. Excludes spots that touch one of the `bands` (ranges of samples on the middle
+/// line) or both sides of the arm.
 [[nodiscard]] std::vector<MarkerObservation> find_spots(const Image<std::uint8_t>& picture,
                                                         const ArmObservation& arm, const ArmSkin& skin,
                                                         std::span<const Stretch> bands, double bound);

@@ -14,7 +14,7 @@
 namespace flexura {
 namespace {
 
-// Classes nearer than this do not count as two: noise, or a shaded screen.
+// Smallest contrast of two classes. A smaller contrast is due to noise or an unevenly lit screen.
 constexpr double least_contrast = 10;
 
 // Margin for messages about exposure: a picture darker than this everywhere, or nearer than this to white.
@@ -102,16 +102,17 @@ std::string reason_against(const Histogram& histogram, const Threshold& found, d
   if (contrast > spreads * found.spread)
     return fmt::format("the picture is {}: its two brightnesses are nearer than {} {}", exposure,
                        least_contrast, means);
-  return fmt::format("the picture is {}: no two brightnesses stand apart {}", exposure, means);
+  return fmt::format("the picture is {}: no two brightnesses are distinct {}", exposure, means);
 }
 
 // Returns the reason why a fixed level separates nothing although another would.
 std::string reason_against_level(double level, const Threshold& otsu) {
-  const char* where = "parts the picture at the wrong place";
+  const char* where = "separates the picture at the wrong brightness";
   if (level < otsu.dark) where = "is darker than nearly all of the picture";
   if (level > otsu.bright) where = "is brighter than nearly all of the picture";
-  return fmt::format("the fixed level {:g} {}: its two brightnesses are {:.0f} and {:.0f}, {:g} parts them",
-                     level, where, otsu.dark, otsu.bright, otsu.level);
+  return fmt::format(
+      "the fixed level {:g} {}: its two brightnesses are {:.0f} and {:.0f}, {:g} separates them", level,
+      where, otsu.dark, otsu.bright, otsu.level);
 }
 
 // Returns the share of bright pixels in the ring `ring` px inside the picture's border. `level`: at (u, v).
@@ -127,8 +128,8 @@ double bright_share(const Image<std::uint8_t>& gray, int ring, const Level& leve
   return static_cast<double>(bright) / static_cast<double>(count);
 }
 
-// The class that is more frequent at the picture's border is background; three rings are used, as the
-// outermost pixels may be a frame.
+// The class that is more frequent at the picture's border is the background. Three rings are used, because
+// the outermost pixels may be a frame.
 template <typename Level>
 Figure figure_of(const Image<std::uint8_t>& gray, const Level& level) {
   const double share =
@@ -157,13 +158,13 @@ const std::vector<std::string>& names_of(const Figure*) {
 }
 
 Histogram histogram_of(const Image<std::uint8_t>& gray, std::size_t samples) {
-  // Four counters per brightness: neighbouring pixels are often equal, and a single counter would have to
-  // wait for itself.
+  // Uses four counters per brightness, because neighbouring pixels are often equal and repeated increments of
+  // one counter are slow.
   std::array<Histogram, 4> counts{};
   const auto values = gray.values();
   const std::size_t step =
       run_length * std::max<std::size_t>(1, values.size() / std::max<std::size_t>(samples, 1));
-  // A step that is not synchronous with the rows.
+  // The step between samples avoids a fixed relation to the row length.
   const std::size_t odd_step = step == run_length ? run_length : step + (step / run_length % 2 == 0 ? 3 : 5);
   // Each run lies in another cache line: the next ones are prefetched.
   const std::size_t ahead = 16 * odd_step;
@@ -235,7 +236,7 @@ bool BlockThresholds::make(const Image<std::uint8_t>& gray, const ThresholdConfi
   for (int j = 0; j < rows_; ++j) {
     for (int i = 0; i < columns_; ++i) {
       Block& block = blocks_[place(i, j)];
-      // A block is always split into two classes.
+      // The threshold method always splits a block into two classes.
       const Threshold own = around(gray, i, j, 0);
       block.mean = own.mean;
       // A block inside the figure sees background only in a larger neighbourhood.

@@ -13,70 +13,76 @@
 
 namespace flexura {
 
-/// How the brightness that separates foreground and background is chosen from the picture's histogram
-/// (section 3.4).
+/// Method that chooses the threshold between foreground and background from the picture's histogram (paper,
+/// section 3.4).
 enum class ThresholdMethod {
-  otsu,      ///< The largest variance between the two classes (N. Otsu, 1979).
-  two_mode,  ///< The deepest valley between the histogram's two peaks.
-  fixed,     ///< `ThresholdConfig::level`.
-  by_block,  ///< Otsu's for each block of the picture, linear between blocks: for uneven screens.
+  otsu,      ///< Maximizes the variance between the two classes (N. Otsu, 1979).
+  two_mode,  ///< Takes the deepest valley between the histogram's two peaks.
+  fixed,     ///< Takes ThresholdConfig::level.
+  by_block,  ///< Applies Otsu's method to blocks of the picture, with linear interpolation between blocks;
+             ///< for unevenly lit screens.
 };
 const std::vector<std::string>& names_of(const ThresholdMethod*);
 
-/// Side of the threshold on which the foreground is.
+/// Brightness of the foreground relative to the background.
 enum class Figure { dark, bright };
 const std::vector<std::string>& names_of(const Figure*);
 
-/// Separation of foreground and background.
+/// Settings for the separation of foreground and background.
 struct ThresholdConfig {
   ThresholdMethod method = ThresholdMethod::otsu;
-  double level = 127.5;          ///< With `fixed`, of 0 to 255.
-  std::optional<Figure> figure;  ///< Default: the class at the picture's border is background.
-  int block = 32;                ///< px, with `by_block`.
+  double level = 127.5;  ///< Threshold of the method `fixed`, on a scale from 0 to 255.
+  std::optional<Figure>
+      figure;      ///< Class of the foreground. Default: the class that is not at the picture's border.
+  int block = 32;  ///< Side of a block for the method `by_block`, px.
 };
 
-/// Frequency of each brightness; for pictures with more than 8 bits, of their upper 8 bits.
+/// Number of pixels of each brightness. For pictures with more than 8 bits, of each value of the upper 8
+/// bits.
 using Histogram = std::array<std::uint32_t, 256>;
 
-/// Computes the histogram of all pixels, or of an evenly spread share if there are more than `samples`.
+/// Computes the histogram of all pixels or, if there are more than `samples`, of an evenly distributed part
+/// of them.
 [[nodiscard]] Histogram histogram_of(const Image<std::uint8_t>& gray, std::size_t samples = 1U << 30U);
 
-/// A threshold and the statistics of its classes.
+/// A threshold, with statistics of the two classes. Brightness is on a scale from 0 to 255.
 struct Threshold {
   ThresholdMethod method = ThresholdMethod::otsu;
-  double level = 0;             ///< Between two brightnesses of 0 to 255.
+  double level = 0;             ///< Threshold, half-way between two integers.
   double dark = 0, bright = 0;  ///< Mean brightness of each class.
-  double mean = 0;              ///< Mean of all.
-  double spread = 0;            ///< Standard deviation within the classes.
+  double mean = 0;              ///< Mean brightness of all pixels.
+  double spread = 0;            ///< Standard deviation of brightness within the classes.
   Figure figure = Figure::dark;
-  /// Why no foreground can be separated ("the picture is blank ..."); "" if it can.
+  /// Reason why no foreground can be separated ("the picture is blank ..."); otherwise "".
   std::string reason;
 };
 
-/// Returns the threshold of a histogram by Otsu's method, between its two modes, or as fixed; with a reason
-/// if it separates nothing.
+/// Returns the threshold of a histogram by the methods otsu, two_mode or fixed; with a reason if the
+/// threshold separates nothing.
 [[nodiscard]] Threshold threshold_of(const Histogram& histogram, const ThresholdConfig& config = {});
 
-/// Returns the threshold of a picture, with the side of the foreground. `samples`: of the histogram.
+/// Returns the threshold of a picture, with the class of the foreground. `samples` limits the number of
+/// pixels in the histogram.
 [[nodiscard]] Threshold threshold_of(const Image<std::uint8_t>& gray, const ThresholdConfig& config,
                                      std::size_t samples = 1U << 30U);
 
-/// Thresholds of blocks, on the grid of their middles.
+/// Thresholds of the blocks of a picture.
 class BlockThresholds {
  public:
-  /// Evaluates each block in a neighbourhood that grows until two classes separate; blocks where none do are
-  /// interpolated. Returns false, without thresholds, if no block has any.
+  /// Computes the threshold of each block from a neighbourhood that grows until two classes can be separated.
+  /// Blocks without such a neighbourhood are interpolated. Returns false, without thresholds, if no block has
+  /// a threshold.
   bool make(const Image<std::uint8_t>& gray, const ThresholdConfig& config);
-  /// Returns the mean of the blocks in which two classes separate; its figure is the class that is not at the
-  /// picture's border.
+  /// Returns the mean threshold of the blocks in which two classes can be separated. Its `figure` is the
+  /// class that is not at the picture's border.
   [[nodiscard]] Threshold mean(const Image<std::uint8_t>& gray) const;
-  /// Sets the level at each pixel of row v, rounded up.
+  /// Sets `levels` to the threshold at each pixel of row v, rounded up.
   void row(int v, std::vector<std::uint8_t>& levels) const;
 
  private:
   struct Block {
     double level = std::numeric_limits<double>::quiet_NaN(), dark = 0, bright = 0;
-    double mean = 0;  // Of its own pixels.
+    double mean = 0;  // Mean brightness of the block's own pixels.
 
     [[nodiscard]] bool has_level() const { return !std::isnan(level); }
   };

@@ -10,20 +10,20 @@
 
 namespace flexura {
 
-/// A point in a component, and the shortest chord through it.
+/// The shortest chord through a point of a component.
 struct TubeSeed {
-  Eigen::Vector2d center = {0, 0};  ///< The chord's middle, px.
+  Eigen::Vector2d center = {0, 0};  ///< Middle of the chord, px.
   Eigen::Vector2d normal = {1, 0};  ///< Unit vector along the chord.
   double width = 0;                 ///< Length of the chord, px.
 };
 
-/// Returns the shortest chord through a pixel of the component over `directions` evenly spaced directions. If
-/// all chords are longer than `limit` px, the returned width is above the limit.
+/// Returns the shortest chord through a pixel of a component, among `directions` evenly spaced directions. If
+/// all chords are longer than `limit`, px, the returned width is above `limit`.
 [[nodiscard]] TubeSeed shortest_chord(const Components& components, const Eigen::Vector2d& from, double limit,
                                       int directions = 16);
 
-/// Finds chords through points spread over a component, those of medium width first. Where tubes cross or
-/// end, or under a hair, chords are longer or shorter than elsewhere.
+/// Finds chords through points distributed over a component, those of medium width first. Chords are longer
+/// or shorter than elsewhere where tubes cross or end, or where a hair covers the tube.
 void tube_seeds(const Components& components, const Component& component, std::vector<TubeSeed>& seeds);
 
 }  // namespace flexura

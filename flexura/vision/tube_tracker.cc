@@ -16,13 +16,14 @@ namespace {
 
 using Eigen::Vector2d;
 
-// Share of the knowledge of position, direction and curvature that remains after a pixel.
+// Factor of the fading memory per pixel for position, direction and curvature.
 constexpr double memory_of_pixel = 0.7;
 
-// Edges with less than this share of the usual contrast, or more than this multiple, are other edges.
+// Edges with less than this fraction of the usual contrast, or with more than this multiple, do not belong to
+// the tube.
 constexpr double least_share = 0.55, most_share = 1.8;
 
-// Up to its middle, the shading of a round tube is nearly linear.
+// The shading of a round tube is nearly linear from the border to the middle.
 constexpr double even_share = 1.0;
 
 constexpr std::size_t most_sections = 200000;
@@ -35,11 +36,11 @@ Vector2d along(const Vector2d& normal) { return {normal.y(), -normal.x()}; }
 template <typename Value>
 struct TubeTracker<Value>::State {
   Vector2d position = {0, 0}, tangent = {1, 0};
-  double curvature = 0;  // Of the tangent's rotation from u to v, 1/px.
+  double curvature = 0;  // Curvature, positive if the tangent rotates from u towards v, 1/px.
   double half_width = 0, widening = 0;
   int blind = 0, in_ground = 0;  // Sections since a border was last visible; of these, in the background.
   int one_sided = 0;
-  bool is_at_border = false;  // Whether samples of a border would lie outside the picture.
+  bool is_at_border = false;  // Whether samples of a border would be outside the picture.
 
   void advance(double step) {
     position += step * tangent + 0.5 * curvature * step * step * across(tangent);
@@ -81,8 +82,8 @@ bool TubeTracker<Value>::is_figure(const Vector2d& pixel) const {
   return edges_.holds(pixel) && edges_.sign() * (level_ - edges_.at(pixel)) > 0;
 }
 
-// Finds the border near `from` along `outward`; `normal` is its own. Repeated from the position found until
-// it converges.
+// Finds the border near `from` along `outward`; `normal` is the border's normal. The search is repeated from
+// the found position until it converges.
 template <typename Value>
 auto TubeTracker<Value>::look(const Vector2d& from, const Vector2d& outward, const Vector2d& normal,
                               double half_width, double capture) -> Look {
@@ -198,7 +199,7 @@ CrossSection TubeTracker<Value>::meet(State& state, const Gains& gains, int way)
   return section;
 }
 
-// Counts how long borders have been missing.
+// Counts the sections since borders were visible.
 template <typename Value>
 void TubeTracker<Value>::count(State& state, const CrossSection& section) const {
   const bool any = section.is_seen[0] || section.is_seen[1];

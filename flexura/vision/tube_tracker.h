@@ -13,56 +13,59 @@
 
 namespace flexura {
 
-/// Intersection of a line across a tube with its two borders.
+/// Cross-section of a tube in a picture: the intersection of a line with the tube's two borders.
 struct CrossSection {
-  Eigen::Vector2d center = {0, 0};  ///< Half-way between the borders, px.
-  /// Unit vector along the line: the direction of travel turned from u to v.
+  Eigen::Vector2d center = {0, 0};  ///< Middle between the borders, px.
+  /// Unit vector along the line: the direction of tracking, rotated by 90 degrees from u towards v.
   Eigen::Vector2d normal = {0, 1};
-  double half_width = 0;                         ///< Half of the tube's width, px.
-  std::array<bool, 2> is_seen = {false, false};  ///< The border on the normal's side, and the other one.
+  double half_width = 0;  ///< Half of the tube's width, px.
+  std::array<bool, 2> is_seen = {
+      false,
+      false};  ///< Whether the border on the normal's side, and the border on the other side, are visible.
 
   [[nodiscard]] bool is_whole() const { return is_seen[0] && is_seen[1]; }
 };
 
 /// Reason why tracking a tube ended.
 enum class TrackEnd {
-  free,    ///< The figure ends.
-  border,  ///< The picture ends.
-  lost,    ///< Its borders are no longer visible, but it does not end either.
-  closed,  ///< It comes back to its start.
+  free,    ///< The tube ends.
+  border,  ///< The tube leaves the picture.
+  lost,    ///< The tube's borders are no longer visible, although the tube does not end.
+  closed,  ///< The tube returns to the start of the tracking.
 };
 
-/// Tracks a tube through a picture with a cross-section every pixel or two. Each is predicted from the
-/// previous ones (position, direction and curvature by a fading memory) and measured on both borders. If one
-/// border is invisible, the other one continues with the known width. If both are (the tube crosses itself,
-/// or a hair covers it), it continues along its arc for some widths.
+/// Tracks a tube through a picture with a cross-section every one or two pixels. Position, direction and
+/// curvature of each section are predicted by a fading-memory filter, and then measured on both borders. If
+/// one border is invisible, tracking continues with the other border and the known width. If both borders are
+/// invisible, where the tube crosses itself or a hair covers it, tracking continues along the predicted arc
+/// for some widths.
 template <typename Value>
 class TubeTracker {
  public:
-  /// `level`: of the picture, between foreground and background; `contrast`: approximate smallest contrast of
-  /// an edge.
+  /// `level` is the threshold between foreground and background. `contrast` is the approximate smallest
+  /// contrast of a border.
   TubeTracker(const Image<Value>& picture, Figure figure, double level, double contrast, BlurredSteps& steps);
 
-  /// Returns the cross-section near a point, `normal` roughly across the tube; empty if its borders are not
-  /// there.
+  /// Returns the cross-section near the pixel `center`, with `normal` approximately across the tube; empty if
+  /// the borders are not found.
   [[nodiscard]] std::optional<CrossSection> seed(const Eigen::Vector2d& center, const Eigen::Vector2d& normal,
                                                  double half_width);
-  /// Tracks the tube from a seed along +tangent (`way` 1) or against it (-1) and appends the sections without
-  /// the seed.
+  /// Tracks the tube from the cross-section `seed`, along the tangent (`way` 1) or against the tangent (`way`
+  /// -1). Appends the cross-sections, without the seed, to `sections`.
   TrackEnd follow(const CrossSection& seed, int way, std::vector<CrossSection>& sections);
-  /// Measures a section again that is known to a fraction of a pixel; invisible borders stay so. `widening`:
-  /// change of the half width along the tangent.
+  /// Measures a cross-section again whose position is known to a fraction of a pixel. Invisible borders
+  /// remain invisible. `widening` is the change of the half width per pixel along the tangent.
   void refine(CrossSection& section, double widening);
-  /// Measures the blur of the borders at whole sections.
+  /// Measures the blur of the borders at the sections with two visible borders.
   void measure_blur(std::span<const CrossSection> sections);
 
   [[nodiscard]] const EdgeFinder<Value>& edges() const { return edges_; }
   [[nodiscard]] double level() const { return level_; }
-  /// Returns the distance of cross-sections, px: 1 for a thin tube, 2 for a wide one.
+  /// Returns the distance between cross-sections, px: 1 for a thin tube, 2 for a wide tube.
   [[nodiscard]] double step() const { return step_; }
   /// Returns the standard deviation of the borders' blur, px.
   [[nodiscard]] double blur() const { return blur_; }
-  /// Return the standard deviation of the picture's noise, estimated at the borders, and their contrast.
+  /// Standard deviation of the picture's noise, estimated at the borders, and contrast of the borders.
   [[nodiscard]] double noise() const { return noise_; }
   [[nodiscard]] double contrast() const { return contrast_; }
   /// Returns the standard deviation of a border's position, px.
@@ -70,14 +73,14 @@ class TubeTracker {
 
  private:
   struct State;
-  // Corrections of the state per unit of prediction error.
+  // Gains of the filter: corrections of the state per unit of prediction error.
   struct Gains {
     explicit Gains(double step);
     double position, direction, curvature, width, widening;
   };
   struct Look {
     std::optional<double> offset;
-    bool is_outside = false;  // Of the picture.
+    bool is_outside = false;  // Outside the picture.
   };
   [[nodiscard]] Look look(const Eigen::Vector2d& from, const Eigen::Vector2d& outward,
                           const Eigen::Vector2d& normal, double half_width, double capture);

@@ -11,7 +11,9 @@ import { open, readFile } from "node:fs/promises";
 
 import { crc32 } from "@foxglove/crc";
 import { McapIndexedReader, McapStreamReader } from "@mcap/core";
+import { decompress } from "fzstd";
 
+const decompressHandlers = { zstd: (bytes, size) => decompress(bytes, new Uint8Array(Number(size))) };
 const decoder = new TextDecoder("utf-8", { fatal: true });
 
 class Summary {
@@ -65,7 +67,7 @@ async function readIndexed(file) {
       return buffer;
     },
   };
-  const reader = await McapIndexedReader.Initialize({ readable });  // Checks the summary's CRC.
+  const reader = await McapIndexedReader.Initialize({ readable, decompressHandlers });  // Checks the summary's CRC.
   const summary = new Summary();
   for (const schema of reader.schemasById.values()) summary.take(schema);
   for (const channel of reader.channelsById.values()) summary.take(channel);
@@ -97,7 +99,7 @@ function checkStatistics({ statistics, chunkIndexes, channelsById, schemasById }
 }
 
 function readStreamed(bytes) {
-  const reader = new McapStreamReader({ validateCrcs: true });
+  const reader = new McapStreamReader({ validateCrcs: true, decompressHandlers });
   const summary = new Summary();
   reader.append(bytes);
   for (let record; (record = reader.nextRecord()); ) {

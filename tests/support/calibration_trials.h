@@ -45,20 +45,20 @@ struct CalibrationTrial {
 
 /// Strips numbers and names from a reason, so that equal reasons can be counted.
 inline std::string kind_of(const std::string& reason) {
-  static const std::vector<std::string> kinds = {"back and forth",
-                                                 "runs away",
+  static const std::vector<std::string> kinds = {"oscillates",
+                                                 "diverges",
                                                  "two red axes",
                                                  "limit of",
                                                  "out of view",
-                                                 "cannot have all",
+                                                 "cannot show the whole",
                                                  "no red axis",
                                                  "not verified",
-                                                 "no circle's arc",
+                                                 "neither a circle's arc",
                                                  "does not see",
                                                  "correlation is",
-                                                 "what can be commanded ends",
+                                                 "at the limit of its commands",
                                                  "ends",
-                                                 "no two cameras explain",
+                                                 "no poses of the two cameras explain",
                                                  "are not explained",
                                                  "do not agree"};
   for (const std::string& kind : kinds)

@@ -18,6 +18,7 @@ import { preferences, theme_now } from './state/preferences';
 import { Viewer } from './state/viewer';
 import { AppContext, make_app } from './ui/app';
 import { Page } from './ui/Page';
+import { apply_sizes } from './ui/sizes';
 
 let token = take_token(location, history);
 const viewer = new Viewer({
@@ -53,6 +54,7 @@ effect(() => {
   const title = viewer.hello.value?.title;
   document.title = title ? `${title} – Flexura` : 'Flexura';
 });
+apply_sizes();
 render(
   <AppContext.Provider value={app}>
     <Page />

@@ -48,7 +48,7 @@ void add_line(LineChart& chart, const CalibrationRun& run, const std::string& na
 }
 
 ReportFigure offsets(const CalibrationRun& run, std::size_t number) {
-  LineChart chart = step_chart(run, "what would have remained, if sent then");
+  LineChart chart = step_chart(run, "remaining errors, if commanded after this look");
   const auto add = [&](const char* name, const auto& value) {
     const auto of = [&](const auto& left) { return left ? value(*left) : nothing; };
     add_line(chart, run, name, of(run.result.nominal_remainder),
@@ -61,7 +61,7 @@ ReportFigure offsets(const CalibrationRun& run, std::size_t number) {
 }
 
 ReportFigure sigmas(const CalibrationRun& run, std::size_t number) {
-  LineChart chart = step_chart(run, "how well it was known: standard deviations");
+  LineChart chart = step_chart(run, "standard deviations of the estimate");
   const auto add = [&](const std::string& name, const auto& value) {
     add_line(chart, run, name, nothing, [&](const RigStep& step) { return value(step.sigmas); });
   };

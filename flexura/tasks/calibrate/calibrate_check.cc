@@ -25,10 +25,9 @@ bool is_plain_file(const std::string& name) {
 void check_markers(const ArmConfig& arm, const std::string& path, Reader& reader) {
   constexpr std::size_t fewest = 4;
   if (arm.look.markers(arm.arm()).size() < fewest)
-    reader.problem_at(path,
-                      fmt::format("needs at least {} markers to recognise places along the arm: expected "
-                                  "arm.look.bands or arm.look.marker",
-                                  fewest));
+    reader.problem_at(path, fmt::format("needs at least {} markers to identify positions along the arm: "
+                                        "expected arm.look.bands or arm.look.marker",
+                                        fewest));
 }
 
 // Checks that the cylinder is alone and upright.
@@ -55,10 +54,9 @@ void check_etalon(const CalibrateTask& task, const StandConfig& stand, const std
 
 void check_arcs(const CalibrateTask& task, const ArmConfig& arm, const std::string& path, Reader& reader) {
   if (arm.mechanics != ArmMechanics::kinematic)
-    reader.problem_at(
-        path + ".method",
-        "needs an arm that its drives bend into arcs, and an elastic one sags: expected bundle, or "
-        "the elastic arm under [truth.arm]");
+    reader.problem_at(path + ".method",
+                      "needs an arm of arcs, but an elastic arm sags: expected bundle, or the elastic arm "
+                      "under [truth.arm]");
   constexpr std::size_t arcs = 4;
   if (calibration_poses(task, arm.arm()).size() < arcs)
     reader.problem_at(
@@ -74,7 +72,7 @@ void check_arcs(const CalibrateTask& task, const ArmConfig& arm, const std::stri
 void check_idle_keys(const CalibrateTask& task, const std::string& path, Reader& reader) {
   const auto refuse = [&](const char* key, bool is_given, const char* whose) {
     if (is_given)
-      reader.problem_at(path + key, fmt::format("counts with {} alone: expected no such key", whose));
+      reader.problem_at(path + key, fmt::format("applies only to {}: expected no such key", whose));
   };
   const CalibrateTask usual;
   const CalibrateLoopConfig &loop = task.loop, &loop_usual = usual.loop;
@@ -102,14 +100,12 @@ void check_calibration(const CalibrateTask& task, const ArmConfig& arm,
   const bool is_bundle = !is_loop(task);
   if (!is_bundle && task.required_std != CalibrateRequiredStd{})
     reader.problem_at(path + ".required_std",
-                      "is what the methods bundle and bundle-etalon stop by: expected no such key");
+                      "applies only to the methods bundle and bundle-etalon: expected no such key");
   if (!is_bundle && task.method != CalibrateMethod::arcs && task.camera_prior != CalibrateCameraPrior{})
     reader.problem_at(path + ".camera_prior",
-                      "is asked for by the methods bundle, bundle-etalon and arcs: expected no such key");
+                      "applies only to the methods bundle, bundle-etalon and arcs: expected no such key");
   if (is_bundle && task.loop != CalibrateLoopConfig{})
-    reader.problem_at(path + ".loop",
-                      "is how the paper's methods go about it, bundle and bundle-etalon do not: expected no "
-                      "such key");
+    reader.problem_at(path + ".loop", "applies only to the paper's methods: expected no such key");
   if (!is_bundle) check_idle_keys(task, path, reader);
   if (task.method == CalibrateMethod::bundle || task.method == CalibrateMethod::arcs)
     check_markers(arm, path, reader);

@@ -22,7 +22,8 @@ namespace flexura {
 
 /// Calibration method of a task.
 enum class CalibrateMethod {
-  bundle,  ///< Least squares over all poses, lenses and the arm's own errors (calibrate/rig_session.h).
+  bundle,  ///< Least squares over pictures of the arm, for camera poses, lenses and the arm's own errors
+           ///< (calibrate/rig_session.h).
   bundle_etalon,  ///< Least squares over pictures of the calibration cylinder.
   etalon,         ///< The paper's loop with the cylinder, corrected (calibrate/loop_session.h).
   etalon_paper,   ///< The paper's loop with the cylinder, as printed.
@@ -73,13 +74,13 @@ struct CalibrateTask {
   CalibrateRequiredStd required_std;
   CalibrateCameraPrior camera_prior;
   CalibrateLoopConfig loop;
-  std::optional<std::array<double, 3>> target;      ///< Point at which the cameras look in the end, m.
+  std::optional<std::array<double, 3>> target;      ///< Point at which the calibrated cameras look, in W, m.
   bool stages = RigSessionConfig{}.may_use_stages;  ///< Whether stages may move, within their travel.
   /// Focal lengths for the pictures, as factors on the initial one.
   std::vector<double> zooms = RigSessionConfig{}.zooms;
-  double move_duration = RigSessionConfig{}.move_duration;  ///< s
-  double settle_timeout = RigPatience{}.settle;             ///< s
-  double frame_timeout = RigPatience{}.frame;               ///< s
+  double move_duration = RigSessionConfig{}.move_duration;  ///< Duration of a move of the arm, s.
+  double settle_timeout = RigPatience{}.settle;             ///< Time limit for motions to end, s.
+  double frame_timeout = RigPatience{}.frame;               ///< Time limit for a frame, s.
   std::string save;  ///< File in the experiment's folder for the calibrated rig; "": not saved.
 };
 
@@ -122,7 +123,7 @@ const Table<CalibrateTask>& fields_of(const CalibrateTask*);
 
 /// Reports why the calibration at `path` ("task[2]") is not possible with this setup.
 void check_keys(const CalibrateTask& task, const Setup& setup, const std::string& path, Reader& reader);
-/// Returns the runner of such a task. `task` and `setup` must outlive it.
+/// Returns the runner of a calibration. `task` and `setup` must outlive the runner.
 [[nodiscard]] std::unique_ptr<TaskRunner> runner_of(const CalibrateTask& task, const Setup& setup,
                                                     TaskLabel label);
 

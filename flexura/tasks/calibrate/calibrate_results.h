@@ -14,36 +14,38 @@
 
 namespace flexura {
 
-/// A calibrated rig, for experiments to include: the arm and the cameras, with initial positions where they
-/// were sent.
+/// A calibrated rig that experiments can include: the arm, and the cameras with their final commanded
+/// positions as initial positions.
 struct FoundRigFile {
   ArmConfig arm;
   std::vector<CameraConfig> camera;
 };
 const Table<FoundRigFile>& fields_of(const FoundRigFile*);
 
-/// Returns the file's text: TOML.
+/// Returns the text of the file in TOML.
 [[nodiscard]] std::string found_rig_toml(const Setup& setup, const CalibrationRun& run);
 
 /// Writes rig.toml (rig-2.toml, ... if it exists) of a successful calibration into the results. If `saved_as`
-/// is not empty, writes it beside the experiment too. An existing file there is kept as NAME-1.toml,
-/// NAME-2.toml, ... Throws std::runtime_error with the path on a system error.
+/// is not empty, also writes a copy with this name beside the experiment. An existing file with this name is
+/// kept as NAME-1.toml, NAME-2.toml, ... Throws std::runtime_error with the path on a system error.
 void write_rig_file(const Setup& setup, const CalibrationRun& run, const std::string& saved_as,
                     const std::filesystem::path& results);
 
-/// Returns what came of it: of the method "bundle" the angle between the axes with its standard deviation,
-/// and whether every required standard deviation is reached; of the paper's methods the angle as seen.
+/// Returns the result of a calibration in words. For the method "bundle" it has the angle between the axes
+/// with its standard deviation, and whether every required standard deviation is reached. For the paper's
+/// methods it has the observed angle.
 [[nodiscard]] TaskOutcome calibration_outcome(const CalibrationRun& run);
 
-/// Returns its item in the list `calibrations` of a summary.
+/// Returns the calibration's item in the list `calibrations` of a summary.
 [[nodiscard]] Node calibration_node(const CalibrationRun& run);
 
-/// Returns a picture with the measurements in it, and the axis as the ideal camera observes it.
+/// Returns a plot of a picture with its measurements, and with the arm's axis as the ideal camera observes
+/// it.
 [[nodiscard]] ImagePlot observed_picture(const CalibrationRun& run, const CameraObservation& observed,
                                          std::string heading);
 
-/// Returns the calibration's chapter of a report: a table of the rig's errors before and after, charts,
-/// pictures before and after. `number` from 0, for the names of figures.
+/// Returns the calibration's chapter of a report: a table of the rig's errors before and after, charts, and
+/// pictures before and after. `number`: index among the calibrations, from 0, for names of figures.
 [[nodiscard]] Chapter calibration_chapter(const CalibrationRun& run, std::size_t number);
 
 }  // namespace flexura

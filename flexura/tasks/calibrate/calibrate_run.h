@@ -19,34 +19,37 @@ namespace flexura {
 /// A simulated arc and its commands.
 struct CommandedArc {
   IdealArc ideal;
-  std::vector<double> rotations;  ///< Rotations of its bends about their base's axis, rad.
+  std::vector<double>
+      rotations;  ///< Rotations of the bend directions about the axes of the sections' bases, rad.
   std::optional<std::vector<std::int64_t>> positions;  ///< Motor positions, microsteps; arms with drives.
 };
 
 /// Result of a task of kind "calibrate".
 struct CalibrationRun {
   std::string name;
-  bool is_before_etalon = false;       ///< It used the calibration cylinder, not the arm.
+  bool is_before_etalon =
+      false;  ///< Whether the calibration used the calibration cylinder instead of the arm.
   std::array<std::string, 2> cameras;  ///< Names of the cameras.
   RigSigmas required = {};             ///< Required standard deviations, of the method "bundle".
   double accepted = 0;                 ///< Tolerance of offsets in pictures, px, of the paper's methods.
   RigModel nominal;                    ///< Model before the calibration.
   RigSessionResult result;             ///< Result of the method "bundle".
-  std::optional<LoopResult> loop;      ///< Result of one of the paper's methods, instead.
-  std::vector<CommandedArc> arcs;      ///< For methods with arcs: one per camera.
+  std::optional<LoopResult> loop;      ///< Result of one of the paper's methods, which replaces `result`.
+  std::vector<CommandedArc> arcs;      ///< Arcs of the methods with arcs, one per camera.
   MotionPtr motion;                    ///< Commanded motion of the arm, from the task's start.
   /// True remaining errors at the cameras' final positions, unknown to the session; only for simulated rigs.
   std::optional<RigRemainder> truth;
-  std::optional<std::array<double, 2>> true_focal = {};  ///< Likewise, focal lengths there, px.
+  std::optional<std::array<double, 2>> true_focal =
+      {};  ///< True focal lengths at the cameras' final positions, px; only for simulated rigs.
 
-  /// Returns the model of the rig after the calibration: the nominal one with the results.
+  /// Returns the model of the rig after the calibration: the nominal model with the results.
   [[nodiscard]] RigModel found() const;
   [[nodiscard]] bool is_done() const { return loop ? loop->is_done : result.is_done; }
   [[nodiscard]] const std::string& reason() const { return loop ? loop->reason : result.reason; }
 };
 
-/// Returns where the ideal camera observes the axis in a picture, from base to tip, px; empty for methods
-/// without arcs.
+/// Returns the image of the arm's axis for the ideal camera in a picture, from base to tip, px; empty for
+/// methods without arcs.
 [[nodiscard]] std::vector<Eigen::Vector2d> ideal_axis(const CalibrationRun& run,
                                                       const CameraObservation& observed);
 

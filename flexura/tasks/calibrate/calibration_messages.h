@@ -17,63 +17,63 @@ namespace flexura {
 /// flexura.CalibrationMove, on /calibration/moves: a command of a calibration.
 struct CalibrationMoveMessage {
   double time = 0;                                          ///< In s.
-  std::string device;                                       ///< "arm", or a camera's name.
-  std::optional<std::vector<std::array<double, 2>>> bends;  ///< Of the arm, rad.
-  std::optional<double> duration;                           ///< Duration of its motion, s.
-  std::optional<double> pan, tilt;                          ///< Of a camera, rad.
-  std::optional<double> zoom;                               ///< Position in the lens's table.
-  std::optional<std::array<double, 3>> stage;               ///< In m.
+  std::string device;                                       ///< Commanded device: "arm", or a camera's name.
+  std::optional<std::vector<std::array<double, 2>>> bends;  ///< Commanded bends of the arm, rad.
+  std::optional<double> duration;                           ///< Duration of the arm's motion, s.
+  std::optional<double> pan, tilt;                          ///< Commanded pan and tilt of a camera, rad.
+  std::optional<double> zoom;                               ///< Commanded position in the lens's table.
+  std::optional<std::array<double, 3>> stage;               ///< Commanded stage position, m.
 };
 
-/// flexura.CalibrationArc, on /calibration/arcs: the simulator's data of an arc for a camera.
+/// flexura.CalibrationArc, on /calibration/arcs: an ideal arc for a camera, computed with the simulator.
 struct CalibrationArcMessage {
   double time = 0;                                     ///< In s.
   std::string camera;                                  ///< Name of the camera.
   std::string plane;                                   ///< "XOY" or "ZOY".
-  std::vector<std::array<double, 2>> bends;            ///< In rad.
+  std::vector<std::array<double, 2>> bends;            ///< Bends of the arm, rad.
   std::vector<double> rotations;                       ///< Rotations of the bends, rad.
   std::optional<std::vector<std::int64_t>> positions;  ///< Motor positions, microsteps; arms with drives.
   PoseMessage pose;                                    ///< Pose of the ideal camera.
-  double focal = 0;                                    ///< Its focal length, px.
+  double focal = 0;                                    ///< Focal length of the ideal camera, px.
 };
 
 /// A marker as measured in a picture.
 struct MarkerMessage {
   double s = 0;         ///< Position along the unstretched arm, m.
-  double u = 0, v = 0;  ///< In px.
-  double sigma = 0;     ///< In px.
+  double u = 0, v = 0;  ///< Image position, px.
+  double sigma = 0;     ///< Standard deviation in each direction, px.
 };
 
 /// Any other number measured in a picture.
 struct SeenValueMessage {
-  std::string name;  ///< With its unit.
+  std::string name;  ///< Name with the unit.
   double value = 0;
 };
 
 /// A circle through measured points.
 struct CircleMessage {
   double u = 0, v = 0;  ///< Centre, px.
-  double radius = 0;    ///< In px.
+  double radius = 0;    ///< Radius, px.
   bool verified = false;
 };
 
 /// flexura.CalibrationObservation, on /calibration/observations: measurements in one picture.
 struct CalibrationObservationMessage {
   double time = 0;        ///< Middle of the exposure, s.
-  std::int64_t look = 0;  ///< From 1; 0 during the search for the arm.
+  std::int64_t look = 0;  ///< Number of the look, from 1; 0 during the search for the arm.
   std::string camera;
-  std::int64_t frame = 0;                    ///< Its number.
+  std::int64_t frame = 0;                    ///< Number of the frame.
   double pan = 0, tilt = 0;                  ///< Readings, rad.
   double zoom = 1;                           ///< Reading of the zoom.
   std::array<double, 3> stage = {0, 0, 0};   ///< Reading of the stage, m.
   std::vector<std::array<double, 2>> bends;  ///< Reading of the arm, rad.
   std::vector<MarkerMessage> markers;
-  std::vector<AxisPointMessage> points;  ///< Of the centerline, from base to tip.
+  std::vector<AxisPointMessage> points;  ///< Points of the centerline, from base to tip.
   std::int64_t unknown = 0;              ///< Number of observed markers that were not identified.
   std::optional<std::string> reason;     ///< Why the picture is unusable.
   std::optional<std::vector<SeenValueMessage>> values;  ///< Values of the paper's methods.
   std::optional<CircleMessage> circle;                  ///< Circle of the paper's methods.
-  /// Where the ideal camera observes the axis, from base to tip, px; methods with arcs.
+  /// Image of the arm's axis for the ideal camera, from base to tip, px; methods with arcs.
   std::optional<std::vector<std::array<double, 2>>> ideal;
 };
 
@@ -81,20 +81,21 @@ struct CalibrationObservationMessage {
 struct CalibrationDecisionMessage {
   double time = 0;                    ///< In s.
   std::int64_t looks = 0;             ///< Number of looks so far.
-  bool found = false;                 ///< A rig was found.
+  bool found = false;                 ///< Whether a rig was found.
   std::optional<std::string> reason;  ///< Why no rig was found, or why the calibration ended early.
   double rms = 0;                     ///< RMS of the residuals, in standard deviations.
   std::int64_t outliers = 0;          ///< Number of outliers.
-  double angle = 0;        ///< Angle between the axes at the positions where the cameras would be sent, rad.
-  double angle_sigma = 0;  ///< In rad.
-  std::array<double, 2> focal = {0, 0};        ///< In px.
-  std::array<double, 2> focal_sigma = {0, 0};  ///< As shares.
-  double zoom_ratio_sigma = 0;                 ///< As a share.
-  std::string next;                            ///< In words.
+  double angle = 0;        ///< Angle between the optical axes at the positions that would be commanded, rad.
+  double angle_sigma = 0;  ///< Standard deviation of this angle, rad.
+  std::array<double, 2> focal = {0, 0};        ///< Focal lengths, px.
+  std::array<double, 2> focal_sigma = {0, 0};  ///< Relative standard deviations of the focal lengths.
+  double zoom_ratio_sigma = 0;                 ///< Relative standard deviation of the zoom ratio.
+  std::string next;                            ///< Next action in words.
   std::optional<std::string> camera, step;  ///< For the paper's methods: camera of the offset, and its step.
-  std::optional<double> offset, accepted;   ///< For the paper's methods: the offset, and its accepted size.
-  std::optional<std::string> unit;          ///< Unit of both.
-  std::optional<bool> ended;                ///< Last message: `next` states how it ended.
+  std::optional<double> offset, accepted;   ///< For the paper's methods: the offset and its tolerance.
+  std::optional<std::string> unit;          ///< Unit of `offset` and `accepted`.
+  std::optional<bool>
+      ended;  ///< Whether this is the last message; `next` then states how the calibration ended.
 };
 
 inline constexpr std::string_view calibration_moves_topic = "/calibration/moves";
@@ -110,7 +111,7 @@ const Table<SeenValueMessage>& fields_of(const SeenValueMessage*);
 const Table<CalibrationObservationMessage>& fields_of(const CalibrationObservationMessage*);
 const Table<CalibrationDecisionMessage>& fields_of(const CalibrationDecisionMessage*);
 
-/// Returns the topic of images that the simulator has in place of a camera's.
+/// Returns the topic of the simulator's ideal images for a camera.
 [[nodiscard]] std::string ideal_image_topic(std::string_view camera);
 
 }  // namespace flexura

@@ -104,11 +104,11 @@ std::vector<std::string> loop_points(const CalibrationRun& run) {
   for (std::size_t i = 0; i < run.arcs.size(); ++i) points.push_back(arc_text(run.arcs[i], run.cameras[i]));
   for (std::size_t i = 0; i < 2; ++i)
     if (const auto& by = result.principal_point[i])
-      points.push_back(fmt::format(
-          "The principal point of camera {} is {:.2f} px to the right of and {:.2f} px below where the file "
-          "has it{}.",
-          run.cameras[i], by->x(), by->y(),
-          result.is_done ? "; the rig file of this calibration has it there" : ""));
+      points.push_back(
+          fmt::format("The principal point of camera {} is {:.2f} px to the right of and {:.2f} px below its "
+                      "position in the file{}.",
+                      run.cameras[i], by->x(), by->y(),
+                      result.is_done ? "; the rig file of this calibration has the new position" : ""));
   for (const std::string& note : result.notes) points.push_back(note);
   return points;
 }

@@ -32,10 +32,10 @@ void check_ways(const DynamicsTask& task, const std::string& path, Reader& reade
     reader.problem_at(path, "is empty: expected a shape, as bends, or azimuths and elevations");
   if (target.azimuths.has_value() != target.elevations.has_value() ||
       (target.azimuths && target.azimuths->size() != target.elevations->size()))
-    reader.problem_at(path,
-                      "has azimuths and elevations that do not belong together: expected as many of each");
+    reader.problem_at(path, "has different numbers of azimuths and elevations: expected equal numbers");
   if (target.stretches && !task.variable_lengths)
-    reader.problem_at(path + ".stretches", "is for variable_lengths = true: else lengths stay as they are");
+    reader.problem_at(path + ".stretches",
+                      "requires variable_lengths = true: otherwise lengths do not change");
 }
 
 void check_size(const DynamicsTask& task, std::size_t sections, const std::string& path, Reader& reader) {
@@ -62,11 +62,10 @@ void check_angles(const DynamicsTask& task, const Arm& arm, const std::string& p
   for (std::size_t i = 1; i < azimuths.size(); ++i) {
     constexpr double most = std::numbers::pi + 1e-9;
     if (std::abs(azimuths[i] - azimuths[i - 1]) > most)
-      reader.problem_at(
-          fmt::format("{}.azimuths[{}]", path, i),
-          fmt::format("{:.6g} deg, where the one before is {:.6g} deg: expected half a turn at most from one "
-                      "to the next, for azimuths go on beyond 180 deg",
-                      azimuths[i] / degree, azimuths[i - 1] / degree));
+      reader.problem_at(fmt::format("{}.azimuths[{}]", path, i),
+                        fmt::format("{:.6g} deg after {:.6g} deg: expected neighbours that differ by at most "
+                                    "half a turn; azimuths continue beyond 180 deg",
+                                    azimuths[i] / degree, azimuths[i - 1] / degree));
   }
   const Eigen::Vector2d base = AnglesAlongArm(arm, ArmState::straight(arm.sections.size())).at(0, 0);
   constexpr double rounding = 1e-6;
@@ -76,10 +75,9 @@ void check_angles(const DynamicsTask& task, const Arm& arm, const std::string& p
        {std::tuple("azimuths", azimuths[0], base[0], azimuth_off),
         std::tuple("elevations", elevations[0], base[1], elevations[0] - base[1])})
     if (std::abs(off) > rounding)
-      reader.problem_at(
-          fmt::format("{}.{}[0]", path, name),
-          fmt::format("{:.6g} deg: expected that of the arm's base, which is clamped, {:.6g} deg",
-                      first / degree, own / degree));
+      reader.problem_at(fmt::format("{}.{}[0]", path, name),
+                        fmt::format("{:.6g} deg: expected the value at the arm's clamped base, {:.6g} deg",
+                                    first / degree, own / degree));
 }
 
 }  // namespace

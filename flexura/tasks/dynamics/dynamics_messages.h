@@ -19,12 +19,13 @@ struct DynamicsSampleMessage {
   double potential = 0;                                               ///< Pi, J.
   double lyapunov = 0;                                                ///< W = T + Pi, J.
   double taken_by_law = 0, taken_by_medium = 0;   ///< Energy removed by damping since the start, J.
-  double azimuth_error = 0, elevation_error = 0;  ///< Root mean square along the arm, rad.
-  double spatial_error = 0;                       ///< Error of both together (docs/control.md, eq. 15).
-  double tip_error = 0;                           ///< In m.
-  std::vector<double> s;                          ///< Positions along the arm at rest, m.
-  std::vector<double> azimuths, elevations;       ///< Directions of the arm there, rad.
-  std::vector<std::array<double, 3>> points;      ///< The base, these positions, the tip, in W, m.
+  double azimuth_error = 0, elevation_error = 0;  ///< Root mean square errors along the arm, rad.
+  double spatial_error = 0;  ///< Combined error of both angles (docs/control.md, eq. 15), rad.
+  double tip_error = 0;      ///< Distance of the tip from its target, m.
+  std::vector<double> s;     ///< Positions along the arm at rest, m.
+  std::vector<double> azimuths, elevations;  ///< Directions of the arm at the positions `s`, rad.
+  std::vector<std::array<double, 3>>
+      points;  ///< Points at the base, at the positions `s`, and at the tip, in W, m.
 };
 
 inline constexpr std::string_view dynamics_samples_topic = "/dynamics/samples";

@@ -12,24 +12,25 @@
 
 namespace flexura {
 
-/// Largest elevation, rad: nearer to a quarter turn, rounding dominates the azimuth.
+/// Largest allowed elevation, rad. Nearer to a quarter turn, rounding errors dominate the azimuth.
 inline constexpr double most_elevation = 1.569;
 
-/// The two direction angles along an arm, theta (azimuth) and q (elevation) as in docs/estimation.md, rad.
-/// theta is continuous from the base, where it is in (-pi, pi].
+/// The two direction angles along an arm: theta (azimuth) and q (elevation), defined in docs/estimation.md,
+/// rad. Theta is continuous along the arm and in (-pi, pi] at the base.
 class AnglesAlongArm {
  public:
   /// `state` must fit the arm and be finite.
   AnglesAlongArm(const Arm& arm, const ArmState& state);
 
-  /// Returns (theta, q) at a share in [0, 1] of a section.
+  /// Returns (theta, q), rad, at the share `share` in [0, 1] of a section's length.
   [[nodiscard]] Eigen::Vector2d at(std::size_t section, double share) const;
   /// Returns the largest |q| on the arm, sampled in small steps.
   [[nodiscard]] double largest_elevation() const { return largest_elevation_; }
 
  private:
   Backbone backbone_;
-  std::vector<std::vector<double>> azimuths_;  // At equal shares of each section, with both ends.
+  std::vector<std::vector<double>>
+      azimuths_;  // At evenly spaced points of each section, including both ends, rad.
   double largest_elevation_ = 0;
 };
 
@@ -37,27 +38,28 @@ class AnglesAlongArm {
 /// clamped.
 class DynamicsPlant {
  public:
-  /// For an arm in the state `from` with |q| below a quarter turn at its base. Lengths that are not variable
-  /// stay as in `from`. The task must have been checked with the arm.
+  /// `from`: state of the arm, with |q| below a quarter turn at the base. Lengths that are not variable stay
+  /// as in `from`. The task must have been checked with the arm.
   DynamicsPlant(const DynamicsTask& task, const Arm& arm, const ArmState& from);
 
   [[nodiscard]] const DistributedArm& distributed() const { return distributed_; }
   [[nodiscard]] const Eigen::VectorXd& start() const { return start_; }
   [[nodiscard]] const Eigen::VectorXd& target() const { return target_; }
-  /// Returns true if |q| is below a quarter turn all along the arm at the start.
+  /// Returns true if |q| is below a quarter turn everywhere on the arm at the start.
   [[nodiscard]] bool is_regular() const { return is_regular_; }
-  /// Return the difference between the basis's angles and those of the start and target shapes, root mean
-  /// square along the arm, rad.
+  /// Return the errors of the basis's angles for the start shape and for the target shape, root mean square
+  /// along the arm, rad.
   [[nodiscard]] double start_off() const { return start_off_; }
   [[nodiscard]] double target_off() const { return target_off_; }
-  /// Returns the largest |q| of the target in the basis, rad: a polynomial may exceed its values.
+  /// Returns the largest |q| of the target in the basis, rad. A polynomial may exceed its values at the
+  /// nodes.
   [[nodiscard]] double largest_target_elevation() const;
   /// Returns p_WB, m: the origin of the distributed arm's positions, along W's axes.
   [[nodiscard]] const Eigen::Vector3d& base() const { return arm_.X_WB.position; }
 
-  /// Returns the state of the experiment's arm with the same directions at the sections' ends. Of arcs that
-  /// differ by whole turns, takes those nearest to `before`. In a plane, with an angle that is linear in each
-  /// section, this is the same curve.
+  /// Returns the state of the experiment's arm with the directions of the distributed arm at the sections'
+  /// ends. Of arcs that differ by whole turns, those nearest to `before` are used. If the arm is planar and
+  /// its angle linear in each section, both arms have the same curve.
   [[nodiscard]] ArmState state(const Eigen::VectorXd& x, const ArmState& before) const;
   /// Returns (theta, q) at the sections' ends, rad.
   [[nodiscard]] Eigen::Matrix2Xd end_angles(const Eigen::VectorXd& x) const;
@@ -68,7 +70,7 @@ class DynamicsPlant {
   [[nodiscard]] double off(const Eigen::VectorXd& x, const Angles& angles) const;
 
   Arm arm_;
-  std::vector<double> stretches_;  // If not variable.
+  std::vector<double> stretches_;  // Stretches of sections whose lengths are not variable.
   DistributedArm distributed_;
   Eigen::MatrixXd ends_;  // Shape functions at the sections' ends, the clamp's last.
   Eigen::VectorXd start_, target_;

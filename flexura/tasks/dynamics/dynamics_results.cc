@@ -71,7 +71,7 @@ std::vector<ReportFigure> figures_of(const DynamicsRun& run, std::size_t number)
     value = [=](const Shown& at) { return std::log10(std::max(value(at), least_joule)); };
   draw("lyapunov-powers", "the same", "J", 1, lines);
   std::get<LineChart>(figures.back().content).is_log = true;
-  draw("energies", "the arm's energies, and what damping took", "J", least_joule,
+  draw("energies", "the arm's energies, and the energy removed by damping", "J", least_joule,
        {{"gravity", &Shown::gravity_energy},
         {"elastic", &Shown::elastic_energy},
         {"law's damping", &Shown::taken_by_law},
@@ -90,18 +90,18 @@ std::vector<std::string> findings_of(const DynamicsRun& run) {
   points.reserve(run.violations.size());
   for (const std::string& violation : run.violations)
     points.push_back("A condition of the theory does not hold: " + violation + ".");
-  if (!run.stopped.empty()) points.push_back("It ended early: " + run.stopped + ".");
+  if (!run.stopped.empty()) points.push_back("The task ended early: " + run.stopped + ".");
   if (run.verdict) {
     const LyapunovVerdict& verdict = *run.verdict;
-    points.push_back(fmt::format(
-        "W falls all the way: {} (its largest rise is {:.2g} J). It falls by what damping takes, and by that "
-        "alone: {} (the largest difference is {:.2g} J). It has settled in the end: {}.",
-        yes_or_no(verdict.is_monotone), verdict.largest_rise, yes_or_no(verdict.is_balanced),
-        verdict.imbalance, yes_or_no(verdict.is_settled)));
+    points.push_back(
+        fmt::format("W decreases monotonically: {} (largest rise {:.2g} J). Its decrease equals the energy "
+                    "that damping removes: {} (largest difference {:.2g} J). W has settled in the end: {}.",
+                    yes_or_no(verdict.is_monotone), verdict.largest_rise, yes_or_no(verdict.is_balanced),
+                    verdict.imbalance, yes_or_no(verdict.is_settled)));
     if (run.is_measured) {
       points.emplace_back(
-          "The law had measured angles: late, noisy or held for a while. The theory's balance is that of "
-          "exact ones, so what it finds missing here is theirs.");
+          "The law used measured angles with delay, noise or sampling. The theory assumes exact angles, so "
+          "the differences found here are due to the measurement.");
     } else {
       for (const std::string& reason : verdict.reasons)
         points.push_back("The energies show: " + reason + ".");
@@ -109,29 +109,28 @@ std::vector<std::string> findings_of(const DynamicsRun& run) {
   }
   if (run.triangulated > 0)
     points.push_back(
-        fmt::format("Of all points of the arm that were looked at {:.3g} % were within 10 deg of a quarter "
-                    "turn, or across one from where they are to be: there both pictures were triangulated.",
+        fmt::format("{:.3g} % of all measured points of the arm were within 10 deg of a quarter turn, or "
+                    "separated from their target by one: at these points both pictures were triangulated.",
                     100 * run.triangulated));
   constexpr double little = 1e-9;
   if (run.left_over > little)
-    points.push_back(fmt::format(
-        "Up to {:.3g} % of the largest force that the law asked for is what the drives cannot give.",
-        100 * run.left_over));
-  points.push_back(fmt::format(
-      "In the end theta is {:.3g} deg and q {:.3g} deg off, root mean square along the arm, and the tip "
-      "{:.3g} mm.",
-      run.remaining.azimuth / degree, run.remaining.elevation / degree, 1e3 * run.remaining.tip));
+    points.push_back(fmt::format("The drives could not produce up to {:.3g} % of the law's largest force.",
+                                 100 * run.left_over));
+  points.push_back(
+      fmt::format("In the end the error of theta is {:.3g} deg and that of q {:.3g} deg, root mean square "
+                  "along the arm. The tip is {:.3g} mm from its target.",
+                  run.remaining.azimuth / degree, run.remaining.elevation / degree, 1e3 * run.remaining.tip));
   const double off = std::max(run.plant.start_off(), run.plant.target_off());
   constexpr double shows = 1e-3;  // In rad.
   if (off > shows)
-    points.push_back(fmt::format(
-        "The angles that the basis can have are {:.3g} deg off where the arm started and {:.3g} deg off the "
-        "requested target, root mean square along the arm.",
-        run.plant.start_off() / degree, run.plant.target_off() / degree));
-  points.push_back(fmt::format(
-      "The arm is shown by arcs that have its directions at the sections' ends; its tip is never more than "
-      "{:.2g} mm from theirs.",
-      1e3 * run.apart));
+    points.push_back(
+        fmt::format("The basis approximates the initial angles of the arm with an error of {:.3g} deg and "
+                    "the requested target with an error of {:.3g} deg, root mean square along the arm.",
+                    run.plant.start_off() / degree, run.plant.target_off() / degree));
+  points.push_back(
+      fmt::format("The arm is shown as arcs with its directions at the sections' ends. Its tip is never more "
+                  "than {:.2g} mm from the tip of these arcs.",
+                  1e3 * run.apart));
   return points;
 }
 
@@ -186,11 +185,11 @@ Chapter dynamics_chapter(const DynamicsRun& run, std::size_t number) {
   const double from = lyapunov_value(run.samples.front()), to = lyapunov_value(run.samples.back());
   const std::string course = fmt::format("Lyapunov's function W went from {:.3g} J to {:.3g} J in {:.4g} s.",
                                          from, to, run.samples.back().energies.time);
-  std::string text = fmt::format("Not as the theory has it: {}. {}", run.reason(), course);
+  std::string text = fmt::format("Not in agreement with the theory: {}. {}", run.reason(), course);
   if (run.is_done())
-    text = run.is_measured ? "The arm came to the target by measured angles. " + course
-                           : "The arm came to the target as the theory has it: W fell all the way, by what "
-                             "damping took. " +
+    text = run.is_measured ? "The arm reached the target with measured angles. " + course
+                           : "The arm reached the target in agreement with the theory: W decreased "
+                             "monotonically, by the energy that damping removed. " +
                                  course;
   Chapter chapter{"Dynamics: " + run.name, std::move(text), {}, findings_of(run), false};
   if (run.samples.size() > 1) chapter.figures = figures_of(run, number);

@@ -9,15 +9,16 @@
 
 namespace flexura {
 
-/// Returns what came of it: how far the tip is from its target, and whether the energy fell as in theory.
+/// Returns the result of the task in words: the tip's distance from its target, and whether the energy
+/// decreased as in theory.
 [[nodiscard]] TaskOutcome dynamics_outcome(const DynamicsRun& run);
 
-/// Returns its item in the list `dynamics` of a summary.
+/// Returns the task's item in the list `dynamics` of a summary.
 [[nodiscard]] Node dynamics_node(const DynamicsRun& run);
 
-/// Returns the chapter of a task of kind "dynamics" in a report: whether the Lyapunov function decreased as
-/// in theory, and why not. Has charts of it, the energies and the errors over time. `number` from 0, for the
-/// names of figures.
+/// Returns the report's chapter of a task of kind "dynamics". It states whether the Lyapunov function
+/// decreased as in theory, or why not, and has charts of this function, the energies and the errors.
+/// `number`: index among the tasks of this kind, from 0, for names of figures.
 [[nodiscard]] Chapter dynamics_chapter(const DynamicsRun& run, std::size_t number);
 
 }  // namespace flexura

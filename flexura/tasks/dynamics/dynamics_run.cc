@@ -84,7 +84,7 @@ void follow(DynamicsRun& run, PotentialRun& plant, const std::vector<double>& ti
     if (!plant.advance(time, go_on)) run.stopped = plant.stopped();
     const LyapunovSample sample = plant.sample();
     if (!is_finite(sample)) {
-      run.stopped = "the energies are no numbers any more";
+      run.stopped = "the energies are no longer finite";
     } else if (sample.time > run.samples.back().energies.time) {
       add(sample);
     }
@@ -103,7 +103,7 @@ void judge(DynamicsRun& run) {
       return sample.energies.kinetic + sample.energies.potential;
     };
     if (run.is_measured && run.stopped.empty() && !verdict.is_settled)
-      run.reasons.push_back(fmt::format("W has not settled: {:.2g} J of {:.2g} J are left",
+      run.reasons.push_back(fmt::format("W has not settled: {:.2g} J of {:.2g} J remain",
                                         value(run.samples.back()), value(run.samples.front())));
   }
   if (!run.stopped.empty()) run.reasons.push_back(run.stopped);
@@ -141,8 +141,9 @@ std::vector<std::string> theory_violations(const DynamicsTask& task, const Dynam
   if (G.size() == 0) return found;
   const Eigen::Index rank = rank_of(G);
   if (rank < G.rows())
-    found.push_back(fmt::format(
-        "{} drives move an arm of {} numbers: they cannot give all of the law's force", rank, G.rows()));
+    found.push_back(
+        fmt::format("{} drives move an arm with {} coordinates: they cannot produce every force of the law",
+                    rank, G.rows()));
   return found;
 }
 
@@ -221,7 +222,7 @@ DynamicsRun run_dynamics(const DynamicsTask& task, const TaskLabel& label, const
                         tolerance, drives_of(plant.distributed(), task.law.drives));
     follow(run, motion, sample_times(start, task.duration, setup.clock.step), task.tolerance, progress);
   } else {
-    run.stopped = "it starts with an elevation of 90 deg, where the azimuth is undefined";
+    run.stopped = "the arm starts with an elevation of 90 deg, where the azimuth is undefined";
     run.samples.push_back({plant.start(), {}});
   }
   show_as_arcs(run, arm, from, progress);

@@ -62,15 +62,16 @@ class DynamicsRunner : public TaskRunner {
     if (run_) {
       if (run_->apart > thickness_of(arm))
         report.caveats.push_back(
-            fmt::format("{}: judged by arcs with a tip up to {:.3g} m from the arm's: sections that bend "
-                        "so far out of a plane are not arcs",
+            fmt::format("{}: the check uses arcs, whose tip is up to {:.3g} m from the arm's tip: sections "
+                        "that bend so far out of a plane are not arcs",
                         name(), run_->apart));
       return;
     }
     report.caveats.push_back(fmt::format(
-        "{}: judged by the straight way only: {}", name(),
-        ended_by.empty() ? "it is simulated when the tasks before it are done"
-                         : fmt::format("it is not simulated, for the run ends with {}", ended_by)));
+        "{}: only the straight path to its target is checked: {}", name(),
+        ended_by.empty()
+            ? "the motion is simulated only after the previous tasks are done"
+            : fmt::format("the motion is not simulated, because the run ends with {}", ended_by)));
     if (!is_possible(from)) return;
     const DynamicsPlant plant(task_, arm, from);
     for (const std::string& violation : theory_violations(task_, plant, potential_law_of(task_, plant)))

@@ -68,7 +68,7 @@ void check_columns(const std::vector<std::string>& names, const std::vector<Colu
       return c.quantity == column.quantity && c.section == column.section;
     };
     if (std::ranges::count_if(columns, same) > 1) {
-      problems.push_back({header_row, i, fmt::format("column {} is there twice", names[i])});
+      problems.push_back({header_row, i, fmt::format("column {} occurs twice", names[i])});
     }
     if (column.section >= sections) {
       problems.push_back(
@@ -132,7 +132,8 @@ void check_rows(const KeyframesTask& task, const std::vector<Column>& columns,
     const auto row = static_cast<std::ptrdiff_t>(r);
     if (task.rows[r].size() != columns.size()) {
       problems.push_back(
-          {row, 0, fmt::format("{} values: expected {}, one a column", task.rows[r].size(), columns.size())});
+          {row, 0,
+           fmt::format("{} values: expected {}, one per column", task.rows[r].size(), columns.size())});
       continue;
     }
     for (std::size_t c = 0; c < columns.size(); ++c) {

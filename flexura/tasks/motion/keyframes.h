@@ -8,18 +8,18 @@
 
 namespace flexura {
 
-/// Values of KeyframeProblem::row without data: the column names, and all rows as one.
+/// Special values of KeyframeProblem::row: the row of column names, and all rows together.
 inline constexpr std::ptrdiff_t header_row = -1;
 inline constexpr std::ptrdiff_t all_rows = -2;
 
-/// An error in a table of keyframes and its place: `row` counts data rows from 0.
+/// An error in a table of keyframes and its position. `row` counts data rows from 0.
 struct KeyframeProblem {
   std::ptrdiff_t row = header_row;
   std::size_t column = 0;
   std::string what;
 };
 
-/// Returns why a task's columns and rows are not keyframes of an arm of this kind and number of sections.
+/// Returns the errors in a task's columns and rows for an arm of this kind and number of sections.
 [[nodiscard]] std::vector<KeyframeProblem> keyframe_problems(const KeyframesTask& task, ArmKind kind,
                                                              std::size_t sections);
 

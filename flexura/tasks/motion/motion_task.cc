@@ -83,7 +83,7 @@ Profile profile_of(MoveLaw law, double duration) {
     case MoveLaw::trapezoid:
       break;
   }
-  throw std::logic_error("a trapezoid finds its own duration");
+  throw std::logic_error("a trapezoid computes its own duration");
 }
 
 MotionPtr motion_of(const MoveTask& task, const ArmModel& model, const ArmState& from) {
@@ -179,7 +179,7 @@ MotionPtr motion_of(const ExpressionTask& task, const ArmModel& model, const Arm
   });
 }
 
-// Return how long a motion takes, about, s.
+// Return the approximate duration of a motion, s.
 double duration_of(const MoveTask& task) { return task.duration.value_or(1); }
 template <class Task>
 double duration_of(const Task& task) {
@@ -191,7 +191,7 @@ double duration_of(const KeyframesTask& task) {
   return task.rows.back().at(static_cast<std::size_t>(time - task.columns.begin()));
 }
 
-// Returns what came of a motion that took so many seconds.
+// Returns the result of a motion of this duration, in words.
 std::string text_of(const MoveTask& task, double distance_to_target, double duration) {
   return task.to.position
              ? fmt::format("tip {} from its target after {:.4g} s", length_text(distance_to_target), duration)

@@ -28,7 +28,7 @@ void check_one(const MoveTask& task, ArmKind kind, std::size_t sections, const s
     reader.problem_at(path + ".to", "is empty: expected a shape, as archings or bends, or position");
   if (to.position && has_shape)
     reader.problem_at(path + ".to.position",
-                      "stands beside a shape: expected a place for the tip or a shape");
+                      "is given together with a shape: expected either a position or a shape");
   check_one_or_each(task.law.size(), sections, path + ".law", reader);
   const auto trapezoids = std::ranges::count(task.law, MoveLaw::trapezoid);
   if (trapezoids == 0) {
@@ -45,7 +45,8 @@ void check_one(const MoveTask& task, ArmKind kind, std::size_t sections, const s
   if (task.max_rate) check_one_or_each(task.max_rate->size(), sections, path + ".max_rate", reader);
   if (task.max_acceleration)
     check_one_or_each(task.max_acceleration->size(), sections, path + ".max_acceleration", reader);
-  if (task.duration) reader.problem_at(path + ".duration", "is found by the trapezoid: expected no duration");
+  if (task.duration)
+    reader.problem_at(path + ".duration", "is computed by the trapezoid: expected no duration");
 }
 
 void check_one(const SineTask& task, ArmKind kind, std::size_t sections, const std::string& path,
@@ -53,14 +54,15 @@ void check_one(const SineTask& task, ArmKind kind, std::size_t sections, const s
   check_shape(task.amplitude, kind, sections, path + ".amplitude", reader);
   check_one_or_each(task.phase.size(), sections, path + ".phase", reader);
   if (task.amplitude.stretches)
-    reader.problem_at(path + ".amplitude.stretches", "does not swing: expected angles only");
+    reader.problem_at(path + ".amplitude.stretches", "cannot oscillate: expected angles only");
 }
 
 void check_one(const KeyframesTask& task, ArmKind kind, std::size_t sections, const std::string& path,
                Reader& reader) {
   if (!task.file.empty()) {
     if (!task.columns.empty() || !task.rows.empty()) {
-      reader.problem_at(path + ".file", "stands beside columns or rows: expected a file or those");
+      reader.problem_at(path + ".file",
+                        "is given together with columns or rows: expected either a file or those");
     }
     return;  // Checked after the file is read.
   }

@@ -22,16 +22,17 @@ struct MoveTarget : ShapeConfig {
   std::optional<std::array<double, 3>> position;  ///< Tip position p_WT, m.
 };
 
-/// `kind = "move"`: the arm moves from its current shape to another. Each section moves on a straight line in
-/// bend and stretch. If sections have their own laws and the shape is given by cord angles, each cord angle
-/// follows its own law. A tip position is converted to a shape by inverse kinematics from the current shape;
-/// if unreachable, to the nearest one.
+/// `kind = "move"`: the arm moves from its current shape to a target shape. The bend and stretch of each
+/// section follow a straight line. If sections have different laws and the shape is given by cord angles,
+/// each cord angle follows its own law. A tip position is converted to a shape by inverse kinematics,
+/// starting at the current shape. For an unreachable position, the shape with the nearest tip is used.
 struct MoveTask {
   std::string name;
-  std::optional<double> duration;                ///< s; default: 1. A trapezoid computes its own.
-  std::vector<MoveLaw> law = {MoveLaw::linear};  ///< One for all sections, or one for each.
-  std::optional<std::vector<double>> max_rate;   ///< rad/s; trapezoid only. One for all, or one for each.
-  /// rad/s^2; trapezoid only. One for all, or one for each.
+  std::optional<double> duration;  ///< Duration, s; default: 1. The law `trapezoid` computes its duration.
+  std::vector<MoveLaw> law = {MoveLaw::linear};  ///< One law for all sections, or one for each.
+  std::optional<std::vector<double>>
+      max_rate;  ///< Largest bend rates, rad/s, for `trapezoid` only: one for all sections, or one for each.
+  /// Largest accelerations of bends, rad/s^2, for `trapezoid` only: one for all sections, or one for each.
   std::optional<std::vector<double>> max_acceleration;
   MoveTarget to;  ///< Target shape or tip position.
 };
@@ -39,38 +40,40 @@ struct MoveTask {
 /// `kind = "hold"`: the arm keeps its current shape.
 struct HoldTask {
   std::string name;
-  double duration = 1.0;  ///< s
+  double duration = 1.0;  ///< Duration, s.
 };
 
 /// `kind = "sine"`: every section oscillates about its current shape.
 struct SineTask {
   std::string name;
-  double duration = 1.0;              ///< s
-  double period = 1.0;                ///< s
+  double duration = 1.0;              ///< Duration, s.
+  double period = 1.0;                ///< Period of the oscillation, s.
   ShapeConfig amplitude;              ///< Amplitude of cord angles, archings or bends; not of stretches.
-  std::vector<double> phase = {0.0};  ///< rad; one for all sections, or one for each.
+  std::vector<double> phase = {0.0};  ///< Phases, rad: one for all sections, or one for each.
 };
 
 /// `kind = "keyframes"`: the arm passes through shapes at given times, from a CSV file or written in the
 /// experiment.
 struct KeyframesTask {
   std::string name;
-  std::string file;  ///< In the experiment's folder; read into columns and rows with the experiment.
-  std::vector<std::string>
-      columns;  ///< "time", and per section "arching_1", "cord_angle_1_deg", "bend_x_1", ...
-  std::vector<std::vector<double>> rows;                ///< Values in the order of the columns.
-  Interpolation interpolation = Interpolation::linear;  ///< Between the rows.
+  std::string
+      file;  ///< CSV file in the experiment's folder, whose content is read into `columns` and `rows`.
+  std::vector<std::string> columns;       ///< Names of the columns: "time", and for each section "arching_1",
+                                          ///< "cord_angle_1_deg", "bend_x_1", ...
+  std::vector<std::vector<double>> rows;  ///< Values in the order of the columns.
+  Interpolation interpolation = Interpolation::linear;  ///< Interpolation between the rows.
 };
 
-/// `kind = "expression"`: formulas of t (s in the task), T (its duration) and i (the section's number from
-/// 1). One formula for all sections or one for each (kinematics/expression.h).
+/// `kind = "expression"`: the arm follows formulas of t (s since the task's start), T (its duration, s) and i
+/// (the section's number, from 1). There is one formula for all sections, or one for each
+/// (kinematics/expression.h).
 struct ExpressionTask {
   std::string name;
-  double duration = 1.0;                                         ///< s
-  std::optional<std::vector<std::string>> cord_angles;           ///< rad
-  std::optional<std::vector<std::string>> archings;              ///< rad
-  std::optional<std::vector<std::array<std::string, 2>>> bends;  ///< rad
-  std::optional<std::vector<std::string>> stretches;             ///< Factors.
+  double duration = 1.0;                                         ///< Duration, s.
+  std::optional<std::vector<std::string>> cord_angles;           ///< Formulas of cord angles, rad.
+  std::optional<std::vector<std::string>> archings;              ///< Formulas of archings, rad.
+  std::optional<std::vector<std::array<std::string, 2>>> bends;  ///< Formulas of bends, rad.
+  std::optional<std::vector<std::string>> stretches;             ///< Formulas of stretches, as factors.
 };
 
 const std::vector<std::string>& names_of(const MoveLaw*);
@@ -93,23 +96,23 @@ void check_keys(const KeyframesTask& task, const Setup& setup, const std::string
 /// Reports why the task at `path` does not fit the setup.
 void check_keys(const ExpressionTask& task, const Setup& setup, const std::string& path, Reader& reader);
 
-/// Reads the rows of the task's CSV file. Adds errors in the file to `problems`, with their lines.
+/// Reads the rows of the task's CSV file. Adds errors in the file to `problems`, with their line numbers.
 void read_files(KeyframesTask& task, const Setup& setup, const Node& written, const std::string& path,
                 std::vector<Problem>& problems);
 
-/// Returns the runner of a move. `task` and `setup` must outlive it.
+/// Returns the runner of a move. `task` and `setup` must outlive the runner.
 [[nodiscard]] std::unique_ptr<TaskRunner> runner_of(const MoveTask& task, const Setup& setup,
                                                     TaskLabel label);
-/// Returns the runner of a hold. `task` and `setup` must outlive it.
+/// Returns the runner of a hold. `task` and `setup` must outlive the runner.
 [[nodiscard]] std::unique_ptr<TaskRunner> runner_of(const HoldTask& task, const Setup& setup,
                                                     TaskLabel label);
-/// Returns the runner of a sine. `task` and `setup` must outlive it.
+/// Returns the runner of a sine. `task` and `setup` must outlive the runner.
 [[nodiscard]] std::unique_ptr<TaskRunner> runner_of(const SineTask& task, const Setup& setup,
                                                     TaskLabel label);
-/// Returns the runner of keyframes. `task` and `setup` must outlive it.
+/// Returns the runner of keyframes. `task` and `setup` must outlive the runner.
 [[nodiscard]] std::unique_ptr<TaskRunner> runner_of(const KeyframesTask& task, const Setup& setup,
                                                     TaskLabel label);
-/// Returns the runner of expressions. `task` and `setup` must outlive it.
+/// Returns the runner of expressions. `task` and `setup` must outlive the runner.
 [[nodiscard]] std::unique_ptr<TaskRunner> runner_of(const ExpressionTask& task, const Setup& setup,
                                                     TaskLabel label);
 

@@ -12,7 +12,7 @@
 
 namespace flexura {
 
-// Log messages of a servo (log/messages.h), apart from its steps (servo/servo_step.h).
+// Log messages of a servo (log/messages.h), except its steps (servo/servo_step.h).
 
 /// A pixel or polyline that a servo's law compares in a picture, px.
 struct FeatureMarkMessage {
@@ -23,9 +23,9 @@ struct FeatureMarkMessage {
 struct ServoObservationMessage {
   double time = 0;  ///< Middle of the exposure, s.
   std::string camera;
-  std::int64_t frame = 0;                ///< Its number.
-  std::vector<AxisPointMessage> points;  ///< Of the centerline, from base to tip.
-  /// Image of the target shape from base to tip, px, in the nominal camera.
+  std::int64_t frame = 0;                ///< Number of the frame.
+  std::vector<AxisPointMessage> points;  ///< Points of the centerline, from base to tip.
+  /// Image of the target shape in the nominal camera, from base to tip, px.
   std::vector<std::array<double, 2>> desired;
   std::optional<std::vector<FeatureMarkMessage>> features;  ///< Features that the law compares.
   std::optional<std::string> reason;                        ///< Why the picture shows no arm.

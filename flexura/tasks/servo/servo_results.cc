@@ -156,11 +156,11 @@ Chapter servo_chapter(const ServoRun& run, std::size_t number) {
                   false};
   if (result.settled)
     chapter.points.push_back(
-        fmt::format("Within 2 % of its length after {:.2f} s, and from then on; the tip went {:.1f} % of its "
-                    "way too far.",
+        fmt::format("The error stayed within 2 % of the arm's length from {:.2f} s on; the tip overshot by "
+                    "{:.1f} % of its way.",
                     *result.settled, 100 * std::max(0.0, result.overshoot)));
   if (result.remaining)
-    chapter.points.push_back(fmt::format("The mean of its last {:.3g} s, as seen: {}.", run.settle,
+    chapter.points.push_back(fmt::format("Mean observed error over the last {:.3g} s: {}.", run.settle,
                                          error_text(*result.remaining)));
   if (result.sigma && std::isfinite(*result.sigma))
     chapter.points.push_back(
@@ -168,16 +168,16 @@ Chapter servo_chapter(const ServoRun& run, std::size_t number) {
                     "square.",
                     100 * *result.sigma));
   if (run.true_remaining)
-    chapter.points.push_back(fmt::format("The mean of its last {:.3g} s, in the simulated truth: {}.",
+    chapter.points.push_back(fmt::format("Mean true error over the last {:.3g} s, from the simulation: {}.",
                                          run.settle, error_text(*run.true_remaining)));
   if (result.missed > hardly)
     chapter.points.push_back(
-        fmt::format("The nearest shape that the arm can take, which is the target here, is {:.3f} % of "
-                    "its length away from the requested one.",
+        fmt::format("The target is the nearest shape that the arm can take; it is {:.3f} % of the arm's "
+                    "length from the requested shape.",
                     100 * result.missed));
   if (result.missed_steps > 0)
-    chapter.points.push_back(fmt::format(
-        "{} steps were missed: what was to be done in one took longer than a step.", result.missed_steps));
+    chapter.points.push_back(
+        fmt::format("{} steps were missed because computing took longer than a step.", result.missed_steps));
   for (std::size_t i = 0; i < 2; ++i) {
     if (result.first) chapter.figures.push_back(servo_photograph(run, i, false, number));
     if (result.last) chapter.figures.push_back(servo_photograph(run, i, true, number));

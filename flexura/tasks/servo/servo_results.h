@@ -9,14 +9,14 @@
 
 namespace flexura {
 
-/// Returns what came of it: the time it took and the error that remains.
+/// Returns the result of the servo in words: the time until it converged and the remaining error.
 [[nodiscard]] TaskOutcome servo_outcome(const ServoRun& run);
 
-/// Returns its item in the list `servos` of a summary.
+/// Returns the servo's item in the list `servos` of a summary.
 [[nodiscard]] Node servo_node(const ServoRun& run);
 
-/// Returns the chapter of a servo in a report: decreasing errors, and the first and last pictures with the
-/// target shape. `number` from 0, for the names of figures.
+/// Returns the report's chapter of a servo: the errors over time, and the first and last pictures with the
+/// target shape. `number`: index among the servos, from 0, for names of figures.
 [[nodiscard]] Chapter servo_chapter(const ServoRun& run, std::size_t number);
 
 }  // namespace flexura

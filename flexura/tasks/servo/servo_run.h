@@ -19,19 +19,20 @@ struct ServoRun {
   std::string name;
   std::array<std::string, 2> cameras;  ///< Names of the cameras.
   RigModel nominal;
-  double settle = 0;  ///< From the task, s.
-  /// The session's result, whose steps have the simulated truth, unknown to the session. For targets from
-  /// pictures, the truth is compared with the shape estimated from them.
+  double settle = 0;  ///< ServoSettings::settle of the task, s.
+  /// Result of the session. Its steps have the simulated truth, which is unknown to the session. If the
+  /// target was given by pictures, the truth is compared with the shape estimated from them.
   ServoResult result;
-  std::optional<ServoError> true_remaining;  ///< Mean over the last `settle` s.
-  MotionPtr motion;                          ///< Commanded motion of the arm, from the task's start.
+  std::optional<ServoError>
+      true_remaining;  ///< Mean true error over the last `settle` s; missing if the truth is unknown.
+  MotionPtr motion;    ///< Commanded motion of the arm, from the task's start.
 };
 
-/// Returns the middles of the bands, m along the arm model, increasing. If calibrated lengths differ from the
-/// file's, a band keeps its share of its section.
+/// Returns the positions of the middles of the arm's bands, m along the arm model `nominal`, increasing. If
+/// calibrated lengths differ from those of the file, each band keeps its relative position in its section.
 [[nodiscard]] std::vector<double> band_places(const Setup& setup, const Arm& nominal);
 
-/// Returns how long a servo to these targets takes, about, s.
+/// Returns the approximate duration of a servo to the targets of a task, s.
 [[nodiscard]] double expected_duration(const ServoTask& task);
 
 /// Returns the configuration of a session for the task, with the arm in the state `from`.

@@ -9,29 +9,28 @@
 
 namespace flexura {
 
-/// Shape of a target for an arm, and its distance from the requested one.
+/// Shape of an arm for a target, and its distance from the requested target.
 struct ServoTargetShape {
-  ArmState state;  ///< Command that makes it.
-  /// Distance from the requested target, share of the arm's length. For a position it is the tip's, for a
-  /// curve and for angles root mean square along the arm; 0 if exact.
+  ArmState state;  ///< Command for this shape.
+  /// Distance from the requested target, share of the arm's length. For a target position it is the tip's
+  /// distance; for a curve or angles it is the root mean square along the arm. It is 0 if the shape is exact.
   double missed = 0;
 };
-/// Returns the shape of a target without pictures, for `arm`, as a command. The search starts at the command
-/// `from`.
+/// Returns the shape of `arm` for a target without pictures. The search starts at the command `from`.
 [[nodiscard]] ServoTargetShape servo_target_shape(const ServoTargetConfig& target, const ArmModel& arm,
                                                   const ArmState& from);
 
 /// Returns the length of the smooth curve through points along the arm, m.
 [[nodiscard]] double curve_length(const std::vector<std::array<double, 3>>& points);
 
-/// Returns the shapes of all targets in their order, each search starting from the previous one; std::nullopt
-/// for targets by pictures.
+/// Returns the shapes for all targets in their order; std::nullopt for targets given by pictures. Each search
+/// starts at the previous shape.
 [[nodiscard]] std::vector<std::optional<ServoTargetShape>> servo_target_shapes(const ServoTask& task,
                                                                                const ArmModel& arm,
                                                                                ArmState from);
 
-/// Returns the pictures of a target with pictures, from files in `folder` or below. Throws InputError for an
-/// invalid picture, or one of another size than its camera's.
+/// Returns the pictures of a target with pictures, from files in `folder` or below. Throws InputError if a
+/// picture is invalid or its size differs from that of its camera's pictures.
 [[nodiscard]] RecordedViews recorded_views(const ServoTargetConfig& target,
                                            const std::array<CameraConfig, 2>& cameras,
                                            const std::filesystem::path& folder);

@@ -89,8 +89,8 @@ class ServoRunner : public TaskRunner {
                    SafetyReport& report) const override {
     if (!run_)
       report.caveats.push_back(
-          fmt::format("{}: judged by a slow straight path to its targets: the actual path is decided "
-                      "while the arm is steered, within all limits, and judged then",
+          fmt::format("{}: only a slow straight path to the targets is checked now. The actual path is "
+                      "chosen during the run, within all limits, and checked at that time",
                       name()));
   }
 

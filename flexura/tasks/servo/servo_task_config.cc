@@ -222,7 +222,7 @@ void check_frames(const ServoTask& task, const std::vector<CameraConfig>& camera
   for (const std::size_t i : {front, side}) {
     const double late = times_of_frame_at(cameras[i].sensor, 0).received;
     const std::string when =
-        fmt::format("the {:.6g} s after which a picture of camera {} comes", late, cameras[i].name);
+        fmt::format("the delay of {:.6g} s of camera {}'s pictures", late, cameras[i].name);
     if (late >= given_up) {
       reader.problem_at(path + ".give_up_after",
                         fmt::format("{} s: expected more than {}", task.give_up_after, when));
@@ -250,8 +250,7 @@ void check_target(const ServoTargetConfig& target, const ArmConfig& arm, const s
                                   ways == 0 ? "no shape" : "a shape in more than one way"));
   if (target.azimuths.has_value() != target.elevations.has_value() ||
       (target.azimuths && target.azimuths->size() != target.elevations->size()))
-    reader.problem_at(path,
-                      "has azimuths and elevations that do not belong together: expected as many of each");
+    reader.problem_at(path, "has different numbers of azimuths and elevations: expected equal numbers");
   if (target.curve) check_curve(*target.curve, arm, path + ".curve", reader);
 }
 
@@ -275,7 +274,7 @@ void check_servo(const ServoTask& task, const ArmConfig& arm, const std::vector<
     check_target(task.target[i], arm, place, reader);
     if (i > 0 && !(task.target[i].time > task.target[i - 1].time))
       reader.problem_at(place + ".time",
-                        fmt::format("{} s: expected more than the target before it has, {} s",
+                        fmt::format("{} s: expected more than the time of the previous target, {} s",
                                     task.target[i].time, task.target[i - 1].time));
   }
 }

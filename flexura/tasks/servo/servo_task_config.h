@@ -20,20 +20,20 @@
 
 namespace flexura {
 
-/// A target shape of a servo, given in one of several ways.
+/// A target shape of a servo, given by one of these fields or by those of ShapeConfig.
 struct ServoTargetConfig : ShapeConfig {
   double time = 0;  ///< Time from the task's start, s.
   /// Tip position p_WT, m; the shape follows by inverse kinematics.
   std::optional<std::array<double, 3>> position;
-  /// Points of the whole backbone in the world frame, m.
+  /// Points along the whole backbone, in W, m.
   std::optional<std::vector<std::array<double, 3>>> curve;
-  /// Direction angles of the arm at equal fractions of its length, rad.
+  /// Direction angles of the arm at points evenly spaced along its length, rad.
   std::optional<std::vector<double>> azimuths, elevations;
   std::vector<std::string> pictures;  ///< Two picture files, in the order of the task's cameras.
 };
 
-/// `kind = "servo"`: two cameras control the arm until it reaches the target shape. The fields added to the
-/// settings need the arm, the cameras and the file's folder for interpretation.
+/// `kind = "servo"`: two cameras control the arm until it reaches the target shape. Unlike the settings, the
+/// fields added here depend on the arm, the cameras and the file's folder.
 struct ServoTask : ServoSettings {
   std::string name;
   std::vector<std::string> cameras;       ///< Two names; empty: the first two cameras.
@@ -54,13 +54,13 @@ const Table<ServoTask>& fields_of(const ServoTask*);
 
 /// Reports why the servo at `path` ("task[2]") is not possible with this setup.
 void check_keys(const ServoTask& task, const Setup& setup, const std::string& path, Reader& reader);
-/// Checks the picture files of the targets; they are read again when needed.
+/// Checks the picture files of the targets. They are read again when the task begins.
 void read_files(ServoTask& task, const Setup& setup, const Node& written, const std::string& path,
                 std::vector<Problem>& problems);
-/// Returns the runner of such a task. `task` and `setup` must outlive it.
+/// Returns the runner of a servo. `task` and `setup` must outlive the runner.
 [[nodiscard]] std::unique_ptr<TaskRunner> runner_of(const ServoTask& task, const Setup& setup,
                                                     TaskLabel label);
-/// Returns the table servo.csv: distances of the arm from the target, one row per command.
+/// Returns the table servo.csv, with the distances of the arm from the target for each command in a row.
 [[nodiscard]] LogTables log_tables(const ServoTask*);
 
 }  // namespace flexura

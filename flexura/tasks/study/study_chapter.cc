@@ -114,9 +114,9 @@ std::string text_of(const ImageStudy& study) {
   std::size_t seen = 0;
   for (std::size_t i = 0; i < study.values.size(); ++i) seen += study.is_seen(i) ? 1 : 0;
   return fmt::format(
-      "Camera {}, {} from {} to {}; the target could be measured at {} of {} values. Lines: by the "
-      "projection formulas; dots: by the renderer's truth. They differ by at most {:.1e} px, and the ratio "
-      "of axes by {:.1e}.{}",
+      "Camera {}, {} from {} to {}; the target could be measured at {} of {} values. Lines: projection "
+      "formulas; dots: truth of the renderer. Both differ by at most {:.1e} px, and the ratios of axes by "
+      "{:.1e}.{}",
       study.camera, plain_name(study.variation.name), value_text(study.variation, study.variation.values[0]),
       value_text(study.variation, study.variation.values[1]), seen, study.values.size(), length, ratio,
       pictures);

@@ -1,15 +1,16 @@
 import { useEffect, useRef } from 'preact/hooks';
 import { effect, useSignal, type Signal } from '@preact/signals';
 import { extra_layers } from '../overlays/extras';
-import { color_of } from '../overlays/measures';
+import { color_of, shape } from '../overlays/measures';
 import { draw_layers } from '../overlays/registry';
-import type { Layer, SceneCamera } from '../protocol/types';
+import type { Layer, MeasureResult, SceneCamera } from '../protocol/types';
 import type { History } from '../state/history';
 import { preferences } from '../state/preferences';
 import type { Viewer } from '../state/viewer';
 import { use_app } from '../ui/app';
 import { format_time, lag_of } from '../ui/format';
 import { Icon } from '../ui/Icon';
+import { PairedPictures } from './paired';
 import type { Pixel } from './pixel_value';
 
 interface Props {
@@ -33,23 +34,38 @@ export function CameraCard({ camera, pixel }: Props) {
     observer.observe(canvas.current!);
     return () => observer.disconnect();
   }, []);
-  useEffect(() => effect(() => {
-    width.value;
-    viewer.picture_tick.value;
-    const layers = [
-      ...(viewer.layers.value[camera.name] ?? []), ...measured_layers(viewer, camera.name),
-      ...extra_layers(viewer.overlay_of(camera.name), preferences.hidden.value),
-    ];
-    const here = pixel.value?.camera === camera.name ? pixel.value : null;
-    paint(canvas.current!, camera, viewer.picture_of.get(camera.name)?.bitmap ?? null, layers, here);
-  }), [camera]);
+  /** Which picture is drawn, without its pixels. */
+  const drawn = useSignal<{ time: number; number: number } | null>(null);
+  useEffect(() => {
+    const paired = new PairedPictures<CanvasImageSource>((image, spare) => copy_of(image, camera, spare));
+    return effect(() => {
+      width.value;
+      viewer.picture_tick.value;
+      const newest = viewer.picture_of.get(camera.name);
+      const result = measured_in(viewer, camera.name);
+      const is_measuring = preferences.overlays.value.some((id) => id !== shape.id);
+      const chosen = paired.choose(newest ? { ...newest, image: newest.bitmap } : null, result?.number ?? null, is_measuring);
+      const is_measured = result !== null && result.number === chosen?.number;
+      const layers = [
+        ...(viewer.layers.value[camera.name] ?? []), ...(is_measured ? in_colors(result.layers) : []),
+        ...extra_layers(viewer.overlay_of(camera.name, chosen?.number), preferences.hidden.value),
+      ];
+      const here = pixel.value?.camera === camera.name ? pixel.value : null;
+      paint(canvas.current!, camera, chosen?.image ?? null, layers, here);
+      // Read by tests: what is drawn upon a picture was measured in that one.
+      Object.assign(canvas.current!.dataset, { number: chosen?.number ?? '', measured: is_measured ? result.number : '' });
+      const before = drawn.peek();
+      if (before?.number !== chosen?.number || before?.time !== chosen?.time) drawn.value = chosen && { time: chosen.time, number: chosen.number };
+    });
+  }, [camera]);
   viewer.picture_tick.value;
   viewer.tick.value;
-  const picture = viewer.picture_of.get(camera.name);
-  const measured = viewer.measured.pictures.value[camera.name]?.value;
-  const unfound = (measured?.found === false && measured.reason) || viewer.overlay_of(camera.name)?.reason;
+  const newest = viewer.picture_of.get(camera.name);
+  const picture = newest && (drawn.value ?? newest);
+  const measured = measured_in(viewer, camera.name);
+  const unfound = (measured?.found === false && measured.number === picture?.number && measured.reason) || viewer.overlay_of(camera.name, picture?.number)?.reason;
   const lag = picture ? lag_of(picture.time, viewer.shown?.time, viewer.freshness.value === 'recording' ? viewer.playback.step_s : live_lag_s) : '';
-  const old = age(viewer.freshness.value, picture?.time, viewer.history);
+  const old = age(viewer.freshness.value, newest?.time, viewer.history);
   const point = (event: PointerEvent): void => {
     const { clientWidth, clientHeight } = canvas.current!;
     const u = Math.floor((event.offsetX / clientWidth) * camera.width);
@@ -98,10 +114,20 @@ export function CameraCard({ camera, pixel }: Props) {
   );
 }
 
+function measured_in(viewer: Viewer, camera: string): MeasureResult | null {
+  return viewer.measured.pictures.value[camera]?.value ?? null;
+}
+
 /** In the colours that stand beside their names. */
-function measured_layers(viewer: Viewer, camera: string): Layer[] {
-  const layers = viewer.measured.pictures.value[camera]?.value?.layers ?? [];
+function in_colors(layers: Layer[]): Layer[] {
   return layers.map((layer) => ({ color: color_of(layer.id), ...layer }));
+}
+
+/** The program's pictures are closed when the next one comes. */
+function copy_of(image: CanvasImageSource, { width, height }: SceneCamera, spare: CanvasImageSource | undefined): CanvasImageSource {
+  const copy = spare instanceof OffscreenCanvas ? spare : new OffscreenCanvas(width, height);
+  copy.getContext('2d')!.drawImage(image, 0, 0, width, height);
+  return copy;
 }
 
 /** Returns the address of the shown picture, lossless: at the recording's time, or the rig's newest. */
@@ -123,7 +149,7 @@ function inside({ width, height }: SceneCamera, u: number, v: number): { u: numb
 }
 
 function paint(
-  canvas: HTMLCanvasElement, camera: SceneCamera, bitmap: ImageBitmap | null,
+  canvas: HTMLCanvasElement, camera: SceneCamera, bitmap: CanvasImageSource | null,
   layers: Parameters<typeof draw_layers>[1], pixel: Pixel | null,
 ): void {
   const context = canvas.getContext('2d');

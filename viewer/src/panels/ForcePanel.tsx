@@ -1,11 +1,11 @@
 import { useSignal } from '@preact/signals';
 import { contact_force, contact_normal, contact_slip, contact_stride, push_force, type State } from '../protocol/state';
-import type { Hello, PushControl, Scene, Vector3 } from '../protocol/types';
+import type { Hello, PushControl, Range, Scene, Vector3 } from '../protocol/types';
 import { size_at } from '../plots/sources';
 import { use_app } from '../ui/app';
 import { fixed, length_places } from '../ui/format';
 import { force_text } from './actuators';
-import { NumberField } from './Slider';
+import { NumberField, Slider } from './Slider';
 
 /** Returns whether the program computes forces for this arm. */
 export function has_forces(hello: Hello | null): boolean {
@@ -44,17 +44,13 @@ function PushFields({ control, state }: { control: PushControl; state: State }) 
     if (pushed) viewer.commander.push({ s: s.value, force: force.value });
   };
   const places = length_places(control.length);
+  const along: Range = [0, control.length];
   return (
     <fieldset class="section push">
       <legend>Push</legend>
       <p class="quiet">Shift and drag the arm in the view, or type:</p>
-      <div class="push-row">
-        <label for="push-s">at s, m</label>
-        <input id="push-s" type="range" title="Where along the arm it is pushed" min={0} max={control.length} step={control.length / 1000} value={s.value} disabled={still}
-          aria-label="Arc length of the pushed point" onInput={(event) => { s.value = event.currentTarget.valueAsNumber; again(); }} />
-        <NumberField label="Arc length of the pushed point, m" value={s.value} places={places} disabled={still}
-          change={(value) => { s.value = Math.min(control.length, Math.max(0, value)); again(); }} />
-      </div>
+      <Slider id="push-s" label="at s" title="Arc length of the pushed point" value={s.value} span={along} reach={along} scale={1} unit="m"
+        places={places} disabled={still} change={(value) => { s.value = value; again(); }} />
       <div class="triple">
         {(['X', 'Y', 'Z'] as const).map((axis, i) => (
           <label key={axis}>

@@ -30,6 +30,8 @@ export function Slider(props: SliderProps) {
   const [from, to] = [part(reach[0]), part(reach[1])];
   const limited = reach[0] > low || reach[1] < high;
   const { notices } = use_app().viewer;
+  const track = useRef<HTMLDivElement>(null);
+  const drag = useRef<{ x: number; value: number } | null>(null);
   const input = (target: number): void => change(Math.min(reach[1], Math.max(reach[0], target)));
   // A hand sees where a slider ends; who types does not.
   const type = (target: number): void => {
@@ -38,10 +40,17 @@ export function Slider(props: SliderProps) {
     input(target);
   };
   const said = (x: number): string => `${fixed(x * scale, places)} ${unit}`;
+  /** The slider's part of the track's pixels, in its values. */
+  const per_pixel = (): number => (high - low) / Math.max(1, track.current!.clientWidth);
   return (
     <div class="slider">
-      <label for={id}>{label}</label>
-      <div class="track">
+      <div class="slider-head">
+        <label for={id}>{label}</label>
+        <NumberField label={`${title}, ${unit}`} value={value * scale} places={places} disabled={disabled}
+          change={(typed) => type(typed / scale)} />
+        <span class="unit">{unit}</span>
+      </div>
+      <div class="track" ref={track}>
         <span class="unreachable" style={{ left: 0, width: `${from}%` }} />
         <span class="unreachable" style={{ left: `${to}%`, right: 0 }} />
         {limited && <span class="limit" style={{ left: `${from}%` }} />}
@@ -57,23 +66,49 @@ export function Slider(props: SliderProps) {
           value={value}
           disabled={disabled}
           aria-label={title}
-          title={`${title}: ${said(reach[0])} to ${said(reach[1])}`}
+          title={`${title}: ${said(reach[0])} to ${said(reach[1])}. Arrow keys, or drag; with Shift in fine steps`}
           aria-valuetext={`${(value * scale).toFixed(places)} ${unit}`}
           onInput={(event) => input(event.currentTarget.valueAsNumber)}
           onKeyDown={(event) => {
-            // A key press moves by 1 % of the slider, with Shift by 0.1 %.
             const direction = { ArrowRight: 1, ArrowUp: 1, ArrowLeft: -1, ArrowDown: -1 }[event.key];
             if (!direction || event.altKey) return;
             event.preventDefault();
-            input(value + (direction * (high - low)) / (event.shiftKey ? 1000 : 100));
+            input(value + direction * key_step(high - low, scale, unit) * (event.shiftKey ? fine : 1));
           }}
+          onPointerDown={(event) => {
+            // The browser's own drag has no fine steps. Fingers keep it: they also scroll.
+            if (event.pointerType === 'touch' || event.button !== 0 || disabled) return;
+            event.preventDefault();
+            event.currentTarget.focus();
+            event.currentTarget.setPointerCapture(event.pointerId);
+            const at = low + (event.clientX - track.current!.getBoundingClientRect().left) * per_pixel();
+            // Who takes the knob, or wants fine steps, does not want it to jump.
+            const stays = event.shiftKey || Math.abs(at - value) < knob * per_pixel();
+            drag.current = { x: event.clientX, value: stays ? value : at };
+            if (!stays) input(at);
+          }}
+          onPointerMove={(event) => {
+            if (!drag.current || event.clientX === drag.current.x) return;
+            const moved = (event.clientX - drag.current.x) * per_pixel() * (event.shiftKey ? fine : 1);
+            drag.current = { x: event.clientX, value: drag.current.value + moved };
+            input(drag.current.value);
+          }}
+          onLostPointerCapture={() => (drag.current = null)}
         />
       </div>
-      <NumberField label={`${title}, ${unit}`} value={value * scale} places={places} disabled={disabled}
-        change={(typed) => type(typed / scale)} />
-      <span class="unit">{unit}</span>
+      <div class="ends" aria-hidden="true"><span>{fixed(reach[0] * scale, places)}</span><span>{fixed(reach[1] * scale, places)}</span></div>
     </div>
   );
+}
+
+/** With Shift a slider goes that much slower. */
+const fine = 0.1;
+/** Half the width of a slider's knob, px. */
+const knob = 7;
+
+/** Returns how far an arrow key moves a slider: one degree, or else 1 % of it. */
+export function key_step(length: number, scale: number, unit: string): number {
+  return unit === '°' ? 1 / scale : length / 100;
 }
 
 interface NumberFieldProps {

@@ -3,6 +3,7 @@ import { effect, useSignal } from '@preact/signals';
 import type { Along } from '../protocol/types';
 import { use_app } from '../ui/app';
 import { fill } from './chart';
+import type { Table } from './csv';
 import type { Columns } from './data';
 import { PlotFrame } from './PlotFrame';
 import { along_option } from './sources';
@@ -29,14 +30,17 @@ export function AlongPlot({ place, options, choose }: Props) {
   };
   const latest = useRef(draw);
   latest.current = draw;
-  const { host, chart, series } = use_chart(names, along?.unit ?? '', draw, { colors, hover: (place) => (at.value = place) });
+  const { host, chart, axis, series } = use_chart(along_option.id, names, along?.unit ?? '', draw, { colors, hover: (place) => (at.value = place) });
   useEffect(() => effect(() => {
     viewer.shown_extras.value;
     latest.current(chart.current);
   }), []);
   const i = along && at.value !== null ? Math.round((at.value / along.length) * ((curves[0]?.values.length ?? 1) - 1)) : -1;
+  const table = (): Table | null => along
+    ? { name: along_option.label, heads: [{ name: 's', unit: 'm' }, ...names.map((name) => ({ name, unit: along.unit }))], columns: columns_of(along) }
+    : null;
   return (
-    <PlotFrame place={place} series={series} options={options} chosen={along_option.id} names={names} colors={colors}
+    <PlotFrame place={place} series={series} axis={axis} table={table} options={options} chosen={along_option.id} names={names} colors={colors}
       part={along ? `${along.unit} over m` : 'Available while a servo is running'} host={host} choose={choose}
       values={curves.map(({ values }) => (i < 0 ? largest(values) : values[i]))} />
   );

@@ -1,6 +1,11 @@
 import type { RefObject } from 'preact';
-import { theme_now } from '../state/preferences';
+import { useSignal } from '@preact/signals';
+import { theme_now, type PlotAxis } from '../state/preferences';
+import { use_app } from '../ui/app';
+import { Icon } from '../ui/Icon';
+import { AxisFields } from './AxisFields';
 import { series_color } from './chart';
+import { csv_of, cut, save, type Table } from './csv';
 
 interface Props {
   place: number;
@@ -16,13 +21,31 @@ interface Props {
   host: RefObject<HTMLDivElement>;
   /** Which are drawn: by their full names, in the same order. */
   series: { names: string[]; hidden: string[]; toggle(name: string): void };
+  axis: PlotAxis;
+  /** All series as a table. */
+  table(): Table | null | Promise<Table | null>;
+  /** The x axis is the time. */
+  is_timed?: boolean;
   choose(id: string): void;
 }
 
 /** A plot's head: what is drawn, and its values at the cursor. */
-export function PlotFrame({ place, options, chosen, names, part, values, host, choose, colors, series }: Props) {
+export function PlotFrame({ place, options, chosen, names, part, values, host, choose, colors, series, axis, table, is_timed }: Props) {
+  const { viewer, zoom } = use_app();
   const theme = theme_now();
+  const is_open = useSignal(false);
   const size = Math.max(...values.map((value) => Math.abs(value ?? 0)));
+  const is_set = axis.low !== null || axis.high !== null || axis.log;
+  const keep = async (): Promise<void> => {
+    try {
+      const all = await table();
+      if (!all) return viewer.notices.info('There are no values to save yet.');
+      const range = is_timed && zoom.value ? zoom.value : ([-Infinity, Infinity] as [number, number]);
+      save(all.name, csv_of(cut(all, range, (i) => !series.hidden.includes(series.names[i]))));
+    } catch (error) {
+      viewer.notices.error(error);
+    }
+  };
   return (
     <figure class="plot">
       <figcaption>
@@ -40,8 +63,19 @@ export function PlotFrame({ place, options, chosen, names, part, values, host, c
             </li>
           ))}
           {part && <li class="part">{part}</li>}
+          {axis.log && <li class="part">log scale</li>}
         </ul>
+        <span class="plot-tools">
+          {is_timed && zoom.value && (
+            <button type="button" class="button quiet" title="Shows the whole time again (double click in the plot)" onClick={() => (zoom.value = null)}>Whole time</button>
+          )}
+          <button type="button" class="icon-button" aria-expanded={is_open.value} data-set={is_set} aria-label={`Y axis of plot ${place + 1}`}
+            title="Limits and scale of the y axis" onClick={() => (is_open.value = !is_open.value)}><Icon name="axis" /></button>
+          <button type="button" class="icon-button" aria-label={`Save plot ${place + 1} as CSV`}
+            title="Save the shown series as CSV, with their units" onClick={() => void keep()}><Icon name="save" /></button>
+        </span>
       </figcaption>
+      {is_open.value && <AxisFields place={place} id={chosen} axis={axis} />}
       <div class="chart" ref={host} />
     </figure>
   );

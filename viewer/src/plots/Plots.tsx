@@ -1,3 +1,4 @@
+import { useEffect } from 'preact/hooks';
 import type { Hello, Scene } from '../protocol/types';
 import { preferences } from '../state/preferences';
 import { use_app } from '../ui/app';
@@ -14,7 +15,12 @@ export function options_of(hello: Hello, scene: Scene): { id: string; label: str
 
 /** Two plots side by side with a common time axis. */
 export function Plots() {
-  const { viewer } = use_app();
+  const { viewer, zoom } = use_app();
+  const epoch = viewer.epoch.value;
+  // Another run has other times.
+  useEffect(() => {
+    zoom.value = null;
+  }, [epoch]);
   const hello = viewer.hello.value;
   const scene = viewer.scene.value;
   const places = [0, 1] as const;

@@ -1,5 +1,7 @@
 // uPlot with the page's colours and the shared cursor.
 import uPlot from 'uplot';
+import type { PlotAxis } from '../state/preferences';
+import { range_of } from './axis';
 import type { Columns } from './data';
 
 export interface ChartOptions {
@@ -10,6 +12,10 @@ export interface ChartOptions {
   now(): number | null;
   hover(time: number | null): void;
   seek(time: number): void;
+  /** Shows a part of the x axis; null: all of it. */
+  zoom(range: [number, number] | null): void;
+  /** The y axis; whether it is logarithmic does not change. */
+  axis(): PlotAxis;
   /** The x axis is not the time shared with the other plots. */
   is_alone?: boolean;
   colors?: string[];
@@ -21,7 +27,10 @@ const palettes = {
   light: ['#1971c2', '#d9480f', '#2b8a3e', '#a61e4d', '#a86a00', '#0b7285', '#6741d9', '#c92a2a', '#5c940d'],
 };
 
-export function make_chart({ host, names, unit, now, hover, seek, is_alone, colors }: ChartOptions): uPlot {
+/** A shorter drag, px, is a click. */
+const least_drag = 6;
+
+export function make_chart({ host, names, unit, now, hover, seek, zoom, axis: y_axis, is_alone, colors }: ChartOptions): uPlot {
   const style = getComputedStyle(document.documentElement);
   const color = (name: string): string => style.getPropertyValue(name).trim();
   const palette = colors ?? palettes[document.documentElement.dataset.theme === 'light' ? 'light' : 'dark'];
@@ -37,11 +46,15 @@ export function make_chart({ host, names, unit, now, hover, seek, is_alone, colo
     height: Math.max(60, host.clientHeight),
     legend: { show: false },
     padding: [8, 10, 0, 0],
-    scales: { x: { time: false }, y: { range: (_, low, high) => roomy(low, high) } },
-    cursor: { ...(is_alone ? {} : { sync: { key: 'flexura' } }), points: { size: 6 }, drag: { x: false, y: false }, y: false },
+    scales: { x: { time: false }, y: { distr: y_axis().log ? 3 : 1, range: (_, low, high) => range_of(low, high, y_axis()) } },
+    cursor: {
+      ...(is_alone ? {} : { sync: { key: 'flexura' } }), points: { size: 6 }, y: false,
+      drag: { x: !is_alone, y: false, setScale: false, dist: least_drag },
+      bind: { dblclick: () => () => (zoom(null), null) },
+    },
     axes: [
       { ...axis, size: 24, values: (_, all) => all.map((t) => `${+t.toFixed(3)}`) },
-      { ...axis, size: 52, values: (_, all) => all.map((value) => `${+value.toPrecision(6)}`.replace('-', '−')) },
+      { ...axis, size: 52, values: (_, all) => all.map((value) => (value === null ? '' : `${+value.toPrecision(6)}`.replace('-', '−'))) },
     ],
     series: [
       {},
@@ -52,11 +65,21 @@ export function make_chart({ host, names, unit, now, hover, seek, is_alone, colo
     ],
     hooks: {
       setCursor: [(u) => hover(u.cursor.left !== undefined && u.cursor.left >= 0 ? u.posToVal(u.cursor.left, 'x') : null)],
+      setSelect: [(u) => {
+        const { left, width } = u.select;
+        if (width < least_drag) return;
+        u.setSelect({ left: 0, width: 0, top: 0, height: 0 }, false);
+        const range: [number, number] = [u.posToVal(left, 'x'), u.posToVal(left + width, 'x')];
+        // The other plot has the same selection: it must not find its axis zoomed already.
+        queueMicrotask(() => zoom(range));
+      }],
       draw: [(u) => draw_now(u, now(), color('--accent'))],
     },
   }, [[], ...names.map(() => [])] as unknown as uPlot.AlignedData, host);
-  chart.over.addEventListener('click', () => {
+  chart.over.addEventListener('click', ({ detail }) => {
     const { left } = chart.cursor;
+    // The second click of a double click belongs to it.
+    if (detail > 1) return;
     if (left !== undefined && left >= 0) seek(chart.posToVal(left, 'x'));
   });
   return chart;
@@ -73,19 +96,16 @@ export function series_color(i: number, theme: 'dark' | 'light'): string {
 export function fill(chart: uPlot, columns: Columns, range: [number, number]): void {
   // Other series were selected, and their chart does not exist yet.
   if (columns.length !== chart.series.length) return;
+  const drawn = chart.scales.y.distr === 3 ? positive(columns) : columns;
   chart.batch(() => {
-    chart.setData(columns as unknown as uPlot.AlignedData, false);
+    chart.setData(drawn as unknown as uPlot.AlignedData, false);
     chart.setScale('x', { min: range[0], max: range[1] });
   });
 }
 
-/** Returns the y range: constant lines are centred, and there is a margin at the border. */
-function roomy(low: number | null, high: number | null): [number, number] {
-  if (low === null || high === null || !Number.isFinite(low) || !Number.isFinite(high)) return [-1, 1];
-  const size = Math.max(Math.abs(low), Math.abs(high));
-  const flat = high - low < 1e-6 * size || size < 1e-9;
-  const margin = flat ? 0.1 * size || 1 : 0.08 * (high - low);
-  return [low - margin, high + margin];
+/** A log scale has no place for 0 and below: gaps. */
+function positive([places, ...series]: Columns): Columns {
+  return [places, ...series.map((values) => values.map((value) => (value !== null && value > 0 ? value : null)))];
 }
 
 function draw_now(chart: uPlot, time: number | null, color: string): void {

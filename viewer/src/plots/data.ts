@@ -5,21 +5,21 @@ import type { Source } from './sources';
 /** Times, and values by series; null values interrupt a line. */
 export type Columns = [number[], ...(number | null)[][]];
 
-/** Maximum number of points of a live plot; more cannot be resolved by the screen. */
+/** Maximum number of points of a drawn live plot; more cannot be resolved by the screen. */
 const most_points = 500;
 
 /**
  * Returns the last seconds of a source, thinned so that points keep their places between frames. Lines are interrupted
  * where the arm jumped to another position without motion (`leaps`).
  */
-export function window_of(history: History, source: Source, until: number, seconds: number): Columns {
+export function window_of(history: History, source: Source, until: number, seconds: number, most = most_points): Columns {
   const times: number[] = [];
   const series = source.names.map(() => [] as (number | null)[]);
   const columns: Columns = [times, ...series];
   if (!history.count) return columns;
   const first = history.index_at(until - seconds);
   const last = history.index_at(until);
-  const stride = Math.max(1, Math.ceil((last - first) / most_points));
+  const stride = Math.max(1, Math.ceil((last - first) / most));
   for (let i = first; i <= last; ++i) {
     const state = history.at_index(i);
     const next = i < last ? history.at_index(i + 1) : state;

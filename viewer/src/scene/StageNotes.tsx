@@ -5,7 +5,10 @@ import { preferences, toggle_hidden } from '../state/preferences';
 import { eye_of, eyes_of } from '../overlays/extras';
 import { use_app } from '../ui/app';
 import { Icon } from '../ui/Icon';
+import { FloorNote } from './FloorNote';
+import { Gizmo } from './Gizmo';
 import { PushNote, PushTool } from './PushNotes';
+import { StageLabels } from './StageLabels';
 import { point_at } from '../math/arc';
 import { total_length } from './rings';
 
@@ -24,9 +27,14 @@ export function StageNotes() {
       <OldLabel />
       <Clock />
       <ExtrasLegend />
-      <PickedPoint />
+      <StageLabels />
+      <Gizmo />
       <TipNote />
       <PushNote />
+      <div class="stage-corner">
+        <FloorNote />
+        <PickedPoint />
+      </div>
     </>
   );
 }

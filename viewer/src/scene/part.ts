@@ -5,6 +5,14 @@ import type { GhostMessage, Scene } from '../protocol/types';
 
 export type Theme = 'dark' | 'light';
 
+/** A word in the 3D view, written by the page over the canvas. `at` may move before each frame. */
+export interface Label {
+  /** Chooses its colour: an axis, or the floor's scale. */
+  kind: string;
+  text: string;
+  at: Vector3;
+}
+
 export interface PartContext {
   scene: Scene;
   /** Length of the arm, the reference for sizes in the view. */
@@ -22,6 +30,8 @@ export interface Part {
   id: string;
   label: string;
   group: Group | Object3D;
+  /** Words at the thing, shown and hidden with it. */
+  labels?: Label[];
   draw?(state: State): void;
   picture?(camera: string, picture: Picture | null): void;
   ghosts?(ghosts: Record<string, GhostMessage>): void;

@@ -20,10 +20,13 @@ export interface Fineness {
   cap: number;
 }
 
-const fine: Fineness = { arm: 120, section: 11, cap: 5 };
+const fine: Fineness = { arm: 120, section: 11, cap: 9 };
 /** For views in which the arm is thin: its outline is accurate to a quarter of a pixel, with fewer vertices. */
 export const medium: Fineness = { arm: 72, section: 11, cap: 5 };
 export const coarse: Fineness = { arm: 40, section: 6, cap: 2 };
+
+/** Width of the rim of a flat tip, as a share of its radius. */
+const rim_share = 0.08;
 
 export function total_length(arm: SceneArm): number {
   return arm.sections.reduce((sum, { length }) => sum + length, 0);
@@ -73,7 +76,33 @@ export function plan_rings(
     }
     start = end;
   }
-  return [...base_cap(rings[0]), ...rings, ...tip_cap(rings[rings.length - 1], arm.tip, fineness.cap)];
+  const smooth = smooth_joints(rings, 1e-9 * total);
+  return [...base_cap(smooth[0]), ...smooth, ...tip_cap(smooth[smooth.length - 1], arm.tip, fineness.cap)];
+}
+
+/**
+ * Where sections of equal radius and different taper meet, both have the normal between theirs, so that no edge is seen.
+ * Where the radius jumps, the step between them faces along the arm.
+ */
+function smooth_joints(rings: Ring[], tiny: number): Ring[] {
+  const out: Ring[] = [];
+  rings.forEach((ring, i) => {
+    const before = rings[i - 1];
+    if (before && ring.s - before.s < tiny) {
+      if (Math.abs(ring.radius - before.radius) < 1e-6 * before.radius) {
+        const [outward, along] = [before.outward + ring.outward, before.along + ring.along];
+        const norm = Math.hypot(outward, along);
+        const normal = { outward: outward / norm, along: along / norm };
+        out[out.length - 1] = { ...before, ...normal };
+        out.push({ ...ring, ...normal });
+        return;
+      }
+      const face = { outward: 0, along: ring.radius < before.radius ? 1 : -1 };
+      out.push({ ...before, ...face }, { ...ring, ...face });
+    }
+    out.push(ring);
+  });
+  return out;
 }
 
 export function painter(arm: SceneArm): (s: number) => Vector3 {
@@ -98,7 +127,9 @@ function base_cap(first: Ring): Ring[] {
 function tip_cap(last: Ring, kind: SceneArm['tip'], count: number): Ring[] {
   if (kind === 'flat') {
     const flat = { ...last, outward: 0, along: 1 };
-    return [flat, { ...flat, radius: 0 }];
+    // A narrow rim that catches light, as every real edge has one.
+    const rim = { ...last, outward: Math.SQRT1_2, along: Math.SQRT1_2, radius: (1 - rim_share) * last.radius };
+    return [rim, { ...flat, radius: rim.radius }, { ...flat, radius: 0 }];
   }
   return Array.from({ length: count }, (_, i) => {
     const angle = ((i + 1) / count) * (Math.PI / 2);

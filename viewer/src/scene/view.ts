@@ -1,15 +1,17 @@
 // The 3D view; it draws only after changes.
 import {
-  AmbientLight, Color, DirectionalLight, PerspectiveCamera, Raycaster, Scene as World, Vector2, Vector3, WebGLRenderer,
+  DirectionalLight, HemisphereLight, Matrix4, type Object3D, PerspectiveCamera, Raycaster, Scene as World, Vector2, Vector3, WebGLRenderer,
 } from 'three';
 import { point_at } from '../math/arc';
 import type { Picture } from '../connection/images';
 import type { State } from '../protocol/state';
 import type { GhostMessage, Scene } from '../protocol/types';
+import { Backdrop } from './backdrop';
 import { see_through } from './camera_view';
-import { distance_for_all, first_distance, frustum_points, type Look } from './framing';
+import { floor_of, up_of_base, type Floor } from './floor_level';
+import { distance_for_all, first_distance, frame_of, frustum_points, screen_points, type Look } from './framing';
 import { Orbit } from './orbit';
-import type { Part, Theme } from './part';
+import type { Label, Part, Theme } from './part';
 import { make_handles, type Handles } from './parts/handles';
 import { part_makers } from './parts/registry';
 import { total_length } from './rings';
@@ -17,7 +19,11 @@ import { draws_in_software, Sharpness } from './sharpness';
 
 /** Minimum time between two updates of the pictures in the view, ms. */
 const picture_ms = 200;
-const backgrounds = { dark: 0x131b23, light: 0xeef2f5 };
+/**
+ * Colours of the light from above and from the floor, and strength of the light at the eye. The same in both themes, so
+ * that things keep their colours.
+ */
+const light = { sky: 0xffffff, ground: 0xa8b2bb, eye: 0.9 };
 
 export class SceneView {
   readonly orbit = new Orbit();
@@ -28,14 +34,20 @@ export class SceneView {
   scene: Scene | null = null;
   state: State | null = null;
   span = 1;
+  floor: Floor = { height: 0, obstacle: null };
+  /** Called after a frame from another viewpoint, or with other labels, than the one before. */
+  readonly look_listeners = new Set<() => void>();
   /** Number of drawn frames, for measuring the frame rate. */
   drawn = 0;
   /** The rig's camera whose view is shown; null for the free view. */
   through: string | null = null;
   private readonly world = new World();
-  private readonly ambient = new AmbientLight(0xffffff, 1);
+  private readonly ambient = new HemisphereLight(light.sky, light.ground, 1);
+  private readonly backdrop = new Backdrop();
+  private readonly looked = new Matrix4();
+  private looked_anew = true;
   private readonly sun = new DirectionalLight(0xffffff, 1);
-  private readonly head_light = new DirectionalLight(0xffffff, 0.5);
+  private readonly head_light = new DirectionalLight(0xffffff, light.eye);
   private readonly size = new Vector2(1, 1);
   private readonly sharpness: Sharpness;
   private readonly pictures = new Map<string, Picture | null>();
@@ -50,12 +62,12 @@ export class SceneView {
     this.sharpness = new Sharpness(software, () => this.request());
     this.sharpness.apply(this.renderer, true);
     this.camera.add(this.head_light);
-    this.world.add(this.ambient, this.sun, this.camera);
+    this.world.add(this.backdrop.mesh, this.ambient, this.sun, this.camera);
   }
 
   /** Sets the background, also before there is a scene. */
   show_ground(theme: Theme): void {
-    this.world.background = new Color(backgrounds[theme]);
+    this.backdrop.set_theme(theme);
     this.invalidate();
   }
 
@@ -64,8 +76,8 @@ export class SceneView {
     this.clear();
     this.scene = scene;
     this.span = this.orbit.span = Math.max(1e-6, total_length(scene.arm));
-    const floor = this.floor_height(scene);
-    const context = { scene, span: this.span, floor, theme };
+    this.floor = floor_of(scene);
+    const context = { scene, span: this.span, floor: this.floor.height, theme };
     this.handles = make_handles(context);
     this.parts = [...part_makers.flatMap((make) => make(context)), this.handles];
     for (const { group } of this.parts) this.world.add(group);
@@ -73,7 +85,7 @@ export class SceneView {
     this.ambient.intensity = Math.PI * Math.max(0.25, scene.light.ambient * 0.8);
     this.sun.intensity = Math.PI * scene.light.directional;
     this.sun.position.set(...scene.light.towards);
-    if (frame_all) this.frame_arm();
+    if (frame_all) this.frame_all();
     this.is_to_frame = frame_all && !this.state;
     if (this.state) this.draw_state(this.state);
     this.invalidate();
@@ -84,7 +96,7 @@ export class SceneView {
     const before = this.state;
     this.state = state;
     // Camera positions are known only with a state.
-    if (this.is_to_frame) this.frame_arm();
+    if (this.is_to_frame) this.frame_all();
     this.is_to_frame = false;
     if (!anyway && before && same(before.samples, state.samples) && same(before.cameras, state.cameras)
       && same(before.push ?? nothing, state.push ?? nothing) && same(before.contacts ?? nothing, state.contacts ?? nothing)) return;
@@ -113,6 +125,7 @@ export class SceneView {
 
   hide(ids: string[]): void {
     for (const { id, group } of this.parts) group.visible = !ids.includes(id);
+    this.looked_anew = true;
     this.invalidate();
   }
 
@@ -126,6 +139,26 @@ export class SceneView {
     if (width < 1 || height < 1) return;
     this.size.set(width, height);
     this.renderer.setSize(width, height, false);
+    this.looked_anew = true;
+    this.invalidate();
+  }
+
+  /** The words of all visible things. */
+  get labels(): Label[] {
+    return this.parts.flatMap(({ group, labels }) => (group.visible ? labels ?? [] : []));
+  }
+
+  /** The opening view: holds the arm's workspace, the cameras and the screens behind the arm. */
+  frame_all(): void {
+    if (!this.scene) return;
+    const look = this.look_at_reach(this.scene);
+    const points = [...this.frusta(this.scene), ...screen_points(this.scene, look.target, this.floor.height, this.span)];
+    const { right, up, distance } = frame_of(points, look, this.span);
+    this.orbit.distance = distance;
+    this.orbit.place(this.camera);
+    this.camera.updateMatrixWorld();
+    this.orbit.target.addScaledVector(new Vector3().setFromMatrixColumn(this.camera.matrix, 0), right)
+      .addScaledVector(new Vector3().setFromMatrixColumn(this.camera.matrix, 1), up);
     this.invalidate();
   }
 
@@ -179,6 +212,7 @@ export class SceneView {
     clearTimeout(this.picture_timer);
     this.sharpness.stop();
     this.clear();
+    this.backdrop.dispose();
     this.renderer.dispose();
     this.renderer.forceContextLoss();
   }
@@ -195,7 +229,7 @@ export class SceneView {
     ray.setFromCamera(pointer, this.camera);
     ray.params.Line.threshold = 0;
     const groups = this.parts.filter(({ group, id }) => group.visible && id !== 'shadow').map(({ group }) => group);
-    return ray.intersectObjects(groups, true).find(({ object }) => object.visible && object.type !== 'LineSegments')?.point ?? null;
+    return ray.intersectObjects(groups, true).find(({ object }) => is_shown(object) && object.type !== 'LineSegments')?.point ?? null;
   }
 
   get width(): number {
@@ -210,7 +244,7 @@ export class SceneView {
   private look_at_reach(scene: Scene): Look {
     const { base, kind } = scene.arm;
     const up = kind === 'planar' ? 0.45 : 0.42;
-    this.orbit.target.set(base[0], base[1] + this.up_of_base(scene) * up * this.span, base[2]);
+    this.orbit.target.set(base[0], base[1] + up_of_base(scene) * up * this.span, base[2]);
     const { target, azimuth, elevation } = this.orbit;
     return { target, azimuth, elevation, fov: this.camera.fov, aspect: this.size.x / this.size.y };
   }
@@ -219,22 +253,21 @@ export class SceneView {
     return this.state ? frustum_points(scene, this.state.cameras) : [];
   }
 
-  private up_of_base({ arm: { base } }: Scene): number {
-    const [, , , w, x, y, z] = base;
-    return 2 * (y * z - w * x) >= -1e-9 ? 1 : -1;
-  }
-
-  /** Returns the floor height: below a standing arm, or below the workspace of a hanging one. */
-  private floor_height(scene: Scene): number {
-    return scene.arm.base[1] - (this.up_of_base(scene) > 0 ? 0 : 1.05 * this.span);
-  }
-
   private clear(): void {
     for (const part of this.parts) {
       this.world.remove(part.group);
       part.dispose();
     }
     this.parts = [];
+    this.looked_anew = true;
+  }
+
+  private tell_lookers(): void {
+    seen_by.multiplyMatrices(this.camera.projectionMatrix, this.camera.matrixWorldInverse);
+    if (!this.looked_anew && seen_by.equals(this.looked)) return;
+    this.looked_anew = false;
+    this.looked.copy(seen_by);
+    for (const listener of this.look_listeners) listener();
   }
 
   private render = (): void => {
@@ -254,10 +287,17 @@ export class SceneView {
     for (const part of this.parts) part.seen_from?.(this.camera.position, pixels);
     this.renderer.render(this.world, this.camera);
     ++this.drawn;
+    this.tell_lookers();
   };
 }
 
+const seen_by = new Matrix4();
 const nothing = new Float32Array(0);
+
+function is_shown(object: Object3D | null): boolean {
+  for (let each = object; each; each = each.parent) if (!each.visible) return false;
+  return true;
+}
 
 function same(a: Float32Array, b: Float32Array): boolean {
   if (a.length !== b.length) return false;

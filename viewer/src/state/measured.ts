@@ -16,12 +16,14 @@ export interface MeasureHost {
   };
 }
 
-/** The result of the previous picture stays for this long, ms, until the next one arrives. */
+/** A shape stays for this long, ms, until that of the next pictures arrives. */
 export const grace_ms = 300;
+/** What was measured in a picture stays for this long, ms: its picture stays with it (panels/paired.ts). */
+export const picture_grace_ms = 1500;
 
 /** Requests a measurement for each picture; `found` is null if there is no result for the shown one. */
 function follow<Result>(
-  found: Signal<Result | null>, ask: () => Promise<Result>, shown: () => string | null,
+  found: Signal<Result | null>, ask: () => Promise<Result>, shown: () => string | null, grace: number,
 ): () => void {
   let asked: string | null = null;
   let outdated: ReturnType<typeof setTimeout> | undefined;
@@ -31,7 +33,7 @@ function follow<Result>(
     if (found.peek() !== result) found.value = result;
   };
   const expire = (): void => {
-    outdated ??= setTimeout(() => say(null), grace_ms);
+    outdated ??= setTimeout(() => say(null), grace);
   };
   const asker = new Latest<string, Result>(ask, (result, _, of) => {
     // Another run, or a later picture, may be shown by now.
@@ -84,11 +86,13 @@ export class Measured {
           const [layers, picture] = [of_layers(), numbers([camera])];
           return layers.length && picture ? `${picture} ${layers.join()}` : null;
         },
+        picture_grace_ms,
       ));
       stops.push(follow(
         this.shape,
         () => host.link.request<ShapeResult>('shape', {}),
         () => (wanted.value.includes(shape_measure.id) && cameras.length > 1 ? numbers(cameras) : null),
+        grace_ms,
       ));
     });
     return () => {

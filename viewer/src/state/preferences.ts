@@ -26,6 +26,16 @@ function kept<T>(name: string, standard: T): Signal<T> {
 export type Theme = 'system' | 'dark' | 'light';
 export type ArmMode = 'bends' | 'archings' | 'cord_angles' | 'tendons';
 
+/** Areas around the 3D view whose size can be changed. */
+export type Area = 'left' | 'right' | 'plots';
+
+/** Of a plot's y axis. A limit of null is chosen from the values. */
+export interface PlotAxis {
+  low: number | null;
+  high: number | null;
+  log: boolean;
+}
+
 export const preferences = {
   theme: kept<Theme>('theme', 'system'),
   keys: kept('keys', true),
@@ -37,6 +47,12 @@ export const preferences = {
   plots: kept<[string, string]>('plots', ['tip', 'bends']),
   recording_plots: kept<[string, string]>('recording_plots', ['', '']),
   show_plots: kept('show_plots', true),
+  /** Limits of the plots' y axes and their kind, by what is plotted. */
+  plot_axes: kept<Record<string, PlotAxis>>('plot_axes', {}),
+  /** Sizes of the areas around the 3D view that were dragged, px; the others have their standard ones. */
+  sizes: kept<Partial<Record<Area, number>>>('sizes', {}),
+  /** First hints that were dismissed. */
+  known_hints: kept<string[]>('known_hints', []),
   /** How fast tasks play, of real time; 0: as fast as possible. */
   run_speed: kept('run_speed', 1),
   /** Camera sliders mark where the axes truly stand. */

@@ -229,9 +229,8 @@ export class Viewer implements LinkListener {
     return all;
   }
 
-  /** What the program draws upon the picture of the camera that is shown: what was measured in that one. */
-  overlay_of(camera: string): ExtraOverlay | undefined {
-    const number = this.picture_of.get(camera)?.number;
+  /** What the program draws upon a camera's picture of this number: what was measured in that one. */
+  overlay_of(camera: string, number: number | undefined): ExtraOverlay | undefined {
     return extra_overlay(this.extras.value, camera, number) ?? this.overlay_memory.of(camera, number);
   }
 

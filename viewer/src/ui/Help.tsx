@@ -12,6 +12,9 @@ const hand = [
   { keys: ['Double click'], what: 'Centre the view on the point' },
   { keys: ['Click on the arm'], what: 'Pick a point of the backbone' },
   { keys: ['Drag the tip’s handle'], what: 'The arm follows by inverse kinematics' },
+  { keys: ['Drag a slider'], what: 'Set its value; with Shift in fine steps' },
+  { keys: ['Drag in a plot'], what: 'Zoom in time; a double click shows the whole time' },
+  { keys: ['Drag a border'], what: 'Change the size of a panel; a double click restores it' },
   { keys: ['Point at a camera’s picture'], what: 'The pixel’s exact value' },
 ];
 

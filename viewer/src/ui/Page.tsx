@@ -7,10 +7,12 @@ import { preferences } from '../state/preferences';
 import { Teach } from '../teach/Teach';
 import { Timeline } from '../timeline/Timeline';
 import { use_app } from './app';
+import { Borders } from './Borders';
 import { Entrance } from './Entrance';
 import { Examples } from './Examples';
 import { Header } from './Header';
 import { Help } from './Help';
+import { Hints } from './Hints';
 import { NoticeList } from './NoticeList';
 
 export function Page() {
@@ -44,13 +46,17 @@ function Bench() {
         ))}
       </div>
       <LeftPanel />
-      <section class="stage" aria-label="3D view">
-        <Stage3D />
-        <StageNotes />
-        <Entrance />
-      </section>
+      <div class="middle">
+        <section class="stage" aria-label="3D view">
+          <Stage3D />
+          <StageNotes />
+          <Entrance />
+        </section>
+        <Hints />
+      </div>
       <RightPanel />
       {(preferences.show_plots.value || narrow_tab.value === 'plots') && <Plots />}
+      <Borders />
       <Timeline />
     </main>
   );

@@ -27,6 +27,8 @@ export interface App {
   narrow_tab: Signal<NarrowTab>;
   /** The time under the pointer in a plot or on the timeline, which all of them show. */
   cursor: Signal<number | null>;
+  /** The part of the time that the plots show; null: all of it, or live its last seconds. */
+  zoom: Signal<[number, number] | null>;
   keys: KeyMap;
   /** Takes a pasted address or token and connects with it. Returns false if it contains no token. */
   use_token(text: string): boolean;
@@ -44,6 +46,7 @@ export function make_app(viewer: Viewer, keys: KeyMap): App {
     enlarged: signal(null),
     narrow_tab: signal('view'),
     cursor: signal(null),
+    zoom: signal(null),
     keys,
     use_token: () => false,
   };

@@ -158,7 +158,8 @@ for (const dark of [true, false]) {
     test('a recording', () => opened('recording', (page) => expect_usable(page, 'a recording')));
 
     test('who is not let in sees that, what to do about it, and nothing that nobody knows', async () => {
-      const ground = dark ? [0x13, 0x1b, 0x23] : [0xee, 0xf2, 0xf5];
+      // The upper end of the background's gradient.
+      const ground = dark ? [0x13, 0x1b, 0x23] : [0xd5, 0xde, 0xe7];
       for (const hash of ['', `#token=${'0'.repeat(32)}`, '#token=zz']) {
         const server = await faked();
         const { page, complaints } = await visit(server.url.replace(/#.*/, hash), { width, height, dark });

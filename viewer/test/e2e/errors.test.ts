@@ -69,7 +69,8 @@ test('a rig that stands still while the program answers is stale too', async () 
 test('a lost connection is told, and comes back by itself', async () => {
   await server.stop();
   await until(async () => (await badge()) === 'lost');
-  expect(await page.locator('.entrance').textContent()).toMatch(/lost|not answer/i);
+  // An attempt to connect may be under way.
+  await until(async () => /lost|not answer/i.test((await page.locator('.entrance').textContent()) ?? ''));
   expect(await page.locator('.section .slider input').first().isDisabled()).toBe(true);
   await server.start();
   await until(async () => (await badge()) === 'live', 12000);

@@ -123,10 +123,11 @@ test('every key that is bound stands in the help', async () => {
 });
 
 test('what is told lies upon neither the inspector nor the plots', async () => {
-  server.broadcast({ type: 'progress', done: true, outcome: 'unsafe', text: 'section 1: bend 130 degrees, limit 120 degrees, at 2.5 s' });
-  await page.waitForSelector('.notice');
   for (const [width, height] of [[1280, 720], [1440, 900], [910, 512]]) {
     await page.setViewportSize({ width, height });
+    // The same words prolong it.
+    server.broadcast({ type: 'progress', done: true, outcome: 'unsafe', text: 'section 1: bend 130 degrees, limit 120 degrees, at 2.5 s' });
+    await page.waitForSelector('.notice');
     await page.waitForTimeout(200);
     const upon = await page.evaluate(() => {
       const box = (what: string): DOMRect => document.querySelector(what)!.getBoundingClientRect();

@@ -3,12 +3,25 @@ import { fileURLToPath } from 'node:url';
 import type { Page } from 'playwright-core';
 import { beforeAll, describe, expect, test } from 'vitest';
 import { colored, slide, stage_at_rest, until } from './browser';
+import type { FakeServer } from '../fake/server';
 import { faked, opened_before, recorded, started, type Served } from './opened';
 import { program } from './program';
 
 const measured = fileURLToPath(new URL('measured.toml', import.meta.url));
 
 const chip = (page: Page, label: string) => page.getByRole('button', { name: new RegExp(`^${label}: `) });
+
+/** Returns the numbers of the first camera's drawn pictures, and of those that were measured, frame by frame. */
+const watched_pairs = (page: Page, ms = 2500) => page.evaluate(async (most) => {
+  const canvas = document.querySelector<HTMLCanvasElement>('.picture canvas')!;
+  const seen: { number: string; measured: string }[] = [];
+  const end = performance.now() + most;
+  while (performance.now() < end) {
+    await new Promise(requestAnimationFrame);
+    seen.push({ number: canvas.dataset.number ?? '', measured: canvas.dataset.measured ?? '' });
+  }
+  return seen;
+}, ms);
 
 function measured_tests(start: () => Promise<Served>, is_recording: boolean): void {
   const opened = opened_before(start, is_recording ? 'recording' : 'live');
@@ -62,6 +75,24 @@ function measured_tests(start: () => Promise<Served>, is_recording: boolean): vo
     await chip(page, 'Axis').click();
   });
 
+  test('while the arm moves, what is drawn upon a picture was measured in it', async () => {
+    await chip(page, 'Axis').click();
+    await until(async () => (await colored(page, '#ffd43b')).count > 60);
+    const pairs = watched_pairs(page);
+    if (is_recording) await slide(page, '#scrub', 0);
+    if (is_recording) await page.locator('#play').click();
+    else for (const [i, to] of [[0, 0.7], [1, 0.5], [0, -0.7], [1, -0.5]]) {
+      await slide(page, `#arm-bends-${i}`, to);
+      await page.waitForTimeout(500);
+    }
+    const seen = await pairs;
+    expect(new Set(seen.map(({ number }) => number)).size).toBeGreaterThan(1);
+    expect(seen.some(({ measured }) => measured !== '')).toBe(true);
+    for (const { number, measured } of seen) if (measured !== '') expect(measured).toBe(number);
+    if (is_recording && (await page.locator('#play').getAttribute('aria-label')) === 'Pause') await page.locator('#play').click();
+    await chip(page, 'Axis').click();
+  });
+
   test('the shape of both pictures stands in the view', async () => {
     const before = await stage_at_rest(page);
     await chip(page, 'Shape').click();
@@ -92,3 +123,55 @@ if (program) {
   // alternate between both resolutions.
   describe('a rig', () => measured_tests(async () => Object.assign(await faked(), { resting_rate: 8 }), false));
 }
+
+// The fake rig's measurement takes longer than the next picture, and its axis is the middle of what it draws.
+describe('a live rig that moves fast and is measured late', () => {
+  let server: FakeServer;
+  const opened = opened_before(async () => Object.assign(server = await faked(), { measure_delay_ms: 160 }), 'live');
+
+  test('the axis lies in the middle of the arm on every picture', async () => {
+    const { page, complaints } = opened;
+    await until(async () => (await page.locator('.picture .none').count()) === 0, 15000, 'no picture came');
+    await chip(page, 'Axis').click();
+    await until(async () => (await colored(page, '#ffd43b')).count > 60);
+    const watching = page.evaluate(async () => {
+      const canvas = document.querySelector<HTMLCanvasElement>('.picture canvas')!;
+      const context = canvas.getContext('2d')!;
+      const offs: number[] = [];
+      const places = new Set<number>();
+      const end = performance.now() + 5000;
+      while (performance.now() < end) {
+        await new Promise(requestAnimationFrame);
+        const { width, height, data } = context.getImageData(0, 0, canvas.width, canvas.height);
+        let [sum, count] = [0, 0];
+        for (let v = 0; v < height; v += 4) {
+          let [left, right, axis, yellow] = [-1, -1, 0, 0];
+          for (let u = 0; u < width; ++u) {
+            const at = 4 * (v * width + u);
+            const is_axis = data[at] > 180 && data[at + 1] > 140 && data[at + 2] < 130;
+            if (is_axis) axis += u, ++yellow;
+            if (!is_axis && data[at] > 120) continue;
+            if (left < 0) left = u;
+            right = u;
+          }
+          // Where it lies across, a row says nothing.
+          if (!yellow || right - left > 60) continue;
+          sum += Math.abs(axis / yellow - (left + right) / 2);
+          ++count;
+          places.add(Math.round(axis / yellow));
+        }
+        if (count > 5) offs.push(sum / count);
+      }
+      return { offs, places: places.size };
+    });
+    for (const sign of [1, -1, 1, -1]) {
+      server.session.arm.command(server.session.arm.bends.map(() => [0.5 * sign, 0.4 * sign]));
+      await page.waitForTimeout(1000);
+    }
+    const { offs, places } = await watching;
+    expect(offs.length).toBeGreaterThan(4);
+    expect(places).toBeGreaterThan(20);
+    expect(Math.max(...offs)).toBeLessThan(2.5);
+    expect(complaints).toEqual([]);
+  });
+});

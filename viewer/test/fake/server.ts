@@ -36,6 +36,8 @@ export class FakeServer {
   stuck = false;
   /** Delay of replies to requests for times, ms. */
   delay_ms = 0;
+  /** Delay of replies to requests for measurements, ms. */
+  measure_delay_ms = 0;
   /** Pictures per second of an unchanged scene. Decoding and drawing them is the main cost of a page at rest. */
   resting_rate = 2;
   /** Largest number of such requests of a client that were unanswered at once. */
@@ -174,6 +176,7 @@ export class FakeServer {
       reply = { error: (error as Error).message };
     }
     const text = JSON.stringify({ type: 'reply', id: request.id, ...reply });
+    if (request.do === 'measure' && this.measure_delay_ms) return void setTimeout(() => client.send(text), this.measure_delay_ms);
     if (request.do !== 'at' || !this.delay_ms) return client.send(text);
     this.most_outstanding = Math.max(this.most_outstanding, ++this.outstanding);
     setTimeout(() => {

@@ -1,6 +1,6 @@
 import { signal } from '@preact/signals';
 import { afterEach, beforeEach, expect, test, vi } from 'vitest';
-import { grace_ms, Measured } from '../../src/state/measured';
+import { picture_grace_ms, Measured } from '../../src/state/measured';
 
 interface Asked {
   what: string;
@@ -56,7 +56,7 @@ test('each picture is measured for what is to be seen, the newest only', async (
   await answer({ number: 3 });
   expect(of('front')?.number).toBe(3);
   expect(waiting).toHaveLength(0);
-  await vi.advanceTimersByTimeAsync(10 * grace_ms);
+  await vi.advanceTimersByTimeAsync(10 * picture_grace_ms);
   expect(of('front')?.number).toBe(3);
   expect(of('side')).toBeNull();
 });
@@ -79,7 +79,7 @@ test('what was measured in an older picture does not stay', async () => {
   await answer({ number: 1 });
   show('front', 2);
   expect(of('front')?.number).toBe(1);
-  await vi.advanceTimersByTimeAsync(grace_ms + 1);
+  await vi.advanceTimersByTimeAsync(picture_grace_ms + 1);
   expect(of('front')).toBeNull();
   waiting.shift()!.reject(new Error('no'));
   await vi.advanceTimersByTimeAsync(0);

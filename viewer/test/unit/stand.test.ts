@@ -3,7 +3,7 @@ import { Box3, type BufferGeometry, type Group, type LineSegments, Mesh, type Me
 import { expect, test } from 'vitest';
 import type { SceneObstacle } from '../../src/protocol/types';
 import type { Part } from '../../src/scene/part';
-import { make_stand } from '../../src/scene/parts/stand';
+import { cut, make_stand } from '../../src/scene/parts/stand';
 import { spatial_rig } from '../fake/rigs';
 
 const half = Math.SQRT1_2;
@@ -37,16 +37,30 @@ function expect_box(object: Object3D, min: number[], max: number[], places = 6):
 test('a screen lies in its plane, width along x and height along y, and faces along z', () => {
   // Rotated by a quarter around y: its x points to -Z, its z to X.
   const [part] = stand({ screens: [{ pose: [1, 2, 3, half, 0, half, 0], size: [4, 6], brightness: 1 }] });
-  const [sheet, edge] = (part.group as Group).children as [Mesh, LineSegments];
+  const [whole, above] = part.group.children as Group[];
+  const [sheet, edge] = whole.children as [Mesh, LineSegments];
   for (const drawn of [sheet, edge]) {
     part.group.updateMatrixWorld(true);
     for (const [y, z] of [[-1, 1], [5, 1], [-1, 5], [5, 5]]) expect(has(corners(part.group), 1, y, z)).toBe(true);
     expect(drawn.matrixWorld.determinant()).toBeCloseTo(1);
   }
   expect_box(part.group, [1, -1, 1], [1, 5, 5]);
-  const normal = new Vector3().fromBufferAttribute((sheet.geometry as BufferGeometry).getAttribute('normal'), 0).transformDirection(sheet.matrixWorld);
+  const [a, b, c] = corners(sheet);
+  const normal = b.clone().sub(a).cross(c.clone().sub(a)).normalize();
   expect(normal.toArray().map((x) => Math.round(x * 1e6) / 1e6 + 0)).toEqual([1, 0, 0]);
   expect((sheet.material as MeshBasicMaterial).transparent).toBe(false);
+  // What is below the floor is left out, but not for a camera.
+  expect_box(above, [1, 0, 1], [1, 5, 5]);
+  expect([whole.visible, above.visible]).toEqual([false, true]);
+  part.inside!('front');
+  expect([whole.visible, above.visible]).toEqual([true, false]);
+});
+
+test('an outline is cut where it crosses', () => {
+  const square = [[0, 0], [2, 0], [2, 2], [0, 2]].map(([x, y]) => new Vector3(x, y, 0));
+  expect(cut(square, ({ y }) => y + 1)).toEqual(square);
+  expect(cut(square, ({ y }) => y - 3)).toEqual([]);
+  expect(cut(square, ({ y }) => y - 0.5).map(({ x, y }) => [x, y])).toEqual([[2, 0.5], [2, 2], [0, 2], [0, 0.5]]);
 });
 
 test('the etalon stands along its y, with red lines at its z and each quarter of a turn', () => {

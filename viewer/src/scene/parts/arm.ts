@@ -1,17 +1,15 @@
 import {
-  Color, CylinderGeometry, Group, InstancedMesh, Matrix4, Mesh, MeshBasicMaterial, MeshLambertMaterial,
-  MeshPhongMaterial, Quaternion, Sphere, Vector3, DoubleSide,
+  Color, CylinderGeometry, Group, InstancedMesh, Matrix4, Mesh, MeshLambertMaterial, MeshPhongMaterial, Quaternion, Sphere, Vector3,
 } from 'three';
 import { Arc, locate, new_pose } from '../../math/arc';
 import { sample_stride, type State } from '../../protocol/state';
 import type { Part, PartContext } from '../part';
-import { plain } from '../plain';
-import { coarse, medium, painter, plan_rings, radius_at } from '../rings';
+import { medium, painter, plan_rings, radius_at } from '../rings';
 import { fineness_of, sides, Tube } from '../tube';
 
-/** The arm: skin, disks, and a shadow on the floor that shows its depth. */
-export function make_arm({ scene, span, floor, theme }: PartContext): Part[] {
-  const { arm } = scene;
+/** The arm: skin, disks and base. Its shadow is in shadow.ts. */
+export function make_arm(context: PartContext): Part[] {
+  const { arm } = context.scene;
   if (!arm.visible) return [];
   const rings = plan_rings(arm);
   const few_rings = plan_rings(arm, painter(arm), medium);
@@ -21,22 +19,9 @@ export function make_arm({ scene, span, floor, theme }: PartContext): Part[] {
   const tube_of = (level: number): Tube => (tubes[level] ??= new Tube(level > 0 ? rings : few_rings, sides[level]));
   let tube = tube_of(0);
   let samples: ArrayLike<number> | null = null;
-  // Arms are dark, for the cameras; on a dark background a little emission keeps them visible.
-  const skin = new Mesh(tube.geometry, new MeshPhongMaterial({
-    vertexColors: true, shininess: 40, specular: 0x333333, emissive: theme === 'dark' ? 0x4a5a66 : 0, emissiveIntensity: 0.6,
-  }));
+  // Arms are dark, for the cameras. Their own colours are drawn in both themes: it is their gloss that shows the form.
+  const skin = new Mesh(tube.geometry, new MeshPhongMaterial({ vertexColors: true, shininess: 28, specular: 0x24282c }));
   skin.frustumCulled = false;
-  const shadow_group = new Group();
-  const shade = new Tube(plan_rings({ ...arm, markers: [] }, painter(arm), coarse), 6);
-  const shadow = new Mesh(
-    shade.geometry,
-    plain(new MeshBasicMaterial({ color: theme === 'dark' ? 0x0c1218 : 0xc3ccd4, side: DoubleSide })),
-  );
-  shadow.frustumCulled = false;
-  shadow.matrixAutoUpdate = false;
-  shadow.matrix.makeScale(1, 0, 1).setPosition(0, floor - 5e-4 * span, 0);
-  shadow_group.add(shadow);
-
   const group = new Group();
   group.add(skin);
   const disks = make_disks(arm.disks, arm.disk_color);
@@ -65,17 +50,7 @@ export function make_arm({ scene, span, floor, theme }: PartContext): Part[] {
         disks?.mesh.dispose();
       },
     },
-    {
-      id: 'shadow',
-      label: 'Shadow on the floor',
-      group: shadow_group,
-      draw: ({ samples }) => shade.lay(samples),
-      dispose() {
-        shade.dispose();
-        (shadow.material as MeshBasicMaterial).dispose();
-      },
-    },
-    ...make_base({ scene, span, floor, theme }),
+    ...make_base(context),
   ];
 }
 

@@ -1,7 +1,7 @@
 // Objects around the arm: screens, the calibration cylinder, obstacles.
 import {
-  BoxGeometry, CapsuleGeometry, Color, CylinderGeometry, Group, Mesh, MeshBasicMaterial,
-  MeshLambertMaterial, type Object3D, PlaneGeometry, Quaternion, SphereGeometry, Vector3,
+  BoxGeometry, BufferGeometry, CapsuleGeometry, Color, CylinderGeometry, Group, Mesh, MeshBasicMaterial,
+  MeshLambertMaterial, type Object3D, Quaternion, SphereGeometry, Vector3,
 } from 'three';
 import type { Pose, SceneEtalon, SceneObstacle, SceneScreen } from '../../protocol/types';
 import { dispose_tree, type Part, type PartContext } from '../part';
@@ -11,7 +11,7 @@ import { lines } from './floor';
 export function make_stand(context: PartContext): Part[] {
   const { scene } = context;
   const parts: Part[] = scene.screens.map((screen, i) =>
-    part(`screen ${i + 1}`, scene.screens.length > 1 ? `Screen ${i + 1}` : 'Screen', screen_of(screen, context)),
+    make_screen(`screen ${i + 1}`, scene.screens.length > 1 ? `Screen ${i + 1}` : 'Screen', screen, context),
   );
   if (scene.etalon) parts.push(part('etalon', 'Calibration cylinder', etalon_of(scene.etalon)));
   for (const obstacle of scene.obstacles) {
@@ -29,29 +29,58 @@ function stand_at(object: Object3D, [x, y, z, qw, qx, qy, qz]: Pose): void {
   object.quaternion.set(qx, qy, qz, qw);
 }
 
+/** Light of a screen's front in the dark theme, where a truly bright one would dazzle: enough for the arm to stand out. */
+const dimmed = new Color(0x71808d);
+
 /**
  * A screen: bright on its front; only its edges are visible from behind, so that it never hides the arm. It is opaque,
- * because blending a large area is slow in software renderers.
+ * because blending a large area is slow in software renderers. What is below the floor is left out, except for the
+ * cameras, which see no floor.
  */
-function screen_of({ pose, size, brightness }: SceneScreen, { theme }: PartContext): Object3D {
+function make_screen(id: string, label: string, { pose, size, brightness }: SceneScreen, { theme, floor }: PartContext): Part {
   const group = new Group();
-  const [w, h] = [size[0] / 2, size[1] / 2];
-  const level = Math.min(1, Math.max(0.2, brightness));
-  const sheen = theme === 'dark' ? 0.02 * level : 0.75 + 0.25 * level;
-  const sheet = new Mesh(
-    new PlaneGeometry(size[0], size[1]),
-    // Offset in depth, so that the edges lie on it.
-    plain(new MeshBasicMaterial({
-      color: new Color(sheen, sheen, 1.08 * sheen), polygonOffset: true, polygonOffsetFactor: 2, polygonOffsetUnits: 2,
-    })),
-  );
-  const edge = lines(
-    [-w, -h, 0, w, -h, 0, w, -h, 0, w, h, 0, w, h, 0, -w, h, 0, -w, h, 0, -w, -h, 0],
-    theme === 'dark' ? 0x8da0b0 : 0x8793a0,
-  );
-  group.add(sheet, edge);
   stand_at(group, pose);
-  return group;
+  group.updateMatrixWorld();
+  const level = Math.min(1, Math.max(0.2, brightness));
+  const color = theme === 'dark' ? dimmed.clone().multiplyScalar(0.4 + 0.6 * level) : new Color(1, 1, 1.03).multiplyScalar(0.75 + 0.25 * level);
+  // Offset in depth, so that the edges lie on it.
+  const front = plain(new MeshBasicMaterial({ color, polygonOffset: true, polygonOffsetFactor: 2, polygonOffsetUnits: 2 }));
+  const [w, h] = [size[0] / 2, size[1] / 2];
+  const corners = [[-w, -h], [w, -h], [w, h], [-w, h]].map(([x, y]) => new Vector3(x, y, 0));
+  const shape = (outline: Vector3[]): Object3D => {
+    const sheet = new Group();
+    if (outline.length < 3) return sheet;
+    const geometry = new BufferGeometry().setFromPoints(outline);
+    geometry.setIndex(outline.slice(2).flatMap((_, i) => [0, i + 1, i + 2]));
+    const border = outline.flatMap(({ x, y }, i) => {
+      const next = outline[(i + 1) % outline.length];
+      return [x, y, 0, next.x, next.y, 0];
+    });
+    return sheet.add(new Mesh(geometry, front), lines(border, theme === 'dark' ? 0x8da0b0 : 0x8793a0));
+  };
+  const [whole, above] = [shape(corners), shape(cut(corners, (point) => group.localToWorld(point.clone()).y - floor))];
+  whole.visible = false;
+  group.add(whole, above);
+  return {
+    id,
+    label,
+    group,
+    inside(camera) {
+      whole.visible = camera !== null;
+      above.visible = camera === null;
+    },
+    dispose: () => dispose_tree(group),
+  };
+}
+
+/** Returns the part of a convex outline in which `height` is not negative. */
+export function cut(outline: Vector3[], height: (point: Vector3) => number): Vector3[] {
+  return outline.flatMap((point, i) => {
+    const next = outline[(i + 1) % outline.length];
+    const [here, there] = [height(point), height(next)];
+    const crossing = here * there < 0 ? [point.clone().lerp(next, here / (here - there))] : [];
+    return here >= 0 ? [point, ...crossing] : crossing;
+  });
 }
 
 /** A cylinder along its own y with four lines, a quarter turn apart, the first towards its z. */

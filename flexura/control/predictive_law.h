@@ -1,0 +1,76 @@
+#pragma once
+
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+#include <vector>
+
+#include "flexura/kinematics/arm_variables.h"
+#include "flexura/model/arm.h"
+#include "flexura/model/arm_response.h"
+
+namespace flexura {
+
+/// Settings of the predictive law.
+struct PredictiveLawConfig {
+  double step = 1.0 / 30;  ///< Time between commands, s; > 0.
+  int horizon = 18;        ///< Number of steps that are predicted; >= 1.
+  /// Rate at which errors decay if no limit holds the arm back, about, 1/s; > 0.
+  double rate = 6;
+  int most_iterations = 60;  ///< Of the solver.
+};
+
+/// State of an arm and its target from now on, for a step of the law.
+struct PredictiveState {
+  ArmState sent;     ///< Last command, which the drives have reached.
+  ArmState rate;     ///< Rate of the commands until now: bends in rad/s, stretches in 1/s.
+  ArmState rest;     ///< Shape of the arm at rest under `sent`.
+  ArmState desired;  ///< Target shape now.
+  /// Change of the target shape in each later step; shorter lists end at the last target.
+  std::vector<ArmState> desired_later = {};
+  std::vector<SwingMode> modes = {};  ///< Of the arm's swing; empty: it does not swing.
+  Eigen::VectorXd swing = {};         ///< z of all modes, then z'.
+  double frequency_factor = 1;        ///< On the frequencies of the modes.
+};
+
+/// Model predictive control of an arm's shape (docs/control.md, "Predictive law"). It chooses the changes a_k
+/// of the command's rate over a horizon that minimise
+///   sum over k of |e_k|^2 + rho |a_k / step|^2,
+/// with e_k the predicted distance along the arm from the target, root mean square, share of its length. The
+/// prediction is linear about the present command: the shape at rest follows the commands by its derivative,
+/// and the modes swing freely between kicks. Bends and bend rates stay within their limits. Solved by the
+/// alternating direction method of multipliers (S. Boyd et al., 2011), with projections on discs. Its result
+/// is a request, for a limiter.
+class PredictiveLaw {
+ public:
+  /// `driven`: the arm as its drives see it; `shaped`: with a section for each arc. Throws
+  /// std::invalid_argument for numbers out of their ranges.
+  PredictiveLaw(const Arm& driven, const Arm& shaped, const PredictiveLawConfig& config);
+
+  /// Returns the command for the end of the next step. `by_command`: derivative of the shape at rest by the
+  /// command, 3 arcs x 3 sections (Actuation::slopes).
+  [[nodiscard]] ArmState step(const PredictiveState& now, const Eigen::MatrixXd& by_command);
+
+ private:
+  struct Disc {
+    Eigen::Index at = 0;  // First of its numbers in a step's variables.
+    Eigen::Index size = 2;
+    double bend = 0, rate = 0;  // Largest.
+  };
+  void find_metric(const ArmState& shape);
+  void predict(const PredictiveState& now, const Eigen::MatrixXd& by_command);
+  void solve(const Eigen::VectorXd& sent, const Eigen::VectorXd& rate);
+
+  Arm driven_, shaped_;
+  PredictiveLawConfig config_;
+  ArmVariables variables_;
+  Eigen::VectorXd lowest_, highest_;  // Of variables that are not in a disc: stretches.
+  std::vector<Disc> discs_;
+  double effort_ = 0;                    // rho
+  Eigen::MatrixXd metric_;               // Rows whose square sum is |e|^2, by (bend_x, bend_y) of the arcs.
+  std::vector<Eigen::MatrixXd> answer_;  // Weighted error, m steps after a change of rate.
+  Eigen::VectorXd free_, changes_;       // Weighted errors without changes; the changes found.
+  Eigen::MatrixXd H_;
+  Eigen::VectorXd gradient_;
+};
+
+}  // namespace flexura

@@ -1,0 +1,43 @@
+#include "flexura/sim/deep_start.h"
+
+#include <vector>
+
+#include "flexura/mechanics/dynamics.h"
+#include "flexura/mechanics/rod_contact.h"
+#include "flexura/mechanics/statics.h"
+#include "flexura/sim/arm_setup.h"
+#include "flexura/sim/rod_inputs.h"
+#include "flexura/sim/start_command.h"
+
+namespace flexura {
+
+std::optional<DeepStart> deep_start(const RigConfig& model, const RigConfig& truth) {
+  if (truth.arm.mechanics != ArmMechanics::dynamics || !truth.arm.contact || truth.obstacles.empty())
+    return {};
+  const ArmSetup arm(truth);
+  const RodInputs inputs({arm, start_command(ArmSetup(model), arm), 0});
+  RodStatics statics(inputs.rod());
+  statics.stretch_rest(inputs.rest_stretches(0));
+  const Equilibrium rest =
+      statics.solve({.displacements = inputs.displacements(0, inputs.nothing_lost())}, inputs.loads(0));
+  if (!rest.converged()) return {};
+  RodDynamics dynamics(inputs.rod());
+  const RodContact contact(dynamics.chain(), arm.rod.value().contact.value());
+  dynamics.set_surroundings(&contact);
+  if (inputs.can_stretch()) {
+    const std::vector<double> factors = inputs.rest_stretches(0);
+    dynamics.stretch_rest(factors, std::vector<double>(factors.size(), 0.0));
+  }
+  std::optional<DeepStart> deepest;
+  for (const ContactForce& each : contact.find(dynamics.point_motions(dynamics.rest(rest)))) {
+    if (!each.is_deep || !each.obstacle || (deepest && deepest->depth >= each.depth)) continue;
+    double s = 0;
+    for (std::size_t i = 0; i < each.place.section; ++i) s += inputs.rod().sections[i].length;
+    deepest = {.obstacle = *each.obstacle,
+               .s_rest = s + each.place.at * inputs.rod().sections[each.place.section].length,
+               .depth = each.depth};
+  }
+  return deepest;
+}
+
+}  // namespace flexura

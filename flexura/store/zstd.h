@@ -1,0 +1,29 @@
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <span>
+#include <vector>
+
+namespace flexura {
+
+/// Returns the bytes compressed into one frame of Zstandard (RFC 8878). Equal bytes give equal frames with
+/// the same version of libzstd. Throws std::runtime_error if libzstd fails.
+[[nodiscard]] std::vector<std::byte> zstd(std::span<const std::byte> bytes);
+
+/// Bytes in memory that are not initialised before they are written: memory that was never written takes no
+/// space.
+struct ByteBuffer {
+  std::unique_ptr<std::byte[]> start;  ///< May be null if `size` is 0.
+  std::size_t size = 0;                ///< In bytes.
+
+  /// Returns the bytes; valid as long as the buffer.
+  [[nodiscard]] std::span<const std::byte> bytes() const { return {start.get(), size}; }
+};
+
+/// Returns the content of frames of Zstandard that must decompress to exactly `size` bytes. Never writes more
+/// than those, and refuses, before it takes any memory, a size that so few bytes cannot hold. Throws
+/// std::runtime_error with the reason for anything else.
+[[nodiscard]] ByteBuffer unzstd(std::span<const std::byte> frames, std::size_t size);
+
+}  // namespace flexura

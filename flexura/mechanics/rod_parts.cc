@@ -11,8 +11,10 @@ namespace {
 constexpr double one_disk = 1e-9;
 // With fewer modes the user wants arcs, or arcs that change linearly.
 constexpr int least_bends = 3;
-// With more pieces a section's chords are so near to a channel that their effect on single pieces is small.
-constexpr int most_parts = 24;
+// With more pieces the modes of the whole section are right to about 2e-4 of the length (docs/mechanics.md).
+constexpr int most_pieces = 11;
+// From so many pieces on, one mode of shear and of twist in each suffices.
+constexpr int many_pieces = 8;
 
 // A section's number of modes for a strain, spread over its pieces: each has all of them up to `share`
 // pieces, then fewer in proportion to its length, but at least `least`.
@@ -24,10 +26,11 @@ int spread_modes(int count, int share, int pieces, int least) {
 // Within a piece a rod under a chord is a beam under the tension at its ends: its curvature is nearly a
 // parabola, its shear linear.
 StrainModes modes_of_piece(StrainModes modes, int pieces) {
-  modes.shear = spread_modes(modes.shear, 2, pieces, 2);
+  const int least = pieces < many_pieces ? 2 : 1;
+  modes.shear = spread_modes(modes.shear, 2, pieces, least);
   modes.stretch = spread_modes(modes.stretch, 2, pieces, 1);
-  modes.bend = spread_modes(modes.bend, 4, pieces, 3);
-  modes.twist = spread_modes(modes.twist, 2, pieces, 2);
+  modes.bend = spread_modes(modes.bend, 3, pieces, 3);
+  modes.twist = spread_modes(modes.twist, 2, pieces, least);
   return modes;
 }
 
@@ -49,14 +52,14 @@ std::array<double, 2> narrowed(const std::array<double, 2>& ends, const RodPart&
   return {ends[0] + part.begin * rise, ends[0] + part.end * rise};
 }
 
-RodSection section_of_part(const RodSection& section, const RodPart& part, int pieces, int held) {
+RodSection section_of_part(const RodSection& section, const RodPart& part, int pieces) {
   RodSection rod = section;
   const double size = part.end - part.begin;
   rod.length = section.length * size;
   rod.radius = narrowed(section.radius, part);
   rod.inner_radius = narrowed(section.inner_radius, part);
   rod.rest_curvature = restricted_powers(section.rest_curvature, part.begin, size);
-  rod.disks = held;
+  rod.disks = 1;
   rod.modes = modes_of_piece(section.modes, pieces);
   rod.masses.clear();
   for (PointMass mass : section.masses) {
@@ -84,19 +87,18 @@ std::vector<RodPart> parts_of(const Rod& rod) {
   double s_base = 0;
   for (std::size_t i = 0; i < rod.sections.size(); s_base += rod.sections[i].length, ++i) {
     const RodSection& section = rod.sections[i];
-    if (section.disks == 0 || !section.modes.by_piece || section.modes.bend < least_bends) {
+    if (section.disks == 0 || section.disks > most_pieces || !section.modes.by_piece ||
+        section.modes.bend < least_bends) {
       parts.push_back({.section = i, .s_base = s_base, .rod = section});
       continue;
     }
-    const int step = (section.disks + most_parts - 1) / most_parts;
-    for (int from = 0; from < section.disks; from += step) {
-      const int to = std::min(from + step, section.disks);
+    for (int piece = 0; piece < section.disks; ++piece) {
       RodPart part{.section = i,
-                   .begin = static_cast<double>(from) / section.disks,
-                   .end = static_cast<double>(to) / section.disks,
-                   .is_last = to == section.disks};
+                   .begin = static_cast<double>(piece) / section.disks,
+                   .end = static_cast<double>(piece + 1) / section.disks,
+                   .is_last = piece + 1 == section.disks};
       part.s_base = s_base + part.begin * section.length;
-      part.rod = section_of_part(section, part, section.disks, to - from);
+      part.rod = section_of_part(section, part, section.disks);
       parts.push_back(std::move(part));
     }
   }

@@ -25,9 +25,9 @@ struct RodPart {
   [[nodiscard]] double of_section(double at) const { return begin + at * (end - begin); }
 };
 
-/// Returns the parts of a valid rod, from the base on. A section with disks is divided into its pieces if
-/// StrainModes::by_piece is set and each bend has at least 3 modes, that is, if its curvature can follow the
-/// chords (docs/mechanics.md). Of very many pieces, several are in one part.
+/// Returns the parts of a valid rod, from the base on. A section with 1 to 11 pieces between disks is divided
+/// into them if StrainModes::by_piece is set and each bend has at least 3 modes, so that its curvature can
+/// follow the chords (docs/mechanics.md). With more pieces the modes of the whole section suffice.
 [[nodiscard]] std::vector<RodPart> parts_of(const Rod& rod);
 
 }  // namespace flexura

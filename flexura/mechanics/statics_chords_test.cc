@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdio>
 #include <optional>
 #include <vector>
 
@@ -41,7 +42,7 @@ TEST(StaticsChords, AgreeWithShootingFromDiskToDisk) {
     const DiskRobot robot = random_disk_robot(random, 1.5);
     RodStatics statics(robot.rod);
     const Equilibrium at = statics.solve({.tensions = robot.tensions}, robot.loads());
-    if (!at.converged() || at.coarse_section || largest_bend(statics.chain()) > 2.1) return;
+    if (!at.converged() || at.coarse_section || largest_section_bend(statics.chain()) > 2.1) return;
     const std::optional<Pose> tip = ChordRod(robot.rod, robot.tensions, robot.force).tip(4);
     if (!tip) return;
     ++compared;

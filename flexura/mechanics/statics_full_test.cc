@@ -91,7 +91,7 @@ TEST(StaticsReference, HundredsOfRobotsWithDisksFromACold) {
     const Equilibrium at = statics.solve({.tensions = robot.tensions}, robot.loads());
     EXPECT_NE(at.end, StaticsEnd::out_of_steps);
     meeting += at.end == StaticsEnd::disks_meet ? 1 : 0;
-    if (!at.converged() || largest_bend(statics.chain()) > 2.1) return;
+    if (!at.converged() || largest_section_bend(statics.chain()) > 2.1) return;
     if (at.coarse_section) {
       ++coarse;
       return;

@@ -55,7 +55,7 @@ inline DiskRobot random_disk_robot(TestRandom& random, double most_bend) {
 }
 
 /// Returns the largest angle between a section's ends, rad, of a placed rod.
-inline double largest_bend(const RodChain& chain) {
+inline double largest_section_bend(const RodChain& chain) {
   double most = 0;
   Eigen::Vector3d z = Eigen::Vector3d::UnitZ();
   for (std::size_t i = 0; i < chain.rod().sections.size(); ++i) {

@@ -264,8 +264,8 @@ void shape_of_rod(benchmark::State& state) {
     section.bend_profile.emplace(arcs, 1.0);
     section.material = MaterialConfig{.youngs_modulus = 2.5e6,
                                       .poisson = 0.49,
-                                      .radius = std::array{0.015, 0.015},
                                       .density = 1070,
+                                      .radius = std::array{0.015, 0.015},
                                       .modes = {.shear = 0, .stretch = 1, .bend = 2, .twist = 1}};
     for (int t = 0; t < 3; ++t)
       arm.tendon.push_back({.section = static_cast<int>(i) + 1,

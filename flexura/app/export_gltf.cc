@@ -129,6 +129,7 @@ class ArmMotion {
     }
     const Backbone backbone = model_.backbone(state_at(time));
     std::vector<Pose> poses;
+    poses.reserve(joints_.size());
     for (const Joint& joint : joints_) poses.push_back(backbone.pose(backbone.s_at_rest(joint.s_rest)));
     return poses;
   }

@@ -102,14 +102,14 @@ IdentifiedValue damping_of(const Identification& found, Index stiffness, Index d
 Rod identified_rod(Rod rod, const IdentifiedArm& found) {
   for (const IdentifiedValue& value : found.values) {
     if (!value.is_determined || !value.is_physical) continue;
-    if (value.name == "friction")
+    if (value.name == "friction") {
       for (TendonRoute& tendon : rod.tendons) tendon.friction = value.value;
+      continue;
+    }
     for (std::size_t i = 0; i < rod.sections.size(); ++i) {
       if (value.section && *value.section != i + 1) continue;
       RodSection& section = rod.sections[i];
-      if (value.name == "friction") {
-        break;
-      } else if (value.name == "damping_time") {
+      if (value.name == "damping_time") {
         section.damping_time = value.value;
       } else if (value.name == "mass_factor") {
         section.density *= value.value;

@@ -38,9 +38,9 @@ TEST(Measure, RefusesWhatCountsForNothing) {
   for (const char* what : {"circle", "etalon"}) {
     arguments.what = what;
     arguments.base = {1, 2};
-    EXPECT_THAT(refusal(), HasSubstr("--base: counts for nothing"));
+    EXPECT_THAT(refusal(), HasSubstr("--base: has no effect with --what"));
     arguments.base.clear(), arguments.camera = "x.toml";
-    EXPECT_THAT(refusal(), HasSubstr("--camera: counts for nothing"));
+    EXPECT_THAT(refusal(), HasSubstr("--camera: has no effect with --what"));
     arguments.camera.clear();
   }
   arguments.what = "arm";

@@ -265,7 +265,7 @@ TEST(AnswerStatics, AnswersABadLineWithItsError) {
       {R"({"gravity":[1,2,-1e300]})", "gravity[2] = -1e+300: expected a number from"},
       {R"({"at":[0.41]})", "at[0]: 0.41 is beyond the tip: expected at most 0.4 m"},
       {R"({"at":[-1]})", "at[0] = -1: expected a number at least 0 m"},
-      {R"({"target":{}})", "target: asks for nothing: expected tip, direction, rotation or shape"},
+      {R"({"target":{}})", "target: is empty: expected tip, direction, rotation or shape"},
       {R"({"target":[1,2,3]})", "expected a table"},
       {R"({"target":{"tip":[1,2]}})", "target.tip is an array of 2: expected an array of 3"},
       {R"({"target":{"tip":[1,2,1e300]}})", "target.tip[2] = 1e+300: expected a number from"},

@@ -36,7 +36,8 @@ class StoppedProgram : public Program {
     std::ofstream(path("long.toml")) << text;
     const pid_t child = start("run long.toml --out long", path("out"));
     const std::filesystem::path log = path("long/log.mcap");
-    for (int i = 0; i < 3000; ++i) {
+    // The limit only ends a run that hangs: sanitizers on a busy machine are slow.
+    for (int i = 0; i < 60'000; ++i) {
       if (std::filesystem::exists(log) && std::filesystem::file_size(log) > size) return child;
       std::this_thread::sleep_for(std::chrono::milliseconds(10));
     }
@@ -101,7 +102,7 @@ TEST_F(StoppedProgram, MakesNoFilmBeforeItEnds) {
   const pid_t child = running(
       "[record]\ncameras = true\n[[arm.section]]\nlength = 1\n[[task]]\n"
       "kind = 'hold'\nduration = 3000\n",
-      1'500'000);
+      100'000);
   kill(child, SIGTERM);
   EXPECT_EQ(wait(child).status, 128 + SIGTERM);
   EXPECT_THAT(summary(), HasSubstr("\"outcome\": \"cancelled\""));
@@ -128,7 +129,7 @@ TEST_F(StoppedProgram, StopsInTheCheckBeforeTheRun) {
   EXPECT_EQ(ended.status, 128 + SIGTERM);
   EXPECT_EQ(ended.err, "cancelled: it was stopped at 0 s\n");
   EXPECT_THAT(summary(), HasSubstr("\"outcome\": \"cancelled\""));
-  EXPECT_THAT(summary(), HasSubstr("cancelled: not all of it is checked"));
+  EXPECT_THAT(summary(), HasSubstr("cancelled: the motion is not completely checked"));
   EXPECT_FALSE(McapReader(path("long/log.mcap")).truncated());
   EXPECT_FALSE(std::filesystem::exists(path("long/commands.csv")));
 }
@@ -149,7 +150,7 @@ TEST_F(StoppedProgram, StopsACheck) {
 
 // The first signal is pending while the run is stopped; the second one does not wait for it.
 TEST_F(StoppedProgram, EndsAtOnceWhenItIsToldAgain) {
-  const pid_t child = running(endless, 1'500'000);
+  const pid_t child = running(endless, 100'000);
   kill(child, SIGSTOP);
   kill(child, SIGTERM);
   kill(child, SIGCONT);

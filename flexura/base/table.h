@@ -44,7 +44,7 @@ inline constexpr ValueCodec codec_of = {
     [](const void* value) { return Codec<T>::write(*static_cast<const T*>(value)); },
     [] { return Codec<T>::type(); }};
 
-/// The part of Table<S> that does not depend on S, compiled once. Parameters `value` are addresses of an S.
+/// The part of `Table` that does not depend on S, compiled once. Parameters `value` are addresses of an S.
 class AnyTable {
  public:
   [[nodiscard]] const TableInfo& info() const { return info_; }

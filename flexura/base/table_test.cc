@@ -297,7 +297,7 @@ TEST(SetAtPath, ChangesEntriesAndMakesTables) {
   EXPECT_EQ(set_at_path(root, "wheel.x", {2.5, {}}),
             "\"x\" names an entry of an array: expected its index, counted from 0");
   EXPECT_EQ(set_at_path(root, "wheel.0.radius.x", {2.5, {}}), "nothing named \"x\" inside 3.5");
-  EXPECT_THAT(set_at_path(root, "wheel..radius", {2.5, {}}), HasSubstr("is no path"));
+  EXPECT_THAT(set_at_path(root, "wheel..radius", {2.5, {}}), HasSubstr("is not a path"));
 }
 
 TEST(Merge, LaysTablesUponTablesAndReplacesTheRest) {

@@ -15,6 +15,8 @@ namespace flexura {
 namespace {
 
 constexpr int places_an_arc = 3;  // Of the error along the arm.
+// Typical distance along the arm by a section's bend, share of the length per radian.
+constexpr double gain = 1.0 / 3;
 
 Eigen::VectorXd packed(const ArmVariables& variables, const ArmState& state) {
   Eigen::VectorXd x(variables.size());
@@ -48,9 +50,7 @@ PredictiveLaw::PredictiveLaw(const Arm& driven, const Arm& shaped, const Predict
     const ArmVariables::Part& part = variables_.parts()[i];
     discs_.push_back({part.at, part.is_spatial ? 2 : 1, section.max_bend, section.max_bend_rate});
   }
-  // A double integrator with the cost |g x|^2 + rho |x''|^2 is closed at the rate (g^2 / rho)^(1/4), with g
-  // about a third of the length per radian.
-  constexpr double gain = 1.0 / 3;
+  // A double integrator with the cost |g x|^2 + rho |x''|^2 is closed at the rate (g^2 / rho)^(1/4).
   effort_ = gain * gain / std::pow(config.rate, 4);
 }
 
@@ -58,7 +58,8 @@ PredictiveLaw::PredictiveLaw(const Arm& driven, const Arm& shaped, const Predict
 void PredictiveLaw::find_metric(const ArmState& shape) {
   const BackboneJacobian jacobian(shaped_, shape);
   const auto arcs = static_cast<Eigen::Index>(shaped_.sections.size());
-  metric_.resize(3 * places_an_arc * arcs, 3 * arcs);
+  constexpr Eigen::Index rows_an_arc = 3 * Eigen::Index{places_an_arc} + 2;
+  metric_.setZero(rows_an_arc * arcs, 3 * arcs);
   Jacobian J(6, 3 * arcs);
   double total = 0;
   for (const Section& section : shaped_.sections) total += section.length;
@@ -70,6 +71,12 @@ void PredictiveLaw::find_metric(const ArmState& shape) {
       metric_.middleRows<3>(row) = weight * J.topRows<3>();
     }
   }
+  // Some bends hardly move the arm. The bends themselves count too, so that all errors decay at about one
+  // rate: those of an arc as much as if it turned all of its section by the typical gain.
+  const double share =
+      static_cast<double>(shaped_.sections.size()) / static_cast<double>(driven_.sections.size());
+  for (Eigen::Index arc = 0; arc < arcs; ++arc, row += 2)
+    metric_.block<2, 2>(row, 3 * arc).diagonal().setConstant(gain * std::sqrt(share));
 }
 
 // Linear prediction of the weighted errors: without changes of the rate, and by changes.
@@ -96,7 +103,7 @@ void PredictiveLaw::predict(const PredictiveState& now, const Eigen::MatrixXd& b
     all_kicks.row(j) = mode.kick.transpose();
     shapes.col(j) = mode.shape;
     motion.push_back(
-        oscillation(now.frequency_factor * mode.frequency, now.frequency_factor * mode.damping, T));
+        oscillation(now.frequency_factors[j] * mode.frequency, now.frequency_factors[j] * mode.damping, T));
   }
   take(all_kicks, kicks);
   const Eigen::MatrixXd of_command = metric_ * by_variables, of_swing = metric_ * shapes;
@@ -133,6 +140,12 @@ void PredictiveLaw::predict(const PredictiveState& now, const Eigen::MatrixXd& b
     }
     free_.segment(k * rows, rows) = metric_ * e + of_swing * free_z;
   }
+
+  // At the end of the horizon: where the arm comes to rest if its rate decays.
+  const double decay = 1 / config_.rate, weight = std::sqrt(decay / T);
+  free_end_ = weight * (metric_ * (e + decay * way));
+  end_.assign(static_cast<std::size_t>(horizon), weight * of_command);
+  for (int i = 0; i < horizon; ++i) end_[static_cast<std::size_t>(i)] *= T * (horizon - i) + decay;
 }
 
 // Minimises the cost within the limits. Scaled by the alternating direction method: x are the changes, and
@@ -145,17 +158,24 @@ void PredictiveLaw::solve(const Eigen::VectorXd& sent, const Eigen::VectorXd& ra
   H_.setZero(size, size);
   gradient_.setZero(size);
   // Products of answers: entry (i, j) sums over the steps k after both changes.
-  for (int lag = 0; lag < horizon; ++lag) {
+  for (std::size_t lag = 0; lag < answer_.size(); ++lag) {
     Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(n, n);
-    for (int i = horizon - 1 - lag, m = 0; i >= 0; --i, ++m) {
+    for (std::size_t m = 0; m + lag < answer_.size(); ++m) {
       // The change at step i acts m + lag steps later when that at step i + lag acts m steps later.
-      sum.noalias() +=
-          answer_[static_cast<std::size_t>(m + lag)].transpose() * answer_[static_cast<std::size_t>(m)];
-      H_.block(i * n, (i + lag) * n, n, n) = T * sum;
-      if (lag > 0) H_.block((i + lag) * n, i * n, n, n) = T * sum.transpose();
+      sum.noalias() += answer_[m + lag].transpose() * answer_[m];
+      const Eigen::Index i = horizon - 1 - static_cast<Eigen::Index>(lag + m),
+                         j = i + static_cast<Eigen::Index>(lag);
+      H_.block(i * n, j * n, n, n) = T * sum;
+      if (lag > 0) H_.block(j * n, i * n, n, n) = T * sum.transpose();
     }
   }
+  for (int i = 0; i < horizon; ++i)
+    for (int j = 0; j < horizon; ++j)
+      H_.block(i * n, j * n, n, n).noalias() +=
+          T * end_[static_cast<std::size_t>(i)].transpose() * end_[static_cast<std::size_t>(j)];
   H_.diagonal().array() += effort_ / T;
+  for (int i = 0; i < horizon; ++i)
+    gradient_.segment(i * n, n).noalias() += T * end_[static_cast<std::size_t>(i)].transpose() * free_end_;
   for (int i = 0; i < horizon; ++i)
     for (int k = i; k < horizon; ++k)
       gradient_.segment(i * n, n).noalias() +=
@@ -193,19 +213,19 @@ void PredictiveLaw::solve(const Eigen::VectorXd& sent, const Eigen::VectorXd& ra
   if (project(w_in, u_in)) return;
 
   // rates = w0 + B x with B lower triangular of ones; commands = u0 + T C x with C the ramps.
-  Eigen::MatrixXd BtB = Eigen::MatrixXd::Zero(horizon, horizon), CtC = BtB;
+  Eigen::MatrixXd of_rates = Eigen::MatrixXd::Zero(horizon, horizon), of_ramps = of_rates;
   for (int i = 0; i < horizon; ++i)
     for (int j = 0; j < horizon; ++j)
       for (int k = std::max(i, j); k < horizon; ++k)
-        BtB(i, j) += 1, CtC(i, j) += static_cast<double>((k - i + 1) * (k - j + 1));
+        of_rates(i, j) += 1, of_ramps(i, j) += static_cast<double>((k - i + 1) * (k - j + 1));
   const double typical = H_.diagonal().mean();
-  const double weight_w = typical / BtB.diagonal().mean(),
-               weight_u = typical / (T * T * CtC.diagonal().mean());
+  const double weight_w = typical / of_rates.diagonal().mean(),
+               weight_u = typical / (T * T * of_ramps.diagonal().mean());
   Eigen::MatrixXd system = H_;
   for (int i = 0; i < horizon; ++i)
     for (int j = 0; j < horizon; ++j)
       system.block(i * n, j * n, n, n).diagonal().array() +=
-          weight_w * BtB(i, j) + weight_u * T * T * CtC(i, j);
+          weight_w * of_rates(i, j) + weight_u * T * T * of_ramps(i, j);
   const Cholesky factored(system);
   Eigen::VectorXd w0(size), u0(size), dual_w = Eigen::VectorXd::Zero(size), dual_u = dual_w, right(size);
   rates_of(Eigen::VectorXd::Zero(size), w0, u0);
@@ -233,8 +253,16 @@ ArmState PredictiveLaw::step(const PredictiveState& now, const Eigen::MatrixXd& 
   predict(now, by_command);
   const Eigen::VectorXd sent = packed(variables_, now.sent), rate = packed(variables_, now.rate);
   solve(sent, rate);
+  // The solver stops near the limits; the next command keeps them exactly.
+  Eigen::VectorXd first = rate + changes_.head(variables_.size());
+  const auto keep = [](auto&& part, double most) {
+    if (const double norm = part.norm(); norm > most) part *= most / norm;
+  };
+  for (const Disc& disc : discs_) keep(first.segment(disc.at, disc.size), disc.rate);
+  Eigen::VectorXd command = sent + config_.step * first;
+  for (const Disc& disc : discs_) keep(command.segment(disc.at, disc.size), disc.bend);
   ArmState next = now.sent;
-  variables_.state(sent + config_.step * (rate + changes_.head(variables_.size())), next);
+  variables_.state(command, next);
   return next;
 }
 

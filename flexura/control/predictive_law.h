@@ -27,9 +27,9 @@ struct PredictiveState {
   ArmState desired;  ///< Target shape now.
   /// Change of the target shape in each later step; shorter lists end at the last target.
   std::vector<ArmState> desired_later = {};
-  std::vector<SwingMode> modes = {};  ///< Of the arm's swing; empty: it does not swing.
-  Eigen::VectorXd swing = {};         ///< z of all modes, then z'.
-  double frequency_factor = 1;        ///< On the frequencies of the modes.
+  std::vector<SwingMode> modes = {};       ///< Of the arm's swing; empty: it does not swing.
+  Eigen::VectorXd swing = {};              ///< z of all modes, then z'.
+  Eigen::VectorXd frequency_factors = {};  ///< On the frequencies of the modes.
 };
 
 /// Model predictive control of an arm's shape (docs/control.md, "Predictive law"). It chooses the changes a_k
@@ -63,12 +63,13 @@ class PredictiveLaw {
   Arm driven_, shaped_;
   PredictiveLawConfig config_;
   ArmVariables variables_;
-  Eigen::VectorXd lowest_, highest_;  // Of variables that are not in a disc: stretches.
   std::vector<Disc> discs_;
   double effort_ = 0;                    // rho
   Eigen::MatrixXd metric_;               // Rows whose square sum is |e|^2, by (bend_x, bend_y) of the arcs.
   std::vector<Eigen::MatrixXd> answer_;  // Weighted error, m steps after a change of rate.
-  Eigen::VectorXd free_, changes_;       // Weighted errors without changes; the changes found.
+  std::vector<Eigen::MatrixXd> end_;     // Weighted error at the end, by the change of each step.
+  Eigen::VectorXd free_, free_end_;      // Weighted errors without changes.
+  Eigen::VectorXd changes_;              // The changes found.
   Eigen::MatrixXd H_;
   Eigen::VectorXd gradient_;
 };

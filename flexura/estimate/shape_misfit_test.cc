@@ -97,7 +97,9 @@ TEST(ShapeMisfit, IsToldWhereThePictureShowsSomethingElse) {
     const ShapeEstimate beside = estimator.estimate(seen.observations);
     ASSERT_TRUE(beside.is_found);
     EXPECT_FALSE(beside.is_trusted());
-    const auto is_reported = [](const std::string& note) { return note.starts_with("picture 2 is not all"); };
+    const auto is_reported = [](const std::string& note) {
+      return note.starts_with("parts of the foreground of picture 2 do not agree");
+    };
     EXPECT_TRUE(std::ranges::any_of(beside.notes, is_reported));
     EXPECT_LT(shape_error(beside.shape, Backbone(seen.truth.arm, seen.truth.state)), 1e-3);
   });

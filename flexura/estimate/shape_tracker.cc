@@ -23,12 +23,13 @@ void ShapeTracker::go_on(std::span<const Observation> observations, double time,
   ShapePrediction& prediction = *prediction_;
   const double since = std::isfinite(time - time_) ? std::max(0.0, time - time_) : 0.0;
   auto variances = prediction.covariance.diagonal();
+  const double process_noise = path.modes.empty() ? config_.process_noise : config_.swinging_noise;
   const Eigen::Index bends = variables_.bends_a_section();
   for (std::size_t i = 0; i < expected.bends.size(); ++i) {
     const double went = (expected.bends[i] - prediction.mean.state.bends[i]).norm();
     const double motion_noise = config_.motion_noise * went;
     variances.segment(static_cast<Eigen::Index>(i) * bends, bends).array() +=
-        config_.process_noise * config_.process_noise * since + motion_noise * motion_noise;
+        process_noise * process_noise * since + motion_noise * motion_noise;
   }
   // Variables without a prior stay fixed.
   const ShapeVariables variables(prior_, observations);

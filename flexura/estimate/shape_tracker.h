@@ -14,6 +14,9 @@ namespace flexura {
 /// Process noise of an arm and of the cameras' views: standard deviations.
 struct TrackerConfig {
   double process_noise = 0.005;  ///< Process noise of each bend, rad per root second.
+  /// The same for an arm that swings. It is larger, since an error of the equilibrium must not pass for
+  /// swing.
+  double swinging_noise = 0.03;
   double motion_noise =
       0.1;  ///< Motion-proportional noise of each bend, as a share of the predicted change of its section.
   double turn_noise = 1e-4;   ///< Process noise of a view's rotation error, rad per root second.

@@ -10,18 +10,19 @@
 namespace flexura {
 namespace {
 
-// Bounds of the logarithm of the factor on the frequencies.
+// Bounds of the logarithms of the factors on the frequencies.
 constexpr double most_detuned = 0.7;
+constexpr double least_part = 1e-12;
 
 // Returns the motion over a path from `start`.
 Eigen::VectorXd moved(const std::vector<SwingMode>& modes, const SwingPath& path,
                       const Eigen::VectorXd& start) {
   const auto count = static_cast<Eigen::Index>(modes.size());
   Eigen::VectorXd x = start;
-  const double factor = std::exp(x[2 * count]);
   for (const SwingPath::Part& part : path.parts) {
     for (Eigen::Index j = 0; j < count; ++j) {
       const SwingMode& mode = modes[static_cast<std::size_t>(j)];
+      const double factor = std::exp(x[2 * count + j]);
       // Stiffness damps in proportion to the frequency.
       const Eigen::Matrix2d F = oscillation(factor * mode.frequency, factor * mode.damping, part.duration);
       const Eigen::Vector2d after = F * Eigen::Vector2d(x[j], x[count + j] + part.kicks[j]);
@@ -59,23 +60,31 @@ void SwingFilter::forget() {
   cross_.resize(0, 0);
 }
 
-double SwingFilter::frequency_factor() const { return is_tracked() ? std::exp(mean_[mean_.size() - 1]) : 1; }
+Eigen::VectorXd SwingFilter::frequency_factors() const {
+  return mean_.tail(static_cast<Eigen::Index>(modes_.size())).array().exp();
+}
 
 Eigen::VectorXd SwingFilter::predict(const SwingPath& path, Eigen::Index bends, Eigen::MatrixXd& covariance) {
-  const auto count = static_cast<Eigen::Index>(path.modes.size()), of_factor = 2 * count;
+  const auto count = static_cast<Eigen::Index>(path.modes.size()), unknowns = 3 * count;
   if (path.modes.size() != modes_.size() || cross_.rows() != covariance.rows()) {
     forget();
     if (count == 0) return {};
-    mean_ = Eigen::VectorXd::Zero(of_factor + 1);
-    covariance_ = Eigen::MatrixXd::Zero(of_factor + 1, of_factor + 1);
-    covariance_(of_factor, of_factor) = config_.frequency_error * config_.frequency_error;
-    cross_ = Eigen::MatrixXd::Zero(covariance.rows(), of_factor + 1);
+    mean_ = Eigen::VectorXd::Zero(unknowns);
+    covariance_ = Eigen::MatrixXd::Zero(unknowns, unknowns);
+    auto of_factors = covariance_.bottomRightCorner(count, count);
+    of_factors.setConstant(config_.frequency_error * config_.frequency_error);
+    of_factors.diagonal().array() += config_.mode_frequency_error * config_.mode_frequency_error;
+    cross_ = Eigen::MatrixXd::Zero(covariance.rows(), unknowns);
   } else {
-    // The modes of another shape are others: z and z' go to those that change the arm alike.
+    // The modes of another shape are others: z and z' go to those that change the arm alike, and so do the
+    // factors.
     const Eigen::MatrixXd turn = pseudo_inverse(shapes_of(path.modes)) * shapes_of(modes_);
-    Eigen::MatrixXd T = Eigen::MatrixXd::Identity(mean_.size(), mean_.size());
+    Eigen::MatrixXd parts = turn.array().square();
+    for (Eigen::Index j = 0; j < count; ++j) parts.row(j) /= std::max(parts.row(j).sum(), least_part);
+    Eigen::MatrixXd T = Eigen::MatrixXd::Zero(unknowns, unknowns);
     T.topLeftCorner(count, count) = turn;
     T.block(count, count, count, count) = turn;
+    T.bottomRightCorner(count, count) = parts;
     mean_ = (T * mean_).eval();
     covariance_ = (T * covariance_ * T.transpose()).eval();
     cross_ = (cross_ * T.transpose()).eval();
@@ -89,7 +98,7 @@ Eigen::VectorXd SwingFilter::predict(const SwingPath& path, Eigen::Index bends, 
       variance += config_.kick_error * config_.kick_error * part.kicks[j] * part.kicks[j];
     covariance_(count + j, count + j) += variance;
   }
-  covariance_(of_factor, of_factor) += config_.frequency_noise * config_.frequency_noise * time;
+  covariance_.diagonal().tail(count).array() += config_.frequency_noise * config_.frequency_noise * time;
 
   const Eigen::MatrixXd F = motion_slopes(modes_, path, mean_), shapes = shapes_of(modes_);
   const Eigen::VectorXd after = moved(modes_, path, mean_);
@@ -118,8 +127,8 @@ void SwingFilter::update(const Eigen::VectorXd& innovation, const Eigen::MatrixX
     return;
   }
   mean_ += gain * innovation;
-  double& detuned = mean_[mean_.size() - 1];
-  detuned = std::clamp(detuned, -most_detuned, most_detuned);
+  const auto count = static_cast<Eigen::Index>(modes_.size());
+  mean_.tail(count) = mean_.tail(count).cwiseMax(-most_detuned).cwiseMin(most_detuned).eval();
   if (is_update)
     covariance_ -= gain * (predicted - estimated) * gain.transpose();
   else

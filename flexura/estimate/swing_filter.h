@@ -23,19 +23,21 @@ struct SwingPath {
 
 /// Standard deviations of the swing's model.
 struct SwingFilterConfig {
-  double kick_error = 0.3;        ///< Error of a kick, share of it.
-  double force_noise = 0.2;       ///< Process noise of each mode's rate, rad/s per root second.
-  double frequency_error = 0.2;   ///< Initial error of the logarithm of the frequencies, common to all modes.
-  double frequency_noise = 0.02;  ///< Process noise of it, per root second.
+  double kick_error = 0.3;             ///< Error of a kick, share of it.
+  double force_noise = 0.1;            ///< Process noise of each mode's rate, rad/s per root second.
+  double frequency_error = 0.2;        ///< Initial error of the logarithms of all frequencies, in common.
+  double mode_frequency_error = 0.15;  ///< Initial error of each mode's in addition.
+  double frequency_noise = 0.02;       ///< Process noise of these logarithms, per root second.
 };
 
-/// Swing of an arm about its equilibrium: estimates the modes' coordinates z, their rates z', and a common
-/// factor on their frequencies, which depends on the true stiffness and on masses that the model lacks
-/// (docs/estimation.md, "An arm that swings"). An extended Kalman filter on (z, z', logarithm of the factor).
-/// It is a part of a larger one, whose other unknowns begin with the bends of the arm's shape, swing
-/// included.
+/// Swing of an arm about its equilibrium: estimates the modes' coordinates z, their rates z', and a factor on
+/// each frequency, which depends on the true stiffness and on masses that the model lacks
+/// (docs/estimation.md, "An arm that swings"). An extended Kalman filter on (z, z', logarithms of the
+/// factors). It is a part of a larger one, whose other unknowns begin with the bends of the arm's shape,
+/// swing included.
 class SwingFilter {
  public:
+  /// Starts at rest, not tracked.
   explicit SwingFilter(const SwingFilterConfig& config = {}) : config_(config) {}
 
   /// Forgets the swing: the arm is at rest, as far as known.
@@ -60,14 +62,14 @@ class SwingFilter {
   [[nodiscard]] Eigen::VectorXd after(const SwingPath& path) const;
   /// Returns the modes that the swing is made of.
   [[nodiscard]] const std::vector<SwingMode>& modes() const { return modes_; }
-  /// Returns the factor on the modes' frequencies.
-  [[nodiscard]] double frequency_factor() const;
+  /// Returns the factors on the modes' frequencies.
+  [[nodiscard]] Eigen::VectorXd frequency_factors() const;
   [[nodiscard]] const Eigen::MatrixXd& covariance() const { return covariance_; }
 
  private:
   SwingFilterConfig config_;
   std::vector<SwingMode> modes_;
-  Eigen::VectorXd mean_;        // z, z', logarithm of the factor on all frequencies.
+  Eigen::VectorXd mean_;        // z, z', logarithms of the factors on the frequencies.
   Eigen::MatrixXd covariance_;  // Of mean_.
   Eigen::MatrixXd cross_;       // Of the other unknowns (rows) with mean_ (columns).
 };

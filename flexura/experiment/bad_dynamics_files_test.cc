@@ -43,7 +43,7 @@ TEST(BadDynamics, EachIsOneClearLineAtItsPlace) {
            Bad{"target.bends = [[0, 0], [0, -2], [0, 0]]\n", "leads through an elevation of 90 deg"},
            Bad{"target.bends = [[0, 2000], [0, 0], [0, 0]]\n",
                "expected a number from -1000 rad to 1000 rad"},
-           Bad{"target.stretches = [1, 1.1, 1]\n", "target.stretches: is for variable_lengths = true"},
+           Bad{"target.stretches = [1, 1.1, 1]\n", "target.stretches: requires variable_lengths = true"},
            Bad{"target.positions = [0, 0, 1]\n", "unknown key"},
            Bad{bent_target + "density = 0\n", "expected a number from 1e-06 to"},
            Bad{bent_target + "density = nan\n", "task[0].density = nan"},

@@ -100,13 +100,13 @@ TEST(EtalonLoop, RefusesKeysThatCountForNothing) {
       problems_of(etalon_rig("method = \"etalon\"\nzooms = [1, 2]\n"
                              "loop = { turn_deg = 1, slide = 0.1, zoom_step = 0.1, arc_deg = 100 }\n",
                              rig)),
-      ::testing::ElementsAre("task[0].loop.turn: counts with etalon-paper alone: expected no such key",
-                             "task[0].loop.slide: counts with etalon-paper alone: expected no such key",
-                             "task[0].loop.zoom_step: counts with etalon-paper alone: expected no such key",
-                             "task[0].loop.arc: counts with arcs and arcs-paper alone: expected no such key",
-                             "task[0].zooms: counts with bundle alone: expected no such key"));
+      ::testing::ElementsAre("task[0].loop.turn: applies only to etalon-paper: expected no such key",
+                             "task[0].loop.slide: applies only to etalon-paper: expected no such key",
+                             "task[0].loop.zoom_step: applies only to etalon-paper: expected no such key",
+                             "task[0].loop.arc: applies only to arcs and arcs-paper: expected no such key",
+                             "task[0].zooms: applies only to bundle: expected no such key"));
   const LoopRig arcs = arcs_cameras({WrongStart{}, WrongStart{}});
-  const std::string count = ": counts with bundle and bundle-etalon alone: expected no such key";
+  const std::string count = ": applies only to bundle and bundle-etalon: expected no such key";
   EXPECT_THAT(
       problems_of(arcs_rig(
           "method = \"arcs\"\ncamera_prior = { focal_std = 0.2, principal_point_std = 3, zero_std = 0.1, "

@@ -212,8 +212,9 @@ TEST_F(Dynamics, CannotStartWhereAnAngleIsNone) {
       run("[arm]\nkind = \"spatial\"\ninitial.bends = [[0, -2]]\n[[arm.section]]\nlength = 1\n" +
           dynamics_task("target.bends = [[0.3, 0]]\n"));
   EXPECT_EQ(result.outcome, RunOutcome::failed);
-  EXPECT_THAT(result.reasons,
-              ElementsAre("dynamics: it starts with an elevation of 90 deg, where the azimuth is undefined"));
+  EXPECT_THAT(
+      result.reasons,
+      ElementsAre("dynamics: the arm starts with an elevation of 90 deg, where the azimuth is undefined"));
   EXPECT_EQ(number(result.summary, "duration"), 0);
 }
 

@@ -360,7 +360,7 @@ TEST(Overrides, ChangeValuesUnderTheSameChecks) {
               HasSubstr("entry 1 cannot be set because the array does not exist"));
   EXPECT_THAT(error("arm.section.0.lenght=1"), HasSubstr("did you mean \"length\"?"));
   EXPECT_THAT(error("arm.section.0.length"), HasSubstr("expected path=value"));
-  EXPECT_THAT(error("=1"), HasSubstr("is no path"));
+  EXPECT_THAT(error("=1"), HasSubstr("is not a path"));
   EXPECT_THAT(error("seed=2\nx=1"), HasSubstr("--set seed=2: expected one value on one line"));
 }
 

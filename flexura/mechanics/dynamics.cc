@@ -219,8 +219,9 @@ void RodDynamics::stretch_rest(std::span<const double> factors, std::span<const 
   const std::size_t count = work_->chain.rod().sections.size();
   if (factors.size() != count || rates.size() != count)
     throw std::invalid_argument("expected a factor on the length of each section, and its rate");
+  constexpr double most_rate = 1e100;  // Energies of larger ones are not finite.
   for (std::size_t i = 0; i < count; ++i)
-    if (!(factors[i] > 0) || !std::isfinite(factors[i]) || !std::isfinite(rates[i]))
+    if (!(factors[i] > 0) || !std::isfinite(factors[i]) || !(std::abs(rates[i]) < most_rate))
       throw std::invalid_argument("expected factors above 0 on the lengths of sections, and finite rates");
   work_->layout.stretch_rest(factors, rates);
 }

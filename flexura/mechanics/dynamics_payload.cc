@@ -35,8 +35,9 @@ RodLayout::Body with_point(const RodLayout::Body& body, double mass, const Eigen
 
 RodState RodDynamics::pick_up(const RodState& state, const RodPayload& payload, const TendonInput& tendons,
                               const RodLoads& loads) {
-  if (!(payload.mass >= 0) || !(payload.mass < 1e100) || !payload.offset.allFinite() ||
-      !payload.velocity.allFinite())
+  constexpr double most = 1e100;  // Inertia and energy of larger numbers are not finite.
+  if (!(payload.mass >= 0) || !(payload.mass < most) || !(payload.offset.norm() < most) ||
+      !(payload.velocity.norm() < most))
     throw std::invalid_argument("a payload must have a mass of at least 0 and finite numbers");
   Work& work = *work_;
   if (state.q.size() != work.chain.size() || !state.q.allFinite() || !state.momentum.allFinite())

@@ -6,7 +6,10 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <stdexcept>
+#include <utility>
+#include <vector>
 
 #include "flexura/math/dense.h"
 #include "flexura/mechanics/identification_equations.h"
@@ -20,6 +23,8 @@ constexpr int weightings = 8;
 // Number of linearisations with friction, and their tolerance as part of a standard deviation.
 constexpr int linearizations = 12;
 constexpr double settled = 0.01, settled_at_all = 1e-6;
+// Friction coefficients to start from where that of the rod leads to none.
+constexpr std::array<double, 2> other_friction = {0.1, 0.3};
 // Ridge for rounding, relative to the variances of correlated equations.
 constexpr double ridge = 1e-9;
 // Largest part of a coefficient that may be noise before its parameter counts as unobservable.
@@ -163,33 +168,87 @@ Identification solve(const IdentificationEquations& equations, const std::vector
   return result;
 }
 
-}  // namespace
+bool is_friction(const RodParameter& parameter) { return parameter.kind == RodParameter::Kind::friction; }
 
-Identification identify(const Rod& rod, const std::vector<RodParameter>& parameters,
-                        const RodMotionRecord& record, const IdentificationConfig& config) {
-  const auto rubs = [](const RodParameter& each) { return each.kind == RodParameter::Kind::friction; };
-  const IdentificationEquations first(rod, parameters, record, config);
-  Identification found = solve(first, parameters);
-  if (std::ranges::none_of(parameters, rubs)) return found;
-  const VectorXd nominal = first.nominal;
-  found.converged = false;
+// Repeats the least squares, linearised at the last friction, until the friction settles. `values`: the
+// start.
+Identification settle(const Rod& rod, const std::vector<RodParameter>& parameters,
+                      const RodMotionRecord& record, const IdentificationConfig& config,
+                      const VectorXd& values) {
+  Identification found;
+  found.values = values, found.converged = false;
   for (int pass = 0; pass < linearizations && !found.converged; ++pass) {
     const VectorXd before = found.values;
     found = solve(IdentificationEquations(with_friction(rod, parameters, before), parameters, record, config),
                   parameters);
     found.converged = true;
     for (std::size_t g = 0; g < parameters.size(); ++g) {
-      if (!rubs(parameters[g])) continue;
+      if (!is_friction(parameters[g]) || found.is_observable[g] == 0) continue;
       const auto at = static_cast<Index>(g);
-      if (found.is_observable[g] == 0) {
-        found.values[at] = nominal[at];
-        continue;
-      }
       const double change = std::abs(found.values[at] - before[at]);
       if (!(change <= std::max(settled * found.sigma[at], settled_at_all))) found.converged = false;
     }
   }
   return found;
+}
+
+// Returns whether all friction coefficients are observable.
+bool has_friction(const Identification& found, const std::vector<RodParameter>& parameters) {
+  for (std::size_t g = 0; g < parameters.size(); ++g)
+    if (is_friction(parameters[g]) && found.is_observable[g] == 0) return false;
+  return true;
+}
+
+// Identifies all parameters but friction, which keeps the rod's value.
+Identification without_friction(const IdentificationEquations& first, const Rod& rod,
+                                const std::vector<RodParameter>& parameters, const RodMotionRecord& record,
+                                const IdentificationConfig& config) {
+  std::vector<RodParameter> rest;
+  std::vector<Index> places;
+  for (std::size_t g = 0; g < parameters.size(); ++g) {
+    if (is_friction(parameters[g])) continue;
+    rest.push_back(parameters[g]), places.push_back(static_cast<Index>(g));
+  }
+  const auto count = static_cast<Index>(parameters.size());
+  Identification result;
+  result.values = first.nominal;
+  result.sigma = VectorXd::Constant(count, std::numeric_limits<double>::infinity());
+  result.covariance = MatrixXd::Zero(count, count);
+  result.is_observable.assign(parameters.size(), 0);
+  result.equations = static_cast<int>(first.fixed.size());
+  if (rest.empty()) return result;
+  const Identification found = solve(IdentificationEquations(rod, rest, record, config), rest);
+  result.values(places) = found.values;
+  result.sigma(places) = found.sigma;
+  result.covariance(places, places) = found.covariance;
+  result.misfit = found.misfit;
+  for (std::size_t i = 0; i < rest.size(); ++i)
+    result.is_observable[static_cast<std::size_t>(places[i])] = found.is_observable[i];
+  return result;
+}
+
+}  // namespace
+
+Identification identify(const Rod& rod, const std::vector<RodParameter>& parameters,
+                        const RodMotionRecord& record, const IdentificationConfig& config) {
+  const IdentificationEquations first(rod, parameters, record, config);
+  if (std::ranges::none_of(parameters, is_friction)) return solve(first, parameters);
+  // Without friction tendons slide at any speed, and noise decides where to: so other starts are needed.
+  std::vector<VectorXd> starts = {first.nominal};
+  for (const double other : other_friction) {
+    VectorXd start = first.nominal;
+    for (std::size_t g = 0; g < parameters.size(); ++g)
+      if (is_friction(parameters[g])) start[static_cast<Index>(g)] = other;
+    starts.push_back(std::move(start));
+  }
+  std::optional<Identification> unsettled;
+  for (const VectorXd& start : starts) {
+    Identification found = settle(rod, parameters, record, config, start);
+    if (!has_friction(found, parameters)) continue;
+    if (found.converged) return found;
+    if (!unsettled) unsettled = std::move(found);
+  }
+  return unsettled ? *std::move(unsettled) : without_friction(first, rod, parameters, record, config);
 }
 
 }  // namespace flexura

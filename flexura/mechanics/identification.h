@@ -75,8 +75,9 @@ struct Identification {
 /// form: M. Shinbrot 1957). So no acceleration is needed. With known noise the equations are weighted by
 /// their covariance, propagated from the record to first order. The bias from noise of q and v in the
 /// coefficients is removed. With friction the equations are linearised at the last values until these
-/// converge (C. F. Gauss, I. Newton). Throws std::invalid_argument for an invalid rod, overlapping or no
-/// parameters, or samples that do not fit.
+/// converge (C. F. Gauss, I. Newton), from the rod's friction first, then from other coefficients. If the
+/// friction is not observable from any of them, it keeps the rod's value. Throws std::invalid_argument for an
+/// invalid rod, overlapping or no parameters, or samples that do not fit.
 [[nodiscard]] Identification identify(const Rod& rod, const std::vector<RodParameter>& parameters,
                                       const RodMotionRecord& record, const IdentificationConfig& config = {});
 

@@ -167,7 +167,9 @@ const Table<ArmConfig>& fields_of(const ArmConfig*) {
                  {.meaning =
                       "Model of the arm. `kinematic`: shapes follow commands exactly. `static`: sections are "
                       "elastic rods in equilibrium with tendons, gravity and loads; each needs a material. "
-                      "`dynamic`: these rods move and swing, but tasks use their equilibrium. Under "
+                      "`dynamic`: these rods move and swing. Tasks use their equilibrium, and servos also "
+                      "their slowest "
+                      "modes. Under "
                       "[truth.arm] only the simulated arm is such a rod; tasks use the model of [arm]."})
           .field("gravity", &ArmConfig::gravity,
                  {.meaning = "Gravity in the world's frame, X, Y, Z: [0, -9.81, 0] where +Y is up. Affects "

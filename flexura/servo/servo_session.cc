@@ -266,7 +266,7 @@ class Session {
         state.desired_later.push_back(goals_->at(since + k * config_.step).state);
     state.modes = observer_.swing().modes();
     state.swing = observer_.swing().after(observer_.path_until(now, state.modes));
-    state.frequency_factor = observer_.swing().frequency_factor();
+    state.frequency_factors = observer_.swing().frequency_factors();
     Eigen::MatrixXd by_command;
     nominal_arm_.actuation().slopes(sent_, by_command);
     return predictive_->step(state, by_command);

@@ -66,9 +66,9 @@ ShapeObserver::ShapeObserver(const RigReader& rig, const RigModel& nominal, cons
       tracker_(prior_, patient_estimator(view_prior_)) {}
 
 bool ShapeObserver::observe(const std::shared_ptr<ServoObservation>& observed, double now) {
-  const SwingPath path = path_until(
-      observed->time,
-      last_ ? nominal_.actuation.swing(rig_.measured(observed->time), swing_modes) : std::vector<SwingMode>());
+  const SwingPath path =
+      path_until(observed->time, last_ ? nominal_.actuation.swing(rig_.measured(observed->time), swing_modes)
+                                       : std::vector<SwingMode>());
   estimate(*observed, predicted(observed->time), path);
   if (!first_) first_ = observed;
   if (!observed->estimate.is_found) return false;

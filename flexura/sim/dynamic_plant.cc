@@ -312,7 +312,7 @@ std::vector<PlantContact> DynamicPlant::contacts(double time) const {
   if (!contact_) return {};
   const Snapshot then = at(time);
   const std::lock_guard lock(mutex_);
-  if (const Answer* kept = answer_at(time); kept && kept->contacts) return *kept->contacts;
+  if (const Answer* kept = answer_at(time); kept != nullptr && kept->contacts) return *kept->contacts;
   carry(then.carried);
   set_lengths(time);
   std::vector<PlantContact> result = found(contact_->find(dynamics_.point_motions(then.state)));

@@ -44,9 +44,8 @@ TEST(ParseToml, ReportsWhatIsNotToml) {
 }
 
 TEST(ParseToml, SaysWhatIsExpectedWhereTheTextEndsOrHoldsAWord) {
-  EXPECT_EQ(toml_error_of("a ="),
-            "x.toml:1:4: the end comes within this key-value pair: expected the rest of it");
-  EXPECT_EQ(toml_error_of("a = [1,"), "x.toml:1:8: the end comes within this array: expected the rest of it");
+  EXPECT_EQ(toml_error_of("a ="), "x.toml:1:4: the file ends within this key-value pair: expected its end");
+  EXPECT_EQ(toml_error_of("a = [1,"), "x.toml:1:8: the file ends within this array: expected its end");
   EXPECT_EQ(toml_error_of("a = b"),
             "x.toml:1:5: no value: expected a number, a text in quotes, true or false, an array or a table");
 }

@@ -251,7 +251,8 @@ void RecordingSession::show_state(const ImageStreams::Key& key, std::int64_t pla
   }
 }
 
-// Tells the client that there is no image, because the previous image has another time. Not acknowledged.
+// Reports to the client that there is no image, because the previous image has another time. Not
+// acknowledged.
 void RecordingSession::send_no_image(const ImageStreams::Key& key, double time) {
   streams().sent(key, no_image, clock_);
   streams().failed(key);

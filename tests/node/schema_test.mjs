@@ -39,7 +39,9 @@ function written(name, text) {
 const paper = join(examples, "01_paper_arm", "experiment.toml");
 const text = readFileSync(paper, "utf8");
 execFileSync(flexura, ["run", paper, "--out", join(work, "results")]);
-const good = readdirSync(examples).map((folder) => join(examples, folder, "experiment.toml"));
+const good = readdirSync(examples, { withFileTypes: true })
+  .filter((entry) => entry.isDirectory())
+  .map((entry) => join(examples, entry.name, "experiment.toml"));
 assert.ok(good.length >= 4);
 good.push(join(work, "results", "experiment.toml"));
 good.push(written("with_others.toml", 'include = ["arm.toml"]\n[[task]]\nkind = "hold"\nduration = 1\n'));

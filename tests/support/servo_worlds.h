@@ -30,7 +30,7 @@ struct SwingingWorld {
   double stiffness = 1;           ///< True over nominal stiffness.
   double friction = 0.02;         ///< True friction coefficient of the tendons.
   double payload = 0.02;          ///< Mass at the tip that the model lacks, kg.
-  double backlash_deg = 1;        ///< True backlash of the spools.
+  double backlash_deg = 0.2;      ///< True backlash of the spools.
   std::string model = "dynamic";  ///< `arm.model` of the model: "kinematic", "static" or "dynamic".
 };
 

@@ -107,7 +107,9 @@ const Table<ServoTask>& fields_of(const ServoTask*) {
                  {.meaning = "Error that drives the arm. `shape`: shape estimated from both images minus "
                              "target shape. `points`, `chords`, `moments`: image features. `silhouettes`: "
                              "image edges. `potential`: the paper's artificial potential on the errors in "
-                             "two image planes (XOY of the first camera, ZOY of the second)."})
+                             "two image planes (XOY of the first camera, ZOY of the second). "
+                             "`predictive`: the shape, with commands planned ahead so that a dynamic arm "
+                             "stops swinging."})
           .field("measure", of_task(&T::measure),
                  {.meaning = "Source of the angles for chords and potential: each picture alone, or optical "
                              "flow since the previous picture, with correction towards each picture."})

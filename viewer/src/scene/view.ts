@@ -55,6 +55,8 @@ export class SceneView {
   private frame = 0;
   private dirty = false;
   private is_to_frame = false;
+  /** The parts do not have the present state yet. */
+  private is_behind = false;
 
   constructor(readonly canvas: HTMLCanvasElement) {
     const software = draws_in_software();
@@ -91,7 +93,7 @@ export class SceneView {
     this.invalidate();
   }
 
-  /** Draws a state. An unchanged state is not drawn again unless `anyway`. */
+  /** Draws a state with the next frame: there may be many states between two. An unchanged state is not drawn again unless `anyway`. */
   draw_state(state: State, anyway = true): void {
     const before = this.state;
     this.state = state;
@@ -100,7 +102,7 @@ export class SceneView {
     this.is_to_frame = false;
     if (!anyway && before && same(before.samples, state.samples) && same(before.cameras, state.cameras)
       && same(before.push ?? nothing, state.push ?? nothing) && same(before.contacts ?? nothing, state.contacts ?? nothing)) return;
-    for (const part of this.parts) part.draw?.(state);
+    this.is_behind = true;
     this.invalidate();
   }
 
@@ -224,6 +226,7 @@ export class SceneView {
 
   /** Returns the scene point under the pixel (x, y); null if there is none. */
   hit(x: number, y: number): Vector3 | null {
+    this.catch_up();
     const pointer = new Vector2((2 * x) / this.size.x - 1, 1 - (2 * y) / this.size.y);
     const ray = new Raycaster();
     ray.setFromCamera(pointer, this.camera);
@@ -270,10 +273,18 @@ export class SceneView {
     for (const listener of this.look_listeners) listener();
   }
 
+  /** Gives the parts the present state. */
+  private catch_up(): void {
+    if (!this.is_behind || !this.state) return;
+    this.is_behind = false;
+    for (const part of this.parts) part.draw?.(this.state);
+  }
+
   private render = (): void => {
     this.frame = 0;
     if (!this.dirty) return;
     this.dirty = false;
+    this.catch_up();
     const through = this.through !== null && this.scene && this.state
       && see_through(this.camera, this.scene, this.state, this.through, this.size.x / this.size.y);
     if (!through) {

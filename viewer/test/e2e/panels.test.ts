@@ -66,7 +66,7 @@ describe('a rig’s page', () => {
       await until(async () => (await sizes()).join() === before.join());
     });
 
-    test('are moved by keys, within limits that are told', async () => {
+    test('are moved by keys, within limits that are shown', async () => {
       const left = border('Width of the controls');
       await left.focus();
       const width = async () => Math.round((await box('.left')).width);

@@ -270,12 +270,13 @@ describe.skipIf(!program)('the program’s rig, its refusals and its run', () =>
 
 describe.skipIf(!program)('a run that is watched', () => {
   /** Simulated duration, s; running it takes a few seconds. */
-  const watched_s = 8000;
+  const watched_s = 16000;
 
   on(() => started(['run', file, '--out', 'watched', '--set', `task.0.duration=${watched_s}`, '--view']), 'live');
 
   test('it is shown as it goes on, is not to be cancelled here, and is a recording when it is over', async () => {
     const { time } = await server_state(page);
+    expect(time).toBeLessThan(watched_s);
     await until(async () => (await server_state(page)).time > time);
     const cancel = page.getByRole('button', { name: 'Cancel' });
     expect(await cancel.isDisabled()).toBe(true);

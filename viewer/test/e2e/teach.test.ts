@@ -125,7 +125,7 @@ test('no equation and no row is cut off, however large its numbers', async () =>
 });
 
 test('down to a projector’s size, the page enlarged, every slider has a track, and nothing lies upon another', async () => {
-  for (const [width, height] of [[1440, 900], [1280, 720], [1024, 600], [1025, 600], [960, 540], [853, 480]]) {
+  for (const [width, height] of [[1440, 900], [1280, 720], [1025, 600], [1100, 600], [1101, 600], [960, 540], [853, 480]]) {
     await page.setViewportSize({ width, height });
     await page.waitForTimeout(200);
     const size = `${width}x${height}`;

@@ -29,7 +29,10 @@ StrainModes modes_of_piece(StrainModes modes, int pieces) {
   const int least = pieces < many_pieces ? 2 : 1;
   modes.shear = spread_modes(modes.shear, 2, pieces, least);
   modes.stretch = spread_modes(modes.stretch, 2, pieces, 1);
-  modes.bend = spread_modes(modes.bend, 3, pieces, 3);
+  // Its curvature is nearly even about its middle: an even number of polynomials is hardly better than one
+  // less.
+  const int bend = spread_modes(modes.bend, 3, pieces, 3);
+  modes.bend = std::min(modes.bend, bend % 2 == 0 ? bend + 1 : bend);
   modes.twist = spread_modes(modes.twist, 2, pieces, least);
   return modes;
 }

@@ -5,10 +5,13 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdio>
+#include <numbers>
 #include <optional>
 #include <vector>
 
+#include "flexura/math/derivative_check.h"
 #include "flexura/mechanics/dynamics.h"
+#include "flexura/mechanics/rod_parts.h"
 #include "flexura/mechanics/statics.h"
 #include "tests/support/chord_rod.h"
 #include "tests/support/disk_robots.h"
@@ -24,7 +27,8 @@ DiskRobot strongly_bent() {
   RodSection section{.length = 0.4, .disks = 4};
   section.stiffness = (Vector6d() << 1e4, 1e4, 1e4, 0.01, 0.01, 0.008).finished();
   robot.rod.sections = {section};
-  robot.rod.tendons = {{.section = 0, .radius = 0.01}, {.section = 0, .radius = 0.01, .angle = M_PI}};
+  robot.rod.tendons = {{.section = 0, .radius = 0.01},
+                       {.section = 0, .radius = 0.01, .angle = std::numbers::pi}};
   robot.tensions = {4, 0};
   return robot;
 }
@@ -52,28 +56,29 @@ TEST(StaticsChords, AgreeWithShootingFromDiskToDisk) {
   EXPECT_GE(compared, 1);
 }
 
-// Numbers of docs/mechanics.md: the error falls geometrically with the modes of a piece. Modes of a whole
-// section cannot follow the chords.
+// The error falls geometrically with the even polynomials of a piece: here 3, 5 or 7 modes each, spread from
+// those of the section, with enough of shear, stretch and twist. Modes of the whole section cannot follow the
+// chords.
 TEST(StaticsChords, ErrorsFallWithTheModesOfAPiece) {
   DiskRobot robot = strongly_bent();
-  const std::optional<Pose> tip = ChordRod(robot.rod, robot.tensions, robot.force).tip(8);
+  const std::optional<Pose> tip = ChordRod(robot.rod, robot.tensions, robot.force, 128).tip(8);
   ASSERT_TRUE(tip);
   std::vector<double> errors;
-  for (const int bend : {3, 4, 5, 6, 7}) {
+  for (const int bend : {3, 6, 9}) {
     StrainModes& modes = robot.rod.sections[0].modes;
-    modes.bend = bend, modes.by_piece = true;
-    const double by_piece = tip_error(robot, *tip);
+    modes = {.shear = 12, .stretch = 12, .bend = bend, .twist = 12};
+    const int of_piece = parts_of(robot.rod)[0].rod.modes.bend;
+    EXPECT_EQ(of_piece, 3 + 2 * static_cast<int>(errors.size()));
+    errors.push_back(tip_error(robot, *tip));
     modes.by_piece = false;
-    std::printf("%d bend modes: of each piece %.1e, of the section %.1e\n", bend, by_piece,
-                tip_error(robot, *tip));
-    errors.push_back(by_piece);
-    modes.bend = 5;
-    EXPECT_GT(tip_error(robot, *tip), 1e-3) << "of the section";
+    const double whole = tip_error(robot, *tip);
+    std::printf("%d bend modes of each piece: %.1e; %d of the section: %.1e\n", of_piece, errors.back(), bend,
+                whole);
+    EXPECT_GE(whole, 100 * errors.back());
   }
-  // Even polynomials matter, odd ones hardly.
-  EXPECT_LE(errors[0], 3e-3);
-  EXPECT_LE(errors[2], 0.1 * errors[0] + 1e-6);
-  EXPECT_LE(errors[4], 0.3 * errors[2] + 1e-6);
+  // A single robot: 2e-5, 2e-7, 8e-8. The reference is exact to about 2e-8.
+  EXPECT_LE(errors[1], 0.1 * errors[0]);
+  EXPECT_LE(errors[2], 0.5 * errors[1] + 1e-7);
 }
 
 // The division does not change what a rod is: weights, bodies, loads, tapers and curvature at rest.
@@ -104,33 +109,152 @@ TEST(StaticsChords, APieceIsPartOfItsSection) {
   });
 }
 
-// An equilibrium of the statics stays at rest, and a moving rod keeps the places of its sections.
-TEST(StaticsChords, ARodInMotionHasTheSameParts) {
-  DiskRobot robot = strongly_bent();
-  robot.rod.sections[0].mass_per_length = 0.05;
-  robot.rod.sections[0].damping_time = 0.01;
-  const RodPlace middle{0, 0.4};
-  RodDynamics dynamics(robot.rod, {}, std::vector<RodPlace>{middle});
-  RodStatics statics(robot.rod, std::vector<RodPlace>{middle});
-  const Equilibrium at = statics.solve({.tensions = robot.tensions}, {});
-  RodState state = dynamics.rest(at);
-  for (int i = 0; i < 10; ++i)
-    ASSERT_EQ(dynamics.step(state, {.tensions = robot.tensions}, {}, 0.01).end, DynamicsEnd::converged);
-  EXPECT_LE((dynamics.tip(state).position - at.tip.position).norm(), 1e-8);
-  EXPECT_LE((dynamics.motion(state, middle).pose.position -
-             statics.chain().pose(statics.chain().node_of(middle)).position)
-                .norm(),
-            1e-8);
+// A damped rod that starts straight comes to rest in the equilibrium of the statics, and a place of a section
+// is the same in both.
+TEST(StaticsChords, TheRestOfAMovingRodIsTheEquilibrium) {
+  for_random_cases(4, [](TestRandom& random) {
+    DiskRobot robot = random_disk_robot(random, 1.2);
+    for (RodSection& section : robot.rod.sections) {
+      section.density = 6000;
+      section.damping_time = 0.1;
+    }
+    RodLoads loads = robot.loads();
+    loads.gravity = {0, 3, -9.81};
+    const std::vector<RodPlace> places = {{.section = 0, .at = 0.4}};
+    RodStatics statics(robot.rod, places);
+    const Equilibrium at = statics.settle({.tensions = robot.tensions}, loads);
+    if (!at.converged() || at.ambiguous) return;
+    RodDynamics dynamics(robot.rod, {.spectral_radius = 0}, places);
+    RodState state = dynamics.rest();
+    for (int i = 0; i < 400; ++i)
+      ASSERT_TRUE(dynamics.step(state, {.tensions = robot.tensions}, loads, 0.02).converged());
+    const double near = 1e-9 * robot.rod.length();
+    EXPECT_LE((dynamics.tip(state).position - at.tip.position).norm(), near);
+    EXPECT_LE((dynamics.motion(state, places[0]).pose.position -
+               statics.chain().pose(statics.chain().node_of(places[0])).position)
+                  .norm(),
+              near);
+  });
 }
 
-// Above the buckling load of a piece a tendon pulls its disks together.
+// A robot turned about the axis of its base, with its tendons and loads.
+TEST(StaticsChords, NothingDependsOnHowTheBaseIsTurned) {
+  for_random_cases(6, [](TestRandom& random) {
+    const DiskRobot robot = random_disk_robot(random, 1.5);
+    const double angle = random.uniform(-3, 3);
+    const Eigen::Matrix3d turn = Eigen::AngleAxisd(angle, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+    DiskRobot turned = robot;
+    for (TendonRoute& tendon : turned.rod.tendons) tendon.angle += angle;
+    turned.force = turn * robot.force;
+    const Equilibrium at = RodStatics(robot.rod).solve({.tensions = robot.tensions}, robot.loads()),
+                      there = RodStatics(turned.rod).solve({.tensions = turned.tensions}, turned.loads());
+    ASSERT_EQ(at.end, there.end);
+    if (!at.converged() || at.ambiguous) return;
+    EXPECT_LE((there.tip.position - turn * at.tip.position).norm(), 1e-9 * robot.rod.length());
+    EXPECT_LE((there.tip.rotation - turn * at.tip.rotation * turn.transpose()).norm(), 1e-8);
+  });
+}
+
+// Tangent, and the derivatives of the equilibrium by tensions and by the tip's force.
+TEST(StaticsChords, DerivativesAreThoseByDifferences) {
+  for_random_cases(4, [](TestRandom& random) {
+    const DiskRobot robot = random_disk_robot(random, 1.0);
+    RodStatics statics(robot.rod);
+    const Equilibrium at = statics.solve({.tensions = robot.tensions}, robot.loads());
+    ASSERT_TRUE(at.converged()) << words(at.end);
+    const EquilibriumSlopes slopes = statics.slopes();
+
+    RodChain chain(robot.rod);
+    const Eigen::VectorXd unit = chain.scales().cwiseInverse();
+    const auto residual = [&](const Eigen::VectorXd& q) {
+      chain.balance(q.cwiseProduct(unit), robot.tensions, robot.loads(), 1);
+      return Eigen::VectorXd(chain.residual().cwiseProduct(unit));
+    };
+    const Eigen::VectorXd q = at.q.cwiseProduct(chain.scales());
+    Eigen::MatrixXd product = unit.cwiseInverse().asDiagonal() * numerical_jacobian(residual, q, 0.02).value;
+    (void)residual(q);
+    ASSERT_TRUE(chain.factor());
+    chain.solve(product);
+    product = unit.cwiseInverse().asDiagonal() * product;
+    EXPECT_LE((product - Eigen::MatrixXd::Identity(q.size(), q.size())).cwiseAbs().maxCoeff(), 1e-4);
+
+    const auto expect_column = [&](const Vector6d& found, double step, auto&& solved) {
+      const Eigen::Vector3d by = (solved(step) - solved(-step)) / (2 * step);
+      EXPECT_LE((found.head<3>() - by).norm(), 1e-4 * (by.norm() + 1e-3 * robot.rod.length()));
+    };
+    for (std::size_t i = 0; i < robot.tensions.size(); ++i) {
+      if (robot.tensions[i] == 0) continue;
+      expect_column(slopes.tip_by_input.col(static_cast<Eigen::Index>(i)), 1e-4 * robot.tensions[i],
+                    [&](double step) {
+                      std::vector<double> tensions = robot.tensions;
+                      tensions[i] += step;
+                      return statics.solve({.tensions = tensions}, robot.loads(), at).tip.position;
+                    });
+    }
+    for (int c = 0; c < 3; ++c)
+      expect_column(slopes.tip_by_tip.col(c), 1e-5, [&](double step) {
+        DiskRobot pulled = robot;
+        pulled.force[c] += step;
+        return statics.solve({.tensions = robot.tensions}, pulled.loads(), at).tip.position;
+      });
+  });
+}
+
+// Only sections with disks, and with at least three bend modes, are divided.
+TEST(StaticsChords, ARodWithoutDisksIsNotDivided) {
+  for_random_cases(4, [](TestRandom& random) {
+    Rod rod = random_rod(random);
+    EXPECT_EQ(parts_of(rod).size(), rod.sections.size());
+    const TendonInput input{.tensions = random_tensions(random, rod, 4)};
+    const RodLoads loads = random_loads(random, rod);
+    const Equilibrium at = RodStatics(rod).solve(input, loads);
+    for (RodSection& section : rod.sections) section.modes.by_piece = false;
+    const Equilibrium same = RodStatics(rod).solve(input, loads);
+    EXPECT_TRUE(at.q == same.q);
+    EXPECT_TRUE(at.tip.position == same.tip.position);
+    EXPECT_FALSE(at.coarse_section);
+  });
+  const auto parts_with = [](int disks, int bend, bool by_piece) {
+    Rod rod;
+    rod.sections = {{.length = 0.4, .disks = disks}};
+    rod.sections[0].modes.bend = bend;
+    rod.sections[0].modes.by_piece = by_piece;
+    return parts_of(rod).size();
+  };
+  EXPECT_EQ(parts_with(4, 5, true), 4u);
+  EXPECT_EQ(parts_with(4, 2, true), 1u);
+  EXPECT_EQ(parts_with(4, 5, false), 1u);
+  EXPECT_EQ(parts_with(11, 5, true), 11u);
+  EXPECT_EQ(parts_with(12, 5, true), 1u);
+}
+
+bool is_finite(const Equilibrium& at) {
+  const auto finite = [](double value) { return std::isfinite(value); };
+  return at.q.allFinite() && at.tip.position.allFinite() && at.tip.rotation.allFinite() &&
+         std::isfinite(at.strain_energy) && std::ranges::all_of(at.tensions, finite) &&
+         std::ranges::all_of(at.tendon_lengths, finite) && std::ranges::all_of(at.displacements, finite);
+}
+
+// Above the buckling load of a piece a tendon pulls its disks together. Every result is finite, and is an
+// equilibrium or says that disks meet.
 TEST(StaticsChords, DisksThatAreDrawnTogetherAreReported) {
   DiskRobot robot = strongly_bent();
-  robot.tensions = {60, 0};
-  const Equilibrium at = RodStatics(robot.rod).solve({.tensions = robot.tensions}, {});
-  EXPECT_EQ(at.end, StaticsEnd::disks_meet) << words(at.end);
-  robot.tensions = {1, 0};
-  EXPECT_TRUE(RodStatics(robot.rod).solve({.tensions = robot.tensions}, {}).converged());
+  RodStatics statics(robot.rod);
+  const double pi = std::numbers::pi, buckling = 0.01 * pi * pi / (0.1 * 0.1);  // N, of a piece.
+  for (const double part : {0.05, 0.2, 0.5, 0.9, 1.1, 2.0, 6.0, 20.0, 1e3, 1e6}) {
+    for (const double other : {0.0, 0.5, 1.0}) {
+      const TendonInput input{.tensions = {part * buckling, other * part * buckling}};
+      for (const Equilibrium& at : {statics.solve(input, {}), statics.settle(input, {})}) {
+        EXPECT_TRUE(is_finite(at)) << part << " " << other;
+        EXPECT_TRUE(at.converged() || part > 0.3) << part << " " << other << ": " << words(at.end);
+        EXPECT_TRUE(at.converged() || at.end == StaticsEnd::disks_meet)
+            << part << " " << other << ": " << words(at.end);
+      }
+    }
+    EXPECT_TRUE(part < 2 ||
+                statics.solve({.tensions = {part * buckling, 0}}, {}).end == StaticsEnd::disks_meet)
+        << part;
+  }
 }
 
 TEST(StaticsChords, ABendThatNeedsMoreModesIsReported) {

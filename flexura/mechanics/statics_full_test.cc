@@ -1,15 +1,10 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
-#include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <optional>
-#include <vector>
 
 #include "flexura/mechanics/statics.h"
-#include "tests/support/chord_rod.h"
-#include "tests/support/disk_robots.h"
 #include "tests/support/known_rods.h"
 #include "tests/support/random_cases.h"
 #include "tests/support/random_rods.h"
@@ -80,41 +75,6 @@ TEST(StaticsReference, EachModeMoreComesNearer) {
     EXPECT_LE(fine, 0.2 * coarse + 1e-8);
     EXPECT_LE(finest, 0.2 * fine + 2e-8);
   });
-}
-
-TEST(StaticsReference, HundredsOfRobotsWithDisksFromACold) {
-  std::vector<double> errors;
-  int coarse = 0, meeting = 0, others = 0;
-  for_random_cases(300, [&](TestRandom& random) {
-    const DiskRobot robot = random_disk_robot(random, 2.1);
-    RodStatics statics(robot.rod);
-    const Equilibrium at = statics.solve({.tensions = robot.tensions}, robot.loads());
-    EXPECT_NE(at.end, StaticsEnd::out_of_steps);
-    meeting += at.end == StaticsEnd::disks_meet ? 1 : 0;
-    if (!at.converged() || largest_section_bend(statics.chain()) > 2.1) return;
-    if (at.coarse_section) {
-      ++coarse;
-      return;
-    }
-    const std::optional<Pose> tip = ChordRod(robot.rod, robot.tensions, robot.force).tip(12);
-    // The equilibrium that the load path of the reference ends at may be another one.
-    if (!tip || at.snapped || at.ambiguous) {
-      ++others;
-      return;
-    }
-    errors.push_back((at.tip.position - tip->position).norm() / robot.rod.length());
-    EXPECT_LE(errors.back(), 3e-4);
-  });
-  ASSERT_FALSE(errors.empty());
-  std::ranges::sort(errors);
-  const auto part = [&](double share) {
-    return errors[static_cast<std::size_t>(share * static_cast<double>(errors.size() - 1))];
-  };
-  std::printf(
-      "%zu robots: median %.1e of the length, 95 %% %.1e, worst %.1e; %d with a note, %d with disks "
-      "that meet, %d with another equilibrium\n",
-      errors.size(), part(0.5), part(0.95), errors.back(), coarse, meeting, others);
-  EXPECT_LE(part(0.95), 1e-4);
 }
 
 TEST(StaticsDescentFull, HundredsOfSoftUprightArmsComeToAStableRest) {

@@ -22,9 +22,9 @@ namespace flexura {
 /// series with flexura/mechanics.
 class ChordRod {
  public:
-  /// `force`: dead, at the tip, in the base's frame, N.
-  ChordRod(Rod rod, std::vector<double> tensions, Eigen::Vector3d force)
-      : rod_(std::move(rod)), tensions_(std::move(tensions)), force_(std::move(force)) {}
+  /// `force`: dead, at the tip, in the base's frame, N. `steps`: of Runge and Kutta's method in a piece.
+  ChordRod(Rod rod, std::vector<double> tensions, Eigen::Vector3d force, int steps = 32)
+      : rod_(std::move(rod)), tensions_(std::move(tensions)), force_(std::move(force)), steps_(steps) {}
 
   /// Raises the load from zero in steps and returns the pose of the tip at full load; none where a step does
   /// not converge.
@@ -40,7 +40,6 @@ class ChordRod {
   }
 
  private:
-  static constexpr int rk_steps_ = 16;
   static constexpr double settled_ = 1e-11;
 
   struct Piece {
@@ -54,7 +53,7 @@ class ChordRod {
   }
 
   // Returns the pose of the piece's end for the wrench of the rod at its base, in the base's frame.
-  static Pose flown(const Piece& piece, const Vector6d& wrench) {
+  [[nodiscard]] Pose flown(const Piece& piece, const Vector6d& wrench) const {
     const auto counts = piece.section->modes.counts();
     Eigen::Matrix<double, 3, 4> y = Eigen::Matrix<double, 3, 4>::Zero();  // R, p.
     y.leftCols<3>().setIdentity();
@@ -71,8 +70,8 @@ class ChordRod {
       by << R * skew(strain.tail<3>()), R * strain.head<3>();
       return by;
     };
-    const double part = (piece.to - piece.from) / rk_steps_, h = part * piece.section->length;
-    for (int i = 0; i < rk_steps_; ++i) {
+    const double part = (piece.to - piece.from) / steps_, h = part * piece.section->length;
+    for (int i = 0; i < steps_; ++i) {
       const double t = piece.from + i * part;
       const Eigen::Matrix<double, 3, 4> a = slope(t, y), b = slope(t + 0.5 * part, y + 0.5 * h * a),
                                         c = slope(t + 0.5 * part, y + 0.5 * h * b),
@@ -163,6 +162,7 @@ class ChordRod {
   Rod rod_;
   std::vector<double> tensions_;
   Eigen::Vector3d force_, at_ = Eigen::Vector3d::Zero();
+  int steps_;
   std::vector<Vector6d> wrenches_;  // Of each piece; kept as start of the next shot.
 };
 

@@ -25,11 +25,13 @@ struct DiskRobot {
   }
 };
 
-/// Returns a robot of one to three tapered wires with 2 to 8 pieces a section. One of three tendons of each
-/// section bends it by up to `most_bend` rad if it pulled alone; others pull against it. Some are helical.
-inline DiskRobot random_disk_robot(TestRandom& random, double most_bend) {
+/// Returns a robot of one to three tapered wires with 2 to 8 pieces a section, or as many as given. One of
+/// three tendons of each section bends it by up to `most_bend` rad if it pulled alone; others pull against
+/// it. Some are helical.
+inline DiskRobot random_disk_robot(TestRandom& random, double most_bend, int pieces = 0) {
   DiskRobot robot;
-  const int sections = random.integer(1, 3), disks = random.integer(2, 8);
+  const int sections = random.integer(1, 3), drawn = random.integer(2, 8);
+  const int disks = pieces > 0 ? pieces : drawn;
   const double radius = random.uniform(0.005, 0.02);
   for (int i = 0; i < sections; ++i) {
     RodSection section{.length = random.uniform(0.1, 0.3)};

@@ -1,0 +1,118 @@
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdio>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "flexura/mechanics/statics.h"
+#include "tests/support/chord_rod.h"
+#include "tests/support/disk_robots.h"
+#include "tests/support/random_cases.h"
+
+namespace flexura {
+namespace {
+
+// A solution farther from the reference than this part of the length is another equilibrium if more modes do
+// not bring it nearer.
+constexpr double another = 1e-2;
+
+DiskRobot with_modes(DiskRobot robot, bool by_piece, int bend, int others) {
+  for (RodSection& section : robot.rod.sections)
+    section.modes = {.shear = others, .stretch = others, .bend = bend, .twist = others, .by_piece = by_piece};
+  return robot;
+}
+
+Equilibrium solved(const DiskRobot& robot) {
+  return RodStatics(robot.rod).solve({.tensions = robot.tensions}, robot.loads());
+}
+
+double tip_distance(const DiskRobot& robot, const Equilibrium& at, const Pose& tip) {
+  return (at.tip.position - tip.position).norm() / robot.rod.length();
+}
+
+// Sorted errors.
+struct Spread {
+  std::vector<double> errors = {};
+
+  [[nodiscard]] double part(double share) {
+    std::ranges::sort(errors);
+    return errors.at(static_cast<std::size_t>(share * static_cast<double>(errors.size() - 1)));
+  }
+  [[nodiscard]] std::string words() {
+    if (errors.empty()) return "-";
+    std::array<char, 64> text{};
+    std::snprintf(text.data(), text.size(), "%.1e, %.1e, %.1e (%zu)", part(0.5), part(0.9), part(1),
+                  errors.size());
+    return text.data();
+  }
+};
+
+// What a robot shows against the reference.
+struct Compared {
+  enum class Kind { compared, no_equilibrium, bent_too_far, no_reference, another };
+  Kind kind = Kind::compared;
+  double bend = 0, error = 0, whole_error = 0;  // rad; parts of the length
+  bool has_note = false;
+};
+
+Compared compared(const DiskRobot& robot) {
+  RodStatics statics(robot.rod);
+  const Equilibrium at = statics.solve({.tensions = robot.tensions}, robot.loads());
+  EXPECT_NE(at.end, StaticsEnd::out_of_steps);
+  EXPECT_NE(at.end, StaticsEnd::bad_input);
+  if (!at.converged()) return {.kind = Compared::Kind::no_equilibrium};
+  const double bend = largest_section_bend(statics.chain());
+  if (bend > 2.1) return {.kind = Compared::Kind::bent_too_far};
+  const std::optional<Pose> tip = ChordRod(robot.rod, robot.tensions, robot.force).tip(12);
+  if (!tip) return {.kind = Compared::Kind::no_reference};
+  Compared result{.bend = bend,
+                  .error = tip_distance(robot, at, *tip),
+                  .whole_error = 1,
+                  .has_note = at.coarse_section.has_value()};
+  if (result.error > another) {
+    const DiskRobot fine = with_modes(robot, true, robot.rod.sections[0].disks <= 4 ? 12 : 20, 6);
+    const Equilibrium finely = solved(fine);
+    if (!finely.converged() || tip_distance(fine, finely, *tip) > another)
+      return {.kind = Compared::Kind::another};
+  }
+  const DiskRobot undivided = with_modes(robot, false, 5, 4);
+  if (const Equilibrium whole = solved(undivided); whole.converged())
+    result.whole_error = tip_distance(undivided, whole, *tip);
+  return result;
+}
+
+// The table of docs/mechanics.md. Robots without a note are as near as it says.
+TEST(StaticsChordsFull, TipsOfHundredsOfRobotsAgreeWithShootingFromDiskToDisk) {
+  Spread all;
+  for (const int pieces : {2, 3, 4, 5, 6, 7, 8, 10, 11, 12, 16}) {
+    std::array<Spread, 3> own, whole;
+    std::array<int, 5> counts{};
+    int notes = 0;
+    for_random_cases(40, [&](TestRandom& random) {
+      const DiskRobot robot = random_disk_robot(random, 2.1, pieces);
+      const Compared one = compared(robot);
+      ++counts.at(static_cast<std::size_t>(one.kind));
+      if (one.kind != Compared::Kind::compared) return;
+      const std::size_t bin = one.bend < 1.05 ? 0 : one.has_note ? 2 : 1;
+      notes += one.has_note;
+      own[bin].errors.push_back(one.error);
+      whole[bin].errors.push_back(one.whole_error);
+      if (pieces <= 11 && !one.has_note) all.errors.push_back(one.error);
+    });
+    std::printf(
+        "%2d pieces: %s | %s | note %s || whole %s | %s | note %s; %d no equ, %d too far, %d no ref, %d "
+        "another, %d notes\n",
+        pieces, own[0].words().c_str(), own[1].words().c_str(), own[2].words().c_str(),
+        whole[0].words().c_str(), whole[1].words().c_str(), whole[2].words().c_str(), counts[1], counts[2],
+        counts[3], counts[4], notes);
+  }
+  std::printf("all: %s, 99%% %.1e\n", all.words().c_str(), all.part(0.99));
+}
+
+}  // namespace
+}  // namespace flexura

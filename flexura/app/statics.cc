@@ -161,7 +161,7 @@ std::string StaticsAnswers::answer(std::string_view line) {
       members.push_back({"note",
                          {},
                          {fmt::format("section {}: strongly bent between its guide disks; for an error below "
-                                      "1e-4 of the length give it more material.modes.bend, or more disks",
+                                      "1e-3 of the length give it more material.modes.bend, or more disks",
                                       *found.coarse_section + 1),
                           {}}});
     return write_json({std::move(members), {}});

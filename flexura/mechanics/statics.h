@@ -48,7 +48,7 @@ struct Equilibrium {
   /// equilibrium.
   bool ambiguous = false;
   /// Section whose strain modes are too few for the bend between its guide disks, as far as seen from the
-  /// modes: its tip may be wrong by more than 1e-4 of the rod's length.
+  /// modes: its tip may be wrong by more than 1e-3 of the rod's length.
   std::optional<std::size_t> coarse_section = {};
   int iterations = 0;                  ///< Linear systems solved.
   Eigen::VectorXd q;                   ///< The strain modes (RodChain).

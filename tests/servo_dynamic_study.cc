@@ -65,6 +65,7 @@ struct Run {
   Arrival arrival;
   MotionTotals totals;
   bool is_run = false;
+  std::vector<std::string> reports;  // Events of the servo.
 };
 
 class StudyRig {
@@ -115,7 +116,7 @@ class StudyRig {
     if (method.model == "static") nominal.actuation = static_->actuation();
     const ServoResult result = servo_in_session(gray_.ports(), nominal, config, watcher);
     Run run;
-    run.totals = watcher.totals(), run.is_run = true;
+    run.totals = watcher.totals(), run.is_run = true, run.reports = watcher.reports();
     Arrival& arrival = run.arrival;
     arrival.is_done = result.is_done, arrival.reason = result.reason;
     arrival.settled = result.settled.value_or(std::nan("")), arrival.overshoot = result.overshoot;
@@ -210,6 +211,7 @@ void study(bool is_calibrated, double friction, const std::string& way, std::siz
             run.arrival.reason = rig.why_not();
           std::fprintf(stderr, "target %zu, %s: %s, settled %.2f s, left %.3f %%\n", k, ways[j].name.c_str(),
                        run.arrival.reason.c_str(), run.arrival.settled, 100 * run.arrival.rms);
+          for (const std::string& report : run.reports) std::fprintf(stderr, "  %s\n", report.c_str());
         }
       }
     }

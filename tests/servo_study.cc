@@ -357,7 +357,7 @@ int main(int count, char** arguments) {
   if (is_asked("sagging")) {
     fmt::print("## A sagging arm, modelled as one arc a section; cameras half a degree and 1 % wrong\n\n");
     study(Cameras::wrong, {.sags = true}, laws_of_sagging_arm(), way, targets, seed, threads);
-    fmt::print("## The same arm, modelled as three arcs a section; cameras and profile as calibrated\n\n");
+    fmt::print("## The same arm, modelled as three arcs per section; cameras and profile as calibrated\n\n");
     study(Cameras::calibrated, {.arcs = 3, .sags = true}, laws_of_sagging_arm(), way, targets, seed, threads);
     fmt::print("## The same arm, modelled as such rods, 20 % stiffer; cameras as calibrated\n\n");
     study(Cameras::calibrated, {.arcs = 3, .sags = true, .knows = true}, laws_of_sagging_arm(), way, targets,

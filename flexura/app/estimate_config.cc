@@ -75,10 +75,9 @@ void hold_length(double length, ShapePrior& prior) {
   }
   constexpr double grace = 1e-9;  // Rounding of sums taken in another order.
   if (length < (1 - grace) * shortest || length > (1 + grace) * longest)
-    throw input_error(
-        "--length",
-        fmt::format("{} m: expected {:.6g} to {:.6g} m, as far as all sections of --arm stretch alike",
-                    length, shortest, longest));
+    throw input_error("--length", fmt::format("{} m: expected {:.6g} to {:.6g} m, the range if all sections "
+                                              "of --arm stretch by the same factor",
+                                              length, shortest, longest));
   const double stretch = length / prior.arm.length();
   for (Section& section : prior.arm.sections) section.length *= stretch;
   prior.is_length_known = true;

@@ -19,12 +19,12 @@ struct GltfExport {
   bool truncated = false;      ///< The run was cut short: its log ends without a summary.
 };
 
-/// Writes the motion of a run's arm as a binary glTF 2.0 file: a tube with a skin on joints along the
-/// backbone, animated, and the cameras and obstacles. The arm is the true one where the log has it, otherwise
-/// the commanded one. There are 30 poses a second, or 3000 in all of a longer run. `file`: the new file;
-/// empty: arm.glb in the new folder RESULTS/gltf (gltf-2, ... if it exists). `progress` may be null. Throws
-/// InputError if `results` is not a run's folder or its log is damaged, std::runtime_error if the file exists
-/// or cannot be written.
+/// Writes the motion of a run's arm as a binary glTF 2.0 file. The arm is an animated tube with a skin on
+/// joints along the backbone. The file also has the cameras and obstacles. The arm is the true one where the
+/// log has it, otherwise the commanded one. There are 30 poses a second, or 3000 in all of a longer run.
+/// `file`: the new file; empty: arm.glb in the new folder RESULTS/gltf (gltf-2, ... if it exists). `progress`
+/// may be null. Throws InputError if `results` is not a run's folder or its log is damaged,
+/// std::runtime_error if the file exists or cannot be written.
 GltfExport export_gltf(const std::filesystem::path& results, const std::filesystem::path& file,
                        Progress* progress = nullptr);
 

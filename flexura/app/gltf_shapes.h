@@ -18,8 +18,8 @@ struct TubeRing {
 
 /// Returns the surface through these rings, two or more, that move with their joints. Ends are open.
 [[nodiscard]] GltfMesh tube_mesh(std::span<const TubeRing> rings);
-/// Adds a lid to a tube's mesh at one of its rings: flat or half a ball, outwards along the ring's z times
-/// `side`, which is 1 or -1.
+/// Adds a lid to a tube's mesh at one of its rings, flat or half a ball. Its outward direction is the ring's
+/// z times `side`, which is 1 or -1.
 void add_lid(const TubeRing& ring, TipKind kind, double side, GltfMesh& mesh);
 
 /// Returns a ball about the origin, m.

@@ -67,9 +67,9 @@ struct IdentifySettings {
   bool alike = false;
 };
 
-/// Identifies the stiffness and damping time of each section from a motion of the arm; with `mass` a mass
-/// factor too, with `friction` one friction coefficient of all tendons. `rod` is the nominal rod of `arm`.
-/// Throws the std::invalid_argument of record_of_places() and identify().
+/// Identifies the stiffness and damping time of each section from a motion of the arm. With `mass` it also
+/// estimates a mass factor, with `friction` one friction coefficient of all tendons. `rod` is the nominal rod
+/// of `arm`. Throws the std::invalid_argument of record_of_places() and identify().
 [[nodiscard]] IdentifiedArm identify_arm(const ArmConfig& arm, const Rod& rod, const MeasuredMotion& motion,
                                          const IdentifySettings& settings);
 

@@ -71,7 +71,7 @@ void check(const IntrinsicsArguments& arguments) {
   if (!arguments.rig_from.empty() && arguments.rig.empty())
     throw input_error("--rig-from", "needs --rig, the file to write");
   if (!arguments.zooms.empty() && !arguments.out.empty())
-    throw input_error("--out", "a lens at several zooms is no measured camera: --rig FILE writes it");
+    throw input_error("--out", "it cannot store a lens at several zooms: expected --rig FILE");
   check_folder("--out", arguments.out), check_folder("--rig", arguments.rig);
 }
 

@@ -110,7 +110,7 @@ Node zoom_answer(const IntrinsicsArguments& arguments, const BoardTarget& board,
   if (reason.empty()) {
     camera.lens = zoom_lens(zooms);
     if (const auto fault = ZoomTable::fault(camera.lens))
-      reason = fmt::format("this is no zoom: {}: {}", fault->path, fault->what);
+      reason = fmt::format("the pictures give no valid zoom table: {}: {}", fault->path, fault->what);
   }
   Node::Table answer{{"found", {}, {reason.empty(), {}}}};
   if (!reason.empty()) answer.push_back({"reason", {}, text_node(reason)});

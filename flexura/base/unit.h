@@ -21,7 +21,7 @@ enum class Unit {
 /// A way to write a quantity in a file. A value v under the key NAME + suffix is v * factor in base units.
 struct UnitSpelling {
   std::string_view suffix;  ///< "" for the base unit, "_deg", "_pi", "_mm", ...
-  double factor = 1.0;      ///< Value in base units of a written 1.
+  double factor = 1.0;      ///< Value, in base units, of the number 1 in this unit.
   std::string_view symbol;  ///< "rad", "deg", "x pi rad", "mm", ...
 };
 

@@ -12,7 +12,7 @@
 namespace flexura {
 
 /// Pose of a camera relative to the calibration cylinder, from one picture (docs/calibration-paper.md, "What
-/// a picture of the cylinder tells"). Angles are in rad, lengths in the unit of the radius.
+/// a picture of the cylinder shows"). Angles are in rad, lengths in the unit of the radius.
 struct EtalonView {
   std::string
       reason;  ///< Why the following members are not known, except perhaps `centroid`; "" if all are known.
@@ -39,7 +39,8 @@ struct EtalonView {
 /// Returns the centroid of the visible part of the largest dark figure, px; empty without a figure.
 [[nodiscard]] std::optional<Eigen::Vector2d> dark_centroid(const Image<std::uint8_t>& picture);
 
-/// Evaluates a picture of a cylinder of this radius with the lens model.
+/// Measures the image of the calibration cylinder in a picture and computes the camera's pose relative to it.
+/// `radius` is that of the cylinder.
 [[nodiscard]] EtalonView view_etalon(const Image<std::uint8_t>& picture, const Intrinsics& intrinsics,
                                      double radius);
 

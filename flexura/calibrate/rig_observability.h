@@ -31,8 +31,8 @@ struct RigObservability {
                                                     ///< the prior's, the largest first.
 };
 
-/// Evaluates a covariance of x for the rig's own variables. Variables without a prior are compared with their
-/// relevant size (RigVariables::Variable::scale).
+/// Determines from the covariance of all variables x how well the rig's own variables are known. A variable
+/// without a prior is compared with its typical size (RigVariables::Variable::scale).
 [[nodiscard]] RigObservability observability(const RigVariables& variables,
                                              const Eigen::MatrixXd& covariance);
 

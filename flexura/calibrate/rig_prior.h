@@ -45,9 +45,9 @@ struct RigPrior {
 };
 
 /// Returns the prior of a rough initial guess. The standard deviations are 10 degrees for rotations, 10 % for
-/// focal lengths and 10 px for principal points. For positions it is `share` of each camera's distance from
-/// its target (`seen` in W, m; default: the arm's base). For the zeros of tilt axes it is 2 degrees, also for
-/// the zeros of pan axes if the camera's stage can move.
+/// focal lengths and 10 px for principal points. For a camera's position the standard deviation is `share`
+/// times the camera's distance from the point `seen` (W, m; default: the arm's base). For the zeros of tilt
+/// axes it is 2 degrees, also for the zeros of pan axes if the camera's stage can move.
 [[nodiscard]] RigPrior rough_prior(const RigModel& model, double share = 0.2,
                                    const std::optional<Eigen::Vector3d>& seen = {});
 

@@ -253,16 +253,33 @@ std::string CommandLimiter::breach_of_motors(const std::vector<ArmState>& way) c
 }
 
 std::string CommandLimiter::contact(const std::vector<ArmState>& way) const {
+  const Actuation& actuation = model_.actuation();
   std::vector<double> times{0};
   std::vector<ArmState> states{sent_};
   for (const ArmState& state : way) {
     times.push_back(times.back() + config_.step);
     states.push_back(state);
   }
+  if (actuation.is_linear()) {
+    const MotionPtr motion = keyframe_motion(times, states, Interpolation::linear);
+    const SafetyReport report =
+        check_motions(model_, config_.obstacles, sent_, {{motion, 0, "look-ahead"}}, config_.step);
+    return report.violations.empty() ? std::string() : report.violations.front().what();
+  }
+  // Steps are short: an elastic arm's shape is nearly linear in the command within a step.
+  for (ArmState& state : states) {
+    state = actuation.shape(state);
+    if (!is_possible(state)) return "the arm has no equilibrium";
+  }
   const MotionPtr motion = keyframe_motion(times, states, Interpolation::linear);
-  const SafetyReport report =
-      check_motions(model_, config_.obstacles, sent_, {{motion, 0, "look-ahead"}}, config_.step);
-  for (const Violation& violation : report.violations) return violation.what();
+  const SafetyReport report = check_motions(model_.shaped(), config_.obstacles, states.front(),
+                                            {{motion, 0, "look-ahead"}}, config_.step);
+  for (Violation violation : report.violations) {
+    if (!is_of_shape(violation.hazard)) continue;
+    if (violation.section) violation.section = actuation.section_of()[*violation.section];
+    if (violation.other_section) violation.other_section = actuation.section_of()[*violation.other_section];
+    return violation.what();
+  }
   return {};
 }
 

@@ -14,9 +14,9 @@ namespace flexura {
 struct PredictiveLawConfig {
   double step = 1.0 / 30;  ///< Time between commands, s; > 0.
   int horizon = 18;        ///< Number of steps that are predicted; >= 1.
-  /// Rate at which errors decay if no limit holds the arm back, about, 1/s; > 0.
+  /// Approximate rate at which errors decay while no limit is active, 1/s; > 0.
   double rate = 6;
-  int most_iterations = 60;  ///< Of the solver.
+  int most_iterations = 60;  ///< Largest number of iterations of the quadratic program's solver.
 };
 
 /// State of an arm and its target from now on, for a step of the law.
@@ -27,9 +27,10 @@ struct PredictiveState {
   ArmState desired;  ///< Target shape now.
   /// Change of the target shape in each later step; shorter lists end at the last target.
   std::vector<ArmState> desired_later = {};
-  std::vector<SwingMode> modes = {};       ///< Of the arm's swing; empty: it does not swing.
-  Eigen::VectorXd swing = {};              ///< z of all modes, then z'.
-  Eigen::VectorXd frequency_factors = {};  ///< On the frequencies of the modes.
+  std::vector<SwingMode> modes = {};  ///< Modes of the arm's swing; empty if the arm does not swing.
+  Eigen::VectorXd swing = {};         ///< z of all modes, then z'.
+  /// Estimated frequency of each mode, as a factor on SwingMode::frequency.
+  Eigen::VectorXd frequency_factors = {};
 };
 
 /// Model predictive control of an arm's shape (docs/control.md, "Predictive law"). It chooses the changes a_k

@@ -191,7 +191,7 @@ Eigen::MatrixXd ShapeDescent::filtered_covariance(const ShapeProblem& problem, d
 }
 
 // N^-1 (P + f A + max(1, f) S) N^-1, with N the normal matrix and P the prior's information
-// (docs/estimation.md, "How sure").
+// (docs/estimation.md, "Uncertainty").
 Eigen::MatrixXd ShapeDescent::covariance(const ShapeProblem& problem, double square, double weight) {
   const Eigen::Index count = normal_.rows();
   solver_.compute(normal_);

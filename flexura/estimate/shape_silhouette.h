@@ -18,7 +18,7 @@ namespace flexura {
 /// Returns the misfit: how much of the foreground (Observation::figure) is outside the shape's image. The
 /// value is the mean square of the foreground points' distances from that image, each bounded, px^2. The
 /// shape's image is widened by the factor `wider`. Parts of the shape without foreground do not count,
-/// because they may be hidden. 0 if no foreground is known, or the arm has no radius.
+/// because they may be hidden. The result is 0 if no foreground is known, or if the arm has no radius.
 [[nodiscard]] double misfit(const Observation& seen, const ViewError& error, const Shape& shape,
                             double wider = 1);
 /// Returns the sum of the misfits of all pictures.

@@ -30,11 +30,10 @@ struct SwingFilterConfig {
   double frequency_noise = 0.02;       ///< Process noise of these logarithms, per root second.
 };
 
-/// Swing of an arm about its equilibrium: estimates the modes' coordinates z, their rates z', and a factor on
-/// each frequency, which depends on the true stiffness and on masses that the model lacks
-/// (docs/estimation.md, "An arm that swings"). An extended Kalman filter on (z, z', logarithms of the
-/// factors). It is a part of a larger one, whose other unknowns begin with the bends of the arm's shape,
-/// swing included.
+/// Estimates the swing of an arm about its equilibrium: the modes' coordinates z, their rates z', and a
+/// factor on each frequency (docs/estimation.md, "An arm that swings"). The factors correct a wrong stiffness
+/// or mass of the model. An extended Kalman filter on (z, z', logarithms of the factors). It is a part of a
+/// larger one, whose other unknowns begin with the bends of the arm's shape, swing included.
 class SwingFilter {
  public:
   /// Starts at rest, not tracked.

@@ -157,7 +157,8 @@ TEST(BadServo, PicturesOfAnotherSizeOrDepth) {
   std::string words = "P2 320 240 65535\n";
   for (int i = 0; i < 320 * 240; ++i) words += std::to_string(7 * i % 65536) + '\n';
   const std::string deep = complaint_of_pictures(words);
-  EXPECT_NE(deep.find("16 bits a value: expected 8, as camera front takes them"), std::string::npos) << deep;
+  EXPECT_NE(deep.find("16 bits per value: expected 8, as in the pictures of camera front"), std::string::npos)
+      << deep;
 }
 
 }  // namespace

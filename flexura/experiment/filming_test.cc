@@ -342,7 +342,7 @@ TEST(Filming, LogsWhatTheRigsDevicesSayOfThemselves) {
 TEST(Filming, TellsWhatIsWrongWithCamerasAndTheTruth) {
   const BadFile bad[] = {
       {"two of a name", replaced(small_pictures, "\"side\"", "\"front\""), "front"},
-      {"no such camera", small_pictures + "[[truth.camera]]\nname = \"top\"\n", "nothing is named \"top\""},
+      {"no such camera", small_pictures + "[[truth.camera]]\nname = \"top\"\n", "has the name \"top\""},
       {"another arm", small_pictures + "[[truth.arm.section]]\nlength = 1\n", "the true arm has 1 sections"},
       {"unknown key", small_pictures + "[truth]\nweather = 1\n", "truth.weather: unknown key"},
       {"a name that leads elsewhere", replaced(small_pictures, "\"side\"", "\"../side\""),

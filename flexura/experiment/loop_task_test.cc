@@ -310,7 +310,7 @@ TEST(EtalonLoop, RefusesWhatItCannotDo) {
   EXPECT_THAT(error_of_file(with_arm), HasSubstr("expected stand.arm = false"));
   EXPECT_THAT(error_of_file(
                   etalon_rig("method = \"etalon\"\n", LoopRig{.size = 0.5}, "rotation = [0.8, 0.6, 0, 0]\n")),
-              HasSubstr("stands upright"));
+              HasSubstr("needs an upright cylinder"));
   EXPECT_THAT(
       error_of_file(
           "[arm]\n[[arm.section]]\nlength = 1\n[[task]]\nkind = \"calibrate\"\nmethod = \"etalon\"\n"),

@@ -15,15 +15,15 @@ namespace flexura {
 /// Returns the objects around the arm at the start of a run: screens, etalon, obstacles.
 [[nodiscard]] SceneMessage stand_message(const Experiment& experiment);
 
-/// Returns the poses of the arm's base ("base") and the cameras' optical frames ("camera/NAME") at the start,
-/// and the world with its Y as z ("upright"), for programs that draw z upwards.
+/// Returns the poses of the arm's base ("base") and the cameras' optical frames ("camera/NAME") at the start.
+/// Also returns the frame "upright", the world with its Y as z, for programs that draw z upwards.
 [[nodiscard]] FramesMessage frames_message(const Experiment& experiment);
 
 /// Returns a camera's lens at a zoom, as at `time` s.
 [[nodiscard]] CameraCalibrationMessage calibration_message(const Camera& camera, double time, double zoom);
 
-/// Logs one camera's lens and the pose of its optical frame, for programs that draw logs: each at the start,
-/// and when it has changed, at most once per frame of the camera.
+/// Logs one camera's lens and the pose of its optical frame, for programs that draw logs. Each is logged at
+/// the start and after changes, at most once per frame of the camera.
 class CameraDrawing {
  public:
   /// Takes the true camera and its model, by whose start its axes count. Logs the lens at the start; the pose

@@ -50,7 +50,7 @@ ExportResult export_mp4(const std::filesystem::path& results, const std::vector<
                         Progress* progress) {
   if (!has_program(film_program))
     throw std::runtime_error(fmt::format(
-        "there is no program {0} on the PATH, which makes films: install the package {0}", film_program));
+        "the program {0}, which makes films, is not in the PATH: install the package {0}", film_program));
   return export_films(
       results, "mp4", cameras,
       [](const std::filesystem::path& stem, const SensorConfig& sensor) {

@@ -6,7 +6,7 @@
 namespace flexura {
 
 /// Instruction sets of functions that process several numbers at once. Results are bitwise equal for all of
-/// them (docs/kinematic-model.md, "Many arms at once").
+/// them.
 enum class SimdPath {
   baseline,  ///< Available on every processor of the build's architecture. On x86-64: SSE2, two doubles per
              ///< instruction.

@@ -15,10 +15,10 @@
 
 namespace flexura {
 
-/// Returns the elastic rod of an arm as a file describes it, in the frame of the arm's base. Its tendons are
-/// those of `[[arm.tendon]]`. Without these it has the tendons of `drive`, if there is one, and the drive's
-/// disks in sections without disks of their own. Throws std::invalid_argument if a section has no material;
-/// other keys were checked by the file's reader.
+/// Returns the elastic rod of an arm described by a file, in the frame of the arm's base. The rod has the
+/// tendons of `[[arm.tendon]]`. If there are none, it has the tendons of `drive`, and the drive's disks in
+/// sections without disks of their own. Throws std::invalid_argument if a section has no material; other keys
+/// were checked by the file's reader.
 [[nodiscard]] Rod rod_of(const ArmConfig& arm, const std::optional<DriveConfig>& drive);
 /// Returns the rod of an arm without a drive.
 [[nodiscard]] Rod rod_of(const ArmConfig& arm);
@@ -28,12 +28,12 @@ namespace flexura {
 [[nodiscard]] RodLoads loads_of(const ArmConfig& arm);
 
 /// Returns how far each tendon of a rod is pulled in, m, if its sections are arcs bent and stretched as in
-/// `state`. Arms whose tendons are pulled to bend them so are modelled this way. If a bend's middle would be
-/// passed by a tendon, which no rod reaches, the length still increases with the bend. Throws
-/// std::invalid_argument if `state` has another number of sections.
+/// `state`. Simulated arms use it to convert commanded bends into displacements. In a bend so strong that a
+/// tendon passes the centre of the arc, the tendon's length still increases with the bend. No rod bends so
+/// far. Throws std::invalid_argument if `state` has another number of sections.
 [[nodiscard]] TendonDisplacements arc_displacements(const Rod& rod, const ArmState& state);
-/// Returns the derivatives of arc_displacements by every section's (bend_x, bend_y, stretch): one row a
-/// tendon, 3 columns a section. Throws as arc_displacements.
+/// Returns the derivatives of arc_displacements by the (bend_x, bend_y, stretch) of each section. There is
+/// one row per tendon and 3 columns per section. Errors as arc_displacements.
 [[nodiscard]] Eigen::MatrixXd arc_displacement_slopes(const Rod& rod, const ArmState& state);
 
 /// Returns how far a rod's tendons are pulled in, m, if each pulls with `tension` N without other loads.
@@ -43,9 +43,9 @@ namespace flexura {
 /// Default number of arcs of a section of an arm that is modelled as a rod.
 inline constexpr std::size_t arcs_of_rod_section = 3;
 
-/// Returns the model of an arm and its drive that tasks use: a section is an arc, or several
+/// Returns the model of an arm and its drive that tasks use. In it, a section is one arc or several
 /// (Section::bend_profile). If the arm's model is static or dynamic, shapes are those of the rod's
-/// equilibrium under commands (RodResponse). Throws as RodResponse.
+/// equilibrium under commands (RodResponse). Errors as RodResponse.
 [[nodiscard]] ArmModel arm_model_of(const ArmConfig& arm, const std::optional<DriveConfig>& drive);
 
 }  // namespace flexura

@@ -47,15 +47,16 @@ Eigen::Matrix3d rub_by_slip(const ContactLaw& law, const Sliding& sliding, const
 
 }  // namespace
 
+// Within these limits, forces and their derivatives do not overflow.
 std::string law_problem(const ContactLaw& law) {
-  const auto is_above = [](double value) { return value > 0 && std::isfinite(value); };
-  if (!is_above(law.stiffness)) return "the stiffness of contacts must be above 0 and finite";
-  if (!(law.damping >= 0) || !std::isfinite(law.damping))
-    return "the damping of contacts must be at least 0 and finite";
-  if (!(law.friction >= 0) || !std::isfinite(law.friction))
-    return "the friction of contacts must be at least 0 and finite";
-  if (!is_above(law.slip_speed)) return "the slip speed of contacts must be above 0 and finite";
-  if (!is_above(law.transition)) return "the transition of contacts must be above 0 and finite";
+  constexpr double least = 1e-30, most = 1e30;
+  const auto is_above = [](double value) { return value >= least && value <= most; };
+  const auto is_not_below = [](double value) { return value >= 0 && value <= most; };
+  if (!is_above(law.stiffness)) return "the stiffness of contacts must be above 0 and at most 1e30";
+  if (!is_not_below(law.damping)) return "the damping of contacts must be at least 0 and at most 1e30";
+  if (!is_not_below(law.friction)) return "the friction of contacts must be at least 0 and at most 1e30";
+  if (!is_above(law.slip_speed)) return "the slip speed of contacts must be above 0 and at most 1e30";
+  if (!is_above(law.transition)) return "the transition of contacts must be above 0 and at most 1e30";
   return "";
 }
 

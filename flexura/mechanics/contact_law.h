@@ -25,19 +25,20 @@ struct ContactPress {
   double force = 0, by_depth = 0, by_rate = 0;
 };
 /// Returns the normal force of K. H. Hunt and F. R. E. Crossley (1975), linear in the depth: k depth (1 +
-/// damping rate). It is smooth where it begins and where it would pull. `rate`: rate of the depth, m/s.
+/// damping rate). It is smooth at first contact and where it would become attractive. `rate`: rate of the
+/// depth, m/s.
 [[nodiscard]] ContactPress press(const ContactLaw& law, double depth, double rate);
 
 /// Contact of a ball around a point of the rod with a body.
 struct Touch {
   Eigen::Vector3d center = Eigen::Vector3d::Zero();
   double radius = 0;
-  NearestPoint nearest;               ///< Nearest point of the body to the centre.
+  NearestPoint nearest;               ///< Nearest point of the body to `center`.
   Vector6d twist = Vector6d::Zero();  ///< Twist of the point relative to the body, about the origin.
   double run = 0;                     ///< Length of rod that the point represents, m.
 };
 
-/// Result of a contact of ball and body.
+/// Force and state of a contact between ball and body.
 struct TouchForce {
   Eigen::Vector3d point = Eigen::Vector3d::Zero();  ///< Deepest point of the ball's surface in the body, m.
   Eigen::Vector3d force = Eigen::Vector3d::Zero();  ///< On the ball, N.
@@ -52,7 +53,7 @@ struct TouchForce {
 /// Returns normal force and friction. Friction is -friction normal_force slip / sqrt(|slip|^2 +
 /// slip_speed^2).
 [[nodiscard]] TouchForce touch_force(const ContactLaw& law, const Touch& touch);
-/// Derivatives of a contact by as many numbers as there are columns.
+/// Derivatives of a contact by several variables, one column per variable.
 struct TouchChange {
   static constexpr int most = 30;
   using Row = Eigen::Matrix<double, 1, Eigen::Dynamic, Eigen::RowMajor, 1, most>;
@@ -62,7 +63,7 @@ struct TouchChange {
   Rows normal;    ///< Derivative of the normal.
   Rows velocity;  ///< Derivative of the ball's velocity relative to the body at the touching point.
 };
-/// Returns the derivative of the force.
+/// Returns the derivative of the force by the variables of `change`.
 [[nodiscard]] TouchChange::Rows force_change(const ContactLaw& law, const Touch& touch, const TouchForce& at,
                                              const TouchChange& change);
 /// Positive semidefinite part of a contact's derivative by the motion of the touching point: spring and
@@ -70,10 +71,11 @@ struct TouchChange {
 struct TouchHold {
   Eigen::Matrix3d stiffness = Eigen::Matrix3d::Zero(), damping = Eigen::Matrix3d::Zero();
 };
-/// Returns these parts for a contact with this force.
+/// Returns the TouchHold of a contact with the force `at`.
 [[nodiscard]] TouchHold hold_of(const ContactLaw& law, const Touch& touch, const TouchForce& at);
 
-/// Returns the force with its derivatives by the point's motion, for a body at rest.
+/// Returns the force on the ball, for a body at rest. Sets `pull` to its wrench and the derivatives by the
+/// point's motion.
 TouchForce touch_force(const ContactLaw& law, const Touch& touch, NodePull& pull);
 
 }  // namespace flexura

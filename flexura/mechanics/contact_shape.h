@@ -9,17 +9,16 @@
 
 namespace flexura {
 
-/// Point near a body: its signed distance to the surface, m, negative inside; the outward unit normal, which
-/// is the distance's gradient; and the normal's derivative, symmetric, 1/m. The nearest point of the surface
-/// is point - distance normal.
+/// Position of a point relative to a body. `distance`: signed distance to the surface, m, negative inside.
+/// `normal`: outward unit normal, the gradient of the distance. `curvature`: derivative of the normal,
+/// symmetric, 1/m. The nearest point of the surface is point - distance normal.
 struct NearestPoint {
   double distance = std::numeric_limits<double>::infinity();
   Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();
   Eigen::Matrix3d curvature = Eigen::Matrix3d::Zero();
 };
 
-/// A convex body that a rod can touch: a plane, a ball, a capsule or a box of a file, in the frame of the
-/// rod's base.
+/// An obstacle that a rod can touch: a plane, ball, capsule or box, in the frame of the rod's base.
 class ContactShape {
  public:
   /// `X_BW`: pose of the obstacle's frame in the base's. Throws std::invalid_argument for numbers that are
@@ -31,7 +30,7 @@ class ContactShape {
   [[nodiscard]] NearestPoint nearest(const Eigen::Vector3d& p_B) const;
   /// Returns the signed distance only.
   [[nodiscard]] double distance(const Eigen::Vector3d& p_B) const;
-  /// Length of rod from the base on that may touch the body without effect, m.
+  /// Returns the length of rod, from its base on, that never has contact with the obstacle, m.
   [[nodiscard]] double ignore_base() const { return ignore_base_; }
 
  private:

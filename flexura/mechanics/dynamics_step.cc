@@ -330,6 +330,7 @@ bool RodDynamics::Work::finish(const Stage& stage, RodState& state, double h, Ro
       state.momentum + h * ((1 - use.gamma) * state.force + use.gamma * (now * force_ - old * state.force));
   change_ = state.q + h * ((1 - use.gamma) * state.rate + use.gamma * (now * velocity - old * state.rate));
   if (!is_of_this_world(left_) || !is_of_this_world(change_)) return false;
+  if (rubs() && !add_friction_work(state, h, result)) return false;
   state.q += h * (1 - use.gamma) * state.rate;
   state.momentum += h * (1 - use.gamma) * state.force;
   state.rate = now * velocity - old * state.rate;
@@ -338,10 +339,7 @@ bool RodDynamics::Work::finish(const Stage& stage, RodState& state, double h, Ro
   state.momentum += h * use.gamma * state.force;
   state.time += h;
   std::ranges::copy(tensions, state.tensions.begin());
-  if (rubs()) {
-    find_friction_work(state, h, result);
-    std::ranges::copy(motion.frictions(), state.friction.begin());
-  }
+  if (rubs()) std::ranges::copy(motion.frictions(), state.friction.begin());
   state.middles = state.step == h ? std::min(3, state.middles + 1) : 1;
   state.step = h;
   state.middle[2].swap(state.middle[1]);
@@ -386,15 +384,21 @@ RodStep RodDynamics::Work::step_once(const Scheme& use, RodState& state, const T
   return result;
 }
 
-// Computes from the stage the friction work of the step and its dissipated part (not stored in the bristles).
-void RodDynamics::Work::find_friction_work(const RodState& state, double h, RodStep& result) const {
+// Adds from the stage the friction work of the step and its dissipated part (not stored in the bristles).
+// Returns false if they are not finite.
+bool RodDynamics::Work::add_friction_work(const RodState& state, double h, RodStep& result) const {
+  double total = 0, loss = 0;
   for (std::size_t i = 0; i < layout.pieces; ++i) {
     const double held = motion.frictions()[i], before = state.friction[i];
     if (grip[i] == 0) continue;
     const double work = held * h * motion.slides()[i];
-    result.friction_work += work;
-    result.friction_loss += work - (held - before) * (held + before) / (2 * grip[i]);
+    total += work;
+    loss += work - (held - before) * (held + before) / (2 * grip[i]);
   }
+  if (!std::isfinite(total) || !std::isfinite(loss)) return false;
+  result.friction_work += total;
+  result.friction_loss += loss;
+  return true;
 }
 
 // Long steps leave oscillating momenta in stiff strains, which would be an impact in short steps. Restarts

@@ -35,8 +35,9 @@ struct RodDynamics::Work {
           memory(alpha_f * (1 - gamma / alpha_m)),
           error(1.0 / 12 + 0.25 * (1 - rho) * (1 - rho) / ((1 + rho) * (1 + rho))) {}
     double alpha_f, alpha_m, gamma;
-    double stage;   ///< Factor of the step times the stage's rate: from the start to the stage.
-    double memory;  ///< Factor of the step times RodState::rate, the integrator's rate before the step.
+    /// Coefficient of h times the stage's rate, in the change of state from the step's start to the stage.
+    double stage;
+    double memory;  ///< Coefficient of h times RodState::rate, in the same change.
     double error;   ///< Step error in units of h^3 x'''.
   };
 
@@ -47,15 +48,16 @@ struct RodDynamics::Work {
   void set_surroundings(const RodSurroundings* given);
   [[nodiscard]] std::string input_problem(const TendonInput& tendons, const RodLoads& loads) const;
   [[nodiscard]] bool rubs() const { return !layout.rubbing.empty(); }
-  /// Sets the state in motion under `tendons`, with its forces; friction as held by `motion`.
+  /// Computes momentum, forces, tensions and friction of a state with rates v. Friction starts from that set
+  /// by hold().
   void set_forces(RodState& state, const Eigen::VectorXd& v, const TendonInput& tendons,
                   const RodLoads& loads);
   /// Sets the friction state of the motion and its derivatives (RodMotion::hold).
   void hold(const double* before, double time);
-  /// How long tendons are assumed to have slid at their present rate, s, if nothing else is known.
+  /// Time for which tendons have slid at their present rate, s, if nothing else is known.
   static constexpr double has_slid = 0.1;
   RodStep step(RodState& state, const TendonInput& tendons, const RodLoads& loads, double h);
-  /// Sets tensions as given, or by displacements at the present shape.
+  /// Sets the tensions: those of `tendons`, or those caused by its displacements at the present shape.
   void set_tensions(const TendonInput& tendons);
   /// Places the rod at a state, factors the mass matrix and sets velocity_.
   bool find_velocity(const RodState& state);
@@ -71,7 +73,8 @@ struct RodDynamics::Work {
   RodMotion<double> motion;
   RodMatrix matrix;
   const RodSurroundings* surroundings = nullptr;
-  std::unique_ptr<RodPoints> points = {};        ///< Where they act besides the nodes; null: nowhere.
+  /// Points besides the nodes where surroundings act; null: none.
+  std::unique_ptr<RodPoints> points = {};
   std::vector<double> rest_lengths, compliance;  // m, m/N
   std::vector<double> grip;                      // N/m, of the pieces of tendons with friction
   std::vector<double> tensions;
@@ -79,10 +82,10 @@ struct RodDynamics::Work {
   /// Bodies of nodes that carry payloads, without the payloads.
   std::vector<std::pair<std::size_t, RodLayout::Body>> bare = {};
 
-  /// Returns the derivatives at the present shape, input included; tensions are those of the input.
+  /// Returns the derivatives at the present shape, also those by the input. Tensions are those of `tendons`.
   [[nodiscard]] RodDynamicsSlopes slopes_at(const Eigen::VectorXd& q, const Eigen::VectorXd& v,
                                             const TendonInput& tendons, const RodLoads& loads);
-  /// Solves the step's stage from the state as it is.
+  /// Solves the stage of a step that starts at `state`; q and v become those of the stage.
   [[nodiscard]] bool find_stage(const RodState& state, const TendonInput& tendons, const RodLoads& loads,
                                 double h, Eigen::VectorXd& q, Eigen::VectorXd& v);
 
@@ -105,13 +108,14 @@ struct RodDynamics::Work {
   void guess(const RodState& state, double h);
   // Computes the stage's momenta and forces at `velocity`; change_ becomes the residual.
   void evaluate(const Stage& stage);
-  // Replaces change_ by the change of the rates, by the quick matrix or the derivative.
+  // Replaces the residual in change_ by the Newton step of the rates, with the approximate or the exact
+  // derivative.
   bool solve_quickly(const Stage& stage);
   bool solve_exactly(const Stage& stage);
   bool iterate_quickly(const Stage& stage, double contraction, RodStep& result, double& worst_gain);
   bool iterate_exactly(const Stage& stage, RodStep& result);
   void find_grip(const Eigen::VectorXd& give);
-  void find_friction_work(const RodState& state, double h, RodStep& result) const;
+  bool add_friction_work(const RodState& state, double h, RodStep& result) const;
   bool find_tensions();
   bool factor_exactly(const Stage& stage);
   template <typename Solve>

@@ -24,8 +24,8 @@ struct IdentificationEquations {
   Eigen::VectorXd scales;   ///< Unit of each equation.
 
   [[nodiscard]] bool has_noise() const { return !covariances_.empty(); }
-  /// Returns the covariance of the noise of two columns, equations x equations: 0 is `fixed`, g + 1 parameter
-  /// g.
+  /// Returns the covariance between the noise of columns g and h, equations x equations. Column 0 is `fixed`,
+  /// column i + 1 that of parameter i.
   [[nodiscard]] const Eigen::MatrixXd& noise(Eigen::Index g, Eigen::Index h) const {
     return covariances_[static_cast<std::size_t>(g * (by_parameter.cols() + 1) + h)];
   }

@@ -20,37 +20,38 @@ struct RodMotionSample {
 
 /// Settings of the tension fit.
 struct TensionFitConfig {
-  std::vector<double> most = {};  ///< Maxima, N, one a tendon, each >= 0; empty: unbounded.
-  /// Weight of the effort relative to the missing forces; > 0. Among tensions that make the same forces, the
-  /// ones with the least sum of squares are taken. The relative error of other tensions is about this number.
+  std::vector<double> most = {};  ///< Maxima, N, one per tendon, each >= 0; empty: unbounded.
+  /// Weight of the effort, the sum of squared tensions, relative to the missing forces; > 0. It selects the
+  /// least effort among tensions that apply the same forces. It changes unique tensions by a relative error
+  /// of about its value.
   double effort = 1e-10;
 };
 
 /// Tensions that come nearest to target generalized forces.
 struct TensionFit {
-  std::vector<double> tensions;  ///< N, one a tendon, each from 0 to its maximum.
+  std::vector<double> tensions;  ///< N, one per tendon, each from 0 to its maximum.
   Eigen::VectorXd desired;       ///< Target generalized forces.
   Eigen::VectorXd missing;       ///< Remaining forces: target minus those of the tensions.
   /// Energies that the rod would store under the target and the missing forces, J. If no tension helps, both
   /// are equal.
   double desired_energy = 0, missing_energy = 0;
-  /// Whether the tensions are unique, regardless of sign: the tendons are linearly independent.
+  /// Whether the tensions would be unique without bounds: the forces of the tendons are linearly independent.
   bool is_determined = false;
 
-  /// Returns the missing part of the target, 0 to 1: the root of the ratio of the energies.
+  /// Returns the missing part of the target, 0 to 1: the square root of missing_energy / desired_energy.
   [[nodiscard]] double residual() const;
 };
 
 /// Returns the tensions that come nearest to the generalized forces `desired` at q. They minimise the missing
-/// energy f^T K^-1 f / 2 with the rod's stiffness K, so that stiff strains have little weight. Among several
-/// minima it takes that of least effort. Throws std::invalid_argument for lists of wrong length, numbers that
-/// are not finite, or a bound below 0.
+/// energy f^T K^-1 f / 2 with the rod's stiffness K, so forces on stiff strains have little weight. Among
+/// several minima, the one with least effort is returned. Throws std::invalid_argument for lists of wrong
+/// length, numbers that are not finite, or a bound below 0.
 [[nodiscard]] TensionFit nearest_tensions(RodDynamics& dynamics, const Eigen::VectorXd& q,
                                           const Eigen::VectorXd& desired,
                                           const TensionFitConfig& config = {});
 
-/// Returns the tensions of a motion at one time under loads: nearest_tensions to its needed_forces. Throws as
-/// nearest_tensions.
+/// Returns the tensions of a motion at one time under loads: the nearest_tensions to the needed_forces.
+/// Throws as nearest_tensions.
 [[nodiscard]] TensionFit inverse_dynamics(RodDynamics& dynamics, const RodMotionSample& motion,
                                           const RodLoads& loads, const TensionFitConfig& config = {});
 /// Returns the tensions along a motion.
@@ -69,9 +70,9 @@ struct ComputedTorqueGains {
   double velocity = 0;  ///< Kd, 1/s; 2 sqrt(Kp) is critical damping.
 };
 
-/// Returns the tensions that accelerate a rod at q, v by wanted.a + Kd (wanted.v - v) + Kp (wanted.q - q). If
-/// they make all of the forces, the error e of all modes obeys e'' + Kd e' + Kp e = 0. Throws as
-/// nearest_tensions, and for gains that are not finite.
+/// Returns the tensions that accelerate a rod at q, v by desired.a + Kd (desired.v - v) + Kp (desired.q - q).
+/// If tensions can apply the needed forces exactly, the error e of each mode obeys e'' + Kd e' + Kp e = 0.
+/// Throws as nearest_tensions, and for gains that are not finite.
 [[nodiscard]] TensionFit computed_torque(RodDynamics& dynamics, const Eigen::VectorXd& q,
                                          const Eigen::VectorXd& v, const RodMotionSample& desired,
                                          const ComputedTorqueGains& gains, const RodLoads& loads,

@@ -21,30 +21,31 @@ struct RodTarget {
     Eigen::Vector3d position = Eigen::Vector3d::Zero();
   };
 
-  std::optional<Eigen::Vector3d> position = {};   ///< Of the tip, m.
-  std::optional<Eigen::Vector3d> direction = {};  ///< Of the tip's z axis; nonzero, of any length.
-  std::optional<Eigen::Matrix3d> rotation = {};   ///< Of the tip; excludes `direction`.
+  std::optional<Eigen::Vector3d> position = {};  ///< Target position of the tip, m.
+  /// Target direction of the tip's z axis; any nonzero length.
+  std::optional<Eigen::Vector3d> direction = {};
+  std::optional<Eigen::Matrix3d> rotation = {};  ///< Target rotation of the tip; excludes `direction`.
   /// Weight of errors of direction or rotation, m per radian; > 0.
   double angle_weight = 0.1;
-  std::vector<Place> places = {};  ///< A shape.
+  std::vector<Place> places = {};  ///< Targets of further places, for a target shape.
 };
 
 /// Start and tolerances of the search.
 struct InverseStaticsConfig {
   /// The robot's present state: the search starts with its tensions and its branch of equilibria. Default:
-  /// without tensions, from the undeformed rod.
+  /// the undeformed rod without tensions.
   std::optional<Equilibrium> start = {};
   /// Largest error of each place, m, and of weighted angles; > 0.
   double tolerance = 1e-8;
   int max_starts = 12;  ///< Largest number of searches from different tensions; >= 1.
-  /// Makes all searches and takes the result of least effort, since the effort may have several minima.
+  /// Makes all searches and returns the result with least effort. The effort may have several minima.
   bool all_starts = false;
 };
 
 /// How a search for tensions ended.
 enum class InverseStaticsEnd {
   reached,         ///< A stable equilibrium meets the target within the tolerance.
-  nearest,         ///< No search reached it; the result comes nearest.
+  nearest,         ///< No search reached the target; the result is the nearest one found.
   bad_input,       ///< Described in `problem`.
   no_equilibrium,  ///< No initial equilibrium was found.
 };
@@ -69,14 +70,15 @@ struct InverseStaticsResult {
   [[nodiscard]] bool reached() const { return end == InverseStaticsEnd::reached; }
 };
 
-/// Finds tensions between 0 and `most` (N, one a tendon, finite) that bring the equilibrium under `loads` to
-/// the target with least effort (inverse kinematics under load). If none do, it minimises the sum of squared
-/// distances and weighted angles. Reports bad input in the result and does not throw. Afterwards `statics` is
-/// solved with the result's tensions, so its slopes() belong to them.
+/// Inverse kinematics under load: finds tensions that bring the equilibrium under `loads` to the target with
+/// least effort. Tensions are between 0 and `most` (N, one per tendon, finite). If no tensions reach the
+/// target, it minimises the sum of squared distances and weighted angles. Reports bad input in the result and
+/// does not throw. Afterwards `statics` is solved with the result's tensions, so its slopes() are those at
+/// the result.
 ///
 /// Method: Levenberg and Marquardt within bounds (BoundedDescent), then stabilized sequential quadratic
-/// programming (S. J. Wright 1998) along the tensions that reach the target. Where most tendons are slack,
-/// constraints depend on each other.
+/// programming (S. J. Wright 1998) along the tensions that reach the target. The latter handles dependent
+/// constraints, which occur where most tendons are slack.
 [[nodiscard]] InverseStaticsResult solve_inverse_statics(RodStatics& statics, const RodTarget& target,
                                                          const RodLoads& loads,
                                                          const std::vector<double>& most,

@@ -6,14 +6,14 @@
 
 namespace flexura {
 
-/// Returns the d that minimises d^T A d / 2 + b^T d with low <= d <= high, for a positive definite A and
-/// bounds that include 0. Active set method.
+/// Returns the d that minimises d^T A d / 2 + b^T d with low <= d <= high, by an active set method. A is
+/// positive definite, and the bounds include 0.
 [[nodiscard]] Eigen::VectorXd least_in_box(const Eigen::MatrixXd& A, const Eigen::VectorXd& b,
                                            const Eigen::VectorXd& low, const Eigen::VectorXd& high);
 
-/// Moves x along the solutions of the descent's problem to a nearby minimum of |x| within the bounds, which
-/// are intervals from 0 for each variable. On entry x is a solution and the descent has its r and J; x stays
-/// a solution. Returns whether x is such a minimum.
+/// Moves x along the solutions of the descent's problem to a nearby minimum of |x| within the bounds. The
+/// lower bound of each variable is 0. On entry x is a solution, and `descent` has r and J at x. x stays a
+/// solution. Returns whether x is such a minimum.
 ///
 /// Stabilized sequential quadratic programming (S. J. Wright 1998), which handles dependent constraints, with
 /// M. J. D. Powell's damped updates of the Lagrangian's second derivative. Each step ends with a descent back

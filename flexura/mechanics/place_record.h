@@ -14,26 +14,26 @@ namespace flexura {
 
 /// Measurement of a rod's places at one time.
 struct RodPlaceSample {
-  double time = 0;                         ///< s, above that of the sample before.
+  double time = 0;                         ///< s; later than in the previous sample.
   std::vector<Eigen::Vector3d> positions;  ///< Measured places, in the frame of the rod's base, m.
-  std::vector<double> tensions = {};       ///< N, one a tendon, each >= 0; empty: zero.
+  std::vector<double> tensions = {};       ///< N, one per tendon, each >= 0; empty: zero.
 };
 
 /// Motion of a rod's modes from measured places.
 struct RodPlaceRecord {
-  RodMotionRecord record;  ///< With the modes' standard deviations, without their rates.
+  RodMotionRecord record;  ///< Modes with their standard deviations, without rates.
   double noise = 0;        ///< Standard deviation of each coordinate of a place, m, given or estimated.
   double rms = 0;          ///< Root mean square residual of the coordinates, m.
 };
 
-/// Fits the modes to places at each time by least squares, under loads. Strains that places do not show, such
-/// as a twist of a straight rod, stay near the undeformed value: the energies of all strains are a prior. A
-/// mode of bending may have the energy of the bends in the record, a mode of another strain a hundredth of
-/// it. `noise`: standard deviation of each coordinate, m. 0: unknown; then it is estimated from the
-/// residuals, at least 1e-5 of the rod's length. Throws std::invalid_argument for an invalid rod, numbers
-/// that are not finite, fewer than two samples, or wrong numbers of positions. Throws it also for places that
-/// are duplicate, outside the rod, or not approached by any of its shapes, and if there are no more
-/// coordinates than modes.
+/// Fits the modes to places at each time by least squares, under loads. The energies of all strains are a
+/// prior. So strains that places do not show, such as a twist of a straight rod, stay near the undeformed
+/// value. The prior energy of a bending mode is that of the bends in the record; that of any other mode is a
+/// hundredth of it. `noise`: standard deviation of each coordinate, m. 0: it is estimated from the residuals,
+/// with a lower bound of 1e-5 of the rod's length. Throws std::invalid_argument for an invalid rod, numbers
+/// that are not finite, fewer than two samples, or wrong numbers of positions. Also throws it for duplicate
+/// places, and for places outside the rod or measured far from all of its shapes. Further errors are as many
+/// coordinates as modes, or fewer.
 [[nodiscard]] RodPlaceRecord record_of_places(const Rod& rod, std::span<const RodPlace> places,
                                               std::span<const RodPlaceSample> samples, const RodLoads& loads,
                                               double noise = 0);

@@ -21,13 +21,13 @@ namespace flexura {
 struct StrainModes {
   int shear = 1;
   int stretch = 1;
-  int bend = 5;  ///< For each of the two directions.
+  int bend = 5;  ///< For each of the two bending directions.
   int twist = 4;
   /// In a section with guide disks each piece between two disks has modes of its own (rod_parts.h); else the
   /// numbers are those of the whole section, too few where strongly bent pieces lie beside their chords.
   bool by_piece = true;
 
-  /// Moves in the plane of x and z only: bends about y, without twist and shear along y.
+  /// The rod moves only in its xz plane: it bends about y, without twist or shear along y.
   bool planar = false;
 
   /// Returns the numbers of the six strains, in their order.
@@ -50,16 +50,17 @@ struct RodSection {
   /// Radius of the elastic rod at the section's base and end, m; > 0.
   std::array<double, 2> radius = {1e-3, 1e-3};
   std::array<double, 2> inner_radius = {0, 0};  ///< Radius of the bore at base and end, m; below `radius`.
-  double youngs_modulus = 0;                    ///< E, Pa; > 0, like G, unless `stiffness` is given.
-  double shear_modulus = 0;                     ///< G, Pa
+  double youngs_modulus = 0;                    ///< E, Pa; > 0 unless `stiffness` is given.
+  double shear_modulus = 0;                     ///< G, Pa; > 0 unless `stiffness` is given.
   double density = 0;                           ///< kg/m^3
-  /// Direct stiffness of the six strains: GA twice and EA, N; EI about x and y and GJ, N m^2; each > 0.
+  /// Stiffness of the six strains, given directly: GA (x), GA (y), EA, N; EI (x), EI (y), GJ, N m^2; each >
+  /// 0.
   std::optional<Vector6d> stiffness = {};
-  std::optional<double> mass_per_length = {};  ///< Direct mass per length, kg/m.
-  /// Viscosity (W. Voigt) as a time constant, s: a free strain decays to 1/e against the stiffness in this
-  /// time. The damping is the stiffness times it. Dynamics only, like `damping`.
+  std::optional<double> mass_per_length = {};  ///< Mass per length, given directly, kg/m.
+  /// Viscosity (Kelvin-Voigt) as a time constant, s. The damping is the stiffness times this time. A free
+  /// strain without inertia decays to 1/e in this time. Used in dynamics only, as is `damping`.
   double damping_time = 0;
-  /// Direct damping of the six strains, N s and N m^2 s; each >= 0.
+  /// Damping of the six strains, given directly, N s and N m^2 s; each >= 0.
   std::optional<Vector6d> damping = {};
   /// Curvature about x and y and twist of the undeformed rod, 1/m: coefficients of powers of t = s/length.
   /// Empty: straight.
@@ -79,7 +80,7 @@ struct RodSection {
   [[nodiscard]] double mass_per_length_at(double t) const;
   /// Returns the diagonal of the damping at t, N s and N m^2 s.
   [[nodiscard]] Vector6d damping_at(double t) const;
-  /// Returns the moments of inertia about x, y and z of a slice at t, per metre, kg m: those of the round
+  /// Returns the moments of inertia about x, y and z of a slice at t, per metre, kg m. The slice is a round
   /// cross-section with the mass `mass_per_length_at`.
   [[nodiscard]] Eigen::Vector3d slice_inertia_at(double t) const;
   /// Returns the undeformed strain at t.
@@ -94,13 +95,13 @@ struct RodSection {
 struct TendonRoute {
   std::size_t section = 0;             ///< Section at whose end it is fastened, 0 at the base.
   double radius = 0;                   ///< m
-  double radius_slope = 0;             ///< Converging (< 0) or diverging, m/m.
-  double angle = 0;                    ///< From x towards y, rad.
-  double angle_slope = 0;              ///< Helical slope, rad/m.
+  double radius_slope = 0;             ///< Change of the radius per arc length, m/m; < 0: converging.
+  double angle = 0;                    ///< Angle at the base, from x towards y, rad.
+  double angle_slope = 0;              ///< Change of the angle per arc length (helix), rad/m.
   std::vector<double> x = {}, y = {};  ///< Coefficients of powers of s: m, m/m, ...
   double compliance = 0;               ///< Extension per newton, m/N; >= 0. Used with displacements only.
-  /// Coulomb friction while it is pulled in: exp(-friction angle) of the tension is left where the tendon has
-  /// turned by an angle since its base (L. Euler, J. Eytelwein); >= 0.
+  /// Coulomb friction coefficient; >= 0. While the tendon is pulled in, its tension after turning by an angle
+  /// since the base is exp(-friction angle) times that at the base (L. Euler, J. Eytelwein).
   double friction = 0;
 
   /// Offset in the cross-section and its first two derivatives by s; z is 0.
@@ -114,14 +115,16 @@ struct TendonRoute {
 /// A force and a moment at the end of a section.
 struct EndLoad {
   std::size_t section = 0;
-  Eigen::Vector3d force = Eigen::Vector3d::Zero();   ///< N, in the base's frame; if following, in the end's.
+  /// N, in the base's frame; if `following`, in that of the section's end.
+  Eigen::Vector3d force = Eigen::Vector3d::Zero();
   Eigen::Vector3d moment = Eigen::Vector3d::Zero();  ///< N m, in the same frame as the force.
-  bool following = false;                            ///< Turns with the section's end.
+  /// Whether force and moment turn with the section's end.
+  bool following = false;
 };
 
-/// A spring that pulls a point of a rod's centerline to a place, like a rubber band. With d from the point to
-/// the place its force is k d / sqrt(1 + (k |d| / most)^2), and so never above `most`. A constant force is
-/// added to it.
+/// A spring that pulls a point of a rod's centerline to a place. The spring force is k d / sqrt(1 + (k |d| /
+/// most)^2), with the vector d from the point to the place. It never exceeds `most`. A constant force is
+/// added.
 struct PointSpring {
   std::size_t section = 0;
   double at = 1;                                    ///< Position as part of the section's length, in [0, 1].
@@ -137,8 +140,7 @@ struct RodLoads {
   Eigen::Vector3d per_length =
       Eigen::Vector3d::Zero();  ///< Force along the whole rod, N per metre of undeformed length.
   std::vector<EndLoad> ends = {};
-  /// Springs, each at a place that is a node of the rod. Statics only; for a rod in motion they are
-  /// surroundings (RodSpring).
+  /// Springs, each at a place that is a node of the rod. Used in statics only; dynamics uses RodSpring.
   std::vector<PointSpring> springs = {};
 };
 
@@ -151,8 +153,9 @@ struct Rod {
   [[nodiscard]] double length() const;
 };
 
-/// Returns the errors of a rod, in words; empty if it is valid. Errors are lengths, radii or stiffnesses that
-/// are not positive, a tendon that ends at no section, counts out of bounds, and numbers that are not finite.
+/// Returns the errors of a rod, in words; empty if it is valid. Errors are numbers that are not finite, and
+/// lengths, radii or stiffnesses that are not positive. Further errors are a tendon of a missing section and
+/// counts out of bounds.
 [[nodiscard]] std::vector<std::string> rod_problems(const Rod& rod);
 
 }  // namespace flexura

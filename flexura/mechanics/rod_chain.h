@@ -22,10 +22,11 @@ struct RodNode {
   bool operator==(const RodNode&) const = default;
 };
 
-/// The joined elements of a rod: its sections, or their pieces between guide disks (rod_parts.h). Computes
-/// the shape by the modes q and the balance r(q) of all generalized forces. Solves linear systems with r's
-/// derivative, at a cost linear in the number of elements. For r = 0 the rod is in equilibrium. If the loads
-/// have an energy, r is the gradient of the total energy. All in the frame of the base.
+/// The elements of a rod, joined in a chain: its sections, or their pieces between guide disks (rod_parts.h).
+/// Computes the shape for modes q, and the residual r(q) of the balance of all generalized forces. Solves
+/// linear systems with r's derivative, at a cost linear in the number of elements. For r = 0 the rod is in
+/// equilibrium. If the loads have an energy, r is the gradient of the total energy. All quantities are in the
+/// frame of the base.
 ///
 /// An element receives only the twist of its base from proximal ones and only a wrench from distal ones. So
 /// each element's modes are eliminated from tip to base, as in the articulated-body algorithm (R.
@@ -40,8 +41,8 @@ class RodChain {
   /// Returns the number of modes.
   [[nodiscard]] Eigen::Index size() const { return size_; }
   [[nodiscard]] std::size_t tendons() const { return rod_.tendons.size(); }
-  /// Returns for each mode the factor that removes its unit: a section's length for bends and twists, which
-  /// become radians, 1 for stretch and shear.
+  /// Returns for each mode the factor that makes it dimensionless. It is the section's length for bends and
+  /// twists, which become radians, and 1 for stretch and shear.
   [[nodiscard]] const Eigen::VectorXd& scales() const { return scales_; }
   [[nodiscard]] const std::vector<RodElement>& elements() const { return elements_; }
   /// Returns the node at a place, which must be one, else the nearest of its element. Throws
@@ -53,17 +54,17 @@ class RodChain {
   /// Returns the index in q of the first mode of element i.
   [[nodiscard]] Eigen::Index first(std::size_t element) const { return first_[element]; }
 
-  /// Multiplies each section's undeformed length by a factor > 0, one a section, for driven sections. Arc
-  /// lengths, and what is given by them, still refer to the original rod. Throws std::invalid_argument for a
-  /// wrong number of factors, or a factor that is not positive.
+  /// Multiplies the undeformed length of each section by a factor > 0, for sections with driven lengths. Arc
+  /// lengths still refer to the original rod. Throws std::invalid_argument for a wrong number of factors, or
+  /// a factor that is not positive.
   void stretch_rest(std::span<const double> factors);
 
-  /// Computes the balance at q under tensions, N, and a share of the loads.
+  /// Computes the residual r at q under the tensions at the base, N, and `share` times the loads.
   void balance(const Eigen::VectorXd& q, std::span<const double> tensions, const RodLoads& loads,
                double share);
-  /// Return results of the last balance. `residual`: r, size(). `tendon_lengths`: m. `length_slopes`: their
-  /// derivatives by q, size() x tendons(). `pull_slopes`: the derivative of r by the tensions at the base,
-  /// equal to `length_slopes` without friction.
+  /// The following functions return results of the last balance(). `residual`: r, size(). `tendon_lengths`:
+  /// m. `length_slopes`: their derivatives by q, size() x tendons(). `pull_slopes`: the derivative of r by
+  /// the tensions at the base, equal to `length_slopes` without friction.
   [[nodiscard]] const Eigen::VectorXd& residual() const { return residual_; }
   [[nodiscard]] const Eigen::VectorXd& tendon_lengths() const { return lengths_; }
   [[nodiscard]] const Eigen::MatrixXd& length_slopes() const { return slopes_; }
@@ -74,59 +75,59 @@ class RodChain {
   /// Returns whether a tendon pulled the holes of two guide disks together at the last balance. Real disks
   /// touch before; no shape beyond is an equilibrium.
   [[nodiscard]] bool disks_meet() const;
-  /// Returns minus the work of all loads from the base's origin on at the last balance, J. It is an energy if
-  /// has_energy().
+  /// Returns minus the work of all loads at the last balance, J; it is 0 for loads at the base's origin. It
+  /// is a potential energy if has_energy().
   [[nodiscard]] double load_energy(const RodLoads& loads) const;
   /// Returns whether r is the gradient of an energy under these loads: no moments, follower loads or
   /// friction.
   [[nodiscard]] bool has_energy(const RodLoads& loads) const;
 
-  /// Factors the derivative of r at the last balance plus `share` of the rod's stiffness. Returns false if it
-  /// is singular.
+  /// Factors the derivative of r at the last balance plus `share` times the rod's stiffness. Returns false if
+  /// it is singular.
   bool factor(double share = 0);
-  /// Returns the rod's stiffness, the second derivative of its strain energy, times dq, size().
+  /// Returns K dq with the stiffness K, the second derivative of the strain energy; size().
   [[nodiscard]] Eigen::VectorXd stiffness_times(const Eigen::VectorXd& dq) const;
-  /// Returns the size of a residual, J^1/2: the square root of the strain energy under this residual alone.
+  /// Returns the norm of a residual, J^1/2: the square root of the strain energy under this residual alone.
   [[nodiscard]] double stiffness_norm(const Eigen::VectorXd& residual) const;
-  /// Returns the number of negative eigenvalues as counted by the elimination; 0: the rod is stable at
-  /// constant tensions and loads. For moments and follower loads it is 1 if the determinant is negative, else
-  /// 0: this shows static divergence. Flutter depends on the mass.
+  /// Returns the number of negative eigenvalues of the factored derivative. 0: the rod is stable at constant
+  /// tensions and loads. With moments or follower loads it is 1 if the determinant is negative, otherwise 0.
+  /// This detects static divergence but not flutter, which depends on the mass.
   [[nodiscard]] int negative_count() const { return negative_; }
-  /// Returns this number for the derivative with held tendons. `of_give`: number of negative eigenvalues of
-  /// the tendons' compliance matrix.
+  /// Returns the same number for tendons held at their displacements. `of_give`: number of negative
+  /// eigenvalues of the tendons' compliance matrix.
   [[nodiscard]] int negative_count(int of_give) const {
     return is_symmetric_ ? negative_ - of_give : (negative_ + of_give) % 2;
   }
-  /// Replaces rhs by the solution for it; size() x columns.
+  /// Replaces the right-hand sides rhs by their solutions; size() x columns.
   void solve(Eigen::Ref<Eigen::MatrixXd> rhs);
 
   /// Returns the derivatives of r at the last balance by each section's five parameters, size() x 5 sections.
   /// Parameters are relative changes of its stiffness against shear, stretch, bends and twist, and of its
-  /// mass per length under this gravity. Requires the columns.
+  /// mass per length under this gravity. Requires place_with_columns().
   [[nodiscard]] Eigen::MatrixXd parameter_slopes(const Eigen::Vector3d& gravity) const;
 
-  /// Switches tendon friction; initially on.
+  /// Switches tendon friction on or off; initially on.
   void set_rubbing(bool on) { is_rubbing_ = on; }
-  /// Returns whether a tendon has friction. Then the factored derivative neglects the change of friction with
-  /// q.
+  /// Returns whether a tendon has friction. If so, the factored derivative neglects the change of friction
+  /// with q.
   [[nodiscard]] bool has_friction() const;
-  /// Returns this neglected change along dq of the residual at the last balance under these tensions.
+  /// Returns the neglected change of the residual along dq, at the last balance under these tensions.
   [[nodiscard]] Eigen::VectorXd friction_change(const Eigen::VectorXd& dq,
                                                 std::span<const double> tensions) const;
 
-  /// Returns the neglected change for every mode: size() x size().
+  /// Returns the neglected derivative by all modes, size() x size().
   [[nodiscard]] Eigen::MatrixXd friction_form(std::span<const double> tensions) const;
 
-  /// Computes the poses of all nodes at q. Balance computes them, with columns, only if loads or chords need
+  /// Computes the poses of all nodes at q. balance() computes poses and columns only if loads or chords need
   /// them.
   void place(const Eigen::VectorXd& q);
-  /// Computes poses and columns.
+  /// Computes poses and columns, the derivatives of node twists by q.
   void place_with_columns(const Eigen::VectorXd& q);
   /// Returns the pose of a node, after place() or place_with_columns().
   [[nodiscard]] const Pose& pose(const RodNode& at) const { return elements_[at.element].poses()[at.node]; }
   [[nodiscard]] const Pose& tip() const { return elements_.back().poses().back(); }
-  /// Writes the twist of a node by q, 6 x size(), about the base's origin; after place_with_columns(). An
-  /// Eigen::Ref is written through.
+  /// Writes the derivative of a node's twist about the base's origin by q into J, 6 x size(). Requires
+  /// place_with_columns().
   void columns_at(std::size_t element, std::size_t node, Eigen::Ref<RodElement::Columns> J) const;
 
  private:
@@ -136,7 +137,7 @@ class RodChain {
     bool is_definite = false;
     Eigen::MatrixXd matrix;                            // Condensed.
     Eigen::Matrix<double, Eigen::Dynamic, 6> by_base;  // dq by the twist of the base.
-    RodElement::Columns wrench_by_modes;               // Of this section and all distal ones.
+    RodElement::Columns wrench_by_modes;               // Sum over this section and all distal ones.
   };
   void find_stiffness() const;
   static void solve_pivot(const Pivot& pivot, Eigen::Ref<Eigen::MatrixXd> rhs);

@@ -26,12 +26,12 @@ struct RodContactConfig {
   /// Radii of the tube around each section, at the section's base and end, m; empty: those of the elastic
   /// rod.
   std::vector<std::array<double, 2>> radii = {};
-  /// Enables self-contact between places that are further apart along the rod than so many radii of its tube
-  /// at its thickest.
+  /// Enables self-contact. It acts between places whose distance along the rod exceeds `itself_apart` times
+  /// the largest radius of the tube.
   bool itself = true;
   double itself_apart = 6;
-  /// Contact points on the rod, section after section, rising (contact_places); empty: the chain's nodes.
-  /// They need not be nodes, and are free of cost where nothing is near.
+  /// Contact points on the rod in the order from base to tip (contact_places); empty: the chain's nodes. They
+  /// need not be nodes. Points far from everything cost nothing.
   std::vector<RodPlace> places = {};
 };
 
@@ -39,29 +39,30 @@ struct RodContactConfig {
 struct ContactForce {
   std::size_t index = 0;  ///< Index among all contact points.
   RodPlace place = {};    ///< Place of the point.
-  /// Index of the obstacle; std::nullopt: self-contact, at `other`.
+  /// Index of the obstacle; std::nullopt: self-contact with the place `other`.
   std::optional<std::size_t> obstacle = {};
   RodPlace other = {};
   Eigen::Vector3d point = Eigen::Vector3d::Zero();   ///< Point on the tube's surface, in the base's frame, m.
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();  ///< Unit normal towards the rod.
   Eigen::Vector3d force = Eigen::Vector3d::Zero();   ///< Force on the rod at `place`, N.
-  Eigen::Vector3d slip = Eigen::Vector3d::Zero();    ///< Velocity of its surface along the other, m/s.
-  double depth = 0;                                  ///< m
-  double normal_force = 0;                           ///< N
-  bool sticks = false;                               ///< The slip is at most the law's slip speed.
-  /// The tube's centerline is inside the other body: the force may have any direction.
+  /// Tangential velocity of the rod's surface relative to the other surface, m/s.
+  Eigen::Vector3d slip = Eigen::Vector3d::Zero();
+  double depth = 0;         ///< m
+  double normal_force = 0;  ///< N
+  bool sticks = false;      ///< Whether the slip is at most the law's slip speed.
+  /// Whether the tube's centerline is inside the other body. Then the force may have any direction.
   bool is_deep = false;
 };
 
-/// Contact of a rod's tube with obstacles and itself, at points along it. Each point represents the half
-/// intervals to its neighbours. So points must be as close as the obstacles are small.
+/// Contact of a rod's tube with obstacles and itself, at points along the rod. Each point represents the rod
+/// half-way to its neighbours. So the spacing of points must not exceed the size of the obstacles.
 class RodContact final : public RodSurroundings {
  public:
   /// `chain` is that of RodDynamics. Throws std::invalid_argument for an invalid law, obstacle, radius or
   /// place.
   RodContact(const RodChain& chain, const RodContactConfig& config);
 
-  /// Empty: it acts at points only.
+  /// Sets no wrenches at nodes, because contact acts at points only.
   void pull(std::span<const NodeMotion> nodes, std::span<const double> run,
             std::span<NodePull> pulls) const override;
   [[nodiscard]] std::span<const RodPlace> points() const override { return places_; }

@@ -8,19 +8,19 @@
 
 namespace flexura {
 
-/// A smooth curve through places along a rod: a cubic between each two, with the slope at a place from the
-/// parabola through it and its neighbours. The tangent is continuous, and the error on a smooth rod is of
-/// fourth order in the spacing.
+/// A smooth curve through places along a rod, with a cubic between consecutive places. The slope at a place
+/// is that of the parabola through it and its neighbours. The tangent is continuous, and the error on a
+/// smooth rod is of fourth order in the spacing.
 class RodCurve {
  public:
   /// Segment from a place to the next, with its places: x(u) = sum of weights.row(i) . (1, u, u^2, u^3) x_i,
-  /// u from 0 to 1. It is between the second and the third place.
+  /// u from 0 to 1. The segment is between the second and the third place.
   struct Segment {
     std::array<std::size_t, 4> places{};
     Eigen::Matrix4d weights = Eigen::Matrix4d::Zero();
   };
-  /// Geometry of a segment: x(u) = sum of powers.col(k) u^k. It lies in the ball about `middle` of radius
-  /// `reach`.
+  /// Geometry of a segment: x(u) = sum of powers.col(k) u^k. The segment is inside the ball of radius
+  /// `reach`, m, about `middle`.
   struct Piece {
     Eigen::Matrix<double, 3, 4> powers;
     Eigen::Vector3d middle = Eigen::Vector3d::Zero();

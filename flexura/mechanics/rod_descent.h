@@ -9,33 +9,34 @@
 
 namespace flexura {
 
-/// Viscous descent of a rod's potential energy from any shape to an equilibrium, as if the rod had no mass
-/// and a viscosity in proportion to its stiffness. Each step is implicit Euler: Newton's method with a share
-/// of the stiffness added, small where the energy is convex. With an energy (no friction, moments or follower
-/// loads) each step lowers it, and saddles are left along the direction in which it falls. Otherwise each
-/// step is as long as its equations stay nearly linear.
+/// Viscous descent of a rod's potential energy from any shape to an equilibrium. The rod moves as if it had
+/// no mass and a viscosity proportional to its stiffness. Each step is an implicit Euler step: a Newton step
+/// with a share of the stiffness added to the derivative. The share is small where the energy is convex. If
+/// there is an energy (no friction, moments or follower loads), each step reduces it. Saddle points are left
+/// in a direction in which the energy decreases. Otherwise steps are limited to lengths for which the
+/// equations are nearly linear.
 class RodDescent {
  public:
-  /// Input of a tendon: a given tension, or held at its base.
+  /// Input of a tendon: a given tension, or a base that is held in place.
   struct Held {
-    double tension = 0;  ///< N, if it is not held.
+    double tension = 0;  ///< Tension, N, of a tendon that is not held.
     bool is_held = false;
-    double length = 0;      ///< Length above which it pulls, m.
-    double compliance = 0;  ///< m/N, > 0 for held ones.
-    /// Additional compliance while held, m/N, about `tension` (augmented Lagrangian: M. Hestenes, M. J. D.
-    /// Powell 1969). The final tension is returned as `tension`.
+    double length = 0;      ///< Path length above which a held tendon pulls, m.
+    double compliance = 0;  ///< m/N; > 0 for a held tendon.
+    /// Additional compliance of a held tendon around the value `tension`, m/N (augmented Lagrangian: M.
+    /// Hestenes, M. J. D. Powell 1969). The final tension is returned as `tension`.
     double penalty = 0;
   };
 
   /// Uses the chain and changes its state.
   RodDescent(RodChain& chain, const RodLoads& loads);
 
-  /// Moves q to an equilibrium and returns each tendon's tension there. Returns false if it found none or the
-  /// rod turns inside out.
+  /// Moves q to an equilibrium and returns each tendon's tension there. Returns false if it found none, or if
+  /// the rod is compressed to a negative length.
   bool fall(Eigen::VectorXd& q, std::vector<Held>& tendons);
-  /// Whether the second derivative does not decide stability. Either a direction has no stiffness (free
-  /// rotation in a rotationally symmetric world), or tendons that are just taut hold the rod, as tested by
-  /// pushes to several sides.
+  /// Whether the second derivative of the energy does not determine stability. One cause is a direction
+  /// without stiffness, such as free rotation in a rotationally symmetric world. The other is tendons that
+  /// are just taut and hold the rod, which is tested with pushes in several directions.
   [[nodiscard]] bool is_neutral() const { return is_neutral_; }
   /// Number of linear systems solved.
   [[nodiscard]] int iterations() const { return iterations_; }
@@ -43,7 +44,8 @@ class RodDescent {
  private:
   enum class Step { made, rest, none };
   enum class Saddle { left, neutral, none };
-  // Computes residual, tensions and, if there is one, energy at q. Returns false if not finite or inside out.
+  // Computes residual, tensions and (if there is one) energy at q. Returns false if these are not finite or a
+  // length is negative.
   bool look(const Eigen::VectorXd& q, const std::vector<Held>& tendons);
   // Computes step_ with this share of the stiffness. Returns the number of negative eigenvalues, or -1
   // without a solution.

@@ -9,16 +9,19 @@
 
 namespace flexura {
 
-/// Fluid around a rod (docs/mechanics.md, "Drag"). Per metre, with the relative velocity u: across the rod
-/// density diameter across_coefficient |u| u / 2, along it pi times this with along_coefficient (skin
-/// friction), and linear drag.
+/// Drag of a fluid on a rod (docs/mechanics.md, "Drag"). The velocity of the rod relative to the fluid has a
+/// part u across the rod and a part w along it, m/s. The drag per metre of rod, N/m, is opposite to them:
+///
+///     across: density diameter across_coefficient |u| u / 2 + linear_across u
+///     along:  pi density diameter along_coefficient |w| w / 2 + linear_along w
 struct RodDragConfig {
-  double density = 1000;          ///< Of the fluid, kg/m^3; all these numbers are >= 0.
-  double across_coefficient = 1;  ///< Form drag; about 1 for a cylinder.
-  double along_coefficient = 0.01;
-  double linear_across = 0;  ///< N s/m per metre.
+  /// Density of the fluid, kg/m^3. All numbers down to `linear_along` are >= 0.
+  double density = 1000;
+  double across_coefficient = 1;    ///< Form drag; about 1 for a cylinder.
+  double along_coefficient = 0.01;  ///< Skin friction.
+  double linear_across = 0;         ///< N s/m per metre of rod.
   double linear_along = 0;
-  Eigen::Vector3d flow = Eigen::Vector3d::Zero();  ///< Velocity of the fluid, in the base's frame, m/s.
+  Eigen::Vector3d flow = Eigen::Vector3d::Zero();  ///< Velocity of the fluid in the base's frame, m/s.
   /// Radii of the tube around each section, at the section's base and end, m; empty: those of the elastic
   /// rod.
   std::vector<std::array<double, 2>> radii = {};

@@ -17,8 +17,8 @@ namespace flexura {
 /// Evaluation of one part of a rod, which is a section or a piece of it: its shape, and the balance of its
 /// internal forces with the loads. Allocates only in the constructor.
 ///
-/// All in the frame of the rod's base. Twists and wrenches are about its origin. So a Jacobian column is
-/// constant distal of what it moves, and wrenches add up directly.
+/// All quantities are in the frame of the rod's base; twists and wrenches are about its origin. So a mode
+/// moves all points distal of its section with the same twist, and wrenches can be added.
 class RodElement {
  public:
   using Columns = Eigen::Matrix<double, 6, Eigen::Dynamic>;
@@ -31,7 +31,8 @@ class RodElement {
   [[nodiscard]] int size() const { return grid_.size; }
   [[nodiscard]] const RodGrid& grid() const { return grid_; }
   [[nodiscard]] double length() const { return length_; }
-  /// Whether its tendons' forces depend on the relative poses of its parts, not on strains only.
+  /// Returns whether tendons run straight between disks (chords). Then their forces depend on the poses of
+  /// the disks, not only on strains.
   [[nodiscard]] bool has_chords() const { return !grid_.disks.empty(); }
 
   /// Sets the section's undeformed length to this factor times the original one.
@@ -39,7 +40,7 @@ class RodElement {
   /// Sets the mode values, `size()`.
   void set_modes(const Eigen::Ref<const Eigen::VectorXd>& q);
   [[nodiscard]] const Eigen::VectorXd& modes() const { return q_; }
-  /// Computes node poses for a pose of its base.
+  /// Computes node poses for this pose of the section's base.
   void place(const Pose& X_BS);
   /// Computes node poses and their derivatives by the modes (columns()).
   void place_with_columns(const Pose& X_BS);
@@ -50,13 +51,13 @@ class RodElement {
   /// Twist of each node by each mode, 6 x size().
   [[nodiscard]] const std::vector<Columns>& columns() const { return A_; }
 
-  /// Whether its modes are too few for its bend between guide disks: with a piece of its own, the highest
-  /// polynomial of a bend is not small; else the rod lies beside the chord by a part of the tendons'
-  /// distance.
+  /// Returns whether its modes are too few for its bend between guide disks. An element that is one piece:
+  /// the highest polynomial of a bend is not small. Another one: the rod's distance from the chord is not
+  /// small relative to the tendons' distance from the backbone.
   [[nodiscard]] bool is_coarse() const;
 
-  /// Path of a tendon since its base: the turning angle, rad, and its direction in the frame of a section's
-  /// end; zero at the base.
+  /// Turning of a tendon between its base and the end of an element. `turned`: turning angle, rad.
+  /// `direction`: its direction in the frame of the element's end. Both are zero at the base.
   struct Run {
     double turned = 0;
     Eigen::Vector3d direction = Eigen::Vector3d::Zero();
@@ -67,54 +68,57 @@ class RodElement {
     Eigen::Vector3d direction = Eigen::Vector3d::Zero();
     Vector6d base = Vector6d::Zero();  ///< Twist of the next section's base.
   };
-  /// Follows a tendon of the rod through the section, from its run at the base to that at the end. Keeps the
-  /// part of its tension that friction leaves at each node for stress(). Chords need the poses.
+  /// Follows a tendon through the section: changes `run` from that at the section's base to that at its end.
+  /// Stores the share of the tension that friction leaves at each node, for stress(). Sections with chords
+  /// require the poses.
   void rub(std::size_t tendon, double friction, Run& run);
-  /// Follows the effect of a change dq of the modes on the last result of rub(), and adds the change of
-  /// friction to the residual's change. `run`: at the base, advanced as in rub(). Chords need the columns.
+  /// Computes how a change dq of the modes changes the last result of rub(). Adds the effect of the change of
+  /// friction to `residual_change`. `run` is changed as in rub(). Sections with chords require the columns.
   void rub_change(std::size_t tendon, double friction, double tension, const Eigen::VectorXd& dq, Run& run,
                   RunChange& change, Eigen::Ref<Eigen::VectorXd> residual_change) const;
-  /// Balances internal and tendon forces: residual, tangent, tendon lengths and their derivatives. `tension`:
-  /// at the base, N, one a tendon of the rod. Chords need the columns. Friction is frozen: its change with
-  /// the turning angle is not in the tangent.
+  /// Computes residual, tangent, tendon lengths and their derivatives from internal and tendon forces.
+  /// `tension`: tension of each tendon of the rod at its base, N. Sections with chords require the columns.
+  /// The tangent does not include the change of friction with the turning angle.
   void stress(std::span<const double> tension);
-  /// Adds `share` of the loads, where `beyond` is the wrench of all loads on distal sections. Requires the
-  /// columns.
+  /// Adds `share` times the loads. `beyond`: wrench of all loads on distal sections. Requires the columns.
   void load(const RodLoads& loads, double share, const Vector6d& beyond);
-  /// To be called last: adds the effect of chords and loads on the intervals' twists to the tangent.
+  /// Adds the geometric stiffness of chords and loads to the tangent. To be called last.
   void add_bending();
 
-  /// Returns the second derivative of its strain energy by its modes, size() x size(); equal in all shapes.
+  /// Returns the second derivative of the section's strain energy by its modes, size() x size(). It does not
+  /// depend on the shape.
   [[nodiscard]] Eigen::MatrixXd stiffness() const;
-  /// Returns minus the work of loads without moments from the base's origin on, J. Requires the poses.
-  /// Follower loads have no potential and count as dead loads.
+  /// Returns minus the work of the loads without moments, J; it is 0 for loads at the base's origin. Requires
+  /// the poses. Follower loads have no potential and count as dead loads.
   [[nodiscard]] double load_energy(const RodLoads& loads) const;
 
   // NOLINTBEGIN(performance-unnecessary-value-param): an Eigen::Ref is written through.
-  /// Adds the residual's derivative by relative changes of its stiffness against shear, stretch, bends and
-  /// twist.
+  /// Adds the residual's derivative by relative changes of the section's stiffness against shear, stretch,
+  /// bends and twist.
   void add_stiffness_slopes(Eigen::Ref<Eigen::MatrixXd> slopes) const;
-  /// Adds the derivative by a relative change of its mass per length, and the total wrench of that mass.
-  /// Requires the columns.
+  /// Adds to `slope` the residual's derivative by a relative change of the section's mass per length, and to
+  /// `all` the wrench of its weight. Requires the columns.
   void add_weight_slope(const Eigen::Vector3d& gravity, Vector6d& all,
                         Eigen::Ref<Eigen::VectorXd> slope) const;
   // NOLINTEND(performance-unnecessary-value-param)
 
-  /// Gradient of its energy by its modes, minus the loads.
+  /// Gradient of the section's energy by its modes, minus the generalized forces of the loads.
   Eigen::VectorXd residual;
-  /// Derivative of the residual by its modes.
+  /// Derivative of the residual by the section's modes.
   Eigen::MatrixXd tangent;
-  /// Derivative of the residual by a twist of its base, size() x 6, negated.
+  /// Minus the derivative of the residual by a twist of the section's base, size() x 6.
   Eigen::Matrix<double, Eigen::Dynamic, 6> by_base;
   /// Derivative of the residual by the share of the loads.
   Eigen::VectorXd by_share;
-  /// Derivative of the wrench of the given share of its loads, by its modes and by a twist of its base.
+  /// Derivatives of the wrench of the section's loads, times their share: by the section's modes, and by a
+  /// twist of its base.
   Columns wrench_by_modes;
   Matrix6d wrench_by_base = Matrix6d::Zero();
-  /// Wrench of all of its loads.
+  /// Wrench of the section's full loads.
   Vector6d wrench = Vector6d::Zero();
-  /// Length of each tendon of the rod in it, m, and its derivative by the modes, size() x tendons. The
-  /// residual's derivative by the tensions at the base (`pull_slopes`) equals it without friction.
+  /// `tendon_lengths`: length of each tendon of the rod within the section, m. `length_slopes`: derivative of
+  /// these lengths by the modes, size() x tendons. `pull_slopes`: derivative of the residual by the tensions
+  /// at the base, equal to `length_slopes` without friction.
   Eigen::VectorXd tendon_lengths;
   Eigen::MatrixXd length_slopes, pull_slopes;
   /// Strain energy, J.

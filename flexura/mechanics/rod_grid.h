@@ -10,10 +10,11 @@
 
 namespace flexura {
 
-/// Nodes of a section and the values of its strain modes there. Places are parts t of its length. Mode j is a
-/// Legendre polynomial of one strain; modes of a strain are adjacent, by rising degree.
+/// Nodes of a section and the values of its strain modes there. Positions are fractions t of the section's
+/// length. Mode j is a Legendre polynomial of one strain. Modes of one strain are adjacent, in the order of
+/// their degrees.
 struct RodGrid {
-  /// `at`: places, from 0 to 1, that become nodes too.
+  /// `at`: further positions, from 0 to 1, that become nodes.
   RodGrid(const RodSection& section, std::span<const double> at);
 
   /// For each strain: index of its first mode, and number of modes.
@@ -26,7 +27,7 @@ struct RodGrid {
   Eigen::MatrixXd slope_at_node;  ///< Modes x nodes: derivative of each mode by arc length, 1/m.
   /// Nodes x nodes: integrates nodal values over t up to each node.
   Eigen::MatrixXd cumulative;
-  /// Modes x intervals between nodes: the three moments (magnus_moments) of each mode in each.
+  /// Modes x intervals between nodes: the three moments (magnus_moments) of each mode in each interval.
   std::array<Eigen::MatrixXd, 3> moments;
   /// At the nodes: stiffness, undeformed strain, and its derivative by arc length.
   std::vector<Vector6d> stiffness, rest, rest_slope;
@@ -35,9 +36,9 @@ struct RodGrid {
   std::vector<std::size_t> disks;       ///< Nodes that are disks, base and end included; empty without disks.
   std::vector<std::size_t> mass_nodes;  ///< Nodes of the section's point masses.
 
-  /// Multiplies the section's undeformed length by a factor: its undeformed stretch under any load.
+  /// Sets the section's undeformed length to this factor times the original one, by its undeformed stretch.
   void stretch_rest(double factor);
-  /// Returns the index of the node at t, which must be one.
+  /// Returns the index of the node at `place`, where a node must be.
   [[nodiscard]] std::size_t node_at(double place) const;
   /// Calls f(c, j) for each mode j of each strain c.
   template <typename Function>
@@ -47,8 +48,8 @@ struct RodGrid {
       for (int j = first[strain]; j < first[strain] + count[strain]; ++j) f(c, j);
     }
   }
-  /// Returns the strain, or its moment, of the mode values q without the undeformed part; `modes` is a column
-  /// of the matrices above.
+  /// Returns the strain for mode values q, or a moment of it. `at_rest` is the undeformed value, and `modes`
+  /// a column of `at_node` or `moments`.
   template <typename Column>
   [[nodiscard]] Vector6d strain(const Vector6d& at_rest, const Eigen::VectorXd& q,
                                 const Column& modes) const {

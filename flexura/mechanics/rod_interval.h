@@ -9,9 +9,10 @@
 
 namespace flexura {
 
-/// One interval of a rod between two nodes: X = exp(twist), with the Magnus expansion (math/magnus.h) of the
-/// moments of its strain. With T = Dual, moments' rates as slopes give velocities. The projection of a wrench
-/// on the moments then has its rate, as Lagrange's equations need.
+/// One interval of a rod between two nodes. Its relative pose is X = exp(twist). The twist is the Magnus
+/// expansion (math/magnus.h) of the moments of its strain. With T = Dual and the moments' rates as slopes,
+/// results include velocities. A wrench's projection on the moments then includes its rate, which Lagrange's
+/// equations need.
 template <typename T>
 class RodInterval {
  public:
@@ -27,9 +28,9 @@ class RodInterval {
   }
 
   [[nodiscard]] const Screw<T>& twist() const { return twist_; }
-  /// Squared turning angle.
+  /// Returns the squared turning angle, rad^2.
   [[nodiscard]] T square() const { return dot(twist_.angular, twist_.angular); }
-  /// exp(twist).
+  /// Returns exp(twist), the relative pose.
   [[nodiscard]] Placement<T> placement() const {
     const Triple<T>&w = twist_.angular, &v = twist_.linear;
     const Triple<T> cw = cosc_ * w, sw = sinc_ * w;
@@ -41,7 +42,7 @@ class RodInterval {
             .z = {xz - sw.y, yz + sw.x, 1.0 - (xx + yy)},
             .position = v + cosc_ * wv + deficit_ * cross(w, wv)};
   }
-  /// Twist of its end by a change of `twist`.
+  /// Returns the twist of the interval's end that a change of `twist` causes.
   [[nodiscard]] Screw<T> moved(const Screw<T>& change) const {
     Screw<T> power = change, sum = change;
     for (std::size_t n = 0; n < 4; ++n) {
@@ -50,7 +51,8 @@ class RodInterval {
     }
     return sum;
   }
-  /// Projection of a wrench at its end, in the frame of its beginning, on the three moments.
+  /// Returns the projection on the three moments of a wrench at the interval's end, in the frame of its
+  /// beginning.
   [[nodiscard]] std::array<Screw<T>, 3> along_moments(const Screw<T>& wrench) const {
     Screw<T> power = wrench, w = wrench;
     for (std::size_t n = 0; n < 4; ++n) {
@@ -66,10 +68,11 @@ class RodInterval {
             by_V + transposed_bracket(a1_, by_C), (1.0 / 12) * w + by_U + 2.0 * by_E};
   }
 
-  /// Values of dual numbers.
+  /// Returns the interval of the values, without slopes.
   template <typename Q>
   friend RodInterval<Q> still(const RodInterval<Dual<Q>>& moving);
-  /// Rate of the twist of its end relative to its beginning at constant rates of the moments.
+  /// Returns the rate of the twist of the interval's end relative to its beginning, at constant rates of the
+  /// moments.
   template <typename Q>
   friend Screw<Q> drift_of(const RodInterval<Dual<Q>>& moving);
 

@@ -15,8 +15,8 @@
 
 namespace flexura {
 
-/// Constant data of a moving rod: its grid, with equal quantities of all intervals side by side, the bodies
-/// at its nodes and the paths of its tendons.
+/// Constant data of a moving rod: its grid, the bodies at its nodes and the paths of its tendons. The same
+/// quantity of all intervals is stored contiguously.
 struct RodLayout {
   /// A body at a node.
   struct Body {
@@ -39,7 +39,7 @@ struct RodLayout {
     std::size_t modes = 0, intervals = 0;
     std::vector<std::size_t> strain = {};          ///< Strain of each mode.
     Eigen::MatrixXd stiffness = {}, damping = {};  ///< modes x modes.
-    std::vector<std::size_t> tendons = {};         ///< Indices of tendons that run through it.
+    std::vector<std::size_t> tendons = {};         ///< Indices of tendons that run through the section.
     std::vector<Passage> passages = {};            ///< Tendons x nodes, one tendon after the other.
     std::vector<std::size_t> disks = {};           ///< Nodes of the section.
   };
@@ -49,14 +49,15 @@ struct RodLayout {
   struct Piece {
     std::size_t section = 0;
     std::size_t at = 0;  ///< Node of the section, or number of the chord between its disks.
-    double run = 0;      ///< Length of rod that it represents, m.
-    double held = 0;  ///< Length of rod between its middle and that of the piece before, m; 0 for the first.
+    double run = 0;      ///< Length of rod that the piece represents, m.
+    /// Length of rod between the middles of this piece and the previous one, m; 0 for the first piece.
+    double held = 0;
   };
   /// A tendon with friction.
   struct Rubbing {
     std::size_t tendon = 0;
     double friction = 0;
-    std::size_t first = 0;           ///< Its first piece among those of all tendons with friction.
+    std::size_t first = 0;           ///< Index of its first piece among those of all tendons with friction.
     std::vector<Piece> pieces = {};  ///< From the base on.
   };
 
@@ -67,8 +68,8 @@ struct RodLayout {
   [[nodiscard]] std::size_t element_of(const RodPlace& place) const;
   [[nodiscard]] std::size_t node_of(const RodPlace& place) const;
 
-  /// Multiplies the undeformed length of each section of the rod by a factor that changes at a rate, 1/s; one
-  /// of both a section (RodChain::stretch_rest).
+  /// Multiplies the undeformed length of each section of the rod by a factor that changes at a rate, 1/s
+  /// (RodChain::stretch_rest). Both lists have one number per section of the rod.
   void stretch_rest(std::span<const double> factors, std::span<const double> factor_rates);
 
   std::vector<Section> sections;
@@ -76,14 +77,15 @@ struct RodLayout {
   std::size_t modes = 0, intervals = 0, nodes = 0, tendons = 0;
   std::size_t padded = 0;  ///< Number of intervals, rounded up to a multiple of an instruction's lanes.
   std::vector<Body> bodies;
-  std::vector<double> run;  ///< Length of rod of each node in an integral along it, m.
+  std::vector<double> run;  ///< Length of rod that each node represents in an integral along the rod, m.
   /// 18 x padded: the three moments of the six undeformed strains.
   std::vector<double> rest;
-  /// For each moment m: of the modes of all sections, each in the intervals of its section.
+  /// For each of the three moments: its value for each mode of all sections, in each interval of the mode's
+  /// section.
   std::array<std::vector<double>, 3> moments;
   std::vector<Rubbing> rubbing;   ///< Tendons without friction are omitted.
   std::size_t pieces = 0;         ///< Number of pieces of all these tendons.
-  std::vector<double> stretches;  ///< Relative rate of each element's undeformed length, 1/s.
+  std::vector<double> stretches;  ///< Relative rate of change of each element's undeformed length, 1/s.
   bool is_driven = false;         ///< Any of these rates is not 0.
 
  private:

@@ -12,10 +12,10 @@
 
 namespace flexura {
 
-/// Matrices of a rod's modes assembled from nodes and strains: the sum over the nodes of A^T H A, and a block
-/// for each section. A is the twist of a node by the modes, H a symmetric 6 x 6 matrix. Examples are the mass
-/// matrix and the matrix of an implicit step. Systems are solved at a cost linear in the number of sections.
-/// Each section's modes are eliminated from tip to base, which leaves a 6 x 6 inertia for the proximal ones
+/// Matrices of a rod's modes, such as the mass matrix and the matrix of an implicit step. They are the sum
+/// over the nodes of A^T H A, plus a block for each section. A is the derivative of a node's twist by the
+/// modes, and H a symmetric 6 x 6 matrix. Systems are solved at a cost linear in the number of sections. Each
+/// section's modes are eliminated from tip to base, which leaves a 6 x 6 inertia for the proximal sections
 /// (R. Featherstone's articulated bodies). Allocates only in the constructor.
 class RodMatrix {
  public:
@@ -24,29 +24,30 @@ class RodMatrix {
   /// Computes the node twists by the modes at the last placement of the rod.
   void find_columns(const RodMotion<double>& motion);
 
-  /// Factors of the sum: mass + damping_factor damping + stiffness_factor (stiffness + that of the tendons
-  /// under tension) - stiffness_factor by_pose - damping_factor by_twist of the surroundings, symmetric part.
+  /// Factors d and k (`damping`, `stiffness`) of the matrix M + d (D - B_v) + k (K + K_t - B_p). M, D and K
+  /// are the rod's mass, damping and stiffness. K_t is the geometric stiffness of tendons under tension. B_v
+  /// and B_p are the symmetric parts of by_twist and by_pose of the surroundings.
   struct Factors {
     double damping = 0, stiffness = 0;
   };
-  /// Assembles and factors the matrix. Returns false if it is not positive definite. `tensions`: of tendons
-  /// in channels; or null.
+  /// Assembles and factors the matrix. Returns false if it is not positive definite. `tensions`: tensions of
+  /// the tendons in channels, N; null: no tendon stiffness.
   [[nodiscard]] bool factor(const RodMotion<double>& motion, const Factors& factors, const double* tensions,
                             bool is_surrounded);
-  /// Returns whether it has the columns of all points with wrenches now: those with wrenches when it was
-  /// factored.
+  /// Returns whether all points that have wrenches now also had them when the matrix was factored. Only for
+  /// those points the columns are known.
   [[nodiscard]] bool has_columns_of(const RodMotion<double>& motion) const;
   /// Adds to the generalized forces the change of the surroundings' last wrenches by changes x of the rates
   /// and `stretch` x of the modes. Requires find_columns(), and that no wrenches are coupled
   /// (RodSurroundings).
   void add_pull_change(const RodMotion<double>& motion, double stretch, const double* x, double* force) const;
-  /// Replaces x by the solution for x.
+  /// Replaces the right-hand side x by its solution.
   void solve(double* x) const;
   /// Returns the dense matrix; allocates. Requires the columns.
   [[nodiscard]] Eigen::MatrixXd dense_mass(const RodMotion<double>& motion) const;
   /// Returns the twists of a node by the modes of all sections, 6 x modes; allocates.
   [[nodiscard]] Eigen::MatrixXd node_columns(std::size_t node) const;
-  /// Returns the twist of the last node by changes x of the modes.
+  /// Returns the twist of the last node caused by changes x of the modes.
   [[nodiscard]] Vector6d tip_change(const double* x) const;
 
  private:

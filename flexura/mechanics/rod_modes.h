@@ -9,18 +9,18 @@ namespace flexura {
 
 /// Natural modes of a rod around an equilibrium.
 struct RodModes {
-  /// Eigenvalues of A of x = (q, v), 1/s, sorted by absolute value; in pairs the one with negative imaginary
-  /// part is first.
+  /// Eigenvalues of A in x' = A x with x = (q, v), 1/s, sorted by absolute value. In a conjugate pair, the
+  /// one with negative imaginary part is first.
   Eigen::VectorXcd eigenvalues;
-  /// For each pair, in that order: |eigenvalue| / 2 pi, Hz, and -real part / |eigenvalue|. Overdamped modes
-  /// are not in these lists.
+  /// Of the conjugate pairs, in the same order: frequency |eigenvalue| / (2 pi), Hz, and damping ratio -(real
+  /// part) / |eigenvalue|. Overdamped modes are omitted.
   std::vector<double> frequencies, damping_ratios;
 };
 
-/// Returns the modes from derivatives at rest (RodDynamics::slopes). They come from the shifted inverse of A.
-/// So slow modes are exact to rounding although held tendons are very stiff. Fast ones have a relative error
-/// of about 1e-16 times the square of their ratio to the slow ones. Not finite where that inverse does not
-/// exist, for a shift in general.
+/// Returns the modes from derivatives at rest (RodDynamics::slopes). They are computed from the shifted
+/// inverse of A. So slow modes are accurate to rounding although held tendons are very stiff. A fast mode has
+/// a relative error of about 1e-16 times the square of its frequency relative to the slow modes. Values are
+/// not finite if that inverse does not exist.
 [[nodiscard]] RodModes rod_modes(const RodDynamicsSlopes& at_rest);
 
 }  // namespace flexura

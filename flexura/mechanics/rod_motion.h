@@ -14,9 +14,10 @@
 
 namespace flexura {
 
-/// A rod in motion, by its modes q and their rates v: node motions, momenta p = dT/dv and generalized forces
-/// dL/dq + Q, so that dp/dt = force (Lagrange). All in the frame of the base; twists and wrenches are about
-/// its origin. S is double, or a dual number for derivatives. Allocates only in the constructor.
+/// A rod in motion with modes q and rates v. Computes node motions, momenta p = dT/dv and generalized forces
+/// dL/dq + Q, such that dp/dt = force (Lagrange). All quantities are in the frame of the base; twists and
+/// wrenches are about its origin. S is double, or a dual number for derivatives. Allocates only in the
+/// constructor.
 template <typename S>
 class RodMotion {
  public:
@@ -32,20 +33,21 @@ class RodMotion {
   /// If true, pull() reuses the last wrenches of the surroundings, for the same shape and rates with other
   /// slopes.
   void keep_surroundings(bool keeps) { keeps_surroundings_ = keeps; }
-  /// Sets the friction state from now on: `before`, N, between a piece and the one before it, for all pieces
-  /// (RodLayout::pieces), kept by reference. Since then tendons have slid for `time` s at the present rate.
-  /// Null: no friction.
+  /// Sets the earlier friction state. `before`: friction force between each piece and the previous one, N,
+  /// for all pieces (RodLayout::pieces); kept by reference. Null: no friction. `time`: time since then, s,
+  /// during which tendons slid at the present rate.
   void hold(const double* before, double time) {
     held_before_ = before;
     slide_time_ = time;
   }
   /// Sets the bristle stiffness of all pieces, N per metre of sliding; kept by reference.
   void set_grip(const std::vector<double>& grip) { grip_ = grip.data(); }
-  /// Computes wrenches and tendon forces at the present placement. `tensions`: of all tendons at the base, N.
+  /// Computes wrenches and tendon forces at the present placement. `tensions`: tensions of all tendons at the
+  /// base, N.
   void pull(const RodLoads& loads, const S* tensions, const RodSurroundings* surroundings);
   /// Computes momenta and forces of all modes.
   void balance(S* momentum, S* force);
-  /// Computes the forces that remain at constant rates: the mass matrix times the modes' accelerations
+  /// Computes the generalized forces that accelerate the modes: the mass matrix times their accelerations
   /// (Newton-Euler).
   void find_acceleration_forces(S* force);
   /// Computes the lengths of the tendons, m.
@@ -57,7 +59,8 @@ class RodMotion {
   [[nodiscard]] const std::vector<Screw<S>>& momenta() const { return P_; }
   /// Wrenches of the last surroundings with derivatives; empty without surroundings.
   [[nodiscard]] const std::vector<NodePull>& pulls() const { return pulls_; }
-  /// The points; those chosen by the last surroundings, their motions and wrenches.
+  /// Return all points, the indices of those chosen by the last surroundings, and the motions and wrenches of
+  /// the chosen ones.
   [[nodiscard]] const RodPoints* points() const { return points_; }
   [[nodiscard]] std::span<const std::size_t> chosen() const { return chosen_; }
   [[nodiscard]] std::span<const NodeMotion> point_motions() const {
@@ -84,16 +87,17 @@ class RodMotion {
   void collect(const std::vector<Screw<S>>& wrenches, S* force);
   /// Computes the derivatives of a tendon's length by all modes; after place().
   void find_length_slopes(std::size_t tendon, S* slopes);
-  /// Computes minus the derivatives of the generalized forces by a tendon's tension at the base; without
-  /// friction its length slopes. `tension`: of the tendon. Call after pull().
+  /// Computes minus the derivatives of the generalized forces by a tendon's tension at the base. Without
+  /// friction these are the derivatives of its length. `tension`: that tension, N. Call after pull().
   void find_pull_slopes(std::size_t tendon, double tension, double* slopes);
-  /// Friction force on each piece against the one before, N: the tension before minus the tension after. And
-  /// the sliding speed there towards the base, m/s. After pull().
+  /// Return for each piece the friction force at its junction with the previous piece, N, and the sliding
+  /// speed there towards the base, m/s. The force is the tension of the previous piece minus that of this
+  /// one. Call after pull().
   [[nodiscard]] const std::vector<S>& frictions() const { return friction_; }
   [[nodiscard]] const std::vector<S>& slides() const { return slide_; }
 
-  /// Returns the tendons' geometric stiffness at a node, under tensions in channels: the second derivative by
-  /// its strains of the sum of tensions times tendon lengths, per metre of rod.
+  /// Returns the geometric stiffness at a node of tendons in channels, per metre of rod. It is the second
+  /// derivative, by the node's strains, of the sum of tensions times tendon lengths.
   [[nodiscard]] Matrix6d tendon_stiffness(const RodLayout::Section& section, std::size_t node,
                                           const double* tensions) const;
 

@@ -11,14 +11,15 @@
 
 namespace flexura {
 
-/// Places of a rod between its nodes, which move exactly as the rod, by a part of their interval without
-/// interpolation. They belong to a layout, and are evaluated only where a wrench may act.
+/// Places of a rod between its nodes. Their motion is that of the end of a partial interval, without
+/// interpolation. They belong to a RodLayout and are evaluated only where a wrench may act.
 struct RodPoints {
   struct Point {
     std::size_t section = 0;   ///< Index of its element.
     std::size_t interval = 0;  ///< Index in its element.
-    std::size_t node = 0;      ///< Index among all nodes: begin of the interval, or the node of the point.
-    double part = 0;           ///< Part of the interval, by undeformed arc length.
+    /// Index among all nodes: that of the interval's beginning, or of the point itself if it is a node.
+    std::size_t node = 0;
+    double part = 0;  ///< Part of the interval, by undeformed arc length.
     bool is_node = false;
     std::size_t first_moment = 0;
   };

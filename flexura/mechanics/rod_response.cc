@@ -241,6 +241,22 @@ void RodResponse::analytic_slopes(RodStatics::Slack slack, Eigen::MatrixXd& by_c
   by_command = arcs_along(statics_.slopes(slack).q_by_input * displacement_slopes(last_->command));
 }
 
+std::vector<ArmState> RodResponse::released(const ArmState& command) const {
+  const std::lock_guard lock(mutex_);
+  const Equilibrium near = answer(command).at;
+  if (!drive_ && near.converged()) statics_.stretch_rest(command.stretches);
+  std::vector<ArmState> shapes;
+  for (std::size_t i = 0; i < tight_.size(); ++i) {
+    std::vector<double> pulled = displacements(command);
+    pulled[i] = -driven_.length();
+    Equilibrium at;
+    if (near.converged()) at = statics_.solve({.displacements = std::move(pulled)}, loads_, near);
+    shapes.push_back(fitted(at, command));
+  }
+  last_.reset();  // Solver and fit are at another equilibrium now.
+  return shapes;
+}
+
 // With M = L L^T, the modes are the eigenvectors of L^-1 K L^-T, and a command that accelerates the
 // equilibrium q_e acts as the force -M q_e''.
 std::vector<SwingMode> RodResponse::swing(const ArmState& command, std::size_t most) const {

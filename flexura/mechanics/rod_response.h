@@ -19,33 +19,36 @@
 
 namespace flexura {
 
-/// Shape of an arm that is an elastic rod under commands (docs/mechanics.md, "The rod as a model"). A
-/// command's bends set the displacement of each tendon: that of arcs with these bends. Without a drive, a
+/// Response of an arm that is an elastic rod to commands (docs/mechanics.md, "The rod as a model"). A
+/// command's bends set the displacement of each tendon to that of arcs with these bends. Without a drive, a
 /// command's stretches multiply the sections' own lengths. The shape is the chain of arcs nearest to the
 /// rod's equilibrium, by least squares of places along the rod.
 class RodResponse : public ArmResponse {
  public:
-  /// `driven` has an arc for each number of its sections' bend profiles. Displacements are those of the
-  /// drive's tendons from the drive's pretension on; without a drive, those of the rod's tendons. Throws
-  /// std::invalid_argument for wrong numbers of sections or tendons, an invalid rod, no equilibrium under the
-  /// pretension, or none under weight and loads without a command.
-  /// `swings`: the rod has inertia, and swing() has its modes. Then the rod must have a mass.
+  /// `driven` has one arc per number of its sections' bend profiles. With a drive, displacements are those of
+  /// the drive's tendons, in addition to those of the pretension. Without a drive, they are those of the
+  /// rod's tendons. Throws std::invalid_argument for wrong numbers of sections or tendons, or an invalid rod.
+  /// Also throws it if there is no equilibrium under the pretension, or none under weight and loads without a
+  /// command. `swings`: whether the rod has inertia, so that swing() returns modes. It then must have a mass.
   RodResponse(const Arm& driven, const Rod& rod, RodLoads loads, std::optional<Drive> drive,
               bool swings = false);
   ~RodResponse() override;
 
   [[nodiscard]] ArmState shape(const ArmState& command) const override;
-  /// Derivatives from the equilibrium. Along commands that only take up slack they are those beyond the
-  /// slack, with all tendons just taut. If sections have driven lengths they are central differences with
+  /// Computes the derivatives of the equilibrium. For commands that only take up slack, the derivatives are
+  /// those with all tendons just taut. If sections have driven lengths, they are central differences with
   /// step `secant`.
   void slopes(const ArmState& command, Eigen::MatrixXd& by_command) const override;
   static constexpr double secant = 0.02;  ///< rad
 
-  /// Modes of the rod with held tendons, linear about its equilibrium (docs/mechanics.md, "The rod as a
-  /// model"). Empty unless `swings` was set.
+  /// Returns the modes of the rod with held tendons, linearised about its equilibrium (docs/mechanics.md,
+  /// "The rod as a model"). Empty unless `swings` was set.
   [[nodiscard]] std::vector<SwingMode> swing(const ArmState& command, std::size_t most) const override;
 
-  /// Returns the rod's equilibrium in its frame; not converged if there is none.
+  /// A released tendon is one that is paid out by the length of the arm.
+  [[nodiscard]] std::vector<ArmState> released(const ArmState& command) const override;
+
+  /// Returns the rod's equilibrium in the frame of its base; not converged if there is none.
   [[nodiscard]] Equilibrium equilibrium(const ArmState& command) const;
 
  private:

@@ -17,15 +17,16 @@ namespace flexura {
 /// valid.
 [[nodiscard]] std::string spring_problem(const PointSpring& spring);
 
-/// Returns the force of a spring at a point of the rod, N; both in the base's frame. It is conservative.
+/// Returns the conservative force of a spring at a point of the rod, N. Force and point are in the base's
+/// frame.
 [[nodiscard]] Eigen::Vector3d spring_force(const PointSpring& spring, const Eigen::Vector3d& point);
 
-/// The force as a wrench about the base's origin, and its derivative by a small twist of the node at that
-/// point.
+/// Force of a spring as a wrench about the base's origin, and its derivative by a small displacement twist of
+/// the node.
 struct SpringPull {
   Vector6d wrench = Vector6d::Zero();
   Matrix6d by_pose = Matrix6d::Zero();
-  /// Part of -by_pose without negative eigenvalues: all but the lever's rotation.
+  /// Positive semidefinite part of -by_pose: all except the rotation of the lever arm.
   Matrix6d stiffness = Matrix6d::Zero();
 };
 /// Returns the wrench at the node whose position is `point`.
@@ -34,11 +35,11 @@ struct SpringPull {
 /// A spring on a moving rod, which can change from step to step.
 class RodSpring final : public RodSurroundings {
  public:
-  /// Attaches it to the node nearest to the place, of the chain of RodDynamics.
+  /// Attaches the spring to the node of `chain` that is nearest to `place`. `chain` is that of RodDynamics.
   RodSpring(const RodChain& chain, const RodPlace& place);
 
-  /// Sets the spring, ignoring the place in it; std::nullopt: no force. Throws std::invalid_argument for an
-  /// invalid spring.
+  /// Sets the spring, whose `section` and `at` are ignored; std::nullopt: no force. Throws
+  /// std::invalid_argument for an invalid spring.
   void set(const std::optional<PointSpring>& spring);
 
   void pull(std::span<const NodeMotion> nodes, std::span<const double> run,

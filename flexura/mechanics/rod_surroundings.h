@@ -11,7 +11,8 @@
 
 namespace flexura {
 
-/// A place on a rod: a part, from 0 to 1, of one of its sections.
+/// A place on a rod: one of its sections, and the position as a fraction of the section's length, from 0 to
+/// 1.
 struct RodPlace {
   std::size_t section = 0;
   double at = 1;
@@ -26,22 +27,22 @@ struct NodeMotion {
   Vector6d twist = Vector6d::Zero();
 };
 
-/// Wrench [f; m] on a node about the same origin, and its derivatives by a small twist of the node and by its
-/// twist.
+/// Wrench [f; m] on a node about the base's origin. `by_pose`: derivative by a small displacement twist of
+/// the node. `by_twist`: derivative by its velocity twist.
 struct NodePull {
   Vector6d wrench = Vector6d::Zero();
   Matrix6d by_pose = Matrix6d::Zero();
   Matrix6d by_twist = Matrix6d::Zero();
-  /// No wrench: all above is 0 and need not be read.
+  /// Whether there is no wrench: all members above are 0.
   bool is_idle = false;
   /// The symmetric parts of -by_pose and -by_twist may have negative eigenvalues (friction, geometry), which
-  /// prevents a factorisation of a step's matrix. If `is_held`, that matrix takes these semidefinite matrices
-  /// instead. The iterations are more, the solution is the same.
+  /// prevents a factorisation of a step's matrix. If `is_held`, that matrix uses the semidefinite `stiffness`
+  /// and `damping` instead. Then a step needs more iterations for the same solution.
   bool is_held = false;
   Matrix6d stiffness = Matrix6d::Zero();
   Matrix6d damping = Matrix6d::Zero();
-  /// The wrench also depends on the motion of other points: see couple() and tie(). That part is included in
-  /// `wrench` only.
+  /// Whether a part of the wrench depends on the motion of other points (couple(), tie()). That part is
+  /// included in `wrench` only.
   bool is_coupled = false;
 
   /// Removes the wrench.
@@ -57,7 +58,8 @@ struct NodePull {
 /// Derivative of the wrench at one point by the motion of another.
 struct PointCoupling {
   std::size_t of = 0,
-              at = 0;  ///< Indices among the chosen points: effect of the first's motion on the second.
+              /// Indices among the chosen points: the motion of point `of` affects the wrench at point `at`.
+      at = 0;
   Matrix6d by_pose = Matrix6d::Zero(), by_twist = Matrix6d::Zero();
 };
 
@@ -70,30 +72,32 @@ struct PointTie {
   Eigen::Matrix3d stiffness = Eigen::Matrix3d::Zero(), damping = Eigen::Matrix3d::Zero();
 };
 
-/// External wrenches on a rod in motion: contact, drag, springs. They act at the rod's nodes, and at points
-/// between them, which are free of cost where nothing is near.
+/// External wrenches on a rod in motion: contact, drag, springs. They act at the rod's nodes and at points
+/// between them. Points cost nothing unless they are chosen.
 class RodSurroundings {
  public:
   virtual ~RodSurroundings() = default;
   /// Computes wrenches at all nodes, from the base on. The last node of a section and the first of the next
-  /// are at one place, and both are included. `run`: length of rod of each node in an integral along it, m.
-  /// Must set all of `pulls`, and must not allocate if steps are not to.
+  /// are at one place, and both are included. `run`: length of rod that each node represents in an integral
+  /// along the rod, m. Must set all of `pulls`. Must not allocate memory if steps must not.
   virtual void pull(std::span<const NodeMotion> nodes, std::span<const double> run,
                     std::span<NodePull> pulls) const = 0;
 
-  /// Returns the places besides the nodes where it may act; they may also be nodes. They are constant.
+  /// Returns the places where wrenches may act in addition to those at nodes. A place may be at a node. The
+  /// places are constant.
   [[nodiscard]] virtual std::span<const RodPlace> points() const { return {}; }
-  /// Adds the indices of the points to evaluate for these node motions, rising. `lengths`: upper bounds of
-  /// the rod's lengths between nodes, m, of all sections one after the other. Other points have no wrench.
+  /// Appends to `chosen`, in increasing order, the indices of the points to evaluate for these node motions.
+  /// `lengths`: upper bounds of the rod's lengths between nodes, m, from base to tip. Other points have no
+  /// wrench.
   virtual void choose(std::span<const NodeMotion> /*nodes*/, std::span<const double> /*lengths*/,
                       std::vector<std::size_t>& /*chosen*/) const {}
   /// Computes wrenches at the chosen points. Must set all of `pulls`.
   virtual void pull_points(std::span<const std::size_t> /*chosen*/, std::span<const NodeMotion> /*points*/,
                            std::span<NodePull> /*pulls*/) const {}
-  /// For coupled wrenches: adds all their derivatives, those by their own motion included.
+  /// For coupled wrenches: appends all their derivatives, also those by the motion of the same point.
   virtual void couple(std::span<const std::size_t> /*chosen*/, std::span<const NodeMotion> /*points*/,
                       std::vector<PointCoupling>& /*couplings*/) const {}
-  /// For coupled wrenches: adds the ties for a step's matrix.
+  /// For coupled wrenches: appends the ties for a step's matrix.
   virtual void tie(std::span<const std::size_t> /*chosen*/, std::span<const NodeMotion> /*points*/,
                    std::vector<PointTie>& /*ties*/) const {}
 };

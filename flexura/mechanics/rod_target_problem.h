@@ -11,8 +11,8 @@
 
 namespace flexura {
 
-/// Residual of a rod under tensions x (in `unit`s of N) from a target: r in lengths of the rod. Each
-/// evaluation is an equilibrium, solved from the nearest earlier one, with its exact derivatives.
+/// Deviation r of a rod under tensions x from a target. x is in units of `unit` N, r in lengths of the rod.
+/// Each evaluation is an equilibrium, solved from the nearest earlier one, with its exact derivatives.
 class RodTargetProblem final : public BoundedProblem {
  public:
   /// `most`: maximum of each tension, N. Tendons with maximum 0 are omitted.

@@ -13,11 +13,11 @@
 
 namespace flexura {
 
-/// Input of a rod's tendons. Each list has one number a tendon, or is empty.
+/// Input of a rod's tendons. Each list has one number per tendon, or is empty.
 struct TendonInput {
   std::vector<double> tensions = {};  ///< N, at the base; >= 0.
   /// Length of each tendon pulled in at the base, m, from where it is just taut on the undeformed rod. A
-  /// tendon let out further than the rod takes up is slack.
+  /// tendon is slack if more of it is let out than the rod takes up.
   std::vector<double> displacements = {};
 };
 
@@ -25,12 +25,12 @@ struct TendonInput {
 enum class StaticsEnd {
   converged,
   bad_input,  ///< A number that is not finite, a tension below 0, a list of wrong length.
-  /// The load path left all bounds before full load, or the rod would have to pass through itself.
+  /// The load path diverged before full load, or the rod would have to be compressed to a negative length.
   no_equilibrium,
   /// The tendons pull two guide disks together: the rod buckles between them and nothing holds it but the
   /// contact of the disks, which is not modelled.
   disks_meet,
-  out_of_steps,  ///< Neither an equilibrium nor an end of the path was found.
+  out_of_steps,  ///< Within the limit on steps, neither an equilibrium nor an end of the path was found.
 };
 /// Returns a description for users.
 [[nodiscard]] const char* words(StaticsEnd end);
@@ -38,42 +38,44 @@ enum class StaticsEnd {
 /// Equilibrium of a rod under tendons and loads, in the frame of its base.
 struct Equilibrium {
   StaticsEnd end = StaticsEnd::out_of_steps;
-  std::string problem;  ///< For bad input, in words.
-  /// A small push decays, with tensions or displacements kept as given.
+  std::string problem;  ///< Description of bad input.
+  /// Whether the effect of a small push decays at constant tensions or displacements.
   bool stable = false;
-  /// A real rod jumps here: on the load path the load had a maximum, or the path ended and the rod descended
-  /// to another equilibrium.
+  /// Whether a real rod jumps: the load had a maximum on the load path, or the path ended and the rod
+  /// descended to another equilibrium.
   bool snapped = false;
-  /// Other equilibria exist, as far as detected: the path branched or turned, or the rod descended to another
+  /// Whether other equilibria were detected: the path branched or turned, or the rod descended to another
   /// equilibrium.
   bool ambiguous = false;
-  /// Section whose strain modes are too few for the bend between its guide disks, as far as seen from the
-  /// modes: its tip may be wrong by more than 1e-3 of the rod's length.
+  /// Section whose strain modes are too few for the bend between its guide disks, as far as the modes show:
+  /// its tip may be wrong by more than 1e-3 of the rod's length.
   std::optional<std::size_t> coarse_section = {};
-  int iterations = 0;                  ///< Linear systems solved.
+  int iterations = 0;                  ///< Number of linear systems solved.
   Eigen::VectorXd q;                   ///< The strain modes (RodChain).
-  std::vector<double> tensions;        ///< N, at the base; 0 for slack ones.
+  std::vector<double> tensions;        ///< N, at the base; 0 for slack tendons.
   std::vector<double> tendon_lengths;  ///< Path lengths through the rod, from base to end, m.
   std::vector<double>
-      displacements;  ///< Pulled in at the base, m; for slack ones the value at which they would be taut.
+      /// Length pulled in at the base, m; for a slack tendon, the displacement at which it becomes taut.
+      displacements;
   double strain_energy = 0;  ///< J
   Pose tip;                  ///< X_BT
 
   [[nodiscard]] bool converged() const { return end == StaticsEnd::converged; }
 };
 
-/// Derivatives of an equilibrium: by tensions where these are given, else by displacements, and by loads and
-/// parameters.
+/// Derivatives of an equilibrium by its input, loads and parameters. The input is the given tensions or
+/// displacements.
 struct EquilibriumSlopes {
   Eigen::MatrixXd q_by_input;         ///< size() x tendons. Columns of slack tendons are 0.
   Eigen::MatrixXd tensions_by_input;  ///< Tendons x tendons, N/m; the identity if tensions are given.
   Eigen::MatrixXd lengths_by_input;   ///< Tendons x tendons.
-  Eigen::MatrixXd q_by_tip;           ///< size() x 6: by force and moment at the tip, base's frame.
+  Eigen::MatrixXd q_by_tip;           ///< size() x 6: by force and moment at the tip, in the base's frame.
   Eigen::MatrixXd
-      tip_by_input;  ///< 6 x tendons: velocity of the tip's origin and angular velocity, base's frame.
-  Eigen::Matrix<double, 6, 6> tip_by_tip;  ///< Compliance: tip motion by force and moment at the tip.
-  /// Tip motion by each section's parameters, 6 x 5 sections: relative changes of its stiffness against
-  /// shear, stretch, bends and twist, and of its mass per length.
+      tip_by_input;  ///< 6 x tendons: change of the tip's position and rotation, in the base's frame.
+  /// Compliance: change of the tip's position and rotation by force and moment at the tip.
+  Eigen::Matrix<double, 6, 6> tip_by_tip;
+  /// Change of the tip's position and rotation by parameters, 6 x 5 sections. Each section's parameters are
+  /// relative changes of its stiffness against shear, stretch, bends and twist, and of its mass per length.
   Eigen::MatrixXd tip_by_parameters;
   Eigen::MatrixXd q_by_parameters;  ///< size() x 5 sections, by the same parameters.
 };
@@ -83,7 +85,7 @@ struct EquilibriumSlopes {
 /// before full load, the rod descends the energy from its last stable shape (RodDescent).
 class RodStatics {
  public:
-  /// Parameters as RodChain.
+  /// Parameters and errors as RodChain.
   explicit RodStatics(Rod rod, std::span<const RodPlace> places = {});
 
   /// Sets length factors as RodChain::stretch_rest, from the next solution on. Displacements still count from
@@ -93,18 +95,19 @@ class RodStatics {
   [[nodiscard]] Equilibrium solve(const TendonInput& tendons, const RodLoads& loads);
   /// Solves from a nearby equilibrium, or from the undeformed rod if that does not converge directly.
   [[nodiscard]] Equilibrium solve(const TendonInput& tendons, const RodLoads& loads, const Equilibrium& near);
-  /// Returns the equilibrium that a rod with the shape of `near` reaches: the nearby one if it is stable,
-  /// else the one at the end of the descent from `near`. Starts from the undeformed rod if `near` did not
-  /// converge. Returns an unstable equilibrium only if no descent from it found a stable one.
+  /// Returns the equilibrium that a rod with the shape of `near` reaches. It is the nearby one if that is
+  /// stable, otherwise the one at the end of the descent from `near`. Starts from the undeformed rod if
+  /// `near` did not converge. Returns an unstable equilibrium only if no descent from it found a stable one.
   [[nodiscard]] Equilibrium settle(const TendonInput& tendons, const RodLoads& loads,
                                    const Equilibrium& near);
   /// Settles from the undeformed rod.
   [[nodiscard]] Equilibrium settle(const TendonInput& tendons, const RodLoads& loads);
 
-  /// Treatment of slack tendons in slopes(): no effect, or as if they were just taut and held in both
-  /// directions.
+  /// Treatment of slack tendons in slopes(). `hangs`: they have no effect. `is_taut`: they are just taut and
+  /// held, and can also push.
   enum class Slack { hangs, is_taut };
-  /// Returns the derivatives at the last solution, which converged. Throws std::logic_error without one.
+  /// Returns the derivatives at the last solution. Throws std::logic_error if the last solution did not
+  /// converge.
   [[nodiscard]] EquilibriumSlopes slopes(Slack slack = Slack::hangs);
 
   /// Returns tendon lengths of the undeformed rod, m.

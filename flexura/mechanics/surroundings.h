@@ -8,7 +8,7 @@
 
 namespace flexura {
 
-/// Several surroundings of one rod combined: their wrenches are added.
+/// Combines several surroundings of one rod: adds their wrenches.
 class Surroundings final : public RodSurroundings {
  public:
   /// Keeps references. Throws std::invalid_argument for a null pointer, or if two of them act at points
@@ -17,7 +17,7 @@ class Surroundings final : public RodSurroundings {
   /// Not thread-safe.
   void pull(std::span<const NodeMotion> nodes, std::span<const double> run,
             std::span<NodePull> pulls) const override;
-  /// Points of the one part that has some; the following functions also use that part.
+  /// Returns the points of the only part that has any. The following functions use the same part.
   [[nodiscard]] std::span<const RodPlace> points() const override;
   void choose(std::span<const NodeMotion> nodes, std::span<const double> lengths,
               std::vector<std::size_t>& chosen) const override;
@@ -34,7 +34,7 @@ class Surroundings final : public RodSurroundings {
   mutable std::vector<NodePull> one_;
 };
 
-/// A tendon that breaks at a time.
+/// A tendon that breaks, and when.
 struct TendonBreak {
   std::size_t tendon = 0;
   double time = 0;  ///< s

@@ -163,6 +163,14 @@ std::vector<SwingMode> Actuation::swing(const ArmState& command, std::size_t mos
   return modes;
 }
 
+std::vector<ArmState> Actuation::released(const ArmState& command) const {
+  if (!response_) return {};
+  std::vector<ArmState> shapes = response_->released(command);
+  for (ArmState& shape : shapes)
+    for (std::size_t k = 0; k < arcs(); ++k) shape.bends[k] *= shares_[k];
+  return shapes;
+}
+
 void Actuation::by_command(const Eigen::MatrixXd& by_shape, const ArmState& command,
                            Eigen::MatrixXd& by_command) const {
   if (sections_ == 0) {

@@ -60,6 +60,9 @@ class Actuation {
   /// Returns the slowest modes in which the arm swings about the equilibrium of a command
   /// (ArmResponse::swing); empty without a response.
   [[nodiscard]] std::vector<SwingMode> swing(const ArmState& command, std::size_t most) const;
+  /// Returns, for each tendon, the shape for a command if this tendon had no tension
+  /// (ArmResponse::released); empty without a response.
+  [[nodiscard]] std::vector<ArmState> released(const ArmState& command) const;
   /// Converts derivatives with respect to the shape to derivatives with respect to the command, at `command`.
   /// `by_shape` has three columns per arc (bend_x, bend_y, stretch), `by_command` three per section. Resizes
   /// `by_command` if needed. Throws std::invalid_argument if `by_shape` has another number of columns.

@@ -24,6 +24,13 @@ struct ArmDifference {
   return way;
 }
 
+/// Returns the sum of the squared bends of a difference, rad^2.
+[[nodiscard]] inline double squared_bends(const ArmDifference& way) {
+  double sum = 0;
+  for (const Eigen::Vector2d& bend : way.bends) sum += bend.squaredNorm();
+  return sum;
+}
+
 /// Returns `state` plus `share` times a difference, both of the same arm.
 [[nodiscard]] inline ArmState plus(ArmState state, const ArmDifference& way, double share = 1) {
   for (std::size_t i = 0; i < state.bends.size(); ++i) {

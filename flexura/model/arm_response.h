@@ -43,6 +43,10 @@ class ArmResponse {
                                                      std::size_t /*most*/) const {
     return {};
   }
+  /// Returns, for each tendon, the shape for a command if this tendon had no tension. Bends are NaN if the
+  /// arm then has no equilibrium. Empty for an arm without tendons. Throws std::invalid_argument for a
+  /// command of another arm.
+  [[nodiscard]] virtual std::vector<ArmState> released(const ArmState& /*command*/) const { return {}; }
 };
 
 }  // namespace flexura

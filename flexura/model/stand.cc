@@ -77,7 +77,7 @@ const Table<EtalonConfig>& fields_of(const EtalonConfig*) {
             if (const std::string problem = quaternion_problem(etalon.rotation); !problem.empty())
               reader.problem_at("rotation", problem);
             if (4 * etalon.line_width > 2 * std::numbers::pi * etalon.radius)
-              reader.problem_at("line_width", "leaves nothing between the four lines: expected less");
+              reader.problem_at("line_width", "is too large: expected a gap between the four lines");
           });
   return table;
 }

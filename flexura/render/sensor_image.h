@@ -41,12 +41,15 @@ struct SensorRows {
 /// An image sensor, which converts light to pixel values. The steps for each value are, in physical order:
 ///
 /// 1. Light that is negative or NaN counts as 0, and beyond 2^20 as 2^20.
-/// 2. Vignetting: times 1 - vignetting (r/R)^2, r from the middle of the image, R the corner pixel's.
-/// 3. PSF: a Gaussian along columns and rows, cut at 3.5 standard deviations, of unit sum and exactly the
-///    configured variance; the image's edge is continued. Uniform areas stay exactly unchanged.
-/// 4. Shot noise: normal, of the variance light / full_well (Poisson's for many electrons); times gain.
+/// 2. Vignetting: multiplication by 1 - vignetting (r/R)^2, with r the distance from the middle of the image
+///    and R that of the corner pixels.
+/// 3. PSF: convolution with a Gaussian along columns and rows, cut at 3.5 standard deviations. It has unit
+///    sum and exactly the configured variance. Pixels of the image's edge are continued outside. Uniform
+///    areas stay exactly unchanged.
+/// 4. Shot noise: normal with the variance light / full_well (Poisson distribution for many electrons); then
+///    multiplication by the gain.
 /// 5. Read noise: normal.
-/// 6. Clamped to [0, 1], to the power 1/gamma, times 2^bits - 1, rounded half up.
+/// 6. Quantisation: clamping to [0, 1], power 1/gamma, multiplication by 2^bits - 1, rounding half up.
 ///
 /// Noise depends on the stream, the pixel and the channel alone. Hence images are equal for any number of
 /// threads and every instruction set.

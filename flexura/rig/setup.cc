@@ -84,8 +84,8 @@ const Table<RecordConfig>& fields_of(const RecordConfig*) {
                  {.meaning = "Whether report.html and figures/ are written."})
           .field("cameras", &RecordConfig::cameras, {.meaning = "Whether the log keeps the cameras' images."})
           .field("scene", &RecordConfig::scene,
-                 {.meaning = "Whether the log keeps the surroundings, and ten arm shapes a second, for "
-                             "programs that draw them."})
+                 {.meaning = "Whether the log contains the arm's surroundings and ten arm shapes per second, "
+                             "for programs that draw logs."})
           .field("curve", &RecordConfig::curve,
                  {.meaning = "Curve drawn along the arm in the report. `arcs`: its exact arcs. "
                              "`catmull_rom`: the paper's spline through the sections' base points (eq. 11). "

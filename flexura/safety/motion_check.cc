@@ -58,12 +58,6 @@ void check_one(const CheckedMotion& checked, const ArmState& before) {
   }
 }
 
-// Returns true for hazards of the arm's shape, as opposed to those of the command.
-bool is_of_shape(Hazard hazard) {
-  return hazard == Hazard::folding || hazard == Hazard::self_contact || hazard == Hazard::obstacle ||
-         hazard == Hazard::not_finite;
-}
-
 bool is_nowhere(const Violation& violation) { return violation.hazard == Hazard::not_finite; }
 
 SafetyReport check_with(const Arm& arm, const std::vector<ContactWatch>& contacts, const ArmState& initial,
@@ -92,6 +86,11 @@ SafetyReport check_with(const Arm& arm, const std::vector<ContactWatch>& contact
 }
 
 }  // namespace
+
+bool is_of_shape(Hazard hazard) {
+  return hazard == Hazard::folding || hazard == Hazard::self_contact || hazard == Hazard::obstacle ||
+         hazard == Hazard::not_finite;
+}
 
 bool is_possible(const ArmState& state) { return !impossible_section(state); }
 

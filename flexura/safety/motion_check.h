@@ -37,6 +37,9 @@ struct TimedMotion {
                                          const ArmState& initial, const std::vector<TimedMotion>& motions,
                                          double step, Progress* progress = nullptr);
 
+/// Returns true for hazards of the arm's shape, as opposed to those of the command.
+[[nodiscard]] bool is_of_shape(Hazard hazard);
+
 /// Returns whether a state is possible: bends are at most `largest_bend`, and lengths are finite and above 0.
 [[nodiscard]] bool is_possible(const ArmState& state);
 

@@ -61,6 +61,7 @@ void check_servo(const ServoConfig& config) {
   require(config.settle >= 0 && config.hold_after > 0 && config.give_up_after > config.hold_after &&
               config.timeout > config.settle,
           "a servo needs 0 <= settle < timeout and hold_after < give_up_after");
+  require(!config.disturbance || *config.disturbance > 0, "a servo's disturbance must be above 0");
   require(config.points >= 1 && config.rate > 0 && config.tolerance > 0 && config.step > 0,
           "a servo's points, rate, tolerance and step must be above 0");
 }

@@ -24,7 +24,7 @@ namespace flexura {
 enum class ServoLawKind : std::uint8_t {
   shape,        ///< Difference between the shape estimated from both images and the target shape.
   points,       ///< Pixels of points along the arm.
-  chords,       ///< Angles of the images of chords of the arm.
+  chords,       ///< Directions of the arm's chords in the images, as angles.
   moments,      ///< Length, centroid and second moments of the arm's images.
   potential,    ///< The paper's law: errors in two image planes, an artificial potential of two angles.
   silhouettes,  ///< Positions of the two edges of the arm's images, perpendicular to the edges.
@@ -88,8 +88,12 @@ struct ServoSettings {
   double settle = 0.5;  ///< Time for which the error has to stay below `tolerance`, s.
   double timeout =
       20;  ///< Time after the last goal at which the servo fails if the target is not reached, s.
-  double hold_after = 0.3;        ///< Time without an observation after which the arm stops and waits, s.
-  double give_up_after = 3;       ///< Time without an observation after which the servo fails, s.
+  double hold_after = 0.3;   ///< Time without an observation after which the arm stops and waits, s.
+  double give_up_after = 3;  ///< Time without an observation after which the servo fails, s.
+  /// Unexplained change of the arm's shape at which the servo holds the arm, root mean square along the arm,
+  /// share of its length (DisturbanceWatch). Empty: 0.05 for an arm with an elastic model, otherwise not
+  /// watched.
+  std::optional<double> disturbance = {};
   bool follow = false;            ///< Whether the heads turn to keep the arm in the middle of the pictures.
   ServoCameraPrior camera_prior;  ///< Prior of the errors of each camera model.
 };

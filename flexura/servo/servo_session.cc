@@ -14,6 +14,7 @@
 #include "flexura/control/predictive_law.h"
 #include "flexura/model/arm_difference.h"
 #include "flexura/port/camera_moves.h"
+#include "flexura/servo/disturbance_watch.h"
 #include "flexura/servo/picture_meter.h"
 #include "flexura/servo/rig_reader.h"
 #include "flexura/servo/servo_features.h"
@@ -33,13 +34,6 @@ void check(const RigPorts& ports, const RigModel& nominal, const ServoConfig& co
     throw std::invalid_argument("a servo needs the ports of two cameras of the model");
 }
 
-// Returns the sum of the squared bends, rad^2.
-double square(const ArmDifference& difference) {
-  double sum = 0;
-  for (const Eigen::Vector2d& bend : difference.bends) sum += bend.squaredNorm();
-  return sum;
-}
-
 class Session {
  public:
   Session(const RigPorts& ports, const RigModel& nominal, const ServoConfig& config,
@@ -57,6 +51,8 @@ class Session {
         features_(servo_features(config, nominal)),
         law_(nominal_arm_, config, *features_),
         keeper_(nominal, config.cameras) {
+    if (config.disturbance || !nominal_arm_.actuation().is_linear())
+      watch_.emplace(nominal_arm_, DisturbanceConfig{.limit = config.disturbance.value_or(0.05)});
     if (config.law == ServoLawKind::predictive)
       predictive_.emplace(nominal_arm_.driven(), model_.arm,
                           PredictiveLawConfig{.step = config.step, .rate = 1.5 * config.rate});
@@ -232,10 +228,11 @@ class Session {
     if (!limiter_->fault() && look(now)) {
       step.is_fresh = true;
       limiter_->observe(observer_.last()->estimate.shape.state);
+      if (watch_) watch_disturbance(now);
       if (config_.follow) follow(step);
     }
     LimitedCommand command;
-    if (!observer_.last() || is_blind(now) || limiter_->fault()) {
+    if (!observer_.last() || is_blind(now) || limiter_->fault() || (watch_ && watch_->is_disturbed())) {
       command = limiter_->brake();
     } else {
       const ArmState output = asked(now, step), slow = limiter_->within_braking(output, config_.rate);
@@ -248,6 +245,16 @@ class Session {
                        (unseen_because_.empty() ? rig_.no_pair(observer_.seen_since()) : unseen_because_);
     step.limited = command.reason;
     send(now, std::move(command.state), std::move(step));
+  }
+
+  // Holds the arm while it is disturbed.
+  void watch_disturbance(double now) {
+    const ServoObservation& observed = *observer_.last();
+    const bool was_disturbed = watch_->is_disturbed();
+    watch_->add(observed.time, observed.rest, rig_.measured(observed.time), observer_.sigma());
+    if (watch_->is_disturbed() && !was_disturbed) watcher_.reported(now, "disturbed: " + watch_->what());
+    if (!watch_->is_disturbed() && was_disturbed) watcher_.reported(now, "the disturbance is over");
+    if (watch_->lasts() > config_.give_up_after) result_.reason = "disturbed: " + watch_->what();
   }
 
   // Returns the command of the predictive law.
@@ -283,7 +290,7 @@ class Session {
     const double since = now - result_.start;
     step.ahead = servo_error(model_.arm, observer_.expected(model_.bent(sent_)), goals_->at(since).state);
     if (predictive_) {
-      step.potential = 0.5 * square(minus(seen, step.desired));
+      step.potential = 0.5 * squared_bends(minus(seen, step.desired));
       return predicted(now);
     }
     const ArmState measured = rig_.measured(observed.time);
@@ -378,6 +385,7 @@ class Session {
   std::unique_ptr<ServoFeatures> features_;
   ServoLaw law_;
   std::optional<PredictiveLaw> predictive_;  // Instead of law_.
+  std::optional<DisturbanceWatch> watch_;
   ViewKeeper keeper_;
   std::optional<ServoGoals> goals_;
   std::optional<CommandLimiter> limiter_;

@@ -32,14 +32,14 @@ struct ArmRod {
   std::vector<Payload> payloads = {};
 };
 
-/// The arm, its drive and its start, as a simulation needs them.
+/// An arm, its drive and its initial state, for a simulation.
 struct ArmSetup {
   /// Builds the arm, its drive and its initial state from `config`. Errors as arm_state()
   /// (kinematics/shape.h).
   explicit ArmSetup(const RigConfig& config);
 
   Arm arm;
-  ArmState initial;            ///< Initial state, of the model or of the truth.
+  ArmState initial;            ///< Initial state.
   std::optional<Drive> drive;  ///< Missing: the sections bend at their own rates.
   /// The rod if the arm's mechanics are static or dynamic. Missing: sections are arcs.
   std::optional<ArmRod> rod;

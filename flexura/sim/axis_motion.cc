@@ -36,7 +36,8 @@ AxisMotion::AxisMotion(const AxisConfig& axis, const Backlash& backlash, double 
 }
 
 void AxisMotion::command(double time, double target, double duration) {
-  if (!std::isfinite(target)) throw std::invalid_argument(fmt::format("an axis cannot go to {}", target));
+  if (!std::isfinite(target))
+    throw std::invalid_argument(fmt::format("an axis cannot move to {}: expected a finite position", target));
   go(time, commandable(axis_, target), duration);
 }
 
@@ -49,7 +50,8 @@ void AxisMotion::go(double time, double target, double duration) {
   const double start = time + delay_;
   if (!std::isfinite(start) || start < plans_.back().start)
     throw std::invalid_argument(
-        fmt::format("a command at {} s, after one that holds from {} s on", time, plans_.back().start));
+        fmt::format("a command at {} s is before the last command, which takes effect at {} s", time,
+                    plans_.back().start));
   const State from = plans_.back().at(start);
   Plan plan;
   plan.start = plan.end = plan.turn = start;
@@ -60,8 +62,9 @@ void AxisMotion::go(double time, double target, double duration) {
   while (plans_.size() > 1 && plans_[1].start <= time - horizon_) plans_.pop_front();
 }
 
-// Returns the peak rate after speeding up or slowing down from `rate`. With it the axis rests `way` further
-// on after `duration`, or as soon as possible. `way` is at least the braking distance.
+// Returns the peak rate to which the axis accelerates or decelerates from `rate`. With this peak rate it
+// comes to rest after the distance `way` and the time `duration`, or as soon as possible. `way` is at least
+// the braking distance.
 double AxisMotion::peak_rate(double way, double rate, double duration) const {
   const double a = axis_.max_acceleration;
   const double peak = std::min(std::sqrt(std::max(a * way + 0.5 * rate * rate, 0.0)), axis_.max_rate);
@@ -79,8 +82,8 @@ double AxisMotion::peak_rate(double way, double rate, double duration) const {
   return std::min(reach / (half + std::sqrt(std::max(half * half - reach / a, 0.0))), peak);
 }
 
-// Plans from a position and rate to rest at `target`: full acceleration to the peak rate, constant rate, full
-// deceleration.
+// Plans the motion from a position and rate to rest at `target`: full acceleration to the peak rate, constant
+// rate, full deceleration.
 void AxisMotion::fill(Plan& plan, const State& from, double target, double duration) const {
   const double a = axis_.max_acceleration;
   if (std::isinf(a)) {

@@ -7,14 +7,15 @@
 
 namespace flexura {
 
-/// Motion of one motor-driven axis and its load over time, in the units of its position. The axis moves to
-/// each target as fast as its rate and acceleration allow, from any current motion, and stops there.
+/// Motion of one motor-driven axis and its load over time, in the unit of the axis's position. From any
+/// current motion, the axis moves to each target as fast as its rate and acceleration allow, and stops there.
 ///
 /// The motion is a function of time and of the commands up to that time. Queries change nothing, so results
-/// are bit-identical however often and whenever they are made.
+/// are bit-identical for any number and order of queries.
 class AxisMotion {
  public:
-  /// Backlash: the load lies within motor + [low, high], and stays while the motor moves through that range.
+  /// Backlash: the load is within motor + [low, high]. It stays at rest while the motor moves through that
+  /// range.
   struct Backlash {
     double low = 0, high = 0;  ///< low <= 0 <= high
   };
@@ -23,7 +24,7 @@ class AxisMotion {
   /// given. Queries are allowed back to `horizon` s before the last command.
   AxisMotion(const AxisConfig& axis, const Backlash& backlash, double start, double delay, double horizon);
 
-  /// Moves to the commandable position nearest to `target`, from `time` + delay on. The motion takes
+  /// From `time` + delay on, moves to the commandable position nearest to `target`. The motion takes
   /// `duration` s, or longer if limits require it. Throws std::invalid_argument if `time` is before the last
   /// command.
   void command(double time, double target, double duration = 0);
@@ -36,7 +37,7 @@ class AxisMotion {
   [[nodiscard]] double rate(double time) const { return plan_at(time).at(time).rate; }
   /// Returns the position of the load, behind the backlash.
   [[nodiscard]] double position(double time) const { return carried(plan_at(time), time); }
-  /// Returns whether a commanded motion is under way or still to come.
+  /// Returns whether a commanded motion has not ended yet.
   [[nodiscard]] bool is_moving(double time) const { return plans_.back().end > time; }
 
  private:

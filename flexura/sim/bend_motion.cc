@@ -42,13 +42,13 @@ double BendMotion::end() const {
 
 void BendMotion::command(double time, const ArmState& target, double duration) {
   if (target.bends.size() != sections_.size() || target.stretches.size() != sections_.size())
-    throw std::invalid_argument(
-        fmt::format("a shape of {} sections for an arm of {}", target.bends.size(), sections_.size()));
+    throw std::invalid_argument(fmt::format("a shape of {} sections for an arm of {} sections",
+                                            target.bends.size(), sections_.size()));
   ArmState inside = target;
   for (std::size_t i = 0; i < sections_.size(); ++i) {
     const double bend = inside.bends[i].norm();
     if (!std::isfinite(bend) || !std::isfinite(inside.stretches[i]))
-      throw std::invalid_argument("a shape of numbers that are not finite");
+      throw std::invalid_argument("a shape with numbers that are not finite");
     if (bend > sections_[i].max_bend) inside.bends[i] *= sections_[i].max_bend / bend;
     const auto [least, most] = sections_[i].stretch_limits;
     inside.stretches[i] = std::clamp(inside.stretches[i], least, most);

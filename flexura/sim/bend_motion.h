@@ -7,17 +7,17 @@
 
 namespace flexura {
 
-/// Motion of an arm without drives, whose sections bend by themselves. Each section goes straight to its
-/// target in the given time, or at its largest bend rate if that time is too short; its stretch moves along
-/// with it. A function of time and of the commands up to that time, like AxisMotion.
+/// Motion of an arm without drives, whose sections bend as commanded. Each section moves at constant rates to
+/// its target in the given time, or at its largest bend rate if that time is too short. Its stretch takes the
+/// same time. Like AxisMotion, it is a function of time and of the commands up to that time.
 class BendMotion {
  public:
   /// Starts at rest in `start`. Queries are allowed back to `horizon` s before the last command.
   BendMotion(const Arm& arm, const ArmState& start, double horizon);
 
-  /// Moves from `time` on, for `duration` s or longer if needed, to the shape nearest to `target` within the
-  /// sections' limits. Throws std::invalid_argument if `time` is before the last command, or if `target` does
-  /// not fit the arm.
+  /// From `time` on, moves to the shape nearest to `target` within the sections' limits. The motion takes
+  /// `duration` s, or longer if needed. Throws std::invalid_argument if `time` is before the last command, or
+  /// if `target` does not fit the arm.
   void command(double time, const ArmState& target, double duration);
   void halt(double time);
 

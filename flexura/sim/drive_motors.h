@@ -10,16 +10,18 @@
 
 namespace flexura {
 
-/// Motion of a drive's motors over time, with the backlash behind each. Positions are in microsteps, in each
-/// motor's own sense. A function of time and of the commands up to that time, like AxisMotion.
+/// Motion of a drive's motors over time, and of the loads behind their backlash. Positions are in microsteps,
+/// in each motor's own sense. Like AxisMotion, it is a function of time and of the commands up to that time.
 class DriveMotors {
  public:
-  /// Starts at rest at `start`, with the backlash taken up for pulling in. Backlash and senses are taken from
-  /// `drive`; limits, rates and accelerations from the motors of `real`. Queries are allowed back to
-  /// `horizon` s before the last command. `drive`, `real` and `start` have the same number of axes.
+  /// Starts at rest at `start`, microsteps, with the backlash taken up for pulling in. Backlash and senses
+  /// are those of `drive`. Limits, rates and accelerations are those of the motors of `real`. Queries are
+  /// allowed back to `horizon` s before the last command. `drive`, `real` and `start` have the same number of
+  /// axes.
   DriveMotors(const Drive& drive, const Drive& real, const std::vector<std::int64_t>& start, double horizon);
 
-  /// Moves from `time` on to `positions`, one per axis, within `duration` s or longer as each motor needs.
+  /// From `time` on, moves to `positions`, one per axis, within `duration` s. A motor that needs longer takes
+  /// longer.
   void command(double time, std::span<const double> positions, double duration);
   /// Stops the motors as fast as they can.
   void halt(double time);
@@ -31,7 +33,7 @@ class DriveMotors {
   [[nodiscard]] std::vector<double> rates(double time) const;
   /// Returns the positions behind the backlash at `time` s, microsteps.
   [[nodiscard]] std::vector<double> carried(double time) const;
-  /// Returns whether a commanded motion of any motor is under way or still to come.
+  /// Returns whether a commanded motion of any motor has not ended yet.
   [[nodiscard]] bool is_moving(double time) const;
 
  private:

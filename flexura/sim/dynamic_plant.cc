@@ -26,7 +26,7 @@ constexpr double greatest_strain = 1e4;
 
 const ArmRod& moving_rod(const PlantSetup& setup) {
   if (!setup.truth.rod || !setup.truth.rod->time_step)
-    throw std::invalid_argument("the true arm is no rod in motion");
+    throw std::invalid_argument("the true arm is not a rod with inertia");
   return *setup.truth.rod;
 }
 
@@ -66,7 +66,7 @@ DynamicPlant::DynamicPlant(const PlantSetup& setup)
   const Equilibrium rest =
       statics.solve({.displacements = inputs().displacements(0, inputs().nothing_lost())}, inputs().loads(0));
   if (!rest.converged())
-    throw SimulationError(fmt::format("the arm has no equilibrium to start from: {}", words(rest.end)));
+    throw SimulationError(fmt::format("the arm has no initial equilibrium: {}", words(rest.end)));
   snapshots_.push_back({0, dynamics_.rest(rest), rotors_at_rest(inputs(), rest.tensions), carried_});
   hand_over(snapshots_.back(), 0);
 }
@@ -191,8 +191,8 @@ void DynamicPlant::move(Snapshot& at, double from, double h) const {
   const Eigen::VectorXd& q = at.state.q;
   if (!q.allFinite() || q.cwiseProduct(dynamics_.chain().scales()).cwiseAbs().maxCoeff() >= greatest_strain)
     throw SimulationError(fmt::format(
-        "at {:.4f} s the motion of the arm blows up: what moves it is too strong for steps of {} s", from,
-        step_));
+        "at {:.4f} s the motion of the arm diverges: its actuation or loads are too strong for steps of {} s",
+        from, step_));
 }
 
 // Sets the sections' lengths and their rates at a time.
@@ -236,13 +236,30 @@ DynamicPlant::Snapshot DynamicPlant::at(double time) const {
   return then;
 }
 
+// Pictures need the shape at many times within a step. A cubic through the shapes and rates at both ends of
+// the step is as accurate as the step, and far cheaper than another step to each of these times.
+std::optional<Eigen::VectorXd> DynamicPlant::shape_between(double time) const {
+  const Snapshot& from = snapshot(time);
+  const auto next = static_cast<std::size_t>(&from - snapshots_.data()) + 1;
+  const double start = time_of(from.index), part = (time - start) / step_;
+  if (part <= no_time) return from.state.q;
+  if (next == snapshots_.size() || from.carried != snapshots_[next].carried ||
+      !events(start, start + step_).empty())
+    return std::nullopt;
+  const RodState &a = from.state, &b = snapshots_[next].state;
+  const double rest = 1 - part;
+  return rest * rest * ((1 + 2 * part) * a.q + part * step_ * a.rate) +
+         part * part * ((1 + 2 * rest) * b.q - rest * step_ * b.rate);
+}
+
 Backbone DynamicPlant::backbone(double time) const {
-  const Snapshot then = at(time);
+  const std::optional<Eigen::VectorXd> between = shape_between(time);
+  const Eigen::VectorXd q = between ? *between : at(time).state.q;
   try {
-    return tube().backbone(then.state.q, inputs().rest_stretches(time));
+    return tube().backbone(q, inputs().rest_stretches(time));
   } catch (const std::invalid_argument&) {
     throw SimulationError(fmt::format(
-        "at {:.4f} s the motion of the arm blows up: it winds more tightly than an arm can", time));
+        "at {:.4f} s the motion of the arm diverges: it bends more sharply than an arm can", time));
   }
 }
 
@@ -340,7 +357,8 @@ std::vector<PlantContact> DynamicPlant::found(const std::vector<ContactForce>& c
 std::string DynamicPlant::warning(double time) const {
   for (const PlantContact& contact : contacts(time))
     if (contact.is_deep)
-      return fmt::format("the arm is deep inside {}: what that pushes means nothing", contact.with);
+      return fmt::format("the centerline of the arm is inside {}: the contact force is not valid",
+                         contact.with);
   return {};
 }
 

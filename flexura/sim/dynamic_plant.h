@@ -19,14 +19,14 @@
 
 namespace flexura {
 
-/// A plant whose arm is an elastic rod with inertia (docs/mechanics.md, "In time"). Tendons are pulled in,
-/// weight and loads act on it, and it swings. It touches obstacles and moves in a fluid as its ArmRod states.
+/// A plant whose arm is an elastic rod with inertia (docs/mechanics.md, "In time"). Tendons, weight and loads
+/// act on the arm, and it swings. Its ArmRod defines contact with obstacles and the drag of a fluid.
 ///
 /// The arm starts at rest and is computed in steps of ArmRod::time_step from time 0 on. Each step uses the
-/// commands given for it; times between two steps use a shorter step. So answers depend on time and commands
-/// alone. A step is cut where a payload is picked up or dropped, a tendon breaks, or the weight is switched.
-/// Motors lose steps as described for RotorState. Throws SimulationError if a step does not converge, however
-/// short.
+/// commands that hold during the step. A time between two steps is computed with a shorter step. So results
+/// depend on time and commands only. A step is cut where a payload is picked up or dropped, a tendon breaks,
+/// or the weight is switched. Motors lose steps as described for RotorState. Throws SimulationError if a step
+/// does not converge even when divided.
 class DynamicPlant : public RodPlant {
  public:
   /// Errors as RodInputs and RodDynamics. Throws std::invalid_argument if no initial equilibrium is found.
@@ -71,6 +71,9 @@ class DynamicPlant : public RodPlant {
   [[nodiscard]] std::vector<PlantContact> found(const std::vector<ContactForce>& contacts) const;
   // Returns the motion of the rod and the carried payloads at a time.
   [[nodiscard]] Snapshot at(double time) const;
+  // Returns the modes' amplitudes at a time by interpolation within a step. Empty if the step's end is not
+  // known yet, or if an event within the step changes the motion.
+  [[nodiscard]] std::optional<Eigen::VectorXd> shape_between(double time) const;
 
   ArmRod rod_;
   Pose X_WB_;
@@ -79,17 +82,17 @@ class DynamicPlant : public RodPlant {
   double step_, horizon_;
   bool may_lose_steps_ = false, can_stretch_ = false;
   std::vector<Snapshot> snapshots_;  // Back to the horizon.
-  // Queried by several threads; answers do not depend on what was computed before.
+  // Queried by several threads. Answers do not depend on earlier queries.
   mutable std::mutex mutex_;
   struct Answer {
     double time = 0;
     Snapshot at;
     std::optional<std::vector<PlantContact>> contacts = {};  // Filled on the first query.
   };
-  // The last answers, of a few times that several cameras ask for; empty after a change.
+  // The last answers, cached because several cameras query the same times; empty after a change.
   static constexpr std::size_t most_answers = 8;
   mutable std::vector<Answer> answers_;
-  mutable std::size_t next_answer_ = 0;                // Index of the one to be replaced.
+  mutable std::size_t next_answer_ = 0;                // Index of the answer to replace next.
   [[nodiscard]] Answer* answer_at(double time) const;  // Null if none; requires mutex_.
   mutable RodDynamics dynamics_;
   mutable std::vector<char> carried_;  // Payloads that dynamics_ carries.

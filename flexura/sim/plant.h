@@ -17,13 +17,13 @@
 
 namespace flexura {
 
-/// How a hand pushes an arm at a point of its middle line: by a spring towards a place and by a constant
-/// force (PointSpring).
+/// A push at a point of an arm's centerline: a spring towards a place, and a constant force (PointSpring).
 struct PlantPush {
-  double s_rest = 0;                             ///< Pushed point: arc length from the arm's base at rest, m.
-  Eigen::Vector3d to = Eigen::Vector3d::Zero();  ///< The spring's other end, in the world frame, m.
-  double stiffness = 0;                          ///< Stiffness of the spring, N/m; 0: no spring.
-  double most = 1;                               ///< Upper limit of the spring force, N; > 0.
+  double s_rest = 0;  ///< Pushed point: arc length from the arm's base at rest, m.
+  /// Position of the spring's other end in the world frame, m.
+  Eigen::Vector3d to = Eigen::Vector3d::Zero();
+  double stiffness = 0;                             ///< Stiffness of the spring, N/m; 0: no spring.
+  double most = 1;                                  ///< Upper limit of the spring force, N; > 0.
   Eigen::Vector3d force = Eigen::Vector3d::Zero();  ///< Constant force, in the world frame, N.
 
   bool operator==(const PlantPush&) const = default;
@@ -37,9 +37,9 @@ struct PlantPushForce {
 
 /// The true arm of the simulated world: computes its response to commands over time.
 ///
-/// A command u holds for an arm with a drive the position of each motor (microsteps, in its own sense).
-/// Without a drive it holds (bend_x, bend_y, stretch) of each section. A plant is not a port: it gives true
-/// values, which are not for algorithms.
+/// For an arm with a drive, a command u consists of the position of each motor, in microsteps in the motor's
+/// own sense. Without a drive, it consists of (bend_x, bend_y, stretch) of each section. A plant is not a
+/// port: it returns true values, which algorithms must not use.
 class Plant {
  public:
   virtual ~Plant() = default;
@@ -47,8 +47,8 @@ class Plant {
   Plant(const Plant&) = delete;
   Plant& operator=(const Plant&) = delete;
 
-  /// Moves to u from `time` s on, within `duration` s or as soon after that as possible. `time` is not before
-  /// the last command.
+  /// From `time` s on, moves to u within `duration` s, or as fast as possible if that is too short. `time` is
+  /// not before the last command.
   virtual void command(double time, const Eigen::VectorXd& u, double duration) = 0;
   /// Stops as fast as possible at `time` s, which is not before the last command.
   virtual void halt(double time) = 0;
@@ -84,7 +84,7 @@ class Plant {
   [[nodiscard]] virtual std::optional<PlantPushForce> push_force(double /*time*/) const {
     return std::nullopt;
   }
-  /// Returns how far the drives have pulled each tendon in from the straight arm, m, without pretension and
+  /// Returns how far the drives have pulled each tendon in from the straight arm, m, ignoring pretension and
   /// lost steps. Returns an empty vector if individual tendons are not known. Times as for backbone().
   [[nodiscard]] virtual std::vector<double> pulled(double /*time*/) const { return {}; }
   /// Returns a one-line warning about an unusual state of the arm; "" if there is none. Times as for
@@ -106,7 +106,7 @@ class Plant {
 struct PlantSetup {
   const ArmSetup& truth;  ///< The true arm, which starts in `initial`.
   Eigen::VectorXd start;  ///< The initial command u.
-  double horizon = 0;     ///< How far back queries are allowed, s.
+  double horizon = 0;     ///< Time before the rig's time for which queries are allowed, s.
 };
 
 /// Creates the arm of a simulated world.
@@ -115,10 +115,10 @@ using MakePlant = std::function<std::unique_ptr<Plant>(const PlantSetup&)>;
 /// A plant whose arm is a chain of arcs and follows the imposed bends without inertia or gravity.
 class ArcPlant : public Plant {
  public:
-  /// Takes the arm as its drives see it. Errors as Actuation's.
+  /// `driven`: the arm as its drives actuate it. Errors as Actuation.
   explicit ArcPlant(const Arm& driven) : arm_(driven) {}
 
-  /// Returns the state that the drives impose on the sections; also for future times as far as commanded.
+  /// Returns the state that the drives impose on the sections, also for future times as far as commanded.
   [[nodiscard]] virtual ArmState state(double time) const = 0;
   [[nodiscard]] Backbone backbone(double time) const override { return arm_.backbone(state(time)); }
   [[nodiscard]] std::optional<ArmState> commanded(double time) const override { return state(time); }
@@ -144,7 +144,7 @@ class DrivenPlant : public ArcPlant {
   std::vector<double> zero_;  // Tendon displacements at motor position 0, m.
 };
 
-/// A chain of arcs whose sections bend by themselves, at their own rates.
+/// A chain of arcs whose sections bend as commanded, within their own bend rates.
 class BendPlant : public ArcPlant {
  public:
   /// Uses the limits and rates of the true sections.

@@ -6,15 +6,15 @@
 
 namespace flexura {
 
-/// Tendon displacements in addition to those of the bends. Each tendon moves straight to its target, and all
-/// arrive together. A function of time and of the commands up to that time, like BendMotion.
+/// Tendon displacements in addition to those of the bends. Each tendon moves to its target at constant rate,
+/// and all arrive together. Like BendMotion, it is a function of time and of the commands up to that time.
 class PullMotion {
  public:
   /// Starts with `tendons` tendons at 0. Queries are allowed back to `horizon` s before the last command.
   PullMotion(std::size_t tendons, double horizon);
 
-  /// Moves from `time` s, not before the last command, to `target`, m. The target is reached at `end` s, or
-  /// at once if `end` has passed.
+  /// Moves from `time` s on to `target`, m, and reaches it at `end` s, or at once if `end` has passed. `time`
+  /// is not before the last command.
   void command(double time, std::vector<double> target, double end);
   /// Moves all tendons back to 0, with times as for command().
   void back(double time, double end);

@@ -36,8 +36,9 @@ void lay_by_name(Node::Array& below, Node entry, const std::string& path) {
   if (found == below.end()) {
     throw InputError(std::vector<Problem>{
         {where,
-         fmt::format("truth.{}: nothing is named \"{}\" outside [truth]: expected the name of one that is",
-                     path, name)}});
+         fmt::format(
+             "truth.{}: nothing outside [truth] has the name \"{}\": expected the name of an existing entry",
+             path, name)}});
   }
   lay(*found, std::move(entry), path);
 }
@@ -127,28 +128,30 @@ Node truth_of(Node document) {
 }
 
 std::string truth_problem(const RigConfig& model, const RigConfig& truth) {
-  if (truth.arm.kind != model.arm.kind) return "the true arm is of another kind than the model's";
+  if (truth.arm.kind != model.arm.kind) return "the true arm is of another kind than the model's arm";
   if (truth.arm.section.size() != model.arm.section.size()) {
-    return fmt::format("the true arm has {} sections: expected {}, as the model's", truth.arm.section.size(),
+    return fmt::format("the true arm has {} sections: expected {}, as in the model", truth.arm.section.size(),
                        model.arm.section.size());
   }
   if (truth.drive.has_value() != model.drive.has_value())
     return "expected a drive in the truth and in the model, or in neither";
   if (truth.drive && truth.drive->tendon.size() != model.drive->tendon.size()) {
-    return fmt::format("the true drive has {} tendons: expected {}, as the model's",
+    return fmt::format("the true drive has {} tendons: expected {}, as in the model",
                        truth.drive->tendon.size(), model.drive->tendon.size());
   }
   if (truth.arm.mechanics != ArmMechanics::kinematic && truth.drive && !truth.arm.tendon.empty() &&
       truth.arm.tendon.size() != truth.drive->tendon.size())
-    return fmt::format("the true arm has {} tendons: expected {}, one for each of the drive's",
+    return fmt::format("the true arm has {} tendons: expected {}, one for each tendon of the drive",
                        truth.arm.tendon.size(), truth.drive->tendon.size());
   if (!std::ranges::equal(truth.cameras, model.cameras, {}, &CameraConfig::name, &CameraConfig::name))
-    return "expected the model's cameras in the truth, by name and order";
+    return "expected the same camera names in the truth as in the model, in the same order";
   for (std::size_t i = 0; i < model.cameras.size(); ++i) {
     const SensorConfig &one = truth.cameras[i].sensor, &other = model.cameras[i].sensor;
     if (one.width != other.width || one.height != other.height || one.bits != other.bits ||
         one.pixels != other.pixels)
-      return fmt::format("the true camera {} makes other images than the model's", model.cameras[i].name);
+      return fmt::format(
+          "the images of the true camera {} differ in size or kind from those of the model's camera",
+          model.cameras[i].name);
   }
   return "";
 }

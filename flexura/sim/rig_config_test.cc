@@ -113,7 +113,8 @@ TEST(Truth, SaysWhereItNamesNothing) {
     (void)truth_of(document);
     FAIL();
   } catch (const InputError& error) {
-    EXPECT_THAT(error.what(), HasSubstr("x.toml:8:8: truth.camera: nothing is named \"sied\""));
+    EXPECT_THAT(error.what(),
+                HasSubstr("x.toml:8:8: truth.camera: nothing outside [truth] has the name \"sied\""));
   }
   EXPECT_THROW((void)truth_of(table({member("truth", 3.0)})), InputError);
 }

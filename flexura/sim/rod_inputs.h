@@ -19,9 +19,9 @@ namespace flexura {
 /// switched off. A function of time and of the commands up to that time.
 ///
 /// With a drive, its spools pull the tendons in, starting from the pretension. A motor whose load exceeds its
-/// pull-out torque loses steps, one turn of its field at a time. Without a drive, commanded bends pull each
-/// tendon in as far as arcs with these bends would, and pull() adds differences to that. Commanded stretches
-/// are factors on the sections' own lengths.
+/// pull-out torque loses steps, one turn of its field at a time. Without a drive, the displacements of
+/// tendons are those of arcs with the commanded bends, plus those of pull(). Commanded stretches are factors
+/// on the sections' own lengths.
 class RodInputs {
  public:
   /// Requires that the truth has a rod, with a tendon for each axis of its drive if it has one. Throws
@@ -30,7 +30,7 @@ class RodInputs {
 
   /// As Plant::command().
   void command(double time, const Eigen::VectorXd& u, double duration);
-  /// As Plant::halt(). All functions up to pulled() are as those of Plant.
+  /// As Plant::halt(). The following functions, up to pulled(), are also as those of Plant.
   void halt(double time);
   /// Pulls the tendons individually.
   std::optional<ArmState> pull(double time, const std::vector<double>& displacements, double duration);
@@ -38,9 +38,9 @@ class RodInputs {
   bool weigh(double time, bool on);
   /// Returns whether weight and loads are on.
   [[nodiscard]] bool is_weighed(double time) const;
-  /// Sets what pushes the arm. Throws std::invalid_argument as Plant::push().
+  /// Sets the push on the arm. Throws std::invalid_argument as Plant::push().
   void push(double time, const std::optional<PlantPush>& push);
-  /// Returns what pushes the arm at a time; std::nullopt if nothing does.
+  /// Returns the push on the arm at a time; std::nullopt without a push.
   [[nodiscard]] std::optional<PlantPush> pushed(double time) const;
   /// Returns the push as a spring of the rod, in the frame of its base.
   [[nodiscard]] std::optional<PointSpring> spring(double time) const;
@@ -50,14 +50,14 @@ class RodInputs {
   [[nodiscard]] std::optional<ArmState> commanded(double time) const;
   /// Returns how far each tendon is pulled in, m.
   [[nodiscard]] std::vector<double> pulled(double time) const;
-  /// Discards records before `time`, which are not queried any more.
+  /// Discards records before `time`. Times before it must not be queried any more.
   void forget_before(double time);
 
   [[nodiscard]] const Rod& rod() const { return rod_; }
   /// Returns zero lost microsteps for each axis; empty without a drive.
   [[nodiscard]] std::vector<double> nothing_lost() const;
-  /// Returns how far each tendon is pulled in from the rod at rest, m. This includes the pretension, and
-  /// excludes the microsteps lost by its motor.
+  /// Returns how far each tendon is pulled in from the rod at rest, m. The pretension is included, and the
+  /// `lost` microsteps of each motor are subtracted.
   [[nodiscard]] std::vector<double> displacements(double time, const std::vector<double>& lost) const;
   /// Returns the sections' unloaded lengths as factors on their nominal lengths.
   [[nodiscard]] std::vector<double> rest_stretches(double time) const;
@@ -71,11 +71,11 @@ class RodInputs {
   [[nodiscard]] bool is_weighed_anew(double start, double end) const;
   /// Returns whether any motor can lose steps.
   [[nodiscard]] bool may_lose_steps() const;
-  /// Returns for each axis whether its load exceeds `part` of the motor's pull-out torque at its current
-  /// rate, under these tensions, N. Empty without a drive.
+  /// Returns for each axis whether its load under these tensions, N, exceeds `part` times the motor's
+  /// pull-out torque at its current rate. Empty without a drive.
   [[nodiscard]] std::vector<char> overloaded(double time, const std::vector<double>& tensions,
                                              double part = 1) const;
-  /// Returns the microsteps per turn of an axis's field.
+  /// Returns the number of microsteps per turn of the magnetic field of an axis's motor.
   [[nodiscard]] double field_turn(std::size_t axis) const;
   /// Adds a turn of the field to the lost microsteps of each motor that is overloaded under these tensions,
   /// N. Returns whether any motor was overloaded.
@@ -86,13 +86,13 @@ class RodInputs {
   Arm arm_;
   Rod rod_;
   RodLoads loads_;
-  // What moves the rod: motors or bends.
+  // One of these moves the rod: motors_ or bends_.
   std::optional<DriveMotors> motors_;
   std::optional<Drive> drive_;
   std::vector<double> zero_;   // Tendon displacements of an arm of arcs at motor position 0, m.
   std::vector<double> tight_;  // Displacements that the pretension adds, m.
   std::optional<BendMotion> bends_;
-  std::optional<PullMotion> beside_;  // Added to the displacements of the bends.
+  std::optional<PullMotion> beside_;  // Displacements in addition to those of the bends.
   std::vector<TendonBreak> breaks_;
 
   struct Weighing {

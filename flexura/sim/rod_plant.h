@@ -10,12 +10,12 @@
 
 namespace flexura {
 
-/// A plant whose arm is an elastic rod moved by RodInputs; derived classes define its response.
+/// A plant whose arm is an elastic rod with the inputs of RodInputs. Derived classes compute its response.
 class RodPlant : public Plant {
  public:
   void command(double time, const Eigen::VectorXd& u, double duration) override;
   void halt(double time) override;
-  /// Works without a drive only: with a drive, the motors take the commands and this function does nothing.
+  /// Does nothing for an arm with a drive, whose motors move the tendons.
   std::optional<ArmState> pull(double time, const std::vector<double>& displacements,
                                double duration) override;
   bool weigh(double time, bool on) override;

@@ -14,7 +14,7 @@ namespace flexura {
 /// Computes the backbone and tube of an arm from the strain modes of its rod. Thread-safe.
 class RodTube {
  public:
-  /// Uses the tube of `arm` around `rod`. Errors as RodChain.
+  /// The tube has the radii of `arm` and the centerline of `rod`. Errors as RodChain.
   RodTube(const Arm& arm, const Rod& rod);
 
   /// Returns the backbone in the world frame. `rest_stretches` are factors on the sections' own lengths.
@@ -27,8 +27,8 @@ class RodTube {
   std::vector<std::vector<RodNode>> nodes_;  // For each section.
 };
 
-/// Returns the places on the rod of the poses of such a backbone, from base to tip. They divide each section
-/// into equal parts. Between two consecutive places there are two arcs.
+/// Returns the places on the rod of the poses of a RodTube's backbone, from base to tip. They divide each
+/// section into equal parts. Between two consecutive places there are two arcs.
 [[nodiscard]] std::vector<RodPlace> tube_places(const Rod& rod);
 
 }  // namespace flexura

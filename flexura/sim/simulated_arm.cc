@@ -107,7 +107,8 @@ Outcome<ArmReading> SimulatedArm::read() { return port_->read(); }
 ArmState SimulatedArm::truth(double time) const {
   const std::optional<ArmState> state = plant_->commanded(time);
   if (!state)
-    throw std::logic_error("the simulated arm has no sections that drives bend: it has no state of one");
+    throw std::logic_error(
+        "the bends of the simulated arm are not imposed by drives: there is no state to return");
   return *state;
 }
 

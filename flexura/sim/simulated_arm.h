@@ -16,8 +16,8 @@
 
 namespace flexura {
 
-/// An arm without drives that moves its sections to commanded shapes. Its readings follow from the section
-/// rates alone.
+/// An arm without drives that moves its sections to commanded shapes. Its readings depend only on the
+/// commands and the rates of the sections.
 class SimulatedBends : public ArmPort {
  public:
   /// Arguments as for SimulatedArm. The plant must outlive this object.
@@ -40,13 +40,13 @@ class SimulatedBends : public ArmPort {
   Plant& plant_;
 };
 
-/// The arm of a simulated world with what moves it. This is a drive's controller that uses the model
-/// (DrivenArm), or, without a drive, the sections' own rates.
+/// The arm of a simulated world and its control. With a drive, a controller that uses the model moves the arm
+/// (DrivenArm). Without a drive, the sections move at their own rates.
 class SimulatedArm : public ArmPort {
  public:
-  /// Model and truth stand in their initial shapes when the motors are at the model's initial positions. The
-  /// truth can be queried back to `horizon` s before the last command. Throws std::invalid_argument if the
-  /// truth is another kind of arm (truth_problem).
+  /// Model and truth have their initial shapes when the motors are at the model's initial positions. The true
+  /// state can be queried back to `horizon` s before the last command. Throws std::invalid_argument if truth
+  /// and model do not match (truth_problem).
   SimulatedArm(const ArmSetup& model, const ArmSetup& truth, const ClockPort& clock, double horizon,
                const MakePlant& make_plant = true_plant);
 
@@ -54,13 +54,14 @@ class SimulatedArm : public ArmPort {
   CommandOutcome halt() override;
   Outcome<ArmReading> read() override;
 
-  /// Pulls each tendon in to the given displacement, m: by the axes of a drive, or by Plant::pull() without
-  /// one. `duration` as for command(). Refused for an arm without such tendons, or unless there is one finite
-  /// displacement per tendon.
+  /// Pulls each tendon in to the given displacement, m: by the axes of the drive, or without a drive by
+  /// Plant::pull(). `duration` as for command(). Refused if the arm has no tendons to pull, or unless there
+  /// is one finite displacement per tendon.
   CommandOutcome pull(const std::vector<double>& displacements, double duration);
 
-  /// Returns the true state that the drives impose, from `horizon` s before the last command on; not for
-  /// algorithms. Throws std::logic_error if the plant has no such state (Plant::commanded).
+  /// Returns the true state that the drives impose; not for algorithms. Times before the last command by more
+  /// than the horizon are not allowed. Throws std::logic_error if the plant has no such state
+  /// (Plant::commanded).
   [[nodiscard]] ArmState truth(double time) const;
   /// Returns the backbone of the true arm; not for algorithms.
   [[nodiscard]] Backbone backbone(double time) const { return plant_->backbone(time); }
@@ -68,7 +69,7 @@ class SimulatedArm : public ArmPort {
   [[nodiscard]] Plant& plant() { return *plant_; }
   /// Returns the link to the arm, which can be interrupted for a time.
   [[nodiscard]] SimulatedLink& link() { return drive_ ? drive_->link() : bends_->link(); }
-  /// Returns the controller of the drive, below its port; null without a drive.
+  /// Returns the simulated controller of the drive; null without a drive.
   [[nodiscard]] SimulatedDrive* drive() { return drive_ ? &*drive_ : nullptr; }
 
  private:

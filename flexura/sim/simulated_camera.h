@@ -16,12 +16,13 @@ namespace flexura {
 
 /// Everything that a TakePicture function needs to render a frame.
 struct Shot {
-  std::size_t camera = 0;                ///< Index of the camera in the rig.
-  std::int64_t frame = 0;                ///< Number of the frame; with seed and camera, the key of its noise.
-  std::uint64_t seed = 0;                ///< Seed of the run.
-  double start = 0;                      ///< Start of the exposure of the first row, s.
-  const SensorConfig* sensor = nullptr;  ///< Exposure time and row timing. Never null.
-  std::function<View(double)> view;      ///< Returns the camera's view at a time from `start` on.
+  std::size_t camera = 0;  ///< Index of the camera in the rig.
+  /// Number of the frame. Together with seed and camera it determines the noise.
+  std::int64_t frame = 0;
+  std::uint64_t seed = 0;                    ///< Seed of the run.
+  double start = 0;                          ///< Start of the exposure of the first row, s.
+  const SensorConfig* sensor = nullptr;      ///< Exposure time and row timing. Never null.
+  std::function<View(double)> view;          ///< Returns the camera's view at a time from `start` on.
   std::function<Backbone(double)> backbone;  ///< Returns the arm's backbone at a time from `start` on.
   bool is_covered = false;                   ///< Whether the lens is covered: there is no light.
 };
@@ -33,16 +34,18 @@ using TakePicture = std::function<Picture(const Shot&)>;
 /// returns no frame.
 inline constexpr int frames_kept = 16;
 
-/// Returns how long after the start of its exposure a frame can be requested, s. Views and backbones must be
-/// known back to then.
+/// Returns the longest time after the start of its exposure at which a frame can be requested, s. Views and
+/// backbones must be available for this time in the past.
 [[nodiscard]] double frame_horizon(const SensorConfig& sensor);
 
 /// A camera that exposes frames at its frame rate from time 0 on, delays them and loses some. Only requested
-/// frames are rendered. Several cameras of a rig can be queried at once, each from its own thread, while
-/// nobody waits for the clock or commands. Their TakePicture functions must be thread-safe for that.
+/// frames are rendered. Several cameras of a rig can be queried at once, each from its own thread. Meanwhile
+/// no thread may wait for the clock or send commands. Their TakePicture functions must be thread-safe for
+/// this.
 class SimulatedCamera : public CameraPort {
  public:
-  /// `shot` describes the content of its frames; frame number, start and cover are filled in for each frame.
+  /// `shot` describes the content of the frames. Its `frame`, `start` and `is_covered` are set for each
+  /// frame.
   SimulatedCamera(const Camera& camera, Shot shot, TakePicture take_picture, ClockPort& clock);
 
   Outcome<std::optional<Frame>> newest() override;

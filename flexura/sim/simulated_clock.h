@@ -10,7 +10,7 @@
 
 namespace flexura {
 
-/// A clock of simulated time, from 0 s on. Waiting advances it without taking real time.
+/// A clock of simulated time that starts at 0 s. Waiting advances it without taking real time.
 class SimulatedClock : public ClockPort {
  public:
   [[nodiscard]] double now() const override { return now_; }
@@ -21,8 +21,8 @@ class SimulatedClock : public ClockPort {
     now_ = time;
     if (passed_) passed_(now_);
   }
-  /// Registers a function that is called with the time whenever time has passed, to advance the simulated
-  /// world.
+  /// Registers a function that is called with the new time after each advance of the clock. It advances the
+  /// simulated world.
   void when_passed(std::function<void(double)> passed) { passed_ = std::move(passed); }
 
  private:

@@ -13,11 +13,12 @@
 
 namespace flexura {
 
-/// The controller of a simulated drive. It counts the microsteps of its motors, and commands the plant's true
-/// motors to the same positions. It reports positions behind the backlash by the model's backlash.
+/// The controller of a simulated drive. It counts the microsteps of its motors and sends the same commands to
+/// the plant's true motors. The positions behind the backlash that it reports are computed with the model's
+/// backlash.
 class SimulatedDrive : public DrivePort {
  public:
-  /// Starts at rest at `start`, microsteps. Motors obey the limits of `real`. The plant must outlive this
+  /// Starts at rest at `start`, microsteps. Motors have the limits of `real`. The plant must outlive this
   /// object.
   SimulatedDrive(const Drive& nominal, const Drive& real, const std::vector<std::int64_t>& start,
                  Plant& plant, const ClockPort& clock, double horizon);

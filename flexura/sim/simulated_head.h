@@ -13,19 +13,19 @@
 
 namespace flexura {
 
-/// Three axes that are commanded together, with their link.
+/// Three axes that are commanded together over one link.
 class ThreeAxes {
  public:
   /// Reading of the motors.
   struct Reading {
     double time;                ///< s
-    Eigen::Vector3d positions;  ///< Motor positions, in steps of their resolution, within their limits.
+    Eigen::Vector3d positions;  ///< Motor positions, rounded to their resolution and within their limits.
     bool moving;                ///< Whether any of the three moves.
   };
 
-  /// The driven axes start at `start` while the motors read `counted`; the difference remains as an offset.
-  /// Half of each axis's backlash lies to either side of its motor. Commands take effect `delay` s after they
-  /// were given. Positions can be queried back to `horizon` s before now.
+  /// The axes start at the true positions `start` while the motor counters read `counted`. The difference
+  /// remains as an offset. Each axis's backlash is symmetric about its motor position. Commands take effect
+  /// `delay` s after they were given. Positions can be queried back to `horizon` s before now.
   ThreeAxes(SimulatedLink link, const std::array<AxisConfig, 3>& axes, const Eigen::Vector3d& counted,
             const Eigen::Vector3d& start, double delay, double horizon);
 
@@ -46,11 +46,11 @@ class ThreeAxes {
   Eigen::Vector3d offset_;  // Load position minus motor count.
 };
 
-/// A head whose motors obey limits, rates, accelerations, resolution, backlash and delay.
+/// A head whose motors have limited ranges, rates and accelerations, a resolution, backlash and delay.
 class SimulatedHead : public HeadPort {
  public:
-  /// Creates the head of the true `camera` at its initial state, where it counts `counted`. It can be queried
-  /// back to `horizon` s before now.
+  /// Creates the head of the true `camera` at its initial state, at which its counters read `counted`. It can
+  /// be queried back to `horizon` s before now.
   SimulatedHead(const Camera& camera, const HeadState& counted, const ClockPort& clock, double horizon);
 
   CommandOutcome command(const HeadState& state) override;
@@ -67,7 +67,7 @@ class SimulatedHead : public HeadPort {
   ThreeAxes axes_;
 };
 
-/// A stage whose motors are modelled as those of SimulatedHead. Its axes are the mount's (right, down,
+/// A stage whose motors are modelled as those of SimulatedHead. It moves along the mount's axes (right, down,
 /// forward), m.
 class SimulatedStage : public StagePort {
  public:

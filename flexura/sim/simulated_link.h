@@ -12,8 +12,8 @@
 
 namespace flexura {
 
-/// The link to a simulated device: its name, the rig's clock, and its outages. Motion commanded before an
-/// outage continues.
+/// The link to a simulated device: the device's name, the rig's clock, and the outages of the link. Motion
+/// commanded before an outage continues.
 class SimulatedLink {
  public:
   SimulatedLink(std::string name, const ClockPort& clock) : name_(std::move(name)), clock_(&clock) {}

@@ -45,7 +45,7 @@ void StaticPlant::advance(double time) {
   forget();
 }
 
-// Returns the snapshot that follows from `from` at a later step.
+// Returns the snapshot at a later step that follows from `from`.
 StaticPlant::Snapshot StaticPlant::settled(long index, Snapshot from) const {
   const double then = static_cast<double>(index) * step;
   from.index = index;
@@ -99,8 +99,8 @@ std::string StaticPlant::warning(double time) const {
     return each.has_jumped && then <= time && time < then + lasts;
   });
   if (at.snapped || has_jumped)
-    return "the arm snaps: where it lay nothing holds it any more, and it jumps to another equilibrium";
-  if (!at.stable) return "the arm rests here, but a small push throws it out of that: it is not stable";
+    return "the arm snaps: no stable equilibrium is left nearby, and it jumps to another one";
+  if (!at.stable) return "the equilibrium of the arm is unstable: a small push makes the arm leave it";
   return {};
 }
 

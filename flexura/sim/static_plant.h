@@ -12,10 +12,9 @@
 
 namespace flexura {
 
-/// A plant whose arm is an elastic rod without inertia (docs/mechanics.md). Tendons are pulled in, weight and
-/// loads act on it, and it moves from equilibrium to equilibrium. Among several equilibria it takes the one
-/// reached along its path, in steps of `step` s from time 0 on. Throws SimulationError if the arm has no
-/// equilibrium.
+/// A plant whose arm is an elastic rod without inertia (docs/mechanics.md). The arm is always in equilibrium
+/// under tendons, weight and loads. Among several equilibria, it is in the one reached along its path, which
+/// is computed in steps of `step` s from time 0 on. Throws SimulationError if the arm has no equilibrium.
 class StaticPlant : public RodPlant {
  public:
   static constexpr double step = 0.02;
@@ -33,7 +32,8 @@ class StaticPlant : public RodPlant {
   }
   [[nodiscard]] std::vector<double> lost_steps(double time) const override { return snapshot(time).lost; }
 
-  /// Returns the equilibrium of the rod in its frame, with the tendon tensions. Times as for backbone().
+  /// Returns the equilibrium of the rod in the frame of its base, with the tendon tensions. Times as for
+  /// backbone().
   [[nodiscard]] Equilibrium equilibrium(double time) const;
 
  protected:
@@ -55,7 +55,7 @@ class StaticPlant : public RodPlant {
 
   double horizon_;
   std::vector<Snapshot> snapshots_;  // Back to the horizon.
-  // Queried by several threads; answers do not depend on what was solved before.
+  // Queried by several threads. Answers do not depend on earlier queries.
   mutable std::mutex mutex_;
   // The last answer, cached because several functions query the same time; empty after a change.
   struct Answer {

@@ -257,7 +257,7 @@ TEST(StaticPlant, SnapsWhereItBucklesAndGoesOn) {
       const Equilibrium at = plant_of(rig).equilibrium(now);
       ASSERT_TRUE(at.converged() && at.stable) << now;
       const std::string warning = plant_of(rig).warning(now);
-      EXPECT_EQ(warning.find("not stable"), std::string::npos) << now;
+      EXPECT_EQ(warning.find("is unstable"), std::string::npos) << now;
       snaps += warning.empty() ? 0 : 1, ++looks;
     }
   }

@@ -12,25 +12,27 @@
 namespace flexura {
 
 /// Returns the bends and stretches whose arc_displacements() are nearest to `displacements` by least squares.
-/// Stretches vary only for sections whose limits allow it. Directions that the displacements do not
-/// determine, or determine a hundred times less well than the rest, take the least step from straight. Limits
-/// are not applied. Throws std::invalid_argument unless there is one finite displacement per tendon.
+/// Stretches vary only in sections whose limits allow it. Displacements may not determine some combinations
+/// of bends and stretches, or determine them a hundred times less well than others. These combinations keep
+/// the values nearest to those of the straight arm. Limits are not applied. Throws std::invalid_argument
+/// unless there is one finite displacement per tendon.
 [[nodiscard]] ArmState nearest_arcs(const Rod& rod, const Arm& arm, const std::vector<double>& displacements);
 
 /// A tendon that can be pulled individually.
 struct PulledTendon {
   std::size_t section = 0;  ///< Section at whose end it is fastened, 0 at the base.
-  /// Range of displacements, m: what bends within the sections' limits require, as far as the motor can turn.
-  /// A section without a limit bends by a whole turn.
+  /// Range of displacements, m, that bends within the sections' limits require and the motor can reach. A
+  /// section without a limit is assumed to bend by up to a whole turn.
   std::array<double, 2> range = {0, 0};
-  /// Displacement of each tendon per metre of this one so that none pulls against it; 1 for itself. Computed
-  /// for arcs that bend the section where it ends, from straight.
+  /// Displacement of each tendon per metre of this tendon such that no tendon works against it; 1 for itself.
+  /// Computed for the straight arm and a bend of the section where this tendon ends.
   std::vector<double> together;
-  /// Route from the base to its end: arc length of the rod at rest, and offset in the cross-section, m.
+  /// Points of the route from the base to the tendon's end, m: arc length of the rod at rest, and offset (x,
+  /// y) in the cross-section.
   std::vector<std::array<double, 3>> route;
 };
 
-/// Returns the tendons of a rod; empty for other arms.
+/// Returns the tendons of an arm that is a rod; empty for other arms.
 [[nodiscard]] std::vector<PulledTendon> pulled_tendons(const ArmSetup& setup);
 
 /// Returns whether a rod has loads in addition to its tendons.

@@ -17,15 +17,16 @@ class ThreadPool {
  public:
   using Job = std::function<void(std::size_t)>;  ///< Takes the number of the job.
 
-  /// Creates a crew of `threads` threads including the caller's; at least one.
+  /// Creates a pool of `threads` threads including the caller's; at least one.
   explicit ThreadPool(std::size_t threads);
   ~ThreadPool();
   ThreadPool(const ThreadPool&) = delete;
   ThreadPool& operator=(const ThreadPool&) = delete;
 
-  /// Calls job(0) ... job(count - 1) and returns when all are done. The assignment is fixed: job i and job i
-  /// + threads() run on the same thread, in that order. A thread stops at its first exception; the exception
-  /// of the lowest-numbered thread is rethrown here. Not to be called from two threads at once.
+  /// Calls job(0) ... job(count - 1) and returns when all are done. Jobs are assigned to threads in a fixed
+  /// way: jobs i and i + threads() run on the same thread, in this order. A thread stops at its first
+  /// exception; the exception of the lowest-numbered thread is rethrown here. Not to be called from two
+  /// threads at once.
   void run(std::size_t count, const Job& job);
 
   /// Returns the number of threads including the caller's.

@@ -6,7 +6,8 @@
 
 namespace flexura {
 
-/// Creates the plant of the setup's truth: a rod or a chain of arcs. Errors as theirs.
+/// Creates the plant of the setup's truth: DynamicPlant, StaticPlant or an ArcPlant. Errors as those of these
+/// classes.
 [[nodiscard]] std::unique_ptr<Plant> true_plant(const PlantSetup& setup);
 
 }  // namespace flexura

@@ -39,10 +39,10 @@ enum class McapCheck : std::uint8_t { crc, structure };
 /// plain or compressed by zstd. Memory grows only with the number of messages: plain data stay in the file's
 /// pages, and a few decompressed chunks are held at once. A log whose writer was killed has no end: it is
 /// read up to its last complete chunk, and `truncated` is set. Constructors throw std::runtime_error with the
-/// log's name and the byte of the error. Errors are no log at all, a record that does not fit, a wrong CRC, a
-/// message without channel, another compression, a chunk that does not decompress to the size it gives, a
-/// size above mcap_most_chunk, and compressed chunks with more than 64 MiB and 256 times the file's size in
-/// all.
+/// log's name and the byte of the error. Errors are a file that is not a log, a record that does not fit, a
+/// wrong CRC, a message without channel, and an unknown compression. Further errors are a chunk that does not
+/// decompress to its stated size, and a size above mcap_most_chunk. Compressed chunks must not have more than
+/// 64 MiB and 256 times the file's size in total.
 class McapReader {
  public:
   /// Also throws std::system_error if the file cannot be read.

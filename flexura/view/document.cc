@@ -43,7 +43,7 @@ T number_of(const std::string& text) {
   T value{};
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc{} || end != text.data() + text.size() || !std::isfinite(static_cast<double>(value)))
-    throw ViewRefusal(fmt::format("\"{}\" is no number", text));
+    throw ViewRefusal(fmt::format("\"{}\" is not a number", text));
   return value;
 }
 
@@ -77,7 +77,7 @@ SeriesAsk series_ask(const RequestTarget& target) {
 
 Document read_document(std::string_view text) {
   const auto target = parse_request_target(text);
-  if (!target) throw ViewRefusal("this is no address");
+  if (!target) throw ViewRefusal("the address is not valid");
   const std::string_view path = target->path;
   constexpr std::string_view image = "/image/";
   if (path.starts_with(image)) return image_ask(path.substr(image.size()), *target);

@@ -15,7 +15,7 @@ void LatestJobs::ask(const Key& key, Job job, Reply reply) {
     return;
   }
   const auto overtaken = std::exchange(found->second, std::move(question));
-  if (overtaken) overtaken->reply({{Node::Table{}, {}}, "overtaken by a newer one"});
+  if (overtaken) overtaken->reply({{Node::Table{}, {}}, "replaced by a newer request"});
 }
 
 void LatestJobs::start(const Key& key, Question question) {

@@ -129,7 +129,9 @@ struct LiveSession::Taker : PictureSession::Taker {
   }
   void operator()(const OpenRequest&) const { throw ViewRefusal("there is no recording yet"); }
   void operator()(const LiveRequest&) const { done(); }
-  void operator()(const AtRequest&) const { throw ViewRefusal("this is no recording: it cannot go back"); }
+  void operator()(const AtRequest&) const {
+    throw ViewRefusal("a live rig cannot go back in time: expected a recording");
+  }
   void operator()(const PixelRequest& pixel) const {
     const std::size_t camera = session.place_of(pixel.camera);
     session.room().pixel({client, camera}, session.newest_shot(camera), static_cast<int>(pixel.u),
@@ -184,8 +186,8 @@ void LiveSession::take(ClientId client, const Ask& ask, Reply reply) {
 
 void LiveSession::take(const Document& document, std::function<void(HttpAnswer)> answer) {
   const auto* image = std::get_if<ImageAsk>(&document);
-  if (image == nullptr) throw ViewRefusal("this is no recording: it has no series and no report");
-  if (image->time) throw ViewRefusal("this is no recording: its pictures are of now");
+  if (image == nullptr) throw ViewRefusal("a live rig has no series and no report: expected a recording");
+  if (image->time) throw ViewRefusal("a live rig has only current pictures: expected no time");
   if (!room().file(newest_shot(place_of(image->camera)), std::move(answer)))
     throw ViewRefusal("too many pictures are asked for at once");
 }

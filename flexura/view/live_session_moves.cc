@@ -23,7 +23,7 @@ void LiveSession::move(Move move) {
   if (!overtaken) return;
   InverseResult unknown;
   const bool is_tip = std::holds_alternative<TipRequest>(overtaken->target);
-  overtaken->reply({is_tip ? tip_answer(unknown, "overtaken by a newer one") : nothing(), ""});
+  overtaken->reply({is_tip ? tip_answer(unknown, "replaced by a newer request") : nothing(), ""});
 }
 
 LiveSession::Judged LiveSession::judge(const ViewedRig& rig, const ArmState& from, const Move& move) {
@@ -57,7 +57,7 @@ void LiveSession::look_at(Move move) {
                        if (generation == generation_) {
                          finish(move, judged);
                        } else {
-                         move.reply({nothing(), "something else has stopped it"});
+                         move.reply({nothing(), "cancelled before its start: the arm was stopped or reset"});
                        }
                        if (waiting_ && !is_looking_) look_at(*std::exchange(waiting_, std::nullopt));
                      };
@@ -100,7 +100,9 @@ void LiveSession::halt() {
   cancel();
   release();
   ++generation_;
-  if (waiting_) std::exchange(waiting_, std::nullopt)->reply({nothing(), "something else has stopped it"});
+  if (waiting_)
+    std::exchange(waiting_, std::nullopt)
+        ->reply({nothing(), "cancelled before its start: the arm was stopped or reset"});
   const RigPorts ports = rig_.ports();
   // The simulated rig's links are never interrupted: a fault here is a program error.
   (void)ports.arm->halt().value();
@@ -125,7 +127,9 @@ void LiveSession::reset() {
   ++generation_;
   pushing_client_.reset();
   warning_.clear();
-  if (waiting_) std::exchange(waiting_, std::nullopt)->reply({nothing(), "something else has stopped it"});
+  if (waiting_)
+    std::exchange(waiting_, std::nullopt)
+        ->reply({nothing(), "cancelled before its start: the arm was stopped or reset"});
   ++leaps_;
   rig_.restart(clock_ - config_.start);
   aim_at_readings();

@@ -89,7 +89,7 @@ TEST_F(LiveSessionTest, LooksAtTheNewestOfManyMoves) {
       ends.push_back(std::string(name) + *answer.result.find("danger")->as<std::string>());
     });
   }
-  EXPECT_THAT(ends, ::testing::ElementsAre("secondovertaken by a newer one"));
+  EXPECT_THAT(ends, ::testing::ElementsAre("secondreplaced by a newer request"));
   background_.work();
   EXPECT_EQ(ends.size(), 3);
   EXPECT_EQ(ends[1], "first");
@@ -105,7 +105,7 @@ TEST_F(LiveSessionTest, HaltsEverythingAndWhatIsStillBeingJudged) {
   session_.take(me, bends({{1, 0}, {0, 0}}), [&](const ViewAnswer& answer) { late = answer.error; });
   EXPECT_EQ(ask(HaltRequest{}).error, "");
   background_.work();
-  EXPECT_EQ(late, "something else has stopped it");
+  EXPECT_EQ(late, "cancelled before its start: the arm was stopped or reset");
   const StateMessage stopped = pass(0.5);
   EXPECT_FALSE(stopped.is_moving);
   EXPECT_NEAR(stopped.arm.bends[0].x(), -0.25, 0.02);

@@ -69,13 +69,13 @@ class Recording {
   /// Returns the index of the state in which a servo or calibration took the picture whose measurements are
   /// drawn at a time, s. For a camera without logged images; std::nullopt while neither is active.
   [[nodiscard]] std::optional<std::size_t> measured_state(std::size_t camera, double time) const;
-  /// Return whether the log has a calibration, and its last decision at a time, s, with its observations in
-  /// the pictures shown then. std::nullopt while no calibration is active. Throws InputError if the logged
-  /// decision is invalid.
+  /// Return whether the log has a calibration, and its last decision at a time, s. The decision includes its
+  /// observations in the pictures shown then. std::nullopt while no calibration is active. Throws InputError
+  /// if the logged decision is invalid.
   [[nodiscard]] bool has_calibration() const { return !decisions_.empty(); }
   [[nodiscard]] std::optional<ShownCalibration> calibration(double time) const;
-  /// Return whether the log has the true arm, and the arm's samples at a time, s, from base to tip.
-  /// std::nullopt if the log has no true arm near that time. Throws InputError if the logged arm is invalid.
+  /// Return whether the log has the true arm, and its samples from base to tip at a time, s. std::nullopt if
+  /// the log has no true arm near that time. Throws InputError if the logged arm is invalid.
   [[nodiscard]] bool has_truth() const { return !truths_.empty(); }
   [[nodiscard]] std::optional<std::vector<ArmSample>> truth(double time) const;
   /// Forces of an elastic-rod arm, as logged at or just before a time.

@@ -171,7 +171,7 @@ TEST_F(MeasuredArm, IsMeasuredInTheNewestOfManyPictures) {
       ends.push_back(name + (answer.error.empty() ? std::string("done") : answer.error));
     });
   }
-  EXPECT_THAT(ends, ::testing::ElementsAre("second: overtaken by a newer one"));
+  EXPECT_THAT(ends, ::testing::ElementsAre("second: replaced by a newer request"));
   EXPECT_EQ(background_.jobs[Lane::measures], 1);
   background_.work();
   EXPECT_EQ(background_.jobs[Lane::measures], 2);

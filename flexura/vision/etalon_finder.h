@@ -22,7 +22,7 @@ struct UprightLine {
 /// Observation of the calibration cylinder (paper, section 3.4), which is dark and upright, and has red lines
 /// parallel to its axis.
 struct EtalonObservation {
-  Threshold threshold;      ///< Threshold, with the reason if it separates nothing.
+  Threshold threshold;      ///< Threshold. Its `reason` states why it separates no foreground.
   std::string reason;       ///< Reason why no cylinder was found; otherwise "".
   int top = 0, bottom = 0;  ///< First and last row of the silhouette.
   double middle_row = 0;    ///< Row half-way between top and bottom, the reference row of UprightLine.

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <fmt/format.h>
+
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
@@ -64,6 +66,11 @@ class TruthWatcher : public ServoSessionWatcher {
     if (!is_in_view(backbone, now)) ++totals_.view_violations;
     if (!plant.contacts(now).empty()) ++totals_.contacts;
   }
+  void reported(double time, const std::string& what) override {
+    reports_.push_back(fmt::format("{:.2f} s: {}", time, what));
+  }
+  /// Returns the events of the servo, with their times.
+  [[nodiscard]] const std::vector<std::string>& reports() const { return reports_; }
   [[nodiscard]] const MotionTotals& totals() const { return totals_; }
 
  private:
@@ -117,6 +124,7 @@ class TruthWatcher : public ServoSessionWatcher {
   MotionTotals totals_;
   ArmState sent_;
   std::vector<double> pulled_;
+  std::vector<std::string> reports_;
 };
 
 }  // namespace flexura

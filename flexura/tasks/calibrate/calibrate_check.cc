@@ -42,7 +42,7 @@ void check_etalon(const CalibrateTask& task, const StandConfig& stand, const std
   EtalonConfig unit = *stand.etalon;
   unit.position = {0, 0, 0}, unit.height = 2;
   if ((EtalonFigure(unit).middle() - Eigen::Vector3d::UnitY()).norm() > upright)
-    reader.problem_at(path, "needs a cylinder that stands upright: expected a stand.etalon.rotation about Y");
+    reader.problem_at(path, "needs an upright cylinder: expected a stand.etalon.rotation about Y");
   if (!is_loop(task)) {
     if (!task.pose.empty() || task.zooms != CalibrateTask{}.zooms)
       reader.problem_at(path, "has no pose and no zooms with this method: expected none of these keys");
@@ -61,7 +61,7 @@ void check_arcs(const CalibrateTask& task, const ArmConfig& arm, const std::stri
   if (calibration_poses(task, arm.arm()).size() < arcs)
     reader.problem_at(
         path, fmt::format("needs an arm that bends into arcs of {:.0f} deg in XOY and in ZOY: expected a "
-                          "spatial one that stands upright, or a smaller loop.arc",
+                          "spatial and upright arm, or a smaller loop.arc",
                           arc_bend(task) / degree));
   if (!task.pose.empty() || task.target || !task.stages)
     reader.problem_at(

@@ -128,8 +128,8 @@ std::vector<std::string> findings_of(const DynamicsRun& run) {
                     "the requested target with an error of {:.3g} deg, root mean square along the arm.",
                     run.plant.start_off() / degree, run.plant.target_off() / degree));
   points.push_back(
-      fmt::format("The arm is shown as arcs with its directions at the sections' ends. Its tip is never more "
-                  "than {:.2g} mm from the tip of these arcs.",
+      fmt::format("The arm is drawn as arcs that have its true directions at the sections' ends. The drawn "
+                  "tip is at most {:.2g} mm from the true tip.",
                   1e3 * run.apart));
   return points;
 }

@@ -30,8 +30,9 @@ const Table<MoveTarget>& fields_of(const MoveTarget*) {
   static const auto table =
       with_shape_fields(
           Table<MoveTarget>("target",
-                            "Target shape of the arm, or target position of its tip. A shape for the "
-                            "position is found within the arm's limits, from its current shape."))
+                            "Target shape of the arm, or target position of its tip. For a tip position, "
+                            "the program finds a shape within the arm's limits. The search starts at the "
+                            "current shape."))
           .field("position", &MoveTarget::position,
                  {.meaning = "Position of the tip in the world, instead of a shape.",
                   .unit = Unit::metre,

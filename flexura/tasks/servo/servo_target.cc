@@ -161,11 +161,13 @@ RecordedViews recorded_views(const ServoTargetConfig& target, const std::array<C
                         fmt::format("{} x {} px: expected {} x {}, as camera {} takes them", bytes.width(),
                                     bytes.height(), sensor.width, sensor.height, cameras[i].name));
     if (sensor.bits > 8 && photograph.words.values().empty())
-      throw input_error(path.string(), fmt::format("8 bits a value: expected {}, as camera {} takes them",
-                                                   sensor.bits, cameras[i].name));
-    if (sensor.bits <= 8 && !photograph.words.values().empty())
       throw input_error(path.string(),
-                        fmt::format("16 bits a value: expected 8, as camera {} takes them", cameras[i].name));
+                        fmt::format("8 bits per value: expected {}, as in the pictures of camera {}",
+                                    sensor.bits, cameras[i].name));
+    if (sensor.bits <= 8 && !photograph.words.values().empty())
+      throw input_error(
+          path.string(),
+          fmt::format("16 bits per value: expected 8, as in the pictures of camera {}", cameras[i].name));
     if (sensor.bits > 8) {
       views[i] = photograph.words;
     } else {

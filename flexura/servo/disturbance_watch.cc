@@ -1,0 +1,93 @@
+#include "flexura/servo/disturbance_watch.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Core>
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
+#include "flexura/model/arm_difference.h"
+#include "flexura/servo/servo_error.h"
+
+namespace flexura {
+namespace {
+
+// Returns points along the backbone of a shape, one column, m.
+Eigen::VectorXd points_of(const Arm& arm, const ArmState& shape) {
+  constexpr Eigen::Index count = 24;
+  const Backbone backbone(arm, shape);
+  Eigen::VectorXd points(3 * count);
+  for (Eigen::Index k = 0; k < count; ++k)
+    points.segment<3>(3 * k) = backbone.pose(backbone.length() * static_cast<double>(k + 1) / count).position;
+  return points;
+}
+
+}  // namespace
+
+DisturbanceWatch::DisturbanceWatch(ArmModel model, const DisturbanceConfig& config)
+    : model_(std::move(model)), config_(config) {
+  if (!(config.limit > 0) || !(config.model_error >= 0) || !(config.window > 0) || config.patience < 1)
+    throw std::invalid_argument("a disturbance watch needs a limit, a window and a patience above 0");
+}
+
+ArmState DisturbanceWatch::predicted() const {
+  return plus(reference().rest, minus(last_.nominal, reference().nominal));
+}
+
+void DisturbanceWatch::add(double time, const ArmState& rest, const ArmState& command, double sigma) {
+  last_ = {time, rest, command, model_.actuation().shape(command)};
+  // The newest sample that is at least a window old stays.
+  while (samples_.size() > 1 && samples_[1].time <= time - config_.window) samples_.pop_front();
+  if (samples_.empty()) samples_.push_back(last_);
+  const ServoError motion = servo_error(model_.shaped(), last_.nominal, reference().nominal);
+  deviation_ = servo_error(model_.shaped(), rest, predicted()).rms;
+  constexpr double certain = 5;  // Standard deviations.
+  double allowed = config_.limit + config_.model_error * motion.rms + certain * sigma;
+  constexpr double back = 0.5;  // A disturbance is over well below the limit at which it begins.
+  if (is_disturbed_) allowed *= back;
+  // False if the deviation is not a number: the model has no equilibrium there.
+  in_a_row_ = (deviation_ > allowed) != is_disturbed_ ? in_a_row_ + 1 : 0;
+  if (in_a_row_ >= config_.patience) {
+    if (!is_disturbed_) before_ = samples_.front(), since_ = time;
+    is_disturbed_ = !is_disturbed_;
+    in_a_row_ = 0;
+    samples_.clear();
+  }
+  // A suspicious observation must not become a reference.
+  if (!is_disturbed_ && in_a_row_ == 0) samples_.push_back(last_);
+}
+
+// Compares the deviation with those that the release of each tendon would cause.
+std::optional<std::size_t> DisturbanceWatch::released_tendon() const {
+  if (samples_.empty() && !is_disturbed_) return std::nullopt;
+  const std::vector<ArmState> released = model_.actuation().released(last_.command);
+  const Eigen::VectorXd expected = points_of(model_.shaped(), predicted()),
+                        nominal = points_of(model_.shaped(), last_.nominal),
+                        moved = points_of(model_.shaped(), last_.rest) - expected;
+  constexpr double least = 0.15, most = 1.7;  // Share of a release that counts as one.
+  constexpr double explains = 0.5;            // Largest share of the deviation that is left.
+  std::optional<std::size_t> best;
+  double best_left = explains * moved.norm();
+  for (std::size_t i = 0; i < released.size(); ++i) {
+    const Eigen::VectorXd way = points_of(model_.shaped(), released[i]) - nominal;
+    const double share = way.dot(moved) / way.squaredNorm();
+    // False for a tendon without whose tension the arm has no equilibrium.
+    if (!(share >= least && share <= most)) continue;
+    const double left = (moved - share * way).norm();
+    if (left < best_left) best = i, best_left = left;
+  }
+  return best;
+}
+
+std::string DisturbanceWatch::what() const {
+  const std::optional<std::size_t> tendon = released_tendon();
+  return fmt::format("the arm's shape differs by {:.2g} % of its length from the prediction, {}",
+                     100 * deviation_,
+                     tendon ? fmt::format("as if tendon {} gave way: it is broken or slack, or its motor "
+                                          "lost steps",
+                                          *tendon + 1)
+                            : "as if something pushed or held the arm");
+}
+
+}  // namespace flexura

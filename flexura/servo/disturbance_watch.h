@@ -1,0 +1,68 @@
+#pragma once
+
+#include <cstddef>
+#include <deque>
+#include <optional>
+#include <string>
+
+#include "flexura/model/arm.h"
+#include "flexura/model/arm_model.h"
+
+namespace flexura {
+
+/// Settings of a DisturbanceWatch.
+struct DisturbanceConfig {
+  double limit = 0.05;  ///< Deviation that counts as a disturbance, share of the arm's length; > 0.
+  /// Additional deviation that an error of the model may cause, as a share of the predicted motion.
+  double model_error = 0.35;
+  double window = 0.5;  ///< Age of the observation that the newest one is compared with, s; > 0.
+  int patience = 3;     ///< Number of successive observations that begin or end a disturbance.
+};
+
+/// Detects that an arm does not follow its drives: something pushes or holds it, a tendon breaks, or a motor
+/// loses steps (docs/servo.md, "Disturbances").
+///
+/// The arm's shape at rest changes with the drives as the model predicts, up to errors that grow with the
+/// motion. The deviation is the distance of the observed shape from this prediction, root mean square along
+/// the arm, share of its length. A constant error of the model, for example an unknown payload, causes none.
+class DisturbanceWatch {
+ public:
+  /// Throws std::invalid_argument for numbers out of their ranges.
+  explicit DisturbanceWatch(ArmModel model, const DisturbanceConfig& config = {});
+
+  /// Adds an observation of the arm. `time`: s, later than the previous one. `rest`: estimated shape without
+  /// swing. `command`: position of the drives at this time. `sigma`: standard deviation of the shape, share
+  /// of the length.
+  void add(double time, const ArmState& rest, const ArmState& command, double sigma);
+
+  /// Returns true from the observation at which a disturbance was detected until it is over.
+  [[nodiscard]] bool is_disturbed() const { return is_disturbed_; }
+  /// Returns the deviation at the last observation, share of the arm's length.
+  [[nodiscard]] double deviation() const { return deviation_; }
+  /// Returns the time for which a disturbance lasts, s; 0 without a disturbance.
+  [[nodiscard]] double lasts() const { return is_disturbed_ ? last_.time - since_ : 0; }
+  /// Returns the index of the tendon whose release explains the last deviation, if there is one. It is broken
+  /// or slack, or its motor lost steps.
+  [[nodiscard]] std::optional<std::size_t> released_tendon() const;
+  /// Describes the last deviation: its size and what may have caused it.
+  [[nodiscard]] std::string what() const;
+
+ private:
+  struct Sample {
+    double time = 0;
+    ArmState rest, command, nominal;  // Observed shape, drives, and the model's shape for them.
+  };
+  [[nodiscard]] const Sample& reference() const { return is_disturbed_ ? before_ : samples_.front(); }
+  // Returns the shape that the model predicts for the last observation, by the reference.
+  [[nodiscard]] ArmState predicted() const;
+
+  ArmModel model_;
+  DisturbanceConfig config_;
+  std::deque<Sample> samples_;  // Of the window, oldest first.
+  Sample before_, last_;        // Before the disturbance, and the newest.
+  bool is_disturbed_ = false;
+  double deviation_ = 0, since_ = 0;
+  int in_a_row_ = 0;  // Successive observations that contradict is_disturbed_.
+};
+
+}  // namespace flexura

@@ -92,7 +92,7 @@ Compared compared(const DiskRobot& robot) {
   return result;
 }
 
-// Prints the table of docs/mechanics.md. The bounds are three times what 1,600 robots show.
+// Prints the table of docs/mechanics.md. The bounds are some three times what 160 robots per row show.
 TEST(StaticsChordsFull, TipsOfHundredsOfRobotsAgreeWithShootingFromDiskToDisk) {
   constexpr double sixty_degrees = 1.047;
   Spread all;
@@ -126,7 +126,7 @@ TEST(StaticsChordsFull, TipsOfHundredsOfRobotsAgreeWithShootingFromDiskToDisk) {
   std::printf("all to 11 pieces, without a note: %s\n", all.words().c_str());
   EXPECT_LE(all.part(0.5), 2e-5);
   EXPECT_LE(all.part(0.95), 4e-4);
-  EXPECT_LE(all.part(1), 3e-3);
+  EXPECT_LE(all.part(1), 4e-3);
 }
 
 }  // namespace

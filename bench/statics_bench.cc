@@ -13,6 +13,7 @@
 #include "flexura/math/dense.h"
 #include "flexura/mechanics/arc_fit.h"
 #include "flexura/mechanics/arm_rod.h"
+#include "flexura/mechanics/dynamics.h"
 #include "flexura/mechanics/inverse_statics.h"
 #include "flexura/mechanics/rod.h"
 #include "flexura/mechanics/statics.h"
@@ -120,6 +121,65 @@ void statics_sections(benchmark::State& state) {
                          benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
 }
 BENCHMARK(statics_sections)->RangeMultiplier(10)->Range(1, 100)->Unit(benchmark::kMicrosecond);
+
+// Three sections of five pieces between guide disks, nine tendons; cold or warm. By piece, or with modes of
+// whole sections.
+struct Disks {
+  explicit Disks(bool by_piece) {
+    RodSection section{.length = 0.15,
+                       .radius = {1e-3, 1e-3},
+                       .youngs_modulus = 54e9,
+                       .shear_modulus = 20e9,
+                       .density = 6000,
+                       .disks = 5};
+    section.modes.by_piece = by_piece;
+    rod.sections.assign(3, section);
+    for (std::size_t i = 0; i < 3; ++i)
+      for (int k = 0; k < 3; ++k)
+        rod.tendons.push_back({.section = i,
+                               .radius = 0.01,
+                               .angle = (k + static_cast<double>(i) / 3) * 2 * std::numbers::pi / 3});
+  }
+  [[nodiscard]] static TendonInput tendons(double factor) {
+    return {.tensions = {3 * factor, 0, 0, 0, 2.5 * factor, 0, 2 * factor, 0, 0.5}};
+  }
+  Rod rod;
+  RodLoads weight{.gravity = {0, 0, -9.81}};
+};
+
+void statics_disks_cold(benchmark::State& state) {
+  const Disks robot(state.range(0) == 1);
+  RodStatics statics(robot.rod);
+  for (auto _ : state) benchmark::DoNotOptimize(statics.solve(Disks::tendons(1), robot.weight));
+}
+BENCHMARK(statics_disks_cold)->ArgName("by_piece")->Arg(0)->Arg(1)->Unit(benchmark::kMicrosecond);
+
+void statics_disks_warm(benchmark::State& state) {
+  const Disks robot(state.range(0) == 1);
+  RodStatics statics(robot.rod);
+  Equilibrium at = statics.solve(Disks::tendons(1), robot.weight);
+  bool there = false;
+  for (auto _ : state) {
+    at = statics.solve(Disks::tendons(there ? 1 : 1.001), robot.weight, at);
+    benchmark::DoNotOptimize(at);
+    there = !there;
+  }
+}
+BENCHMARK(statics_disks_warm)->ArgName("by_piece")->Arg(0)->Arg(1)->Unit(benchmark::kMicrosecond);
+
+// Steps of 5 ms of the same robot, damped, under tensions that swing.
+void dynamics_disks(benchmark::State& state) {
+  Disks robot(state.range(0) == 1);
+  for (RodSection& section : robot.rod.sections) section.damping_time = 0.02;
+  RodDynamics dynamics(robot.rod);
+  RodState at = dynamics.rest();
+  int k = 0;
+  for (auto _ : state) {
+    const double factor = 0.5 - 0.5 * std::cos(0.02 * k++);
+    benchmark::DoNotOptimize(dynamics.step(at, Disks::tendons(factor), robot.weight, 5e-3));
+  }
+}
+BENCHMARK(dynamics_disks)->ArgName("by_piece")->Arg(0)->Arg(1)->Unit(benchmark::kMicrosecond);
 
 // Tensions of least effort for tips near that of tensions 4 0 0 0 2 0. Starts from rest (0), or from the
 // previous solution (1).

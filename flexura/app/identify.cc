@@ -242,6 +242,8 @@ void refuse_what_is_not_known(const IdentifyArguments& arguments, const ArmConfi
 Rod known_rod(const std::string& file, const Experiment& experiment) {
   try {
     Rod rod = rod_of(experiment.arm, experiment.drive);
+    // Places determine few modes: those of whole sections, not of the pieces between their disks.
+    for (RodSection& section : rod.sections) section.modes.by_piece = false;
     (void)RodDynamics(rod);
     return rod;
   } catch (const std::invalid_argument& error) {

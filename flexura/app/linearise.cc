@@ -62,17 +62,22 @@ Node eigenvalues_node(const Eigen::VectorXcd& values) {
 }
 
 // Returns the names of the states. "q.1.curvature_x.0" is the constant part of the first section's curvature
-// about x; "v..." is its rate.
+// about x, "q.1.2.curvature_x.0" that of its second piece between guide disks; "v..." is its rate.
 Node state_names(const RodChain& chain) {
   constexpr std::array strains = {"shear_x", "shear_y", "stretch", "curvature_x", "curvature_y", "twist"};
   std::vector<std::string> modes(static_cast<std::size_t>(chain.size()));
-  for (std::size_t section = 0; section < chain.elements().size(); ++section) {
+  int piece = 0;
+  for (std::size_t i = 0; i < chain.elements().size(); ++i) {
+    const RodPart& part = chain.elements()[i].part();
+    std::string where = std::to_string(part.section + 1);
+    if (part.begin == 0) piece = 0;
+    if (part.begin > 0 || !part.is_last) where += fmt::format(".{}", ++piece);
     int order = 0, before = -1;
-    chain.elements()[section].grid().for_modes([&](int strain, int mode) {
+    chain.elements()[i].grid().for_modes([&](int strain, int mode) {
       order = strain == before ? order + 1 : 0;
       before = strain;
-      modes[static_cast<std::size_t>(chain.first(section) + mode)] =
-          fmt::format("{}.{}.{}", section + 1, strains[static_cast<std::size_t>(strain)], order);
+      modes[static_cast<std::size_t>(chain.first(i) + mode)] =
+          fmt::format("{}.{}.{}", where, strains[static_cast<std::size_t>(strain)], order);
     });
   }
   std::vector<std::string> names;
@@ -118,6 +123,7 @@ std::string LineariseAnswers::answer(std::string_view line) {
     const Equilibrium found = statics_.solve(tendons, loads);
     if (found.end == StaticsEnd::bad_input) return write_json(linearise_refusal(found.problem));
     if (found.end == StaticsEnd::no_equilibrium) return write_json({not_linearised("no_equilibrium"), {}});
+    if (found.end == StaticsEnd::disks_meet) return write_json({not_linearised("disks_meet"), {}});
     if (!found.converged() || !found.q.allFinite()) return write_json({not_linearised("out_of_steps"), {}});
     const RodState state = dynamics_.rest(found);
     const RodLinear linear = dynamics_.linearize(state, tendons, loads);

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <string>
 #include <utility>
 #include <vector>
@@ -75,8 +74,7 @@ Node numbers(const std::vector<double>& values) {
 Node place_nodes(const RodChain& chain, const std::vector<RodPlace>& places) {
   Node::Array poses;
   for (const RodPlace& place : places) {
-    const RodElement& element = chain.elements()[place.section];
-    poses.push_back(pose_node(element.poses()[element.grid().node_at(place.at)]));
+    poses.push_back(pose_node(chain.pose(chain.node_of(place))));
   }
   return {std::move(poses), {}};
 }
@@ -95,6 +93,7 @@ bool is_finite(const Equilibrium& found) {
 
 Node::Table answer_of(const Equilibrium& found) {
   if (found.end == StaticsEnd::no_equilibrium) return unknown("no_equilibrium");
+  if (found.end == StaticsEnd::disks_meet) return unknown("disks_meet");
   // Values that overflow double count as not converged.
   if (!found.converged() || !is_finite(found)) return unknown("out_of_steps");
   return {{"converged", {}, {true, {}}},
@@ -115,33 +114,6 @@ void add_residual(const InverseStaticsResult& result, const StaticsTarget& targe
   members.push_back({"residual", {}, {result.position_error, {}}});
   if (target.direction || target.rotation)
     members.push_back({"residual_angle", {}, {result.angle_error, {}}});
-}
-
-// A tendon between two disks is a straight chord, and the rod bends away from it: its curvature changes from
-// piece to piece of the section. Returns a note if that is more than the section's modes can have; "" if not.
-std::string chord_note(const Rod& rod, const RodChain& chain) {
-  constexpr double small = 0.1;  // Of a tendon's distance from the backbone.
-  constexpr int modes_a_piece = 4, most_modes = 20;
-  double s_base = 0;
-  for (std::size_t i = 0; i < rod.sections.size(); s_base += rod.sections[i].length, ++i) {
-    const RodSection& section = rod.sections[i];
-    if (section.disks == 0 || section.modes.bend >= std::min(most_modes, modes_a_piece * section.disks))
-      continue;
-    double curvature = 0, nearest = std::numeric_limits<double>::infinity();
-    for (const Vector6d& strain : chain.elements()[i].strains())
-      curvature = std::max(curvature, strain.segment<2>(3).norm());
-    for (const TendonRoute& tendon : rod.tendons)
-      if (tendon.section >= i)
-        nearest = std::min(nearest, tendon.at(s_base + section.length / 2).value.norm());
-    const double piece = section.length / section.disks;
-    if (curvature * piece * piece / 8 <= small * nearest) continue;
-    return fmt::format(
-        "section {}: the tendons' straight chords between its disks change its curvature from piece to "
-        "piece; for "
-        "this strong bend give it material.modes.bend = {}, or more disks",
-        i + 1, std::min(most_modes, modes_a_piece * section.disks));
-  }
-  return {};
 }
 
 Node error_node(std::string problem) { return {Node::Table{{"error", {}, {std::move(problem), {}}}}, {}}; }
@@ -180,13 +152,18 @@ std::string StaticsAnswers::answer(std::string_view line) {
     Node::Table members = answer_of(found);
     const bool has_answer = members.size() > 2;
     if (inverse && has_answer) add_residual(*inverse, *request.target, members);
-    if (has_answer) {
+    if (has_answer && request.at) {
       RodChain chain(rod_, places);
       chain.place(found.q);
-      if (request.at) members.push_back({"at", {}, place_nodes(chain, places)});
-      if (std::string note = chord_note(rod_, chain); !note.empty())
-        members.push_back({"note", {}, {std::move(note), {}}});
+      members.push_back({"at", {}, place_nodes(chain, places)});
     }
+    if (has_answer && found.coarse_section)
+      members.push_back({"note",
+                         {},
+                         {fmt::format("section {}: strongly bent between its guide disks; for an error below "
+                                      "1e-3 of the length give it more material.modes.bend, or more disks",
+                                      *found.coarse_section + 1),
+                          {}}});
     return write_json({std::move(members), {}});
   } catch (const InputError& error) {
     return write_json(error_node(joined(error.problems())));

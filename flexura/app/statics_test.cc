@@ -204,8 +204,9 @@ material = { youngs_modulus = 1e6, radius_mm = 1 }
   EXPECT_THAT(answer, ::testing::Not(HasSubstr("null")));
 }
 
-// Four pieces of 0.1 m with three modes: the rod that is divided into its pieces is somewhere else.
-TEST(AnswerStatics, NotesChordsThatNeedMoreModes) {
+// Four pieces of 0.1 m: each has modes of its own, so that the section is that of four short ones. With modes
+// that make it an arc, a note says so.
+TEST(AnswerStatics, FollowsChordsAndNotesWhereItCannot) {
   const auto arm = [](int sections, int disks, int modes) {
     std::string text = "[arm]\nkind = \"spatial\"\n";
     for (int i = 0; i < sections; ++i)
@@ -218,16 +219,30 @@ TEST(AnswerStatics, NotesChordsThatNeedMoreModes) {
       text += fmt::format("[[arm.tendon]]\nsection = {}\nradius = 0.01\nangle_deg = {}\n", sections, angle);
     return answers_of_text(text);
   };
-  StaticsAnswers coarse = arm(1, 4, 3), fine = arm(1, 4, 16), pieces = arm(4, 1, 5);
+  StaticsAnswers arcs = arm(1, 4, 1), usual = arm(1, 4, 5), pieces = arm(4, 1, 5);
   const std::string line = R"({"tensions":[4,2]})";
-  const Node of_coarse = answer_to(coarse, line), of_fine = answer_to(fine, line);
-  ASSERT_NE(of_coarse.find("note"), nullptr);
-  EXPECT_THAT(*of_coarse.find("note")->as<std::string>(), HasSubstr("modes.bend = 16"));
-  EXPECT_EQ(of_fine.find("note"), nullptr);
-  EXPECT_EQ(answer_to(coarse, R"({"tensions":[0.2,0.1]})").find("note"), nullptr) << "hardly bent";
+  const Node of_arcs = answer_to(arcs, line), of_usual = answer_to(usual, line);
+  ASSERT_NE(of_arcs.find("note"), nullptr);
+  EXPECT_THAT(*of_arcs.find("note")->as<std::string>(), HasSubstr("material.modes.bend"));
+  EXPECT_EQ(of_usual.find("note"), nullptr);
+  EXPECT_EQ(answer_to(arcs, R"({"tensions":[0.2,0.1]})").find("note"), nullptr) << "hardly bent";
   const Node of_pieces = answer_to(pieces, line);
-  EXPECT_THAT(tip_position(of_fine), near(tip_position(of_pieces), 3e-3));
-  EXPECT_THAT(tip_position(of_coarse), ::testing::Not(near(tip_position(of_pieces), 2e-2)));
+  EXPECT_THAT(tip_position(of_usual), near(tip_position(of_pieces), 1e-4));
+  EXPECT_THAT(tip_position(of_arcs), ::testing::Not(near(tip_position(of_pieces), 2e-2)));
+}
+
+TEST(AnswerStatics, NamesDisksThatMeet) {
+  StaticsAnswers answers = answers_of_text(R"([arm]
+kind = "spatial"
+[[arm.section]]
+length = 0.4
+radius = 0.02
+material = { stiffness = { shear = 1e4, stretch = 1e4, bend = 0.01, twist = 0.008 }, disks = 4 }
+[[arm.tendon]]
+section = 1
+radius = 0.01
+)");
+  EXPECT_EQ(answers.answer(R"({"tensions":[60]})"), R"({"converged":false,"reason":"disks_meet"})");
 }
 
 TEST(AnswerStatics, AnswersABadLineWithItsError) {

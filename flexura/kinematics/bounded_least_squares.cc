@@ -171,11 +171,14 @@ Descent BoundedDescent::descend(const DescentLimits& limits, VectorXd& x) {
     free_gradient(bounds, x, gradient);
     return gradient.norm() <= limits.slope * std::sqrt(square);
   };
+  int slow_steps = 0;
   const auto keep = [&](const TriedStep& kept, double& cost) {
     const bool is_slow = !(kept.cost < 0.99 * cost);
+    slow_steps = is_slow ? slow_steps + 1 : 0;
     x.swap(trial), r.swap(trial_r), J.swap(trial_J);
     cost = square = kept.cost;
-    return problem.is_met(r) || (is_slow && is_level());
+    return problem.is_met(r) ||
+           (is_slow && (is_level() || (limits.most_slow > 0 && slow_steps >= limits.most_slow)));
   };
   const auto leave = [&](const TriedStep&, double) { return is_level(); };
   const Damping damping{.start = 1e-2, .most = 1e15, .rise = 2, .growth = 2, .eased = eased};

@@ -38,6 +38,9 @@ enum class Descent {
 struct DescentLimits {
   int iterations = 60;  ///< Largest number of iterations.
   double slope = 1e-4;  ///< A point is stationary if |free gradient| <= slope |r|.
+  /// If > 0: a point counts as stationary after so many steps in a row that each reduce |r|^2 by less than
+  /// 1 %. Then the residuals jump nearby, or the valley is too narrow.
+  int most_slow = 0;
 };
 
 /// Minimizes the residuals of one problem by descents, and reuses memory between descents.

@@ -20,13 +20,6 @@ bool every_finite(const std::vector<double>& values) {
   return std::ranges::all_of(values, [](double value) { return std::isfinite(value); });
 }
 
-std::vector<RodGrid> grids_of(const RodChain& chain) {
-  std::vector<RodGrid> grids;
-  grids.reserve(chain.elements().size());
-  for (const RodElement& element : chain.elements()) grids.push_back(element.grid());
-  return grids;
-}
-
 Eigen::Vector3d eigen_of(const Triple<double>& a) { return {a.x, a.y, a.z}; }
 Vector6d eigen_of(const Screw<double>& a) {
   return (Vector6d() << eigen_of(a.linear), eigen_of(a.angular)).finished();
@@ -82,7 +75,7 @@ RodDynamics::Work::Work(Rod rod, const RodDynamicsConfig& given, std::span<const
     : config(given),
       scheme(given.spectral_radius),
       chain(std::move(rod), places),
-      layout(chain.rod(), grids_of(chain), given.rotary_inertia),
+      layout(chain, given.rotary_inertia),
       motion(layout),
       matrix(layout) {
   require_dynamics(chain.rod(), config);
@@ -199,7 +192,7 @@ void RodDynamics::Work::set_surroundings(const RodSurroundings* given) {
   motion.set_points(nullptr);
   points.reset();
   if (given == nullptr || given->points().empty()) return;
-  points = std::make_unique<RodPoints>(chain.rod(), layout, given->points());
+  points = std::make_unique<RodPoints>(layout, given->points());
   motion.set_points(points.get());
 }
 
@@ -223,7 +216,7 @@ void RodDynamics::set_surroundings(const RodSurroundings* surroundings) {
   work_->set_surroundings(surroundings);
 }
 void RodDynamics::stretch_rest(std::span<const double> factors, std::span<const double> rates) {
-  const std::size_t count = work_->layout.sections.size();
+  const std::size_t count = work_->chain.rod().sections.size();
   if (factors.size() != count || rates.size() != count)
     throw std::invalid_argument("expected a factor on the length of each section, and its rate");
   constexpr double most_rate = 1e100;  // Energies of larger ones are not finite.
@@ -360,12 +353,7 @@ Vector6d RodDynamics::momentum(const RodState& state) {
 }
 
 NodeMotion RodDynamics::motion(const RodState& state, const RodPlace& place) {
-  if (place.section >= work_->layout.sections.size()) throw std::invalid_argument("a place outside the rod");
-  const RodLayout::Section& section = work_->layout.sections[place.section];
-  const std::size_t at = section.grid.node_at(place.at), node = section.first_node + at;
-  constexpr double same_place = 1e-9;
-  if (!(std::abs(section.grid.t[at] - place.at) <= same_place))
-    throw std::invalid_argument("a place that was not asked for");
+  const std::size_t node = work_->layout.node_of(place);
   const Eigen::VectorXd v = velocity(state);
   work_->motion.place(state.q.data(), v.data());
   return {.pose = pose_of(work_->motion.nodes()[node]), .twist = eigen_of(work_->motion.velocities()[node])};

@@ -203,7 +203,8 @@ TEST(DynamicsFriction, TheDerivativesOfAStepAreThoseByDifferences) {
       return all;
     };
     for (Eigen::Index j = 0; j < n; ++j) {
-      const double d = 1e-6 * std::max(1.0, std::abs(state.q[j]));
+      // Smaller differences of momenta of light modes are mostly rounding.
+      const double d = 1e-5 * std::max(1.0, std::abs(state.q[j]));
       RodState more = state, less = state;
       more.q[j] += d, less.q[j] -= d;
       const Eigen::VectorXd known = (after(more) - after(less)) / (2 * d);

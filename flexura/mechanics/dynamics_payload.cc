@@ -10,21 +10,10 @@
 namespace flexura {
 namespace {
 
-constexpr double one_node = 1e-9;
-
 Eigen::Vector3d vector(const Triple<double>& a) { return {a.x, a.y, a.z}; }
 Triple<double> as_triple(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
 Vector6d vector(const Screw<double>& a) {
   return (Vector6d() << vector(a.linear), vector(a.angular)).finished();
-}
-
-std::size_t node_of(const RodLayout& layout, const RodPlace& place) {
-  if (place.section >= layout.sections.size()) throw std::invalid_argument("a place outside the rod");
-  const RodLayout::Section& section = layout.sections[place.section];
-  const std::size_t at = section.grid.node_at(place.at);
-  if (!(std::abs(section.grid.t[at] - place.at) <= one_node))
-    throw std::invalid_argument("a place that was not asked for");
-  return section.first_node + at;
 }
 
 // Combines a body and a point mass.
@@ -53,7 +42,7 @@ RodState RodDynamics::pick_up(const RodState& state, const RodPayload& payload, 
   Work& work = *work_;
   if (state.q.size() != work.chain.size() || !state.q.allFinite() || !state.momentum.allFinite())
     throw std::invalid_argument("a state of another rod, or not finite");
-  const std::size_t node = node_of(work.layout, payload.place);
+  const std::size_t node = work.layout.node_of(payload.place);
   // Momentum of the payload: J^T m u.
   work.velocity.setZero();
   work.motion.place(state.q.data(), work.velocity.data());
@@ -85,7 +74,7 @@ RodState RodDynamics::pick_up(const RodState& state, const RodPayload& payload, 
 RodState RodDynamics::drop(const RodState& state, const RodPlace& place, const TendonInput& tendons,
                            const RodLoads& loads) {
   Work& work = *work_;
-  const std::size_t node = node_of(work.layout, place);
+  const std::size_t node = work.layout.node_of(place);
   const Eigen::VectorXd v = velocity(state);
   const auto found = std::ranges::find_if(work.bare, [&](const auto& each) { return each.first == node; });
   if (found != work.bare.end()) {

@@ -86,9 +86,7 @@ TEST(DynamicsSlopes, MomentaAndForcesAreThoseOfTheKineticEnergy) {
   for_random_cases(10, [](TestRandom& random) {
     const Moving moving(random);
     const RodChain chain(moving.rod);
-    std::vector<RodGrid> grids;
-    for (const RodElement& element : chain.elements()) grids.push_back(element.grid());
-    const RodLayout layout(chain.rod(), grids, true);
+    const RodLayout layout(chain, true);
     RodMotion<double> motion(layout);
     const std::vector<double> none(chain.tendons());
     Eigen::VectorXd momentum(moving.q.size()), force(moving.q.size());
@@ -134,14 +132,17 @@ TEST(DynamicsSlopes, TheMassMatrixIsSymmetricAndPositive) {
     const Eigen::MatrixXd mass = dynamics.mass_matrix(moving.q);
     const RodState state = dynamics.start(moving.q, moving.v, {}, {});
     expect_same(mass * moving.v, state.momentum, 1e-12);
-    expect_same(dynamics.velocity(state), moving.v, 1e-7);
     expect_same(mass, mass.transpose(), 1e-14);
     const Eigen::VectorXd scales = dynamics.chain().scales().cwiseInverse();
-    EXPECT_GT(Eigen::MatrixXd(scales.asDiagonal() * mass * scales.asDiagonal())
-                  .selfadjointView<Eigen::Lower>()
-                  .eigenvalues()
-                  .minCoeff(),
-              0);
+    const Eigen::VectorXd eigenvalues = Eigen::MatrixXd(scales.asDiagonal() * mass * scales.asDiagonal())
+                                            .selfadjointView<Eigen::Lower>()
+                                            .eigenvalues();
+    EXPECT_GT(eigenvalues.minCoeff(), 0);
+    // Short pieces have light modes: rates are as exact as the matrix is well conditioned.
+    const Eigen::VectorXd v = dynamics.velocity(state);
+    expect_same(mass * v, state.momentum, 1e-13);
+    const double condition = eigenvalues.maxCoeff() / eigenvalues.minCoeff();
+    expect_same(v, moving.v, 1e-12 + 1e-16 * condition);
     EXPECT_NEAR(dynamics.energy(state, {}).kinetic, 0.5 * moving.v.dot(mass * moving.v),
                 1e-8 * moving.v.dot(mass * moving.v));
   });

@@ -159,16 +159,17 @@ std::array<bool, 6> strains_of(RodParameter::Kind kind) {
 
 // Returns the modes that a parameter affects.
 std::vector<Index> parameter_modes(const RodChain& chain, const RodParameter& parameter) {
-  if (parameter.section && *parameter.section >= chain.elements().size())
+  if (parameter.section && *parameter.section >= chain.rod().sections.size())
     throw std::invalid_argument("a parameter of a section that the rod has not");
   if (parameter.kind == RodParameter::Kind::mass && parameter.section)
     throw std::invalid_argument("a mass is that of all of the rod");
   std::vector<Index> modes;
   const std::array<bool, 6> strains = strains_of(parameter.kind);
-  for (std::size_t section = 0; section < chain.elements().size(); ++section) {
-    if (parameter.section && *parameter.section != section) continue;
-    chain.elements()[section].grid().for_modes([&](int strain, int mode) {
-      if (strains[static_cast<std::size_t>(strain)]) modes.push_back(chain.first(section) + mode);
+  for (std::size_t i = 0; i < chain.elements().size(); ++i) {
+    const RodElement& element = chain.elements()[i];
+    if (parameter.section && *parameter.section != element.part().section) continue;
+    element.grid().for_modes([&](int strain, int mode) {
+      if (strains[static_cast<std::size_t>(strain)]) modes.push_back(chain.first(i) + mode);
     });
   }
   return modes;
@@ -183,7 +184,7 @@ MatrixXd part_of(const MatrixXd& whole, const std::vector<Index>& modes) {
 void set_friction(ParameterPart& part, const RodChain& chain, const RodParameter& parameter,
                   std::vector<char>& taken) {
   constexpr double step = 1e-3;
-  if (parameter.section && *parameter.section >= chain.elements().size())
+  if (parameter.section && *parameter.section >= chain.rod().sections.size())
     throw std::invalid_argument("a parameter of a section that the rod has not");
   const std::vector<std::size_t> tendons = rubbing_tendons(chain.rod(), parameter);
   if (!tendons.empty()) part.coefficient = chain.rod().tendons[tendons.front()].friction;

@@ -17,7 +17,8 @@ namespace {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 
-constexpr DescentLimits far{.iterations = 200, .slope = 1e-4};
+// Near buckling a descent creeps towards tensions at which the rod jumps; then another start is better.
+constexpr DescentLimits far{.iterations = 200, .slope = 1e-4, .most_slow = 8};
 // Limits of the search for the nearest point of an unreachable target.
 constexpr DescentLimits slow{.iterations = 400, .slope = 1e-6};
 // Accuracy of the searches relative to the tolerance, so that the tolerance does not affect the effort.
@@ -119,8 +120,8 @@ class InverseSearch {
     project(bounds_, x_);
   }
 
-  // Starts: the robot's state or zero tensions; some tension on all; each tendon alone; at random. Returns
-  // false if the start is not new.
+  // Starts: the robot's state or zero tensions; some tension on all; each tendon alone; at random. Reduces
+  // tensions under which the rod has no equilibrium. Returns false if the start is not new.
   bool set_start(int start) {
     const int count = static_cast<int>(most_.size());
     x_.setZero();
@@ -138,6 +139,11 @@ class InverseSearch {
       }
     }
     project(bounds_, x_);
+    constexpr int most_halvings = 5;
+    for (int i = 0; start > 0 && i < most_halvings; ++i) {
+      if (problem_.at(x_, from_, descent_.r, descent_.J).converged()) break;
+      x_ *= 0.5;
+    }
     return true;
   }
 

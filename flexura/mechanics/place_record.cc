@@ -34,11 +34,10 @@ class PlaceFit {
  public:
   PlaceFit(const Rod& rod, std::span<const RodPlace> places)
       : chain_(rod, places), rows_(3 * static_cast<Index>(places.size())) {
-    for (const RodPlace& place : places)
-      nodes_.push_back({place.section, chain_.elements()[place.section].grid().node_at(place.at)});
+    for (const RodPlace& place : places) nodes_.push_back(chain_.node_of(place));
     for (std::size_t i = 0; i < nodes_.size(); ++i)
       for (std::size_t k = 0; k < i; ++k)
-        if (nodes_[i].element == nodes_[k].element && nodes_[i].node == nodes_[k].node)
+        if (nodes_[i] == nodes_[k])
           throw std::invalid_argument(fmt::format("places {} and {} are the same", k + 1, i + 1));
     if (rows_ <= chain_.size())
       throw std::invalid_argument(fmt::format(
@@ -93,9 +92,6 @@ class PlaceFit {
   [[nodiscard]] const MatrixXd& covariance() const { return covariance_; }
 
  private:
-  struct Node {
-    std::size_t element, node;
-  };
   [[nodiscard]] double cost_of(const VectorXd& left, const VectorXd& prior, const VectorXd& q) const {
     return left.squaredNorm() / (noise_ * noise_) + prior.dot(q.cwiseAbs2());
   }
@@ -119,13 +115,11 @@ class PlaceFit {
     }
     return J;
   }
-  [[nodiscard]] Eigen::Vector3d position(const Node& at) const {
-    return chain_.elements()[at.element].poses()[at.node].position;
-  }
+  [[nodiscard]] Eigen::Vector3d position(const RodNode& at) const { return chain_.pose(at).position; }
 
   RodChain chain_;
   Index rows_;
-  std::vector<Node> nodes_;
+  std::vector<RodNode> nodes_;
   std::span<const Eigen::Vector3d> desired_;
   double noise_ = 1;
   MatrixXd covariance_;

@@ -23,6 +23,9 @@ struct StrainModes {
   int stretch = 1;
   int bend = 5;  ///< For each of the two bending directions.
   int twist = 4;
+  /// In a section with guide disks each piece between two disks has modes of its own (rod_parts.h); else the
+  /// numbers are those of the whole section, too few where strongly bent pieces lie beside their chords.
+  bool by_piece = true;
 
   /// The rod moves only in its xz plane: it bends about y, without twist or shear along y.
   bool planar = false;

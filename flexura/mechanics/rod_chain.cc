@@ -53,15 +53,13 @@ RodChain::RodChain(Rod rod, std::span<const RodPlace> places) : rod_(std::move(r
   for (const RodPlace& place : places)
     if (place.section >= rod_.sections.size() || !is_part(place.at))
       throw std::invalid_argument("a place outside the rod");
-  double s = 0;
   std::vector<double> at;
-  for (std::size_t i = 0; i < rod_.sections.size(); ++i) {
+  for (RodPart& part : parts_of(rod_)) {
     at.clear();
-    set_nodes(rod_.sections[i], rod_.tendons, i);
+    set_nodes(part.rod, rod_.tendons, part.section);
     for (const RodPlace& place : places)
-      if (place.section == i) at.push_back(place.at);
-    const RodElement& element = elements_.emplace_back(rod_.sections[i], rod_.tendons, i, s, at);
-    s += rod_.sections[i].length;
+      if (part.holds(place)) at.push_back(part.within(place.at));
+    const RodElement& element = elements_.emplace_back(std::move(part), rod_.tendons, at);
     first_.push_back(size_);
     size_ += element.size();
     has_chords_ = has_chords_ || element.has_chords();
@@ -70,7 +68,8 @@ RodChain::RodChain(Rod rod, std::span<const RodPlace> places) : rod_(std::move(r
   for (std::size_t i = 0; i < elements_.size(); ++i) {
     const RodGrid& grid = elements_[i].grid();
     for (std::size_t c = 3; c < 6; ++c)
-      scales_.segment(first_[i] + grid.first[c], grid.count[c]).setConstant(elements_[i].length());
+      scales_.segment(first_[i] + grid.first[c], grid.count[c])
+          .setConstant(rod_.sections[elements_[i].part().section].length);
   }
   residual_.setZero(size_);
   load_slope_.setZero(size_);
@@ -85,6 +84,14 @@ RodChain::RodChain(Rod rod, std::span<const RodPlace> places) : rod_(std::move(r
     pivots_[i].by_base.setZero(n, 6);
     pivots_[i].wrench_by_modes.setZero(6, n);
   }
+}
+
+RodNode RodChain::node_of(const RodPlace& place) const {
+  const auto found =
+      std::ranges::find_if(elements_, [&](const RodElement& element) { return element.part().holds(place); });
+  if (found == elements_.end() || !is_part(place.at)) throw std::invalid_argument("a place outside the rod");
+  return {static_cast<std::size_t>(found - elements_.begin()),
+          found->grid().node_at(found->part().within(place.at))};
 }
 
 void RodChain::place(const Eigen::VectorXd& q) {
@@ -106,12 +113,12 @@ void RodChain::place_with_columns(const Eigen::VectorXd& q) {
 }
 
 void RodChain::stretch_rest(std::span<const double> factors) {
-  if (factors.size() != elements_.size())
+  if (factors.size() != rod_.sections.size())
     throw std::invalid_argument("expected a factor on the length of each section");
   for (const double factor : factors)
     if (!(factor > 0) || !std::isfinite(factor))
       throw std::invalid_argument("expected factors above 0 on the lengths of sections");
-  for (std::size_t i = 0; i < factors.size(); ++i) elements_[i].stretch_rest(factors[i]);
+  for (RodElement& element : elements_) element.stretch_rest(factors[element.part().section]);
 }
 
 void RodChain::balance(const Eigen::VectorXd& q, std::span<const double> tensions, const RodLoads& loads,
@@ -150,6 +157,19 @@ double RodChain::strain_energy() const {
   double sum = 0;
   for (const RodElement& element : elements_) sum += element.strain_energy;
   return sum;
+}
+
+std::optional<std::size_t> RodChain::coarse_section() const {
+  const auto coarse = std::ranges::find_if(elements_, &RodElement::is_coarse);
+  if (coarse == elements_.end()) return {};
+  return coarse->part().section;
+}
+
+bool RodChain::disks_meet() const {
+  constexpr double together = 0.05;
+  return has_chords_ && std::ranges::any_of(elements_, [](const RodElement& element) {
+           return element.least_chord < together;
+         });
 }
 
 double RodChain::load_energy(const RodLoads& loads) const {
@@ -263,9 +283,9 @@ void RodChain::solve(Eigen::Ref<Eigen::MatrixXd> rhs) {
 }
 
 Eigen::MatrixXd RodChain::parameter_slopes(const Eigen::Vector3d& gravity) const {
-  Eigen::MatrixXd slopes = Eigen::MatrixXd::Zero(size_, 5 * static_cast<Eigen::Index>(elements_.size()));
+  Eigen::MatrixXd slopes = Eigen::MatrixXd::Zero(size_, 5 * static_cast<Eigen::Index>(rod_.sections.size()));
   for (std::size_t i = 0; i < elements_.size(); ++i) {
-    const auto column = 5 * static_cast<Eigen::Index>(i);
+    const auto column = 5 * static_cast<Eigen::Index>(elements_[i].part().section);
     elements_[i].add_stiffness_slopes(slopes.block(first_[i], column, elements_[i].size(), 4));
     Vector6d wrench = Vector6d::Zero();
     elements_[i].add_weight_slope(gravity, wrench,

@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <Eigen/LU>
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -14,13 +15,21 @@
 
 namespace flexura {
 
-/// The sections of a rod, joined in a chain. Computes the shape for modes q, and the residual r(q) of the
-/// balance of all generalized forces. Solves linear systems with r's derivative, at a cost linear in the
-/// number of sections. For r = 0 the rod is in equilibrium. If the loads have an energy, r is the gradient of
-/// the total energy. All quantities are in the frame of the base.
+/// A node of a rod: its element, and its index among that element's nodes.
+struct RodNode {
+  std::size_t element = 0, node = 0;
+
+  bool operator==(const RodNode&) const = default;
+};
+
+/// The elements of a rod, joined in a chain: its sections, or their pieces between guide disks (rod_parts.h).
+/// Computes the shape for modes q, and the residual r(q) of the balance of all generalized forces. Solves
+/// linear systems with r's derivative, at a cost linear in the number of elements. For r = 0 the rod is in
+/// equilibrium. If the loads have an energy, r is the gradient of the total energy. All quantities are in the
+/// frame of the base.
 ///
-/// A section receives only the twist of its base from proximal sections and only a wrench from distal ones.
-/// So each section's modes are eliminated from tip to base, as in the articulated-body algorithm (R.
+/// An element receives only the twist of its base from proximal ones and only a wrench from distal ones. So
+/// each element's modes are eliminated from tip to base, as in the articulated-body algorithm (R.
 /// Featherstone, Rigid Body Dynamics Algorithms, ch. 7).
 class RodChain {
  public:
@@ -36,6 +45,12 @@ class RodChain {
   /// twists, which become radians, and 1 for stretch and shear.
   [[nodiscard]] const Eigen::VectorXd& scales() const { return scales_; }
   [[nodiscard]] const std::vector<RodElement>& elements() const { return elements_; }
+  /// Returns the node at a place, which must be one, else the nearest of its element. Throws
+  /// std::invalid_argument for a place outside the rod.
+  [[nodiscard]] RodNode node_of(const RodPlace& place) const;
+  /// Returns the section, if any, whose modes are too few for the bend between its guide disks at the last
+  /// balance.
+  [[nodiscard]] std::optional<std::size_t> coarse_section() const;
   /// Returns the index in q of the first mode of element i.
   [[nodiscard]] Eigen::Index first(std::size_t element) const { return first_[element]; }
 
@@ -57,6 +72,9 @@ class RodChain {
   /// Returns the derivative of r by the share of the loads, size().
   [[nodiscard]] const Eigen::VectorXd& load_slope() const { return load_slope_; }
   [[nodiscard]] double strain_energy() const;
+  /// Returns whether a tendon pulled the holes of two guide disks together at the last balance. Real disks
+  /// touch before; no shape beyond is an equilibrium.
+  [[nodiscard]] bool disks_meet() const;
   /// Returns minus the work of all loads at the last balance, J; it is 0 for loads at the base's origin. It
   /// is a potential energy if has_energy().
   [[nodiscard]] double load_energy(const RodLoads& loads) const;
@@ -105,6 +123,8 @@ class RodChain {
   void place(const Eigen::VectorXd& q);
   /// Computes poses and columns, the derivatives of node twists by q.
   void place_with_columns(const Eigen::VectorXd& q);
+  /// Returns the pose of a node, after place() or place_with_columns().
+  [[nodiscard]] const Pose& pose(const RodNode& at) const { return elements_[at.element].poses()[at.node]; }
   [[nodiscard]] const Pose& tip() const { return elements_.back().poses().back(); }
   /// Writes the derivative of a node's twist about the base's origin by q into J, 6 x size(). Requires
   /// place_with_columns().

@@ -44,8 +44,11 @@ RodContact::RodContact(const RodChain& chain, const RodContactConfig& config)
   require_radii(config, chain.rod().sections.size());
   places_ = config.places;
   if (places_.empty())
-    for (std::size_t i = 0; i < chain.elements().size(); ++i)
-      for (const double at : chain.elements()[i].grid().t) places_.push_back({.section = i, .at = at});
+    for (const RodElement& element : chain.elements())
+      for (const double t : element.grid().t)
+        // The base of a piece is the end of the one before.
+        if (t > 0 || element.part().begin == 0)
+          places_.push_back({.section = element.part().section, .at = element.part().of_section(t)});
   require_places(places_, chain.rod().sections.size());
   if (itself_ && (!(config.itself_apart > 0) || !std::isfinite(config.itself_apart)))
     throw std::invalid_argument("contacts: itself_apart must be above 0 and finite");
@@ -62,7 +65,9 @@ void RodContact::set_points(const RodChain& chain, const RodContactConfig& confi
   const std::vector<RodSection>& sections = chain.rod().sections;
   double thickest = 0, s_base = 0;
   std::size_t node = 0, next = 0;
-  for (std::size_t i = 0; i < sections.size(); ++i) {
+  for (const RodElement& element : chain.elements()) {
+    const RodPart& part = element.part();
+    const std::size_t i = part.section;
     const std::array<double, 2> radius = config.radii.empty() ? sections[i].radius : config.radii[i];
     for (const double each : radius)
       if (!(each > 0) || !std::isfinite(each))
@@ -70,7 +75,8 @@ void RodContact::set_points(const RodChain& chain, const RodContactConfig& confi
             fmt::format("contacts, section {}: a radius must be above 0 and finite", i + 1));
     thickest = std::max({thickest, radius[0], radius[1]});
     const double length = sections[i].length;
-    const std::vector<double>& t = chain.elements()[i].grid().t;
+    std::vector<double> t;  // As parts of the section.
+    for (const double at : element.grid().t) t.push_back(part.of_section(at));
     const auto is_here = [&](std::size_t k) { return k < places_.size() && places_[k].section == i; };
     for (std::size_t k = 0; k + 1 < t.size(); ++k) {
       Interval& interval = intervals_.emplace_back(Interval{.first_node = node + k,
@@ -79,7 +85,8 @@ void RodContact::set_points(const RodChain& chain, const RodContactConfig& confi
                                                             .end = s_base + t[k + 1] * length,
                                                             .radius = std::max(radius[0], radius[1])});
       const bool is_last = k + 2 == t.size();
-      for (; is_here(next) && (is_last || places_[next].at < t[k + 1]); ++next, ++interval.points) {
+      for (; is_here(next) && part.holds(places_[next]) && (is_last || places_[next].at < t[k + 1]);
+           ++next, ++interval.points) {
         const double at = places_[next].at,
                      before = next > 0 && is_here(next - 1) ? 0.5 * (places_[next - 1].at + at) : 0,
                      after = is_here(next + 1) ? 0.5 * (places_[next + 1].at + at) : 1;
@@ -90,7 +97,7 @@ void RodContact::set_points(const RodChain& chain, const RodContactConfig& confi
       }
     }
     node += t.size();
-    s_base += length;
+    if (part.is_last) s_base += length;
   }
   apart_ = config.itself_apart * thickest;
 }

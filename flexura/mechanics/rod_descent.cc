@@ -196,7 +196,7 @@ bool RodDescent::fall(Eigen::VectorXd& q, std::vector<Held>& tendons) {
   double lowest = huge;  // Lowest energy of the saddles met.
   for (int i = 0; i < max_descent_steps; ++i) {
     const Step made = step(q, tendons);
-    if (made == Step::none) return false;
+    if (made == Step::none || chain_.disks_meet()) return false;
     if (made == Step::made) continue;
     const bool is_saddle = share_ > 0 && solve(0, tendons) != 0;
     share_ = last_share_ = 0;

@@ -26,7 +26,12 @@ RodDrag::RodDrag(const RodChain& chain, const RodDragConfig& config) : config_(c
       if (!(each > 0) || !std::isfinite(each))
         throw std::invalid_argument(
             fmt::format("drag, section {}: a radius must be above 0 and finite", i + 1));
-    for (const double t : chain.elements()[i].grid().t) {
+  }
+  for (const RodElement& element : chain.elements()) {
+    const std::size_t i = element.part().section;
+    const std::array<double, 2> radius = config.radii.empty() ? sections[i].radius : config.radii[i];
+    for (const double at : element.grid().t) {
+      const double t = element.part().of_section(at);
       const double head = config.density * (radius[0] + t * (radius[1] - radius[0]));
       nodes_.push_back({.across = head * config.across_coefficient,
                         .along = std::numbers::pi * head * config.along_coefficient});

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
+#include <utility>
 
 #include "flexura/math/so3.h"
 #include "flexura/mechanics/rod_spring.h"
@@ -31,15 +33,30 @@ Matrix6d following_slope(const Vector6d& W) { return -bracket_form(W).transpose(
 
 }  // namespace
 
-RodElement::RodElement(const RodSection& section, std::span<const TendonRoute> tendons, std::size_t index,
-                       double s_base, std::span<const double> at)
-    : grid_(section, at), length_(section.length), index_(index), masses_(section.masses) {
+bool RodElement::is_coarse() const {
+  constexpr double most_last = 0.3;    // Of the last polynomial, rad in the piece.
+  constexpr double most_beside = 0.1;  // Of the nearest tendon's distance.
+  if (!has_chords()) return false;
+  const double piece = length_ / static_cast<double>(grid_.disks.size() - 1);
+  double last = 0, curvature = 0, nearest = std::numeric_limits<double>::infinity();
+  for (std::size_t c = 3; c < 5; ++c)
+    if (grid_.count[c] > 0) last = std::hypot(last, q_[grid_.first[c] + grid_.count[c] - 1]);
+  if (grid_.disks.size() == 2 && std::ranges::max(grid_.count[3], grid_.count[4]) > 2)
+    return last * piece > most_last;
+  for (const Vector6d& strain : strain_) curvature = std::max(curvature, strain.segment<2>(3).norm());
+  for (const std::vector<Passage>& passages : passages_)
+    nearest = std::min(nearest, passages.front().offset.norm());
+  return curvature * piece * piece / 8 > most_beside * nearest;
+}
+
+RodElement::RodElement(RodPart part, std::span<const TendonRoute> tendons, std::span<const double> at)
+    : part_(std::move(part)), grid_(part_.rod, at), length_(part_.rod.length) {
   for (std::size_t i = 0; i < tendons.size(); ++i) {
-    if (tendons[i].section < index) continue;
+    if (tendons[i].section < part_.section) continue;
     tendons_.push_back(i);
     std::vector<Passage>& passages = passages_.emplace_back();
     for (const double t : grid_.t) {
-      const TendonRoute::Offset offset = tendons[i].at(s_base + t * length_);
+      const TendonRoute::Offset offset = tendons[i].at(part_.s_base + t * length_);
       passages.push_back({offset.value, offset.slope, offset.second});
     }
   }
@@ -120,6 +137,7 @@ void RodElement::stress(std::span<const double> tension) {
   length_slopes.setZero();
   pull_slopes.setZero();
   strain_energy = 0;
+  least_chord = 1;
   std::ranges::fill(across_, Vector6d::Zero());
   for (std::size_t k = 0; k < grid_.t.size(); ++k) {
     const double weight = grid_.weight[k] * length_;
@@ -215,6 +233,7 @@ void RodElement::add_chords(std::size_t from, std::size_t to, std::span<const do
     pull_slopes.col(place) += begin.left * by_place_;
     const double tension = tensions[tendons_[i]] * begin.left;
     if (tension == 0) continue;
+    least_chord = std::min(least_chord, distance / ((grid_.t[to] - grid_.t[from]) * length_));
     pull += tension * W;
     // Motion of the end b relative to a.
     Eigen::Matrix<double, 3, 6> point;
@@ -273,10 +292,11 @@ double RodElement::load_energy(const RodLoads& loads) const {
   for (std::size_t k = 0; k < grid_.t.size(); ++k)
     sum -= grid_.weight[k] * length_ *
            (grid_.mass_per_length[k] * loads.gravity + loads.per_length).dot(X_[k].position);
-  for (std::size_t i = 0; i < masses_.size(); ++i)
-    sum -= masses_[i].mass * loads.gravity.dot(X_[grid_.mass_nodes[i]] * masses_[i].offset);
+  const std::vector<PointMass>& masses = part_.rod.masses;
+  for (std::size_t i = 0; i < masses.size(); ++i)
+    sum -= masses[i].mass * loads.gravity.dot(X_[grid_.mass_nodes[i]] * masses[i].offset);
   for (const EndLoad& end : loads.ends)
-    if (end.section == index_) sum -= end.force.dot(X_.back().position);
+    if (end.section == part_.section && part_.is_last) sum -= end.force.dot(X_.back().position);
   return sum;
 }
 
@@ -289,14 +309,15 @@ void RodElement::find_forces(const RodLoads& loads) {
     F_[k] = wrench_at(X_[k].position, f, none);
     D_[k] = dead_force_slope(X_[k].position, f);
   }
-  for (std::size_t i = 0; i < masses_.size(); ++i) {
+  const std::vector<PointMass>& masses = part_.rod.masses;
+  for (std::size_t i = 0; i < masses.size(); ++i) {
     const std::size_t node = grid_.mass_nodes[i];
-    const Eigen::Vector3d f = masses_[i].mass * loads.gravity, p = X_[node] * masses_[i].offset;
+    const Eigen::Vector3d f = masses[i].mass * loads.gravity, p = X_[node] * masses[i].offset;
     F_[node] += wrench_at(p, f, none);
     D_[node] += dead_force_slope(p, f);
   }
   for (const EndLoad& end : loads.ends) {
-    if (end.section != index_) continue;
+    if (end.section != part_.section || !part_.is_last) continue;
     const Pose& X = X_.back();
     if (end.following) {
       const Vector6d W = wrench_at(X.position, X.rotation * end.force, X.rotation * end.moment);
@@ -308,8 +329,8 @@ void RodElement::find_forces(const RodLoads& loads) {
     }
   }
   for (const PointSpring& spring : loads.springs) {
-    if (spring.section != index_) continue;
-    const std::size_t node = grid_.node_at(spring.at);
+    if (!part_.holds({spring.section, spring.at})) continue;
+    const std::size_t node = grid_.node_at(part_.within(spring.at));
     const SpringPull pull = spring_pull(spring, X_[node].position);
     F_[node] += pull.wrench;
     D_[node] += pull.by_pose;

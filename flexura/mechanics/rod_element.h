@@ -10,11 +10,12 @@
 #include "flexura/math/se3.h"
 #include "flexura/mechanics/rod.h"
 #include "flexura/mechanics/rod_grid.h"
+#include "flexura/mechanics/rod_parts.h"
 
 namespace flexura {
 
-/// Evaluation of one section of a rod: its shape, and the balance of its internal forces with the loads.
-/// Allocates only in the constructor.
+/// Evaluation of one part of a rod, which is a section or a piece of it: its shape, and the balance of its
+/// internal forces with the loads. Allocates only in the constructor.
 ///
 /// All quantities are in the frame of the rod's base; twists and wrenches are about its origin. So a mode
 /// moves all points distal of its section with the same twist, and wrenches can be added.
@@ -22,10 +23,10 @@ class RodElement {
  public:
   using Columns = Eigen::Matrix<double, 6, Eigen::Dynamic>;
 
-  /// `s_base`: arc length from the rod's base to the section's, m. `at`: places, from 0 to 1, that become
-  /// nodes.
-  RodElement(const RodSection& section, std::span<const TendonRoute> tendons, std::size_t index,
-             double s_base, std::span<const double> at);
+  /// `at`: places of the part, from 0 to 1, that become nodes.
+  RodElement(RodPart part, std::span<const TendonRoute> tendons, std::span<const double> at);
+
+  [[nodiscard]] const RodPart& part() const { return part_; }
 
   [[nodiscard]] int size() const { return grid_.size; }
   [[nodiscard]] const RodGrid& grid() const { return grid_; }
@@ -50,8 +51,13 @@ class RodElement {
   /// Twist of each node by each mode, 6 x size().
   [[nodiscard]] const std::vector<Columns>& columns() const { return A_; }
 
-  /// Turning of a tendon between its base and the end of a section. `turned`: turning angle, rad.
-  /// `direction`: its direction in the frame of the section's end. Both are zero at the base.
+  /// Returns whether its modes are too few for its bend between guide disks. An element that is one piece:
+  /// the highest polynomial of a bend is not small. Another one: the rod's distance from the chord is not
+  /// small relative to the tendons' distance from the backbone.
+  [[nodiscard]] bool is_coarse() const;
+
+  /// Turning of a tendon between its base and the end of an element. `turned`: turning angle, rad.
+  /// `direction`: its direction in the frame of the element's end. Both are zero at the base.
   struct Run {
     double turned = 0;
     Eigen::Vector3d direction = Eigen::Vector3d::Zero();
@@ -117,6 +123,9 @@ class RodElement {
   Eigen::MatrixXd length_slopes, pull_slopes;
   /// Strain energy, J.
   double strain_energy = 0;
+  /// Shortest straight piece of a taut tendon between two disks, as a part of the undeformed length of the
+  /// rod between them; 1 without any.
+  double least_chord = 1;
 
  private:
   // Passage of a tendon at a node.
@@ -137,10 +146,9 @@ class RodElement {
                  std::size_t column, double factor);
   [[nodiscard]] MagnusStep::Moments moments_of(std::size_t interval) const;
 
+  RodPart part_;
   RodGrid grid_;
   double length_;
-  std::size_t index_;
-  std::vector<PointMass> masses_;
   // Tendons through this section: their indices in the rod's list, and their passages at the nodes.
   std::vector<std::size_t> tendons_;
   std::vector<std::vector<Passage>> passages_;

@@ -1,5 +1,9 @@
 #include "flexura/mechanics/rod_layout.h"
 
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
 #include "flexura/math/lanes.h"
 
 namespace flexura {
@@ -40,12 +44,14 @@ RodLayout::Body body_of(const RodSection& section, const RodGrid& grid, std::siz
 
 }  // namespace
 
-RodLayout::RodLayout(const Rod& rod, const std::vector<RodGrid>& grids, bool rotary_inertia)
-    : tendons(rod.tendons.size()) {
-  double s_base = 0;
-  for (std::size_t index = 0; index < rod.sections.size(); ++index) {
-    const RodSection& from = rod.sections[index];
-    Section& section = sections.emplace_back(Section{.grid = grids[index], .length = from.length});
+RodLayout::RodLayout(const RodChain& chain, bool rotary_inertia) : tendons(chain.tendons()) {
+  const Rod& rod = chain.rod();
+  for (const RodElement& element : chain.elements()) {
+    const RodPart& part = element.part();
+    const RodSection& from = part.rod;
+    if (part.is_last) ends.push_back(sections.size());
+    Section& section =
+        sections.emplace_back(Section{.part = part, .grid = element.grid(), .length = from.length});
     const RodGrid& grid = section.grid;
     section.first_mode = modes;
     section.first_interval = intervals;
@@ -75,10 +81,10 @@ RodLayout::RodLayout(const Rod& rod, const std::vector<RodGrid>& grids, bool rot
       }
     }
     for (std::size_t i = 0; i < rod.tendons.size(); ++i) {
-      if (rod.tendons[i].section < index) continue;
+      if (rod.tendons[i].section < part.section) continue;
       section.tendons.push_back(i);
       for (const double t : grid.t) {
-        const TendonRoute::Offset offset = rod.tendons[i].at(s_base + t * from.length);
+        const TendonRoute::Offset offset = rod.tendons[i].at(part.s_base + t * from.length);
         section.passages.push_back({triple(offset.value), triple(offset.slope), triple(offset.second)});
       }
     }
@@ -91,7 +97,6 @@ RodLayout::RodLayout(const Rod& rod, const std::vector<RodGrid>& grids, bool rot
     modes += section.modes;
     intervals += section.intervals;
     nodes += grid.t.size();
-    s_base += from.length;
   }
   padded = (intervals + widest - 1) / widest * widest;
   rest.assign(18 * padded, 0.0);
@@ -105,12 +110,28 @@ RodLayout::RodLayout(const Rod& rod, const std::vector<RodGrid>& grids, bool rot
   find_rubbing(rod);
 }
 
+std::size_t RodLayout::element_of(const RodPlace& place) const {
+  const auto found =
+      std::ranges::find_if(sections, [&](const Section& section) { return section.part.holds(place); });
+  if (found == sections.end()) throw std::invalid_argument("a place outside the rod");
+  return static_cast<std::size_t>(found - sections.begin());
+}
+
+std::size_t RodLayout::node_of(const RodPlace& place) const {
+  constexpr double same_place = 1e-9;
+  const Section& section = sections[element_of(place)];
+  const std::size_t at = section.grid.node_at(section.part.within(place.at));
+  if (!(std::abs(section.part.of_section(section.grid.t[at]) - place.at) <= same_place))
+    throw std::invalid_argument("a place that was not asked for");
+  return section.first_node + at;
+}
+
 void RodLayout::find_rubbing(const Rod& rod) {
   for (std::size_t i = 0; i < rod.tendons.size(); ++i) {
     if (!(rod.tendons[i].friction > 0)) continue;
     Rubbing& one = rubbing.emplace_back(
         Rubbing{.tendon = i, .friction = rod.tendons[i].friction, .first = pieces, .pieces = {}});
-    for (std::size_t s = 0; s <= rod.tendons[i].section; ++s) {
+    for (std::size_t s = 0; s <= ends[rod.tendons[i].section]; ++s) {
       const Section& section = sections[s];
       if (section.disks.empty()) {
         for (std::size_t k = 0; k <= section.intervals; ++k)
@@ -131,9 +152,10 @@ void RodLayout::stretch_rest(std::span<const double> factors, std::span<const do
   is_driven = false;
   for (std::size_t s = 0; s < sections.size(); ++s) {
     Section& section = sections[s];
-    section.grid.stretch_rest(factors[s]);
-    stretches[s] = factor_rates[s];
-    is_driven = is_driven || factor_rates[s] != 0;
+    const std::size_t of = section.part.section;
+    section.grid.stretch_rest(factors[of]);
+    stretches[s] = factor_rates[of];
+    is_driven = is_driven || factor_rates[of] != 0;
     for (std::size_t i = 0; i < section.intervals; ++i)
       rest[stretch * padded + section.first_interval + i] = section.grid.rest_moments[i][0][stretch];
   }

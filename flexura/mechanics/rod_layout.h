@@ -8,7 +8,10 @@
 
 #include "flexura/math/screw.h"
 #include "flexura/mechanics/rod.h"
+#include "flexura/mechanics/rod_chain.h"
 #include "flexura/mechanics/rod_grid.h"
+#include "flexura/mechanics/rod_parts.h"
+#include "flexura/mechanics/rod_surroundings.h"
 
 namespace flexura {
 
@@ -27,7 +30,9 @@ struct RodLayout {
   struct Passage {
     Triple<double> offset{}, slope{}, second{};
   };
+  /// An element of the rod (RodChain).
   struct Section {
+    RodPart part;
     RodGrid grid;
     double length = 0;
     std::size_t first_mode = 0, first_interval = 0, first_node = 0, first_moment = 0;
@@ -56,13 +61,19 @@ struct RodLayout {
     std::vector<Piece> pieces = {};  ///< From the base on.
   };
 
-  RodLayout(const Rod& rod, const std::vector<RodGrid>& grids, bool rotary_inertia);
+  RodLayout(const RodChain& chain, bool rotary_inertia);
 
-  /// Multiplies each section's undeformed length by a factor that changes at a rate, 1/s
-  /// (RodChain::stretch_rest). Both lists have one number per section.
+  /// Returns the index of the element that holds a place, and of the node there among all nodes. Throws
+  /// std::invalid_argument for a place outside the rod; for the node also if no node is there.
+  [[nodiscard]] std::size_t element_of(const RodPlace& place) const;
+  [[nodiscard]] std::size_t node_of(const RodPlace& place) const;
+
+  /// Multiplies the undeformed length of each section of the rod by a factor that changes at a rate, 1/s
+  /// (RodChain::stretch_rest). Both lists have one number per section of the rod.
   void stretch_rest(std::span<const double> factors, std::span<const double> factor_rates);
 
   std::vector<Section> sections;
+  std::vector<std::size_t> ends;  ///< For each section of the rod: its last element.
   std::size_t modes = 0, intervals = 0, nodes = 0, tendons = 0;
   std::size_t padded = 0;  ///< Number of intervals, rounded up to a multiple of an instruction's lanes.
   std::vector<Body> bodies;
@@ -74,7 +85,7 @@ struct RodLayout {
   std::array<std::vector<double>, 3> moments;
   std::vector<Rubbing> rubbing;   ///< Tendons without friction are omitted.
   std::size_t pieces = 0;         ///< Number of pieces of all these tendons.
-  std::vector<double> stretches;  ///< Relative rate of change of each section's undeformed length, 1/s.
+  std::vector<double> stretches;  ///< Relative rate of change of each element's undeformed length, 1/s.
   bool is_driven = false;         ///< Any of these rates is not 0.
 
  private:

@@ -161,7 +161,7 @@ void RodMotion<S>::pull(const RodLoads& loads, const S* tensions, const RodSurro
     if (is_spread) W_[k] += wrench_at(X_[k].position, layout_.run[k] * per_length);
   }
   for (const EndLoad& end : loads.ends) {
-    const RodLayout::Section& section = layout_.sections[end.section];
+    const RodLayout::Section& section = layout_.sections[layout_.ends[end.section]];
     const std::size_t node = section.first_node + section.intervals;
     const Placement<S>& X = X_[node];
     Triple<S> force = constant<S>(end.force), moment = constant<S>(end.moment);

@@ -17,29 +17,30 @@ constexpr double at_the_node = 1e-9;
 
 }  // namespace
 
-RodPoints::RodPoints(const Rod& rod, const RodLayout& layout, std::span<const RodPlace> places) {
+RodPoints::RodPoints(const RodLayout& layout, std::span<const RodPlace> places) {
   const std::array<double, 3> gauss = magnus_points();
   for (const RodPlace& place : places) {
-    if (place.section >= layout.sections.size() || !(place.at >= 0) || !(place.at <= 1))
+    if (place.section >= layout.ends.size() || !(place.at >= 0) || !(place.at <= 1))
       throw std::invalid_argument(
           fmt::format("a point at {} of section {}, outside the rod", place.at, place.section + 1));
-    const RodLayout::Section& section = layout.sections[place.section];
-    const RodSection& from = rod.sections[place.section];
+    const std::size_t element = layout.element_of(place);
+    const RodLayout::Section& section = layout.sections[element];
+    const RodSection& from = section.part.rod;
+    const double at = section.part.within(place.at);
     const RodGrid& grid = section.grid;
     Point& point = points.emplace_back();
-    point.section = place.section;
-    const std::size_t node = grid.node_at(place.at);
-    if (std::abs(grid.t[node] - place.at) <= at_the_node) {
+    point.section = element;
+    const std::size_t node = grid.node_at(at);
+    if (std::abs(grid.t[node] - at) <= at_the_node) {
       point.is_node = true;
       point.interval = std::min(node, section.intervals - 1);
       point.node = section.first_node + node;
       point.part = node < section.intervals ? 0 : 1;
       continue;
     }
-    point.interval =
-        static_cast<std::size_t>(std::ranges::upper_bound(grid.t, place.at) - grid.t.begin()) - 1;
+    point.interval = static_cast<std::size_t>(std::ranges::upper_bound(grid.t, at) - grid.t.begin()) - 1;
     point.node = section.first_node + point.interval;
-    const double begin = grid.t[point.interval], run = place.at - begin;
+    const double begin = grid.t[point.interval], run = at - begin;
     point.part = run / (grid.t[point.interval + 1] - begin);
     point.first_moment = moments.size();
     const auto modes_at = [&](double part) {

@@ -15,8 +15,8 @@ namespace flexura {
 /// interpolation. They belong to a RodLayout and are evaluated only where a wrench may act.
 struct RodPoints {
   struct Point {
-    std::size_t section = 0;
-    std::size_t interval = 0;  ///< Index in its section.
+    std::size_t section = 0;   ///< Index of its element.
+    std::size_t interval = 0;  ///< Index in its element.
     /// Index among all nodes: that of the interval's beginning, or of the point itself if it is a node.
     std::size_t node = 0;
     double part = 0;  ///< Part of the interval, by undeformed arc length.
@@ -25,11 +25,11 @@ struct RodPoints {
   };
 
   /// Throws std::invalid_argument for a place outside the rod.
-  RodPoints(const Rod& rod, const RodLayout& layout, std::span<const RodPlace> places);
+  RodPoints(const RodLayout& layout, std::span<const RodPlace> places);
 
   std::vector<Point> points;
   /// Moments for each point that is not a node, from its interval's beginning on. First come the three
-  /// moments of each of its section's modes, then those of the six undeformed strains, without driven
+  /// moments of each of its element's modes, then those of the six undeformed strains, without driven
   /// stretch.
   std::vector<double> moments;
 };

@@ -83,10 +83,9 @@ RodResponse::RodResponse(const Arm& driven, const Rod& rod, RodLoads loads, std:
   std::size_t first = 0;
   for_places(driven_, [&](std::size_t i, std::size_t arc, std::size_t k) {
     const std::size_t count = samples_an_arc(driven_.sections[i]);
-    const RodGrid& grid = fine_.elements()[i].grid();
     if (arc == 0 && k == 0 && i > 0) first += arcs_of(driven_.sections[i - 1]);
     places_.push_back({i,
-                       grid.node_at(place_of(driven_.sections[i], arc, k)),
+                       fine_.node_of({i, place_of(driven_.sections[i], arc, k)}),
                        {first + arc, static_cast<double>(k + 1) / static_cast<double>(count)}});
     if (k + 1 == count) ends_.push_back(places_.size() - 1);
   });
@@ -141,12 +140,12 @@ ArmState RodResponse::along_tangents(const ArmState& command) const {
   Eigen::Matrix3d R = Eigen::Matrix3d::Identity();
   for (std::size_t k = 0; k < ends_.size(); ++k) {
     const Place& end = places_[ends_[k]];
-    const Eigen::Vector3d z = R.transpose() * fine_.elements()[end.element].poses()[end.node].rotation.col(2);
+    const Eigen::Vector3d z = R.transpose() * fine_.pose(end.node).rotation.col(2);
     const double across = z.head<2>().norm();
     shape.bends[k] = across > 0 ? Eigen::Vector2d(z.head<2>() * (std::atan2(across, z.z()) / across))
                                 : Eigen::Vector2d::Zero();
     if (driven_.kind == ArmKind::planar) shape.bends[k].y() = 0;
-    shape.stretches[k] = command.stretches[end.element];
+    shape.stretches[k] = command.stretches[end.section];
     R = R * arc_pose(shape.bends[k], 1).rotation;
   }
   return shape;
@@ -168,7 +167,7 @@ ArmState RodResponse::fitted(const Equilibrium& at, const ArmState& command) con
     for (std::size_t p = 0; p < places_.size(); ++p) {
       const Place& place = places_[p];
       missed.col(0).segment<3>(3 * static_cast<Eigen::Index>(p)) =
-          fine_.elements()[place.element].poses()[place.node].position - fit_->position(p);
+          fine_.pose(place.node).position - fit_->position(p);
     }
     const Eigen::VectorXd change = fit_->solve(missed, &reached);
     for (std::size_t k = 0; k < ends_.size(); ++k) {
@@ -224,8 +223,8 @@ Eigen::MatrixXd RodResponse::arcs_along(const Eigen::MatrixXd& dq) const {
   RodElement::Columns twists(6, fine_.size());
   for (std::size_t p = 0; p < places_.size(); ++p) {
     const Place& place = places_[p];
-    fine_.columns_at(place.element, place.node, twists);
-    const Eigen::Vector3d at = fine_.elements()[place.element].poses()[place.node].position;
+    fine_.columns_at(place.node.element, place.node.node, twists);
+    const Eigen::Vector3d at = fine_.pose(place.node).position;
     const Eigen::MatrixXd moved = twists * dq;
     for (Eigen::Index c = 0; c < moved.cols(); ++c)
       places.block<3, 1>(3 * static_cast<Eigen::Index>(p), c) =

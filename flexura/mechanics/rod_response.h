@@ -78,7 +78,8 @@ class RodResponse : public ArmResponse {
   ArmVariables variables_;     // of shapes
   // Places of the rod to which arcs are fitted, in its chain and in the chain of arcs.
   struct Place {
-    std::size_t element = 0, node = 0;
+    std::size_t section = 0;
+    RodNode node;
     MaterialPoint on_arcs;
   };
   std::vector<Place> places_;

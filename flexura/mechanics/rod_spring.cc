@@ -42,8 +42,9 @@ SpringPull spring_pull(const PointSpring& spring, const Eigen::Vector3d& point) 
 }
 
 RodSpring::RodSpring(const RodChain& chain, const RodPlace& place) {
-  for (std::size_t i = 0; i < place.section; ++i) node_ += chain.elements().at(i).grid().t.size();
-  node_ += chain.elements().at(place.section).grid().node_at(place.at);
+  const RodNode at = chain.node_of(place);
+  for (std::size_t i = 0; i < at.element; ++i) node_ += chain.elements()[i].grid().t.size();
+  node_ += at.node;
 }
 
 void RodSpring::set(const std::optional<PointSpring>& spring) {

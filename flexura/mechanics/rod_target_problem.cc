@@ -26,11 +26,11 @@ TurnFactor turn_factor(double angle) {
 
 }  // namespace
 
-std::optional<std::size_t> node_of(const RodChain& chain, const RodPlace& place) {
-  if (place.section >= chain.elements().size() || !std::isfinite(place.at)) return {};
-  const RodGrid& grid = chain.elements()[place.section].grid();
-  const std::size_t node = grid.node_at(place.at);
-  if (!(std::abs(grid.t[node] - place.at) < 1e-9)) return {};
+std::optional<RodNode> node_of(const RodChain& chain, const RodPlace& place) {
+  if (place.section >= chain.rod().sections.size() || !(place.at >= 0 && place.at <= 1)) return {};
+  const RodNode node = chain.node_of(place);
+  const RodElement& element = chain.elements()[node.element];
+  if (!(std::abs(element.part().of_section(element.grid().t[node.node]) - place.at) < 1e-9)) return {};
   return node;
 }
 
@@ -47,8 +47,10 @@ RodTargetProblem::RodTargetProblem(RodStatics& statics, const RodTarget& target,
   const std::vector<RodElement>& elements = statics.chain().elements();
   if (target.position)
     nodes_.push_back({elements.size() - 1, elements.back().grid().t.size() - 1, *target.position});
-  for (const RodTarget::Place& place : target.places)
-    nodes_.push_back({place.place.section, node_of(statics.chain(), place.place).value(), place.position});
+  for (const RodTarget::Place& place : target.places) {
+    const RodNode at = node_of(statics.chain(), place.place).value();
+    nodes_.push_back({at.element, at.node, place.position});
+  }
   if (target.rotation) angles_ = 3;
   if (target.direction) angles_ = 2;
   rows_ = 3 * static_cast<Eigen::Index>(nodes_.size()) + angles_;

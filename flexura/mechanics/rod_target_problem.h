@@ -56,6 +56,6 @@ class RodTargetProblem final : public BoundedProblem {
 };
 
 /// Returns the node of a rod at a place; std::nullopt if there is none.
-[[nodiscard]] std::optional<std::size_t> node_of(const RodChain& chain, const RodPlace& place);
+[[nodiscard]] std::optional<RodNode> node_of(const RodChain& chain, const RodPlace& place);
 
 }  // namespace flexura

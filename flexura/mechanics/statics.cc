@@ -40,6 +40,8 @@ const char* words(StaticsEnd end) {
       return "bad input";
     case StaticsEnd::no_equilibrium:
       return "no equilibrium found on the way from no load";
+    case StaticsEnd::disks_meet:
+      return "no equilibrium: the tendons pull two guide disks together";
     case StaticsEnd::out_of_steps:
       break;
   }
@@ -236,6 +238,7 @@ void RodStatics::finish(Equilibrium& result, const Unknowns& at, const Descent& 
   }
   result.strain_energy = chain_.strain_energy();
   result.tip = chain_.tip();
+  if (is_solved_) result.coarse_section = chain_.coarse_section();
   result.iterations = iterations_;
 }
 
@@ -275,6 +278,7 @@ Equilibrium RodStatics::solve_from(const Unknowns& start, bool is_cold) {
       falling = last_stable;
       found = fall(falling, descent);
     }
+    if (!found && chain_.disks_meet()) result.end = StaticsEnd::disks_meet;
     if (found) {
       at = falling;
       // Strong friction alone stops Newton's method, on a path that neither turns nor branches.

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -26,6 +27,9 @@ enum class StaticsEnd {
   bad_input,  ///< A number that is not finite, a tension below 0, a list of wrong length.
   /// The load path diverged before full load, or the rod would have to be compressed to a negative length.
   no_equilibrium,
+  /// The tendons pull two guide disks together: the rod buckles between them and nothing holds it but the
+  /// contact of the disks, which is not modelled.
+  disks_meet,
   out_of_steps,  ///< Within the limit on steps, neither an equilibrium nor an end of the path was found.
 };
 /// Returns a description for users.
@@ -43,6 +47,9 @@ struct Equilibrium {
   /// Whether other equilibria were detected: the path branched or turned, or the rod descended to another
   /// equilibrium.
   bool ambiguous = false;
+  /// Section whose strain modes are too few for the bend between its guide disks, as far as the modes show:
+  /// its tip may be wrong by more than 1e-3 of the rod's length.
+  std::optional<std::size_t> coarse_section = {};
   int iterations = 0;                  ///< Number of linear systems solved.
   Eigen::VectorXd q;                   ///< The strain modes (RodChain).
   std::vector<double> tensions;        ///< N, at the base; 0 for slack tendons.

@@ -2,6 +2,7 @@
 
 #include <Eigen/Dense>
 #include <cmath>
+#include <cstdio>
 
 #include "flexura/mechanics/statics.h"
 #include "tests/support/known_rods.h"

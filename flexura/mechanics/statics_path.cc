@@ -31,7 +31,7 @@ bool RodStatics::follow(Equilibrium& result, Unknowns& at, Unknowns& last_stable
   bool is_stable = true;  // So far.
   result.end = StaticsEnd::out_of_steps;
   for (int step = 0; step < max_strides; ++step) {
-    if (iterations_ > max_iterations || !linearize(at, share)) return false;
+    if (iterations_ > max_iterations || !linearize(at, share) || chain_.disks_meet()) return false;
     const double norm = std::sqrt(1 + dot(tangent_.q, tangent_.q));
     const double sense = dot(tangent_.q, direction.q) + rise < 0 ? -1 : 1;
     direction.q = sense / norm * tangent_.q;

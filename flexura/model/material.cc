@@ -99,9 +99,12 @@ const Table<StiffnessConfig>& fields_of(const StiffnessConfig*) {
 
 const Table<ModesConfig>& fields_of(const ModesConfig*) {
   static const auto table =
-      Table<ModesConfig>("modes",
-                         "Number of polynomials in arc length for each strain of a section. 1: constant "
-                         "strain; 0: strain fixed at its rest value.")
+      Table<ModesConfig>(
+          "modes",
+          "Number of polynomials in arc length for each strain of a section. 1: constant "
+          "strain; 0: strain fixed at its rest value. In a section with up to 11 pieces between "
+          "disks and at least 3 for the bend, each piece has its own polynomials, fewer the "
+          "more pieces there are.")
           .field("shear", &ModesConfig::shear, modes("each of the two shear strains"))
           .field("stretch", &ModesConfig::stretch, modes("the axial strain"))
           .field("bend", &ModesConfig::bend, modes("each of the two curvatures"))

@@ -30,9 +30,9 @@ std::vector<RodPlace> tube_places(const Rod& rod) {
 }
 
 RodTube::RodTube(const Arm& arm, const Rod& rod) : arm_(arm), chain_(rod, sampled_places(rod)) {
-  for (const RodElement& element : chain_.elements()) {
-    std::vector<std::size_t>& nodes = nodes_.emplace_back();
-    for (std::size_t k = 0; k <= samples_a_section; ++k) nodes.push_back(element.grid().node_at(part_of(k)));
+  for (std::size_t i = 0; i < rod.sections.size(); ++i) {
+    std::vector<RodNode>& nodes = nodes_.emplace_back();
+    for (std::size_t k = 0; k <= samples_a_section; ++k) nodes.push_back(chain_.node_of({i, part_of(k)}));
   }
 }
 
@@ -43,20 +43,19 @@ Backbone RodTube::backbone(const Eigen::VectorXd& q, const std::vector<double>& 
     chain_.stretch_rest(rest_stretches);
     chain_.place(q);
     double s_rest = 0;
-    for (std::size_t i = 0; i < chain_.elements().size(); ++i) {
-      const RodElement& element = chain_.elements()[i];
+    const std::vector<RodSection>& sections = chain_.rod().sections;
+    for (std::size_t i = 0; i < sections.size(); ++i) {
       const auto& radius = arm_.sections[i].radius;
-      const std::vector<double>& t = element.grid().t;
       // A section's end is the next one's base.
-      const std::size_t count = samples_a_section + (i + 1 == chain_.elements().size() ? 1 : 0);
+      const std::size_t count = samples_a_section + (i + 1 == sections.size() ? 1 : 0);
       for (std::size_t k = 0; k < count; ++k) {
-        const std::size_t node = nodes_[i][k];
-        samples.push_back({.X_WS = arm_.X_WB * element.poses()[node],
-                           .s_rest = s_rest + t[node] * element.length(),
-                           .radius = radius[0] + t[node] * (radius[1] - radius[0]),
+        const double t = part_of(k);
+        samples.push_back({.X_WS = arm_.X_WB * chain_.pose(nodes_[i][k]),
+                           .s_rest = s_rest + t * sections[i].length,
+                           .radius = radius[0] + t * (radius[1] - radius[0]),
                            .section = i});
       }
-      s_rest += element.length();
+      s_rest += sections[i].length;
     }
   }
   return Backbone::through(samples);

@@ -24,7 +24,7 @@ class RodTube {
   Arm arm_;
   mutable std::mutex mutex_;
   mutable RodChain chain_;
-  std::vector<std::vector<std::size_t>> nodes_;  // For each section.
+  std::vector<std::vector<RodNode>> nodes_;  // For each section.
 };
 
 /// Returns the places on the rod of the poses of a RodTube's backbone, from base to tip. They divide each

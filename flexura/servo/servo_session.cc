@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <exception>
 #include <memory>
@@ -16,6 +17,7 @@
 #include "flexura/port/camera_moves.h"
 #include "flexura/servo/disturbance_watch.h"
 #include "flexura/servo/picture_meter.h"
+#include "flexura/servo/predictive_limits.h"
 #include "flexura/servo/rig_reader.h"
 #include "flexura/servo/servo_features.h"
 #include "flexura/servo/servo_goals.h"
@@ -53,9 +55,11 @@ class Session {
         keeper_(nominal, config.cameras) {
     if (config.disturbance || !nominal_arm_.actuation().is_linear())
       watch_.emplace(nominal_arm_, DisturbanceConfig{.limit = config.disturbance.value_or(0.05)});
-    if (config.law == ServoLawKind::predictive)
+    if (config.law == ServoLawKind::predictive) {
+      limits_.emplace(nominal_arm_, config);
       predictive_.emplace(nominal_arm_.driven(), model_.arm,
                           PredictiveLawConfig{.step = config.step, .rate = 1.5 * config.rate});
+    }
   }
 
   ServoResult run() {
@@ -277,6 +281,8 @@ class Session {
     if (since < goals_->last())
       for (int k = 1; k <= PredictiveLawConfig().horizon; ++k)
         state.desired_later.push_back(goals_->at(since + k * config_.step).state);
+    const std::array<View, 2> views = {observer_.last()->seen[0].view, observer_.last()->seen[1].view};
+    state.limits = limits_->find(sent_, state.rest, views);
     state.modes = observer_.swing().modes();
     state.swing = observer_.swing().after(observer_.path_until(now, state.modes));
     state.frequency_factors = observer_.swing().frequency_factors();
@@ -391,6 +397,7 @@ class Session {
   std::unique_ptr<ServoFeatures> features_;
   ServoLaw law_;
   std::optional<PredictiveLaw> predictive_;  // Instead of law_.
+  std::optional<PredictiveLimits> limits_;   // Of predictive_.
   std::optional<DisturbanceWatch> watch_;
   ViewKeeper keeper_;
   std::optional<ServoGoals> goals_;

@@ -32,10 +32,9 @@ PredictiveLimits::PredictiveLimits(ArmModel model, const ServoConfig& config)
 }
 
 std::vector<PredictiveLimit> PredictiveLimits::find(const ArmState& sent, const ArmState& rest,
+                                                    const Eigen::MatrixXd& by_command,
                                                     const std::array<View, 2>& views) const {
   std::vector<PredictiveLimit> limits;
-  Eigen::MatrixXd by_command;
-  model_.actuation().slopes(sent, by_command);
   if (!by_command.allFinite()) return limits;
   add_tensions(sent, limits);
   add_clearances(rest, by_command, limits);

@@ -19,9 +19,10 @@ class PredictiveLimits {
  public:
   PredictiveLimits(ArmModel model, const ServoConfig& config);
 
-  /// Returns the limits. `sent`: last command. `rest`: shape that the arm has at rest under it. `views`: of
-  /// the two cameras.
+  /// Returns the limits. `sent`: last command. `rest`: shape that the arm has at rest under it. `by_command`:
+  /// derivative of this shape with respect to the command. `views`: of the two cameras.
   [[nodiscard]] std::vector<PredictiveLimit> find(const ArmState& sent, const ArmState& rest,
+                                                  const Eigen::MatrixXd& by_command,
                                                   const std::array<View, 2>& views) const;
 
  private:

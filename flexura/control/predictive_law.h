@@ -59,6 +59,15 @@ class PredictiveLaw {
   /// command, 3 arcs x 3 sections (Actuation::slopes).
   [[nodiscard]] ArmState step(const PredictiveState& now, const Eigen::MatrixXd& by_command);
 
+  /// The quadratic program of the last step: the changes x of the rates minimise x . H x / 2 + gradient . x.
+  /// For comparison with other solvers. References are valid until the next step.
+  struct Problem {
+    const Eigen::MatrixXd& H;
+    const Eigen::VectorXd& gradient;
+    const Eigen::VectorXd& found;  ///< The changes found.
+  };
+  [[nodiscard]] Problem problem() const { return {H_, gradient_, changes_}; }
+
  private:
   struct Disc {
     Eigen::Index at = 0;  // First of its numbers in a step's variables.

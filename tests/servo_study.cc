@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
@@ -14,7 +13,6 @@
 #include <numbers>
 #include <optional>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "flexura/base/degree.h"
@@ -26,6 +24,7 @@
 #include "tests/support/loop_files.h"
 #include "tests/support/servo_bench.h"
 #include "tests/support/servo_worlds.h"
+#include "tests/support/study_pool.h"
 #include "tests/support/study_rows.h"
 
 namespace flexura {
@@ -264,28 +263,21 @@ void study(Cameras cameras, const ServoWorld& world, std::vector<Method> methods
   if (!way.empty()) std::erase_if(methods, [&](const Method& method) { return method.name != way; });
   const std::size_t rigs = (targets + targets_a_rig - 1) / targets_a_rig;
   std::vector<std::vector<Arrival>> arrivals(methods.size(), std::vector<Arrival>(targets));
-  std::atomic<std::size_t> next = 0;
-  const auto work = [&] {
-    for (std::size_t i = next++; i < rigs; i = next++) {
-      StudyRig rig(cameras, world, seed + i);
-      for (std::size_t k = i * targets_a_rig; k < std::min(targets, (i + 1) * targets_a_rig); ++k) {
-        TestRandom random(1000 * seed + k);
-        const ArmState target = random_target(random);
-        for (std::size_t j = 0; j < methods.size(); ++j) {
-          Arrival& arrival = arrivals[j][k];
-          arrival =
-              rig.why_not().empty() ? rig.go(methods[j], target, random) : Arrival{.reason = rig.why_not()};
-          if (!arrival.is_done)
-            std::fprintf(stderr, "target %zu, %s: %s\n", k, methods[j].name.c_str(), arrival.reason.c_str());
-        }
+  for_each_parallel(rigs, threads, [&](std::size_t i) {
+    StudyRig rig(cameras, world, seed + i);
+    for (std::size_t k = i * targets_a_rig; k < std::min(targets, (i + 1) * targets_a_rig); ++k) {
+      TestRandom random(1000 * seed + k);
+      const ArmState target = random_target(random);
+      for (std::size_t j = 0; j < methods.size(); ++j) {
+        Arrival& arrival = arrivals[j][k];
+        arrival =
+            rig.why_not().empty() ? rig.go(methods[j], target, random) : Arrival{.reason = rig.why_not()};
+        if (!arrival.is_done)
+          std::fprintf(stderr, "target %zu, %s: %s\n", k, methods[j].name.c_str(), arrival.reason.c_str());
       }
-      std::fprintf(stderr, "rig %zu of %zu\n", i + 1, rigs);
     }
-  };
-  std::vector<std::thread> pool;
-  pool.reserve(threads);
-  for (unsigned i = 0; i < threads; ++i) pool.emplace_back(work);
-  for (std::thread& one : pool) one.join();
+    std::fprintf(stderr, "rig %zu of %zu\n", i + 1, rigs);
+  });
   fmt::print(
       "| law | converged | to 2 %, s (median / 95 %) | overshoot, % (95 %) | left, rms, % (median / 95 %) | "
       "left, most, % (largest) | tip, % (95 %) | nearest to a limit | floor, nominal cameras | floor, "

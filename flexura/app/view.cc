@@ -27,12 +27,14 @@
 #include "flexura/log/results.h"
 #include "flexura/serve/gate.h"
 #include "flexura/store/gzip.h"
+#include "flexura/store/text_file.h"
 #include "flexura/view/recording.h"
 
 namespace flexura {
 namespace {
 
 constexpr std::uint16_t usual_port = 8421;
+constexpr std::size_t largest_edited = std::size_t{1} << 26;
 
 // Returns a name that differs for each start of the program. It is not secret, and no result depends on it.
 std::string session_name() {
@@ -48,7 +50,7 @@ std::vector<ViewExample> offered_examples() {
     const Experiment experiment = parse_experiment(one.text, name);
     offered.push_back({name, experiment.title.empty() ? name : experiment.title,
                        [experiment] { return std::make_shared<const ViewedRig>(experiment); },
-                       std::filesystem::path("results") / name});
+                       std::filesystem::path("results") / name, std::string(one.text)});
   }
   return offered;
 }
@@ -66,9 +68,14 @@ ViewStart start_of(const std::string& what) {
         parse_experiment(embedded::examples.front().text, "the paper's arm"));
     start.results = std::filesystem::path("results") / "paper_arm";
     start.examples = offered_examples();
+    start.text = embedded::examples.front().text;
+    start.stem = "paper_arm";
   } else {
     start.rig = std::make_shared<const ViewedRig>(load_experiment(what));
     start.results = default_results_folder(what);
+    start.text = read_text_file(what, largest_edited);
+    start.folder = std::filesystem::path(what).parent_path();
+    start.stem = std::filesystem::path(what).stem().string();
   }
   return start;
 }

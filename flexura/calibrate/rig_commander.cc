@@ -42,6 +42,7 @@ std::variant<RigStance, std::string> RigCommander::stance(std::size_t camera) co
 RigCommander::Error RigCommander::bend(const ArmState& state, double duration) {
   if (const auto fault = ports_.arm->command(state, duration).fault()) return text(*fault);
   sent_arm_ = state;
+  has_bent_ = true;
   return std::nullopt;
 }
 
@@ -83,6 +84,8 @@ RigCommander::Error RigCommander::settle() {
       return fmt::format("a device is still moving {:.4g} s after the last command", patience_.settle);
     ports_.clock->wait_until(now() + patience_.poll);
   }
+  if (std::exchange(has_bent_, false) && patience_.pause > 0)
+    ports_.clock->wait_until(now() + patience_.pause);
   if (auto error = arm_elsewhere()) return error;
   for (std::size_t i = 0; i < sent_.size(); ++i)
     if (auto error = camera_elsewhere(i)) return error;

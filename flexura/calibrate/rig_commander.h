@@ -16,6 +16,7 @@ namespace flexura {
 struct RigPatience {
   double settle = 20;  ///< Time limit for motions to end, s.
   double frame = 3;    ///< Time limit for a frame, s.
+  double pause = 0;    ///< Time to wait after each motion of the arm, until it stops swinging, s.
   double poll = 0.02;  ///< Interval between checks for motion, s.
   /// Largest deviation between measured and commanded bend of a section, rad.
   double bend = 0.02;
@@ -40,8 +41,8 @@ class RigCommander {
   /// Send commands without waiting for their execution.
   [[nodiscard]] Error bend(const ArmState& state, double duration);
   [[nodiscard]] Error go(const RigStance& stance);
-  /// Waits until nothing moves. Returns an error if anything is not at its commanded position or does not
-  /// come to rest.
+  /// Waits until nothing moves, and RigPatience::pause longer if the arm moved. Returns an error if anything
+  /// is not at its commanded position or does not come to rest.
   [[nodiscard]] Error settle();
 
   /// Returns the next frame whose exposure begins at `time` (s) or later, or an error.
@@ -59,6 +60,7 @@ class RigCommander {
   std::vector<Camera> cameras_;  // Modelled cameras.
   RigPatience patience_;
   std::optional<ArmState> sent_arm_;
+  bool has_bent_ = false;                       // The arm was commanded since the last settle().
   std::vector<std::optional<RigStance>> sent_;  // Last commanded stance of each camera.
 };
 

@@ -33,8 +33,13 @@ CommandLimiter::CommandLimiter(ArmModel arm, LimiterConfig config, const ArmStat
     : model_(std::move(arm)),
       arm_(model_.driven()),
       config_(std::move(config)),
+      variables_(arm_),
       limits_(limit_watches(arm_)),
       sent_(start) {
+  if (config_.looks_ahead) {
+    contacts_.emplace_back(model_.shaped());
+    for (const Obstacle& obstacle : config_.obstacles) contacts_.emplace_back(model_.shaped(), obstacle);
+  }
   if (!(config_.step > 0) || !std::isfinite(config_.step))
     throw std::invalid_argument("a limiter's step must be finite and above 0");
   if (!(config_.list_step >= 0) || !std::isfinite(config_.list_step))
@@ -64,11 +69,24 @@ LimitedCommand CommandLimiter::next(const ArmState& asked) {
   Plan whole = plan(desired, config_.looks_ahead);
   if (whole.is_allowed) return send(std::move(whole), reason, reason.empty());
   if (reason.empty()) reason = whole.reason;
-  // From braking, which is allowed, as far towards the law's command as allowed.
+  // The nearest command within the limits. Those of contact are slow, and count only where there is one.
+  ArmState target = desired;
+  bool keeps_clear = whole.touches;
+  for (int i = 0; i < 2; ++i) {
+    const std::optional<ArmState> near = nearest(desired, keeps_clear);
+    if (!near) break;
+    target = *near;
+    Plan trial = plan(target, config_.looks_ahead);
+    if (trial.is_allowed) return send(std::move(trial), reason, false);
+    if (!trial.touches || keeps_clear) break;
+    reason = trial.reason;
+    keeps_clear = true;
+  }
+  // From braking, which is allowed, as far towards this command as allowed.
   const ArmState braked = path_to_rest_.empty() ? sent_ : path_to_rest_.front();
   double low = 0, high = 1;
   Plan best;
-  const ArmDifference way = minus(desired, braked);
+  const ArmDifference way = minus(target, braked);
   for (int i = 0; i < 40 && high - low > 1e-3 * high; ++i) {
     const double middle = 0.5 * (low + high);
     Plan trial = plan(plus(braked, way, middle), false);
@@ -169,7 +187,10 @@ CommandLimiter::Plan CommandLimiter::plan(const ArmState& next, bool looks_ahead
     plan.reason = breach(plan.way);
     if (plan.reason.empty() || fewest == 1) break;
   }
-  if (plan.reason.empty() && looks_ahead) plan.reason = contact(plan.way);
+  if (plan.reason.empty() && looks_ahead) {
+    plan.reason = contact(plan.way);
+    plan.touches = !plan.reason.empty();
+  }
   plan.is_allowed = plan.reason.empty();
   return plan;
 }

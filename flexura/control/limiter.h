@@ -6,9 +6,12 @@
 #include <utility>
 #include <vector>
 
+#include "flexura/kinematics/arm_variables.h"
+#include "flexura/math/nearest_point.h"
 #include "flexura/model/arm_model.h"
 #include "flexura/model/drive.h"
 #include "flexura/model/obstacle.h"
+#include "flexura/safety/contact_watch.h"
 #include "flexura/safety/limits.h"
 
 namespace flexura {
@@ -64,8 +67,9 @@ class CommandLimiter {
   CommandLimiter(const Arm& driven, LimiterConfig config, const ArmState& start)
       : CommandLimiter(ArmModel(driven), std::move(config), start) {}
 
-  /// Returns the command for the next step, as near to `asked` as possible. Its rates are on the straight
-  /// line from the rates of braking to those of the law.
+  /// Returns the command for the next step, as near to `asked` as possible: the nearest one, root of the
+  /// summed squares over bends (rad) and stretches, within limits that are linear about the present command.
+  /// If they are too inexact, the command is on the way from braking to this one.
   [[nodiscard]] LimitedCommand next(const ArmState& asked);
   /// Returns the law's command, shortened so that every motor can still brake to its target at half its
   /// largest acceleration. It is for laws that reduce the remaining error in each step by the share `rate`
@@ -98,7 +102,8 @@ class CommandLimiter {
   struct Plan {
     std::vector<ArmState> way;  // The next state, and the following ones to rest.
     bool is_allowed = false;
-    std::string reason;  // Why the plan is not allowed.
+    bool touches = false;  // Contact is the only reason why it is not allowed.
+    std::string reason;    // Why the plan is not allowed.
   };
   struct MotorStep {
     Eigen::VectorXd motors;        // At its end, microsteps.
@@ -111,6 +116,11 @@ class CommandLimiter {
   [[nodiscard]] std::string breach(const std::vector<ArmState>& way) const;
   [[nodiscard]] std::string breach_of_motors(const std::vector<ArmState>& way) const;
   [[nodiscard]] std::string contact(const std::vector<ArmState>& way) const;
+  // Returns the allowed command that is nearest to `desired`, by linear limits; with contacts if
+  // `keeps_clear`.
+  [[nodiscard]] std::optional<ArmState> nearest(const ArmState& desired, bool keeps_clear) const;
+  void add_motor_limits(ConvexLimits& limits) const;
+  void add_clearances(const ArmState& desired, ConvexLimits& limits) const;
   [[nodiscard]] Eigen::VectorXd motors_at(const ArmState& state) const;
   [[nodiscard]] int braking_steps(const ArmState& next) const;
   LimitedCommand send(Plan plan, std::string reason, bool is_untouched);
@@ -118,7 +128,9 @@ class CommandLimiter {
   ArmModel model_;
   Arm arm_;  // Arm as its drives see it.
   LimiterConfig config_;
+  ArmVariables variables_;
   std::vector<LimitWatch> limits_;
+  std::vector<ContactWatch> contacts_;  // Of the shape, if it looks ahead.
   ArmState sent_;
   std::vector<ArmState> path_to_rest_;
   double row_ = 0, turning_time_ = 0;  // In s.

@@ -151,6 +151,55 @@ TEST(Limiter, KeepsOffObstaclesAndOffTheArmItself) {
   EXPECT_GT(stopped, 0);
 }
 
+// With limits on bends and bend rates alone, each section's nearest command has a closed form where one limit
+// holds it. A section within its limits gets its command.
+TEST(Limiter, ChangesTheCommandAsLittleAsPossible) {
+  for_random_cases(200, [](TestRandom& random) {
+    Arm arm = limited_arm(random);
+    for (Section& section : arm.sections) section.max_bend = 10, section.stretch_limits = {1, 1};
+    const LimiterConfig config{.step = 0.05, .looks_ahead = false};
+    const ArmState straight = ArmState::straight(arm.sections.size());
+    CommandLimiter limiter(arm, config, straight);
+    ArmState requested = straight;
+    for (int i = 0; i < 5; ++i) {
+      const ArmState before = limiter.sent();
+      for (std::size_t k = 0; k < requested.bends.size(); ++k) {
+        requested.bends[k] = before.bends[k] + random.uniform(0, 0.2) * random.vector<2>(-1, 1);
+        if (arm.kind == ArmKind::planar) requested.bends[k].y() = 0;
+      }
+      const ArmState sent = limiter.next(requested).state;
+      for (std::size_t k = 0; k < requested.bends.size(); ++k) {
+        const Eigen::Vector2d way = requested.bends[k] - before.bends[k];
+        const double most = arm.sections[k].max_bend_rate * config.step;
+        const Eigen::Vector2d nearest = before.bends[k] + way * std::min(1.0, most / way.norm());
+        EXPECT_LE((sent.bends[k] - nearest).norm(), 1e-6 * most);
+      }
+    }
+  });
+}
+
+// Along an obstacle the arm slides: it goes on in the directions in which nothing is in its way.
+TEST(Limiter, SlidesAlongAnObstacle) {
+  Arm arm;
+  for (int i = 0; i < 2; ++i)
+    arm.sections.push_back(
+        {.length = 0.2, .radius = {0.01, 0.01}, .max_bend = 2, .max_bend_rate = 1, .stretch_limits = {1, 1}});
+  LimiterConfig config{.step = 0.05};
+  // The straight arm points along z. A wall beyond x = 0.06.
+  config.obstacles = obstacles({PlaneConfig{.point = {0.06, 0, 0}, .normal = {-1, 0, 0}}});
+  const ArmState straight = ArmState::straight(2);
+  CommandLimiter limiter(ArmModel(arm), config, straight);
+  const ArmState requested{{{0.9, 0.9}, {0.9, 0.9}}, {1, 1}};
+  const ContactWatch wall(arm, config.obstacles.front());
+  for (int i = 0; i < 100; ++i) {
+    (void)limiter.next(requested);
+    EXPECT_GE(wall.contact(limiter.sent()).clearance, -contact_tolerance);
+  }
+  EXPECT_LE(wall.contact(limiter.sent()).clearance, 0.005);
+  const Backbone reached(arm, limiter.sent());
+  EXPECT_GE(std::abs(reached.tip().position.y()), 0.15) << "it goes on along the wall";
+}
+
 TEST(Limiter, PassesWhatIsWithinTheLimitsBitForBit) {
   for_random_cases(20, [](TestRandom& random) {
     const Arm arm = limited_arm(random);

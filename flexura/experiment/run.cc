@@ -120,6 +120,15 @@ void add_chapters(const Experiment& experiment, const TaskRunners& tasks, std::v
   }
 }
 
+// Returns the targets of the tasks that were performed.
+std::vector<ReportSpace::Target> run_targets(const Player& player) {
+  std::vector<DoneTask> done;
+  const std::vector<Leg>& legs = player.schedule().legs();
+  for (std::size_t i = 0; i < std::min(player.tasks().size(), legs.size()); ++i)
+    done.push_back({*player.tasks()[i], legs[i].start, *legs[i].motion, legs[i].kind == "hold"});
+  return targets_of(done);
+}
+
 void write_report(const std::filesystem::path& folder, const ReportData& data) {
   write_new_file(folder / report_file_name, report_html(data));
   std::filesystem::create_directory(folder / figures_folder_name);
@@ -158,6 +167,7 @@ RunResult run_experiment(const Experiment& as_read, const std::filesystem::path&
   RunRecorder run_recorder(folder, arm, watcher);
   if (experiment.drive) run_recorder.name_axes(experiment.drive->drive());
   if (experiment.record.scene) run_recorder.draw_scene(experiment);
+  if (experiment.record.report) run_recorder.add_cameras(experiment);
   Player player(experiment, run_recorder, progress, watcher, make_rig);
   result.reasons = violation_lines(player.safety());
   const bool is_safe = player.safety().is_safe();
@@ -195,6 +205,7 @@ RunResult run_experiment(const Experiment& as_read, const std::filesystem::path&
       data.outcomes.push_back({outcome.task, outcome.text, outcome.is_reached});
     data.condition = name_of(result.outcome);
     if (!result.reasons.empty()) data.reason = result.reasons.front();
+    data.space.targets = run_targets(player);
     add_chapters(experiment, player.tasks(), data.chapters);
     write_report(folder, data);
     player.progress().report().update(1, "writing the report");

@@ -108,8 +108,7 @@ void RunRecorder::state(std::size_t step, double time, const ArmState& state) {
   if (!std::ranges::all_of(shape.bends, [](const Eigen::Vector2d& bend) { return bend.allFinite(); }))
     throw SimulationError(
         fmt::format("at {:.6g} s the model of the arm has no equilibrium under the commanded bends", time));
-  const Backbone backbone = model_.backbone_of_shape(shape);
-  commanded_tip_ = backbone.tip().position;
+  const Backbone& backbone = commanded_.emplace(model_.backbone_of_shape(shape));
   log_.recorder().state(time, state, backbone);
   if (drawn_color_ && (scene_times_.is_next(time) || step == last_step_)) {
     const SceneMessage arm = arm_message(*drawn_color_, time, backbone);
@@ -174,7 +173,7 @@ void RunRecorder::rod_readings(RigTruth& truth, double now, const Backbone& back
   warned_ = std::move(warning);
   if (readings_++ % kept_every_ == 0) {
     rod_.times.push_back(now);
-    rod_.off.push_back((backbone.tip().position - commanded_tip_).norm());
+    rod_.off.push_back(true_tip_off_.value());
     rod_.tensions.push_back(std::move(tensions));
     if (energy) {
       rod_.energies.push_back(*energy);
@@ -195,14 +194,15 @@ void RunRecorder::readings(Rig& rig) {
   if (RigTruth* truth = rig.truth()) {
     const Backbone backbone = truth->backbone(now);
     recorder.truth(now, backbone);
-    true_tip_off_ = (backbone.tip().position - commanded_tip_).norm();
+    true_tip_off_ = (backbone.tip().position - commanded_.value().tip().position).norm();
+    space_.true_arm(now, backbone, *commanded_);
     rod_readings(*truth, now, backbone);
   }
   recorder.reading(ports.arm->read().value());
   for (const CameraPorts& camera : ports.cameras) {
     const auto drawing = std::ranges::find(camera_drawings_, camera.name, &CameraDrawing::name);
     std::optional<CameraStance> stance;
-    if (drawing != camera_drawings_.end()) stance = drawing->first_report();
+    if (const CameraStance* first = space_.first_report(camera.name)) stance = *first;
     if (camera.head != nullptr) {
       const HeadReading reading = camera.head->read().value();
       recorder.reading(camera.name, reading);
@@ -213,7 +213,9 @@ void RunRecorder::readings(Rig& rig) {
       recorder.reading(camera.name, reading);
       if (stance) stance->stage = reading.state;
     }
-    if (stance) drawing->report(now, *stance, recorder);
+    if (!stance) continue;
+    space_.report(now, camera.name, *stance);
+    if (drawing != camera_drawings_.end()) drawing->report(now, *stance, recorder);
   }
 }
 
@@ -268,7 +270,8 @@ ReportData RunRecorder::report_data(const Experiment& experiment, const Schedule
                   .obstacles = experiment.obstacle,
                   .curve = experiment.record.curve,
                   .tension = experiment.record.tension,
-                  .chapters = {}};
+                  .chapters = {},
+                  .space = std::move(space_).space()};
   if (auto chapter = rod_.chapter(data.arm, data.obstacles, model_.backbone(data.states.back())))
     data.chapters.push_back(std::move(*chapter));
   add_safety(safety, schedule, data);

@@ -11,6 +11,7 @@
 #include "flexura/experiment/experiment.h"
 #include "flexura/experiment/scene_log.h"
 #include "flexura/experiment/schedule.h"
+#include "flexura/experiment/space_record.h"
 #include "flexura/log/run_log.h"
 #include "flexura/report/report.h"
 #include "flexura/rig/rig.h"
@@ -48,6 +49,8 @@ class RunRecorder {
   void expect(std::size_t last_step);
   /// Logs the scene, for programs that display logs.
   void draw_scene(const Experiment& experiment);
+  /// Takes the cameras for the report's 3D view.
+  void add_cameras(const Experiment& experiment) { space_.add_cameras(experiment); }
   void state(std::size_t step, double time, const ArmState& state);
   /// Logs the readings of the rig's devices, and the true arm if it is known, once for each time of the rig's
   /// clock.
@@ -90,7 +93,8 @@ class RunRecorder {
   bool touched_ = false;  // Whether the arm had a contact at the last readings.
   std::vector<double> times_;
   std::vector<ArmState> states_;
-  Eigen::Vector3d commanded_tip_ = Eigen::Vector3d::Zero();
+  std::optional<Backbone> commanded_;  // At the last state.
+  SpaceRecord space_;
   std::optional<double> true_tip_off_;
   RodRecord rod_;
   std::vector<double> lost_;             // Lost microsteps of each axis, as last reported by an event.

@@ -6,6 +6,7 @@
 #include <utility>
 #include <variant>
 
+#include "flexura/experiment/space_record.h"
 #include "flexura/log/logged_message.h"
 #include "flexura/math/arrays.h"
 #include "flexura/math/so3.h"
@@ -156,14 +157,7 @@ void CameraDrawing::log_lens(double time, double zoom, Recorder& recorder) {
 }
 
 void CameraDrawing::report(double time, const CameraStance& reported, Recorder& recorder) {
-  // Reports count from the start of the model, where the true camera may stand otherwise.
-  CameraStance now = camera_.initial_stance();
-  now.head.pan += reported.head.pan - first_report_.head.pan;
-  now.head.tilt += reported.head.tilt - first_report_.head.tilt;
-  now.head.zoom += reported.head.zoom - first_report_.head.zoom;
-  now.stage.offset += reported.stage.offset - first_report_.stage.offset;
-  // Such a zoom may lie beyond the ends of the true lens.
-  now.head.zoom = std::clamp(now.head.zoom, camera_.lens().first(), camera_.lens().last());
+  const CameraStance now = true_stance(camera_, first_report_, reported);
   constexpr double rounding = 1e-9;
   const double interval = 1 / camera_.config().sensor.frame_rate - rounding;
   if (now == logged_ || time < logged_at_ + interval) return;

@@ -14,6 +14,8 @@ namespace {
 constexpr double least_gain = 0.95;
 // With surroundings, an iteration with less gain than this gets a new matrix.
 constexpr double slow_gain = 0.2;
+// The exact derivative with friction costs as much as some thirty iterations.
+constexpr double slow_friction_gain = 0.6;
 constexpr int patience = 6;
 // Number of converged pieces of a step before they become longer again.
 constexpr int enough_in_a_row = 4;
@@ -272,7 +274,7 @@ bool RodDynamics::Work::iterate_exactly(const Stage& stage, RodStep& result) {
       velocity += change_;
       return true;
     }
-    if (rubs() && part == 1 && next < slow_gain * size) {
+    if (rubs() && part == 1 && next < slow_friction_gain * size) {
       // If friction iterations converge, the old derivative is good enough.
       from = velocity;
       step = change_;

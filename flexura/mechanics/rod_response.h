@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <cstddef>
+#include <deque>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -90,6 +91,11 @@ class RodResponse : public ArmResponse {
   std::unique_ptr<RodDynamics> dynamics_;  // without tendon friction; null unless it swings
   mutable RodChain fine_;
   mutable Equilibrium straight_;  // of the command without bends
+  struct KnownShape {
+    ArmState command, shape;
+  };
+  static constexpr std::size_t most_shapes = 8;
+  mutable std::deque<KnownShape> shapes_;  // Of the last commands.
   mutable std::optional<Answer> last_;
   mutable std::optional<ArcFit> fit_;  // of the arcs to the places, at the last fit
 };

@@ -11,6 +11,8 @@
 #include "embedded/report_css.h"
 #include "embedded/report_html.h"
 #include "embedded/report_js.h"
+#include "embedded/space_draw_js.h"
+#include "embedded/space_js.h"
 #include "embedded/uplot_iife_min_js.h"
 #include "embedded/uplot_min_css.h"
 #include "flexura/report/arm_drawing.h"
@@ -176,6 +178,7 @@ std::string contents_html(const ReportData& data, const ReportMotion& motion) {
     html += fmt::format("<a href=\"#{}\">{}</a>\n", id, xml_escape(heading));
   };
   if (!motion.is_still) add("player", "Motion");
+  add("space", "In 3D");
   if (data.safety) add("safety-title", "Safety");
   if (!motion.unsafe_moments.empty()) add("worst-title", "The worst moments");
   add("arms-title", "The arm");
@@ -259,9 +262,11 @@ std::string curve_html(const ReportMotion& motion) {
 
 std::string policy() {
   return fmt::format(
-      "default-src 'none'; img-src data:; script-src {} {}; style-src {} {} {}; base-uri 'none'; form-action "
+      "default-src 'none'; img-src data:; script-src {} {} {} {}; style-src {} {} {}; base-uri 'none'; "
+      "form-action "
       "'none'",
-      csp_hash(embedded::uplot_iife_min_js_sha256), csp_hash(embedded::report_js_sha256),
+      csp_hash(embedded::uplot_iife_min_js_sha256), csp_hash(embedded::space_draw_js_sha256),
+      csp_hash(embedded::space_js_sha256), csp_hash(embedded::report_js_sha256),
       csp_hash(embedded::uplot_min_css_sha256), csp_hash(embedded::figure_css_sha256),
       csp_hash(embedded::report_css_sha256));
 }
@@ -302,6 +307,9 @@ std::string report_html(const ReportData& data) {
                  {"figure_css", std::string(embedded::figure_css)},
                  {"report_css", std::string(embedded::report_css)},
                  {"report_js", std::string(embedded::report_js)},
+                 {"space_draw_js", std::string(embedded::space_draw_js)},
+                 {"space_js", std::string(embedded::space_js)},
+                 {"space", space_json(data.space, motion)},
                  {"uplot_license", std::string(embedded::license)},
                  {"uplot_css", std::string(embedded::uplot_min_css)},
                  {"uplot_js", std::string(embedded::uplot_iife_min_js)},

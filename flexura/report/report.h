@@ -11,6 +11,7 @@
 #include "flexura/model/arm_model.h"
 #include "flexura/model/obstacle.h"
 #include "flexura/report/chart.h"
+#include "flexura/report/space.h"
 
 namespace flexura {
 
@@ -94,7 +95,8 @@ struct ReportData {
   std::vector<Chapter> chapters = {};
   std::string headline = {};  ///< Result of the run, below the title; any text; "": not shown.
   std::vector<Outcome> outcomes =
-      {};  ///< Results of the tasks, listed below `headline` if there are several.
+      {};                  ///< Results of the tasks, listed below `headline` if there are several.
+  ReportSpace space = {};  ///< What the 3D view shows beside the arm.
 };
 
 /// A picture as a file.

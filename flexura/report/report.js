@@ -55,6 +55,18 @@
   }
 
   const base = { axes: run.axes, point: run.origin };
+
+  /** Returns the points along each section and the tube's radii at its ends. */
+  function sectionsAt(time) {
+    let frame = base;
+    return stateAt(time).map((q, k) => {
+      const start = frame;
+      const steps = 16 * (Math.floor(Math.hypot(q.x, q.y) / (Math.PI / 2)) + 1);
+      frame = arcEnd(start, q);
+      const points = Array.from({ length: steps + 1 }, (_, i) => arcEnd(start, q, i / steps).point);
+      return { points, radii: run.radii.slice(2 * k, 2 * k + 2) };
+    });
+  }
   const tipOf = (state) => state.reduce((frame, q) => arcEnd(frame, q), base).point;
 
   // --- drawing -----------------------------------------------------------------------------------------------------
@@ -236,6 +248,7 @@
     scrub.setAttribute("aria-valuetext", clock(now));
     fillTable();
     for (const chart of charts) chart.mark();
+    space?.show(now);
   }
 
   function setPlaying(on) {
@@ -286,6 +299,7 @@
   }
 
   player.hidden = run.still;
+  const space = makeSpace(run, JSON.parse(byId("around").textContent), sectionsAt, jump);
   const charts = [...document.querySelectorAll(".chart")].map(plot).filter((chart) => chart !== null);
   const fillTable = table(charts.filter((chart) => chart.isOfSections));
   scrub.min = first;
@@ -302,4 +316,6 @@
     button.addEventListener("click", () => { jump(Number(button.dataset.time)); player.scrollIntoView(); });
   }
   show(first);
+  // The drawings begin at the start, the view in three dimensions at the end.
+  space?.show(last);
 })();

@@ -234,7 +234,7 @@ TEST(Report, LinksToItsParts) {
     const std::string id = html.substr(begin, html.find('"', begin) - begin);
     EXPECT_NE(html.find("id=\"" + id + "\""), std::string::npos) << id;
   }
-  EXPECT_EQ(links, 6U);
+  EXPECT_EQ(links, 7U);
   EXPECT_NE(html.find(">Servo: &lt;bow&gt;</a>"), std::string::npos);
 }
 
@@ -384,6 +384,28 @@ TEST(ReportHtml, ShowsTextsAndRunsNoneOfThem) {
       "]]&gt;&lt;/pre&gt;&lt;/script&gt;&lt;script&gt;alert(1)&lt;/script&gt;&lt;img src=x "
       "onerror=alert(2)&gt;{{data}}";
   EXPECT_EQ(times_in(html, escaped), 6u) << "title twice, version, experiment, and an event's kind and text";
+}
+
+TEST(ReportHtml, GivesTheViewIn3DWhatStandsAroundTheArm) {
+  ReportData data = paper_run(10);
+  const std::string hostile = "</script><b>\"\\\n";
+  data.obstacles = {BoxConfig{.name = hostile, .center = {1, 2, 3}, .half_sizes = {1, 1, 0.5}}};
+  data.space.cameras = {{hostile, {{0, Pose(), {-0.5, 0.5, -0.4, 0.4}}}}};
+  ReportSpace::Target target{.name = hostile, .start = 0, .end = 5};
+  target.shape = Backbone(data.arm, data.states.back());
+  target.position = Eigen::Vector3d(-10, 5, 0);
+  data.space.targets = {target};
+  data.space.true_arms = {{0, points_along(Backbone(data.arm, data.states.front()), 3)}};
+  const std::string html = report_html(data);
+  const std::string name = R"("name":"\u003c/script\u003e\u003cb\u003e\u0022\u005c\u000a")";
+  EXPECT_EQ(times_in(html, name), 3U) << "an obstacle, a camera and a target, none of which ends the script";
+  for (const char* part : {R"("kind":"box","center":[1,2,3],"axes":[[1,0,0],[0,1,0],[0,0,0.5]])",
+                           R"("views":[[0,0,0,0,1,0,0,0,1,0,0,0,1,-0.5,0.5,-0.4,0.4]])",
+                           R"("start":0,"end":5,"line":[0,0,0,)", R"("position":[-10,5,0])",
+                           // The straight arm of 16 m, in shares of its length.
+                           R"("truth":[{"time":0,"line":[0,0,0,0,25000,0,0,50000,0]}])"})
+    EXPECT_NE(html.find(part), std::string::npos) << part;
+  EXPECT_EQ(report_html(data), html) << "the same run gives the same bytes";
 }
 
 TEST(ReportHtml, LoadsNothing) {

@@ -23,6 +23,10 @@ Eigen::VectorXd points_of(const Arm& arm, const ArmState& shape) {
   return points;
 }
 
+std::string as_if_released(std::size_t tendon) {
+  return fmt::format("as if tendon {} gave way: it is broken or slack, or its motor lost steps", tendon + 1);
+}
+
 }  // namespace
 
 DisturbanceWatch::DisturbanceWatch(ArmModel model, const DisturbanceConfig& config)
@@ -31,17 +35,18 @@ DisturbanceWatch::DisturbanceWatch(ArmModel model, const DisturbanceConfig& conf
     throw std::invalid_argument("a disturbance watch needs a limit, a window and a patience above 0");
 }
 
-ArmState DisturbanceWatch::predicted() const {
-  return plus(reference().rest, minus(last_.nominal, reference().nominal));
+ArmState DisturbanceWatch::predicted(const Sample& from) const {
+  return plus(from.rest, minus(last_.nominal, from.nominal));
 }
 
 void DisturbanceWatch::add(double time, const ArmState& rest, const ArmState& command, double sigma) {
   last_ = {time, rest, command, model_.actuation().shape(command)};
   // The newest sample that is at least a window old stays.
   while (samples_.size() > 1 && samples_[1].time <= time - config_.window) samples_.pop_front();
+  if (first_.rest.bends.empty()) first_ = last_;
   if (samples_.empty()) samples_.push_back(last_);
   const ServoError motion = servo_error(model_.shaped(), last_.nominal, reference().nominal);
-  deviation_ = servo_error(model_.shaped(), rest, predicted()).rms;
+  deviation_ = servo_error(model_.shaped(), rest, predicted(reference())).rms;
   constexpr double certain = 5;  // Standard deviations.
   double allowed = config_.limit + config_.model_error * motion.rms + certain * sigma;
   constexpr double back = 0.5;  // A disturbance is over well below the limit at which it begins.
@@ -59,12 +64,10 @@ void DisturbanceWatch::add(double time, const ArmState& rest, const ArmState& co
 }
 
 // Compares the deviation with those that the release of each tendon would cause.
-std::optional<std::size_t> DisturbanceWatch::released_tendon() const {
-  if (samples_.empty() && !is_disturbed_) return std::nullopt;
+std::optional<std::size_t> DisturbanceWatch::released_tendon(const ArmState& expected) const {
   const std::vector<ArmState> released = model_.actuation().released(last_.command);
-  const Eigen::VectorXd expected = points_of(model_.shaped(), predicted()),
-                        nominal = points_of(model_.shaped(), last_.nominal),
-                        moved = points_of(model_.shaped(), last_.rest) - expected;
+  const Eigen::VectorXd nominal = points_of(model_.shaped(), last_.nominal),
+                        moved = points_of(model_.shaped(), last_.rest) - points_of(model_.shaped(), expected);
   constexpr double least = 0.15, most = 1.7;  // Share of a release that counts as one.
   constexpr double explains = 0.5;            // Largest share of the deviation that is left.
   std::optional<std::size_t> best;
@@ -81,13 +84,19 @@ std::optional<std::size_t> DisturbanceWatch::released_tendon() const {
 }
 
 std::string DisturbanceWatch::what() const {
-  const std::optional<std::size_t> tendon = released_tendon();
+  const bool is_known = is_disturbed_ || !samples_.empty();
+  const std::optional<std::size_t> tendon = is_known ? released_tendon(predicted(reference())) : std::nullopt;
   return fmt::format("the arm's shape differs by {:.2g} % of its length from the prediction, {}",
                      100 * deviation_,
-                     tendon ? fmt::format("as if tendon {} gave way: it is broken or slack, or its motor "
-                                          "lost steps",
-                                          *tendon + 1)
-                            : "as if something pushed or held the arm");
+                     tendon ? as_if_released(*tendon) : "as if something pushed or held the arm");
+}
+
+std::string DisturbanceWatch::slow_cause() const {
+  if (first_.rest.bends.empty()) return "";
+  const ArmState expected = predicted(first_);
+  if (!(servo_error(model_.shaped(), last_.rest, expected).rms > config_.limit)) return "";
+  const std::optional<std::size_t> tendon = released_tendon(expected);
+  return tendon ? as_if_released(*tendon) : "";
 }
 
 }  // namespace flexura

@@ -41,11 +41,12 @@ class DisturbanceWatch {
   [[nodiscard]] double deviation() const { return deviation_; }
   /// Returns the time for which a disturbance lasts, s; 0 without a disturbance.
   [[nodiscard]] double lasts() const { return is_disturbed_ ? last_.time - since_ : 0; }
-  /// Returns the index of the tendon whose release explains the last deviation, if there is one. It is broken
-  /// or slack, or its motor lost steps.
-  [[nodiscard]] std::optional<std::size_t> released_tendon() const;
-  /// Describes the last deviation: its size and what may have caused it.
+  /// Describes the last deviation: its size and what may have caused it. A tendon is named if its release
+  /// explains most of the deviation: it is broken or slack, or its motor lost steps.
   [[nodiscard]] std::string what() const;
+  /// Names the tendon whose release explains most of the deviation since the first observation, or returns
+  /// "" if there is none. A tendon that breaks while it carries little causes no sudden deviation.
+  [[nodiscard]] std::string slow_cause() const;
 
  private:
   struct Sample {
@@ -53,13 +54,16 @@ class DisturbanceWatch {
     ArmState rest, command, nominal;  // Observed shape, drives, and the model's shape for them.
   };
   [[nodiscard]] const Sample& reference() const { return is_disturbed_ ? before_ : samples_.front(); }
-  // Returns the shape that the model predicts for the last observation, by the reference.
-  [[nodiscard]] ArmState predicted() const;
+  // Returns the shape that the model predicts for the last observation, from an earlier one.
+  [[nodiscard]] ArmState predicted(const Sample& from) const;
+  // Returns the index of the tendon whose release explains most of the deviation from this shape, if there is
+  // one.
+  [[nodiscard]] std::optional<std::size_t> released_tendon(const ArmState& expected) const;
 
   ArmModel model_;
   DisturbanceConfig config_;
-  std::deque<Sample> samples_;  // Of the window, oldest first.
-  Sample before_, last_;        // Before the disturbance, and the newest.
+  std::deque<Sample> samples_;    // Of the window, oldest first.
+  Sample first_, before_, last_;  // The first, the last before the disturbance, and the newest.
   bool is_disturbed_ = false;
   double deviation_ = 0, since_ = 0;
   int in_a_row_ = 0;  // Successive observations that contradict is_disturbed_.

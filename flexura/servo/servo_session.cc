@@ -143,7 +143,7 @@ class Session {
     if (result_.reason.empty()) {
       if (judge_->is_done() && !limiter_->fault()) return true;
       if (watcher_.is_cancelled()) result_.reason = "cancelled";
-      if (const auto& why = judge_->failure()) result_.reason = *why;
+      if (const auto& why = judge_->failure()) result_.reason = *why + likely_cause();
       if (limiter_->fault()) result_.reason = limiter_->fault()->reason;
     }
     if (!result_.reason.empty()) keep(result_.reason);
@@ -255,6 +255,12 @@ class Session {
     if (watch_->is_disturbed() && !was_disturbed) watcher_.reported(now, "disturbed: " + watch_->what());
     if (!watch_->is_disturbed() && was_disturbed) watcher_.reported(now, "the disturbance is over");
     if (watch_->lasts() > config_.give_up_after) result_.reason = "disturbed: " + watch_->what();
+  }
+
+  // Returns what may keep the arm from its target, beginning with "; ", or "".
+  [[nodiscard]] std::string likely_cause() const {
+    const std::string cause = watch_ ? watch_->slow_cause() : std::string();
+    return cause.empty() ? cause : "; the arm moved " + cause;
   }
 
   // Returns the command of the predictive law.

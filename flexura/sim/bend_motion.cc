@@ -33,7 +33,10 @@ ArmState BendMotion::at(double time) const {
   return at(after == plans_.begin() ? plans_.front() : *(after - 1), time);
 }
 
-bool BendMotion::is_moving(double time) const { return end() > time; }
+bool BendMotion::is_moving(double time) const {
+  constexpr double rounding = 1e-9;  // s. The end is the sum of a start and a duration.
+  return end() > time + rounding;
+}
 
 double BendMotion::end() const {
   const Plan& plan = plans_.back();

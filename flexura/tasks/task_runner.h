@@ -139,6 +139,11 @@ class TaskRunner {
   [[nodiscard]] virtual std::string_view summary_list() const { return ""; }
   /// Returns the task's item in that list; std::nullopt without a result.
   [[nodiscard]] virtual std::optional<Node> summary() const { return std::nullopt; }
+  /// Returns the targets of the task for the report's 3D view, in the order of time. `motion`: commanded
+  /// motion. Times count from the task's start, as those of `motion`.
+  [[nodiscard]] virtual std::vector<ReportSpace::Target> targets(const Motion& /*motion*/) const {
+    return {};
+  }
   /// Returns the task's chapter of the report; std::nullopt without a result. `number`: index among the tasks
   /// of this kind, from 0, for names of figures.
   [[nodiscard]] virtual std::optional<Chapter> chapter(std::size_t /*number*/) const { return std::nullopt; }

@@ -129,6 +129,10 @@ struct LiveSession::Taker : PictureSession::Taker {
   }
   void operator()(const OpenRequest&) const { throw ViewRefusal("there is no recording yet"); }
   void operator()(const LiveRequest&) const { done(); }
+  void operator()(const BranchRequest&) const { throw ViewRefusal("this is no recording"); }
+  void operator()(const ExperimentRequest&) const { throw ViewRefusal("has no text here"); }
+  void operator()(const CheckRequest&) const { throw ViewRefusal("has no text here"); }
+  void operator()(const SaveRequest&) const { throw ViewRefusal("has no text here"); }
   void operator()(const AtRequest&) const {
     throw ViewRefusal("a live rig cannot go back in time: expected a recording");
   }
@@ -266,6 +270,18 @@ void LiveSession::stay_where_it_ended() {
     notice("error", "safety", std::string("everything is put back: ") + error.what());
     reset();
   }
+}
+
+RigInstant LiveSession::instant(ClientId /*client*/) {
+  RigInstant instant{is_run_shown() ? news_.state : rig_.nominal(), {}};
+  for (std::size_t i = 0; i < viewed()->cameras.size(); ++i) {
+    if (!is_run_shown()) {
+      instant.cameras.push_back({head_targets_.at(i), stage_targets_.at(i)});
+    } else {
+      instant.cameras.push_back(i < news_.cameras.size() ? news_.cameras[i] : viewed()->first_reading(i));
+    }
+  }
+  return instant;
 }
 
 void LiveSession::advance(double now) {

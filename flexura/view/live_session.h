@@ -44,6 +44,7 @@ class LiveSession : public PictureSession {
   void closed(ClientId client) override;
   void take(ClientId client, const Ask& ask, Reply reply) override;
   void take(const Document& document, std::function<void(HttpAnswer)> answer) override;
+  [[nodiscard]] RigInstant instant(ClientId client) override;
   void advance(double now) override;
 
   /// Returns the results folder of the last finished run that has results.

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "flexura/view/background.h"
+#include "flexura/view/branch.h"
 #include "flexura/view/extras.h"
 #include "flexura/view/messenger.h"
 #include "flexura/view/picture_session.h"
@@ -25,7 +26,12 @@ class RecordingSession : public PictureSession {
   void closed(ClientId client) override;
   void take(ClientId client, const Ask& ask, Reply reply) override;
   void take(const Document& document, std::function<void(HttpAnswer)> answer) override;
+  [[nodiscard]] RigInstant instant(ClientId client) override {
+    return instant_at(*recording_, times_[client]);
+  }
   void advance(double now) override;
+
+  [[nodiscard]] const Recording& recording() const { return *recording_; }
 
  private:
   struct Taker;

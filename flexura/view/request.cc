@@ -12,6 +12,19 @@
 #include "flexura/view/seen_arm.h"
 
 namespace flexura {
+
+template <>
+struct Codec<FileText> {
+  static Type type() { return {.kind = Type::Kind::text}; }
+  static bool read(const Node& node, const Spec& /*spec*/, Reader& reader, FileText& value) {
+    const auto* written = node.as<std::string>();
+    if (written == nullptr) return reader.unexpected(node, "a text in quotes"), false;
+    value.content = *written;
+    return true;
+  }
+  static Node write(const FileText& value) { return {value.content, {}}; }
+};
+
 namespace {
 
 // Larger than any arm and any run, in m and s; keeps sums of squares finite.
@@ -201,6 +214,43 @@ const Table<OpenRequest>& fields_of(const OpenRequest*) {
 }
 const Table<LiveRequest>& fields_of(const LiveRequest*) { return bare<LiveRequest>("live"); }
 const Table<PingRequest>& fields_of(const PingRequest*) { return bare<PingRequest>("ping"); }
+
+const Table<BranchRequest>& fields_of(const BranchRequest*) {
+  static const auto table =
+      Table<BranchRequest>("branch", "Opens a live rig that starts in a state of the recording.")
+          .field("time", &BranchRequest::time, {.meaning = "s", .range = any_place, .required = true});
+  return table;
+}
+
+const Table<ExperimentRequest>& fields_of(const ExperimentRequest*) {
+  static const auto table =
+      Table<ExperimentRequest>("experiment", "Asks for the text of the experiment.")
+          .field("add", &ExperimentRequest::add, {.meaning = "what is added of what is shown"})
+          .field("camera", &ExperimentRequest::camera, {.meaning = "whose view is added"})
+          .check([](const ExperimentRequest& experiment, Reader& reader) {
+            const bool is_view = experiment.add == "view";
+            if (experiment.add && !is_view && experiment.add != "pose")
+              reader.problem_at("add", fmt::format("= {}: expected \"pose\" or \"view\"",
+                                                   Node{*experiment.add, {}}.brief()));
+            if (is_view != experiment.camera.has_value())
+              reader.problem_at("camera", "expected a camera's name with add = \"view\", and only then");
+            if (experiment.camera) check_camera(*experiment.camera, reader);
+          });
+  return table;
+}
+
+const Table<CheckRequest>& fields_of(const CheckRequest*) {
+  static const auto table = Table<CheckRequest>("check", "Checks a text as an experiment file.")
+                                .field("text", &CheckRequest::text, {.required = true});
+  return table;
+}
+
+const Table<SaveRequest>& fields_of(const SaveRequest*) {
+  static const auto table = Table<SaveRequest>("save", "Saves a text as a new experiment file.")
+                                .field("text", &SaveRequest::text, {.required = true})
+                                .field("name", &SaveRequest::name, {.required = true});
+  return table;
+}
 
 const Table<AtRequest>& fields_of(const AtRequest*) {
   static const auto table =

@@ -58,6 +58,28 @@ struct OpenRequest {
   std::optional<std::string> example;  ///< Name of the example; default: the recording of the last run.
 };
 struct LiveRequest {};
+/// Opens a live rig that starts in a state of the recording.
+struct BranchRequest {
+  double time = 0;  ///< Time in the recording, s.
+};
+/// Asks for the text of the experiment.
+struct ExperimentRequest {
+  std::optional<std::string> add;     ///< "pose": a task to the shown pose; "view": the view of `camera`.
+  std::optional<std::string> camera;  ///< Name of the camera for "view".
+};
+/// The text of a file; may have any number of lines.
+struct FileText {
+  std::string content;
+};
+/// Checks a text as an experiment file.
+struct CheckRequest {
+  FileText text;
+};
+/// Saves a text as a new experiment file.
+struct SaveRequest {
+  FileText text;
+  std::string name;  ///< Name of the file, with its ending.
+};
 struct AtRequest {
   double time = 0;  ///< Time in the recording, s.
 };
@@ -99,6 +121,10 @@ const Table<SpeedRequest>& fields_of(const SpeedRequest*);
 const Table<CancelRequest>& fields_of(const CancelRequest*);
 const Table<OpenRequest>& fields_of(const OpenRequest*);
 const Table<LiveRequest>& fields_of(const LiveRequest*);
+const Table<BranchRequest>& fields_of(const BranchRequest*);
+const Table<ExperimentRequest>& fields_of(const ExperimentRequest*);
+const Table<CheckRequest>& fields_of(const CheckRequest*);
+const Table<SaveRequest>& fields_of(const SaveRequest*);
 const Table<AtRequest>& fields_of(const AtRequest*);
 const Table<ImagesRequest>& fields_of(const ImagesRequest*);
 const Table<AckRequest>& fields_of(const AckRequest*);
@@ -111,8 +137,9 @@ const Table<PingRequest>& fields_of(const PingRequest*);
 
 using Ask = std::variant<ArmRequest, TipRequest, HeadRequest, StageRequest, HaltRequest, ResetRequest,
                          WeightRequest, PushRequest, ReleaseRequest, RunRequest, SpeedRequest, CancelRequest,
-                         OpenRequest, LiveRequest, AtRequest, ImagesRequest, AckRequest, PixelRequest,
-                         MeasureRequest, ShapeRequest, PointRequest, BackboneRequest, PingRequest>;
+                         OpenRequest, LiveRequest, BranchRequest, ExperimentRequest, CheckRequest,
+                         SaveRequest, AtRequest, ImagesRequest, AckRequest, PixelRequest, MeasureRequest,
+                         ShapeRequest, PointRequest, BackboneRequest, PingRequest>;
 
 /// The request of one message, or why it is invalid.
 struct Request {

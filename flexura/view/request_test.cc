@@ -46,6 +46,12 @@ TEST(Request, ReadsEverythingThatAPageCanAsk) {
   (void)read_as_ask<OpenRequest>(R"({"id":7,"do":"open"})");
   (void)read_as_ask<LiveRequest>(R"({"id":7,"do":"live"})");
   EXPECT_EQ(read_as_ask<AtRequest>(R"({"id":7,"do":"at","time":2.5})").time, 2.5);
+  EXPECT_EQ(read_as_ask<ExperimentRequest>(R"({"id":7,"do":"experiment","add":"view","camera":"a"})").camera,
+            "a");
+  EXPECT_FALSE(read_as_ask<ExperimentRequest>(R"({"id":7,"do":"experiment"})").add);
+  EXPECT_EQ(read_as_ask<CheckRequest>(R"({"id":7,"do":"check","text":"seed = 1"})").text.content, "seed = 1");
+  EXPECT_EQ(read_as_ask<SaveRequest>(R"({"id":7,"do":"save","text":"","name":"a.toml"})").name, "a.toml");
+  EXPECT_EQ(read_as_ask<BranchRequest>(R"({"id":7,"do":"branch","time":2.5})").time, 2.5);
   const auto images =
       read_as_ask<ImagesRequest>(R"({"id":7,"do":"images","camera":"a","rate":30,"quality":60})");
   EXPECT_EQ(images.rate, 30);
@@ -123,6 +129,12 @@ TEST(Request, SaysInOneLineWhatIsWrong) {
       {R"({"id":7,"do":"push","s":0.1,"force":[0,0,1],"hand":1})", "hand: unknown key"},
       {R"({"id":7,"do":"release","s":0.1})", "s: unknown key"},
       {R"({"id":7,"do":"at","time":"now"})", "time"},
+      {R"({"id":7,"do":"branch"})", "time"},
+      {R"({"id":7,"do":"experiment","add":"all"})", "add"},
+      {R"({"id":7,"do":"experiment","add":"view"})", "camera"},
+      {R"({"id":7,"do":"experiment","add":"pose","camera":"a"})", "camera"},
+      {R"({"id":7,"do":"check"})", "text"},
+      {R"({"id":7,"do":"save","text":"seed = 1"})", "name"},
       {R"({"id":"7","do":"ack","camera":"a","number":0})", "id = \"7\": expected a whole number"}};
   for (const auto& [text, error] : cases) {
     const Request request = read_request(text);

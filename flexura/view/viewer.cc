@@ -10,6 +10,7 @@
 #include "flexura/base/version.h"
 #include "flexura/store/json.h"
 #include "flexura/view/answers.h"
+#include "flexura/view/branch.h"
 #include "flexura/view/document.h"
 #include "flexura/view/request.h"
 
@@ -43,6 +44,16 @@ std::string hello_text(const Hello& hello, const ViewStart& start, bool has_rig,
                      {}});
 }
 
+Node problems_node(const std::vector<Problem>& problems) {
+  Node::Array list;
+  for (const Problem& problem : problems)
+    list.push_back({Node::Table{{"line", {}, {std::int64_t{problem.where.line}, {}}},
+                                {"column", {}, {std::int64_t{problem.where.column}, {}}},
+                                {"text", {}, text_node(problem.what)}},
+                    {}});
+  return {Node::Table{{"problems", {}, {std::move(list), {}}}}, {}};
+}
+
 std::string reply_text(const std::optional<std::int64_t>& id, const ViewAnswer& answer) {
   Node::Table table{{"type", {}, text_node("reply")}, {"id", {}, id ? Node{*id, {}} : Node{}}};
   if (answer.error.empty()) {
@@ -57,6 +68,7 @@ std::string reply_text(const std::optional<std::int64_t>& id, const ViewAnswer& 
 
 Viewer::Viewer(ViewStart start, Messenger& messenger, Background& background, double now)
     : start_(std::move(start)), messenger_(messenger), background_(background), clock_(now) {
+  if (start_.results.empty()) start_.results = std::filesystem::path("results") / "view";
   if (start_.recording != nullptr) {
     recording_ = std::make_unique<RecordingSession>(start_.recording, messenger_, background_);
     start_.rig = start_.recording->rig();
@@ -112,6 +124,14 @@ void Viewer::take(ClientId client, const Request& request, const std::shared_ptr
     }
   } else if (std::holds_alternative<LiveRequest>(request.ask)) {
     go_live(reply);
+  } else if (const auto* const branch_at = std::get_if<BranchRequest>(&request.ask)) {
+    branch(branch_at->time, reply);
+  } else if (const auto* const experiment = std::get_if<ExperimentRequest>(&request.ask)) {
+    give_text(client, *experiment, reply);
+  } else if (const auto* const checked = std::get_if<CheckRequest>(&request.ask)) {
+    check(checked->text.content, reply);
+  } else if (const auto* const saved = std::get_if<SaveRequest>(&request.ask)) {
+    save(*saved, reply);
   } else {
     if (std::holds_alternative<AckRequest>(request.ask)) reply = [](const ViewAnswer&) {};
     shown_->take(client, request.ask, std::move(reply));
@@ -139,15 +159,96 @@ void Viewer::open_example(const std::string& name, const Reply& reply) {
         fmt::format("there is no example {}: expected one of the hello's examples", text_node(name).brief()));
   if (is_opening_) throw ViewRefusal("a recording is being opened");
   if (live_ != nullptr && live_->is_running()) throw ViewRefusal("tasks are running: cancel them first");
-  start_.rig = found->load();
-  start_.results = found->results;
-  const auto live_before =
-      std::exchange(live_, std::make_unique<LiveSession>(start_.rig, messenger_, background_,
-                                                         LiveSession::Config{clock_, start_.results, {}}));
-  reply({nothing(), ""});
-  show(*live_);
+  replace_rig(found->load(), found->results, found->text, reply);
+  start_.stem = found->name;
   // No client is in the old sessions any more.
   recording_.reset();
+}
+
+// The recording stays, to be opened again.
+void Viewer::branch(double time, const Reply& reply) {
+  if (shown_ != recording_.get())
+    throw ViewRefusal("this is no recording: expected a recording to start from");
+  if (is_opening_) throw ViewRefusal("a recording is being opened");
+  if (live_ != nullptr && live_->is_running()) throw ViewRefusal("tasks are running: cancel them first");
+  replace_rig(std::make_shared<const ViewedRig>(experiment_from(recording_->recording(), time)),
+              start_.results, "", reply);
+}
+
+// Works on the lane of checks: the check of an experiment takes a while.
+void Viewer::answer_later(std::function<ViewAnswer()> work, const Reply& reply) {
+  background_.run(Lane::checks,
+                  [work = std::move(work), reply, alive = std::weak_ptr(alive_)]() -> Background::After {
+                    ViewAnswer answer;
+                    try {
+                      answer = work();
+                    } catch (const std::exception& error) {
+                      answer.error = error.what();
+                    }
+                    return [answer, reply, alive] {
+                      if (!alive.expired()) reply(answer);
+                    };
+                  });
+}
+
+void Viewer::give_text(ClientId client, const ExperimentRequest& request, const Reply& reply) {
+  const bool is_recording = shown_ == recording_.get();
+  const ViewedRigPtr rig = is_recording ? recording_->recording().rig() : start_.rig;
+  const RigInstant instant = shown_->instant(client);
+  std::optional<std::size_t> camera;
+  if (request.camera) {
+    camera = rig->camera(*request.camera);
+    if (!camera)
+      throw ViewRefusal(
+          fmt::format("camera = {}: there is no camera of that name", text_node(*request.camera).brief()));
+  }
+  answer_later(
+      [request, rig, instant, camera, file = is_recording ? "" : start_.text, folder = start_.folder,
+       stem = start_.stem]() -> ViewAnswer {
+        std::string text = editable_text(file, rig->experiment);
+        if (camera) {
+          text = with_camera_start(text, *rig, *camera, instant.cameras.at(*camera));
+        } else if (request.add) {
+          text = with_move(text, *rig, instant.arm);
+        }
+        return {{Node::Table{{"text", {}, text_node(text)},
+                             {"name", {}, text_node(free_name(folder, stem))},
+                             {"folder", {}, text_node(folder.empty() ? "." : folder.string())}},
+                 {}},
+                ""};
+      },
+      reply);
+}
+
+void Viewer::check(const std::string& text, const Reply& reply) {
+  answer_later([text]() -> ViewAnswer { return {problems_node(experiment_problems(text)), ""}; }, reply);
+}
+
+void Viewer::save(const SaveRequest& request, const Reply& reply) {
+  answer_later(
+      [request, folder = start_.folder]() -> ViewAnswer {
+        const std::vector<Problem> problems = experiment_problems(request.text.content);
+        Node answer = problems_node(problems);
+        if (problems.empty()) {
+          const auto file = save_new_experiment(folder, request.name, request.text.content);
+          std::get<Node::Table>(answer.value).push_back({"file", {}, text_node(file.string())});
+        }
+        return {std::move(answer), ""};
+      },
+      reply);
+}
+
+void Viewer::replace_rig(ViewedRigPtr rig, std::filesystem::path results, std::string text,
+                         const Reply& reply) {
+  auto live =
+      std::make_unique<LiveSession>(rig, messenger_, background_, LiveSession::Config{clock_, results, {}});
+  start_.rig = std::move(rig);
+  start_.results = std::move(results);
+  start_.text = std::move(text);
+  start_.run.reset();
+  const auto live_before = std::exchange(live_, std::move(live));
+  reply({nothing(), ""});
+  show(*live_);
 }
 
 // Opens a recording in the background, since a long log takes time to read.

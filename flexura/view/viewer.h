@@ -23,6 +23,7 @@ struct ViewExample {
   std::string title;                   ///< Title for users.
   std::function<ViewedRigPtr()> load;  ///< Loads the example's rig; never returns null.
   std::filesystem::path results;       ///< Folder for the results of runs of this experiment.
+  std::string text = {};               ///< Text of the experiment.
 };
 
 /// Initial content of a viewer: a recording or a rig.
@@ -30,9 +31,12 @@ struct ViewStart {
   std::string session;                     ///< Identifier that differs for each start of the program.
   ViewedRigPtr rig = {};                   ///< The rig; null only if there is a recording.
   RecordingPtr recording = {};             ///< The recording; may be null.
-  std::filesystem::path results = {};      ///< Folder for the results of task runs.
+  std::filesystem::path results = {};      ///< Folder for the results of task runs; default: results/view.
   std::shared_ptr<RunLink> run = {};       ///< An active run; its recording is opened at its end.
   std::vector<ViewExample> examples = {};  ///< Other experiments to open; empty if a file was given.
+  std::string text = {};                   ///< Text of the rig's experiment file; "": unknown.
+  std::filesystem::path folder = {};       ///< Folder for saved experiments.
+  std::string stem = "experiment";         ///< Begin of the names of saved experiments.
 };
 
 /// Parses the requests of clients, answers them, and switches between rig and recording. Not thread-safe.
@@ -64,6 +68,12 @@ class Viewer {
   void take(ClientId client, const Request& request, const std::shared_ptr<const void>& debt);
   void open_last(Reply reply);
   void open_example(const std::string& name, const Reply& reply);
+  void give_text(ClientId client, const ExperimentRequest& request, const Reply& reply);
+  void check(const std::string& text, const Reply& reply);
+  void save(const SaveRequest& request, const Reply& reply);
+  void answer_later(std::function<ViewAnswer()> work, const Reply& reply);
+  void branch(double time, const Reply& reply);
+  void replace_rig(ViewedRigPtr rig, std::filesystem::path results, std::string text, const Reply& reply);
   void open(const std::filesystem::path& folder, Reply reply);
   void go_live(const Reply& reply);
   /// Returns whether there is a live rig; false after the end of a watched run.

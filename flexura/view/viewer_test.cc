@@ -11,6 +11,7 @@
 #include <string>
 #include <utility>
 
+#include "flexura/store/text_file.h"
 #include "flexura/view/describe.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/view_fakes.h"
@@ -25,6 +26,11 @@ using ::testing::StrEq;
 std::string zoom_unit(const std::string& rig) {
   const Node controls = controls_node(*viewed_rig(rig));
   return *controls.find("heads")->as<Node::Array>()->back().find("zoom_unit")->as<std::string>();
+}
+
+std::string error_in(const Node& reply) {
+  const Node* error = reply.find("error");
+  return error == nullptr ? "" : *error->as<std::string>();
 }
 
 class ViewerTest : public ::testing::Test {
@@ -257,6 +263,129 @@ TEST(ViewerOfARecording, HasItsRigToGoTo) {
   EXPECT_FALSE(messenger.state(me).is_recording);
   viewer.on_message(me, R"({"id":1,"do":"open"})");
   EXPECT_TRUE(messenger.state(me).is_recording);
+}
+
+TEST(ViewerOfARecording, StartsARigInAnInstantOfIt) {
+  const TemporaryFolder folder;
+  FakeMessenger messenger;
+  FakeBackground background;
+  const auto run = std::make_shared<RunLink>();
+  std::filesystem::create_directory(folder.path() / "first");
+  // The true arm and camera start elsewhere than their models.
+  const auto rig = viewed_rig(viewed_text + R"(
+[truth.arm]
+initial = { bends = [[0.05, 0], [0, 0]] }
+[[truth.camera]]
+name = "front"
+initial = { pan = 0.02 }
+)");
+  run_linked(rig->experiment, folder.path() / "first", *run);
+  Viewer viewer({.session = "1",
+                 .recording = std::make_shared<const Recording>(folder.path() / "first"),
+                 .results = folder.path() / "next"},
+                messenger, background, 0);
+  viewer.opened(me);
+  viewer.on_message(me, R"({"id":1,"do":"branch","time":0.5})");
+  EXPECT_EQ(messenger.last(me, "reply").find("error"), nullptr);
+  const Node hello = messenger.last(me, "hello");
+  EXPECT_EQ(*hello.find("mode")->as<std::string>(), "live");
+  EXPECT_EQ(*hello.find("title")->as<std::string>(), "Two sections (from 0.5 s)");
+  EXPECT_TRUE(*hello.find("recording")->as<bool>());
+  viewer.advance(0.1);
+  const StateMessage start = messenger.state(me);
+  EXPECT_FALSE(start.is_moving);
+  EXPECT_NEAR(start.arm.bends[0].x(), 0.4 + 0.05, 1e-6) << "half of the way, and as far off as before";
+  EXPECT_NEAR(start.arm.bends[1].y(), 0.35, 1e-6);
+  EXPECT_NEAR(start.cameras[0].head.pan, 0.02, 1e-6);
+  EXPECT_NEAR(start.cameras[0].commanded_head.pan, 0, 1e-6);
+
+  // Tasks go from there, and reset goes back there.
+  viewer.on_message(me, R"({"id":2,"do":"run","speed":0})");
+  viewer.advance(0.2);
+  EXPECT_NEAR(messenger.state(me).arm.bends[0].x(), 0.8 + 0.05, 1e-6);
+  viewer.on_message(me, R"({"id":3,"do":"reset"})");
+  viewer.advance(0.3);
+  EXPECT_NEAR(messenger.state(me).arm.bends[0].x(), 0.4 + 0.05, 1e-6);
+  // The run's results say where it started, and it can be branched in turn.
+  viewer.on_message(me, R"({"id":4,"do":"open"})");
+  EXPECT_NEAR(messenger.state(me).arm.bends[0].x(), 0.4, 1e-6);
+  viewer.on_message(me, R"({"id":5,"do":"branch","time":1})");
+  viewer.advance(0.4);
+  EXPECT_NEAR(messenger.state(me).arm.bends[0].x(), 0.8 + 0.05, 1e-6);
+  viewer.on_message(me, R"({"id":6,"do":"branch","time":1})");
+  EXPECT_THAT(*messenger.last(me, "reply").find("error")->as<std::string>(), HasSubstr("no recording"));
+}
+
+TEST(ViewerOfARig, GivesChecksAndSavesTheTextOfItsExperiment) {
+  const TemporaryFolder folder;
+  FakeMessenger messenger;
+  FakeBackground background;
+  const std::string text = "# Mine.\n" + viewed_text;
+  Viewer viewer({.session = "1",
+                 .rig = viewed_rig(text),
+                 .results = folder.path() / "results",
+                 .text = text,
+                 .folder = folder.path(),
+                 .stem = "mine"},
+                messenger, background, 0);
+  viewer.opened(me);
+  const auto ask = [&](const std::string& members) {
+    viewer.on_message(me, "{\"id\":1," + members + "}");
+    return messenger.last(me, "reply");
+  };
+  const auto text_of = [](const Node& reply, const char* key) {
+    return *reply.find("result")->find(key)->as<std::string>();
+  };
+  EXPECT_EQ(text_of(ask(R"("do":"experiment")"), "text"), text);
+  ask(R"("do":"arm","bends":[[-0.5,0],[0,0]])");
+  ask(R"("do":"head","camera":"front","pan":0.25)");
+  for (int i = 1; i < 30; ++i) viewer.advance(0.1 * i);
+  const Node pose = ask(R"("do":"experiment","add":"pose")");
+  EXPECT_EQ(text_of(pose, "name"), "mine-2.toml");
+  EXPECT_THAT(text_of(pose, "text"), HasSubstr("to = { bends = [[-0.5, 0], [0, 0]] }"));
+  EXPECT_THAT(text_of(ask(R"("do":"experiment","add":"view","camera":"front")"), "text"),
+              HasSubstr("initial = { pan = 0.25, tilt = 0, zoom = 1 }"));
+  EXPECT_THAT(error_in(ask(R"("do":"experiment","add":"view","camera":"back")")), HasSubstr("no camera"));
+
+  const Node problems = *ask(R"("do":"check","text":"[arm]\nkind = 3\n")").find("result")->find("problems");
+  const Node& first = problems.as<Node::Array>()->back();
+  EXPECT_EQ(*first.find("line")->as<std::int64_t>(), 2);
+  EXPECT_EQ(*first.find("column")->as<std::int64_t>(), 8);
+  EXPECT_THAT(*first.find("text")->as<std::string>(), HasSubstr("arm.kind = 3"));
+
+  const std::string good = write_json({Node::Table{{"text", {}, text_node(text)}}, {}});
+  const auto save = [&](const std::string& name) {
+    return ask(good.substr(1, good.size() - 2) + R"(,"do":"save","name":")" + name + '"');
+  };
+  EXPECT_EQ(text_of(save("mine-2.toml"), "file"), (folder.path() / "mine-2.toml").string());
+  EXPECT_EQ(read_text_file(folder.path() / "mine-2.toml", 10'000), text);
+  EXPECT_THAT(error_in(save("mine-2.toml")), HasSubstr("exists already"));
+  EXPECT_THAT(error_in(save("../mine.toml")), HasSubstr("expected a name"));
+  const Node refused = ask(R"("do":"save","name":"bad.toml","text":"seed = -1")");
+  EXPECT_EQ(refused.find("result")->find("file"), nullptr);
+  EXPECT_FALSE(refused.find("result")->find("problems")->as<Node::Array>()->empty());
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "bad.toml"));
+}
+
+TEST(ViewerOfARun, CanBeContinuedFromItsRecording) {
+  const TemporaryFolder folder;
+  FakeMessenger messenger;
+  FakeBackground background;
+  const auto run = std::make_shared<RunLink>();
+  const auto rig = viewed_rig();
+  Viewer viewer({.session = "1", .rig = rig, .run = run}, messenger, background, 0);
+  viewer.opened(me);
+  viewer.on_message(me, R"({"id":1,"do":"branch","time":0})");
+  EXPECT_NE(messenger.last(me, "reply").find("error"), nullptr);
+  run_linked(rig->experiment, folder.path(), *run);
+  viewer.advance(0.2);
+  viewer.on_message(me, R"({"id":2,"do":"branch","time":1})");
+  const Node hello = messenger.last(me, "hello");
+  EXPECT_EQ(*hello.find("mode")->as<std::string>(), "live");
+  EXPECT_TRUE(*hello.find("rig")->as<bool>());
+  EXPECT_FALSE(*hello.find("readonly")->as<bool>()) << "nobody else moves this rig";
+  viewer.advance(0.3);
+  EXPECT_NEAR(messenger.state(me).arm.bends[0].x(), 0.8, 1e-6);
 }
 
 TEST(ViewerExamples, AreOfferedAndOpenedOneAfterAnother) {

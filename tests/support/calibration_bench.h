@@ -46,9 +46,13 @@ class CalibrationBench : public RigBench {
     return calibrate_bundle(ports, nobody);
   }
   RigSessionResult calibrate_bundle(const RigPorts& ports, RigSessionWatcher& watcher) {
+    return calibrate_bundle(ports, nominal(), watcher);
+  }
+  RigSessionResult calibrate_bundle(const RigPorts& ports, const RigModel& nominal,
+                                    RigSessionWatcher& watcher) {
     const auto& task = std::get<CalibrateTask>(experiment().task.front());
     return calibrate_rig_in_session(
-        ports, nominal(), prior(),
+        ports, nominal, session_prior(task, nominal, experiment().stand),
         session_config(task, experiment().arm, experiment().cameras(), experiment().stand), watcher);
   }
   [[nodiscard]] RigModel nominal() const { return rig_model(experiment().arm.arm(), experiment().cameras()); }

@@ -73,7 +73,7 @@ inline void make_gray(std::string& text) {
 /// Returns the file of a rig whose true arm swings: three NiTi wires of 1.7 mm radius with 0.15 kg/m, pulled
 /// by nine steel cables, by motors that hold their position. The straight arm stands upright.
 inline std::string swinging_world_file(const LoopRig& rig, bool is_colored, const SwingingWorld& world) {
-  std::string text = arcs_rig("method = \"bundle\"\n", rig);
+  std::string text = arcs_rig("method = \"bundle\"\npause = 5\n", rig);
   if (!is_colored) make_gray(text);
   const auto material = [](double stiffness) {
     return fmt::format(

@@ -63,11 +63,26 @@ class TruthWatcher : public ServoSessionWatcher {
     pulled_ = pulled;
     const Backbone backbone = plant.backbone(now);
     if (is_overbent(backbone)) ++totals_.bend_violations;
+    samples_.push_back({now, points_of(backbone)});
     if (!is_in_view(backbone, now)) ++totals_.view_violations;
     if (!plant.contacts(now).empty()) ++totals_.contacts;
   }
   void reported(double time, const std::string& what) override {
     reports_.push_back(fmt::format("{:.2f} s: {}", time, what));
+  }
+  /// Returns points along the true backbone at each step, one column each, m.
+  struct Sample {
+    double time = 0;  ///< s of the rig's clock.
+    Eigen::Matrix3Xd points;
+  };
+  [[nodiscard]] const std::vector<Sample>& samples() const { return samples_; }
+  /// Returns points along a backbone, at equal shares of its length.
+  static Eigen::Matrix3Xd points_of(const Backbone& backbone) {
+    constexpr int places = 20;
+    Eigen::Matrix3Xd points(3, places);
+    for (int k = 0; k < places; ++k)
+      points.col(k) = backbone.pose(backbone.length() * (k + 1) / places).position;
+    return points;
   }
   /// Returns the events of the servo, with their times.
   [[nodiscard]] const std::vector<std::string>& reports() const { return reports_; }
@@ -125,6 +140,7 @@ class TruthWatcher : public ServoSessionWatcher {
   ArmState sent_;
   std::vector<double> pulled_;
   std::vector<std::string> reports_;
+  std::vector<Sample> samples_;
 };
 
 }  // namespace flexura

@@ -19,6 +19,10 @@ namespace {
 constexpr std::int64_t image_limit = 1000;
 constexpr double longest = 1e4;  // s
 
+RigPatience patience_of(const CalibrateTask& task) {
+  return {.settle = task.settle_timeout, .frame = task.frame_timeout, .pause = task.pause};
+}
+
 // Bends of the arm's lower, middle and upper third, rad. Mild bends come first: there rough priors suffice to
 // recognise the markers. The following ones bend every part in every direction.
 constexpr std::array<std::array<double, 6>, 6> patterns = {{{0.5, 0, 0.5, 0, 0.5, 0},
@@ -195,6 +199,10 @@ const Table<CalibrateTask>& fields_of(const CalibrateTask*) {
                  {.meaning = "Duration of the arm's motion to a pose, or back.",
                   .unit = Unit::second,
                   .range = above_up_to(0, longest)})
+          .field("pause", &CalibrateTask::pause,
+                 {.meaning = "Time to wait after each motion of the arm, until it stops swinging.",
+                  .unit = Unit::second,
+                  .range = between(0, longest)})
           .field("settle_timeout", &CalibrateTask::settle_timeout,
                  {.meaning = "Longest duration of a motion. A device that moves longer counts as stuck.",
                   .unit = Unit::second,
@@ -283,7 +291,7 @@ RigSessionConfig session_config(const CalibrateTask& task, const ArmConfig& arm,
   config.may_use_stages = task.stages;
   config.zooms = task.zooms;
   config.move_duration = task.move_duration;
-  config.patience.settle = task.settle_timeout, config.patience.frame = task.frame_timeout;
+  config.patience = patience_of(task);
   return config;
 }
 
@@ -307,7 +315,7 @@ LoopConfig loop_config(const CalibrateTask& task, const ArmConfig& arm,
   config.prior = session_prior(task, rig_model(arm.arm(), cameras), stand);
   config.etalon = stand.etalon.value_or(EtalonConfig{});
   config.move_duration = task.move_duration;
-  config.patience.settle = task.settle_timeout, config.patience.frame = task.frame_timeout;
+  config.patience = patience_of(task);
   return config;
 }
 

@@ -251,6 +251,18 @@ class MotionRunner : public TaskRunner {
     return outcome;
   }
 
+  [[nodiscard]] std::vector<ReportSpace::Target> targets(const Motion& motion) const override {
+    if constexpr (std::is_same_v<Task, MoveTask>) {
+      const double end = motion.duration();
+      return {{.name = name(),
+               .start = 0,
+               .end = end,
+               .shape = setup().arm_model().backbone(motion.at(end)),
+               .position = tip_target(task_)}};
+    }
+    return {};
+  }
+
  private:
   // Share of the arm's length: a tip this near to its target has reached it.
   static constexpr double tolerance = 1e-6;

@@ -143,6 +143,23 @@ Node servo_node(const ServoRun& run) {
   return {std::move(members), {}};
 }
 
+std::vector<ReportSpace::Target> servo_targets(const ServoRun& run, double duration) {
+  constexpr std::size_t most = 100;
+  std::vector<ReportSpace::Target> targets;
+  const std::vector<ServoStep>& steps = run.result.steps;
+  const std::size_t every = steps.size() / most + 1;
+  for (std::size_t i = 0; i < steps.size(); i += every) {
+    if (i > 0 && steps[i].desired == steps[i - every].desired) continue;
+    const double start = i == 0 ? 0 : steps[i].time - run.result.start;
+    if (!targets.empty()) targets.back().end = start;
+    targets.push_back({.name = run.name,
+                       .start = start,
+                       .end = duration,
+                       .shape = Backbone(run.nominal.arm, steps[i].desired)});
+  }
+  return targets;
+}
+
 Chapter servo_chapter(const ServoRun& run, std::size_t number) {
   const ServoResult& result = run.result;
   const double took = result.steps.empty() ? 0 : result.steps.back().time - result.start;

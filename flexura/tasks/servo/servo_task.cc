@@ -101,6 +101,9 @@ class ServoRunner : public TaskRunner {
   [[nodiscard]] std::optional<Node> summary() const override {
     return run_ ? std::optional(servo_node(*run_)) : std::nullopt;
   }
+  [[nodiscard]] std::vector<ReportSpace::Target> targets(const Motion& motion) const override {
+    return run_ ? servo_targets(*run_, motion.duration()) : std::vector<ReportSpace::Target>();
+  }
   [[nodiscard]] std::optional<Chapter> chapter(std::size_t number) const override {
     return run_ ? std::optional(servo_chapter(*run_, number)) : std::nullopt;
   }

@@ -123,6 +123,12 @@ export class Commander {
     if (is_running) void this.ask('speed', { speed });
   }
 
+  /** Replaces the rig by one that starts in the recording's state at this time, s. */
+  branch(time: number): Promise<boolean> {
+    this.forget_tip();
+    return this.ask('branch', { time });
+  }
+
   /** Replaces the present rig by that of one of the hello's examples. */
   open_example(example: string): Promise<boolean> {
     this.forget_tip();

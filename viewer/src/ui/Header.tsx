@@ -3,7 +3,7 @@ import { flag_pace, flag_weightless } from '../protocol/state';
 import { preferences, theme_now, toggle_theme } from '../state/preferences';
 import { use_app } from './app';
 import { ConditionBadge } from './ConditionBadge';
-import { fixed } from './format';
+import { fixed, format_time } from './format';
 import { Icon } from './Icon';
 
 const badges = {
@@ -104,8 +104,14 @@ function Rig() {
     <a class="button quiet" href="report" target="_blank" rel="noopener" title="The report of this run, in a tab of its own"><Icon name="report" />Report</a>
   );
   if (hello.mode === 'recording') {
+    viewer.tick.value;
+    const instant = viewer.shown?.time ?? 0;
     return (
       <div class="tools">
+        <button type="button" class="button" disabled={!connected} onClick={() => void viewer.commander.branch(instant)}
+          title={`A live rig that starts in the shown instant, ${format_time(instant)}: the arm as commanded and the cameras, at rest. The recording stays.`}>
+          <Icon name="run" />Start here
+        </button>
         {report}
         {hello.rig && (
           <button type="button" class="button" disabled={!connected} onClick={ask('live')} title="Back from the recording to the live rig"><Icon name="live" />To the rig</button>

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <vector>
+
+namespace flexura {
+
+/// A set of vectors x: |x[at ... at + size - 1] - center| <= radius.
+struct BallLimit {
+  Eigen::Index at = 0;
+  Eigen::VectorXd center;  ///< Its size is the number of limited entries.
+  double radius = 0;       ///< >= 0
+};
+
+/// A set of vectors x: lower <= normal . x <= upper.
+struct BandLimit {
+  Eigen::VectorXd normal;
+  double lower = 0, upper = 0;
+};
+
+/// Limits on a vector: the intersection of convex sets.
+struct ConvexLimits {
+  std::vector<BallLimit> balls;
+  std::vector<BandLimit> bands;
+};
+
+/// Returns the largest distance of x from one of the sets.
+[[nodiscard]] double excess(const ConvexLimits& limits, const Eigen::VectorXd& x);
+
+/// Settings of nearest_point().
+struct NearestPointConfig {
+  int most_rounds = 400;    ///< Largest number of projections on each set.
+  double tolerance = 1e-7;  ///< Change of x in a round at which the search ends, and largest excess().
+};
+
+/// Returns the vector within all limits that is nearest to x, by alternating projections with Dykstra's
+/// correction (R. L. Dykstra, 1983). Empty if no such vector was found. Throws std::invalid_argument for
+/// limits of another size than x.
+[[nodiscard]] std::optional<Eigen::VectorXd> nearest_point(const ConvexLimits& limits,
+                                                           const Eigen::VectorXd& x,
+                                                           const NearestPointConfig& config = {});
+
+}  // namespace flexura

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "flexura/math/pose.h"
+#include "flexura/model/backbone.h"
+
+namespace flexura {
+
+/// What the report's 3D view shows beside the commanded arm and the obstacles.
+struct ReportSpace {
+  /// Where a camera is from a time on.
+  struct CameraView {
+    double time = 0;  ///< In s.
+    Pose X_WC;        ///< Pose of the camera's frame; z is the optical axis.
+    /// Left, right, top and bottom edge of the picture at a depth of 1 m, m: x and y in the camera's frame.
+    std::array<double, 4> window = {};
+  };
+  struct Camera {
+    std::string name;               ///< Any text.
+    std::vector<CameraView> views;  ///< In the order of time; at least one.
+  };
+  /// What a task aims at.
+  struct Target {
+    std::string name;                              ///< Name of the task; any text.
+    double start = 0;                              ///< In s.
+    double end = 0;                                ///< In s.
+    std::optional<Backbone> shape = {};            ///< Shape of the arm at the target.
+    std::optional<Eigen::Vector3d> position = {};  ///< Target of the tip in W, m.
+  };
+  /// The true arm at a time: points at equal fractions of its length, the base and the tip included, in W, m.
+  struct TrueArm {
+    double time = 0;  ///< In s.
+    std::vector<Eigen::Vector3d> points;
+  };
+
+  std::vector<Camera> cameras = {};
+  std::vector<Target> targets = {};     ///< In the order of their starts.
+  std::vector<TrueArm> true_arms = {};  ///< In the order of time, with equal numbers of points; may be empty.
+};
+
+/// Returns `count` (>= 2) points at equal fractions of the backbone's length, with both ends, in W, m.
+[[nodiscard]] std::vector<Eigen::Vector3d> points_along(const Backbone& backbone, std::size_t count);
+
+struct ReportMotion;
+/// Returns the 3D view's data as JSON for the page's script. It is valid inside a script element.
+[[nodiscard]] std::string space_json(const ReportSpace& space, const ReportMotion& motion);
+
+}  // namespace flexura

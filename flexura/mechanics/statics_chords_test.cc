@@ -97,6 +97,7 @@ TEST(StaticsChords, APieceIsPartOfItsSection) {
     const std::vector<double> tensions = random_tensions(random, rod, 0.5);
     RodLoads loads = random_loads(random, rod);
     std::vector<RodPlace> places;
+    places.reserve(rod.sections.size());
     for (std::size_t i = 0; i < rod.sections.size(); ++i) places.push_back({i, random.uniform(0, 1)});
     RodStatics divided(rod, places);
     const Equilibrium pieces = divided.solve({.tensions = tensions}, loads);

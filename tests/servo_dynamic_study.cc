@@ -42,9 +42,11 @@ struct Method {
 
 std::vector<Method> methods() {
   return {{.name = "predictive", .law = ServoLawKind::predictive},
+          {.name = "computed torque", .law = ServoLawKind::computed_torque},
+          {.name = "shape potential", .law = ServoLawKind::shape_potential},
           {.name = "shape"},
           {.name = "points", .law = ServoLawKind::points},
-          {.name = "potential", .law = ServoLawKind::potential},
+          {.name = "image potential", .law = ServoLawKind::potential},
           {.name = "shape, recursive", .jacobian = ServoJacobian::recursive},
           {.name = "points, broyden", .law = ServoLawKind::points, .jacobian = ServoJacobian::broyden},
           {.name = "shape, without swing in the model", .model = "static"},

@@ -8,6 +8,7 @@
 #include "flexura/control/limiter.h"
 #include "flexura/control/limiter_paths.h"
 #include "flexura/model/arm_difference.h"
+#include "flexura/safety/clearance_slope.h"
 
 namespace flexura {
 namespace {
@@ -15,7 +16,7 @@ namespace {
 // Distance from a limit at which the nearest command stays, as a share of the limit: rounding must not break
 // it.
 constexpr double near_limit = 1 - 1e-7;
-// Differences for derivatives of motor positions and clearances, rad.
+// Differences for derivatives of motor positions, rad.
 constexpr double small_bend = 1e-3;
 
 }  // namespace
@@ -84,26 +85,10 @@ void CommandLimiter::add_clearances(const ArmState& desired, ConvexLimits& limit
   // Objects farther away than this are out of reach.
   const double reach = 0.5 * model_.shaped().length();
   for (const ContactWatch& watch : contacts_) {
-    const double clearance = watch.contact(shape, reach).clearance;
-    if (!(clearance < reach)) continue;
-    Eigen::RowVectorXd by_shape = Eigen::RowVectorXd::Zero(3 * static_cast<Eigen::Index>(shape.bends.size()));
-    const auto difference = [&](auto&& number) {
-      ArmState sides[2] = {shape, shape};
-      number(sides[0]) += small_bend;
-      number(sides[1]) -= small_bend;
-      return (watch.contact(sides[0], 2 * reach).clearance - watch.contact(sides[1], 2 * reach).clearance) /
-             (2 * small_bend);
-    };
-    for (std::size_t k = 0; k < shape.bends.size(); ++k) {
-      const auto column = 3 * static_cast<Eigen::Index>(k);
-      by_shape[column] = difference([k](ArmState& state) -> double& { return state.bends[k].x(); });
-      if (arm_.kind == ArmKind::spatial)
-        by_shape[column + 1] = difference([k](ArmState& state) -> double& { return state.bends[k].y(); });
-      if (model_.shaped().sections[k].can_stretch())
-        by_shape[column + 2] = difference([k](ArmState& state) -> double& { return state.stretches[k]; });
-    }
+    const auto slope = clearance_slope(watch, model_.shaped(), shape, reach);
+    if (!slope) continue;
     Eigen::MatrixXd by_command;
-    actuation.by_command(by_shape, sent_, by_command);
+    actuation.by_command(slope->by_state, sent_, by_command);
     BandLimit band{.normal = Eigen::VectorXd::Zero(x.size()),
                    .lower = 0,
                    .upper = std::numeric_limits<double>::infinity()};
@@ -117,7 +102,7 @@ void CommandLimiter::add_clearances(const ArmState& desired, ConvexLimits& limit
     if (!band.normal.allFinite()) continue;
     // Curvature of the distance and errors of its derivative are left a part of the clearance.
     constexpr double part = 0.8;
-    band.lower = band.normal.dot(x) - part * std::max(0.0, clearance - contact_tolerance) / braking;
+    band.lower = band.normal.dot(x) - part * std::max(0.0, slope->clearance - contact_tolerance) / braking;
     limits.bands.push_back(std::move(band));
   }
 }

@@ -148,6 +148,28 @@ void PredictiveLaw::predict(const PredictiveState& now, const Eigen::MatrixXd& b
   for (int i = 0; i < horizon; ++i) end_[static_cast<std::size_t>(i)] *= T * (horizon - i) + decay;
 }
 
+// A limit that the present command breaks is reached again during the horizon.
+void PredictiveLaw::set_limits(const PredictiveState& now) {
+  const auto count = static_cast<Eigen::Index>(now.limits.size());
+  limit_rows_.setZero(count, variables_.size());
+  limit_rooms_.resize(count * config_.horizon);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const PredictiveLimit& limit = now.limits[static_cast<std::size_t>(i)];
+    for (std::size_t k = 0; k < variables_.parts().size(); ++k) {
+      const ArmVariables::Part& part = variables_.parts()[k];
+      const auto c = 3 * static_cast<Eigen::Index>(k);
+      limit_rows_(i, part.at) = limit.by_command[c];
+      if (part.is_spatial) limit_rows_(i, part.at + 1) = limit.by_command[c + 1];
+      if (part.is_stretchable) limit_rows_(i, part.stretch_at()) = limit.by_command[c + 2];
+    }
+    const double norm = limit_rows_.row(i).norm();
+    const double room = norm > 0 ? limit.room / norm : std::numeric_limits<double>::infinity();
+    if (norm > 0) limit_rows_.row(i) /= norm;
+    for (int k = 0; k < config_.horizon; ++k)
+      limit_rooms_[k * count + i] = room < 0 ? room * (k + 1) / config_.horizon : room;
+  }
+}
+
 // Minimises the cost within the limits. Scaled by the alternating direction method: x are the changes, and
 // rates and commands after them are projected on their sets.
 void PredictiveLaw::solve(const Eigen::VectorXd& sent, const Eigen::VectorXd& rate) {
@@ -209,8 +231,15 @@ void PredictiveLaw::solve(const Eigen::VectorXd& sent, const Eigen::VectorXd& ra
       }
     return is_inside;
   };
+  const Eigen::Index count = limit_rows_.rows();
+  Eigen::VectorXd y(count * horizon), y_in = y, y0 = y, dual_y = Eigen::VectorXd::Zero(y.size());
+  const auto limited = [&](const Eigen::VectorXd& commands, Eigen::VectorXd& products) {
+    for (int k = 0; k < horizon; ++k)
+      products.segment(k * count, count).noalias() = limit_rows_ * (commands.segment(k * n, n) - sent);
+  };
+  limited(u, y);
   w_in = w, u_in = u;
-  if (project(w_in, u_in)) return;
+  if (project(w_in, u_in) && (y.array() <= limit_rooms_.array()).all()) return;
 
   // rates = w0 + B x with B lower triangular of ones; commands = u0 + T C x with C the ramps.
   Eigen::MatrixXd of_rates = Eigen::MatrixXd::Zero(horizon, horizon), of_ramps = of_rates;
@@ -222,29 +251,38 @@ void PredictiveLaw::solve(const Eigen::VectorXd& sent, const Eigen::VectorXd& ra
   const double weight_w = typical / of_rates.diagonal().mean(),
                weight_u = typical / (T * T * of_ramps.diagonal().mean());
   Eigen::MatrixXd system = H_;
+  const Eigen::MatrixXd limiting = limit_rows_.transpose() * limit_rows_;
   for (int i = 0; i < horizon; ++i)
-    for (int j = 0; j < horizon; ++j)
-      system.block(i * n, j * n, n, n).diagonal().array() +=
-          weight_w * of_rates(i, j) + weight_u * T * T * of_ramps(i, j);
+    for (int j = 0; j < horizon; ++j) {
+      auto block = system.block(i * n, j * n, n, n);
+      block.diagonal().array() += weight_w * of_rates(i, j) + weight_u * T * T * of_ramps(i, j);
+      block += weight_u * T * T * of_ramps(i, j) * limiting;
+    }
   const Cholesky factored(system);
   Eigen::VectorXd w0(size), u0(size), dual_w = Eigen::VectorXd::Zero(size), dual_u = dual_w, right(size);
   rates_of(Eigen::VectorXd::Zero(size), w0, u0);
+  limited(u0, y0);
+  y_in = y.cwiseMin(limit_rooms_);
   for (int turn = 0; turn < config_.most_iterations; ++turn) {
     // Gradient of the penalties, transposed ramps from the last step to the first.
     Eigen::VectorXd sum_w = Eigen::VectorXd::Zero(n), sum_u = sum_w, ramp = sum_w;
     for (int k = horizon - 1; k >= 0; --k) {
       sum_w += (w_in - dual_w - w0).segment(k * n, n);
       sum_u += (u_in - dual_u - u0).segment(k * n, n);
+      sum_u.noalias() += limit_rows_.transpose() * (y_in - dual_y - y0).segment(k * count, count);
       ramp += sum_u;
       right.segment(k * n, n) = weight_w * sum_w + weight_u * T * ramp;
     }
     changes_ = factored.solve(right - gradient_);
     rates_of(changes_, w, u);
-    w_in = w + dual_w, u_in = u + dual_u;
+    limited(u, y);
+    w_in = w + dual_w, u_in = u + dual_u, y_in = (y + dual_y).cwiseMin(limit_rooms_);
     (void)project(w_in, u_in);
-    dual_w += w - w_in, dual_u += u - u_in;
+    dual_w += w - w_in, dual_u += u - u_in, dual_y += y - y_in;
     constexpr double near = 1e-3;  // rad/s, rad
-    if ((w - w_in).cwiseAbs().maxCoeff() < near && (u - u_in).cwiseAbs().maxCoeff() < near * T) break;
+    if ((w - w_in).cwiseAbs().maxCoeff() < near && (u - u_in).cwiseAbs().maxCoeff() < near * T &&
+        (count == 0 || (y - y_in).cwiseAbs().maxCoeff() < near * T))
+      break;
   }
 }
 
@@ -252,6 +290,7 @@ ArmState PredictiveLaw::step(const PredictiveState& now, const Eigen::MatrixXd& 
   find_metric(interpolate(now.rest, now.desired, 0.5));
   predict(now, by_command);
   const Eigen::VectorXd sent = packed(variables_, now.sent), rate = packed(variables_, now.rate);
+  set_limits(now);
   solve(sent, rate);
   // The solver stops near the limits; the next command keeps them exactly.
   Eigen::VectorXd first = rate + changes_.head(variables_.size());

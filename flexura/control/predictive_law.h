@@ -19,6 +19,12 @@ struct PredictiveLawConfig {
   int most_iterations = 60;  ///< Largest number of iterations of the quadratic program's solver.
 };
 
+/// A limit on all commands u of the horizon: by_command . (u - sent) <= room.
+struct PredictiveLimit {
+  Eigen::RowVectorXd by_command;  ///< By (bend_x, bend_y, stretch) of each section.
+  double room = 0;                ///< Negative if the present command breaks the limit.
+};
+
 /// State of an arm and its target from now on, for a step of the law.
 struct PredictiveState {
   ArmState sent;     ///< Last command, which the drives have reached.
@@ -27,6 +33,7 @@ struct PredictiveState {
   ArmState desired;  ///< Target shape now.
   /// Change of the target shape in each later step; shorter lists end at the last target.
   std::vector<ArmState> desired_later = {};
+  std::vector<PredictiveLimit> limits = {};
   std::vector<SwingMode> modes = {};  ///< Modes of the arm's swing; empty if the arm does not swing.
   Eigen::VectorXd swing = {};         ///< z of all modes, then z'.
   /// Estimated frequency of each mode, as a factor on SwingMode::frequency.
@@ -38,8 +45,9 @@ struct PredictiveState {
 ///   sum over k of |e_k|^2 + rho |a_k / step|^2,
 /// with e_k the predicted distance along the arm from the target, root mean square, share of its length. The
 /// prediction is linear about the present command: the shape at rest follows the commands by its derivative,
-/// and the modes swing freely between kicks. Bends and bend rates stay within their limits. Solved by the
-/// alternating direction method of multipliers (S. Boyd et al., 2011), with projections on discs. Its result
+/// and the modes swing freely between kicks. Bends and bend rates stay within their limits, and so do linear
+/// functions of the commands (PredictiveLimit). Solved by the alternating direction method of multipliers (S.
+/// Boyd et al., 2011), with projections on discs and half-spaces. Its result
 /// is a request, for a limiter.
 class PredictiveLaw {
  public:
@@ -51,6 +59,15 @@ class PredictiveLaw {
   /// command, 3 arcs x 3 sections (Actuation::slopes).
   [[nodiscard]] ArmState step(const PredictiveState& now, const Eigen::MatrixXd& by_command);
 
+  /// The quadratic program of the last step: the changes x of the rates minimise x . H x / 2 + gradient . x.
+  /// For comparison with other solvers. References are valid until the next step.
+  struct Problem {
+    const Eigen::MatrixXd& H;
+    const Eigen::VectorXd& gradient;
+    const Eigen::VectorXd& found;  ///< The changes found.
+  };
+  [[nodiscard]] Problem problem() const { return {H_, gradient_, changes_}; }
+
  private:
   struct Disc {
     Eigen::Index at = 0;  // First of its numbers in a step's variables.
@@ -59,6 +76,7 @@ class PredictiveLaw {
   };
   void find_metric(const ArmState& shape);
   void predict(const PredictiveState& now, const Eigen::MatrixXd& by_command);
+  void set_limits(const PredictiveState& now);
   void solve(const Eigen::VectorXd& sent, const Eigen::VectorXd& rate);
 
   Arm driven_, shaped_;
@@ -71,6 +89,8 @@ class PredictiveLaw {
   std::vector<Eigen::MatrixXd> end_;     // Weighted error at the end, by the change of each step.
   Eigen::VectorXd free_, free_end_;      // Weighted errors without changes.
   Eigen::VectorXd changes_;              // The changes found.
+  Eigen::MatrixXd limit_rows_;           // Of the linear limits, by the variables, each of norm 1.
+  Eigen::VectorXd limit_rooms_;          // In every step: rows times (command - sent) must not exceed these.
   Eigen::MatrixXd H_;
   Eigen::VectorXd gradient_;
 };

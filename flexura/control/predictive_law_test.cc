@@ -116,5 +116,40 @@ TEST(PredictiveLaw, RefusesWhatMakesNoSense) {
   EXPECT_THROW(PredictiveLaw(arm, arm, {.rate = std::nan("")}), std::invalid_argument);
 }
 
+// The target lies beyond a linear limit: the arm stops at it, as near to the target as the limit allows. The
+// metric of a small bend counts the second section's bend less than the first one's, so that only the limit
+// itself has a closed form.
+TEST(PredictiveLaw, KeepsLinearLimits) {
+  for_random_cases(20, [](TestRandom& random) {
+    const Arm arm = small_arm(2, std::numbers::pi / 2);
+    PredictiveLaw law(arm, arm, {.step = command_step, .most_iterations = 400});
+    Swinging plant(random.uniform(5, 25));
+    Eigen::RowVectorXd normal = Eigen::RowVectorXd::Zero(6);
+    for (const Eigen::Index i : {0, 1, 3, 4}) normal[i] = random.uniform(-1, 1);
+    normal /= normal.norm();
+    const auto product = [&](const ArmState& state) {
+      return normal.segment<2>(0).dot(state.bends[0]) + normal.segment<2>(3).dot(state.bends[1]);
+    };
+    const double most = random.uniform(0.1, 0.4);
+    ArmState target = ArmState::straight(2);
+    for (std::size_t k = 0; k < 2; ++k)
+      target.bends[k] = 0.8 * normal.segment<2>(3 * static_cast<Eigen::Index>(k)).transpose();
+    for (int i = 0; i < 150; ++i) {
+      PredictiveState now = plant.state(target);
+      now.limits = {{normal, most - product(plant.sent)}};
+      plant.go(law.step(now, Eigen::MatrixXd::Identity(6, 6)));
+      EXPECT_LE(product(plant.sent), most + 0.01) << "step " << i;
+    }
+    EXPECT_GE(product(plant.sent), most - 0.01);
+    // A limit that is broken already is reached again.
+    for (int i = 0; i < 150; ++i) {
+      PredictiveState now = plant.state(target);
+      now.limits = {{normal, 0.5 * most - product(plant.sent)}};
+      plant.go(law.step(now, Eigen::MatrixXd::Identity(6, 6)));
+    }
+    EXPECT_NEAR(product(plant.sent), 0.5 * most, 0.01);
+  });
+}
+
 }  // namespace
 }  // namespace flexura

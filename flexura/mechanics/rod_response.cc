@@ -247,6 +247,16 @@ void RodResponse::analytic_slopes(RodStatics::Slack slack, Eigen::MatrixXd& by_c
   by_command = arcs_along(statics_.slopes(slack).q_by_input * displacement_slopes(last_->command));
 }
 
+TendonTensions RodResponse::tensions(const ArmState& command) const {
+  const std::lock_guard lock(mutex_);
+  const Answer& here = answer(command);
+  if (!here.at.converged() || has_driven_lengths_) return {};
+  return {.tensions = Eigen::Map<const Eigen::VectorXd>(here.at.tensions.data(),
+                                                        static_cast<Eigen::Index>(here.at.tensions.size())),
+          .by_command =
+              statics_.slopes(RodStatics::Slack::hangs).tensions_by_input * displacement_slopes(command)};
+}
+
 std::vector<ArmState> RodResponse::released(const ArmState& command) const {
   const std::lock_guard lock(mutex_);
   const Equilibrium near = answer(command).at;

@@ -46,6 +46,7 @@ class RodResponse : public ArmResponse {
   /// "The rod as a model"). Empty unless `swings` was set.
   [[nodiscard]] std::vector<SwingMode> swing(const ArmState& command, std::size_t most) const override;
 
+  [[nodiscard]] TendonTensions tensions(const ArmState& command) const override;
   /// A released tendon is one that is paid out by the length of the arm.
   [[nodiscard]] std::vector<ArmState> released(const ArmState& command) const override;
 

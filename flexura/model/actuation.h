@@ -60,6 +60,10 @@ class Actuation {
   /// Returns the slowest modes in which the arm swings about the equilibrium of a command
   /// (ArmResponse::swing); empty without a response.
   [[nodiscard]] std::vector<SwingMode> swing(const ArmState& command, std::size_t most) const;
+  /// Returns the tensions of the tendons for a command (ArmResponse::tensions); empty without a response.
+  [[nodiscard]] TendonTensions tensions(const ArmState& command) const {
+    return response_ ? response_->tensions(command) : TendonTensions();
+  }
   /// Returns, for each tendon, the shape for a command if this tendon had no tension
   /// (ArmResponse::released); empty without a response.
   [[nodiscard]] std::vector<ArmState> released(const ArmState& command) const;

@@ -17,6 +17,12 @@ struct SwingMode {
   Eigen::VectorXd kick;   ///< Change of z' by a change of u', per (bend_x, bend_y, stretch) of each section.
 };
 
+/// Tensions of an arm's tendons.
+struct TendonTensions {
+  Eigen::VectorXd tensions;    ///< At the arm's base, N.
+  Eigen::MatrixXd by_command;  ///< Their derivatives by (bend_x, bend_y, stretch) of each section.
+};
+
 /// Computes the shape for a command if the arcs' bends are not fixed shares of their section's bend. An
 /// example is an elastic rod under tendons, weight and loads. The shape depends on the command alone.
 /// Thread-safe.
@@ -43,6 +49,9 @@ class ArmResponse {
                                                      std::size_t /*most*/) const {
     return {};
   }
+  /// Returns the tensions of the tendons in the equilibrium of a command. Empty for an arm without tendons or
+  /// without an equilibrium. Throws std::invalid_argument for a command of another arm.
+  [[nodiscard]] virtual TendonTensions tensions(const ArmState& /*command*/) const { return {}; }
   /// Returns, for each tendon, the shape for a command if this tendon had no tension. Bends are NaN if the
   /// arm then has no equilibrium. Empty for an arm without tendons. Throws std::invalid_argument for a
   /// command of another arm.

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "flexura/model/arm_difference.h"
+#include "flexura/safety/motion_check.h"
 #include "flexura/servo/servo_error.h"
 
 namespace flexura {
@@ -40,7 +41,9 @@ ArmState DisturbanceWatch::predicted(const Sample& from) const {
 }
 
 void DisturbanceWatch::add(double time, const ArmState& rest, const ArmState& command, double sigma) {
-  last_ = {time, rest, command, model_.actuation().shape(command)};
+  Sample newest{time, rest, command, model_.actuation().shape(command)};
+  if (!is_possible(rest) || !is_possible(newest.nominal)) return;
+  last_ = std::move(newest);
   // The newest sample that is at least a window old stays.
   while (samples_.size() > 1 && samples_[1].time <= time - config_.window) samples_.pop_front();
   if (first_.rest.bends.empty()) first_ = last_;
@@ -51,7 +54,6 @@ void DisturbanceWatch::add(double time, const ArmState& rest, const ArmState& co
   double allowed = config_.limit + config_.model_error * motion.rms + certain * sigma;
   constexpr double back = 0.5;  // A disturbance is over well below the limit at which it begins.
   if (is_disturbed_) allowed *= back;
-  // False if the deviation is not a number: the model has no equilibrium there.
   in_a_row_ = (deviation_ > allowed) != is_disturbed_ ? in_a_row_ + 1 : 0;
   if (in_a_row_ >= config_.patience) {
     if (!is_disturbed_) before_ = samples_.front(), since_ = time;
@@ -73,9 +75,9 @@ std::optional<std::size_t> DisturbanceWatch::released_tendon(const ArmState& exp
   std::optional<std::size_t> best;
   double best_left = explains * moved.norm();
   for (std::size_t i = 0; i < released.size(); ++i) {
+    if (!is_possible(released[i])) continue;  // The arm has no equilibrium without this tendon.
     const Eigen::VectorXd way = points_of(model_.shaped(), released[i]) - nominal;
     const double share = way.dot(moved) / way.squaredNorm();
-    // False for a tendon without whose tension the arm has no equilibrium.
     if (!(share >= least && share <= most)) continue;
     const double left = (moved - share * way).norm();
     if (left < best_left) best = i, best_left = left;

@@ -32,7 +32,7 @@ class DisturbanceWatch {
 
   /// Adds an observation of the arm. `time`: s, later than the previous one. `rest`: estimated shape without
   /// swing. `command`: position of the drives at this time. `sigma`: standard deviation of the shape, share
-  /// of the length.
+  /// of the length. Ignores shapes that are not finite, and commands without an equilibrium.
   void add(double time, const ArmState& rest, const ArmState& command, double sigma);
 
   /// Returns true from the observation at which a disturbance was detected until it is over.

@@ -51,8 +51,7 @@ FeatureMarker::FeatureMarker(ServoLawKind law, Arm arm, std::int64_t points)
 
 std::array<std::vector<FeatureMark>, 2> FeatureMarker::of(const ServoObservation& observed) {
   std::array<std::vector<FeatureMark>, 2> marks;
-  if (law_ == ServoLawKind::shape || law_ == ServoLawKind::predictive || !observed.estimate.is_found)
-    return marks;
+  if (law_ == ServoLawKind::shape || predicts_motion(law_) || !observed.estimate.is_found) return marks;
   const std::array<View, 2> views = {observed.seen[0].view, observed.seen[1].view};
   if (!features_->measured(observed.estimate.shape.state, observed.seen, seen_) ||
       !features_->predict(observed.desired, views, desired_))
@@ -62,6 +61,8 @@ std::array<std::vector<FeatureMark>, 2> FeatureMarker::of(const ServoObservation
     switch (law_) {
       case ServoLawKind::shape:
       case ServoLawKind::predictive:
+      case ServoLawKind::computed_torque:
+      case ServoLawKind::shape_potential:
         break;
       case ServoLawKind::points:
         marks[i] = points_in(i);

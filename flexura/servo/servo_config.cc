@@ -32,8 +32,9 @@ const Table<ServoCameraPrior>& fields_of(const ServoCameraPrior*) {
 }
 
 const std::vector<std::string>& names_of(const ServoLawKind*) {
-  static const std::vector<std::string> names = {"shape",     "points",      "chords",    "moments",
-                                                 "potential", "silhouettes", "predictive"};
+  static const std::vector<std::string> names = {"shape",      "points",          "chords",
+                                                 "moments",    "potential",       "silhouettes",
+                                                 "predictive", "computed_torque", "shape_potential"};
   return names;
 }
 
@@ -57,6 +58,8 @@ void check_servo(const ServoConfig& config) {
   }
   require(config.measure == ServoMeasure::picture || has_chords(config.law),
           "only the laws chords and potential can use measure = flow");
+  require(config.jacobian == ServoJacobian::model || !predicts_motion(config.law),
+          "the laws predictive, computed_torque and shape_potential need jacobian = model");
   require(config.anchor > 0, "a servo's anchor must be above 0");
   require(config.settle >= 0 && config.hold_after > 0 && config.give_up_after > config.hold_after &&
               config.timeout > config.settle,

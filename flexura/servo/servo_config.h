@@ -30,11 +30,20 @@ enum class ServoLawKind : std::uint8_t {
   silhouettes,  ///< Positions of the two edges of the arm's images, perpendicular to the edges.
   /// The estimated shape, by model predictive control of commands and swing (PredictiveLaw).
   predictive,
+  computed_torque,  ///< The estimated shape, by the forces in the modes of the arm's swing (ModalLaw).
+  shape_potential,  ///< The estimated shape, by an artificial potential of the shape's error with
+                    ///< dissipation.
 };
 
 /// Returns true if a law compares angles of chords, so that optical flow can carry them.
 [[nodiscard]] constexpr bool has_chords(ServoLawKind law) {
   return law == ServoLawKind::chords || law == ServoLawKind::potential;
+}
+
+/// Returns true for laws that predict the arm's motion by its model, swing included (ModelLaw).
+[[nodiscard]] constexpr bool predicts_motion(ServoLawKind law) {
+  return law == ServoLawKind::predictive || law == ServoLawKind::computed_torque ||
+         law == ServoLawKind::shape_potential;
 }
 
 /// Source of the chord angles.

@@ -200,6 +200,8 @@ std::unique_ptr<ServoFeatures> servo_features(ServoLawKind law, const Arm& arm, 
   switch (law) {
     case ServoLawKind::shape:
     case ServoLawKind::predictive:
+    case ServoLawKind::computed_torque:
+    case ServoLawKind::shape_potential:
       return std::make_unique<EstimatedShape>();
     case ServoLawKind::points:
       return std::make_unique<ImageFeatures>(arm, FeatureSet::of_points(points));

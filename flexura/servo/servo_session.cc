@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <exception>
 #include <memory>
@@ -11,10 +12,10 @@
 #include <variant>
 
 #include "flexura/camera/camera.h"
-#include "flexura/control/predictive_law.h"
 #include "flexura/model/arm_difference.h"
 #include "flexura/port/camera_moves.h"
 #include "flexura/servo/disturbance_watch.h"
+#include "flexura/servo/model_law.h"
 #include "flexura/servo/picture_meter.h"
 #include "flexura/servo/rig_reader.h"
 #include "flexura/servo/servo_features.h"
@@ -53,9 +54,7 @@ class Session {
         keeper_(nominal, config.cameras) {
     if (config.disturbance || !nominal_arm_.actuation().is_linear())
       watch_.emplace(nominal_arm_, DisturbanceConfig{.limit = config.disturbance.value_or(0.05)});
-    if (config.law == ServoLawKind::predictive)
-      predictive_.emplace(nominal_arm_.driven(), model_.arm,
-                          PredictiveLawConfig{.step = config.step, .rate = 1.5 * config.rate});
+    if (predicts_motion(config.law)) model_law_.emplace(nominal_arm_, config);
   }
 
   ServoResult run() {
@@ -263,28 +262,6 @@ class Session {
     return cause.empty() ? cause : "; the arm moved " + cause;
   }
 
-  // Returns the command of the predictive law.
-  [[nodiscard]] ArmState predicted(double now) {
-    const double since = now - result_.start;
-    PredictiveState state{.sent = sent_,
-                          .rate = sent_,
-                          .rest = observer_.expected(model_.bent(sent_)),
-                          .desired = goals_->at(since).state};
-    for (std::size_t i = 0; i < sent_.bends.size(); ++i) {
-      state.rate.bends[i] = (sent_.bends[i] - sent_before_.bends[i]) / config_.step;
-      state.rate.stretches[i] = (sent_.stretches[i] - sent_before_.stretches[i]) / config_.step;
-    }
-    if (since < goals_->last())
-      for (int k = 1; k <= PredictiveLawConfig().horizon; ++k)
-        state.desired_later.push_back(goals_->at(since + k * config_.step).state);
-    state.modes = observer_.swing().modes();
-    state.swing = observer_.swing().after(observer_.path_until(now, state.modes));
-    state.frequency_factors = observer_.swing().frequency_factors();
-    Eigen::MatrixXd by_command;
-    nominal_arm_.actuation().slopes(sent_, by_command);
-    return predictive_->step(state, by_command);
-  }
-
   // Returns the law's command for the last observation.
   [[nodiscard]] ArmState asked(double now, ServoStep& step) {
     const ServoObservation& observed = *observer_.last();
@@ -295,9 +272,9 @@ class Session {
     step.sigma = observer_.sigma();
     const double since = now - result_.start;
     step.ahead = servo_error(model_.arm, observer_.expected(model_.bent(sent_)), goals_->at(since).state);
-    if (predictive_) {
+    if (model_law_) {
       step.potential = 0.5 * squared_bends(minus(seen, step.desired));
-      return predicted(now);
+      return model_law_->command({.now = now, .since_start = since}, sent_, sent_before_, observer_, *goals_);
     }
     const ArmState measured = rig_.measured(observed.time);
     const ServoLaw::Output output = law_.step({.observed = observed,
@@ -390,7 +367,7 @@ class Session {
   ShapeObserver observer_;
   std::unique_ptr<ServoFeatures> features_;
   ServoLaw law_;
-  std::optional<PredictiveLaw> predictive_;  // Instead of law_.
+  std::optional<ModelLaw> model_law_;  // Instead of law_.
   std::optional<DisturbanceWatch> watch_;
   ViewKeeper keeper_;
   std::optional<ServoGoals> goals_;

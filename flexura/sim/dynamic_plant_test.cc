@@ -113,6 +113,25 @@ TEST(DynamicPlant, ConvergesWithItsStep) {
   EXPECT_LE(half, 1e-3);
 }
 
+// Within a step, the shape is interpolated once the step's end is known: as accurate as the steps.
+TEST(DynamicPlant, IsAsAccurateBetweenStepsAsAtThem) {
+  const auto tip = [](double step, double until, double time) {
+    RigConfig config = moving_rig(9.81);
+    config.arm.time_step = step;
+    SimulatedRig rig(config, config, numbers_renderer, 1);
+    EXPECT_TRUE(rig.ports().arm->command(bent_state(), 0));
+    rig.clock().wait_until(until);
+    return moving_tip(rig, time);
+  };
+  const Eigen::Vector3d fine = tip(0.0005, 0.4, 0.398);
+  // 0.398 s is amid a step of 8 or 4 ms.
+  const double coarse = (tip(0.008, 0.4, 0.396) - tip(0.0005, 0.4, 0.396)).norm(),
+               half = (tip(0.004, 0.4, 0.398) - fine).norm();
+  EXPECT_LE(half, coarse);
+  // Before and after the step's end is known.
+  EXPECT_LE((tip(0.004, 0.398, 0.398) - tip(0.004, 0.4, 0.398)).norm(), half + 1e-6);
+}
+
 // The arm falls on an obstacle below it; obstacle and tendons carry its weight.
 TEST(DynamicPlant, RestsOnWhatItTouches) {
   RigConfig config = moving_rig(9.81, 0.05);

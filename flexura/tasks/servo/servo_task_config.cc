@@ -103,13 +103,16 @@ const Table<ServoTask>& fields_of(const ServoTask*) {
           "servo",
           "Servos the shape of the arm to a target by two cameras. The duration depends on the convergence.")
           .field("name", &T::name, {.meaning = "Name of the task in results.", .default_text = "its kind"})
-          .field("law", of_task(&T::law),
-                 {.meaning = "Error that drives the arm. `shape`: shape estimated from both images minus "
-                             "target shape. `points`, `chords`, `moments`: image features. `silhouettes`: "
-                             "image edges. `potential`: the paper's artificial potential on the errors in "
-                             "two image planes (XOY of the first camera, ZOY of the second). "
-                             "`predictive`: the shape, with commands planned ahead so that a dynamic arm "
-                             "stops swinging."})
+          .field(
+              "law", of_task(&T::law),
+              {.meaning =
+                   "Error that drives the arm. `shape`: shape estimated from both images minus "
+                   "target shape. `points`, `chords`, `moments`: image features. `silhouettes`: "
+                   "image edges. `potential`: the paper's artificial potential on the errors in "
+                   "two image planes (XOY of the first camera, ZOY of the second). "
+                   "`predictive`: the shape, with commands planned ahead so that a dynamic arm "
+                   "stops swinging. `computed_torque` and `shape_potential`: the shape, by the forces in the "
+                   "modes of the arm's swing."})
           .field("measure", of_task(&T::measure),
                  {.meaning = "Source of the angles for chords and potential: each picture alone, or optical "
                              "flow since the previous picture, with correction towards each picture."})
@@ -279,6 +282,10 @@ void check_servo(const ServoTask& task, const ArmConfig& arm, const std::vector<
   if (task.measure == ServoMeasure::flow && !has_chords(task.law))
     reader.problem_at(path + ".measure",
                       "\"flow\" carries the angles of chords: expected the law chords or potential");
+  if (task.jacobian != ServoJacobian::model && predicts_motion(task.law))
+    reader.problem_at(path + ".jacobian",
+                      "the laws predictive, computed_torque and shape_potential predict by the arm's model: "
+                      "expected \"model\"");
   for (std::size_t i = 0; i < task.target.size(); ++i) {
     const std::string place = fmt::format("{}.target[{}]", path, i);
     check_target(task.target[i], arm, place, reader);

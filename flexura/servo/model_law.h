@@ -1,0 +1,39 @@
+#pragma once
+
+#include <optional>
+
+#include "flexura/control/modal_law.h"
+#include "flexura/control/predictive_law.h"
+#include "flexura/model/arm_model.h"
+#include "flexura/servo/predictive_limits.h"
+#include "flexura/servo/servo_config.h"
+#include "flexura/servo/servo_goals.h"
+#include "flexura/servo/shape_observer.h"
+
+namespace flexura {
+
+/// Laws of a servo that predict the arm's motion by its model, swing included.
+class ModelLaw {
+ public:
+  /// `config.law` must be such a law (predicts_motion).
+  ModelLaw(const ArmModel& model, const ServoConfig& config);
+
+  /// Times of a step, s: of the rig's clock, and since the servo's start.
+  struct Times {
+    double now = 0, since_start = 0;
+  };
+  /// Returns the law's command for the next step, from the last observation. `sent` and `before`: the last
+  /// two commands.
+  [[nodiscard]] ArmState command(const Times& times, const ArmState& sent, const ArmState& before,
+                                 const ShapeObserver& observer, const ServoGoals& goals);
+
+ private:
+  ArmModel model_;
+  double step_;
+  int horizon_;
+  std::optional<PredictiveLaw> predictive_;
+  std::optional<ModalLaw> modal_;
+  PredictiveLimits limits_;
+};
+
+}  // namespace flexura

@@ -1,0 +1,107 @@
+#include "flexura/servo/predictive_limits.h"
+
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <optional>
+#include <utility>
+
+#include "flexura/kinematics/jacobian.h"
+#include "flexura/safety/clearance_slope.h"
+
+namespace flexura {
+namespace {
+
+// Part of a motor's pull-out torque that may be used.
+constexpr double safe_torque = 0.8;
+// Clearance to keep, and the one below which an object counts, shares of the arm's length.
+constexpr double margin = 0.005, near = 0.2;
+// Distance of the backbone from the borders of a picture, px.
+constexpr double border = 8;
+constexpr int places_an_arc = 4;
+
+}  // namespace
+
+PredictiveLimits::PredictiveLimits(ArmModel model, const ServoConfig& config)
+    : model_(std::move(model)), keeps_view_(!config.follow) {
+  if (config.drive)
+    for (const Axis& axis : config.drive->axes)
+      most_tension_.push_back(safe_torque * axis.motor.pull_out_torque(0) / axis.torque(1));
+  contacts_.emplace_back(model_.shaped());
+  for (const Obstacle& obstacle : config.obstacles) contacts_.emplace_back(model_.shaped(), obstacle);
+}
+
+std::vector<PredictiveLimit> PredictiveLimits::find(const ArmState& sent, const ArmState& rest,
+                                                    const Eigen::MatrixXd& by_command,
+                                                    const std::array<View, 2>& views) const {
+  std::vector<PredictiveLimit> limits;
+  if (!by_command.allFinite()) return limits;
+  add_tensions(sent, limits);
+  add_clearances(rest, by_command, limits);
+  if (keeps_view_)
+    for (const View& view : views) add_borders(rest, by_command, view, limits);
+  return limits;
+}
+
+void PredictiveLimits::add_tensions(const ArmState& sent, std::vector<PredictiveLimit>& limits) const {
+  bool is_limited = false;
+  for (const double most : most_tension_) is_limited = is_limited || std::isfinite(most);
+  if (!is_limited) return;
+  const TendonTensions now = model_.actuation().tensions(sent);
+  for (Eigen::Index i = 0; i < now.tensions.size(); ++i) {
+    const double most = most_tension_[static_cast<std::size_t>(i)];
+    if (std::isfinite(most) && now.by_command.row(i).allFinite())
+      limits.push_back({now.by_command.row(i), most - now.tensions[i]});
+  }
+}
+
+void PredictiveLimits::add_clearances(const ArmState& rest, const Eigen::MatrixXd& by_command,
+                                      std::vector<PredictiveLimit>& limits) const {
+  const double length = model_.shaped().length();
+  for (const ContactWatch& watch : contacts_)
+    if (const auto slope = clearance_slope(watch, model_.shaped(), rest, near * length))
+      limits.push_back({-slope->by_state * by_command, slope->clearance - margin * length});
+}
+
+// Of the backbone's points, only the nearest to each border limits.
+void PredictiveLimits::add_borders(const ArmState& rest, const Eigen::MatrixXd& by_command, const View& view,
+                                   std::vector<PredictiveLimit>& limits) const {
+  const BackboneJacobian jacobian(model_.shaped(), rest);
+  const auto arcs = static_cast<Eigen::Index>(rest.bends.size());
+  struct Nearest {
+    double room = std::numeric_limits<double>::infinity();
+    MaterialPoint point;
+  };
+  std::array<Nearest, 4> nearest;  // To the left, right, upper and lower border.
+  for (std::size_t arc = 0; arc < rest.bends.size(); ++arc)
+    for (int k = 1; k <= places_an_arc; ++k) {
+      const MaterialPoint point{arc, static_cast<double>(k) / places_an_arc};
+      const Eigen::Vector3d position = jacobian.pose(point).position;
+      const auto pixel = view.project(position);
+      if (!pixel) return;
+      const std::array<double, 4> rooms = {pixel->x() - border, view.width - 1 - border - pixel->x(),
+                                           pixel->y() - border, view.height - 1 - border - pixel->y()};
+      for (std::size_t side = 0; side < 4; ++side)
+        if (rooms[side] < nearest[side].room) nearest[side].room = rooms[side], nearest[side].point = point;
+    }
+  Jacobian J(6, 3 * arcs);
+  for (std::size_t side = 0; side < 4; ++side) {
+    const MaterialPoint& point = nearest[side].point;
+    const Eigen::Vector3d position = jacobian.pose(point).position;
+    Eigen::RowVector3d by_position;
+    for (int axis = 0; axis < 3; ++axis) {
+      constexpr double small = 1e-5;  // m
+      const auto ahead = view.project(position + small * Eigen::Vector3d::Unit(axis)),
+                 behind = view.project(position - small * Eigen::Vector3d::Unit(axis));
+      if (!ahead || !behind) return;
+      by_position[axis] = ((*ahead)[side < 2 ? 0 : 1] - (*behind)[side < 2 ? 0 : 1]) / (2 * small);
+    }
+    J.setZero();
+    jacobian.at(point, J);
+    const double sign =
+        side % 2 == 0 ? -1 : 1;  // A pixel that grows leaves less room to the right and below.
+    limits.push_back({sign * by_position * J.topRows<3>() * by_command, nearest[side].room});
+  }
+}
+
+}  // namespace flexura

@@ -27,7 +27,9 @@ TurnFactor turn_factor(double angle) {
 }  // namespace
 
 std::optional<RodNode> node_of(const RodChain& chain, const RodPlace& place) {
-  if (place.section >= chain.rod().sections.size() || !(place.at >= 0 && place.at <= 1)) return {};
+  if (place.section >= chain.rod().sections.size() || !std::isfinite(place.at) || place.at < 0 ||
+      place.at > 1)
+    return {};
   const RodNode node = chain.node_of(place);
   const RodElement& element = chain.elements()[node.element];
   if (!(std::abs(element.part().of_section(element.grid().t[node.node]) - place.at) < 1e-9)) return {};

@@ -286,6 +286,20 @@ export type TextMessage =
   | OverlayMessage
   | GhostMessage;
 
+/** A problem of a text; line 0 means the whole. */
+export interface TextProblem {
+  line: number;
+  column: number;
+  text: string;
+}
+
+export interface ExperimentText {
+  text: string;
+  /** A name for a new file that does not exist yet, and its folder. */
+  name: string;
+  folder: string;
+}
+
 export interface TipResult {
   converged: boolean;
   reason: string;

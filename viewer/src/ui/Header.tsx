@@ -1,7 +1,7 @@
 import { useSignal } from '@preact/signals';
 import { flag_pace, flag_weightless } from '../protocol/state';
 import { preferences, theme_now, toggle_theme } from '../state/preferences';
-import { use_app } from './app';
+import { edit_experiment, use_app } from './app';
 import { ConditionBadge } from './ConditionBadge';
 import { fixed, format_time } from './format';
 import { Icon } from './Icon';
@@ -43,6 +43,10 @@ export function Header() {
           <button type="button" class="button quiet" title="Opens an example" onClick={() => (app.dialog.value = 'examples')}>
             <Icon name="folder" />Examples
           </button>
+        )}
+        {!teaching && hello && (
+          <button type="button" class="button quiet square" aria-label="Experiment" title="The text of the experiment: edit it, save it as a new file"
+            disabled={viewer.link.status.value.kind !== 'open'} onClick={() => edit_experiment(app)}><Icon name="text" /></button>
         )}
         {teaching ? (
           <a class="button" href="#/" title="Back to the viewer"><Icon name="back" />Viewer</a>

@@ -180,6 +180,8 @@ export interface Hello {
   /** Experiments for `open`; empty if the program was started with a file. */
   examples?: { name: string; title: string }[];
   readonly: boolean;
+  /** Speed of a run that was started in a terminal, relative to real time; 0: as fast as possible. */
+  speed?: number | null;
 }
 
 export interface EventMessage {

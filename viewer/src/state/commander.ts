@@ -126,7 +126,12 @@ export class Commander {
   /** Tasks play so fast from now on: those that run, too. */
   run_speed(speed: number, is_running: boolean): void {
     preferences.run_speed.value = speed;
-    if (is_running) void this.ask('speed', { speed });
+    if (is_running) void this.speed(speed);
+  }
+
+  /** The run in progress plays so fast from now on. */
+  speed(speed: number): Promise<boolean> {
+    return this.ask('speed', { speed });
   }
 
   /** Asks for the text of the experiment, with what is to be added of what is shown. */

@@ -80,6 +80,21 @@ function Pace() {
 /** How fast tasks play: those that run, and the next. */
 function RunSpeed({ running, disabled }: { running: boolean; disabled: boolean }) {
   const { viewer } = use_app();
+  const { speed, session } = viewer.hello.value!;
+  // A run of a terminal has a speed of its own.
+  const chosen = useSignal<{ session: string; speed: number } | null>(null);
+  if (typeof speed === 'number') {
+    const now = chosen.value?.session === session ? chosen.value.speed : speed;
+    return (
+      <select aria-label="Speed of the tasks" title="How fast the run plays, compared with real time" disabled={disabled} value={now}
+        onChange={async ({ currentTarget: { value } }) => {
+          if (await viewer.commander.speed(Number(value))) chosen.value = { session, speed: Number(value) };
+        }}>
+        {!run_speeds.some((each) => each.speed === now) && <option value={now}>{`${now} ×`}</option>}
+        {run_speeds.map((each) => <option key={each.speed} value={each.speed}>{each.label}</option>)}
+      </select>
+    );
+  }
   return (
     <select aria-label="Speed of the tasks" title="How fast tasks play, compared with real time" disabled={disabled}
       value={preferences.run_speed.value}
@@ -154,7 +169,7 @@ function Rig() {
           <Icon name="run" />Run tasks
         </button>
       )}
-      {tasks.length > 0 && !hello.readonly && <RunSpeed running={running} disabled={!connected || viewer.blind} />}
+      {tasks.length > 0 && (!hello.readonly || running) && <RunSpeed running={running} disabled={!connected || viewer.blind} />}
       {recorded && !running && (
         <button type="button" class="button" disabled={!connected} onClick={() => void viewer.replay()}
           title="Opens the recording of the last run and plays it"><Icon name="film" />Replay</button>

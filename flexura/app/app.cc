@@ -101,7 +101,11 @@ void add_run(CLI::App& app, Command& chosen) {
   auto is_viewed = std::make_shared<bool>(false);
   CLI::Option* view = run->add_flag("--view", *is_viewed, "Watch the run in the browser");
   add_viewer_options(*run, *viewer);
-  for (const char* option : {"--port", "--no-browser", "--address", "--name"})
+  run->add_option("--speed", arguments->speed,
+                  "Speed of the watched run relative to real time, 0: as fast as possible (default: 1)")
+      ->type_name("N")
+      ->check(CLI::Range(0.0, 1000.0).description(""));
+  for (const char* option : {"--port", "--no-browser", "--address", "--name", "--speed"})
     run->get_option(option)->needs(view);
   run->callback([&chosen, arguments, viewer, is_viewed] {
     if (*is_viewed) arguments->viewer = *viewer;

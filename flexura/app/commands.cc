@@ -82,10 +82,13 @@ void print_result(const Experiment& experiment, const RunResult& result, std::os
 class WatchedRun {
  public:
   WatchedRun(const Experiment& experiment, const std::shared_ptr<RunLink>& link,
-             const ViewerArguments& arguments, std::ostream& out)
+             const ViewerArguments& arguments, double speed, std::ostream& out)
       : stop_([link] { link->cancel(); }),
-        viewer_({.session = {}, .rig = std::make_shared<const ViewedRig>(experiment), .run = link}, arguments,
-                out) {}
+        viewer_({.session = {},
+                 .rig = std::make_shared<const ViewedRig>(experiment),
+                 .run = link,
+                 .speed = speed},
+                arguments, out) {}
   void wait() const { stop_.wait(); }
 
  private:
@@ -151,7 +154,7 @@ int run_command(const RunArguments& arguments, std::ostream& out, std::ostream& 
   std::optional<WatchedRun> watched;
   std::optional<UnwatchedRun> unwatched;
   if (arguments.viewer) {
-    watched.emplace(experiment, link, *arguments.viewer, arguments.json ? err : out);
+    watched.emplace(experiment, link, *arguments.viewer, arguments.speed, arguments.json ? err : out);
   } else {
     unwatched.emplace(link);
   }

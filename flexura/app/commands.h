@@ -23,6 +23,7 @@ struct RunArguments {
   std::optional<std::int64_t> seed;
   bool json = false;
   std::optional<ViewerArguments> viewer;  ///< If set, a viewer shows the run and stays open afterwards.
+  double speed = 1;  ///< Speed of a run with a viewer, relative to real time; 0: as fast as possible.
 };
 
 /// Arguments of `flexura check`.

@@ -199,7 +199,7 @@ TEST_F(ViewerProgram, RunsToTheSameBytesWhenItIsViewed) {
          "[[task]]\nkind = 'move'\nduration = 30\nto.bends = [[0.8, 0.5]]\n";
   EXPECT_EQ(run("run long.toml --out alone").status, 0);
   std::filesystem::remove(path("out"));
-  const pid_t child = start("run long.toml --out viewed --view --no-browser --port 0", path("out"));
+  const pid_t child = start("run long.toml --out viewed --view --speed 0 --no-browser --port 0", path("out"));
   const Look look = look_at_run(reported_in(path("out")));
   EXPECT_GT(look.running_states, 0);
   EXPECT_GT(look.pictures, 0);

@@ -115,8 +115,6 @@ struct LiveSession::Taker : PictureSession::Taker {
     session.start_run(run, reply);
   }
   void operator()(const SpeedRequest& request) const {
-    if (session.is_watched_run())
-      throw ViewRefusal("the run belongs to the terminal that started it: it plays as fast as possible");
     if (session.run_ == nullptr) throw ViewRefusal("no run is going on");
     session.pace_->set_speed(request.speed);
     done();
@@ -155,6 +153,10 @@ LiveSession::LiveSession(const ViewedRigPtr& rig, Messenger& messenger, Backgrou
       run_(config_.run),
       reporter_(rig, messenger) {
   reset();
+  if (!is_watched_run()) return;
+  pace_.emplace(config_.speed, viewed()->experiment.clock.step);
+  paced_at_ = clock_;
+  run_->pace_to(pace_->next(0, 0));
 }
 
 void LiveSession::cancel() {
@@ -168,6 +170,7 @@ Hello LiveSession::hello() const {
   hello.scene = scene_node(*viewed());
   hello.controls = live_controls_node(*viewed());
   hello.readonly = is_watched_run();
+  if (is_watched_run() && pace_) hello.speed = pace_->speed();
   return hello;
 }
 

@@ -29,9 +29,10 @@ class LiveSession : public PictureSession {
   struct Config {
     double start = 0;               ///< Initial time of the clock of advance(), s.
     std::filesystem::path results;  ///< Folder for the results of runs; -2, ... is appended if it exists.
-    /// A run started outside this session. Clients cannot cancel or halt this run, or move anything during
-    /// it.
+    /// A run started outside this session. Clients can change its speed, but cannot cancel or halt it, or
+    /// move anything during it.
     std::shared_ptr<RunLink> run = {};
+    double speed = 0;  ///< Initial speed of `run` relative to real time; 0: as fast as possible.
   };
 
   LiveSession(const ViewedRigPtr& rig, Messenger& messenger, Background& background, Config config);
@@ -51,6 +52,8 @@ class LiveSession : public PictureSession {
   [[nodiscard]] const std::optional<std::filesystem::path>& results() const { return results_; }
   /// Returns whether tasks are running, started in this session or outside.
   [[nodiscard]] bool is_running() const { return run_ != nullptr; }
+  /// Returns whether a run waits for advance() to go on, whether clients are connected or not.
+  [[nodiscard]] bool is_pacing() const { return is_watched_run() && run_ != nullptr && pace_->speed() > 0; }
   /// Returns whether a run started outside this session has ended.
   [[nodiscard]] bool is_over() const { return is_watched_run() && run_ == nullptr; }
 

@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <chrono>
 #include <cmath>
 #include <cstdint>
@@ -250,6 +251,38 @@ TEST_F(LiveSessionTest, ShowsARunThatSomebodyElseStarted) {
   watched.advance(100.2);
   EXPECT_TRUE(watched.is_over());
   EXPECT_EQ(*messenger_.last(other, "progress").find("text")->as<std::string>(), "section 1: bend");
+}
+
+TEST_F(LiveSessionTest, PlaysARunOfSomebodyElseAtASpeed) {
+  auto run = std::make_shared<RunLink>();
+  LiveSession watched(rig_, messenger_, background_, {.start = 100, .results = {}, .run = run, .speed = 1});
+  EXPECT_TRUE(watched.is_pacing()) << "also if nobody looks";
+  EXPECT_EQ(watched.hello().speed, 1);
+  std::atomic<double> reached = -1;
+  std::thread runs([&] {
+    for (int i = 0; i <= 200; ++i) {
+      run->state(0.02 * i, {{{0.1, 0.2}, {0.3, 0.4}}, {1, 1}}, {});
+      reached = 0.02 * i;
+    }
+    run->finish({"done", "", folder_.path()});
+  });
+  const auto wait_for = [&](double time) {
+    while (reached < time) std::this_thread::yield();
+  };
+  double clock = 100;
+  while (reached < 0.5) {
+    watched.advance(clock += 1.0 / 60);
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    // It may be a little ahead of the clock, and never far.
+    EXPECT_LE(reached, clock - 100 + 0.11);
+  }
+  watched.take(other, SpeedRequest{0}, [](const ViewAnswer& answer) { EXPECT_EQ(answer.error, ""); });
+  EXPECT_FALSE(watched.is_pacing());
+  watched.advance(clock += 1.0 / 60);
+  wait_for(4);
+  runs.join();
+  watched.advance(clock += 1.0 / 60);
+  EXPECT_TRUE(watched.is_over());
 }
 
 // A run may be much faster or slower than the clock: a picture's time identifies the state that it shows.

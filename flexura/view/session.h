@@ -38,6 +38,7 @@ struct Hello {
   std::vector<Quantity> quantities;
   bool report = false;
   bool readonly = false;
+  std::optional<double> speed;  ///< Speed of a run that was started outside, relative to real time.
 };
 
 /// A request for a picture by its address.

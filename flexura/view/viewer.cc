@@ -40,7 +40,8 @@ std::string hello_text(const Hello& hello, const ViewStart& start, bool has_rig,
                                  {"rig", {}, {has_rig, {}}},
                                  {"recording", {}, {has_recording, {}}},
                                  {"examples", {}, examples_node(start.examples)},
-                                 {"readonly", {}, {hello.readonly, {}}}},
+                                 {"readonly", {}, {hello.readonly, {}}},
+                                 {"speed", {}, hello.speed ? Node{*hello.speed, {}} : Node{}}},
                      {}});
 }
 
@@ -280,8 +281,9 @@ void Viewer::open(const std::filesystem::path& folder, Reply reply) {
 
 void Viewer::go_live(const Reply& reply) {
   if (live_ == nullptr) {
-    live_ = std::make_unique<LiveSession>(start_.rig, messenger_, background_,
-                                          LiveSession::Config{clock_, start_.results, start_.run});
+    live_ =
+        std::make_unique<LiveSession>(start_.rig, messenger_, background_,
+                                      LiveSession::Config{clock_, start_.results, start_.run, start_.speed});
   } else if (!has_rig()) {
     throw ViewRefusal("the run has ended, and its rig no longer exists");
   }

@@ -33,6 +33,7 @@ struct ViewStart {
   RecordingPtr recording = {};             ///< The recording; may be null.
   std::filesystem::path results = {};      ///< Folder for the results of task runs; default: results/view.
   std::shared_ptr<RunLink> run = {};       ///< An active run; its recording is opened at its end.
+  double speed = 0;                        ///< Speed of `run` relative to real time; 0: as fast as possible.
   std::vector<ViewExample> examples = {};  ///< Other experiments to open; empty if a file was given.
   std::string text = {};                   ///< Text of the rig's experiment file; "": unknown.
   std::filesystem::path folder = {};       ///< Folder for saved experiments.
@@ -59,8 +60,10 @@ class Viewer {
   /// Cancels a run of tasks.
   void cancel();
 
-  /// Returns whether any client is connected, so that advance() is needed.
-  [[nodiscard]] bool is_watched() const { return !clients_.empty(); }
+  /// Returns whether advance() is needed: a client is connected, or a run goes at a speed.
+  [[nodiscard]] bool is_watched() const {
+    return !clients_.empty() || (live_ != nullptr && live_->is_pacing());
+  }
 
  private:
   void greet(ClientId client);

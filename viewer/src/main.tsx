@@ -5,6 +5,7 @@ import './ui/theme.css';
 import './ui/layout.css';
 import './ui/controls.css';
 import './ui/help.css';
+import './ui/experiment.css';
 import './scene/stage.css';
 import './panels/panels.css';
 import './panels/cameras.css';

@@ -1,7 +1,8 @@
 import type { State } from '../protocol/state';
 import type { Range } from '../protocol/types';
 import { preferences, type ArmMode } from '../state/preferences';
-import { use_app } from '../ui/app';
+import { edit_experiment, use_app } from '../ui/app';
+import { Icon } from '../ui/Icon';
 import { ActuatorPanel } from './ActuatorPanel';
 import { degree } from '../ui/format';
 import { changed, command_of, mode_names, modes_of, reach_of, slots_of, span_of, start_tangent, values_of, type Shape } from './arm_model';
@@ -12,7 +13,8 @@ import { TipPanel } from './TipPanel';
 import { WeightSwitch } from './WeightSwitch';
 
 export function ArmPanel() {
-  const { viewer } = use_app();
+  const app = use_app();
+  const { viewer } = app;
   const draft = use_draft<Shape>();
   viewer.tick.value;
   const hello = viewer.hello.value;
@@ -102,6 +104,8 @@ export function ArmPanel() {
         </fieldset>
       ))}
       <TipPanel />
+      <button type="button" class="button save-shown" title="Adds a task that moves the arm to the shown pose to the text of the experiment, to be saved as a new file"
+        disabled={viewer.link.status.value.kind !== 'open'} onClick={() => edit_experiment(app, { add: 'pose' })}><Icon name="save" />Save pose as a task</button>
     </>
   );
 }

@@ -1,14 +1,16 @@
 import type { Range } from '../protocol/types';
 import { camera_commanded, camera_pan, camera_stride } from '../protocol/state';
 import { preferences } from '../state/preferences';
-import { use_app } from '../ui/app';
+import { edit_experiment, use_app } from '../ui/app';
+import { Icon } from '../ui/Icon';
 import { degree, fixed } from '../ui/format';
 import { use_draft } from './draft';
 import { Slider } from './Slider';
 
 /** Pan, tilt, zoom and stage of each camera that has these axes. */
 export function CameraPanel() {
-  const { viewer } = use_app();
+  const app = use_app();
+  const { viewer } = app;
   const hello = viewer.hello.value;
   const scene = viewer.scene.value;
   if (!hello || !scene) return <p class="empty">No data received yet.</p>;
@@ -40,6 +42,9 @@ export function CameraPanel() {
             {stage && (['x', 'y', 'z'] as const).map((axis, i) => (
               <Axis key={axis} what="stage" camera={name} axis={axis} row={at} place={3 + i} range={stage[axis]} scale={1000} unit="mm" />
             ))}
+            <button type="button" class="button save-shown" title={`Adds the view of ${name} as its start to the text of the experiment, to be saved as a new file`}
+              aria-label={`Save the view of ${name}`} disabled={viewer.link.status.value.kind !== 'open'}
+              onClick={() => edit_experiment(app, { add: 'view', camera: name })}><Icon name="save" />Save view</button>
           </fieldset>
         );
       })}

@@ -43,12 +43,17 @@ export function cut({ name, heads, columns }: Table, [from, to]: [number, number
   };
 }
 
-/** Gives the browser a file to save. */
+/** Gives the browser a table to save. */
 export function save(name: string, text: string): void {
-  const address = URL.createObjectURL(new Blob([text], { type: 'text/csv' }));
+  save_file(`${name.toLowerCase().replace(/[^a-z0-9]+/g, '_').replace(/^_|_$/g, '') || 'plot'}.csv`, text, 'text/csv');
+}
+
+/** Gives the browser a file to save. */
+export function save_file(name: string, text: string, type: string): void {
+  const address = URL.createObjectURL(new Blob([text], { type }));
   const link = document.createElement('a');
   link.href = address;
-  link.download = `${name.toLowerCase().replace(/[^a-z0-9]+/g, '_').replace(/^_|_$/g, '') || 'plot'}.csv`;
+  link.download = name;
   link.click();
   // Safari reads it later.
   setTimeout(() => URL.revokeObjectURL(address), 10_000);

@@ -180,6 +180,8 @@ export interface Hello {
   /** Experiments for `open`; empty if the program was started with a file. */
   examples?: { name: string; title: string }[];
   readonly: boolean;
+  /** Speed of a run that was started in a terminal, relative to real time; 0: as fast as possible. */
+  speed?: number | null;
 }
 
 export interface EventMessage {
@@ -285,6 +287,20 @@ export type TextMessage =
   | Reply
   | OverlayMessage
   | GhostMessage;
+
+/** A problem of a text; line 0 means the whole. */
+export interface TextProblem {
+  line: number;
+  column: number;
+  text: string;
+}
+
+export interface ExperimentText {
+  text: string;
+  /** A name for a new file that does not exist yet, and its folder. */
+  name: string;
+  folder: string;
+}
 
 export interface TipResult {
   converged: boolean;

@@ -2,7 +2,7 @@
 import { signal } from '@preact/signals';
 import { Latest } from '../connection/latest';
 import type { Link } from '../connection/link';
-import type { TipResult, Vector3 } from '../protocol/types';
+import type { ExperimentText, TextProblem, TipResult, Vector3 } from '../protocol/types';
 import type { Notices } from './notices';
 import type { Playback } from './playback';
 import { preferences } from './preferences';
@@ -10,6 +10,12 @@ import { preferences } from './preferences';
 export type ArmCommand = Record<string, unknown>;
 
 export type Push = { s: number; to: Vector3 } | { s: number; force: Vector3 };
+
+/** What is added to the text of an experiment: a task to the shown pose, or the view of a camera. */
+export interface Addition {
+  add?: 'pose' | 'view';
+  camera?: string;
+}
 
 export class Commander {
   /** The last result of inverse kinematics and its target; null when the tip is not dragged. */
@@ -120,7 +126,26 @@ export class Commander {
   /** Tasks play so fast from now on: those that run, too. */
   run_speed(speed: number, is_running: boolean): void {
     preferences.run_speed.value = speed;
-    if (is_running) void this.ask('speed', { speed });
+    if (is_running) void this.speed(speed);
+  }
+
+  /** The run in progress plays so fast from now on. */
+  speed(speed: number): Promise<boolean> {
+    return this.ask('speed', { speed });
+  }
+
+  /** Asks for the text of the experiment, with what is to be added of what is shown. */
+  experiment(addition: Addition): Promise<ExperimentText> {
+    return this.link.request<ExperimentText>('experiment', { ...addition });
+  }
+
+  async check(text: string): Promise<TextProblem[]> {
+    return (await this.link.request<{ problems: TextProblem[] }>('check', { text })).problems;
+  }
+
+  /** Saves a valid text as a new file, whose name comes back. */
+  save_experiment(text: string, name: string): Promise<{ problems: TextProblem[]; file?: string }> {
+    return this.link.request('save', { text, name });
   }
 
   /** Replaces the rig by one that starts in the recording's state at this time, s. */

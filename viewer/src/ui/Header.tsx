@@ -1,7 +1,7 @@
 import { useSignal } from '@preact/signals';
 import { flag_pace, flag_weightless } from '../protocol/state';
 import { preferences, theme_now, toggle_theme } from '../state/preferences';
-import { use_app } from './app';
+import { edit_experiment, use_app } from './app';
 import { ConditionBadge } from './ConditionBadge';
 import { fixed, format_time } from './format';
 import { Icon } from './Icon';
@@ -44,6 +44,10 @@ export function Header() {
             <Icon name="folder" />Examples
           </button>
         )}
+        {!teaching && hello && (
+          <button type="button" class="button quiet square" aria-label="Experiment" title="The text of the experiment: edit it, save it as a new file"
+            disabled={viewer.link.status.value.kind !== 'open'} onClick={() => edit_experiment(app)}><Icon name="text" /></button>
+        )}
         {teaching ? (
           <a class="button" href="#/" title="Back to the viewer"><Icon name="back" />Viewer</a>
         ) : (
@@ -76,6 +80,21 @@ function Pace() {
 /** How fast tasks play: those that run, and the next. */
 function RunSpeed({ running, disabled }: { running: boolean; disabled: boolean }) {
   const { viewer } = use_app();
+  const { speed, session } = viewer.hello.value!;
+  // A run of a terminal has a speed of its own.
+  const chosen = useSignal<{ session: string; speed: number } | null>(null);
+  if (typeof speed === 'number') {
+    const now = chosen.value?.session === session ? chosen.value.speed : speed;
+    return (
+      <select aria-label="Speed of the tasks" title="How fast the run plays, compared with real time" disabled={disabled} value={now}
+        onChange={async ({ currentTarget: { value } }) => {
+          if (await viewer.commander.speed(Number(value))) chosen.value = { session, speed: Number(value) };
+        }}>
+        {!run_speeds.some((each) => each.speed === now) && <option value={now}>{`${now} ×`}</option>}
+        {run_speeds.map((each) => <option key={each.speed} value={each.speed}>{each.label}</option>)}
+      </select>
+    );
+  }
   return (
     <select aria-label="Speed of the tasks" title="How fast tasks play, compared with real time" disabled={disabled}
       value={preferences.run_speed.value}
@@ -150,7 +169,7 @@ function Rig() {
           <Icon name="run" />Run tasks
         </button>
       )}
-      {tasks.length > 0 && !hello.readonly && <RunSpeed running={running} disabled={!connected || viewer.blind} />}
+      {tasks.length > 0 && (!hello.readonly || running) && <RunSpeed running={running} disabled={!connected || viewer.blind} />}
       {recorded && !running && (
         <button type="button" class="button" disabled={!connected} onClick={() => void viewer.replay()}
           title="Opens the recording of the last run and plays it"><Icon name="film" />Replay</button>

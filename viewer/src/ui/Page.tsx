@@ -10,6 +10,7 @@ import { use_app } from './app';
 import { Borders } from './Borders';
 import { Entrance } from './Entrance';
 import { Examples } from './Examples';
+import { Experiment } from './Experiment';
 import { Header } from './Header';
 import { Help } from './Help';
 import { Hints } from './Hints';
@@ -24,6 +25,7 @@ export function Page() {
       <NoticeList />
       <Help />
       <Examples />
+      <Experiment />
     </>
   );
 }

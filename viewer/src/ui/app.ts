@@ -4,10 +4,11 @@ import { useContext } from 'preact/hooks';
 import { signal, type Signal } from '@preact/signals';
 import type { KeyMap } from '../keys/keys';
 import type { SceneView } from '../scene/view';
+import type { Addition } from '../state/commander';
 import type { Viewer } from '../state/viewer';
 import { Views } from '../state/views';
 
-export type Dialog = 'help' | 'examples' | null;
+export type Dialog = 'help' | 'examples' | 'experiment' | null;
 
 export type NarrowTab = 'view' | 'controls' | 'cameras' | 'plots';
 
@@ -18,6 +19,8 @@ export interface App {
   /** Things in the 3D view that can be hidden. */
   parts: Signal<{ id: string; label: string }[]>;
   dialog: Signal<Dialog>;
+  /** What the text of the experiment gets when its dialog opens. */
+  editing: Signal<Addition>;
   route: Signal<'viewer' | 'teach'>;
   /** The left button pushes the dragged point of the arm. */
   push_tool: Signal<boolean>;
@@ -41,6 +44,7 @@ export function make_app(viewer: Viewer, keys: KeyMap): App {
     view: signal(null),
     parts: signal([]),
     dialog: signal(null),
+    editing: signal({}),
     route: signal('viewer'),
     push_tool: signal(false),
     enlarged: signal(null),
@@ -50,6 +54,12 @@ export function make_app(viewer: Viewer, keys: KeyMap): App {
     keys,
     use_token: () => false,
   };
+}
+
+/** Opens the text of the experiment, with an addition. */
+export function edit_experiment(app: App, addition: Addition = {}): void {
+  app.editing.value = addition;
+  app.dialog.value = 'experiment';
 }
 
 export const AppContext = createContext<App | null>(null);

@@ -272,7 +272,7 @@ describe.skipIf(!program)('a run that is watched', () => {
   /** Simulated duration, s; running it takes a few seconds. */
   const watched_s = 16000;
 
-  on(() => started(['run', file, '--out', 'watched', '--set', `task.0.duration=${watched_s}`, '--view']), 'live');
+  on(() => started(['run', file, '--out', 'watched', '--set', `task.0.duration=${watched_s}`, '--view', '--speed', '0']), 'live');
 
   test('it is shown as it goes on, is not to be cancelled here, and is a recording when it is over', async () => {
     const { time } = await server_state(page);

@@ -113,7 +113,7 @@ describe.skipIf(!program)('an arm that sags', () => {
 
 describe.skipIf(!program)('a watched run of an elastic arm', () => {
   const opened = opened_before(
-    () => started(['run', example('11_helical_tendon'), '--set', 'task.0.duration=60', '--view']), 'live');
+    () => started(['run', example('11_helical_tendon'), '--set', 'task.0.duration=60', '--view', '--speed', '0']), 'live');
 
   test('shows how it truly lies, and its tensions', async () => {
     const { page, complaints } = opened;

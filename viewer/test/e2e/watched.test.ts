@@ -16,7 +16,7 @@ describe.skipIf(!program)('a watched run', () => {
     let served: Program;
 
     beforeAll(async () => {
-      served = new Program(['run', rig, ...settings.flatMap((each) => ['--set', each]), '--view']);
+      served = new Program(['run', rig, ...settings.flatMap((each) => ['--set', each]), '--view', '--speed', '0']);
       await served.start();
     });
 
@@ -42,5 +42,34 @@ describe.skipIf(!program)('a watched run', () => {
       expect(looks).toBeGreaterThan(3);
       expect(complaints).toEqual([]);
     });
+  });
+});
+
+describe.skipIf(!program)('a watched run at its usual speed', () => {
+  let served: Program;
+
+  beforeAll(async () => {
+    served = new Program(['run', rig, '--set', 'task.0.duration=600', '--view']);
+    await served.start();
+  });
+
+  afterAll(() => served.stop());
+
+  test('plays in real time, and as fast as the page wants', async () => {
+    const { page, complaints } = await visit(served.url);
+    await page.waitForSelector('.badge[data-kind="live"]');
+    const speed = page.getByLabel('Speed of the tasks');
+    expect(await speed.inputValue()).toBe('1');
+    await until(async () => (await server_state(page)).time > 0.5);
+    const before = await page.evaluate(() => performance.now());
+    const { time } = await server_state(page);
+    await until(async () => (await server_state(page)).time > time + 1);
+    // Never faster than the clock, but for what the messages take; slower on a busy machine.
+    const passed = (await page.evaluate(() => performance.now()) - before) / 1000;
+    expect((await server_state(page)).time - time).toBeLessThan(passed + 1.5);
+    await speed.selectOption('0');
+    await page.waitForSelector('.badge[data-kind="recording"]');
+    expect(Number(await page.locator('#scrub').getAttribute('max'))).toBeCloseTo(600, 6);
+    expect(complaints).toEqual([]);
   });
 });

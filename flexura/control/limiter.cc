@@ -14,6 +14,7 @@
 #include "flexura/kinematics/motors.h"
 #include "flexura/kinematics/tendons.h"
 #include "flexura/model/arm_difference.h"
+#include "flexura/safety/contact_watch.h"
 #include "flexura/safety/motion_check.h"
 
 namespace flexura {
@@ -36,10 +37,12 @@ CommandLimiter::CommandLimiter(ArmModel arm, LimiterConfig config, const ArmStat
       variables_(arm_),
       limits_(limit_watches(arm_)),
       sent_(start) {
+  std::vector<ContactWatch> contacts;
   if (config_.looks_ahead) {
-    contacts_.emplace_back(model_.shaped());
-    for (const Obstacle& obstacle : config_.obstacles) contacts_.emplace_back(model_.shaped(), obstacle);
+    contacts.emplace_back(model_.shaped());
+    for (const Obstacle& obstacle : config_.obstacles) contacts.emplace_back(model_.shaped(), obstacle);
   }
+  contacts_ = std::make_shared<const std::vector<ContactWatch>>(std::move(contacts));
   if (!(config_.step > 0) || !std::isfinite(config_.step))
     throw std::invalid_argument("a limiter's step must be finite and above 0");
   if (!(config_.list_step >= 0) || !std::isfinite(config_.list_step))

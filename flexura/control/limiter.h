@@ -1,20 +1,22 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "flexura/kinematics/arm_variables.h"
-#include "flexura/math/nearest_point.h"
 #include "flexura/model/arm_model.h"
 #include "flexura/model/drive.h"
 #include "flexura/model/obstacle.h"
-#include "flexura/safety/contact_watch.h"
 #include "flexura/safety/limits.h"
 
 namespace flexura {
+
+class ContactWatch;
+struct ConvexLimits;
 
 /// Limits of a limiter in addition to the arm's own.
 struct LimiterConfig {
@@ -130,7 +132,8 @@ class CommandLimiter {
   LimiterConfig config_;
   ArmVariables variables_;
   std::vector<LimitWatch> limits_;
-  std::vector<ContactWatch> contacts_;  // Of the shape, if it looks ahead.
+  std::shared_ptr<const std::vector<ContactWatch>>
+      contacts_;  // Of the shape; empty if it does not look ahead.
   ArmState sent_;
   std::vector<ArmState> path_to_rest_;
   double row_ = 0, turning_time_ = 0;  // In s.

@@ -7,8 +7,10 @@
 
 #include "flexura/control/limiter.h"
 #include "flexura/control/limiter_paths.h"
+#include "flexura/math/nearest_point.h"
 #include "flexura/model/arm_difference.h"
 #include "flexura/safety/clearance_slope.h"
+#include "flexura/safety/contact_watch.h"
 
 namespace flexura {
 namespace {
@@ -84,7 +86,7 @@ void CommandLimiter::add_clearances(const ArmState& desired, ConvexLimits& limit
   const double braking = 0.5 * (braking_steps(desired) + 1);
   // Objects farther away than this are out of reach.
   const double reach = 0.5 * model_.shaped().length();
-  for (const ContactWatch& watch : contacts_) {
+  for (const ContactWatch& watch : *contacts_) {
     const auto slope = clearance_slope(watch, model_.shaped(), shape, reach);
     if (!slope) continue;
     Eigen::MatrixXd by_command;

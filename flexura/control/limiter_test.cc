@@ -18,6 +18,7 @@
 #include "flexura/kinematics/motion.h"
 #include "flexura/kinematics/motors.h"
 #include "flexura/kinematics/tendons.h"
+#include "flexura/safety/contact_watch.h"
 #include "flexura/safety/drive_check.h"
 #include "flexura/safety/motion_check.h"
 #include "tests/support/arms.h"

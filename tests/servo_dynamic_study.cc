@@ -152,11 +152,16 @@ class StudyRig {
     [[nodiscard]] double distance(const std::vector<TruthWatcher::Sample>& samples, double start, double from,
                                   double lag) const {
       double sum = 0, count = 0;
-      for (const TruthWatcher::Sample& sample : samples) {
-        if (sample.time < from || (times_.size() > 1 && sample.time > start + times_.back() + lag)) continue;
-        sum += (sample.points - at(sample.time - start - lag)).squaredNorm();
-        count += static_cast<double>(sample.points.cols());
-      }
+      const auto add = [&](double time, const Eigen::Matrix3Xd& points) {
+        if (time < from || (times_.size() > 1 && time > start + times_.back() + lag)) return;
+        sum += (points - at(time - start - lag)).squaredNorm();
+        count += static_cast<double>(points.cols());
+      };
+      for (const TruthWatcher::Sample& sample : samples) add(sample.time, sample.points);
+      if (times_.size() > 1 && !samples.empty())
+        for (double time = samples.back().time + 1.0 / 30; time <= start + times_.back() + lag;
+             time += 1.0 / 30)
+          add(time, samples.back().points);
       return std::sqrt(sum / count) / length_;
     }
 
@@ -256,7 +261,7 @@ struct Extent {
 };
 
 void study(bool is_calibrated, const Extent& extent, const std::string& law, SwingingRuns& runs) {
-  const std::string part = is_calibrated ? "calibrated" : "wrong";
+  const std::string part = fmt::format("{}, seed {}", is_calibrated ? "calibrated" : "wrong", extent.seed);
   std::vector<Method> ways = methods();
   if (!law.empty()) std::erase_if(ways, [&](const Method& method) { return method.name != law; });
   for_each_parallel(rigs, extent.threads, [&](std::size_t i) {

@@ -18,6 +18,8 @@ namespace {
 // Distance from a limit at which the nearest command stays, as a share of the limit: rounding must not break
 // it.
 constexpr double near_limit = 1 - 1e-7;
+// The same, beyond the tolerance of nearest_point(), rad.
+constexpr double inside = 2e-7;
 // Differences for derivatives of motor positions, rad.
 constexpr double small_bend = 1e-3;
 
@@ -30,8 +32,8 @@ std::optional<ArmState> CommandLimiter::nearest(const ArmState& desired, bool ke
     const ArmVariables::Part& part = variables_.parts()[i];
     const Eigen::Index size = part.is_spatial ? 2 : 1;
     limits.balls.push_back(
-        {part.at, sent_.bends[i].head(size), near_limit * section.max_bend_rate * config_.step});
-    limits.balls.push_back({part.at, Eigen::VectorXd::Zero(size), near_limit * section.max_bend});
+        {part.at, sent_.bends[i].head(size), std::max(0.0, section.max_bend_rate * config_.step - inside)});
+    limits.balls.push_back({part.at, Eigen::VectorXd::Zero(size), std::max(0.0, section.max_bend - inside)});
     if (!part.is_stretchable) continue;
     const double way = near_limit * section.max_stretch_rate * config_.step;
     limits.bands.push_back({Eigen::VectorXd::Unit(variables_.size(), part.stretch_at()),

@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "flexura/math/dense.h"
+#include "flexura/math/oscillator.h"
 
 namespace flexura {
 namespace {
@@ -17,11 +18,6 @@ Eigen::VectorXd packed_state(const ArmState& state) {
     numbers.segment<3>(3 * static_cast<Eigen::Index>(i)) << state.bends[i], state.stretches[i];
   return numbers;
 }
-
-// Gains of a mode: of its error, of its rate, and of the target's acceleration, on the equilibrium.
-struct Gains {
-  double error = 0, rate = 0, acceleration = 0;
-};
 
 }  // namespace
 
@@ -51,29 +47,36 @@ ArmState ModalLaw::step(const PredictiveState& now, const Eigen::MatrixXd& by_co
     desired_acceleration = (two - 2 * one + desired) / (time * time);
     desired_rate = (one - desired) / time - 0.5 * time * desired_acceleration;
   }
-  const Eigen::VectorXd shape = rest + shapes * z, error = desired - shape,
-                        rate_error = desired_rate - (by_command * sent_rate + shapes * z_rate);
-  Eigen::VectorXd move = shapes * z + T * desired_rate;  // Of the equilibrium.
-  Eigen::VectorXd outside = error;
+  // The command acts at the end of the step. Until then the equilibrium goes on at its rate.
+  const Eigen::VectorXd target = desired + T * desired_rate - rest;
+  Eigen::VectorXd move = Eigen::VectorXd::Zero(rest.size());  // Of the equilibrium.
+  Eigen::VectorXd outside = target, rate_outside = desired_rate;
   if (modes > 0) {
     const Eigen::MatrixXd into = pseudo_inverse(shapes);
-    const Eigen::VectorXd e = into * error, e_rate = into * rate_error, a = into * desired_acceleration;
+    const Eigen::VectorXd rest_rate = into * (by_command * sent_rate), to = into * target,
+                          to_rate = into * desired_rate, to_acceleration = into * desired_acceleration;
     const double slowest = now.frequency_factors[0] * now.modes[0].frequency;
     for (Eigen::Index j = 0; j < modes; ++j) {
       const SwingMode& mode = now.modes[static_cast<std::size_t>(j)];
-      const double w = now.frequency_factors[j] * mode.frequency, own = 2 * mode.damping / w;
-      Gains gains;
+      const double factor = now.frequency_factors[j], w = factor * mode.frequency,
+                   own = 2 * factor * mode.damping / w;
+      const Eigen::Vector2d swing =
+          oscillation(w, factor * mode.damping, T) * Eigen::Vector2d(z[j], z_rate[j]);
+      const double eta = swing[0] + T * rest_rate[j], eta_rate = swing[1] + rest_rate[j], e = to[j] - eta,
+                   e_rate = to_rate[j] - eta_rate;
+      double pull = 0;
       if (config_.kind == ModalLawKind::computed_torque) {
-        gains = {r * r / (w * w), 2 * r / (w * w) - own, 1 / (w * w)};
+        pull = (r * r * e + 2 * r * e_rate + to_acceleration[j]) / (w * w) + own * eta_rate;
       } else {
         const double share = std::min(1.0, r * r / (slowest * slowest));
-        gains = {share, 2 * std::sqrt(share) / w, 0};
+        pull = share * e + 2 * std::sqrt(share) / w * e_rate;
       }
-      move += shapes.col(j) * (gains.error * e[j] + gains.rate * e_rate[j] + gains.acceleration * a[j]);
+      move += (eta + pull) * shapes.col(j);
     }
-    outside -= shapes * e;
+    outside -= shapes * to;
+    rate_outside -= shapes * to_rate;
   }
-  move += std::min(1.0, r * T) * outside;
+  move += std::min(1.0, r * T) * outside + T * rate_outside;
   const Eigen::VectorXd change = pseudo_inverse(by_command) * move;
   ArmState command = now.sent;
   for (std::size_t i = 0; i < command.bends.size(); ++i) {

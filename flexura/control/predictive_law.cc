@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <numbers>
 #include <stdexcept>
 
 #include "flexura/kinematics/jacobian.h"
@@ -148,9 +149,13 @@ void PredictiveLaw::predict(const PredictiveState& now, const Eigen::MatrixXd& b
   for (int i = 0; i < horizon; ++i) end_[static_cast<std::size_t>(i)] *= T * (horizon - i) + decay;
 }
 
-// A limit that the present command breaks is reached again during the horizon.
+// A limit that the present command breaks is met again at the end of the horizon.
 void PredictiveLaw::set_limits(const PredictiveState& now) {
   const auto count = static_cast<Eigen::Index>(now.limits.size());
+  // Way of the fastest section during half of the horizon, rad; half a turn where rates are unlimited.
+  double fastest = 0;
+  for (const Disc& disc : discs_) fastest = std::max(fastest, disc.rate);
+  const double reach = std::min(std::numbers::pi, 0.5 * config_.horizon * config_.step * fastest);
   limit_rows_.setZero(count, variables_.size());
   limit_rooms_.resize(count * config_.horizon);
   for (Eigen::Index i = 0; i < count; ++i) {
@@ -163,8 +168,13 @@ void PredictiveLaw::set_limits(const PredictiveState& now) {
       if (part.is_stretchable) limit_rows_(i, part.stretch_at()) = limit.by_command[c + 2];
     }
     const double norm = limit_rows_.row(i).norm();
-    const double room = norm > 0 ? limit.room / norm : std::numeric_limits<double>::infinity();
-    if (norm > 0) limit_rows_.row(i) /= norm;
+    // No command of the horizon meets a limit on something that the arm hardly moves.
+    if (!(norm > 0) || !(limit.room > -norm * reach)) {
+      limit_rows_.row(i).setZero();
+    }
+    const bool is_met = limit_rows_.row(i).squaredNorm() > 0;
+    const double room = is_met ? limit.room / norm : std::numeric_limits<double>::infinity();
+    if (is_met) limit_rows_.row(i) /= norm;
     for (int k = 0; k < config_.horizon; ++k)
       limit_rooms_[k * count + i] = room < 0 ? room * (k + 1) / config_.horizon : room;
   }

@@ -31,7 +31,7 @@ struct PredictiveState {
   ArmState rate;     ///< Rate of the commands until now: bends in rad/s, stretches in 1/s.
   ArmState rest;     ///< Shape of the arm at rest under `sent`.
   ArmState desired;  ///< Target shape now.
-  /// Change of the target shape in each later step; shorter lists end at the last target.
+  /// Target shape at the end of each later step; after a shorter list the target stays as it is.
   std::vector<ArmState> desired_later = {};
   std::vector<PredictiveLimit> limits = {};
   std::vector<SwingMode> modes = {};  ///< Modes of the arm's swing; empty if the arm does not swing.
@@ -45,10 +45,11 @@ struct PredictiveState {
 ///   sum over k of |e_k|^2 + rho |a_k / step|^2,
 /// with e_k the predicted distance along the arm from the target, root mean square, share of its length. The
 /// prediction is linear about the present command: the shape at rest follows the commands by its derivative,
-/// and the modes swing freely between kicks. Bends and bend rates stay within their limits, and so do linear
-/// functions of the commands (PredictiveLimit). Solved by the alternating direction method of multipliers (S.
-/// Boyd et al., 2011), with projections on discs and half-spaces. Its result
-/// is a request, for a limiter.
+/// and the modes swing freely between kicks. Limits are those of bends and bend rates, and the given linear
+/// ones (PredictiveLimit); stretches are not limited. Solved by the alternating direction method of
+/// multipliers (S. Boyd et al., 2011), with projections on discs and half-spaces. Its iterations keep the
+/// limits approximately; the next command keeps those of bends and rates exactly. The result is a request,
+/// for a limiter.
 class PredictiveLaw {
  public:
   /// `driven`: the arm as its drives see it; `shaped`: with a section for each arc. Throws

@@ -128,17 +128,12 @@ TEST(ServoDisturbances, AnOverloadedStepperIsNoticed) {
   servo.expect_rest();
 }
 
-// Returns a ball in the way of the arm's upper part.
+// Returns a ball where the target has the arm's upper part.
 SphereConfig ball_in_the_way() {
   const ArmModel model = parse_experiment(DisturbedServo::file([](std::string&) {}), "x.toml").arm_model();
-  const auto at = [&](double share) {
-    const ArmState straight = ArmState::straight(faults_target.bends.size());
-    const Backbone backbone = model.backbone(interpolate(straight, faults_target, share));
-    return backbone.pose(0.75 * backbone.length()).position;
-  };
-  constexpr double radius = 0.06, room = 0.05;
-  const Eigen::Vector3d center = at(0.5) + (radius + room) * (at(0.9) - at(0.4)).normalized();
-  return {.name = "hidden ball", .center = {center.x(), center.y(), center.z()}, .radius = radius};
+  const Backbone backbone = model.backbone(faults_target);
+  const Eigen::Vector3d center = backbone.pose(0.75 * backbone.length()).position;
+  return {.name = "hidden ball", .center = {center.x(), center.y(), center.z()}, .radius = 0.1};
 }
 
 TEST(ServoDisturbances, AnObstacleInTheWayStopsTheArm) {
@@ -146,7 +141,8 @@ TEST(ServoDisturbances, AnObstacleInTheWayStopsTheArm) {
                        [](RigConfig& rig) { rig.obstacles.emplace_back(ball_in_the_way()); });
   const ServoResult& result = servo.run();
   EXPECT_FALSE(result.is_done);
-  EXPECT_NE(result.reason.find("as if something pushed or held the arm"), std::string::npos) << result.reason;
+  EXPECT_GE(servo.reported("disturbed"), 0);
+  EXPECT_TRUE(result.reason.starts_with("disturbed: ")) << result.reason;
   EXPECT_GT(servo.totals().contacts, 0);
   servo.expect_rest();
 }

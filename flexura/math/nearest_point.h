@@ -34,11 +34,12 @@ struct NearestPointConfig {
   double tolerance = 1e-7;  ///< Change of x in a round at which the search ends, and largest excess().
 };
 
-/// Returns the vector within all limits that is nearest to x, by alternating projections with Dykstra's
-/// correction (R. L. Dykstra, 1983). Empty if no such vector was found. Throws std::invalid_argument for
-/// limits of another size than x.
+/// Returns the vector within all limits that is nearest to `start`, by alternating projections with Dykstra's
+/// correction (R. L. Dykstra, 1983). If the rounds end before it converges, the result is within the limits,
+/// but may not be the nearest. Empty if no such vector was found. Throws std::invalid_argument for limits of
+/// another size.
 [[nodiscard]] std::optional<Eigen::VectorXd> nearest_point(const ConvexLimits& limits,
-                                                           const Eigen::VectorXd& x,
+                                                           const Eigen::VectorXd& start,
                                                            const NearestPointConfig& config = {});
 
 }  // namespace flexura

@@ -28,6 +28,9 @@ std::string as_if_released(std::size_t tendon) {
   return fmt::format("as if tendon {} gave way: it is broken or slack, or its motor lost steps", tendon + 1);
 }
 
+// Deviation since the start that an error of the model may cause, as a share of the motion.
+constexpr double slow_error = 0.1;
+
 }  // namespace
 
 DisturbanceWatch::DisturbanceWatch(ArmModel model, const DisturbanceConfig& config)
@@ -46,7 +49,12 @@ void DisturbanceWatch::add(double time, const ArmState& rest, const ArmState& co
   last_ = std::move(newest);
   // The newest sample that is at least a window old stays.
   while (samples_.size() > 1 && samples_[1].time <= time - config_.window) samples_.pop_front();
-  if (first_.rest.bends.empty()) first_ = last_;
+  if (first_.rest.bends.empty()) begun_ = time;
+  if (time < begun_ + config_.grace || first_.rest.bends.empty()) first_ = last_;
+  if (time < begun_ + config_.grace) {
+    samples_.assign(1, last_);
+    return;
+  }
   if (samples_.empty()) samples_.push_back(last_);
   const ServoError motion = servo_error(model_.shaped(), last_.nominal, reference().nominal);
   deviation_ = servo_error(model_.shaped(), rest, predicted(reference())).rms;
@@ -96,7 +104,9 @@ std::string DisturbanceWatch::what() const {
 std::string DisturbanceWatch::slow_cause() const {
   if (first_.rest.bends.empty()) return "";
   const ArmState expected = predicted(first_);
-  if (!(servo_error(model_.shaped(), last_.rest, expected).rms > config_.limit)) return "";
+  const double motion = servo_error(model_.shaped(), last_.nominal, first_.nominal).rms;
+  if (!(servo_error(model_.shaped(), last_.rest, expected).rms > config_.limit + slow_error * motion))
+    return "";
   const std::optional<std::size_t> tendon = released_tendon(expected);
   return tendon ? as_if_released(*tendon) : "";
 }

@@ -15,6 +15,7 @@ struct DisturbanceConfig {
   double limit = 0.05;  ///< Deviation that counts as a disturbance, share of the arm's length; > 0.
   /// Additional deviation that an error of the model may cause, as a share of the predicted motion.
   double model_error = 0.35;
+  double grace = 0.3;   ///< Time after the first observation until the watch begins, s.
   double window = 0.5;  ///< Age of the observation that the newest one is compared with, s; > 0.
   int patience = 3;     ///< Number of successive observations that begin or end a disturbance.
 };
@@ -65,7 +66,7 @@ class DisturbanceWatch {
   std::deque<Sample> samples_;    // Of the window, oldest first.
   Sample first_, before_, last_;  // The first, the last before the disturbance, and the newest.
   bool is_disturbed_ = false;
-  double deviation_ = 0, since_ = 0;
+  double deviation_ = 0, since_ = 0, begun_ = 0;
   int in_a_row_ = 0;  // Successive observations that contradict is_disturbed_.
 };
 

@@ -26,6 +26,9 @@ class MotionHistory {
   /// Returns the time of the first kept reading, s. Requires a reading.
   [[nodiscard]] double since() const { return readings_.front().first; }
 
+  /// Returns the time of the newest reading, s. Requires a reading.
+  [[nodiscard]] double newest() const { return readings_.back().first; }
+
   /// Returns the times of the readings after `from` and before `to`, s, in order.
   [[nodiscard]] std::vector<double> times_between(double from, double to) const {
     std::vector<double> times;

@@ -8,6 +8,7 @@
 
 #include "flexura/kinematics/jacobian.h"
 #include "flexura/safety/clearance_slope.h"
+#include "flexura/safety/motion_check.h"
 
 namespace flexura {
 namespace {
@@ -19,6 +20,20 @@ constexpr double margin = 0.005, near = 0.2;
 // Distance of the backbone from the borders of a picture, px.
 constexpr double border = 8;
 constexpr int places_an_arc = 4;
+
+// Computes the derivative of a point's pixel with respect to its position, px/m. Returns false where the lens
+// cannot image it.
+bool pixel_slope(const View& view, const Eigen::Vector3d& position,
+                 Eigen::Matrix<double, 2, 3>& by_position) {
+  for (int axis = 0; axis < 3; ++axis) {
+    constexpr double small = 1e-5;  // m
+    const auto ahead = view.project(position + small * Eigen::Vector3d::Unit(axis)),
+               behind = view.project(position - small * Eigen::Vector3d::Unit(axis));
+    if (!ahead || !behind) return false;
+    by_position.col(axis) = (*ahead - *behind) / (2 * small);
+  }
+  return true;
+}
 
 }  // namespace
 
@@ -35,7 +50,7 @@ std::vector<PredictiveLimit> PredictiveLimits::find(const ArmState& sent, const 
                                                     const Eigen::MatrixXd& by_command,
                                                     const std::array<View, 2>& views) const {
   std::vector<PredictiveLimit> limits;
-  if (!by_command.allFinite()) return limits;
+  if (!by_command.allFinite() || !is_possible(rest)) return limits;
   add_tensions(sent, limits);
   add_clearances(rest, by_command, limits);
   if (keeps_view_)
@@ -59,49 +74,44 @@ void PredictiveLimits::add_clearances(const ArmState& rest, const Eigen::MatrixX
                                       std::vector<PredictiveLimit>& limits) const {
   const double length = model_.shaped().length();
   for (const ContactWatch& watch : contacts_)
-    if (const auto slope = clearance_slope(watch, model_.shaped(), rest, near * length))
+    if (const auto slope = clearance_slope(watch, model_.shaped(), rest, near * length);
+        slope && slope->by_state.allFinite())
       limits.push_back({-slope->by_state * by_command, slope->clearance - margin * length});
 }
 
-// Of the backbone's points, only the nearest to each border limits.
+// Of the backbone's points, only the one limits that reaches a border first. Points that hardly move do not
+// count.
 void PredictiveLimits::add_borders(const ArmState& rest, const Eigen::MatrixXd& by_command, const View& view,
                                    std::vector<PredictiveLimit>& limits) const {
   const BackboneJacobian jacobian(model_.shaped(), rest);
-  const auto arcs = static_cast<Eigen::Index>(rest.bends.size());
-  struct Nearest {
-    double room = std::numeric_limits<double>::infinity();
-    MaterialPoint point;
-  };
-  std::array<Nearest, 4> nearest;  // To the left, right, upper and lower border.
+  Jacobian J(6, 3 * static_cast<Eigen::Index>(rest.bends.size()));
+  std::array<std::optional<PredictiveLimit>, 4> first;  // Left, right, upper and lower border.
+  std::array<double, 4> ways;                           // Change of the command to the border, rad.
+  ways.fill(std::numeric_limits<double>::infinity());
   for (std::size_t arc = 0; arc < rest.bends.size(); ++arc)
     for (int k = 1; k <= places_an_arc; ++k) {
       const MaterialPoint point{arc, static_cast<double>(k) / places_an_arc};
       const Eigen::Vector3d position = jacobian.pose(point).position;
       const auto pixel = view.project(position);
-      if (!pixel) return;
+      Eigen::Matrix<double, 2, 3> by_position;
+      if (!pixel || !pixel_slope(view, position, by_position)) return;
+      J.setZero();
+      jacobian.at(point, J);
+      const Eigen::MatrixXd pixel_by_command = by_position * J.topRows<3>() * by_command;
       const std::array<double, 4> rooms = {pixel->x() - border, view.width - 1 - border - pixel->x(),
                                            pixel->y() - border, view.height - 1 - border - pixel->y()};
-      for (std::size_t side = 0; side < 4; ++side)
-        if (rooms[side] < nearest[side].room) nearest[side].room = rooms[side], nearest[side].point = point;
+      for (std::size_t side = 0; side < 4; ++side) {
+        const double sign = side % 2 == 0 ? -1 : 1;  // A pixel that grows leaves less room right and below.
+        const Eigen::RowVectorXd row = sign * pixel_by_command.row(side < 2 ? 0 : 1);
+        const double norm = row.norm(), way = rooms[side] / norm;
+        constexpr double far = 0.5;  // rad
+        if (!(norm > 0) || !std::isfinite(way) || way < -far || !(way < ways[side])) continue;
+        ways[side] = way;
+        first[side] = PredictiveLimit{row, rooms[side]};
+      }
     }
-  Jacobian J(6, 3 * arcs);
-  for (std::size_t side = 0; side < 4; ++side) {
-    const MaterialPoint& point = nearest[side].point;
-    const Eigen::Vector3d position = jacobian.pose(point).position;
-    Eigen::RowVector3d by_position;
-    for (int axis = 0; axis < 3; ++axis) {
-      constexpr double small = 1e-5;  // m
-      const auto ahead = view.project(position + small * Eigen::Vector3d::Unit(axis)),
-                 behind = view.project(position - small * Eigen::Vector3d::Unit(axis));
-      if (!ahead || !behind) return;
-      by_position[axis] = ((*ahead)[side < 2 ? 0 : 1] - (*behind)[side < 2 ? 0 : 1]) / (2 * small);
-    }
-    J.setZero();
-    jacobian.at(point, J);
-    const double sign =
-        side % 2 == 0 ? -1 : 1;  // A pixel that grows leaves less room to the right and below.
-    limits.push_back({sign * by_position * J.topRows<3>() * by_command, nearest[side].room});
-  }
+  for (const auto& limit : first)
+    if (limit) limits.push_back(*limit);
 }
 
 }  // namespace flexura

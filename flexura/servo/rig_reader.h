@@ -59,6 +59,8 @@ class RigReader {
   [[nodiscard]] std::vector<double> readings_between(double from, double to) const {
     return arm_.times_between(from, to);
   }
+  /// Returns the time of the drives' newest reading, s.
+  [[nodiscard]] double newest_reading() const { return arm_.newest(); }
   /// Returns the nominal views of the cameras at a time.
   [[nodiscard]] std::array<View, 2> views(double time) const { return {view(0, time), view(1, time)}; }
   /// Returns the axis positions that a camera's head and stage reported.

@@ -100,8 +100,8 @@ struct ServoSettings {
   double hold_after = 0.3;   ///< Time without an observation after which the arm stops and waits, s.
   double give_up_after = 3;  ///< Time without an observation after which the servo fails, s.
   /// Unexplained change of the arm's shape at which the servo holds the arm, root mean square along the arm,
-  /// share of its length (DisturbanceWatch). Empty: 0.05 for an arm with an elastic model, otherwise not
-  /// watched.
+  /// share of its length (DisturbanceWatch). Empty: 0.05 for an arm with a model that swings and no learned
+  /// Jacobian, otherwise not watched.
   std::optional<double> disturbance = {};
   bool follow = false;            ///< Whether the heads turn to keep the arm in the middle of the pictures.
   ServoCameraPrior camera_prior;  ///< Prior of the errors of each camera model.

@@ -52,7 +52,11 @@ class Session {
         features_(servo_features(config, nominal)),
         law_(nominal_arm_, config, *features_),
         keeper_(nominal, config.cameras) {
-    if (config.disturbance || !nominal_arm_.actuation().is_linear())
+    // A learned Jacobian is for models that are wrong, and swing that the model lacks would count as one.
+    const bool is_known =
+        config.jacobian == ServoJacobian::model &&
+        !nominal_arm_.actuation().swing(ArmState::straight(nominal_arm_.driven().sections.size()), 1).empty();
+    if (config.disturbance || is_known)
       watch_.emplace(nominal_arm_, DisturbanceConfig{.limit = config.disturbance.value_or(0.05)});
     if (predicts_motion(config.law)) model_law_.emplace(nominal_arm_, config);
   }
@@ -168,6 +172,7 @@ class Session {
       watcher_.reported(
           rig_.now(),
           fmt::format("a step took longer than {:.4g} s: the missed steps are skipped", config_.step));
+    if (next > ticks_ + 1) sent_before_ = sent_;  // The arm has stopped meanwhile.
     result_.missed_steps += next - ticks_ - 1;
     ticks_ = next;
     rig_.ports().clock->wait_until(result_.start + config_.step * static_cast<double>(ticks_));

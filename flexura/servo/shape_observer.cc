@@ -92,7 +92,10 @@ SwingPath ShapeObserver::path_until(double time, const std::vector<SwingMode>& m
   Eigen::VectorXd at = numbers_of(rig_.measured(from)), rate = rate_;
   if (rate.size() != at.size()) rate = Eigen::VectorXd::Zero(at.size());
   for (const double end : ends) {
-    const Eigen::VectorXd next = numbers_of(rig_.measured(end)), now = (next - at) / (end - from);
+    // Beyond the newest reading the drives go on as before.
+    const bool is_read = end <= rig_.newest_reading();
+    const Eigen::VectorXd next = numbers_of(rig_.measured(end)),
+                          now = is_read ? Eigen::VectorXd((next - at) / (end - from)) : rate;
     SwingPath::Part part{.duration = end - from,
                          .kicks = Eigen::VectorXd(static_cast<Eigen::Index>(path.modes.size()))};
     for (std::size_t j = 0; j < path.modes.size(); ++j)

@@ -1,5 +1,8 @@
 #include "flexura/sim/deep_start.h"
 
+#include <algorithm>
+#include <limits>
+#include <variant>
 #include <vector>
 
 #include "flexura/mechanics/dynamics.h"
@@ -10,6 +13,18 @@
 #include "flexura/sim/start_command.h"
 
 namespace flexura {
+namespace {
+
+// Returns the radius of the largest ball within an obstacle, m.
+double smallest_size(const ObstacleConfig& obstacle) {
+  constexpr double unlimited = std::numeric_limits<double>::infinity();
+  if (const auto* sphere = std::get_if<SphereConfig>(&obstacle)) return sphere->radius;
+  if (const auto* capsule = std::get_if<CapsuleConfig>(&obstacle)) return capsule->radius;
+  if (const auto* box = std::get_if<BoxConfig>(&obstacle)) return std::ranges::min(box->half_sizes);
+  return unlimited;
+}
+
+}  // namespace
 
 std::optional<DeepStart> deep_start(const RigConfig& model, const RigConfig& truth) {
   if (truth.arm.mechanics != ArmMechanics::dynamics || !truth.arm.contact || truth.obstacles.empty())
@@ -22,7 +37,13 @@ std::optional<DeepStart> deep_start(const RigConfig& model, const RigConfig& tru
       statics.solve({.displacements = inputs.displacements(0, inputs.nothing_lost())}, inputs.loads(0));
   if (!rest.converged()) return {};
   RodDynamics dynamics(inputs.rod());
-  const RodContact contact(dynamics.chain(), arm.rod.value().contact.value());
+  // Points so near to each other that the smallest obstacle does not fit between them.
+  RodContactConfig config = arm.rod.value().contact.value();
+  double size = inputs.rod().length() / 20;
+  for (const ObstacleConfig& obstacle : truth.obstacles) size = std::min(size, smallest_size(obstacle));
+  config.places = contact_places(inputs.rod(), std::max(0.5 * size, inputs.rod().length() / 2000));
+  config.itself = false;
+  const RodContact contact(dynamics.chain(), config);
   dynamics.set_surroundings(&contact);
   if (inputs.can_stretch()) {
     const std::vector<double> factors = inputs.rest_stretches(0);

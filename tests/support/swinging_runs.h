@@ -44,9 +44,11 @@ class SwingingRuns {
     for (std::string line; std::getline(in, line);) {
       std::istringstream parts(line);
       SwingingRunKey key;
-      std::string index, numbers;
-      if (std::getline(parts, key.part, ';') && std::getline(parts, key.kind, ';') &&
-          std::getline(parts, key.law, ';') && std::getline(parts, index, ';')) {
+      std::string index;
+      // A line that was cut off when a study was stopped does not count.
+      if (std::ranges::count(line, ';') == 5 && std::getline(parts, key.part, ';') &&
+          std::getline(parts, key.kind, ';') && std::getline(parts, key.law, ';') &&
+          std::getline(parts, index, ';')) {
         key.index = std::strtoull(index.c_str(), nullptr, 10);
         runs_[key] = read(parts);
       }

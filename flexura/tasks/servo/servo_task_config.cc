@@ -163,14 +163,14 @@ const Table<ServoTask>& fields_of(const ServoTask*) {
                  {.meaning = "Time without an observation after which the task fails.",
                   .unit = Unit::second,
                   .range = above_up_to(0, longest_time)})
-          .field(
-              "disturbance", of_task(&T::disturbance),
-              {.meaning =
-                   "Change of the arm's shape that the drives do not explain, at which the servo holds "
-                   "the arm: root mean square along the arm, as a fraction of its length. The task fails "
-                   "if the change lasts for `give_up_after`.",
-               .range = above_up_to(0, 1),
-               .default_text = "0.05 with the arm's model \"static\" or \"dynamic\", otherwise not watched"})
+          .field("disturbance", of_task(&T::disturbance),
+                 {.meaning =
+                      "Change of the arm's shape that the drives do not explain, at which the servo holds "
+                      "the arm: root mean square along the arm, as a fraction of its length. The task fails "
+                      "if the change lasts for `give_up_after`.",
+                  .range = above_up_to(0, 1),
+                  .default_text =
+                      "0.05 with the arm's model \"dynamic\" and jacobian \"model\", otherwise not watched"})
           .field("follow", of_task(&T::follow),
                  {.meaning = "Whether the cameras' heads track the arm, and zoom out, to keep it in view."})
           .field("camera_prior", of_task(&T::camera_prior),

@@ -57,7 +57,7 @@ struct OneMode {
 // With steps that are short against the mode, the error follows (1 + r t) exp(-r t), whatever the mode is.
 TEST(ModalLaw, ComputedTorqueGivesTheErrorItsOwnDynamics) {
   for_random_cases(50, [](TestRandom& random) {
-    OneMode plant(random.uniform(3, 30), random.uniform(0, 0.2));
+    OneMode plant(random.uniform(3, 30), random.uniform(0, 0.03));
     plant.factor = random.uniform(0.7, 1.4);
     const double rate = random.uniform(2, 6), desired = random.uniform(-1, 1);
     const ModalLaw law(plant.arm, {.step = short_step, .rate = rate});
@@ -72,7 +72,7 @@ TEST(ModalLaw, ComputedTorqueGivesTheErrorItsOwnDynamics) {
 // A target that moves at a constant rate is followed without an error.
 TEST(ModalLaw, ComputedTorqueFollowsARamp) {
   for_random_cases(20, [](TestRandom& random) {
-    OneMode plant(random.uniform(3, 30), random.uniform(0, 0.2));
+    OneMode plant(random.uniform(3, 30), random.uniform(0, 0.03));
     const double rate = random.uniform(2, 6), speed = random.uniform(-0.5, 0.5);
     const ModalLaw law(plant.arm, {.step = short_step, .rate = rate});
     double error = 0;

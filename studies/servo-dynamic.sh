@@ -1,9 +1,10 @@
 #!/usr/bin/env bash
-# an arm that swings, with a wrong model, servoed by each law: ./dev study servo-dynamic [TARGETS] [SEED]
+# an arm that swings, with a wrong model, servoed by each law: ./dev study servo-dynamic [TARGETS] [TRAJECTORIES] [SEED]
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 targets=${1:-200}
-seed=${2:-1}
+trajectories=${2:-50}
+seed=${3:-1}
 page=docs/studies/servo-dynamic.md
 build=${FLEXURA_STUDY_BUILD:-build/release}
 
@@ -24,16 +25,24 @@ The true arm is three [elastic rods](../mechanics.md) of 1 m in all, upright bef
 | drives | 3200 microsteps a turn, spools of 10 mm, backlash 0.2 degrees, pretension 10 N | no backlash |
 | cameras | 640 x 480 px, f = 800 px, 2.5 m away, gray, 30 Hz, 60 ms late, noise 2 of 255 | see the tables |
 
-Targets are the shapes at rest of the true arm under bends drawn evenly from +-1.2 rad in each direction. Each servo starts from rest in the straight shape, four targets a rig. It is done when the observed error is below 0.2 % of the length for 1 s, and gives up after 8 s. "Left" is the true error at the end, % of the length; its second column is of all targets. Times, overshoot, energy (work of the pulling motors) and the first errors are of converged targets. Violations are steps with a section beyond its bend limit, commands faster than the bend rate, steps with a part of the arm outside a picture, and steps with a contact.
+Each servo has a rig of its own, starts from rest in the straight shape, and knows neither the truth nor the other servos. Targets and trajectories are dealt out to ten true arms.
 
-"Without swing in the model": `model = "static"` instead of `"dynamic"` under `[arm]`.
+- **Shapes** are those at rest of the true arm under bends drawn evenly from +-1.2 rad in each direction. On the way, 0.5 N push the tip for 0.1 s. A servo has converged when the observed error is below 0.5 % of the length for 1 s; it gives up after 5 s. "Left" is the true error, root mean square over arm and last second, % of the length, of all targets.
+- **Moving shapes** last 6 s: two sine waves in each direction of each section, up to 0.5 rad and 2 rad/s each. "Lag" is the shift of time with which the arm follows best. "Off" is the true distance from the moving target. Where a servo ends early, the arm counts as it was then.
+- **Energy** is the work of the pulling motors. **Violations** are steps with a section beyond its bend limit, commands faster than the bend rate, steps with a part of the arm outside a picture, and steps with a contact.
+- "Without swing in the model": `model = "static"` instead of `"dynamic"` under `[arm]`.
 
 END
   echo '```console'
-  echo "\$ ./dev study servo-dynamic $targets $seed"
+  echo "\$ ./dev study servo-dynamic $targets $trajectories $seed"
   echo '```'
   echo
-  for part in calibrated wrong; do "$build/bin/servo_dynamic_study" "$targets" "$seed" "$(nproc)" "$part"; done
+  # Runs are kept, so that a study that was stopped goes on; with a new program they begin anew.
+  runs=build/studies/servo-dynamic.csv
+  if [ "$build/bin/servo_dynamic_study" -nt "$runs" ]; then rm -f "$runs"; fi
+  for part in calibrated wrong; do
+    "$build/bin/servo_dynamic_study" "$targets" "$trajectories" "$seed" "$(nproc)" "$part" "" "$runs"
+  done
 } >build/studies/servo-dynamic.md
 mv build/studies/servo-dynamic.md "$page"
 echo "wrote $page"

@@ -86,7 +86,8 @@ std::optional<std::size_t> DisturbanceWatch::released_tendon(const ArmState& exp
     if (!is_possible(released[i])) continue;  // The arm has no equilibrium without this tendon.
     const Eigen::VectorXd way = points_of(model_.shaped(), released[i]) - nominal;
     const double share = way.dot(moved) / way.squaredNorm();
-    if (!(share >= least && share <= most)) continue;
+    const bool is_release = share >= least && share <= most;  // False if it is not a number.
+    if (!is_release) continue;
     const double left = (moved - share * way).norm();
     if (left < best_left) best = i, best_left = left;
   }

@@ -86,7 +86,7 @@ void PredictiveLimits::add_borders(const ArmState& rest, const Eigen::MatrixXd& 
   const BackboneJacobian jacobian(model_.shaped(), rest);
   Jacobian J(6, 3 * static_cast<Eigen::Index>(rest.bends.size()));
   std::array<std::optional<PredictiveLimit>, 4> first;  // Left, right, upper and lower border.
-  std::array<double, 4> ways;                           // Change of the command to the border, rad.
+  std::array<double, 4> ways{};                         // Change of the command to the border, rad.
   ways.fill(std::numeric_limits<double>::infinity());
   for (std::size_t arc = 0; arc < rest.bends.size(); ++arc)
     for (int k = 1; k <= places_an_arc; ++k) {

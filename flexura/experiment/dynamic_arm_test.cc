@@ -150,6 +150,10 @@ TEST(BadDynamicFiles, AnArmDoesNotStartInsideAnObstacle) {
   EXPECT_THAT(refused, HasSubstr(":26:"));
   EXPECT_EQ(std::ranges::count(refused, '\n'), 0);
   EXPECT_EQ(error_of_file(with_ball(0.04, "ignore_base = 0.3\n")), "no error");
+  // A ball so small that it lies between the contact points.
+  EXPECT_THAT(error_of_file(replaced(with_ball(0.0), "center = [0, 0.2, 0]\nradius = 0.05",
+                                     "center = [0, 0.2063, 0]\nradius = 0.001")),
+              HasSubstr("obstacle[1]: at the start, the arm's centerline is inside ball"));
   // The true arm decides.
   EXPECT_THAT(error_of_file(with_ball(0.06, "[truth.arm.base]\nposition = [0.02, 0, 0]\n")),
               HasSubstr("obstacle[1]: at the start"));

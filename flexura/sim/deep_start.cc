@@ -36,27 +36,32 @@ std::optional<DeepStart> deep_start(const RigConfig& model, const RigConfig& tru
   const Equilibrium rest =
       statics.solve({.displacements = inputs.displacements(0, inputs.nothing_lost())}, inputs.loads(0));
   if (!rest.converged()) return {};
-  RodDynamics dynamics(inputs.rod());
-  // Points so near to each other that the smallest obstacle does not fit between them.
-  RodContactConfig config = arm.rod.value().contact.value();
+  // First at the arm's own contact points. Then at points so near to each other that the smallest obstacle
+  // does not fit between them.
+  const RodContactConfig& own = arm.rod.value().contact.value();
+  RodContactConfig dense = own;
   double size = inputs.rod().length() / 20;
   for (const ObstacleConfig& obstacle : truth.obstacles) size = std::min(size, smallest_size(obstacle));
-  config.places = contact_places(inputs.rod(), std::max(0.5 * size, inputs.rod().length() / 2000));
-  config.itself = false;
-  const RodContact contact(dynamics.chain(), config);
-  dynamics.set_surroundings(&contact);
-  if (inputs.can_stretch()) {
-    const std::vector<double> factors = inputs.rest_stretches(0);
-    dynamics.stretch_rest(factors, std::vector<double>(factors.size(), 0.0));
-  }
+  dense.places = contact_places(inputs.rod(), std::max(0.5 * size, inputs.rod().length() / 2000));
+  dense.itself = false;
   std::optional<DeepStart> deepest;
-  for (const ContactForce& each : contact.find(dynamics.point_motions(dynamics.rest(rest)))) {
-    if (!each.is_deep || !each.obstacle || (deepest && deepest->depth >= each.depth)) continue;
-    double s = 0;
-    for (std::size_t i = 0; i < each.place.section; ++i) s += inputs.rod().sections[i].length;
-    deepest = {.obstacle = *each.obstacle,
-               .s_rest = s + each.place.at * inputs.rod().sections[each.place.section].length,
-               .depth = each.depth};
+  for (const RodContactConfig* config : {&own, static_cast<const RodContactConfig*>(&dense)}) {
+    if (deepest) break;
+    RodDynamics dynamics(inputs.rod());
+    const RodContact contact(dynamics.chain(), *config);
+    dynamics.set_surroundings(&contact);
+    if (inputs.can_stretch()) {
+      const std::vector<double> factors = inputs.rest_stretches(0);
+      dynamics.stretch_rest(factors, std::vector<double>(factors.size(), 0.0));
+    }
+    for (const ContactForce& each : contact.find(dynamics.point_motions(dynamics.rest(rest)))) {
+      if (!each.is_deep || !each.obstacle || (deepest && deepest->depth >= each.depth)) continue;
+      double s = 0;
+      for (std::size_t i = 0; i < each.place.section; ++i) s += inputs.rod().sections[i].length;
+      deepest = {.obstacle = *each.obstacle,
+                 .s_rest = s + each.place.at * inputs.rod().sections[each.place.section].length,
+                 .depth = each.depth};
+    }
   }
   return deepest;
 }

@@ -23,10 +23,11 @@ namespace flexura {
 /// act on the arm, and it swings. Its ArmRod defines contact with obstacles and the drag of a fluid.
 ///
 /// The arm starts at rest and is computed in steps of ArmRod::time_step from time 0 on. Each step uses the
-/// commands that hold during the step. A time between two steps is computed with a shorter step. So results
-/// depend on time and commands only. A step is cut where a payload is picked up or dropped, a tendon breaks,
-/// or the weight is switched. Motors lose steps as described for RotorState. Throws SimulationError if a step
-/// does not converge even when divided.
+/// commands that hold during the step. At a time between two steps, the state is that after a shorter step.
+/// The shape is so only until the end of the step is computed; from then on it is interpolated, which differs
+/// by about the error of a step (backbone()). A step is cut where a payload is picked up or dropped, a tendon
+/// breaks, or the weight is switched. Motors lose steps as described for RotorState. Throws SimulationError
+/// if a step does not converge even when divided.
 class DynamicPlant : public RodPlant {
  public:
   /// Errors as RodInputs and RodDynamics. Throws std::invalid_argument if no initial equilibrium is found.

@@ -127,7 +127,7 @@ function Rig() {
     const instant = viewer.shown?.time ?? 0;
     return (
       <div class="tools">
-        <button type="button" class="button" disabled={!connected} onClick={() => void viewer.commander.branch(instant)}
+        <button type="button" class="button" disabled={!connected} onClick={() => void viewer.commander.branch(viewer.shown?.time ?? 0)}
           title={`A live rig that starts in the shown instant, ${format_time(instant)}: the arm as commanded and the cameras, at rest. The recording stays.`}>
           <Icon name="run" />Start here
         </button>

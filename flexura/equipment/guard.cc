@@ -1,0 +1,136 @@
+#include "flexura/equipment/guard.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <poll.h>
+#include <signal.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cmath>
+#include <cstring>
+#include <stdexcept>
+
+#include "flexura/equipment/guard_process.h"
+
+namespace flexura {
+namespace {
+
+// Sends a message, with a descriptor unless it is -1. Async-signal-safe.
+bool send_message(int socket, const GuardMessage& message, int link = -1) noexcept {
+  iovec place{const_cast<GuardMessage*>(&message),
+              sizeof message};  // NOLINT(cppcoreguidelines-pro-type-const-cast)
+  alignas(cmsghdr) std::array<char, CMSG_SPACE(sizeof(int))> control{};
+  msghdr head{};
+  head.msg_iov = &place, head.msg_iovlen = 1;
+  if (link >= 0) {
+    head.msg_control = control.data(), head.msg_controllen = control.size();
+    cmsghdr* with = CMSG_FIRSTHDR(&head);
+    with->cmsg_level = SOL_SOCKET, with->cmsg_type = SCM_RIGHTS, with->cmsg_len = CMSG_LEN(sizeof link);
+    std::memcpy(CMSG_DATA(with), &link, sizeof link);
+  }
+  return ::sendmsg(socket, &head, MSG_NOSIGNAL | MSG_DONTWAIT) == static_cast<ssize_t>(sizeof message);
+}
+
+// The second process. It keeps nothing of this one open but the socket, ignores what ends this one, and is
+// not in its group of processes.
+[[noreturn]] void be_guard(int socket, double period) noexcept {
+  ::setsid();
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGPIPE, SIGTSTP, SIGUSR1, SIGUSR2})
+    ::signal(signal, SIG_IGN);
+  sigset_t none{};
+  ::sigemptyset(&none);
+  ::sigprocmask(SIG_SETMASK, &none, nullptr);
+  if (::dup2(socket, 0) == 0) {
+    ::close_range(1, ~0U, 0);
+    guard_devices(0, period);
+  }
+  ::_exit(0);
+}
+
+}  // namespace
+
+Guard::Guard(double period) : period_(period) {
+  if (!(period > 0 && std::isfinite(period)))
+    throw std::invalid_argument("the period of a guard must be finite and above 0");
+  std::array<int, 2> ends{-1, -1};
+  if (::socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends.data()) != 0)
+    throw std::runtime_error(fmt::format("no guard for the equipment: {}", std::strerror(errno)));
+  socket_ = Descriptor(ends[0]);
+  const Descriptor other(ends[1]);
+  child_ = ::fork();
+  if (child_ < 0)
+    throw std::runtime_error(fmt::format("no guard for the equipment: {}", std::strerror(errno)));
+  if (child_ == 0) be_guard(other.get(), period);
+}
+
+Guard::~Guard() {
+  GuardMessage message;
+  message.kind = GuardMessage::Kind::end;
+  (void)send_message(socket_.get(), message);
+  int status = 0;
+  while (::waitpid(child_, &status, 0) < 0 && errno == EINTR) {
+  }
+}
+
+void Guard::protect(const Link& link, const StopMessages& stop) {
+  const std::scoped_lock lock(protecting_);
+  GuardMessage message;
+  message.kind = GuardMessage::Kind::protect;
+  if (link.descriptor() < 0) throw std::invalid_argument(link.name() + ": a guard needs an open descriptor");
+  const std::size_t count = stop.first.size() + stop.then.size();
+  if (count > most_messages || links_ == most_links)
+    throw std::invalid_argument(fmt::format("{}: a guard has places for {} links with {} messages each",
+                                            link.name(), most_links, most_messages));
+  if (!(stop.delay >= 0 && std::isfinite(stop.delay)))
+    throw std::invalid_argument("the delay of stop messages must be finite and not negative");
+  message.first = static_cast<std::uint8_t>(stop.first.size());
+  message.count = static_cast<std::uint8_t>(count);
+  message.delay = stop.delay;
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::string& text = i < stop.first.size() ? stop.first[i] : stop.then[i - stop.first.size()];
+    if (text.empty() || text.size() > message_size)
+      throw std::invalid_argument(fmt::format("a stop message has 1 to {} bytes", message_size));
+    std::ranges::copy(text, message.texts[i].begin());
+    message.sizes[i] = static_cast<std::uint8_t>(text.size());
+  }
+  if (!send_message(socket_.get(), message, link.descriptor()))
+    throw std::runtime_error("the guard of the equipment does not take messages");
+  for (char answer = 0; answer != static_cast<char>(GuardAnswer::ready);) {
+    pollfd one{socket_.get(), POLLIN, 0};
+    if (::poll(&one, 1, 5000) <= 0 || ::recv(socket_.get(), &answer, 1, 0) != 1)
+      throw std::runtime_error("the guard of the equipment does not answer");
+  }
+  Protected& own = protected_[links_];
+  own.descriptor = link.descriptor();
+  own.count = message.first;
+  for (std::size_t i = 0; i < own.count; ++i)
+    own.messages[i] = message.texts[i], own.sizes[i] = message.sizes[i];
+  ++links_;
+}
+
+bool Guard::beat(bool is_moving) {
+  const std::scoped_lock lock(protecting_);
+  GuardMessage message;
+  message.kind = is_moving ? GuardMessage::Kind::moving : GuardMessage::Kind::resting;
+  if (!send_message(socket_.get(), message)) throw std::runtime_error("the guard of the equipment is gone");
+  bool has_stopped = false;
+  for (char answer = 0; ::recv(socket_.get(), &answer, 1, MSG_DONTWAIT) == 1;)
+    has_stopped = has_stopped || answer == static_cast<char>(GuardAnswer::stopped);
+  return !has_stopped;
+}
+
+void Guard::stop() noexcept {
+  const std::size_t links = links_;
+  for (std::size_t i = 0; i < links; ++i)
+    for (std::size_t k = 0; k < protected_[i].count; ++k)
+      send_stop(protected_[i].descriptor, protected_[i].messages[k].data(), protected_[i].sizes[k]);
+  GuardMessage message;
+  message.kind = GuardMessage::Kind::stop;
+  (void)send_message(socket_.get(), message);
+}
+
+}  // namespace flexura

@@ -1,0 +1,78 @@
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstddef>
+#include <mutex>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "flexura/equipment/descriptor.h"
+#include "flexura/equipment/link.h"
+
+namespace flexura {
+
+/// How to stop a device: messages that are sent at once, then others after a delay. A controller may first
+/// have to brake and then to forget its program.
+struct StopMessages {
+  std::vector<std::string> first;  ///< Each is sent by a write of its own.
+  double delay = 0;                ///< s
+  std::vector<std::string> then;   ///< Sent `delay` s after the first.
+};
+
+/// Stops devices when this program dies, hangs or is told to stop.
+///
+/// A second process holds copies of the devices' links. While the arm moves, this program must call beat()
+/// once a period. If it does not, or if it ends without notice (even by SIGKILL), the second process sends
+/// the stop messages over every link. It survives what ends this program alone, but not a loss of power, and
+/// not a kill of all processes of the machine or of a container.
+///
+/// All functions may be called from several threads.
+class Guard {
+ public:
+  static constexpr std::size_t most_links = 16;     ///< Links that a guard can protect.
+  static constexpr std::size_t most_messages = 16;  ///< Stop messages of a link.
+  static constexpr std::size_t message_size = 64;   ///< Bytes of a stop message.
+
+  /// Starts the second process. `period`, s, > 0: the longest time between beats while the arm moves. Throws
+  /// std::runtime_error if the system cannot start a process.
+  explicit Guard(double period);
+  /// Ends the second process, without a stop.
+  ~Guard();
+  Guard(const Guard&) = delete;
+  Guard& operator=(const Guard&) = delete;
+
+  /// Returns the longest time between beats, s.
+  [[nodiscard]] double period() const { return period_; }
+
+  /// Protects the device at a link, from now on, by these messages. Throws std::invalid_argument if the link
+  /// has no descriptor, there are too many messages or links, or a message is too long. Throws
+  /// std::runtime_error if the second process does not answer.
+  void protect(const Link& link, const StopMessages& stop);
+
+  /// Reports that this program works. `is_moving`: whether the next beat is due within a period. Returns
+  /// false if the second process has stopped the devices since the previous beat.
+  bool beat(bool is_moving);
+
+  /// Sends the first stop messages over all links at once. Async-signal-safe: a handler of signals may call
+  /// it. The second process then sends the rest. Later commands of this program may move devices again.
+  void stop() noexcept;
+
+ private:
+  struct Protected {
+    int descriptor = -1;
+    std::array<std::array<char, message_size>, most_messages> messages{};
+    std::array<std::size_t, most_messages> sizes{};
+    std::size_t count = 0;
+  };
+
+  double period_;
+  Descriptor socket_;
+  int child_ = -1;
+  std::mutex protecting_;
+  std::array<Protected, most_links> protected_{};
+  std::atomic<std::size_t> links_ = 0;  // stop() may interrupt protect().
+};
+
+}  // namespace flexura

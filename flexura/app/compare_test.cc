@@ -26,9 +26,7 @@ class Compare : public ::testing::Test {
  protected:
   [[nodiscard]] std::string path(const std::string& name) const { return (folder_.path() / name).string(); }
   std::string run(const std::string& name, double bend) {
-    class Quiet : public Progress {
-      void update(double /*fraction*/, std::string_view /*what*/) override {}
-    } progress;
+    NoProgress progress;
     std::filesystem::create_directory(path(name));
     const std::string file =
         "[arm]\nkind='spatial'\n[[arm.section]]\nlength = 1\n[[task]]\nkind='move'\n"

@@ -10,6 +10,7 @@
 
 #include "flexura/app/commands.h"
 #include "flexura/app/estimate_answer.h"
+#include "flexura/app/terminal_progress.h"
 #include "flexura/base/bytes.h"
 #include "flexura/base/source.h"
 #include "flexura/camera/measured_camera.h"
@@ -85,11 +86,15 @@ void add_notes(std::span<const PictureFile> pictures, std::span<const Observatio
 }  // namespace
 
 ShapeAnswer estimate_shape(std::span<const PictureFile> pictures, const std::vector<MeasuredCamera>& cameras,
-                           const EstimateConfig& config) {
+                           const EstimateConfig& config, Progress* progress) {
+  // The estimation takes about as long as a picture.
+  const auto all = static_cast<double>(cameras.size() + 1);
   std::vector<PictureReport> report;
   std::vector<Observation> observations;
   std::vector<std::string> notes, sizes;
   for (std::size_t i = 0; i < cameras.size(); ++i) {
+    if (progress != nullptr)
+      progress->update(static_cast<double>(i) / all, "finding the arm in " + pictures[i].name);
     PictureObservation observed = observe(pictures[i], cameras[i], config);
     if (observed.is_of_other_size)
       sizes.push_back(fmt::format(
@@ -98,6 +103,7 @@ ShapeAnswer estimate_shape(std::span<const PictureFile> pictures, const std::vec
       notes.push_back(fmt::format("picture {} has notes of its own", i + 1));
     report.push_back(std::move(observed.report)), observations.push_back(std::move(observed.observation));
   }
+  if (progress != nullptr) progress->update(1 - 1 / all, "estimating the shape");
   ShapeEstimate found = ShapeEstimator(config.prior, config.estimator).estimate(observations);
   add_notes(pictures, observations, config, found);
   if (!found.is_found) found.notes.insert(found.notes.end(), notes.begin(), notes.end());
@@ -105,7 +111,7 @@ ShapeAnswer estimate_shape(std::span<const PictureFile> pictures, const std::vec
   return {estimate_node(found, observations, report, config), found.is_found};
 }
 
-int estimate_command(const EstimateArguments& arguments, std::ostream& out) {
+int estimate_command(const EstimateArguments& arguments, std::ostream& out, TerminalProgress* progress) {
   check_arguments(arguments);
   const auto cameras = standing_cameras(read_toml_file(arguments.cameras), arguments.images.size());
   const EstimateConfig config = estimate_config(arguments);
@@ -113,7 +119,8 @@ int estimate_command(const EstimateArguments& arguments, std::ostream& out) {
   pictures.reserve(arguments.images.size());
   for (const std::string& name : arguments.images)
     pictures.push_back({name, read_text_file(name, most_picture_bytes)});
-  const ShapeAnswer found = estimate_shape(pictures, cameras, config);
+  const ShapeAnswer found = estimate_shape(pictures, cameras, config, progress);
+  if (progress != nullptr) progress->clear();
   out << write_json(found.answer, 2) << '\n';
   return found.is_found ? exit_done : exit_missed;
 }

@@ -11,8 +11,10 @@
 #include <utility>
 
 #include "flexura/app/commands.h"
+#include "flexura/app/terminal_progress.h"
 #include "flexura/app/words.h"
 #include "flexura/base/node.h"
+#include "flexura/base/work_progress.h"
 #include "flexura/experiment/experiment.h"
 #include "flexura/math/hash.h"
 #include "flexura/mechanics/arm_rod.h"
@@ -254,12 +256,14 @@ Rod known_rod(const std::string& file, const Experiment& experiment) {
 }  // namespace
 
 IdentifiedArm identify_arm(const ArmConfig& arm, const Rod& rod, const MeasuredMotion& motion,
-                           const IdentifySettings& settings) {
+                           const IdentifySettings& settings, Progress& progress) {
   const RodLoads loads = loads_of(arm);
-  const RodPlaceRecord record = record_of_places(rod, motion.places, motion.samples, loads, settings.noise);
+  WorkProgress work(progress, {1, 1, 1, 1});
+  const RodPlaceRecord record =
+      record_of_places(rod, motion.places, motion.samples, loads, settings.noise, &work.piece(0));
   const std::vector<RodParameter> parameters = parameters_of(rod, settings);
   const double window = settings.window > 0 ? settings.window : window_for(rod, loads, motion.samples);
-  const Identification found = identify(rod, parameters, record.record, {.window = window});
+  const Identification found = identify(rod, parameters, record.record, {.window = window}, &work.piece(1));
   IdentifiedArm result{.values = {},
                        .samples = motion.samples.size(),
                        .places = motion.places.size(),
@@ -312,8 +316,9 @@ IdentifiedArm identify_arm(const ArmConfig& arm, const Rod& rod, const MeasuredM
     const bool can_be_zero = value.name == "damping_time" || value.name == "friction";
     value.is_physical = !value.is_determined || value.value > 0 || (can_be_zero && value.value == 0);
   }
-  result.missed_file = places_missed(rod, motion.places, motion.samples, record);
-  result.missed = places_missed(identified_rod(rod, result), motion.places, motion.samples, record);
+  result.missed_file = places_missed(rod, motion.places, motion.samples, record, &work.piece(2));
+  result.missed =
+      places_missed(identified_rod(rod, result), motion.places, motion.samples, record, &work.piece(3));
   return result;
 }
 
@@ -328,16 +333,19 @@ int identify_command(const IdentifyArguments& arguments, std::ostream& out, std:
   const double noise = arguments.noise_mm.value_or(0) * 1e-3;
   if (motion.is_logged && noise > 0) add_errors(motion, noise, experiment.seed);
   IdentifiedArm found;
+  TerminalProgress progress(err);
   try {
     found = identify_arm(experiment.arm, rod, motion,
                          {.noise = noise,
                           .window = arguments.window.value_or(0),
                           .mass = arguments.mass,
                           .friction = arguments.friction,
-                          .alike = arguments.alike});
+                          .alike = arguments.alike},
+                         progress);
   } catch (const std::invalid_argument& error) {
     throw input_error(arguments.motion, error.what());
   }
+  progress.clear();
   print_notes(found, noise, err);
   if (arguments.json) {
     for (const IdentifiedValue& value : found.values) out << write_json(value_node(value)) << '\n';

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "flexura/app/identify_log.h"
+#include "flexura/base/progress.h"
 #include "flexura/mechanics/rod.h"
 
 namespace flexura {
@@ -71,7 +72,7 @@ struct IdentifySettings {
 /// estimates a mass factor, with `friction` one friction coefficient of all tendons. `rod` is the nominal rod
 /// of `arm`. Throws the std::invalid_argument of record_of_places() and identify().
 [[nodiscard]] IdentifiedArm identify_arm(const ArmConfig& arm, const Rod& rod, const MeasuredMotion& motion,
-                                         const IdentifySettings& settings);
+                                         const IdentifySettings& settings, Progress& progress);
 
 /// Prints the identified material of an arm, as text or as JSON lines. Returns exit_missed if nothing was
 /// identified. Throws InputError for bad input.

@@ -169,7 +169,8 @@ TEST_F(Identify, MarksValuesThatNoMaterialHas) {
   std::ranges::reverse(motion.samples);
   const double end = motion.samples.front().time;
   for (RodPlaceSample& sample : motion.samples) sample.time = end - sample.time;
-  const IdentifiedArm found = identify_arm(experiment.arm, rod, motion, {.noise = 2e-4});
+  NoProgress nobody;
+  const IdentifiedArm found = identify_arm(experiment.arm, rod, motion, {.noise = 2e-4}, nobody);
   bool is_any = false;
   for (const IdentifiedValue& value : found.values) {
     if (!value.is_determined) continue;

@@ -7,6 +7,7 @@
 #include "flexura/app/intrinsics.h"
 #include "flexura/app/measure.h"
 #include "flexura/app/render.h"
+#include "flexura/app/terminal_progress.h"
 
 namespace flexura {
 namespace {
@@ -114,8 +115,12 @@ void add_estimate(CLI::App& app, Command& chosen) {
       ->add_option("--points", arguments->points,
                    "Number of points of the printed backbone, at least 2 (default: 101)")
       ->type_name("N");
-  estimate->callback(
-      [&chosen, arguments] { chosen = [arguments] { return estimate_command(*arguments, std::cout); }; });
+  estimate->callback([&chosen, arguments] {
+    chosen = [arguments] {
+      TerminalProgress progress(std::cerr);
+      return estimate_command(*arguments, std::cout, &progress);
+    };
+  });
 }
 
 void add_intrinsics(CLI::App& app, Command& chosen) {

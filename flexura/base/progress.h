@@ -20,4 +20,10 @@ class Progress {
   [[nodiscard]] virtual bool is_cancelled() const { return false; }
 };
 
+/// Ignores the reports.
+class NoProgress : public Progress {
+ public:
+  void update(double /*fraction*/, std::string_view /*what*/) override {}
+};
+
 }  // namespace flexura

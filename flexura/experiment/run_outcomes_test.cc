@@ -40,9 +40,7 @@ CalibrationRun calibration(double sigma) {
 }
 
 RunResult run(const std::string& file, const TemporaryFolder& folder) {
-  class Quiet : public Progress {
-    void update(double /*fraction*/, std::string_view /*what*/) override {}
-  } progress;
+  NoProgress progress;
   return run_experiment(parse_experiment(file, "x.toml"), make_new_folder(folder.path() / "results"),
                         progress);
 }

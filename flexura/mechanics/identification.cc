@@ -8,9 +8,11 @@
 #include <limits>
 #include <optional>
 #include <stdexcept>
+#include <string_view>
 #include <utility>
 #include <vector>
 
+#include "flexura/base/work_progress.h"
 #include "flexura/math/dense.h"
 #include "flexura/mechanics/identification_equations.h"
 
@@ -168,19 +170,22 @@ Identification solve(const IdentificationEquations& equations, const std::vector
   return result;
 }
 
+constexpr std::string_view solving = "solving for the parameters";
+
 bool is_friction(const RodParameter& parameter) { return parameter.kind == RodParameter::Kind::friction; }
 
 // Repeats the least squares, linearised at the last friction, until the friction settles. `values`: the
 // start.
 Identification settle(const Rod& rod, const std::vector<RodParameter>& parameters,
                       const RodMotionRecord& record, const IdentificationConfig& config,
-                      const VectorXd& values) {
+                      const VectorXd& values, Progress& progress) {
   Identification found;
   found.values = values, found.converged = false;
   for (int pass = 0; pass < linearizations && !found.converged; ++pass) {
     const VectorXd before = found.values;
     found = solve(IdentificationEquations(with_friction(rod, parameters, before), parameters, record, config),
                   parameters);
+    progress.update(static_cast<double>(pass + 1) / linearizations, solving);
     found.converged = true;
     for (std::size_t g = 0; g < parameters.size(); ++g) {
       if (!is_friction(parameters[g]) || found.is_observable[g] == 0) continue;
@@ -230,7 +235,11 @@ Identification without_friction(const IdentificationEquations& first, const Rod&
 }  // namespace
 
 Identification identify(const Rod& rod, const std::vector<RodParameter>& parameters,
-                        const RodMotionRecord& record, const IdentificationConfig& config) {
+                        const RodMotionRecord& record, const IdentificationConfig& config,
+                        Progress* progress) {
+  NoProgress nobody;
+  Progress& watching = progress != nullptr ? *progress : nobody;
+  watching.update(0, solving);
   const IdentificationEquations first(rod, parameters, record, config);
   if (std::ranges::none_of(parameters, is_friction)) return solve(first, parameters);
   // Without friction tendons slide at any speed, and noise decides where to: so other starts are needed.
@@ -242,8 +251,9 @@ Identification identify(const Rod& rod, const std::vector<RodParameter>& paramet
     starts.push_back(std::move(start));
   }
   std::optional<Identification> unsettled;
-  for (const VectorXd& start : starts) {
-    Identification found = settle(rod, parameters, record, config, start);
+  WorkProgress work(watching, std::vector<double>(starts.size(), 1));
+  for (std::size_t i = 0; i < starts.size(); ++i) {
+    Identification found = settle(rod, parameters, record, config, starts[i], work.piece(i));
     if (!has_friction(found, parameters)) continue;
     if (found.converged) return found;
     if (!unsettled) unsettled = std::move(found);

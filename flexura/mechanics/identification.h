@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "flexura/base/progress.h"
 #include "flexura/mechanics/rod.h"
 
 // Identification of a rod's stiffness, viscosity, mass and tendon friction from its motion
@@ -83,8 +84,9 @@ struct Identification {
 /// converges (Gauss-Newton method). The first start is the rod's friction; if necessary, other friction
 /// coefficients follow. If the friction is observable from no start, it keeps the rod's value. Throws
 /// std::invalid_argument for an invalid rod, no parameters, overlapping parameters, or samples that do not
-/// fit the rod.
+/// fit the rod. `progress`, if any, follows the iterations.
 [[nodiscard]] Identification identify(const Rod& rod, const std::vector<RodParameter>& parameters,
-                                      const RodMotionRecord& record, const IdentificationConfig& config = {});
+                                      const RodMotionRecord& record, const IdentificationConfig& config = {},
+                                      Progress* progress = nullptr);
 
 }  // namespace flexura

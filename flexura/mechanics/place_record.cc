@@ -7,8 +7,11 @@
 #include <cmath>
 #include <limits>
 #include <stdexcept>
+#include <string_view>
 #include <vector>
 
+#include "flexura/base/progress.h"
+#include "flexura/base/work_progress.h"
 #include "flexura/math/dense.h"
 #include "flexura/math/levenberg_marquardt.h"
 #include "flexura/mechanics/dynamics.h"
@@ -145,13 +148,15 @@ void require_samples(std::span<const RodPlaceSample> samples, std::size_t places
 }
 
 // Fits all samples' modes, each fit starting at the result of the one before.
+constexpr std::string_view fitting = "fitting the arm's shapes";
+
 struct Fits {
   std::vector<VectorXd> modes;
   std::vector<MatrixXd> covariances;
   double square = 0;  // Sum of squared residuals.
 };
-Fits fit_all(PlaceFit& places, std::span<const RodPlaceSample> samples, double noise,
-             const VectorXd& spread) {
+Fits fit_all(PlaceFit& places, std::span<const RodPlaceSample> samples, double noise, const VectorXd& spread,
+             Progress& progress) {
   const Index n = places.chain().size();
   Fits fits;
   VectorXd q = VectorXd::Zero(n);
@@ -159,6 +164,7 @@ Fits fit_all(PlaceFit& places, std::span<const RodPlaceSample> samples, double n
     fits.square += places.fit(sample.positions, noise, spread, q).squaredNorm();
     fits.covariances.push_back(places.covariance());
     fits.modes.push_back(q);
+    progress.update(static_cast<double>(fits.modes.size()) / static_cast<double>(samples.size()), fitting);
   }
   return fits;
 }
@@ -191,8 +197,8 @@ VectorXd first_rates(const RodMotionRecord& record) {
 }  // namespace
 
 RodPlaceRecord record_of_places(const Rod& rod, std::span<const RodPlace> places,
-                                std::span<const RodPlaceSample> samples, const RodLoads& loads,
-                                double noise) {
+                                std::span<const RodPlaceSample> samples, const RodLoads& loads, double noise,
+                                Progress* progress) {
   require_places(rod, places);
   require_samples(samples, places.size());
   if (!(noise >= 0) || !std::isfinite(noise))
@@ -207,7 +213,10 @@ RodPlaceRecord record_of_places(const Rod& rod, std::span<const RodPlace> places
   // First fits bends alone to find their energy. A prior of 10 rad in a section allows any bend.
   VectorXd spread = VectorXd::Constant(n, 1e-4).cwiseQuotient(fit.chain().scales());
   for (const Index mode : bends) spread[mode] = 10 / fit.chain().scales()[mode];
-  Fits fits = fit_all(fit, samples, first_noise * length, spread);
+  const std::size_t passes = noise > 0 ? 1 : 3;
+  NoProgress nobody;
+  WorkProgress work(progress != nullptr ? *progress : nobody, std::vector<double>(1 + passes, 1));
+  Fits fits = fit_all(fit, samples, first_noise * length, spread, work.piece(0));
   double energy = 0;
   for (const VectorXd& q : fits.modes) {
     double there = 0;
@@ -225,8 +234,8 @@ RodPlaceRecord record_of_places(const Rod& rod, std::span<const RodPlace> places
   const double freedom =
       coordinates * (1 - static_cast<double>(n) / (3.0 * static_cast<double>(places.size())));
   double counted = noise > 0 ? noise : first_noise * length;
-  for (int pass = 0; pass < (noise > 0 ? 1 : 3); ++pass) {
-    fits = fit_all(fit, samples, counted, spread);
+  for (std::size_t pass = 0; pass < passes; ++pass) {
+    fits = fit_all(fit, samples, counted, spread, work.piece(1 + pass));
     if (noise == 0) counted = std::max(std::sqrt(fits.square / freedom), least_noise * length);
   }
   RodPlaceRecord result{.record = {.samples = {}, .loads = loads},
@@ -241,7 +250,8 @@ RodPlaceRecord record_of_places(const Rod& rod, std::span<const RodPlace> places
 }
 
 double places_missed(const Rod& rod, std::span<const RodPlace> places,
-                     std::span<const RodPlaceSample> samples, const RodPlaceRecord& record) {
+                     std::span<const RodPlaceSample> samples, const RodPlaceRecord& record,
+                     Progress* progress) {
   require_places(rod, places);
   require_samples(samples, places.size());
   const std::vector<RodMotionRecordSample>& motion = record.record.samples;
@@ -266,6 +276,9 @@ double places_missed(const Rod& rod, std::span<const RodPlace> places,
           return std::numeric_limits<double>::infinity();
       }
     }
+    if (progress != nullptr)
+      progress->update(static_cast<double>(k + 1) / static_cast<double>(samples.size()),
+                       "simulating the motion");
     for (std::size_t i = 0; i < places.size(); ++i)
       square += (dynamics.motion(state, places[i]).pose.position - samples[k].positions[i]).squaredNorm();
   }

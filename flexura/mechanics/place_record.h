@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "flexura/base/progress.h"
 #include "flexura/mechanics/identification.h"
 #include "flexura/mechanics/rod.h"
 #include "flexura/mechanics/rod_chain.h"
@@ -33,16 +34,17 @@ struct RodPlaceRecord {
 /// with a lower bound of 1e-5 of the rod's length. Throws std::invalid_argument for an invalid rod, numbers
 /// that are not finite, fewer than two samples, or wrong numbers of positions. Also throws it for duplicate
 /// places, and for places outside the rod or measured far from all of its shapes. Further errors are as many
-/// coordinates as modes, or fewer.
+/// coordinates as modes, or fewer. `progress`, if any, follows the fits.
 [[nodiscard]] RodPlaceRecord record_of_places(const Rod& rod, std::span<const RodPlace> places,
                                               std::span<const RodPlaceSample> samples, const RodLoads& loads,
-                                              double noise = 0);
+                                              double noise = 0, Progress* progress = nullptr);
 
 /// Simulates the rod under the record's tensions from its first sample on. Returns the root mean square
 /// distance of all places at all times, m; infinity if the motion cannot be computed. Throws
 /// std::invalid_argument as record_of_places() or for a record that is not of these samples, and errors of
-/// RodDynamics.
+/// RodDynamics. `progress`, if any, follows the simulation.
 [[nodiscard]] double places_missed(const Rod& rod, std::span<const RodPlace> places,
-                                   std::span<const RodPlaceSample> samples, const RodPlaceRecord& record);
+                                   std::span<const RodPlaceSample> samples, const RodPlaceRecord& record,
+                                   Progress* progress = nullptr);
 
 }  // namespace flexura

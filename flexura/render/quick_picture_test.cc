@@ -124,6 +124,27 @@ TEST(QuickPicture, DrawsTaperedArmsToo) {
   EXPECT_GT(left_out_of(scene, view), 300);
 }
 
+// An elastic arm in motion is a chain of many short arcs whose curvature changes little from one to the next.
+TEST(QuickPicture, DrawsChainsOfSimilarArcs) {
+  constexpr int count = 60;
+  Arm arm;
+  arm.kind = ArmKind::spatial;
+  ArmState state = ArmState::straight(count);
+  for (int i = 0; i < count; ++i) {
+    arm.sections.push_back({.length = 1.0 / count, .radius = {0.02, 0.02}});
+    const double s = (i + 0.5) / count;
+    state.bends[static_cast<std::size_t>(i)] = Eigen::Vector2d(2 * std::cos(2 * s), std::sin(3 * s)) / count;
+  }
+  const View view = pinhole_view(look_at({0.3, 0.5, 2}, {0, 0.5, 0}), 320, 240, 400);
+  Scene scene = plain_scene();
+  scene.arm.tube = tube_of(Backbone(arm, state));
+  // Some 2000 pixels show the arm, and 500 its contour.
+  EXPECT_LT(left_out_of(scene, view), 200);
+  const Difference all = compare_paths(scene, view);
+  EXPECT_LT(all.worst, 0.003);
+  EXPECT_EQ(all.bad_depths, 0);
+}
+
 // The fast path still draws two sections with a disk at their joint.
 TEST(QuickPicture, DrawsSectionsBesideDisks) {
   Arm arm;

@@ -198,6 +198,8 @@ bool QuickPicture::plan_piece(const Stage& stage, const TubePiece& piece) {
   }
   Skin& skin = skins_[skin_count_++];
   skin.index = static_cast<int>(&piece - stage.pieces.data());
+  skin.before = skin.piece.kink_before > 0 ? -1 : piece.before;
+  skin.after = skin.piece.kink_after > 0 ? -1 : piece.after;
   skin.piece.rims = 0;
   skin.region = *region;
   skin.rows = map_.rows(*region);

@@ -145,6 +145,34 @@ TEST(QuickPicture, DrawsChainsOfSimilarArcs) {
   EXPECT_EQ(all.bad_depths, 0);
 }
 
+// A renderer keeps pixels that show only screens. A screen that covers a part of another one's edge leaves
+// some to the reference path.
+TEST(QuickPicture, DoesNotDependOnEarlierPictures) {
+  for_random_cases(4, [](TestRandom& random) {
+    const BentArm bent = random_bent_arm(random, 0);
+    const View view = some_view(random, bent.backbone());
+    Scene scene = busy_scene(random, bent.backbone(), view);
+    const Eigen::Vector3d ahead = view.X_WC.rotation.col(2);
+    for (const double distance : {3.0, 3.5}) {
+      Screen& screen = scene.screens.emplace_back();
+      screen.X_WS = {rotation_from_z(-ahead), view.X_WC.position + distance * ahead};
+      screen.size = {distance > 3 ? 1.0 : 0.3, 0.4};
+    }
+    Renderer kept;
+    for (int i = 0; i < 6; ++i) {
+      scene.arm.tube = tube_of(random_bent_arm(random, 0).backbone());
+      if (i == 4) scene.screens.back().brightness *= 0.9;
+      View seen = view;
+      if (i % 2 == 1) seen.X_WC.position.x() += 0.01;
+      LightImage one, other;
+      kept.render(scene, seen, PixelKind::gray, one);
+      Renderer().render(scene, seen, PixelKind::gray, other);
+      EXPECT_TRUE(std::ranges::equal(one.light.values(), other.light.values()));
+      EXPECT_TRUE(std::ranges::equal(one.depth.values(), other.depth.values()));
+    }
+  });
+}
+
 // The fast path still draws two sections with a disk at their joint.
 TEST(QuickPicture, DrawsSectionsBesideDisks) {
   Arm arm;

@@ -29,6 +29,13 @@ void RodDynamics::Work::differentiate(const Eigen::VectorXd& q, const Eigen::Vec
   for (const double value : v) v_dual.push_back(number(value));
   for (const double value : tensions) pulls.push_back(number(value));
   std::vector<Number> p_dual(q_dual.size()), f_dual(q_dual.size());
+  const auto section_of = [&](Eigen::Index mode) {
+    std::size_t s = 0;
+    while (s + 1 < layout.sections.size() &&
+           layout.sections[s + 1].first_mode <= static_cast<std::size_t>(mode))
+      ++s;
+    return s;
+  };
   constexpr auto width = static_cast<Eigen::Index>(lanes_of<Lanes>);
   for (Eigen::Index first = 0; first < n; first += width) {
     const Eigen::Index count = std::min(width, n - first);
@@ -40,6 +47,7 @@ void RodDynamics::Work::differentiate(const Eigen::VectorXd& q, const Eigen::Vec
       }
     };
     set(by_q, by_v);
+    differential_->vary(section_of(first), section_of(first + count - 1), first > 0);
     differential_->place(q_dual.data(), v_dual.data());
     differential_->keep_surroundings(first > 0);
     differential_->pull(loads, pulls.data(), surroundings);
@@ -58,8 +66,20 @@ RodDynamicsSlopes RodDynamics::Work::slopes_at(const Eigen::VectorXd& q, const E
                                                const TendonInput& tendons, const RodLoads& loads) {
   RodDynamicsSlopes slopes;
   differentiate(q, v, loads, 1, 0, slopes.momentum_by_q, slopes.force_by_q);
-  differentiate(q, v, loads, 0, 1, slopes.mass, slopes.force_by_v);
   motion.place(q.data(), v.data());
+  if (v.isZero(0) && !rubs() && surroundings == nullptr && !layout.is_driven) {
+    // Of the forces at rest, only damping depends on the rates.
+    matrix.find_columns(motion);
+    slopes.mass = matrix.dense_mass(motion);
+    slopes.force_by_v.setZero(q.size(), q.size());
+    for (const RodLayout::Section& section : layout.sections) {
+      const auto first = static_cast<Eigen::Index>(section.first_mode),
+                 size = static_cast<Eigen::Index>(section.modes);
+      slopes.force_by_v.block(first, first, size, size) = -section.damping;
+    }
+  } else {
+    differentiate(q, v, loads, 0, 1, slopes.mass, slopes.force_by_v);
+  }
   if (rubs()) motion.pull(loads, tensions.data(), surroundings);
   Eigen::VectorXd length_slopes(q.size());
   const auto count = static_cast<Eigen::Index>(chain.tendons());

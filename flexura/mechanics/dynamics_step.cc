@@ -3,6 +3,7 @@
 #include <limits>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include "flexura/mechanics/complementary.h"
 #include "flexura/mechanics/dynamics_work.h"
@@ -15,7 +16,7 @@ constexpr double least_gain = 0.95;
 // With surroundings, an iteration with less gain than this gets a new matrix.
 constexpr double slow_gain = 0.2;
 // The exact derivative with friction costs as much as some thirty iterations.
-constexpr double slow_friction_gain = 0.6;
+constexpr double slow_friction_gain = 0.75;
 constexpr int patience = 6;
 // Number of converged pieces of a step before they become longer again.
 constexpr int enough_in_a_row = 4;
@@ -31,6 +32,40 @@ double greatest_change(const Eigen::VectorXd& change, const Eigen::VectorXd& sca
   }
   return most;
 }
+
+// Steps of an iteration with an approximate derivative, corrected by what earlier steps achieved: the good
+// method of C. G. Broyden (1965).
+class LearningSteps {
+ public:
+  explicit LearningSteps(const Eigen::VectorXd& scales) : squares_(scales.cwiseAbs2()) {}
+
+  void clear() { corrections_.clear(); }
+  // Returns the corrected step from the one by the approximate derivative.
+  [[nodiscard]] Eigen::VectorXd corrected(Eigen::VectorXd step) const {
+    for (const Correction& each : corrections_) step += product(each.step, step) * each.by_step;
+    return step;
+  }
+  // Learns from a step that was made in full. `left`: the step by the approximate derivative at its end.
+  void learn(const Eigen::VectorXd& step, const Eigen::VectorXd& left) {
+    constexpr double least = 0.1;  // Limits how much a step becomes longer.
+    Eigen::VectorXd after = corrected(left);
+    const double square = product(step, step), along = product(step, after);
+    if (!std::isfinite(along) || !(square > 0)) return;
+    after /= std::max(least * square, square - along);
+    corrections_.push_back({step, std::move(after)});
+  }
+
+ private:
+  // With the scaled product of `step` and a step, `by_step` times it is added.
+  struct Correction {
+    Eigen::VectorXd step, by_step;
+  };
+  [[nodiscard]] double product(const Eigen::VectorXd& a, const Eigen::VectorXd& b) const {
+    return (a.array() * b.array() * squares_.array()).sum();
+  }
+  Eigen::VectorXd squares_;
+  std::vector<Correction> corrections_;
+};
 
 }  // namespace
 
@@ -247,7 +282,7 @@ bool RodDynamics::Work::factor_exactly(const Stage& stage) {
 
 // Newton's method with the exact derivative. Each step is damped to shorten the next one (P. Deuflhard's
 // natural monotonicity test). It starts with the derivative of an earlier step, if there is one, and keeps a
-// derivative while iterations converge fast.
+// derivative, corrected by what it learns, while iterations converge fast.
 bool RodDynamics::Work::iterate_exactly(const Stage& stage, RodStep& result) {
   constexpr double similar = 0.8;
   bool is_old =
@@ -255,6 +290,7 @@ bool RodDynamics::Work::iterate_exactly(const Stage& stage, RodStep& result) {
   evaluate(stage);
   if (!change_.allFinite() || (!is_old && !factor_exactly(stage)) || !solve_exactly(stage)) return false;
   const int most = result.iterations + config.most_iterations;
+  LearningSteps learned(chain.scales());
   Eigen::VectorXd step = change_, from = velocity;
   double size = greatest_change(step, chain.scales());
   while (result.iterations < most && std::isfinite(size)) {
@@ -276,11 +312,13 @@ bool RodDynamics::Work::iterate_exactly(const Stage& stage, RodStep& result) {
     }
     if (rubs() && part == 1 && next < slow_friction_gain * size) {
       // If friction iterations converge, the old derivative is good enough.
+      learned.learn(step, change_);
       from = velocity;
-      step = change_;
+      step = learned.corrected(change_);
       size = next;
       continue;
     }
+    learned.clear();
     if (is_old)
       velocity = from;
     else if (!(part > 1e-4) || !std::isfinite(next))

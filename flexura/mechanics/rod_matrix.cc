@@ -308,10 +308,16 @@ Eigen::MatrixXd RodMatrix::node_columns(std::size_t node) const {
 Eigen::MatrixXd RodMatrix::dense_mass(const RodMotion<double>& motion) const {
   const auto n = static_cast<Eigen::Index>(layout_.modes);
   Eigen::MatrixXd M = Eigen::MatrixXd::Zero(n, n);
-  for (std::size_t node = 0; node < layout_.nodes; ++node) {
-    const Block block = block_of(layout_.bodies[node], motion.nodes()[node]);
-    const Eigen::MatrixXd J = node_columns(node);
-    M += J.transpose() * Eigen::Map<const Matrix6d>(block.data()) * J;
+  for (const RodLayout::Section& section : layout_.sections) {
+    // Nodes move with the modes of their section and those before.
+    const auto moving = static_cast<Eigen::Index>(section.first_mode + section.modes);
+    for (std::size_t i = 0; i <= section.intervals; ++i) {
+      const std::size_t node = section.first_node + i;
+      const Block block = block_of(layout_.bodies[node], motion.nodes()[node]);
+      const Eigen::MatrixXd J = node_columns(node).leftCols(moving);
+      const Eigen::MatrixXd pushed = Eigen::Map<const Matrix6d>(block.data()) * J;
+      M.topLeftCorner(moving, moving).noalias() += J.transpose() * pushed;
+    }
   }
   return M;
 }

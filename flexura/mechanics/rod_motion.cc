@@ -49,14 +49,16 @@ RodMotion<S>::RodMotion(const RodLayout& layout) : layout_(layout) {
   collected_.resize(18 * padded);
   changed_.resize(18 * padded);
   X_.resize(layout.nodes);
-  for (auto* screws : {&V_, &P_, &W_, &along_, &spare_}) screws->resize(layout.nodes);
+  for (auto* screws : {&V_, &P_, &W_, &along_, &smooth_along_, &spare_}) screws->resize(layout.nodes);
   motions_.resize(layout.nodes);
   q_.resize(layout.modes);
   v_.resize(layout.modes);
   pulls_.resize(layout.nodes);
+  is_anew_.assign(layout.sections.size(), 1);
+  has_slopes_ = is_anew_;
   if (layout.rubbing.empty()) return;
   units_.resize(layout.pieces);
-  for (auto* list : {&growth_, &slide_, &turn_, &friction_, &left_}) list->resize(layout.pieces);
+  for (auto* list : {&growth_, &slide_, &turned_, &turn_, &friction_, &left_}) list->resize(layout.pieces);
   spins_.resize(layout.pieces);
   smooth_.resize(layout.tendons);
 }
@@ -66,10 +68,22 @@ void RodMotion<S>::place(const S* q, const S* v) {
   std::copy(q, q + layout_.modes, q_.begin());
   std::copy(v, v + layout_.modes, v_.begin());
   const std::size_t padded = layout_.padded;
-  for (std::size_t i = 0; i < moments_.size(); ++i) moments_[i] = layout_.rest[i] + S{};
-  std::fill(rates_.begin(), rates_.end(), S{});
+  choose_sections();
+  if (are_all_anew_) {
+    for (std::size_t i = 0; i < moments_.size(); ++i) moments_[i] = layout_.rest[i] + S{};
+    std::fill(rates_.begin(), rates_.end(), S{});
+  }
   if (layout_.is_driven) add_stretch_rates();
-  for (const RodLayout::Section& section : layout_.sections) {
+  for (std::size_t s = 0; s < layout_.sections.size(); ++s) {
+    if (is_anew_[s] == 0) continue;
+    const RodLayout::Section& section = layout_.sections[s];
+    for (std::size_t row = 0; row < 18 && !are_all_anew_; ++row) {
+      const std::size_t at = row * padded + section.first_interval;
+      for (std::size_t i = 0; i < section.intervals; ++i) {
+        moments_[at + i] = layout_.rest[at + i] + S{};
+        rates_[at + i] = S{};
+      }
+    }
     for (std::size_t m = 0; m < 3; ++m) {
       const double* of_mode = layout_.moments[m].data() + section.first_moment;
       for (std::size_t j = 0; j < section.modes; ++j, of_mode += section.intervals) {
@@ -82,7 +96,7 @@ void RodMotion<S>::place(const S* q, const S* v) {
       }
     }
   }
-  for (std::size_t i = 0; i < intervals_.size(); ++i) {
+  const auto find_interval = [&](std::size_t i) {
     const std::size_t at = i * lanes_of<Number>;
     const auto moment = [&](std::size_t m) {
       return dual_of(load_screw<Number>(&moments_[6 * m * padded + at], padded),
@@ -96,11 +110,9 @@ void RodMotion<S>::place(const S* q, const S* v) {
     store_triple(step.z, &steps_[6 * padded + at], padded);
     store_triple(step.position, &steps_[9 * padded + at], padded);
     store_screw(now.moved(slope_of(intervals_[i].twist())), &speeds_[at], padded);
-  }
-  const S zero{}, one = 1.0 + zero;
-  Placement<S> X = {.x = {one, zero, zero}, .y = {zero, one, zero}, .z = {zero, zero, one}, .position = {}};
-  Screw<S> V{};
-  for (const RodLayout::Section& section : layout_.sections) {
+  };
+  const auto find_nodes = [&](std::size_t s, Placement<S> X, Screw<S> V) {
+    const RodLayout::Section& section = layout_.sections[s];
     std::size_t node = section.first_node;
     X_[node] = X;
     V_[node] = V;
@@ -117,8 +129,41 @@ void RodMotion<S>::place(const S* q, const S* v) {
       X_[node] = X;
       V_[node] = V;
     }
+    for (std::size_t k = section.first_node; k <= node; ++k) P_[k] = momentum_of(k, V_[k]);
+  };
+  if (are_all_anew_)
+    for (std::size_t i = 0; i < intervals_.size(); ++i) find_interval(i);
+  const S zero{}, one = 1.0 + zero;
+  const Placement<S> base = {
+      .x = {one, zero, zero}, .y = {zero, one, zero}, .z = {zero, zero, one}, .position = {}};
+  bool is_moved = false;
+  for (std::size_t s = 0; s < layout_.sections.size(); ++s) {
+    const RodLayout::Section& section = layout_.sections[s];
+    if (!are_all_anew_ && is_anew_[s] != 0)
+      for (std::size_t i = 0; i < section.intervals; ++i) find_interval(section.first_interval + i);
+    is_moved = is_moved || is_anew_[s] != 0;
+    if (!is_moved) continue;
+    if (s > 0) {
+      const std::size_t before = layout_.sections[s - 1].first_node + layout_.sections[s - 1].intervals;
+      find_nodes(s, X_[before], V_[before]);
+    } else {
+      find_nodes(s, base, Screw<S>{});
+    }
   }
-  for (std::size_t k = 0; k < layout_.nodes; ++k) P_[k] = momentum_of(k, V_[k]);
+}
+
+// Chooses the sections whose intervals change: those with slopes now or before.
+template <typename S>
+void RodMotion<S>::choose_sections() {
+  // Intervals of different sections are computed together where an instruction takes several.
+  const bool keeps = keeps_values_ && lanes_of<Number> == 1 && !layout_.is_driven;
+  are_all_anew_ = true;
+  for (std::size_t s = 0; s < is_anew_.size(); ++s) {
+    const bool is_varied = s >= first_varied_ && s <= last_varied_;
+    is_anew_[s] = !keeps || is_varied || has_slopes_[s] != 0 ? 1 : 0;
+    has_slopes_[s] = is_varied ? 1 : 0;
+    are_all_anew_ = are_all_anew_ && is_anew_[s] != 0;
+  }
 }
 
 // For driven sections: the first moment is an integral over arc length.

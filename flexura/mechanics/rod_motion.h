@@ -30,6 +30,12 @@ class RodMotion {
 
   /// Computes poses and velocities of the nodes.
   void place(const S* q, const S* v);
+  /// The slopes of q and v in the next calls of place() are 0 outside the modes of sections `first` to
+  /// `last`. `keeps_values`: values, tensions and loads are those of the last calls of place() and pull(),
+  /// and only slopes differ. Then whatever depends on other sections alone is not computed again.
+  void vary(std::size_t first, std::size_t last, bool keeps_values) {
+    first_varied_ = first, last_varied_ = last, keeps_values_ = keeps_values;
+  }
   /// If true, pull() reuses the last wrenches of the surroundings, for the same shape and rates with other
   /// slopes.
   void keep_surroundings(bool keeps) { keeps_surroundings_ = keeps; }
@@ -110,6 +116,7 @@ class RodMotion {
   [[nodiscard]] static Pull pull_of(const RodLayout::Passage& passage, const Screw<S>& strain);
   [[nodiscard]] Screw<S> strain_rate_at(const RodLayout::Section& section, std::size_t node,
                                         std::size_t s) const;
+  void choose_sections();
   void add_stretch_rates();
   void add_tendons(const S* tensions);
   // Computes turning and sliding of its tendons with friction; then the remaining tension.
@@ -141,13 +148,18 @@ class RodMotion {
   std::vector<S> collected_, changed_;  // 18 x padded.
   std::vector<Placement<S>> X_;         // Of the nodes.
   std::vector<Screw<S>> V_, P_, W_;
-  std::vector<Screw<S>> along_;  // For tendons and nodes: forces on the strains.
+  // For sections: whether the last place() computed their intervals anew, and with slopes.
+  std::vector<char> is_anew_, has_slopes_;
+  std::size_t first_varied_ = 0, last_varied_ = static_cast<std::size_t>(-1);
+  bool keeps_values_ = false, are_all_anew_ = true;
+  // For tendons and nodes: forces on the strains; those of tendons without friction alone.
+  std::vector<Screw<S>> along_, smooth_along_;
   std::vector<Screw<S>> spare_;
   bool is_pulled_ = false;  // Tendons act on its strains.
   // For pieces of tendons with friction: force of a unit tension, rate of the piece's length, sliding speed
-  // before it, turning there times the friction coefficient, friction force, and tension.
+  // before it, turning there, this times the friction coefficient, friction force, and tension.
   std::vector<Screw<S>> units_;
-  std::vector<S> growth_, slide_, turn_, friction_, left_;
+  std::vector<S> growth_, slide_, turned_, turn_, friction_, left_;
   std::vector<S> spins_, smooth_;  // Work space.
   const double* held_before_ = nullptr;
   const double* grip_ = nullptr;

@@ -78,7 +78,14 @@ void RodMotion<S>::follow_channel(const RodLayout::Rubbing& rub, std::size_t fro
   const auto index =
       static_cast<std::size_t>(std::ranges::find(section.tendons, rub.tendon) - section.tendons.begin());
   const RodLayout::Passage* passages = section.passages.data() + index * (section.intervals + 1);
-  Triple<S> first{};
+  const auto turn_at_joint = [&] {
+    return from == 0 ? S{} : turn_between(direction, units_[rub.first + from].linear);
+  };
+  if (is_anew_[s] == 0) {
+    turned_[rub.first + from] = turn_at_joint();
+    direction = units_[rub.first + to - 1].linear;
+    return;
+  }
   for (std::size_t p = from; p < to; ++p) {
     const std::size_t k = rub.pieces[p].at, at = rub.first + p;
     const RodLayout::Passage& passage = passages[k];
@@ -99,7 +106,6 @@ void RodMotion<S>::follow_channel(const RodLayout::Rubbing& rub, std::size_t fro
     const Triple<S> turning = cross(strain.angular, way + constant<S>(passage.slope)) + slope.linear +
                               cross(slope.angular, constant<S>(passage.offset)) + constant<S>(passage.second);
     spins_[p] = size_of(cross(way, turning), least_turn / section.length) / (pull.length * pull.length);
-    if (p == from) first = pull.along.linear;
   }
   S before{};
   for (std::size_t p = from; p < to; ++p) {
@@ -107,10 +113,8 @@ void RodMotion<S>::follow_channel(const RodLayout::Rubbing& rub, std::size_t fro
     S sum{};
     for (std::size_t m = from; m < to; ++m)
       sum += section.length * row[static_cast<Eigen::Index>(rub.pieces[m].at)] * spins_[m];
-    S turned = sum - before;
+    turned_[rub.first + p] = p == from ? turn_at_joint() : sum - before;
     before = sum;
-    if (p == from) turned = p == 0 ? S{} : turn_between(direction, first);
-    turn_[rub.first + p] = turned;
   }
   direction = units_[rub.first + to - 1].linear;
 }
@@ -134,7 +138,7 @@ void RodMotion<S>::follow_chords(const RodLayout::Rubbing& rub, std::size_t from
     units_[at] = wrench_at(a, u);
     const Screw<S> apart = V_[section.first_node + end] - V_[section.first_node + begin];
     growth_[at] = dot(units_[at].linear, apart.linear) + dot(units_[at].angular, apart.angular);
-    turn_[at] = p == 0 ? S{} : turn_between(direction, u);
+    turned_[at] = p == 0 ? S{} : turn_between(direction, u);
     direction = u;
   }
   direction = X_[section.first_node + section.intervals].turn_back(direction);
@@ -161,7 +165,7 @@ void RodMotion<S>::find_slides() {
       slide -= growth_[at];
       slide_[at] = slide;
       // The quadrature may be negative between nodes where the tendon hardly turns.
-      const S turned = number_of(turn_[at]) > 0 ? turn_[at] : S{};
+      const S turned = number_of(turned_[at]) > 0 ? turned_[at] : S{};
       turn_[at] = at_most(rub.friction * turned, most_turn);
     }
   }

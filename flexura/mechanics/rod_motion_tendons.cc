@@ -55,9 +55,10 @@ void RodMotion<S>::add_tendons(const S* tensions) {
     for (const RodLayout::Rubbing& each : layout_.rubbing) smooth_[each.tendon] = S{};
     tensions = smooth_.data();
   }
-  for (const RodLayout::Section& section : layout_.sections) {
-    for (std::size_t k = 0; k <= section.intervals && section.disks.empty(); ++k) {
-      Screw<S>& along = along_[section.first_node + k];
+  for (std::size_t s = 0; s < layout_.sections.size(); ++s) {
+    const RodLayout::Section& section = layout_.sections[s];
+    for (std::size_t k = 0; k <= section.intervals && section.disks.empty() && is_anew_[s] != 0; ++k) {
+      Screw<S>& along = smooth_along_[section.first_node + k];
       along = Screw<S>{};
       if (layout_.run[section.first_node + k] == 0) continue;
       const Screw<S> strain = strain_at(section, k);
@@ -67,6 +68,8 @@ void RodMotion<S>::add_tendons(const S* tensions) {
         along += tension * pull_of(section.passages[i * (section.intervals + 1) + k], strain).along;
       }
     }
+    for (std::size_t k = 0; k <= section.intervals && section.disks.empty(); ++k)
+      along_[section.first_node + k] = smooth_along_[section.first_node + k];
     for (std::size_t i = 0; i < section.tendons.size(); ++i) {
       const S& tension = tensions[section.tendons[i]];
       for_chords(section, i, [&](std::size_t from, std::size_t to, const Screw<S>& unit, const S&) {

@@ -77,7 +77,7 @@ RodResponse::RodResponse(const Arm& driven, const Rod& rod, RodLoads loads, std:
       loads_(std::move(loads)),
       drive_(std::move(drive)),
       variables_(shaped_),
-      statics_(fitting(driven, rod, drive_)),
+      slots_(2, Slot{.statics = RodStatics(fitting(driven, rod, drive_))}),
       dynamics_(swings ? std::make_unique<RodDynamics>(without_friction(rod)) : nullptr),
       fine_(rod, rod_places(driven)) {
   std::size_t first = 0;
@@ -93,9 +93,9 @@ RodResponse::RodResponse(const Arm& driven, const Rod& rod, RodLoads loads, std:
   std::vector<MaterialPoint> on_arcs;
   on_arcs.reserve(places_.size());
   for (const Place& place : places_) on_arcs.push_back(place.on_arcs);
-  fit_.emplace(variables_, std::move(on_arcs));
+  for (Slot& slot : slots_) slot.fit.emplace(variables_, on_arcs);
   tight_.assign(rod.tendons.size(), 0.0);
-  if (drive_ && drive_->pretension > 0) tight_ = pretension_displacements(statics_, drive_->pretension);
+  if (drive_ && drive_->pretension > 0) tight_ = pretension_displacements(now().statics, drive_->pretension);
   const ArmState straight = ArmState::straight(driven_.sections.size());
   straight_ = solved(straight, {});
   if (!straight_.converged())
@@ -120,18 +120,24 @@ Equilibrium RodResponse::solved(const ArmState& command, const Equilibrium& near
     none.end = StaticsEnd::bad_input;
     return none;
   }
-  if (!drive_) statics_.stretch_rest(command.stretches);
-  return statics_.solve({.displacements = displacements(command)}, loads_, near);
+  if (!drive_) now().statics.stretch_rest(command.stretches);
+  return now().statics.solve({.displacements = displacements(command)}, loads_, near);
 }
 
 const RodResponse::Answer& RodResponse::answer(const ArmState& command) const {
   require_fit(driven_, command);
-  if (last_ && last_->command == command) return *last_;
-  last_.reset();
+  const auto known = std::ranges::find_if(
+      slots_, [&](const Slot& slot) { return slot.last && slot.last->command == command; });
+  if (known != slots_.end()) {
+    slot_ = static_cast<std::size_t>(known - slots_.begin());
+    return *now().last;
+  }
+  slot_ = (slot_ + 1) % slots_.size();
+  now().last.reset();
   Answer next{command, solved(command, straight_), {}};
   next.shape = fitted(next.at, command);
-  last_ = std::move(next);
-  return *last_;
+  now().last = std::move(next);
+  return *now().last;
 }
 
 // Returns arcs whose ends have the rod's tangents: start of the fit. The rod must be placed.
@@ -163,13 +169,13 @@ ArmState RodResponse::fitted(const Equilibrium& at, const ArmState& command) con
   const double length = driven_.length();
   Eigen::MatrixXd missed(3 * static_cast<Eigen::Index>(places_.size()), 1), reached;
   for (int step = 0; step < max_fit_steps; ++step) {
-    fit_->set(shaped_, shape);
+    now().fit->set(shaped_, shape);
     for (std::size_t p = 0; p < places_.size(); ++p) {
       const Place& place = places_[p];
       missed.col(0).segment<3>(3 * static_cast<Eigen::Index>(p)) =
-          fine_.pose(place.node).position - fit_->position(p);
+          fine_.pose(place.node).position - now().fit->position(p);
     }
-    const Eigen::VectorXd change = fit_->solve(missed, &reached);
+    const Eigen::VectorXd change = now().fit->solve(missed, &reached);
     for (std::size_t k = 0; k < ends_.size(); ++k) {
       const ArmVariables::Part& part = variables_.parts()[k];
       shape.bends[k] += part.bend(change);
@@ -218,7 +224,8 @@ RodResponse::~RodResponse() = default;
 // Returns the changes of the nearest arcs' (bend_x, bend_y, stretch) by changes of the modes, one column
 // each, at the last answer.
 Eigen::MatrixXd RodResponse::arcs_along(const Eigen::MatrixXd& dq) const {
-  fine_.place_with_columns(last_->at.q);
+  if (!drive_) fine_.stretch_rest(now().last->command.stretches);
+  fine_.place_with_columns(now().last->at.q);
   Eigen::MatrixXd places(3 * static_cast<Eigen::Index>(places_.size()), dq.cols());
   RodElement::Columns twists(6, fine_.size());
   for (std::size_t p = 0; p < places_.size(); ++p) {
@@ -230,7 +237,7 @@ Eigen::MatrixXd RodResponse::arcs_along(const Eigen::MatrixXd& dq) const {
       places.block<3, 1>(3 * static_cast<Eigen::Index>(p), c) =
           moved.col(c).head<3>() + moved.col(c).tail<3>().cross(at);
   }
-  const Eigen::MatrixXd arcs = fit_->solve(places);
+  const Eigen::MatrixXd arcs = now().fit->solve(places);
   Eigen::MatrixXd changes = Eigen::MatrixXd::Zero(3 * static_cast<Eigen::Index>(ends_.size()), dq.cols());
   for (std::size_t k = 0; k < ends_.size(); ++k) {
     const ArmVariables::Part& part = variables_.parts()[k];
@@ -243,8 +250,8 @@ Eigen::MatrixXd RodResponse::arcs_along(const Eigen::MatrixXd& dq) const {
 }
 
 void RodResponse::analytic_slopes(RodStatics::Slack slack, Eigen::MatrixXd& by_command) const {
-  // mutex_ is held, so no other thread has changed last_.
-  by_command = arcs_along(statics_.slopes(slack).q_by_input * displacement_slopes(last_->command));
+  // mutex_ is held, so no other thread has changed the last answer.
+  by_command = arcs_along(now().statics.slopes(slack).q_by_input * displacement_slopes(now().last->command));
 }
 
 TendonTensions RodResponse::tensions(const ArmState& command) const {
@@ -253,23 +260,23 @@ TendonTensions RodResponse::tensions(const ArmState& command) const {
   if (!here.at.converged() || has_driven_lengths_) return {};
   return {.tensions = Eigen::Map<const Eigen::VectorXd>(here.at.tensions.data(),
                                                         static_cast<Eigen::Index>(here.at.tensions.size())),
-          .by_command =
-              statics_.slopes(RodStatics::Slack::hangs).tensions_by_input * displacement_slopes(command)};
+          .by_command = now().statics.slopes(RodStatics::Slack::hangs).tensions_by_input *
+                        displacement_slopes(command)};
 }
 
 std::vector<ArmState> RodResponse::released(const ArmState& command) const {
   const std::lock_guard lock(mutex_);
   const Equilibrium near = answer(command).at;
-  if (!drive_ && near.converged()) statics_.stretch_rest(command.stretches);
+  if (!drive_ && near.converged()) now().statics.stretch_rest(command.stretches);
   std::vector<ArmState> shapes;
   for (std::size_t i = 0; i < tight_.size(); ++i) {
     std::vector<double> pulled = displacements(command);
     pulled[i] = -driven_.length();
     Equilibrium at;
-    if (near.converged()) at = statics_.solve({.displacements = std::move(pulled)}, loads_, near);
+    if (near.converged()) at = now().statics.solve({.displacements = std::move(pulled)}, loads_, near);
     shapes.push_back(fitted(at, command));
   }
-  last_.reset();  // Solver and fit are at another equilibrium now.
+  now().last.reset();  // Solver and fit are at another equilibrium now.
   return shapes;
 }
 
@@ -292,7 +299,7 @@ std::vector<SwingMode> RodResponse::swing(const ArmState& command, std::size_t m
   const Eigen::MatrixXd shapes = mass.matrixU().solve(eigen.vectors);  // In q.
   const Eigen::MatrixXd arcs = arcs_along(shapes);
   const Eigen::MatrixXd kicks = -shapes.transpose() * by.mass *
-                                statics_.slopes(RodStatics::Slack::hangs).q_by_input *
+                                now().statics.slopes(RodStatics::Slack::hangs).q_by_input *
                                 displacement_slopes(command);
   std::vector<SwingMode> modes;
   for (Eigen::Index j = 0; j < eigen.values.size() && modes.size() < most; ++j) {
@@ -354,7 +361,7 @@ void RodResponse::secant_slopes(const Answer& kept, Eigen::MatrixXd& by_command)
       column(c + 2, stretch_secant, [i](ArmState& state) -> double& { return state.stretches[i]; });
   }
   // Solver and fit are at another command now.
-  last_.reset();
+  now().last.reset();
 }
 
 }  // namespace flexura

@@ -54,12 +54,18 @@ class RodResponse : public ArmResponse {
   [[nodiscard]] Equilibrium equilibrium(const ArmState& command) const;
 
  private:
-  // The last answer.
   struct Answer {
     ArmState command;
     Equilibrium at;
     ArmState shape;
   };
+  // A solver and a fit, and the answer at which they are.
+  struct Slot {
+    RodStatics statics;
+    std::optional<ArcFit> fit = {};  // Of the arcs to the places, at the last fit.
+    std::optional<Answer> last = {};
+  };
+  [[nodiscard]] Slot& now() const { return slots_[slot_]; }
   [[nodiscard]] std::vector<double> displacements(const ArmState& command) const;
   [[nodiscard]] Eigen::MatrixXd displacement_slopes(const ArmState& command) const;
   // This and the following functions require mutex_.
@@ -88,7 +94,9 @@ class RodResponse : public ArmResponse {
   bool has_driven_lengths_ = false;  // sections change their length on command
 
   mutable std::mutex mutex_;
-  mutable RodStatics statics_;
+  // A control step asks about two commands in turn: the one to send next and the one in effect.
+  mutable std::vector<Slot> slots_;
+  mutable std::size_t slot_ = 0;           // The one of the last answer.
   std::unique_ptr<RodDynamics> dynamics_;  // without tendon friction; null unless it swings
   mutable RodChain fine_;
   mutable Equilibrium straight_;  // of the command without bends
@@ -97,8 +105,6 @@ class RodResponse : public ArmResponse {
   };
   static constexpr std::size_t most_shapes = 8;
   mutable std::deque<KnownShape> shapes_;  // Of the last commands.
-  mutable std::optional<Answer> last_;
-  mutable std::optional<ArcFit> fit_;  // of the arcs to the places, at the last fit
 };
 
 }  // namespace flexura

@@ -50,6 +50,7 @@ bool QuickPicture::draw(const Stage& stage, const RayField& rays, const Intrinsi
 void QuickPicture::start(const Stage& stage) {
   const auto width = static_cast<std::size_t>(width_), height = static_cast<std::size_t>(height_);
   states_.assign(width * height, state_behind);
+  takers_.resize(width * height);
   borders_.resize(width);
   rows_.clear();
   for (int v = 0; v < height_; ++v)
@@ -115,19 +116,23 @@ void QuickPicture::divide(const Skin& skin) {
     const std::size_t count = std::min(span_step, skin.contour.size() - begin);
     set_places(skin.contour, begin, places);
     kernels_->divide(skin.piece, places, borders);
-    for (std::size_t i = 0; i < count; ++i) merge(skin.piece, skin.contour[begin + i], places, borders, i);
+    for (std::size_t i = 0; i < count; ++i) merge(skin, skin.contour[begin + i], places, borders, i);
   }
 }
 
 // Blends a contour over the content of the pixel.
-void QuickPicture::merge(const SpanPiece& piece, Pixel pixel, const SpanPlaces& places,
-                         const BorderPixels& borders, std::size_t i) {
+void QuickPicture::merge(const Skin& skin, Pixel pixel, const SpanPlaces& places, const BorderPixels& borders,
+                         std::size_t i) {
+  const SpanPiece& piece = skin.piece;
   std::uint8_t& here = state(pixel.u, pixel.v);
   const bool is_rims = (here & piece.rims) != 0;
   if ((here & state_exact) != 0 || is_rims) return;
   float& depth = picture_->depth.at(pixel.u, pixel.v);
   const float contour = borders.contour[i];
   if (here == state_arm && depth < contour - 2 * piece.radius) return;
+  // Near a joint both pieces have the same contour.
+  const int by = here == state_border ? taker(pixel) : -1;
+  if (by >= 0 && (by == skin.before || by == skin.after)) return;
   const bool is_clear = here == state_behind || (here == state_arm && depth > contour + 2 * piece.radius);
   if (!is_clear || !(depth > contour) || borders.is_sure[i] == 0) {
     leave(pixel.u, pixel.v);
@@ -141,6 +146,7 @@ void QuickPicture::merge(const SpanPiece& piece, Pixel pixel, const SpanPlaces& 
     return;
   }
   here = state_border;
+  taker(pixel) = skin.index;
   depth = std::min(depth, borders.depth[i]);
   if (!(share > 0)) return;
   float* const light = &picture_->light.at(pixel.u, pixel.v);

@@ -52,6 +52,8 @@ class QuickPicture {
     PixelRange rows;
     std::size_t first_edge = 0;
     int index = 0;  // Index of the piece in the stage.
+    // Indices of the neighbours whose contours continue those of the piece; -1: none.
+    int before = -1, after = -1;
     std::vector<Pixel> contour;
   };
   // A flat end of the arm, the piece of surface that ends there, and the pixels that may contain the end's
@@ -144,12 +146,16 @@ class QuickPicture {
 
   void set_places(const std::vector<Pixel>& pixels, std::size_t begin, SpanPlaces& places) const;
   void divide(const Skin& skin);
-  void merge(const SpanPiece& piece, Pixel pixel, const SpanPlaces& places, const BorderPixels& borders,
+  void merge(const Skin& skin, Pixel pixel, const SpanPlaces& places, const BorderPixels& borders,
              std::size_t i);
 
   [[nodiscard]] std::uint8_t& state(int u, int v) {
     return states_[static_cast<std::size_t>(v) * static_cast<std::size_t>(width_) +
                    static_cast<std::size_t>(u)];
+  }
+  [[nodiscard]] int& taker(Pixel pixel) {
+    return takers_[static_cast<std::size_t>(pixel.v) * static_cast<std::size_t>(width_) +
+                   static_cast<std::size_t>(pixel.u)];
   }
   void leave(int u, int v) {
     state(u, v) = static_cast<std::uint8_t>(state(u, v) | state_exact);
@@ -175,6 +181,7 @@ class QuickPicture {
   double pixel_ = 0;  // Size of the largest pixel at depth 1, in (a, b).
   LightImage* picture_ = nullptr;
   std::vector<std::uint8_t> states_;  // State of each pixel.
+  std::vector<int> takers_;           // Piece of each pixel with state_border; undefined elsewhere.
   std::vector<SpanRow> rows_;
   std::vector<float> background_;  // One row of background light.
   std::vector<int> borders_;

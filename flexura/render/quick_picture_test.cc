@@ -124,6 +124,55 @@ TEST(QuickPicture, DrawsTaperedArmsToo) {
   EXPECT_GT(left_out_of(scene, view), 300);
 }
 
+// An elastic arm in motion is a chain of many short arcs whose curvature changes little from one to the next.
+TEST(QuickPicture, DrawsChainsOfSimilarArcs) {
+  constexpr int count = 60;
+  Arm arm;
+  arm.kind = ArmKind::spatial;
+  ArmState state = ArmState::straight(count);
+  for (int i = 0; i < count; ++i) {
+    arm.sections.push_back({.length = 1.0 / count, .radius = {0.02, 0.02}});
+    const double s = (i + 0.5) / count;
+    state.bends[static_cast<std::size_t>(i)] = Eigen::Vector2d(2 * std::cos(2 * s), std::sin(3 * s)) / count;
+  }
+  const View view = pinhole_view(look_at({0.3, 0.5, 2}, {0, 0.5, 0}), 320, 240, 400);
+  Scene scene = plain_scene();
+  scene.arm.tube = tube_of(Backbone(arm, state));
+  // Some 2000 pixels show the arm, and 500 its contour.
+  EXPECT_LT(left_out_of(scene, view), 200);
+  const Difference all = compare_paths(scene, view);
+  EXPECT_LT(all.worst, 0.003);
+  EXPECT_EQ(all.bad_depths, 0);
+}
+
+// A renderer keeps pixels that show only screens. A screen that covers a part of another one's edge leaves
+// some to the reference path.
+TEST(QuickPicture, DoesNotDependOnEarlierPictures) {
+  for_random_cases(4, [](TestRandom& random) {
+    const BentArm bent = random_bent_arm(random, 0);
+    const View view = some_view(random, bent.backbone());
+    Scene scene = busy_scene(random, bent.backbone(), view);
+    const Eigen::Vector3d ahead = view.X_WC.rotation.col(2);
+    for (const double distance : {3.0, 3.5}) {
+      Screen& screen = scene.screens.emplace_back();
+      screen.X_WS = {rotation_from_z(-ahead), view.X_WC.position + distance * ahead};
+      screen.size = {distance > 3 ? 1.0 : 0.3, 0.4};
+    }
+    Renderer kept;
+    for (int i = 0; i < 6; ++i) {
+      scene.arm.tube = tube_of(random_bent_arm(random, 0).backbone());
+      if (i == 4) scene.screens.back().brightness *= 0.9;
+      View seen = view;
+      if (i % 2 == 1) seen.X_WC.position.x() += 0.01;
+      LightImage one, other;
+      kept.render(scene, seen, PixelKind::gray, one);
+      Renderer().render(scene, seen, PixelKind::gray, other);
+      EXPECT_TRUE(std::ranges::equal(one.light.values(), other.light.values()));
+      EXPECT_TRUE(std::ranges::equal(one.depth.values(), other.depth.values()));
+    }
+  });
+}
+
 // The fast path still draws two sections with a disk at their joint.
 TEST(QuickPicture, DrawsSectionsBesideDisks) {
   Arm arm;

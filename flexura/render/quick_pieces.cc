@@ -66,9 +66,17 @@ bool is_gentle(const TubePiece& piece) {
   return piece.curvature * piece.widest() < 0.5 && std::abs(piece.widening) < 0.1;
 }
 
+// Returns the curvature of a piece's axis at its start or end: towards the circle's centre, in C, 1/m.
+Eigen::Vector3d curvature_at(const TubePiece& piece, bool is_at_end) {
+  const Eigen::Vector3d towards = is_at_end
+                                      ? Eigen::Vector3d(piece.end_tangent.z(), 0, -piece.end_tangent.x())
+                                      : Eigen::Vector3d(1, 0, 0);
+  return piece.curvature * (piece.R_CP * towards);
+}
+
 // Returns the distance along the axis from a joint, m, within which contours are left to the reference path;
 // `pixel` is the pixel size. Where bend or taper change, the contours of the two arcs differ. 0 if the same
-// arc continues, and at a true end.
+// arc continues, at a true end, and where they differ too little to be visible.
 double kink_of(const Stage& stage, const TubePiece& piece, int neighbour, double pixel) {
   if (neighbour < 0) return 0;
   const TubePiece& other = stage.pieces[static_cast<std::size_t>(neighbour)];
@@ -86,6 +94,11 @@ double kink_of(const Stage& stage, const TubePiece& piece, int neighbour, double
   const Eigen::Vector3d tangent = is_at_end ? piece.end_tangent : Eigen::Vector3d(0, 0, 1);
   const double cosine = tangent.dot((p_PJ - piece.p_PC).normalized()),
                square = std::min(cosine * cosine, 0.96);
+  // Pixels at the joint extend up to one pixel beyond it, so that a change of curvature shifts a contour by
+  // up to half this many pixels. An elastic arm is drawn as many arcs of almost the same curvature.
+  constexpr double invisible = 5e-4;
+  const Eigen::Vector3d bend = curvature_at(piece, is_at_end) - curvature_at(other, !is_at_end);
+  if (change == 0 && bend.norm() * pixel <= invisible * (1 - square)) return 0;
   return pixel + piece.widest() * change * std::max(2.0, square / (1 - square));
 }
 
@@ -185,6 +198,8 @@ bool QuickPicture::plan_piece(const Stage& stage, const TubePiece& piece) {
   }
   Skin& skin = skins_[skin_count_++];
   skin.index = static_cast<int>(&piece - stage.pieces.data());
+  skin.before = skin.piece.kink_before > 0 ? -1 : piece.before;
+  skin.after = skin.piece.kink_after > 0 ? -1 : piece.after;
   skin.piece.rims = 0;
   skin.region = *region;
   skin.rows = map_.rows(*region);

@@ -1,10 +1,12 @@
 #include "flexura/render/renderer.h"
 
+#include <algorithm>
 #include <limits>
 
 #include "flexura/render/cell.h"
 #include "flexura/render/prepared_scene.h"
 #include "flexura/render/quick_picture.h"
+#include "flexura/render/screen_pixels.h"
 #include "flexura/render/tracer.h"
 
 namespace flexura {
@@ -42,6 +44,12 @@ void render_pixel(const PreparedScene& prepared, int u, int v, PixelKind pixels,
   picture.depth.at(u, v) = static_cast<float>(here.hit.depth);
 }
 
+bool shows_only_screens(const PreparedScene& prepared, int u, int v) {
+  return std::ranges::all_of(prepared.tiles.parts(u / Tiles::size, v / Tiles::size), [&](const Part& part) {
+    return part.kind == Part::Kind::face && prepared.stage.faces[part.index].screen >= 0;
+  });
+}
+
 }  // namespace
 
 struct Renderer::Work {
@@ -49,6 +57,7 @@ struct Renderer::Work {
 
   PreparedScene prepared;
   QuickPicture quick;
+  ScreenPixels screens;
 };
 
 Renderer::Renderer(SimdPath path) : work_(std::make_unique<Work>(path)) {}
@@ -76,8 +85,25 @@ void Renderer::render(const Scene& scene, const View& view, PixelKind pixels, Li
   const PreparedScene& prepared = work_->prepared;
   QuickPicture& quick = work_->quick;
   if (!is_exact && quick.draw(prepared.stage, prepared.rays, view.lens.intrinsics(), pixels, picture)) {
-    for (const QuickPicture::Pixel& pixel : quick.left_out())
-      render_pixel(prepared, pixel.u, pixel.v, pixels, picture);
+    ScreenPixels& screens = work_->screens;
+    screens.begin(scene, view, pixels);
+    const int channels = picture.light.channels();
+    for (const auto& [u, v] : quick.left_out()) {
+      if (!shows_only_screens(prepared, u, v)) {
+        render_pixel(prepared, u, v, pixels, picture);
+        continue;
+      }
+      if (const ScreenPixels::Pixel* known = screens.find(u, v)) {
+        picture.depth.at(u, v) = known->depth;
+        for (int c = 0; c < channels; ++c) picture.light.at(u, v, c) = known->light[c];
+        continue;
+      }
+      render_pixel(prepared, u, v, pixels, picture);
+      ScreenPixels::Pixel pixel{.u = u, .v = v, .depth = picture.depth.at(u, v)};
+      for (int c = 0; c < channels; ++c) pixel.light[c] = picture.light.at(u, v, c);
+      screens.add(pixel);
+    }
+    screens.end();
     return;
   }
   for (int v = 0; v < view.height; ++v)

@@ -36,6 +36,11 @@ struct ArmPrior {
   double bend_gain = 0.01;   ///< Relative error of each section's bend, equal in all poses.
   double bend_share = 0.01;  ///< Relative error of each bend, independent in each pose.
   double bend = 0.001;       ///< Additional error of each bend, rad.
+  /// Error of the bends that the model predicts for a command, equal in all poses: each section's bend is
+  /// wrong by an unknown share of every section's commanded bend, and of its own sag. With 0 and
+  /// `pose_response` = 0 the arm has no such errors.
+  double response = 0;
+  double pose_response = 0;  ///< Error of that kind, independent in each pose.
 };
 
 /// Prior standard deviations of the errors of a rig.

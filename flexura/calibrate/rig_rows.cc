@@ -62,12 +62,12 @@ std::optional<RigProjector::Shown> RigProjector::show(std::size_t pose, std::siz
   const auto projection = cameras_[where.camera].project(backbone.pose(point).position, where.stance());
   if (!projection) return std::nullopt;
   backbone.at(point, jacobian_);
-  const auto sections = static_cast<Eigen::Index>(shapes_[pose].arm.sections.size());
   Shown shown;
   shown.pixel = projection->pixel;
-  shown.by_slots.resize(2, variables_->slots_a_camera(where.camera) + 4 * sections + stance_slots);
+  shown.by_slots.resize(2, variables_->slots_a_camera(where.camera) + variables_->slots_of_arm() +
+                               variables_->slots_a_pose() + stance_slots);
   add_camera_slots(*projection, stance, shown);
-  add_arm_slots(*projection, pose, shown);
+  add_arm_slots(*projection, pose, stance, shown);
   return shown;
 }
 
@@ -104,29 +104,40 @@ void RigProjector::add_camera_slots(const CameraProjection& projection, std::siz
 }
 
 // The point's own Jacobian is in jacobian_.
-void RigProjector::add_arm_slots(const CameraProjection& projection, std::size_t pose, Shown& shown) const {
+void RigProjector::add_arm_slots(const CameraProjection& projection, std::size_t pose, std::size_t stance,
+                                 Shown& shown) const {
   const Shape& shape = shapes_[pose];
   const auto sections = static_cast<Eigen::Index>(shape.arm.sections.size());
-  const Eigen::Index first = shown.by_slots.cols() - stance_slots - 4 * sections;
+  const Eigen::Index first = variables_->slots_a_camera(stances_[stance].camera),
+                     own = first + variables_->slots_of_arm();
+  const RigResponse& response = variables_->response();
+  const auto inputs = static_cast<Eigen::Index>(response.inputs());
+  shown.by_slots.middleCols(own, variables_->slots_a_pose()).setZero();
   for (Eigen::Index i = 0; i < sections; ++i) {
     const auto section = static_cast<std::size_t>(i);
     const Eigen::Matrix<double, 2, 3> by_state = projection.by_point * jacobian_.block<3, 3>(0, 3 * i);
     shown.by_slots.col(first + i) = shape.state.stretches[section] * by_state.col(2);
     shown.by_slots.col(first + sections + i) =
         by_state.leftCols<2>() * variables_->commanded()[pose].bends[section];
-    shown.by_slots.middleCols<2>(first + 2 * sections + 2 * i) = by_state.leftCols<2>();
+    shown.by_slots.middleCols<2>(own + 2 * i) = by_state.leftCols<2>();
+    if (inputs == 0) continue;
+    for (Eigen::Index j = 0; j < inputs; ++j)
+      shown.by_slots.col(first + 2 * sections + i * inputs + j) =
+          by_state.leftCols<2>() * response.input(pose, section, static_cast<std::size_t>(j));
+    const auto driven = static_cast<Eigen::Index>(response.section_of(section));
+    shown.by_slots.middleCols<2>(own + 2 * (sections + driven)) +=
+        response.share(section) * (by_state.leftCols<2>() * response.axes(pose).directions);
   }
 }
 
 bool RigProjector::rows(const RigImage& image, RigRows& rows) {
   if (!is_in_range(image.stance)) return false;
-  const std::size_t camera = stances_[image.stance].camera,
-                    sections = shapes_[image.pose].arm.sections.size();
+  const std::size_t camera = stances_[image.stance].camera;
   const std::array<std::pair<std::size_t, std::size_t>, 4> ranges = {
       std::pair{variables_->camera_slots(camera),
                 static_cast<std::size_t>(variables_->slots_a_camera(camera))},
-      {variables_->arm_slots(), 2 * sections},
-      {variables_->pose_slots(image.pose), 2 * sections},
+      {variables_->arm_slots(), static_cast<std::size_t>(variables_->slots_of_arm())},
+      {variables_->pose_slots(image.pose), static_cast<std::size_t>(variables_->slots_a_pose())},
       {variables_->stance_slots_of(image.stance), static_cast<std::size_t>(stance_slots)}};
   rows.columns.clear(), rows.sizes.clear(), picked_.clear();
   Eigen::Index local = 0;
@@ -198,9 +209,8 @@ bool RigProjector::add_etalon(const RigImage& image, RigRows& rows) {
   const View view = this->view(image.stance);
   auto row = rows.residuals.size() - static_cast<Eigen::Index>(image.etalon.size());
   Shown shown;
-  shown.by_slots.setZero(2, variables_->slots_a_camera(where.camera) +
-                                4 * static_cast<Eigen::Index>(shapes_[image.pose].arm.sections.size()) +
-                                stance_slots);
+  shown.by_slots.setZero(2, variables_->slots_a_camera(where.camera) + variables_->slots_of_arm() +
+                                variables_->slots_a_pose() + stance_slots);
   for (const EtalonPoint& seen : image.etalon) {
     const auto point = etalon_->nearest(seen, view);
     if (!point) return false;

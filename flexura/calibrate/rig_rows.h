@@ -46,7 +46,8 @@ class RigProjector {
 
  private:
   void add_camera_slots(const CameraProjection& projection, std::size_t stance, Shown& shown) const;
-  void add_arm_slots(const CameraProjection& projection, std::size_t pose, Shown& shown) const;
+  void add_arm_slots(const CameraProjection& projection, std::size_t pose, std::size_t stance,
+                     Shown& shown) const;
   [[nodiscard]] bool is_in_range(std::size_t stance) const;
   [[nodiscard]] bool add_markers(const RigImage& image, RigRows& rows);
   [[nodiscard]] bool add_points(const RigImage& image, RigRows& rows);

@@ -30,11 +30,15 @@ Everything random_everything(TestRandom& random) {
     for (SlideConfig* slide : {&camera.mount.stage.x, &camera.mount.stage.y, &camera.mount.stage.z})
       slide->resolution = 0.01;
   }
-  all.model = rig_model(three_section_arm(), cameras);
+  Arm arm = three_section_arm();
+  const bool has_arcs = random.integer(0, 1) == 1;
+  if (has_arcs) arm.sections[1].bend_profile = {1.0, 2.0, 1.0};
+  all.model = rig_model(arm, cameras);
   all.prior = rough_prior(all.model);
+  all.prior.arm.response = 0.2, all.prior.arm.pose_response = 0.05;
   for (CameraPrior& prior : all.prior.cameras)
     prior.pan_zero = 0.01, prior.distortion = {0.02, 0.01, 0.001, 0.001, 0.01};
-  all.seen.poses = {random_bends(random, all.model.arm, 0.8)};
+  all.seen.poses = {random_bends(random, arm, 0.8)};
   for (std::size_t i = 0; i < 2; ++i) {
     const ZoomTable lens(cameras[i].lens, 640, 480);
     const double zoom = lens.is_linear() ? 1.3 : 0.6 * lens.first() + 0.4 * lens.last();

@@ -57,6 +57,7 @@ RigVariables::RigVariables(const RigModel& guess, const RigPrior& prior, const R
   check(prior);
   check_observations(guess_, seen);
   for (const ArmState& pose : seen.poses) commanded_.push_back(guess.actuation.shape(pose));
+  if (prior.arm.response > 0 || prior.arm.pose_response > 0) response_ = RigResponse(guess_, seen.poses);
   for (CameraConfig& camera : guess_.cameras) camera.lens = spelled_out(camera);
   for (std::size_t i = 0; i < guess_.cameras.size(); ++i) add_camera(guess_.cameras[i], prior.cameras[i]);
   add_arm(prior.arm);
@@ -72,7 +73,8 @@ void RigVariables::check(const RigPrior& prior) const {
     for (const double sigma : sigmas)
       require(sigma >= 0, fmt::format("a standard deviation of {}: expected 0 or more", sigma));
   };
-  each({prior.arm.length, prior.arm.bend_gain, prior.arm.bend_share, prior.arm.bend});
+  each({prior.arm.length, prior.arm.bend_gain, prior.arm.bend_share, prior.arm.bend, prior.arm.response,
+        prior.arm.pose_response});
   for (const CameraPrior& camera : prior.cameras) {
     each({camera.position, camera.rotation, camera.pan_zero, camera.tilt_zero, camera.tilt_axis, camera.pupil,
           camera.pupil_shift, camera.focal, camera.aspect, camera.principal_point, camera.zoom_row,
@@ -124,19 +126,42 @@ void RigVariables::add_arm(const ArmPrior& prior) {
     add(fmt::format("arm: length of section {}", i + 1), prior.length, usual.length);
   for (std::size_t i = 0; i < sections; ++i)
     add(fmt::format("arm: bend gain of section {}", i + 1), prior.bend_gain, usual.bend_gain);
+  for (std::size_t i = 0; i < sections && response_.inputs() > 0; ++i)
+    for (std::size_t j = 0; j < response_.inputs(); ++j)
+      add(fmt::format("arm: response of section {} to {}", i + 1, response_.name(j)),
+          response_.acts(j) ? prior.response : 0, prior.response);
 }
 
 void RigVariables::add_pose(std::size_t number, const ArmState& pose, const ArmPrior& prior) {
-  const ArmPrior usual;
+  if (response_.inputs() > 0 && response_.first_like(number) < number) {
+    poses_.push_back(poses_[response_.first_like(number)]);
+    return;
+  }
   poses_.push_back(slots_.size());
   for (std::size_t i = 0; i < pose.bends.size(); ++i) {
     const double sigma = std::hypot(prior.bend, prior.bend_share * pose.bends[i].norm());
-    for (std::size_t j = 0; j < 2; ++j) {
-      const bool is_held = j == 1 && guess_.arm.kind == ArmKind::planar;
-      add(fmt::format("pose {}: bend of section {}, {}", number + 1, i + 1, directions[j]),
-          is_held ? 0 : sigma, usual.bend);
-    }
+    add_bend(fmt::format("pose {}: bend of section {}", number + 1, i + 1), {sigma, sigma});
   }
+  if (response_.inputs() == 0) return;
+  const auto& sizes = response_.axes(number).sizes;
+  for (std::size_t i = 0; i < response_.sections(); ++i)
+    add_bend(fmt::format("pose {}: response of section {}", number + 1, i + 1),
+             {prior.pose_response * sizes[0], prior.pose_response * sizes[1]});
+}
+
+void RigVariables::add_bend(const std::string& name, const std::array<double, 2>& sigmas) {
+  for (std::size_t j = 0; j < 2; ++j) {
+    const bool is_held = j == 1 && guess_.arm.kind == ArmKind::planar;
+    add(fmt::format("{}, {}", name, directions[j]), is_held ? 0 : sigmas[j], ArmPrior{}.bend);
+  }
+}
+
+Eigen::Index RigVariables::slots_of_arm() const {
+  return static_cast<Eigen::Index>(guess_.arm.sections.size() * (2 + response_.inputs()));
+}
+
+Eigen::Index RigVariables::slots_a_pose() const {
+  return static_cast<Eigen::Index>(2 * (guess_.arm.sections.size() + response_.sections()));
 }
 
 void RigVariables::add_stance(std::size_t number, const RigStance& stance, const CameraPrior& prior) {
@@ -224,8 +249,15 @@ ArmState RigVariables::pose(const Eigen::VectorXd& x, std::size_t pose) const {
   const std::size_t sections = state.bends.size();
   for (std::size_t i = 0; i < sections; ++i) {
     state.bends[i] *= guess_.bend_gains[i] + value(x, arm_ + sections + i);
-    for (std::size_t j = 0; j < 2; ++j)
-      state.bends[i][static_cast<Eigen::Index>(j)] += value(x, poses_[pose] + 2 * i + j);
+    state.bends[i] += value2(x, poses_[pose] + 2 * i);
+  }
+  if (response_.inputs() == 0) return state;
+  for (std::size_t i = 0; i < sections; ++i) {
+    const std::size_t first = arm_ + 2 * sections + i * response_.inputs();
+    for (std::size_t j = 0; j < response_.inputs(); ++j)
+      state.bends[i] += value(x, first + j) * response_.input(pose, i, j);
+    const std::size_t own = poses_[pose] + 2 * (sections + response_.section_of(i));
+    state.bends[i] += response_.share(i) * (response_.axes(pose).directions * value2(x, own));
   }
   return state;
 }

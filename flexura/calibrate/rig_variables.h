@@ -1,12 +1,14 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <cstddef>
 #include <string>
 #include <vector>
 
 #include "flexura/calibrate/rig_observations.h"
 #include "flexura/calibrate/rig_prior.h"
+#include "flexura/calibrate/rig_response.h"
 #include "flexura/port/rig_model.h"
 
 namespace flexura {
@@ -34,9 +36,10 @@ inline constexpr Eigen::Index stance_slots = 6;
 
 /// The unknown errors of a rig and of its readings as one vector x, where x = 0 is the guess. Each variable
 /// is an offset from the guess in its own unit. Variables that the prior fixes have no entry in x. First come
-/// the variables of each camera and of the arm (logarithms of the lengths, bend gains). Then follow those of
-/// each pose (bend offsets from the command) and of each stance. The variables of cameras and arm are the
-/// rig's own, and globals() is their number. The others belong to the pictures.
+/// the variables of each camera and of the arm (logarithms of the lengths, bend gains, errors of the
+/// response). Then follow those of each pose (bend offsets from the command) and of each stance. If the prior
+/// has errors of the response, poses with equal commands share their variables. The variables of cameras and
+/// arm are the rig's own, and globals() is their number. The others belong to the pictures.
 class RigVariables {
  public:
   /// Throws std::invalid_argument unless there is one prior per camera, or if a prior is negative or NaN.
@@ -69,6 +72,11 @@ class RigVariables {
   [[nodiscard]] std::size_t arm_slots() const { return arm_; }
   /// Returns the first slot of a pose of the arm.
   [[nodiscard]] std::size_t pose_slots(std::size_t pose) const { return poses_.at(pose); }
+  /// Return the numbers of slots of the arm and of a pose.
+  [[nodiscard]] Eigen::Index slots_of_arm() const;
+  [[nodiscard]] Eigen::Index slots_a_pose() const;
+  /// Returns the errors of the arm's response; empty if the prior has none.
+  [[nodiscard]] const RigResponse& response() const { return response_; }
   /// Returns the first slot of a stance of a camera.
   [[nodiscard]] std::size_t stance_slots_of(std::size_t stance) const { return stances_.at(stance); }
   /// Returns a camera's number of slots.
@@ -79,7 +87,10 @@ class RigVariables {
   [[nodiscard]] double value(const Eigen::VectorXd& x, std::size_t slot) const {
     return slots_[slot].column < 0 ? 0.0 : x[slots_[slot].column];
   }
-  /// Returns the values of three successive slots.
+  /// Return the values of two and of three successive slots.
+  [[nodiscard]] Eigen::Vector2d value2(const Eigen::VectorXd& x, std::size_t slot) const {
+    return {value(x, slot), value(x, slot + 1)};
+  }
   [[nodiscard]] Eigen::Vector3d value3(const Eigen::VectorXd& x, std::size_t slot) const {
     return {value(x, slot), value(x, slot + 1), value(x, slot + 2)};
   }
@@ -104,10 +115,12 @@ class RigVariables {
   void add_camera(const CameraConfig& camera, const CameraPrior& prior);
   void add_arm(const ArmPrior& prior);
   void add_pose(std::size_t number, const ArmState& pose, const ArmPrior& prior);
+  void add_bend(const std::string& name, const std::array<double, 2>& sigmas);
   void add_stance(std::size_t number, const RigStance& stance, const CameraPrior& prior);
   [[nodiscard]] CameraConfig camera(const Eigen::VectorXd& x, std::size_t number) const;
 
   RigModel guess_;
+  RigResponse response_;
   std::vector<ArmState> commanded_;
   std::vector<RigStance> read_;
   std::vector<Variable> slots_;

@@ -316,6 +316,8 @@ TEST(EtalonLoop, RefusesWhatItCannotDo) {
           "[arm]\n[[arm.section]]\nlength = 1\n[[task]]\nkind = \"calibrate\"\nmethod = \"etalon\"\n"),
       HasSubstr("expected [stand.etalon]"));
   const LoopRig rig = {.size = 0.5};
+  EXPECT_EQ(problem_of(etalon_rig("method = \"bundle-etalon\"\narm_prior.response_std = 0.1\n", rig)),
+            "task[0].arm_prior: applies only to the method bundle: expected no such key");
   EXPECT_EQ(problem_of(etalon_rig("method = \"etalon\"\ncamera_prior.rotation_std_deg = 5\n", rig)),
             "task[0].camera_prior: applies only to the methods bundle, bundle-etalon and arcs: expected no "
             "such key");

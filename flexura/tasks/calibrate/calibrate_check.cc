@@ -104,6 +104,8 @@ void check_calibration(const CalibrateTask& task, const ArmConfig& arm,
   if (!is_bundle && task.method != CalibrateMethod::arcs && task.camera_prior != CalibrateCameraPrior{})
     reader.problem_at(path + ".camera_prior",
                       "applies only to the methods bundle, bundle-etalon and arcs: expected no such key");
+  if (task.method != CalibrateMethod::bundle && task.arm_prior != CalibrateArmPrior{})
+    reader.problem_at(path + ".arm_prior", "applies only to the method bundle: expected no such key");
   if (is_bundle && task.loop != CalibrateLoopConfig{})
     reader.problem_at(path + ".loop", "applies only to the paper's methods: expected no such key");
   if (!is_bundle) check_idle_keys(task, path, reader);

@@ -123,6 +123,27 @@ const Table<CalibrateCameraPrior>& fields_of(const CalibrateCameraPrior*) {
   return table;
 }
 
+const Table<CalibrateArmPrior>& fields_of(const CalibrateArmPrior*) {
+  static const auto table =
+      Table<CalibrateArmPrior>("arm_prior", "Prior standard deviations of the file's model of the arm.")
+          .field("length_std", &CalibrateArmPrior::length_std,
+                 {.meaning = "Relative standard deviation of each section's length. The lengths are the "
+                             "calibration's only measure of distances.",
+                  .range = between(0, 0.1)})
+          .field("response_std", &CalibrateArmPrior::response_std,
+                 {.meaning = "Standard deviation of the unknown share of each section's commanded bend by "
+                             "which the bend of any section differs from the model, in every pose.",
+                  .range = between(0, 1),
+                  .default_text = "0.2 with `arm.model = \"static\"` or `\"dynamic\"`, otherwise 0"})
+          .field(
+              "pose_response_std", &CalibrateArmPrior::pose_response_std,
+              {.meaning = "Standard deviation of an additional share of that kind, which differs from pose "
+                          "to pose.",
+               .range = between(0, 1),
+               .default_text = "a quarter of response_std"});
+  return table;
+}
+
 const Table<CalibrateLoopConfig>& fields_of(const CalibrateLoopConfig*) {
   static const auto table =
       Table<CalibrateLoopConfig>("loop", "Parameters of the paper's iterative methods.")
@@ -183,6 +204,8 @@ const Table<CalibrateTask>& fields_of(const CalibrateTask*) {
                  {.meaning = "Standard deviations at which the calibration stops."})
           .field("camera_prior", &CalibrateTask::camera_prior,
                  {.meaning = "Prior standard deviations of the file's camera models."})
+          .field("arm_prior", &CalibrateTask::arm_prior,
+                 {.meaning = "Prior standard deviations of the file's model of the arm, for bundle."})
           .field("loop", &CalibrateTask::loop, {.meaning = "Parameters of the paper's iterative methods."})
           .field("target", &CalibrateTask::target,
                  {.meaning = "Point at which both cameras look in the end.",
@@ -325,6 +348,12 @@ RigPrior session_prior(const CalibrateTask& task, const RigModel& nominal, const
   RigPrior prior = rough_prior(nominal, task.camera_prior.position_std, seen);
   // Pictures of the cylinder contain no information about the arm.
   if (is_before_etalon(task)) prior.arm = {.length = 0, .bend_gain = 0, .bend_share = 0, .bend = 0};
+  if (task.method == CalibrateMethod::bundle) {
+    constexpr double of_rods = 0.2, of_each_pose = 0.25;
+    prior.arm.length = task.arm_prior.length_std;
+    prior.arm.response = task.arm_prior.response_std.value_or(nominal.actuation.is_linear() ? 0 : of_rods);
+    prior.arm.pose_response = task.arm_prior.pose_response_std.value_or(of_each_pose * prior.arm.response);
+  }
   for (CameraPrior& camera : prior.cameras) {
     if (camera.pan_zero > 0) camera.pan_zero = task.stages ? task.camera_prior.zero_std : 0;
     camera.tilt_zero = task.camera_prior.zero_std;

@@ -53,6 +53,17 @@ struct CalibrateCameraPrior {
   bool operator==(const CalibrateCameraPrior&) const = default;
 };
 
+/// Prior standard deviations of the file's model of the arm, for the method `bundle` (docs/calibration.md,
+/// "An arm unlike its model").
+struct CalibrateArmPrior {
+  double length_std = ArmPrior{}.length;  ///< Relative standard deviation of each section's length.
+  /// ArmPrior::response; missing: 0.2 for an arm whose model is an elastic rod, otherwise 0.
+  std::optional<double> response_std = {};
+  /// ArmPrior::pose_response; missing: a quarter of response_std.
+  std::optional<double> pose_response_std = {};
+  bool operator==(const CalibrateArmPrior&) const = default;
+};
+
 /// Parameters of the paper's iterative methods (calibrate/loop_session.h).
 struct CalibrateLoopConfig {
   std::optional<double> accepted;             ///< Tolerance of every offset in a picture, px.
@@ -73,6 +84,7 @@ struct CalibrateTask {
   std::optional<std::int64_t> images;  ///< Largest number of pictures per camera.
   CalibrateRequiredStd required_std;
   CalibrateCameraPrior camera_prior;
+  CalibrateArmPrior arm_prior;
   CalibrateLoopConfig loop;
   std::optional<std::array<double, 3>> target;      ///< Point at which the calibrated cameras look, in W, m.
   bool stages = RigSessionConfig{}.may_use_stages;  ///< Whether stages may move, within their travel.
@@ -88,6 +100,7 @@ struct CalibrateTask {
 const std::vector<std::string>& names_of(const CalibrateMethod*);
 const Table<CalibrateRequiredStd>& fields_of(const CalibrateRequiredStd*);
 const Table<CalibrateCameraPrior>& fields_of(const CalibrateCameraPrior*);
+const Table<CalibrateArmPrior>& fields_of(const CalibrateArmPrior*);
 const Table<CalibrateLoopConfig>& fields_of(const CalibrateLoopConfig*);
 const Table<CalibrateTask>& fields_of(const CalibrateTask*);
 

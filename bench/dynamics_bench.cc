@@ -324,7 +324,7 @@ void count_sections(benchmark::State& state) {
                          benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
 }
 
-// One step of an arm with this number of sections.
+// One step of an arm with this number of sections. The arm soon rests, so a step has one iteration.
 void step_of_sections(benchmark::State& state) {
   RodDynamics dynamics(arm_of_sections(static_cast<std::size_t>(state.range(0))), {.tolerance = 1e-3});
   const RodLoads weight{.gravity = {0, -9.81, 0}};

@@ -6,7 +6,7 @@ usage: tools/plot_sections.py JSON... > docs/images/cost-by-sections.svg
 The JSON files are Google Benchmark's output of statics_bench and dynamics_bench, with repetitions:
 
     build/bench/bin/statics_bench --benchmark_filter=_sections/ --benchmark_repetitions=7 \\
-      --benchmark_format=json >statics.json
+      --benchmark_min_time=0.02 --benchmark_enable_random_interleaving=true --benchmark_format=json >statics.json
 
 Each point is the least CPU time of the repetitions, because other programs on the machine only add to it. Both axes
 are logarithmic. The dashed lines have the slope 1: they begin at each curve's first point.
@@ -22,11 +22,11 @@ TIME_UNITS = {"ns": 1e-9, "us": 1e-6, "ms": 1e-3, "s": 1.0}
 # The benchmarks: name, label, and class of the line.
 CURVES = [
     ("statics_sections", "static equilibrium, warm", "first"),
-    ("step_of_sections", "step in time", "second"),
+    ("step_of_sections", "step in time, one iteration", "second"),
     ("accelerations_of_sections", "mass matrix, forces, accelerations", "third"),
 ]
-WIDTH, HEIGHT = 560, 400
-LEFT, RIGHT, TOP, BOTTOM = 72, 20, 82, 52  # Margins of the plot.
+WIDTH, HEIGHT = 620, 410
+LEFT, RIGHT, TOP, BOTTOM = 72, 24, 94, 52  # Margins of the plot.
 STYLE = """
 svg { font-family: sans-serif; font-size: 14px; }
 text { fill: #1d2730; }

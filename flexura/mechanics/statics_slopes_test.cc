@@ -74,6 +74,7 @@ TEST(StaticsSlopes, TheColumnsAreTheDerivativeOfTheTip) {
 void expect_slopes(RodStatics& statics, const TendonInput& input, const RodLoads& loads,
                    const Equilibrium& near) {
   const Equilibrium at = statics.solve(input, loads, near);
+  if (at.end == StaticsEnd::disks_meet) return;
   ASSERT_TRUE(at.converged());
   const EquilibriumSlopes slopes = statics.slopes();
   const bool by_tension = input.displacements.empty();

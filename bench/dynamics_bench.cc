@@ -303,9 +303,8 @@ void accelerations_of_3_sections(benchmark::State& state) {
 }
 BENCHMARK(accelerations_of_3_sections)->Unit(benchmark::kMicrosecond);
 
-// One step of an arm with this number of sections.
-void step_of_sections(benchmark::State& state) {
-  const auto sections = static_cast<std::size_t>(state.range(0));
+// An arm of 1 m of this number of sections with seven modes each.
+Rod arm_of_sections(std::size_t sections) {
   RodSection section{.length = 1.0 / static_cast<double>(sections),
                      .radius = {1e-2, 1e-2},
                      .youngs_modulus = 1e8,
@@ -316,7 +315,18 @@ void step_of_sections(benchmark::State& state) {
   section.nodes = 4;
   Rod rod;
   rod.sections.assign(sections, section);
-  RodDynamics dynamics(rod, {.tolerance = 1e-3});
+  return rod;
+}
+
+void count_sections(benchmark::State& state) {
+  state.counters["us_a_section"] =
+      benchmark::Counter(static_cast<double>(state.range(0)) * 1e-6,
+                         benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+}
+
+// One step of an arm with this number of sections. The arm soon rests, so a step has one iteration.
+void step_of_sections(benchmark::State& state) {
+  RodDynamics dynamics(arm_of_sections(static_cast<std::size_t>(state.range(0))), {.tolerance = 1e-3});
   const RodLoads weight{.gravity = {0, -9.81, 0}};
   RodState moving = dynamics.rest();
   double iterations = 0;
@@ -326,11 +336,26 @@ void step_of_sections(benchmark::State& state) {
     benchmark::DoNotOptimize(step);
   }
   state.counters["iterations"] = benchmark::Counter(iterations, benchmark::Counter::kAvgIterations);
-  state.counters["us_a_section"] =
-      benchmark::Counter(static_cast<double>(sections) * 1e-6,
-                         benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+  count_sections(state);
 }
-BENCHMARK(step_of_sections)->RangeMultiplier(10)->Range(1, 100)->Unit(benchmark::kMicrosecond);
+BENCHMARK(step_of_sections)->ArgsProduct({{1, 2, 5, 10, 20, 50, 100}})->Unit(benchmark::kMicrosecond);
+
+// Mass matrix, all forces and accelerations of the same arm.
+void accelerations_of_sections(benchmark::State& state) {
+  RodDynamics dynamics(arm_of_sections(static_cast<std::size_t>(state.range(0))));
+  Eigen::VectorXd q = 0.1 / static_cast<double>(state.range(0)) *
+                      Eigen::VectorXd::Ones(dynamics.chain().size()),
+                  v = q;
+  const RodLoads weight{.gravity = {0, -9.81, 0}};
+  for (auto _ : state) {
+    q[0] += 1e-9;
+    benchmark::DoNotOptimize(dynamics.acceleration(q, v, {}, weight));
+  }
+  count_sections(state);
+}
+BENCHMARK(accelerations_of_sections)
+    ->ArgsProduct({{1, 2, 5, 10, 20, 50, 100}})
+    ->Unit(benchmark::kMicrosecond);
 
 }  // namespace
 }  // namespace flexura

@@ -196,8 +196,10 @@ RodStatics::Descent RodStatics::descend(Unknowns& at, double share) {
     at.tensions += newton_.tensions;
     descent.negative = negative_;
     descent.always_stable = descent.always_stable && negative_ == 0;
-    // The residual after a step falls with its square.
-    if (size <= settled_step || (before > 0 && size * size * size <= settled_step * before * before * 1e-2)) {
+    // The next step: it falls with the square of this one; under friction, by the same factor as this one.
+    const double factor = before > 0 ? size / before : 1;
+    const double next = chain_.has_friction() ? size * factor : size * factor * factor;
+    if (size <= settled_step || next <= settled_step * 1e-2) {
       descent.settled = true;
       return descent;
     }

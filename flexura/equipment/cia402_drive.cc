@@ -205,8 +205,11 @@ Outcome<double> Cia402Drive::measure(bool checks_positions) {
     }
     // A status may be old, or a frame damaged. What is said again, counts.
     if (i >= std::max<int>(static_cast<int>(config_.tries), 2)) {
-      for (Axis& axis : axes_)
-        axis.has_target = axis.has_target && problem->fault.kind == FaultKind::link_lost;
+      for (std::size_t k = 0; k < axes_.size(); ++k) {
+        axes_[k].has_target = false;
+        if (drive_state(bus_.node(k).statusword) != DriveState::operation_enabled)
+          axes_[k].ramp.stop(time.value(), axes_[k].config.stop_deceleration);
+      }
       return problem->needs_start ? unusable(problem->fault) : problem->fault;
     }
     if (const auto paused = bus_.pause(confirmation); !paused) return *paused.fault();

@@ -39,6 +39,7 @@ void CanopenBus::take(const CanFrame& frame) {
       node.emergency = emergency_in(frame);
     } else if (frame.id == cob::heartbeat + node.number && frame.size == 1) {
       node.state = static_cast<NmtState>(frame.data[0] & 0x7F);
+      node.heard = clock_.now();
       node.has_restarted = node.has_restarted || node.state == NmtState::boot_up;
     }
   }
@@ -78,12 +79,20 @@ PortFault CanopenBus::missing() const {
       std::ranges::find_if(nodes_, [&](const CanopenNode& node) { return node.round != round_; });
   const auto i = static_cast<std::size_t>(found - nodes_.begin());
   const CanopenNode& node = nodes_[i];
-  const std::string why = trouble_.empty() ? "check its supply, the wiring and the speed of the bus"
-                                           : "the bus reports: " + trouble_;
-  if (node.has_restarted || node.state == NmtState::operational || node.state == NmtState::boot_up)
-    return fault(i, FaultKind::link_lost, "does not answer; " + why);
+  if (node.state == NmtState::stopped)
+    return fault(i, FaultKind::link_lost, "does not answer because it is stopped; start the drives again");
+  if (node.state == NmtState::pre_operational)
+    return fault(
+        i, FaultKind::link_lost,
+        "does not answer because it is pre-operational and has probably restarted; check its supply, start "
+        "the drives and home them again");
+  const double age = clock_.now() - node.heard;
+  const std::string heard =
+      node.heard < 0 ? "it has sent no heartbeat" : fmt::format("its last heartbeat came {:.1f} s ago", age);
   return fault(i, FaultKind::link_lost,
-               fmt::format("does not answer because it is {}; start the drives again", name_of(node.state)));
+               fmt::format("does not answer ({}); {}", heard,
+                           trouble_.empty() ? "check its supply, the wiring and the speed of the bus"
+                                            : "the bus reports: " + trouble_));
 }
 
 Outcome<double> CanopenBus::synchronise() {

@@ -22,6 +22,7 @@ struct CanopenNode {
   std::uint16_t statusword = 0;        ///< Of TPDO 1.
   std::int32_t position = 0;           ///< Of TPDO 1, in the drive's units.
   NmtState state = NmtState::boot_up;  ///< Of the last heartbeat.
+  double heard = -1;                   ///< Time when its last heartbeat was read, s; below 0: never.
   bool has_restarted = false;          ///< Whether it has booted since the flag was cleared.
   Emergency emergency = {};            ///< Last emergency; code 0: none.
 };

@@ -141,7 +141,8 @@ const Table<Cia402Config>& fields_of(const Cia402Config*) {
                  {.meaning = "Time to home an axis.", .unit = Unit::second, .range = above_up_to(0, 3600)})
           .check([](const Config& config, Reader& reader) {
             try {
-              (void)parse_link_address(config.link);
+              if (parse_link_address(config.link).kind != LinkAddress::Kind::can)
+                reader.problem_at("link", "expected a CAN bus, such as can:can0");
             } catch (const std::exception& error) {
               reader.problem_at("link", error.what());
             }

@@ -338,7 +338,7 @@ CommandOutcome Cia402Drive::halt() {
     axis.has_target = false;
     axis.ramp.stop(bus_.now(), axis.config.stop_deceleration);
   }
-  if (!is_started_) return sent;
+  if (!has_pdos_) return sent;
   is_halting_ = true;
   std::optional<PortFault> lost;
   for (std::int64_t tried = 0; tried <= 3 * config_.tries; ++tried) {

@@ -37,7 +37,8 @@ class Cia402Drive : public DrivePort {
 
   /// Sets the drives up, resets faults and switches the motors on. Nothing moves, but motors take hold.
   [[nodiscard]] CommandOutcome start();
-  /// Homes the axes that have a homing method, one after the other in their order. Waits for the end.
+  /// Homes the axes that have a homing method, one after the other in their order. Waits for the end. After a
+  /// fault or a halt, start() must be called again.
   [[nodiscard]] CommandOutcome home();
   /// Switches the motors off. Axes under load may move.
   [[nodiscard]] CommandOutcome release();
@@ -109,6 +110,7 @@ class Cia402Drive : public DrivePort {
   std::string why_not_started_ = "start() has not been called";
   unsigned halts_seen_ = 0;
   bool is_halting_ = false;
+  bool has_pdos_ = false;  // Whether start() has got so far.
   std::atomic<unsigned> halts_ = 0;
 };
 

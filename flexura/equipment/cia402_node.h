@@ -2,9 +2,9 @@
 
 #include <array>
 #include <cstdint>
-#include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "flexura/equipment/cia402_codec.h"
@@ -69,6 +69,7 @@ class Cia402Node {
 
   // cia402_node_objects.cc
   void reset_objects();
+  [[nodiscard]] const Entry* find(ObjectAddress object) const;
   [[nodiscard]] SdoServer::ReadResult read_object(ObjectAddress object) const;
   std::uint32_t write_object(ObjectAddress object, const std::string& bytes);
   [[nodiscard]] std::optional<std::uint32_t> live_value(ObjectAddress object) const;
@@ -98,7 +99,7 @@ class Cia402Node {
   double now_ = 0;
   NmtState nmt_ = NmtState::boot_up;
   DriveState state_ = DriveState::switch_on_disabled;
-  std::map<std::uint32_t, Entry> objects_;  // By index and sub-index.
+  std::vector<std::pair<std::uint32_t, Entry>> objects_;  // Sorted by index and sub-index.
   SdoServer server_;
   std::vector<CanFrame> outbox_;
   std::array<std::optional<CanFrame>, 2> waiting_;  // RPDOs until the next SYNC.

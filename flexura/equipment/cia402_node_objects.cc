@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 
 #include "flexura/equipment/cia402_node.h"
 
@@ -23,10 +24,11 @@ bool is_pdo_mapping(std::uint16_t index) {
 void Cia402Node::reset_objects() {
   const auto add = [&](std::uint16_t index, std::uint8_t sub, std::uint32_t value, int size = 4,
                        bool is_writable = true) {
-    objects_[object_key({index, sub})] = {value, size, is_writable};
+    objects_.push_back({object_key({index, sub}), {value, size, is_writable}});
   };
   const std::uint32_t node = config_.node;
   objects_.clear();
+  objects_.reserve(128);
   add(0x1000, 0, 0x00040192, 4, false);  // A stepper drive of profile 402.
   add(0x1001, 0, 0, 1, false);
   add(0x1016, 0, 1, 1, false), add(0x1016, 1, 0);
@@ -54,19 +56,29 @@ void Cia402Node::reset_objects() {
   add(0x6086, 0, 0, 2), add(0x6098, 0, 0, 1);
   add(0x6099, 0, 2, 1, false), add(0x6099, 1, 2000), add(0x6099, 2, 500), add(0x609A, 0, 100000);
   add(0x6502, 0, 0x21, 4, false);  // Profile position and homing.
+  // The last of several entries for the same object counts.
+  std::ranges::reverse(objects_);
+  std::ranges::stable_sort(objects_, {}, &std::pair<std::uint32_t, Entry>::first);
+  const auto doubles = std::ranges::unique(objects_, {}, &std::pair<std::uint32_t, Entry>::first);
+  objects_.erase(doubles.begin(), doubles.end());
+}
+
+const Cia402Node::Entry* Cia402Node::find(ObjectAddress object) const {
+  const std::uint32_t key = object_key(object);
+  const auto found = std::ranges::lower_bound(objects_, key, {}, &std::pair<std::uint32_t, Entry>::first);
+  return found != objects_.end() && found->first == key ? &found->second : nullptr;
 }
 
 std::uint32_t Cia402Node::value(std::uint16_t index, std::uint8_t sub) const {
-  const auto found = objects_.find(object_key({index, sub}));
-  return found == objects_.end() ? 0 : found->second.value;
+  const Entry* entry = find({index, sub});
+  return entry == nullptr ? 0 : entry->value;
 }
 
 std::int32_t Cia402Node::number(std::uint16_t index, std::uint8_t sub) const {
-  const std::uint32_t bits = value(index, sub);
-  const auto found = objects_.find(object_key({index, sub}));
-  const int size = found == objects_.end() ? 4 : found->second.size;
-  if (size == 1) return static_cast<std::int8_t>(bits);
-  return size == 2 ? static_cast<std::int16_t>(bits) : static_cast<std::int32_t>(bits);
+  const Entry* entry = find({index, sub});
+  if (entry == nullptr) return 0;
+  if (entry->size == 1) return static_cast<std::int8_t>(entry->value);
+  return entry->size == 2 ? static_cast<std::int16_t>(entry->value) : static_cast<std::int32_t>(entry->value);
 }
 
 std::optional<std::uint32_t> Cia402Node::live_value(ObjectAddress object) const {
@@ -104,10 +116,8 @@ SdoServer::ReadResult Cia402Node::read_object(ObjectAddress object) const {
     const int wide = is_word ? 2 : 4;
     return little_endian(*live, is_byte ? 1 : wide);
   }
-  const auto found = objects_.find(object_key(object));
-  if (found != objects_.end()) return little_endian(found->second.value, found->second.size);
-  const bool has_index =
-      objects_.contains(object_key({object.index, 0})) || live_value({object.index, 0}).has_value();
+  if (const Entry* entry = find(object)) return little_endian(entry->value, entry->size);
+  const bool has_index = find({object.index, 0}) != nullptr || live_value({object.index, 0}).has_value();
   return has_index ? abort_code::no_sub : abort_code::no_object;
 }
 
@@ -132,12 +142,12 @@ std::uint32_t Cia402Node::mapping_problem(ObjectAddress object, std::uint32_t ma
 }
 
 std::uint32_t Cia402Node::write_object(ObjectAddress object, const std::string& bytes) {
-  const auto found = objects_.find(object_key(object));
-  if (found == objects_.end()) {
+  const Entry* found = find(object);
+  if (found == nullptr) {
     const SdoServer::ReadResult seen = read_object(object);
     return std::holds_alternative<std::string>(seen) ? abort_code::read_only : std::get<std::uint32_t>(seen);
   }
-  Entry& entry = found->second;
+  Entry& entry = const_cast<Entry&>(*found);  // NOLINT(cppcoreguidelines-pro-type-const-cast)
   if (!entry.is_writable) return abort_code::read_only;
   if (bytes.size() != static_cast<std::size_t>(entry.size)) return abort_code::wrong_length;
   std::uint32_t written = 0;

@@ -28,7 +28,7 @@ CommandOutcome Cia402Drive::start() {
   const unsigned halts = halts_;
   const std::scoped_lock lock(mutex_);
   halts_seen_ = halts;
-  is_started_ = false;
+  is_started_ = has_pdos_ = false;
   for (std::size_t i = 0; i < axes_.size(); ++i) {
     if (const auto done = set_up(i); !done) return unusable(*done.fault());
     axes_[i].has_target = false;
@@ -38,6 +38,7 @@ CommandOutcome Cia402Drive::start() {
   for (std::size_t i = 0; i < axes_.size(); ++i)
     if (const auto sent = bus_.send(nmt_frame(NmtCommand::start, bus_.node(i).number)); !sent)
       return unusable(*sent.fault());
+  has_pdos_ = true;
   if (const auto enabled = enable(true); !enabled) return unusable(*enabled.fault());
   is_started_ = true;
   return Accepted{};
@@ -226,7 +227,8 @@ CommandOutcome Cia402Drive::home() {
   if (const auto enabled = enable(false); !enabled) return enabled;
   for (std::size_t i = 0; i < axes_.size(); ++i)
     if (axes_[i].config.homing_method != 0)
-      if (const auto done = home_axis(i); !done) return done;
+      // The drive may be left in homing mode, in which a target would start another homing.
+      if (const auto done = home_axis(i); !done) return unusable(*done.fault());
   return Accepted{};
 }
 

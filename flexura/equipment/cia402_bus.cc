@@ -13,8 +13,8 @@ constexpr int most_frames = 20'000;
 
 }  // namespace
 
-CanopenBus::CanopenBus(Link& link, const ClockPort& clock, std::vector<std::uint8_t> nodes, double timeout,
-                       int tries)
+CanopenBus::CanopenBus(Link& link, const ClockPort& clock, const std::vector<std::uint8_t>& nodes,
+                       double timeout, int tries)
     : link_(link), clock_(clock), timeout_(timeout), tries_(tries) {
   for (const std::uint8_t node : nodes) nodes_.push_back({.number = node});
 }

@@ -32,7 +32,8 @@ class CanopenBus {
  public:
   /// Answers are awaited for `timeout` s, requests sent up to `tries` times. Link and clock must outlive this
   /// object.
-  CanopenBus(Link& link, const ClockPort& clock, std::vector<std::uint8_t> nodes, double timeout, int tries);
+  CanopenBus(Link& link, const ClockPort& clock, const std::vector<std::uint8_t>& nodes, double timeout,
+             int tries);
 
   [[nodiscard]] CanopenNode& node(std::size_t i) { return nodes_[i]; }
   [[nodiscard]] const CanopenNode& node(std::size_t i) const { return nodes_[i]; }

@@ -44,11 +44,13 @@ std::string cia402_times_problem(const Cia402Config& config) {
   for (const double time :
        {config.answer_timeout, config.settling, config.power_timeout, config.homing_timeout})
     if (!is_finite_above_0(time) || time > 3600) return "times must be above 0 and at most 3600 s";
-  if (!(config.heartbeat >= 0.01 && config.heartbeat <= 60)) return "heartbeat: expected 0.01 to 60 s";
-  if (!(config.host_timeout == 0 || (config.host_timeout >= 0.01 && config.host_timeout <= 60)))
+  const auto is_period = [](double time) { return time >= 0.01 && time <= 60; };
+  if (!is_period(config.heartbeat)) return "heartbeat: expected 0.01 to 60 s";
+  if (config.host_timeout != 0 && !is_period(config.host_timeout))
     return "host_timeout: expected 0, or 0.01 to 60 s";
   if (config.tries < 1 || config.tries > 10) return "tries: expected 1 to 10";
-  if (!(config.window >= 0.5 && std::isfinite(config.window))) return "window: expected at least 0.5";
+  const bool is_window = config.window >= 0.5 && std::isfinite(config.window);
+  if (!is_window) return "window: expected at least 0.5";
   return "";
 }
 

@@ -192,7 +192,7 @@ std::optional<Cia402Drive::Problem> Cia402Drive::doubt_about(std::size_t i, doub
 
 Outcome<double> Cia402Drive::measure(bool checks_positions) {
   for (int i = 0;; ++i) {
-    const auto time = synchronise();
+    auto time = synchronise();
     if (!time) return time;
     std::optional<Problem> problem;
     for (std::size_t k = 0; k < axes_.size() && !problem; ++k) {
@@ -231,8 +231,8 @@ CommandOutcome Cia402Drive::command(std::span<const double> targets, double dura
     return bus_.fault(FaultKind::refused, fmt::format("{} targets for {} axes", targets.size(), axes()));
   if (!std::ranges::all_of(targets, [](double target) { return std::isfinite(target); }))
     return bus_.fault(FaultKind::refused, "a target is not finite");
-  if (!(duration >= 0 && std::isfinite(duration)))
-    return bus_.fault(FaultKind::refused, "a duration must be finite and not negative");
+  const bool is_duration = duration >= 0 && std::isfinite(duration);
+  if (!is_duration) return bus_.fault(FaultKind::refused, "a duration must be finite and not negative");
   const unsigned halts = halts_;
   const std::scoped_lock lock(mutex_);
   if (const auto begun = begin(halts); !begun) return begun;
@@ -330,7 +330,7 @@ CommandOutcome Cia402Drive::send_quick_stop() {
 
 CommandOutcome Cia402Drive::halt() {
   ++halts_;
-  const CommandOutcome sent = send_quick_stop();
+  CommandOutcome sent = send_quick_stop();
   // A command in progress ends now. It may have sent a target after the quick stop, hence another one.
   const std::scoped_lock lock(mutex_);
   halts_seen_ = halts_;

@@ -193,10 +193,16 @@ void Cia402Node::step_state(std::uint16_t word) {
     return;
   }
   if (state_ == fault_reaction_active) return;
-  if ((word & 0x02U) == 0) return switch_off(switch_on_disabled);
+  if ((word & 0x02U) == 0) {
+    switch_off(switch_on_disabled);
+    return;
+  }
   if ((word & 0x04U) == 0) {
-    if (state_ == operation_enabled) return quick_stop();
-    if (state_ != quick_stop_active) switch_off(switch_on_disabled);
+    if (state_ == operation_enabled) {
+      quick_stop();
+    } else if (state_ != quick_stop_active) {
+      switch_off(switch_on_disabled);
+    }
     return;
   }
   const unsigned low = word & 0x0FU;
@@ -220,7 +226,10 @@ void Cia402Node::switch_off(DriveState state) {
 }
 
 void Cia402Node::quick_stop() {
-  if (number(0x605A) == 0) return switch_off(DriveState::switch_on_disabled);
+  if (number(0x605A) == 0) {
+    switch_off(DriveState::switch_on_disabled);
+    return;
+  }
   ramp_.stop(now_, rate(0x6085));
   next_target_.reset(), halted_target_.reset();
   is_homing_ = is_acknowledged_ = false;

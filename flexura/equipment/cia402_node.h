@@ -65,7 +65,7 @@ class Cia402Node {
     int size = 4;
     bool is_writable = true;
   };
-  enum class Mode { none, position = 1, homing = 6 };
+  enum class Mode { none = 0, position = 1, homing = 6 };
 
   // cia402_node_objects.cc
   void reset_objects();
@@ -73,7 +73,7 @@ class Cia402Node {
   [[nodiscard]] SdoServer::ReadResult read_object(ObjectAddress object) const;
   std::uint32_t write_object(ObjectAddress object, const std::string& bytes);
   [[nodiscard]] std::optional<std::uint32_t> live_value(ObjectAddress object) const;
-  [[nodiscard]] std::uint32_t mapping_problem(ObjectAddress object, std::uint32_t value) const;
+  [[nodiscard]] std::uint32_t mapping_problem(ObjectAddress object, std::uint32_t mapped) const;
   [[nodiscard]] std::uint32_t value(std::uint16_t index, std::uint8_t sub = 0) const;
   [[nodiscard]] std::int32_t number(std::uint16_t index, std::uint8_t sub = 0) const;
   void apply_pdo(const CanFrame& frame, std::uint16_t mapping);

@@ -129,7 +129,8 @@ std::uint32_t Cia402Node::mapping_problem(ObjectAddress object, std::uint32_t ma
   if (object.sub == 0) {
     unsigned bits = 0;
     if (mapped > 4) return abort_code::pdo_too_long;
-    for (std::uint8_t sub = 1; sub <= mapped; ++sub) bits += value(object.index, sub) & 0xFF;
+    for (unsigned sub = 1; sub <= mapped; ++sub)
+      bits += value(object.index, static_cast<std::uint8_t>(sub)) & 0xFF;
     return bits > 64 ? abort_code::pdo_too_long : 0;
   }
   if (value(object.index, 0) != 0) return abort_code::wrong_state;
@@ -147,7 +148,7 @@ std::uint32_t Cia402Node::write_object(ObjectAddress object, const std::string& 
     const SdoServer::ReadResult seen = read_object(object);
     return std::holds_alternative<std::string>(seen) ? abort_code::read_only : std::get<std::uint32_t>(seen);
   }
-  Entry& entry = const_cast<Entry&>(*found);  // NOLINT(cppcoreguidelines-pro-type-const-cast)
+  auto& entry = const_cast<Entry&>(*found);  // NOLINT(cppcoreguidelines-pro-type-const-cast)
   if (!entry.is_writable) return abort_code::read_only;
   if (bytes.size() != static_cast<std::size_t>(entry.size)) return abort_code::wrong_length;
   std::uint32_t written = 0;
@@ -170,8 +171,8 @@ std::uint32_t Cia402Node::write_object(ObjectAddress object, const std::string& 
 void Cia402Node::apply_pdo(const CanFrame& frame, std::uint16_t mapping) {
   std::size_t at = 0;
   std::optional<std::uint16_t> word;
-  for (std::uint8_t sub = 1; sub <= value(mapping, 0); ++sub) {
-    const std::uint32_t mapped = value(mapping, sub);
+  for (unsigned sub = 1; sub <= value(mapping, 0); ++sub) {
+    const std::uint32_t mapped = value(mapping, static_cast<std::uint8_t>(sub));
     const auto size = static_cast<int>((mapped & 0xFF) / 8);
     if (at + static_cast<std::size_t>(size) > frame.size) {
       send(emergency_frame(config_.node, {0x8210, 0x10}));
@@ -194,8 +195,8 @@ void Cia402Node::apply_pdo(const CanFrame& frame, std::uint16_t mapping) {
 CanFrame Cia402Node::tpdo(std::size_t i) const {
   CanFrame frame{.id = value(static_cast<std::uint16_t>(0x1800 + i), 1) & 0x7FF};
   const auto mapping = static_cast<std::uint16_t>(0x1A00 + i);
-  for (std::uint8_t sub = 1; sub <= value(mapping, 0); ++sub) {
-    const std::uint32_t mapped = value(mapping, sub);
+  for (unsigned sub = 1; sub <= value(mapping, 0); ++sub) {
+    const std::uint32_t mapped = value(mapping, static_cast<std::uint8_t>(sub));
     const ObjectAddress object{static_cast<std::uint16_t>(mapped >> 16U),
                                static_cast<std::uint8_t>(mapped >> 8U)};
     const auto live = live_value(object);

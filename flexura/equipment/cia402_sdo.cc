@@ -114,9 +114,15 @@ void SdoTransfer::take_first(const CanFrame& frame) {
 
 void SdoTransfer::take_segment(const CanFrame& frame) {
   const std::uint8_t command = frame.data[0];
-  if (((command & toggle_bit) != 0) != toggle_) return fail(abort_code::toggle);
+  if (((command & toggle_bit) != 0) != toggle_) {
+    fail(abort_code::toggle);
+    return;
+  }
   data_ += frame_part(frame, 1, 7U - (command >> 1U & 7U));
-  if (data_.size() > longest) return fail(abort_code::no_memory);
+  if (data_.size() > longest) {
+    fail(abort_code::no_memory);
+    return;
+  }
   if ((command & 0x01) != 0) {
     is_over_ = true;
     return;
@@ -166,8 +172,8 @@ CanFrame SdoServer::abort(ObjectAddress object, std::uint32_t code) {
 CanFrame SdoServer::answer_read(ObjectAddress object) {
   rest_.reset();
   const ReadResult result = read_(object);
-  if (const auto* code = std::get_if<std::uint32_t>(&result)) return abort(object, *code);
-  const std::string& bytes = std::get<std::string>(result);
+  if (const auto* code = std::get_if<std::uint32_t>(&result); code != nullptr) return abort(object, *code);
+  const auto& bytes = std::get<std::string>(result);
   if (!bytes.empty() && bytes.size() <= 4) {
     CanFrame frame = reply(static_cast<std::uint8_t>(0x43U | (4 - bytes.size()) << 2U), object);
     for (const char byte : bytes) append(frame, static_cast<std::uint8_t>(byte), 1);

@@ -247,7 +247,7 @@ CommandOutcome Cia402Drive::home_axis(std::size_t i) {
     if (const auto done = write_checked(i, object, value, size); !done) return done;
   const auto acceleration = std::llround(axis.config.max_acceleration * axis.config.acceleration_unit);
   if (const auto done = write_optional(i, {0x609A, 0}, acceleration, 4); !done) return done;
-  const auto homed = run_homing(i);
+  auto homed = run_homing(i);
   if (!homed) {
     // The axis may still move.
     (void)send_quick_stop();

@@ -115,6 +115,77 @@ TEST(Cia402Faults, DamagedFramesDoNotStopTheDriverForEver) {
   }
 }
 
+bool is_target(const CanFrame& frame, bool is_new) {
+  return frame.id == cob::rpdo1 + 2 && ((frame.data[0] & control_word::start) != 0) == is_new;
+}
+
+TEST(Cia402Faults, ATargetThatIsLostOnceIsSentAgain) {
+  Cia402Bench bench(2);
+  ASSERT_TRUE(bench.drive.start());
+  int lost = 0;
+  bench.bus.passes = [&](const CanFrame& frame) { return !is_target(frame, true) || lost++ > 0; };
+  const auto commanded = bench.drive.command(std::vector{10.0, 20.0}, 0.1);
+  ASSERT_TRUE(commanded) << text(*commanded.fault());
+  bench.bus.pass(1);
+  EXPECT_GE(lost, 2);
+  EXPECT_THAT(bench.positions(), ::testing::ElementsAre(10, 20));
+}
+
+TEST(Cia402Faults, ATargetIsNewAlsoIfTheEndOfThePreviousOneWasLost) {
+  Cia402Bench bench(2);
+  ASSERT_TRUE(bench.drive.start());
+  ASSERT_TRUE(bench.drive.command(std::vector{10.0, 20.0}, 0.1));
+  int lost = 0;
+  bool has_begun = false;
+  bench.bus.passes = [&](const CanFrame& frame) {
+    has_begun = has_begun || is_target(frame, true);
+    return !(has_begun && is_target(frame, false)) || lost++ > 0;
+  };
+  ASSERT_TRUE(bench.drive.command(std::vector{30.0, 40.0}, 0.1));
+  const auto commanded = bench.drive.command(std::vector{50.0, 60.0}, 0.1);
+  ASSERT_TRUE(commanded) << text(*commanded.fault());
+  bench.bus.pass(1);
+  EXPECT_GE(lost, 2);
+  EXPECT_THAT(bench.positions(), ::testing::ElementsAre(50, 60));
+}
+
+// The worst moment: the command has looked for a halt for the last time, and its target follows the quick
+// stop.
+TEST(Cia402Faults, AHaltStopsATargetThatIsSentAtTheSameTime) {
+  Cia402Bench bench(1);
+  ASSERT_TRUE(bench.drive.start());
+  std::thread halter;
+  std::atomic<bool> is_sent = false, has_halted = false;
+  const auto mover = std::this_thread::get_id();
+  bench.bus.passes = [&](const CanFrame& frame) {
+    if (std::this_thread::get_id() != mover) {
+      if (frame.id == cob::sync) {
+        is_sent = true;
+        is_sent.notify_all();
+      }
+      return true;
+    }
+    if (frame.id == cob::rpdo1 + 1 && (frame.data[0] & control_word::start) != 0 && !halter.joinable()) {
+      halter = std::thread([&] {
+        const auto halted = bench.drive.halt();
+        EXPECT_TRUE(halted) << text(*halted.fault());
+        has_halted = true;
+      });
+      is_sent.wait(false);
+      bench.bus.pass(0.001);
+    }
+    return true;
+  };
+  EXPECT_FALSE(bench.drive.command(std::vector{4000.0}, 1));
+  halter.join();
+  EXPECT_TRUE(has_halted);
+  EXPECT_EQ(bench.device.node(0).state(), DriveState::quick_stop_active);
+  bench.bus.pass(0.1);
+  const double stopped = bench.positions()[0];
+  bench.bus.pass(1);
+  EXPECT_EQ(bench.positions()[0], stopped);
+}
+
 // Two ends of a line that carries messages whole.
 struct CanLine {
   CanLine() {

@@ -1,9 +1,16 @@
 #pragma once
 
+#include <algorithm>
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
 #include <deque>
 #include <functional>
+#include <mutex>
 #include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include "flexura/equipment/cia402_device.h"
 #include "flexura/equipment/cia402_drive.h"
@@ -15,8 +22,8 @@ namespace flexura {
 class HandClock : public ClockPort {
  public:
   [[nodiscard]] double now() const override { return time; }
-  void wait_until(double until) override { time = until > time ? until : time; }
-  double time = 0;
+  void wait_until(double until) override { time = std::max<double>(until, time); }
+  std::atomic<double> time = 0;
 };
 
 /// A bus with simulated drives in simulated time: a frame takes 0.2 ms, and waiting takes no real time.
@@ -27,15 +34,19 @@ class LoopBus : public Link {
 
   [[nodiscard]] const std::string& name() const override { return name_; }
   CommandOutcome write(std::string_view bytes) override {
+    const auto frame = parse_can_frame(bytes);
+    const bool arrives = passes(frame ? *frame : CanFrame{});
+    const std::scoped_lock lock(mutex_);
     clock_.time += 0.0002;
     ++written;
-    if (!is_silent) in_.put(std::string(bytes), faults, clock_.time);
+    if (!is_silent && arrives) in_.put(std::string(bytes), faults, clock_.time);
     exchange();
     return Accepted{};
   }
   Outcome<std::string> read(double timeout) override {
     const double end = clock_.time + timeout;
     for (;;) {
+      const std::scoped_lock lock(mutex_);
       exchange();
       if (!queue_.empty()) {
         std::string first = std::move(queue_.front());
@@ -48,12 +59,15 @@ class LoopBus : public Link {
   }
   /// Lets time pass.
   void pass(double duration) {
+    const std::scoped_lock lock(mutex_);
     for (const double end = clock_.time + duration; clock_.time < end; clock_.time += 0.001) exchange();
   }
 
   LinkFaults faults;
   bool is_silent = false;  ///< Whether the cable is pulled out.
   std::size_t written = 0;
+  /// Called with each frame of the driver; returns whether it arrives.
+  std::function<bool(const CanFrame&)> passes = [](const CanFrame&) { return true; };
   std::function<void()> observer = [] {};  ///< Called often while time passes.
 
  private:
@@ -71,6 +85,7 @@ class LoopBus : public Link {
   Cia402Device& device_;
   HandClock& clock_;
   FaultyCarrier in_, out_;
+  std::mutex mutex_;
   std::deque<std::string> queue_;
   std::string name_ = "can:loop";
 };

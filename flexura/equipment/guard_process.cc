@@ -155,6 +155,8 @@ void send_stop(int descriptor, const char* bytes, std::size_t size) noexcept {
     } else if (errno == EAGAIN || errno == EWOULDBLOCK) {
       pollfd one{descriptor, POLLOUT, 0};
       (void)::poll(&one, 1, 5);
+    } else if (errno == ENOBUFS) {
+      (void)::poll(nullptr, 0, 1);  // The queue of a CAN interface is full.
     } else if (errno != EINTR) {
       break;
     }

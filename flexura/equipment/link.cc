@@ -2,6 +2,10 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <linux/can.h>
+#include <linux/can/error.h>
+#include <linux/can/raw.h>
+#include <net/if.h>
 #include <netdb.h>
 #include <netinet/in.h>
 #include <netinet/tcp.h>
@@ -74,6 +78,16 @@ class DescriptorLink : public Link {
           return PortFault{FaultKind::link_lost,
                            fmt::format("{}: the device takes no bytes for {:g} s", name_, write_timeout_)};
         (void)wait_for(descriptor_.get(), POLLOUT, left);
+      } else if (errno == ENOBUFS) {
+        // The queue of a CAN interface is full, often with only 10 frames. The socket is writable all the
+        // same.
+        if (std::chrono::duration<double>(end - Clock::now()).count() <= 0)
+          return PortFault{
+              FaultKind::link_lost,
+              fmt::format("{}: the bus takes no frames for {:g} s; are its speed, its wiring and its "
+                          "terminators right, and is a device switched on?",
+                          name_, write_timeout_)};
+        (void)::poll(nullptr, 0, 1);
       } else if (errno != EINTR) {
         return lost(name_, errno);
       }
@@ -210,6 +224,36 @@ Outcome<std::unique_ptr<Link>> open_socket(const LinkAddress& address, double wr
   return lost(text(address), error);
 }
 
+// Returns the reason why an interface cannot be used, or "".
+std::string can_problem(int socket, const std::string& place, ifreq& interface) {
+  if (place.size() >= sizeof interface.ifr_name) return "no interface has such a long name";
+  std::ranges::copy(place, std::begin(interface.ifr_name));
+  if (::ioctl(socket, SIOCGIFFLAGS, &interface) != 0) return "this machine has no such network interface";
+  if ((interface.ifr_flags & IFF_UP) == 0)
+    return fmt::format("the interface is down; switch it on by: ip link set {} up type can bitrate 500000",
+                       place);
+  return ::ioctl(socket, SIOCGIFINDEX, &interface) != 0 ? std::strerror(errno) : "";
+}
+
+Outcome<std::unique_ptr<Link>> open_can(const LinkAddress& address, double write_timeout) {
+  Descriptor made(::socket(PF_CAN, SOCK_RAW | SOCK_NONBLOCK | SOCK_CLOEXEC, CAN_RAW));
+  if (!made)
+    return PortFault{FaultKind::link_lost,
+                     fmt::format("{}: the kernel has no CAN sockets ({}); load the modules can and can_raw",
+                                 text(address), std::strerror(errno))};
+  ifreq interface{};
+  if (const std::string problem = can_problem(made.get(), address.place, interface); !problem.empty())
+    return PortFault{FaultKind::link_lost, fmt::format("{}: {}", text(address), problem)};
+  const can_err_mask_t errors =
+      CAN_ERR_TX_TIMEOUT | CAN_ERR_CRTL | CAN_ERR_ACK | CAN_ERR_BUSOFF | CAN_ERR_BUSERROR | CAN_ERR_RESTARTED;
+  (void)::setsockopt(made.get(), SOL_CAN_RAW, CAN_RAW_ERR_FILTER, &errors, sizeof errors);
+  sockaddr_can at{};
+  at.can_family = AF_CAN, at.can_ifindex = interface.ifr_ifindex;
+  if (::bind(made.get(), reinterpret_cast<const sockaddr*>(&at), sizeof at) != 0)
+    return PortFault{FaultKind::link_lost, fmt::format("{}: {}", text(address), std::strerror(errno))};
+  return adopt_link(std::move(made), text(address), write_timeout);
+}
+
 }  // namespace
 
 LinkAddress parse_link_address(std::string_view text) {
@@ -217,7 +261,7 @@ LinkAddress parse_link_address(std::string_view text) {
   const auto refuse = [&](std::string_view why) {
     throw std::invalid_argument(
         fmt::format("\"{}\" is not an address of a device: {}; expected a path such as /dev/ttyUSB0 or "
-                    "/dev/ttyUSB0@9600, tcp:HOST:PORT or udp:HOST:PORT",
+                    "/dev/ttyUSB0@9600, tcp:HOST:PORT, udp:HOST:PORT or can:INTERFACE",
                     text, why));
   };
   if (text.starts_with('/')) {
@@ -229,6 +273,14 @@ LinkAddress parse_link_address(std::string_view text) {
       address.baud = *baud;
     }
     if (address.place.find('\0') != std::string::npos) refuse("a path has no zero byte");
+    return address;
+  }
+  if (text.starts_with("can:")) {
+    address.kind = LinkAddress::Kind::can;
+    address.place = text.substr(4);
+    if (address.place.empty() || address.place.size() >= IFNAMSIZ ||
+        address.place.find_first_of(std::string_view("/: \t\n\0", 6)) != std::string::npos)
+      refuse("an interface has a name of 1 to 15 characters, such as can0");
     return address;
   }
   if (!text.starts_with("tcp:") && !text.starts_with("udp:")) refuse("unknown kind");
@@ -253,14 +305,16 @@ LinkAddress parse_link_address(std::string_view text) {
 
 std::string text(const LinkAddress& address) {
   if (address.kind == LinkAddress::Kind::serial) return fmt::format("{}@{}", address.place, address.baud);
+  if (address.kind == LinkAddress::Kind::can) return "can:" + address.place;
   const bool is_number = address.place.find(':') != std::string::npos;
   return fmt::format("{}:{}{}{}:{}", address.kind == LinkAddress::Kind::tcp ? "tcp" : "udp",
                      is_number ? "[" : "", address.place, is_number ? "]" : "", address.port);
 }
 
 Outcome<std::unique_ptr<Link>> open_link(const LinkAddress& address, double write_timeout) {
-  return address.kind == LinkAddress::Kind::serial ? open_serial(address, write_timeout)
-                                                   : open_socket(address, write_timeout);
+  if (address.kind == LinkAddress::Kind::serial) return open_serial(address, write_timeout);
+  if (address.kind == LinkAddress::Kind::can) return open_can(address, write_timeout);
+  return open_socket(address, write_timeout);
 }
 
 std::unique_ptr<Link> adopt_link(Descriptor descriptor, std::string name, double write_timeout) {

@@ -29,8 +29,8 @@ std::string all_of(Link& link, std::size_t size) {
 }
 
 TEST(LinkAddress, KeepsItsParts) {
-  for (const std::string_view written :
-       {"/dev/ttyUSB0@115200", "/dev/serial/by-id/a:b@9600", "tcp:head-1.lab:5678", "udp:[fe80::1]:52381"})
+  for (const std::string_view written : {"/dev/ttyUSB0@115200", "/dev/serial/by-id/a:b@9600",
+                                         "tcp:head-1.lab:5678", "udp:[fe80::1]:52381", "can:can0"})
     EXPECT_EQ(text(parse_link_address(written)), written);
   EXPECT_EQ(parse_link_address("/dev/ttyACM0").baud, 115200);
   EXPECT_EQ(parse_link_address("udp:[fe80::1]:52381").place, "fe80::1");
@@ -40,7 +40,8 @@ TEST(LinkAddress, RefusesOtherTexts) {
   for (const std::string_view wrong :
        {"", "ttyUSB0", "tcp:", "tcp:host", "tcp:host:", "tcp::80", "tcp:host:0", "tcp:host:65536",
         "udp:host:8x", "udp:fe80::1:80", "udp:[fe80::1:80", "/dev/ttyUSB0@0", "/dev/ttyUSB0@96oo",
-        "/dev/ttyUSB0@", "serial:/dev/ttyUSB0", "tcp:a[b]:1"})
+        "/dev/ttyUSB0@", "serial:/dev/ttyUSB0", "tcp:a[b]:1", "can:", "can:can/0",
+        "can:a-name-that-is-too-long"})
     EXPECT_THROW((void)parse_link_address(wrong), std::invalid_argument) << wrong;
 }
 
@@ -129,6 +130,13 @@ TEST(UdpLink, KeepsDatagramsApart) {
   EXPECT_EQ(host.read(patience).value(), "ab");
   EXPECT_EQ(host.read(patience).value(), "");
   EXPECT_EQ(host.read(patience).value(), "c");
+}
+
+TEST(CanLink, SaysWhyItCannotBeOpened) {
+  const auto opened = open_link(parse_link_address("can:nosuch0"));
+  ASSERT_FALSE(opened);
+  EXPECT_THAT(opened.fault()->what,
+              ::testing::AnyOf(HasSubstr("no such network interface"), HasSubstr("no CAN sockets")));
 }
 
 TEST(Link, RefusesTimesThatAreNotFinite) {

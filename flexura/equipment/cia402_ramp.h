@@ -1,0 +1,47 @@
+#pragma once
+
+#include <vector>
+
+namespace flexura {
+
+/// Motion of an axis with trapezoidal speed, as a function of time. Units of position are the caller's.
+class Cia402Ramp {
+ public:
+  /// Starts at rest at a position.
+  explicit Cia402Ramp(double position = 0) : target_(position) {}
+
+  /// Sets position and velocity at `now`, s; the axis then keeps its velocity.
+  void set(double now, double position, double velocity = 0);
+  /// From `now` on, moves to `target` at up to `speed` > 0, with these values of acceleration and
+  /// deceleration > 0. An axis that cannot stop before its target comes back.
+  void move(double now, double target, double speed, double acceleration, double deceleration);
+  /// Brakes from `now` on.
+  void stop(double now, double deceleration);
+
+  /// Returns the position at `now`, not before the last command.
+  [[nodiscard]] double position(double now) const;
+  [[nodiscard]] double velocity(double now) const;
+  /// Returns when the axis comes to rest, s.
+  [[nodiscard]] double end() const { return end_; }
+  [[nodiscard]] bool is_moving(double now) const { return now < end_; }
+
+ private:
+  struct Phase {
+    double start, position, velocity, acceleration;
+  };
+  [[nodiscard]] const Phase* phase_at(double now) const;
+  void add(double duration, double acceleration);
+
+  std::vector<Phase> phases_;
+  double target_;
+  double end_ = -1e300;
+  double next_position_ = 0, next_velocity_ = 0;
+};
+
+/// Returns the speed, > 0, at which an axis goes `distance` in `duration` s and stops there, if it starts
+/// with `velocity`, positive towards the target, and accelerates and brakes by `acceleration`. Returns `most`
+/// if the duration is too short, and never more.
+[[nodiscard]] double cia402_speed(double distance, double velocity, double duration, double acceleration,
+                                  double most);
+
+}  // namespace flexura

@@ -13,6 +13,7 @@
 
 #include "flexura/math/dense.h"
 #include "flexura/mechanics/identification_equations.h"
+#include "flexura/mechanics/identification_terms.h"
 
 namespace flexura {
 namespace {

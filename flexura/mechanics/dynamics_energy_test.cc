@@ -3,7 +3,6 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <optional>
 #include <vector>
 
@@ -51,12 +50,10 @@ struct FreeSwing {
   }
   // Returns the most by which the energy ever exceeds an earlier value in free motion, relative to the energy
   // `scale`.
-  [[nodiscard]] double rise(RodState state, double h, int steps, double scale, int* pieces = nullptr) {
+  [[nodiscard]] double rise(RodState state, double h, int steps, double scale) {
     double least = dynamics->energy(state, loads).total(), most = 0;
     for (int k = 0; k < steps; ++k) {
-      const RodStep step = dynamics->step(state, {}, loads, h);
-      EXPECT_TRUE(step.converged());
-      if (pieces != nullptr) *pieces += step.pieces > 1 ? 1 : 0;
+      EXPECT_TRUE(dynamics->step(state, {}, loads, h).converged());
       const double now = dynamics->energy(state, loads).total();
       most = std::max(most, now - least);
       least = std::min(least, now);
@@ -69,49 +66,32 @@ struct FreeSwing {
   Eigen::VectorXd q, v;
 };
 
-TEST(DynamicsEnergy, Measure) {
-  for (const double rho : {1.0, 0.8, 0.1})
-    for (const double part : {0.25, 0.5, 1.0, 2.0, 4.0, 16.0}) {
-      double worst = 0;
-      int pieces = 0, rods = 0, steps = 0;
-      for (int i = 0; i < 20; ++i) {
-        TestRandom random(case_seed(i));
-        FreeSwing swing(random, rho);
-        const RodState state = swing.dynamics->start(swing.q, swing.v, {}, swing.loads);
-        const RodEnergy begin = swing.dynamics->energy(state, swing.loads);
-        const double most =
-            swing.rise(state, part / swing.fastest(), 200, begin.kinetic + begin.strain, &pieces);
-        worst = std::max(worst, most);
-        rods += most > 1e-9;
-      }
-      std::printf("rho %g h omega %g: rise %.2e, rods %d of 20, pieces %d\n", rho, part, worst, rods, pieces);
-      std::fflush(stdout);
-    }
+// Damping takes energy at every step that resolves the fastest strain and the turning of the rod (of some
+// 10 rad/s). The step's error of energy is of third order: the tolerance is 20 times the most of 150 rods.
+TEST(DynamicsEnergy, NeverGrowsInStepsThatResolveTheMotion) {
+  constexpr double part = 0.5, longest = 5e-4, tolerance = 1e-5;
+  for_random_cases(8, [&](TestRandom& random) {
+    FreeSwing swing(random, random.integer(0, 1) == 0 ? 1 : 0.8);
+    const RodState state = swing.dynamics->start(swing.q, swing.v, {}, swing.loads);
+    const RodEnergy begin = swing.dynamics->energy(state, swing.loads);
+    const double h = std::min(longest, part / swing.fastest());
+    EXPECT_LE(swing.rise(state, h, 200, begin.kinetic + begin.strain), tolerance);
+  });
 }
 
-TEST(DynamicsEnergy, MeasureLinear) {
-  for (const double rho : {1.0, 0.8, 0.1})
-    for (const double h : {1e-3, 5e-3, 2e-2})
-      for (const double small : {1e-3, 1e-4}) {
-        double worst = 0;
-        int pieces = 0, rods = 0;
-        for (int i = 0; i < 12; ++i) {
-          TestRandom random(case_seed(i));
-          FreeSwing swing(random, rho);
-          const Equilibrium at = RodStatics(swing.rod).settle({}, swing.loads);
-          if (!at.converged() || !at.stable) continue;
-          const RodState state =
-              swing.dynamics->start(at.q + small * swing.q, small * swing.v, {}, swing.loads);
-          const double scale = swing.dynamics->energy(state, swing.loads).total() -
-                               swing.dynamics->energy(swing.dynamics->rest(at), swing.loads).total();
-          const double most = swing.rise(state, h, 200, scale, &pieces);
-          worst = std::max(worst, most);
-          rods += most > 1e-9;
-        }
-        std::printf("rho %g h %g small %g: rise %.2e rods %d pieces %d\n", rho, h, small, worst, rods,
-                    pieces);
-        std::fflush(stdout);
-      }
+// Near an equilibrium the energy is quadratic, and the midpoint rule never lets it grow, however long the
+// step is. The tolerance is for terms of third order in the motion (of 1e-3).
+TEST(DynamicsEnergy, OfASmallMotionNeverGrowsByTheMidpointRule) {
+  constexpr double small = 1e-3, tolerance = 1e-2;
+  for_random_cases(6, [&](TestRandom& random) {
+    FreeSwing swing(random, 1);
+    const Equilibrium at = RodStatics(swing.rod).settle({}, swing.loads);
+    if (!at.converged() || !at.stable) return;
+    const RodState state = swing.dynamics->start(at.q + small * swing.q, small * swing.v, {}, swing.loads);
+    const double scale = swing.dynamics->energy(state, swing.loads).total() -
+                         swing.dynamics->energy(swing.dynamics->rest(at), swing.loads).total();
+    for (const double h : {5e-3, 2e-2}) EXPECT_LE(swing.rise(state, h, 200, scale), tolerance);
+  });
 }
 
 }  // namespace

@@ -102,10 +102,12 @@ struct WetAndTouching {
   Surroundings all;
 };
 
-// A rod with a parameter changed, and its surroundings.
+// A rod with a parameter changed, and its surroundings. Its steps are not repeated with another spectral
+// radius, which would have other derivatives.
 struct ChangedRod {
   ChangedRod(const SoftMoving& moving, Eigen::Index parameter, double factor, const Eigen::Vector3d* ball)
-      : dynamics(moving.with(parameter, factor), {.tolerance = 1e-11}) {
+      : dynamics(moving.with(parameter, factor),
+                 {.tolerance = 1e-11, .most_iterations = 200, .most_pieces = 1}) {
     if (ball == nullptr) return;
     surroundings = std::make_unique<WetAndTouching>(dynamics, *ball);
     dynamics.set_surroundings(&surroundings->all);
@@ -113,6 +115,10 @@ struct ChangedRod {
   RodDynamics dynamics;
   std::unique_ptr<WetAndTouching> surroundings;
 };
+
+// First relative change of a parameter for differences. Larger ones more often meet kinks: tendons that
+// become slack, contacts that begin.
+constexpr double first_step = 5e-4;
 
 // Expects each block of n rows of a column to be that by differences, relative to the block's largest number.
 // `sizes`: those of the differentiated function itself by block. Rounding of 1e-16 of them, amplified by the
@@ -152,7 +158,7 @@ void expect_step_by_parameters(TestRandom& random, double friction) {
           ChangedRod other(moving, parameter, 1 + x[0], touches ? &tip : nullptr);
           return stepped(other.dynamics);
         },
-        Eigen::VectorXd::Zero(1), 1e-2);
+        Eigen::VectorXd::Zero(1), first_step);
     expect_column(slopes.by_parameters.col(parameter), known, values, n);
   }
 }
@@ -174,7 +180,7 @@ TEST(DynamicsParameters, DerivativesOfMomentaAndForcesAreThoseByDifferences) {
             const RodState there = other.start(moving.q, moving.v, moving.input, moving.loads);
             return Eigen::VectorXd((Eigen::VectorXd(2 * n) << there.momentum, there.force).finished());
           },
-          Eigen::VectorXd::Zero(1), 1e-2);
+          Eigen::VectorXd::Zero(1), first_step);
       Eigen::VectorXd found(2 * n);
       found << slopes.momentum_by_parameters.col(parameter), slopes.force_by_parameters.col(parameter);
       expect_column(found, known, values, n);
@@ -183,7 +189,7 @@ TEST(DynamicsParameters, DerivativesOfMomentaAndForcesAreThoseByDifferences) {
 }
 
 TEST(DynamicsParameters, DerivativesOfAStepAreThoseByDifferences) {
-  for_random_cases(8, [](TestRandom& random) { expect_step_by_parameters(random, 0); });
+  for_random_cases(6, [](TestRandom& random) { expect_step_by_parameters(random, 0); });
 }
 
 TEST(DynamicsParameters, DerivativesOfAStepWithFrictionAreThoseByDifferences) {

@@ -94,6 +94,17 @@ Node input_names(std::size_t tendons, bool by_displacement) {
   return texts_node(names);
 }
 
+// Returns the names of the columns of `by_parameters` (dynamics_parameters for each section).
+Node parameter_names(std::size_t sections) {
+  constexpr std::array kinds = {"shear", "stretch", "bends", "twist", "mass", "damping"};
+  static_assert(kinds.size() == static_cast<std::size_t>(dynamics_parameters));
+  std::vector<std::string> names;
+  names.reserve(sections * kinds.size());
+  for (std::size_t i = 0; i < sections; ++i)
+    for (const char* kind : kinds) names.push_back(fmt::format("{}.{}", kind, i + 1));
+  return texts_node(names);
+}
+
 Node output_names() {
   return texts_node({"tip.x", "tip.y", "tip.z", "tip.rotation_x", "tip.rotation_y", "tip.rotation_z"});
 }
@@ -129,7 +140,8 @@ std::string LineariseAnswers::answer(std::string_view line) {
     const RodLinear linear = dynamics_.linearize(state, tendons, loads);
     const RodModes modes = rod_modes(dynamics_.slopes(state, tendons, loads));
     // Values that overflow double count as not converged.
-    if (!linear.A_rest.allFinite() || !linear.B_rest.allFinite() || !modes.eigenvalues.allFinite())
+    if (!linear.A_rest.allFinite() || !linear.B_rest.allFinite() || !linear.by_parameters_rest.allFinite() ||
+        !modes.eigenvalues.allFinite())
       return write_json({not_linearised("out_of_steps"), {}});
     Eigen::MatrixXd C = Eigen::MatrixXd::Zero(6, linear.A_rest.rows());
     C.leftCols(linear.tip_by_q.cols()) = linear.tip_by_q;
@@ -146,7 +158,9 @@ std::string LineariseAnswers::answer(std::string_view line) {
                      {"outputs", {}, output_names()},
                      {"A", {}, matrix_node(linear.A_rest)},
                      {"B", {}, matrix_node(linear.B_rest)},
-                     {"C", {}, matrix_node(C)}},
+                     {"C", {}, matrix_node(C)},
+                     {"parameters", {}, parameter_names(rod_.sections.size())},
+                     {"by_parameters", {}, matrix_node(linear.by_parameters_rest)}},
          {}});
   } catch (const InputError& error) {
     return write_json(linearise_refusal(joined(error.problems())));

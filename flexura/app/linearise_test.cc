@@ -174,6 +174,31 @@ TEST(Linearise, NamesStatesInputsAndOutputs) {
   EXPECT_GT(read_list(pulled, "frequencies_hz").back(), read_list(free, "frequencies_hz").back());
 }
 
+// The rest moves with the rod's parameters like the equilibrium; damping does not move it.
+TEST(Linearise, ItsParametersMoveTheRest) {
+  LineariseAnswers answers = linearise_answers(two_soft_sections);
+  const Node answer = parse_json(answers.answer(R"({"tensions":[1.5,0.5]})"), "answer");
+  const std::vector<std::string> names = read_names(answer, "parameters");
+  ASSERT_EQ(names.size(), 12U);
+  EXPECT_EQ(names.front(), "shear.1");
+  EXPECT_EQ(names[10], "mass.2");
+  EXPECT_EQ(names.back(), "damping.2");
+  const Eigen::MatrixXd rest =
+      -read_matrix(answer, "A").partialPivLu().solve(read_matrix(answer, "by_parameters"));
+  const Experiment experiment = parse_experiment(two_soft_sections, "x.toml");
+  RodStatics statics(rod_of(experiment.arm));
+  ASSERT_TRUE(statics.solve({.tensions = {1.5, 0.5}}, loads_of(experiment.arm)).converged());
+  const Eigen::MatrixXd known = statics.slopes().q_by_parameters;
+  const Eigen::Index n = known.rows();
+  ASSERT_EQ(rest.rows(), 2 * n);
+  for (const Eigen::Index section : {0, 1}) {
+    const auto found = rest.middleCols(6 * section, 6);
+    EXPECT_LE((found.topLeftCorner(n, 5) - known.middleCols(5 * section, 5)).cwiseAbs().maxCoeff(),
+              1e-6 * known.cwiseAbs().maxCoeff());
+    EXPECT_TRUE(found.col(5).isZero(0));
+  }
+}
+
 // Its weight lowers the frequency of a standing arm and raises that of a hanging one.
 TEST(Linearise, TakesGravityOfTheLine) {
   LineariseAnswers answers = linearise_answers(steel_cantilever);

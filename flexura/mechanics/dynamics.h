@@ -100,6 +100,11 @@ struct RodPayload {
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< Before pick-up, in the base's frame, m/s.
 };
 
+/// Number of parameters of each section, in this order: relative changes of its stiffness against shear,
+/// stretch, bends and twist, and of its mass per length, as in EquilibriumSlopes, and of its damping. Damping
+/// does not change with the stiffness. Mass does not include point masses and payloads.
+inline constexpr Eigen::Index dynamics_parameters = 6;
+
 /// Derivatives of a rod's motion, p = M(q) v and dp/dt = f(q, v, input). All matrices have a row for each
 /// mode. The input is the displacements if given, otherwise the tensions. Columns of slack tendons are 0 for
 /// displacements.
@@ -107,12 +112,18 @@ struct RodDynamicsSlopes {
   Eigen::MatrixXd mass;           ///< M = dp/dv
   Eigen::MatrixXd momentum_by_q;  ///< dp/dq at constant v.
   Eigen::MatrixXd force_by_q, force_by_v, force_by_input;
+  /// dp by the parameters at constant q and v, and df; modes x (dynamics_parameters x sections). Bristles of
+  /// tendon friction become stiffer with the rod.
+  Eigen::MatrixXd momentum_by_parameters, force_by_parameters;
 };
 
 /// Linearised motion around a state: x' = A x + B u.
 struct RodLinear {
   Eigen::MatrixXd A, B;            ///< For x = (q, p).
   Eigen::MatrixXd A_rest, B_rest;  ///< For x = (q, v), valid around a rod at rest.
+  /// Derivatives of x' by the parameters at constant x = (q, p), and at constant x = (q, v) around a rod at
+  /// rest; states x (dynamics_parameters x sections).
+  Eigen::MatrixXd by_parameters, by_parameters_rest;
   /// Derivatives of the tip's velocity and angular velocity by v, 6 x modes, in the base's frame.
   Eigen::MatrixXd tip_by_q;
   Eigen::MatrixXd lengths_by_q;  ///< Derivatives of tendon lengths by the modes, tendons x modes.
@@ -122,6 +133,8 @@ struct RodLinear {
 struct RodStepSlopes {
   Eigen::MatrixXd by_state;  ///< By (q, p, rate, force) before the step.
   Eigen::MatrixXd by_input;
+  /// By the parameters at a constant state before the step; columns as in RodDynamicsSlopes.
+  Eigen::MatrixXd by_parameters;
 };
 
 /// Dynamics of rods: Lagrange's equations in the strain modes of RodStatics, with the same nodes. So a rod in

@@ -3,6 +3,8 @@
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 #include <algorithm>
+#include <array>
+#include <cstddef>
 #include <stdexcept>
 
 #include "flexura/mechanics/dynamics_work.h"
@@ -98,7 +100,63 @@ RodDynamicsSlopes RodDynamics::Work::slopes_at(const Eigen::VectorXd& q, const E
     slopes.force_by_q += slopes.force_by_input.col(i) * length_slopes.transpose() / compliance[tendon];
     slopes.force_by_input.col(i) /= compliance[tendon];
   }
+  find_parameter_slopes(q, v, loads, slopes);
   return slopes;
+}
+
+Eigen::MatrixXd RodDynamics::Work::inner_forces(const Eigen::VectorXd& q, const Eigen::VectorXd& v) const {
+  constexpr std::array<Eigen::Index, 6> of_strain = {0, 0, 1, 2, 2, 3};
+  constexpr Eigen::Index of_damping = 5;
+  Eigen::MatrixXd forces = Eigen::MatrixXd::Zero(
+      q.size(), dynamics_parameters * static_cast<Eigen::Index>(chain.rod().sections.size()));
+  for (const RodLayout::Section& section : layout.sections) {
+    const auto first = static_cast<Eigen::Index>(section.first_mode),
+               size = static_cast<Eigen::Index>(section.modes),
+               column = dynamics_parameters * static_cast<Eigen::Index>(section.part.section);
+    const Eigen::VectorXd stiff = section.stiffness * q.segment(first, size);
+    for (Eigen::Index j = 0; j < size; ++j)
+      forces(first + j, column + of_strain[section.strain[static_cast<std::size_t>(j)]]) = stiff[j];
+    forces.col(column + of_damping).segment(first, size) = section.damping * v.segment(first, size);
+  }
+  return forces;
+}
+
+void RodDynamics::Work::find_parameter_slopes(const Eigen::VectorXd& q, const Eigen::VectorXd& v,
+                                              const RodLoads& loads, RodDynamicsSlopes& slopes) {
+  constexpr Eigen::Index of_mass = 4;
+  slopes.force_by_parameters = -inner_forces(q, v);
+  if (rubs()) {
+    Eigen::VectorXd by_grip(q.size());
+    for (const RodLayout::Rubbing& rub : layout.rubbing) {
+      motion.find_grip_slopes(rub.tendon, tensions[rub.tendon], by_grip.data());
+      slopes.force_by_parameters -= by_grip * grip_by_parameters.row(static_cast<Eigen::Index>(rub.tendon));
+    }
+  }
+  // Momentum and forces of inertia and weight are linear in the masses. So their derivatives are those of a
+  // rod that has only these masses.
+  slopes.momentum_by_parameters.setZero(q.size(), slopes.force_by_parameters.cols());
+  RodLayout massive = layout;
+  massive.rubbing.clear();
+  for (RodLayout::Section& section : massive.sections) {
+    section.stiffness.setZero();
+    section.damping.setZero();
+  }
+  RodMotion<double> alone(massive);
+  const std::vector<double> slack(chain.tendons(), 0.0);
+  Eigen::VectorXd force(q.size());
+  for (std::size_t i = 0; i < chain.rod().sections.size(); ++i) {
+    std::ranges::fill(massive.bodies, RodLayout::Body{});
+    for (const RodLayout::Section& section : massive.sections)
+      if (section.part.section == i)
+        std::copy_n(layout.slices.begin() + static_cast<std::ptrdiff_t>(section.first_node),
+                    section.intervals + 1,
+                    massive.bodies.begin() + static_cast<std::ptrdiff_t>(section.first_node));
+    alone.place(q.data(), v.data());
+    alone.pull({.gravity = loads.gravity}, slack.data(), nullptr);
+    const Eigen::Index column = dynamics_parameters * static_cast<Eigen::Index>(i) + of_mass;
+    alone.balance(slopes.momentum_by_parameters.col(column).data(), force.data());
+    slopes.force_by_parameters.col(column) = force;
+  }
 }
 
 bool RodDynamics::Work::find_stage(const RodState& state, const TendonInput& tendons, const RodLoads& loads,
@@ -137,6 +195,11 @@ RodLinear RodDynamics::linearize(const RodState& state, const TendonInput& tendo
   linear.A_rest.bottomRows(n) << mass.solve(by.force_by_q), mass.solve(by.force_by_v);
   linear.B_rest.setZero(2 * n, inputs);
   linear.B_rest.bottomRows(n) = mass.solve(by.force_by_input);
+  const Eigen::MatrixXd rates = -mass.solve(by.momentum_by_parameters);
+  linear.by_parameters.resize(2 * n, rates.cols());
+  linear.by_parameters << rates, by.force_by_parameters + by.force_by_v * rates;
+  linear.by_parameters_rest.setZero(2 * n, rates.cols());
+  linear.by_parameters_rest.bottomRows(n) = mass.solve(by.force_by_parameters);
   work_->matrix.find_columns(work_->motion);
   linear.tip_by_q = work_->matrix.node_columns(work_->layout.nodes - 1);
   const Triple<double>& p = work_->motion.nodes().back().position;
@@ -160,12 +223,14 @@ RodStepSlopes RodDynamics::step_slopes(const RodState& state, const TendonInput&
     throw std::runtime_error("derivatives of a step that does not converge");
   const RodDynamicsSlopes by = work_->slopes_at(q, v, tendons, loads);
   const Work::Scheme& scheme = work_->scheme;
-  const Eigen::Index n = q.size(), inputs = by.force_by_input.cols();
+  const Eigen::Index n = q.size(), inputs = by.force_by_input.cols(),
+                     parameters = by.force_by_parameters.cols();
   const double stretch = scheme.stage * h, memory = scheme.memory * h;
   const Eigen::MatrixXd shape = by.momentum_by_q - stretch * by.force_by_q;
   const Eigen::PartialPivLU<Eigen::MatrixXd> derivative(by.mass - stretch * by.force_by_v + stretch * shape);
-  // Columns: q, p, rate, force, input. First the stage's start, then the stage, then the step's end.
-  const Eigen::Index columns = 4 * n + inputs;
+  // Columns: q, p, rate, force, input, parameters. First the stage's start, then the stage, then the step's
+  // end.
+  const Eigen::Index columns = 4 * n + inputs + parameters;
   const auto none = Eigen::MatrixXd::Zero(n, columns);
   const Eigen::MatrixXd one = Eigen::MatrixXd::Identity(n, n);
   Eigen::MatrixXd q_from = none, p_from = none, u = none, rate = none, force = none;
@@ -173,7 +238,10 @@ RodStepSlopes RodDynamics::step_slopes(const RodState& state, const TendonInput&
   q_from.middleCols(2 * n, n) = memory * one;
   p_from.middleCols(n, n) = one;
   p_from.middleCols(3 * n, n) = memory * one;
-  u.rightCols(inputs) = by.force_by_input;
+  u.middleCols(4 * n, inputs) = by.force_by_input;
+  u.rightCols(parameters) = by.force_by_parameters;
+  // Heavier parts need less speed for the same momentum.
+  p_from.rightCols(parameters) -= by.momentum_by_parameters;
   const Eigen::MatrixXd v_by = derivative.solve(p_from + stretch * u - shape * q_from);
   const Eigen::MatrixXd f_by = by.force_by_q * (q_from + stretch * v_by) + by.force_by_v * v_by + u;
   const double now = 1 / scheme.alpha_m, old = (1 - scheme.alpha_m) / scheme.alpha_m;
@@ -186,7 +254,9 @@ RodStepSlopes RodDynamics::step_slopes(const RodState& state, const TendonInput&
   after.middleRows(n, n) = h * (1 - scheme.gamma) * force + h * scheme.gamma * after.middleRows(3 * n, n);
   after.topLeftCorner(n, n) += one;
   after.block(n, n, n, n) += one;
-  return {.by_state = after.leftCols(4 * n), .by_input = after.rightCols(inputs)};
+  return {.by_state = after.leftCols(4 * n),
+          .by_input = after.middleCols(4 * n, inputs),
+          .by_parameters = after.rightCols(parameters)};
 }
 
 }  // namespace flexura

@@ -1,11 +1,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <optional>
 #include <utility>
 #include <vector>
 
-#include "flexura/mechanics/complementary.h"
 #include "flexura/mechanics/dynamics_work.h"
 
 namespace flexura {
@@ -18,10 +16,6 @@ constexpr double slow_gain = 0.2;
 // The exact derivative with friction costs as much as some thirty iterations.
 constexpr double slow_friction_gain = 0.75;
 constexpr int patience = 6;
-// Number of converged pieces of a step before they become longer again.
-constexpr int enough_in_a_row = 4;
-// Largest number of pieces tried, converged or not.
-constexpr int most_tries = 1000;
 
 double greatest_change(const Eigen::VectorXd& change, const Eigen::VectorXd& scales) {
   double most = 0;
@@ -83,104 +77,6 @@ void RodDynamics::Work::guess(const RodState& state, double h) {
   }
 }
 
-// Solves for the x_i >= 0 of taut tendons in the sum of x_i answers_i, for a small positive definite matrix,
-// by changing one slack tendon at a time (principal pivots).
-bool RodDynamics::Work::pull_tight() {
-  const Eigen::Index count = found_.size();
-  const double rounding = 1e-13 * chain.rod().length();
-  for (int round = 0; round < 50 + 10 * static_cast<int>(count); ++round) {
-    // Cholesky decomposition of the rows of taut tendons.
-    found_.setZero();
-    for (Eigen::Index i = 0; i < count; ++i) {
-      if (taut_[static_cast<std::size_t>(i)] == 0) continue;
-      double right = desired_[i], diagonal = give_(i, i);
-      for (Eigen::Index j = 0; j < i; ++j) {
-        if (taut_[static_cast<std::size_t>(j)] == 0) continue;
-        double sum = give_(i, j);
-        for (Eigen::Index k = 0; k < j; ++k)
-          if (taut_[static_cast<std::size_t>(k)] != 0) sum -= pivot_(i, k) * pivot_(j, k);
-        pivot_(i, j) = sum / pivot_(j, j);
-        diagonal -= pivot_(i, j) * pivot_(i, j);
-        right -= pivot_(i, j) * found_[j];
-      }
-      if (!(diagonal > 0)) return false;
-      pivot_(i, i) = std::sqrt(diagonal);
-      found_[i] = right / pivot_(i, i);
-    }
-    for (Eigen::Index i = count; i-- > 0;) {
-      if (taut_[static_cast<std::size_t>(i)] == 0) continue;
-      found_[i] /= pivot_(i, i);
-      for (Eigen::Index k = 0; k < i; ++k)
-        if (taut_[static_cast<std::size_t>(k)] != 0) found_[k] -= pivot_(i, k) * found_[i];
-    }
-    Eigen::Index worst = -1;
-    double least = 0;
-    for (Eigen::Index i = 0; i < count; ++i)
-      if (taut_[static_cast<std::size_t>(i)] != 0 && found_[i] < least) worst = i, least = found_[i];
-    if (worst >= 0) {
-      taut_[static_cast<std::size_t>(worst)] = 0;
-      continue;
-    }
-    least = -rounding;
-    for (Eigen::Index i = 0; i < count; ++i) {
-      if (taut_[static_cast<std::size_t>(i)] != 0) continue;
-      double left = -desired_[i];
-      for (Eigen::Index j = 0; j < count; ++j) left += give_(i, j) * found_[j];
-      if (!std::isfinite(left)) return false;
-      if (left < least) worst = i, least = left;
-    }
-    if (worst < 0) return true;
-    taut_[static_cast<std::size_t>(worst)] = 1;
-  }
-  return false;
-}
-
-// Solves for tensions with friction, where the matrix is not symmetric.
-bool RodDynamics::Work::find_tensions() {
-  Complementary problem{.matrix = give_, .rhs = desired_, .kinds = {}};
-  problem.kinds.assign(taut_.size(), Complementary::Kind::at_least_0);
-  const std::optional<Eigen::VectorXd> found = problem.solve(taut_, 1e-13 * chain.rod().length());
-  if (!found) return false;
-  found_ = *found;
-  return true;
-}
-
-// On entry change_ is the residual at the stage with the present tensions. It becomes the step without
-// tendons. Then tensions are found that meet the given lengths, and change_ includes them.
-template <typename Solve>
-bool RodDynamics::Work::solve_with_tendons(const Stage& stage, Solve&& solve) {
-  const Eigen::Index count = found_.size();
-  // How tensions act: without friction, by the derivatives of the lengths.
-  const Eigen::MatrixXd& pulls = rubs() ? pull_slopes_ : length_slopes_;
-  for (Eigen::Index i = 0; i < count; ++i) {
-    const double tension = tensions[static_cast<std::size_t>(i)];
-    if (tension != 0) change_ += stage.stretch * tension * pulls.col(i);
-  }
-  left_ = change_;
-  solve(change_.data());
-  for (Eigen::Index i = 0; i < count; ++i) {
-    answers_.col(i) = pulls.col(i);
-    solve(answers_.col(i).data());
-  }
-  for (Eigen::Index i = 0; i < count; ++i) {
-    const auto tendon = static_cast<std::size_t>(i);
-    for (Eigen::Index j = 0; j < count; ++j)
-      give_(i, j) = stage.stretch * stage.stretch * length_slopes_.col(i).dot(answers_.col(j));
-    give_(i, i) += compliance[tendon];
-    desired_[i] = lengths_[i] - rest_lengths[tendon] + stage.tendons.displacements[tendon] +
-                  stage.stretch * length_slopes_.col(i).dot(change_);
-  }
-  if (!(rubs() ? find_tensions() : pull_tight())) return false;
-  for (Eigen::Index i = 0; i < count; ++i) {
-    const auto tendon = static_cast<std::size_t>(i);
-    change_ -= stage.stretch * found_[i] * answers_.col(i);
-    left_ -= stage.stretch * found_[i] * pulls.col(i);
-    pull_change_[i] = found_[i] - tensions[tendon];
-    tensions[tendon] = found_[i];
-  }
-  return true;
-}
-
 // Returns the size of the change of the rates, rad/s: the rate of the rod turned as a whole with the same
 // energy in the quadratic form of the stage's equations, stiffness included.
 double RodDynamics::Work::change_size() const {
@@ -204,24 +100,6 @@ void RodDynamics::Work::evaluate(const Stage& stage) {
     motion.find_length_slopes(i, length_slopes_.col(column).data());
     if (rubs()) motion.find_pull_slopes(i, tensions[i], pull_slopes_.col(column).data());
   }
-}
-
-bool RodDynamics::Work::solve_quickly(const Stage& stage) {
-  if (stage.by_displacement()) return solve_with_tendons(stage, [this](double* x) { matrix.solve(x); });
-  left_ = change_;
-  matrix.solve(change_.data());
-  return true;
-}
-
-bool RodDynamics::Work::solve_exactly(const Stage& stage) {
-  const auto solve = [this](double* x) {
-    Eigen::Map<Eigen::VectorXd> rhs(x, change_.size());
-    rhs = factor_->lu.solve(rhs).eval();
-  };
-  if (stage.by_displacement()) return solve_with_tendons(stage, solve);
-  left_ = change_;
-  solve(change_.data());
-  return true;
 }
 
 void RodDynamics::Work::begin(const RodState& state, const Stage& stage, double h) {
@@ -439,95 +317,6 @@ bool RodDynamics::Work::add_friction_work(const RodState& state, double h, RodSt
   result.friction_work += total;
   result.friction_loss += loss;
   return true;
-}
-
-// Long steps leave oscillating momenta in stiff strains, which would be an impact in short steps. Restarts
-// from the same shape with the mean rates of the last two steps. Returns whether the old kinetic energy was
-// over 1.5 times the new one.
-bool RodDynamics::Work::restart(RodState& state, const TendonInput& tendons, const RodLoads& loads) {
-  constexpr double most = 1.5;
-  const int middles = std::exchange(state.middles, 0);
-  if (middles == 0 || !find_velocity(state)) return false;
-  const double kinetic = velocity.dot(state.momentum);
-  state.rate = middles == 1 ? state.middle[0] : 0.5 * (state.middle[0] + state.middle[1]);
-  hold(state.friction.data(), 0);
-  motion.place(state.q.data(), state.rate.data());
-  set_tensions(tendons);
-  motion.pull(loads, tensions.data(), surroundings);
-  motion.balance(state.momentum.data(), state.force.data());
-  return kinetic > most * state.rate.dot(state.momentum);
-}
-
-// Returns the tendons' displacements at the present shape; for slack ones the target displacement.
-std::vector<double> RodDynamics::Work::displacements_at(const RodState& state, const TendonInput& tendons) {
-  std::vector<double> pulled = tendons.displacements;
-  if (pulled.empty()) return pulled;
-  velocity.setZero();
-  motion.place(state.q.data(), velocity.data());
-  motion.find_lengths(lengths_.data());
-  for (std::size_t i = 0; i < pulled.size(); ++i) {
-    const double taut = rest_lengths[i] - lengths_[static_cast<Eigen::Index>(i)];
-    pulled[i] = state.tensions[i] > 0 ? taut + compliance[i] * state.tensions[i] : std::min(pulled[i], taut);
-  }
-  return pulled;
-}
-
-// Repeats the step with full numerical damping in halves of halves, each as long as converges. Tendons are
-// pulled in evenly, since all at once would be a harder impact the shorter the first piece is.
-bool RodDynamics::Work::step_in_pieces(RodState& state, const TendonInput& tendons, const RodLoads& loads,
-                                       double h, RodStep& result) {
-  const Scheme damped(0);
-  const std::vector<double> pulled = displacements_at(state, tendons);
-  TendonInput now = tendons;
-  // `left` pieces remain, each 1/parts of the step.
-  long parts = 1, left = 1;
-  int in_a_row = 0;
-  result.pieces = 0;
-  result.friction_work = result.friction_loss = 0;
-  for (int tries = 0; left > 0; ++tries) {
-    const double rest = static_cast<double>(left - 1) / static_cast<double>(parts);
-    for (std::size_t i = 0; i < pulled.size(); ++i)
-      now.displacements[i] = tendons.displacements[i] + rest * (pulled[i] - tendons.displacements[i]);
-    const RodStep piece = step_once(damped, state, now, loads, h / static_cast<double>(parts));
-    result.end = piece.end;
-    result.iterations += piece.iterations;
-    if (!piece.converged()) {
-      in_a_row = 0;
-      parts *= 2;
-      left *= 2;
-      if (parts > config.most_pieces || tries > most_tries) return false;
-      continue;
-    }
-    result.friction_work += piece.friction_work;
-    result.friction_loss += piece.friction_loss;
-    --left;
-    ++result.pieces;
-    // Tries longer pieces again, since the difficult part may have passed.
-    if (++in_a_row < enough_in_a_row || parts == 1 || left % 2 != 0) continue;
-    parts /= 2;
-    left /= 2;
-    in_a_row = 0;
-  }
-  return true;
-}
-
-RodStep RodDynamics::Work::step(RodState& state, const TendonInput& tendons, const RodLoads& loads,
-                                double h) {
-  RodStep result = step_once(scheme, state, tendons, loads, h);
-  if (result.converged() || config.most_pieces < 2) return result;
-  result.is_anew = true;
-  const RodState before = state;
-  RodState begun = state;
-  const bool is_swinging = restart(begun, tendons, loads);
-  for (const bool anew : {is_swinging, !is_swinging}) {
-    state = anew ? begun : before;
-    if (!step_in_pieces(state, tendons, loads, h, result)) continue;
-    state.time = before.time + h;
-    return result;
-  }
-  state = before;
-  result.pieces = 0;
-  return result;
 }
 
 }  // namespace flexura

@@ -77,11 +77,19 @@ struct RodDynamics::Work {
   std::unique_ptr<RodPoints> points = {};
   std::vector<double> rest_lengths, compliance;  // m, m/N
   std::vector<double> grip;                      // N/m, of the pieces of tendons with friction
+  /// Relative changes of a tendon's grip by the parameters, tendons x (dynamics_parameters x sections).
+  Eigen::MatrixXd grip_by_parameters;
   std::vector<double> tensions;
   Eigen::VectorXd velocity;
   /// Bodies of nodes that carry payloads, without the payloads.
   std::vector<std::pair<std::size_t, RodLayout::Body>> bare = {};
 
+  /// Returns the parts of K q + D v that are proportional to each parameter; columns as in RodDynamicsSlopes.
+  [[nodiscard]] Eigen::MatrixXd inner_forces(const Eigen::VectorXd& q, const Eigen::VectorXd& v) const;
+  /// Sets the derivatives by the parameters, with the present tensions. Call after motion.pull() at q and v
+  /// if tendons have friction.
+  void find_parameter_slopes(const Eigen::VectorXd& q, const Eigen::VectorXd& v, const RodLoads& loads,
+                             RodDynamicsSlopes& slopes);
   /// Returns the derivatives at the present shape, also those by the input. Tensions are those of `tendons`.
   [[nodiscard]] RodDynamicsSlopes slopes_at(const Eigen::VectorXd& q, const Eigen::VectorXd& v,
                                             const TendonInput& tendons, const RodLoads& loads);

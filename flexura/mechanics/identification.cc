@@ -15,6 +15,7 @@
 #include "flexura/base/work_progress.h"
 #include "flexura/math/dense.h"
 #include "flexura/mechanics/identification_equations.h"
+#include "flexura/mechanics/identification_terms.h"
 
 namespace flexura {
 namespace {

@@ -8,9 +8,6 @@
 
 namespace flexura {
 
-/// Returns the tendons whose friction coefficient is the parameter.
-[[nodiscard]] std::vector<std::size_t> rubbing_tendons(const Rod& rod, const RodParameter& parameter);
-
 /// Equations of motion of a record, integrated over windows: by_parameter x + fixed = noise. They are
 /// linearised in the friction coefficients, around those of the rod.
 struct IdentificationEquations {

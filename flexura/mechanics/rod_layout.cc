@@ -13,16 +13,16 @@ constexpr std::size_t widest = lanes_of<Lanes>;
 
 Triple<double> triple(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
 
-// Combines a slice of the rod and its point masses into one body.
-RodLayout::Body body_of(const RodSection& section, const RodGrid& grid, std::size_t node,
-                        bool rotary_inertia) {
+// Combines a slice of the rod and its point masses, if wanted, into one body.
+RodLayout::Body body_of(const RodSection& section, const RodGrid& grid, std::size_t node, bool rotary_inertia,
+                        bool with_masses) {
   struct Part {
     double mass;
     Eigen::Vector3d centre;
   };
   const double run = grid.weight[node] * section.length;
   std::vector<Part> parts = {{run * grid.mass_per_length[node], Eigen::Vector3d::Zero()}};
-  for (std::size_t i = 0; i < section.masses.size(); ++i)
+  for (std::size_t i = 0; with_masses && i < section.masses.size(); ++i)
     if (grid.mass_nodes[i] == node) parts.push_back({section.masses[i].mass, section.masses[i].offset});
   double mass = 0;
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();
@@ -68,7 +68,8 @@ RodLayout::RodLayout(const RodChain& chain, bool rotary_inertia) : tendons(chain
       const double length = grid.weight[k] * from.length;
       const Vector6d damping = from.damping_at(grid.t[k]);
       run.push_back(length);
-      bodies.push_back(body_of(from, grid, k, rotary_inertia));
+      bodies.push_back(body_of(from, grid, k, rotary_inertia, true));
+      slices.push_back(body_of(from, grid, k, rotary_inertia, false));
       const auto at = grid.at_node.col(static_cast<Eigen::Index>(k));
       for (int j = 0; j < grid.size; ++j) {
         for (int l = 0; l < grid.size; ++l) {

@@ -77,7 +77,8 @@ struct RodLayout {
   std::size_t modes = 0, intervals = 0, nodes = 0, tendons = 0;
   std::size_t padded = 0;  ///< Number of intervals, rounded up to a multiple of an instruction's lanes.
   std::vector<Body> bodies;
-  std::vector<double> run;  ///< Length of rod that each node represents in an integral along the rod, m.
+  std::vector<Body> slices;  ///< The bodies without point masses: slices of the rod alone.
+  std::vector<double> run;   ///< Length of rod that each node represents in an integral along the rod, m.
   /// 18 x padded: the three moments of the six undeformed strains.
   std::vector<double> rest;
   /// For each of the three moments: its value for each mode of all sections, in each interval of the mode's

@@ -96,6 +96,9 @@ class RodMotion {
   /// Computes minus the derivatives of the generalized forces by a tendon's tension at the base. Without
   /// friction these are the derivatives of its length. `tension`: that tension, N. Call after pull().
   void find_pull_slopes(std::size_t tendon, double tension, double* slopes);
+  /// Computes minus the derivatives of the generalized forces by the relative change of the bristle stiffness
+  /// of a tendon; 0 without friction. `tension` as above. Call after pull().
+  void find_grip_slopes(std::size_t tendon, double tension, double* slopes);
   /// Return for each piece the friction force at its junction with the previous piece, N, and the sliding
   /// speed there towards the base, m/s. The force is the tension of the previous piece minus that of this
   /// one. Call after pull().
@@ -135,6 +138,10 @@ class RodMotion {
   void add_strain_force(const RodLayout::Section& section, std::size_t node, const Screw<S>& along,
                         S* force) const;
   [[nodiscard]] Screw<S> momentum_of(std::size_t node, const Screw<S>& twist) const;
+  // Computes minus the derivatives of the generalized forces along a change of a tendon with friction: the
+  // slopes of its tension at the base, and of the relative bristle stiffness.
+  void find_rubbing_slopes(const RodLayout::Rubbing& rub, const Dual<double>& tension,
+                           const Dual<double>& stiffness, double* slopes);
   // Computes the forces of stiffness, damping, and tendons on the strains.
   void set_inner_forces(S* force) const;
   void add_modes(const std::vector<S>& of_moments, S* sums) const;

@@ -206,24 +206,20 @@ void RodMotion<S>::add_rubbing(const S* tensions) {
 }
 
 template <typename S>
-void RodMotion<S>::find_pull_slopes(std::size_t tendon, double tension, double* slopes) {
-  const auto found = std::ranges::find(layout_.rubbing, tendon, &RodLayout::Rubbing::tendon);
+void RodMotion<S>::find_rubbing_slopes(const RodLayout::Rubbing& rub, const Dual<double>& tension,
+                                       const Dual<double>& stiffness, double* slopes) {
   if constexpr (std::is_same_v<S, double>) {
-    if (found == layout_.rubbing.end()) {
-      find_length_slopes(tendon, slopes);
-      return;
-    }
-    std::fill(slopes, slopes + layout_.modes, 0.0);
     std::ranges::fill(spare_, Screw<double>{});
     bool has_chords = false;
     using Tension = Dual<double>;
-    Tension left{tension, 1};
-    for (std::size_t p = 0; p < found->pieces.size(); ++p) {
-      const RodLayout::Piece& piece = found->pieces[p];
+    Tension left = tension;
+    for (std::size_t p = 0; p < rub.pieces.size(); ++p) {
+      const RodLayout::Piece& piece = rub.pieces[p];
       const RodLayout::Section& section = layout_.sections[piece.section];
-      const std::size_t at = found->first + p;
+      const std::size_t at = rub.first + p;
+      // Stiffer bristles hold like those of a longer slide.
       if (p > 0)
-        left -= held_by(left, turn_[at] + Tension{}, slide_time_ * slide_[at] + Tension{}, grip_[at],
+        left -= held_by(left, turn_[at] + Tension{}, slide_time_ * slide_[at] * stiffness, grip_[at],
                         held_before_ != nullptr ? held_before_[at] : 0.0);
       if (section.disks.empty()) {
         add_strain_force(section, piece.at, piece.run * left.slope * units_[at], slopes);
@@ -237,9 +233,31 @@ void RodMotion<S>::find_pull_slopes(std::size_t tendon, double tension, double* 
   }
 }
 
+template <typename S>
+void RodMotion<S>::find_pull_slopes(std::size_t tendon, double tension, double* slopes) {
+  const auto found = std::ranges::find(layout_.rubbing, tendon, &RodLayout::Rubbing::tendon);
+  if constexpr (std::is_same_v<S, double>) {
+    if (found == layout_.rubbing.end()) {
+      find_length_slopes(tendon, slopes);
+      return;
+    }
+  }
+  std::fill(slopes, slopes + layout_.modes, 0.0);
+  find_rubbing_slopes(*found, {tension, 1}, {1, 0}, slopes);
+}
+
+template <typename S>
+void RodMotion<S>::find_grip_slopes(std::size_t tendon, double tension, double* slopes) {
+  std::fill(slopes, slopes + layout_.modes, 0.0);
+  const auto found = std::ranges::find(layout_.rubbing, tendon, &RodLayout::Rubbing::tendon);
+  if (found != layout_.rubbing.end() && tension > 0)
+    find_rubbing_slopes(*found, {tension, 0}, {1, 1}, slopes);
+}
+
 template void RodMotion<double>::find_slides();
 template void RodMotion<double>::add_rubbing(const double*);
 template void RodMotion<double>::find_pull_slopes(std::size_t, double, double*);
+template void RodMotion<double>::find_grip_slopes(std::size_t, double, double*);
 template void RodMotion<Dual<Lanes>>::find_slides();
 template void RodMotion<Dual<Lanes>>::add_rubbing(const Dual<Lanes>*);
 

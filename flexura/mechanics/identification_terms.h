@@ -1,0 +1,46 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <memory>
+#include <vector>
+
+#include "flexura/mechanics/dynamics.h"
+#include "flexura/mechanics/identification.h"
+
+namespace flexura {
+
+/// Returns the tendons whose friction coefficient is the parameter.
+[[nodiscard]] std::vector<std::size_t> rubbing_tendons(const Rod& rod, const RodParameter& parameter);
+
+/// A column of the equations of motion at one sample: the factor of the window's bump and that of its slope,
+/// and the derivatives of both by q and v. Derivatives are empty where they were not asked for.
+struct IdentificationTerm {
+  Eigen::VectorXd bump = {}, slope = {};
+  Eigen::MatrixXd bump_by_q = {}, bump_by_v = {}, slope_by_q = {}, slope_by_v = {};
+};
+
+/// Terms of the equations of motion of a rod that are linear in the parameters to identify.
+class IdentificationTerms {
+ public:
+  /// Keeps `dynamics`, the given rod, by reference. Throws std::invalid_argument for parameters that overlap
+  /// or that the rod has not.
+  IdentificationTerms(RodDynamics& dynamics, const std::vector<RodParameter>& parameters);
+  ~IdentificationTerms();
+  IdentificationTerms(const IdentificationTerms&) = delete;
+  IdentificationTerms& operator=(const IdentificationTerms&) = delete;
+
+  /// Returns the parameters of the given rod.
+  [[nodiscard]] const Eigen::VectorXd& nominal() const;
+  /// Returns the term without parameters, then that of each parameter, at a sample with the rates v. Call for
+  /// all samples of a record in their order, since tendons with friction slide from one to the next.
+  [[nodiscard]] std::vector<IdentificationTerm> at(const RodMotionRecordSample& sample,
+                                                   const Eigen::VectorXd& v, const RodLoads& loads,
+                                                   bool with_slopes);
+
+ private:
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
+};
+
+}  // namespace flexura

@@ -231,22 +231,25 @@ HeadState visca_state(const ViscaConfig& config, const ViscaCounts& counts) {
 
 StopMessages visca_stop(const ViscaConfig& config) {
   const int address = static_cast<int>(config.address);
-  const std::vector<std::string> packets{
-      visca_packet(address,
-                   visca_move_stop(static_cast<int>(config.pan.speed), static_cast<int>(config.tilt.speed))),
-      visca_packet(address, visca_zoom_stop())};
-  const std::string clear = visca_packet(address, visca_clear());
+  const std::string stop_turn = visca_packet(
+      address, visca_move_stop(static_cast<int>(config.pan.speed), static_cast<int>(config.tilt.speed)));
+  const std::string stop_zoom = visca_packet(address, visca_zoom_stop());
   constexpr double delay = 0.2;  // s. The head has then answered, and its buffers are empty.
+  // A head whose sockets are in use refuses to stop. What follows the first stops also empties the sockets.
   if (visca_framing(config.bus) != ViscaFraming::sony)
-    return {{packets[0], packets[1], clear}, delay, {packets[0], packets[1]}};
+    return {{stop_turn, stop_zoom, visca_packet(address, visca_clear())}, delay, {stop_turn, stop_zoom}};
   // The guard does not know the next sequence number. A reset makes any valid.
-  const auto numbered = [&](std::uint32_t number) {
+  const auto numbered = [](std::uint32_t number, const std::vector<std::string>& packets) {
     using Kind = SonyMessage::Kind;
-    return std::vector<std::string>{bytes_of(SonyMessage{Kind::control, 0, std::string(sony_reset)}),
-                                    bytes_of(SonyMessage{Kind::command, number, packets[0]}),
-                                    bytes_of(SonyMessage{Kind::command, number + 1, packets[1]})};
+    std::vector<std::string> messages{bytes_of(SonyMessage{Kind::control, 0, std::string(sony_reset)})};
+    for (const std::string& packet : packets)
+      messages.push_back(bytes_of(SonyMessage{Kind::command, number++, packet}));
+    return messages;
   };
-  return {numbered(1), delay, numbered(3)};
+  constexpr std::uint32_t first = 1, then = 5;
+  return {numbered(first, {stop_turn, stop_zoom, visca_packet(address, visca_cancel(1)),
+                           visca_packet(address, visca_cancel(2))}),
+          delay, numbered(then, {stop_turn, stop_zoom})};
 }
 
 }  // namespace flexura

@@ -30,7 +30,10 @@ void SteadyViscaMotors::go(Axis axis, double to, double speed, double now) {
   motion.rate = rates_[axis] * speed;
 }
 
-void SteadyViscaMotors::stop(Axis axis, double now) { go(axis, std::round(count(axis, now)), 1, now); }
+void SteadyViscaMotors::stop(Axis axis, double now) {
+  Motion& motion = motions_[axis];
+  motion.from = motion.to = std::round(count(axis, now));
+}
 
 void SteadyViscaMotors::block(Axis axis, bool is_blocked, double now) {
   Motion& motion = motions_[axis];

@@ -132,7 +132,7 @@ std::optional<PortFault> ViscaBus::exchange(Lock& lock, const RequestPtr& reques
 }
 
 std::string ViscaBus::silence(const Request& request) const {
-  if (request.other > 0)
+  if (request.others >= config_.tries)
     return fmt::format(
         "{}: answers with {} bytes of data instead of {}: set pan.digits and tilt.digits as in its manual",
         name_of(request.address), request.other, request.size);
@@ -213,14 +213,19 @@ Outcome<ViscaBus::Answer> ViscaBus::inquire(int address, std::string_view body, 
   Lock lock(mutex_);
   const Turn turn(*this, lock, address, false);
   if (const auto fault = prepare_chain(lock)) return *fault;
-  const RequestPtr request = add(What::inquiry, address);
-  request->size = size;
-  if (const auto fault = exchange(lock, request, visca_packet(address, body), [] { return true; }))
-    return *fault;
-  if (request->state != State::answered)
-    return PortFault{FaultKind::refused, fmt::format("{}: refuses to report its position ({})",
-                                                     name_of(address), visca_error_text(request->code))};
-  return Answer{request->data, 0.5 * (request->sent + request->answered)};
+  int code = 0;
+  // A head refuses an inquiry that arrived damaged.
+  for (std::int64_t i = 0; i < config_.tries; ++i) {
+    const RequestPtr request = add(What::inquiry, address);
+    request->size = size;
+    if (const auto fault = exchange(lock, request, visca_packet(address, body), [] { return true; }))
+      return *fault;
+    if (request->state == State::answered)
+      return Answer{request->data, 0.5 * (request->sent + request->answered)};
+    code = request->code;
+  }
+  return PortFault{FaultKind::refused, fmt::format("{}: refuses to report its position ({})",
+                                                   name_of(address), visca_error_text(code))};
 }
 
 const ViscaBus::Request* ViscaBus::find(std::uint64_t number) const {

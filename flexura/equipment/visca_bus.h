@@ -85,8 +85,9 @@ class ViscaBus {
     int address = 0;
     int socket = 0;  // 0: unknown.
     std::uint32_t sequence = 0;
-    std::size_t size = 0;   // Of the answer's data.
-    std::size_t other = 0;  // Size of an answer of another size.
+    std::size_t size = 0;     // Of the answer's data.
+    std::size_t other = 0;    // Size of an answer of another size.
+    std::int64_t others = 0;  // Number of such answers.
     int tries = 0;
     State state = State::waiting;
     int code = 0;

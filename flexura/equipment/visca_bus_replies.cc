@@ -121,6 +121,7 @@ void ViscaBus::take_answer(const ViscaReply& reply, std::optional<std::uint32_t>
   if (request == nullptr) return;
   if (reply.data.size() != request->size) {
     request->other = reply.data.size();
+    ++request->others;
     return;
   }
   request->data = reply.data;
@@ -152,7 +153,9 @@ void ViscaBus::take_error(const ViscaReply& reply, std::optional<std::uint32_t> 
   if (code == ViscaError::cancelled || code == ViscaError::no_socket) return;
   Request* request = find([&](const Request& one) {
     return one.address == reply.from && one.state == State::waiting &&
-           (one.what == What::command || one.what == What::inquiry || one.what == What::cancel) &&
+           (one.what == What::command || one.what == What::cancel ||
+            // Inquiries need no buffer.
+            (one.what == What::inquiry && code != ViscaError::buffer_full)) &&
            (!sequence || one.sequence == *sequence);
   });
   if (request == nullptr) return;

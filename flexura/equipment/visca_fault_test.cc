@@ -71,7 +71,7 @@ class ViscaWitness {
 };
 
 struct ViscaTrial {
-  int reached = 0, reported = 0, readings = 0, wrong = 0, misplaced = 0;
+  int reached = 0, wrong = 0, misplaced = 0;
   bool recovered = false;
 };
 
@@ -99,18 +99,11 @@ ViscaTrial visca_trial(ViscaFraming framing, const LinkFaults& faults, std::uint
   EXPECT_TRUE(head.start());
   ViscaTrial trial;
   const auto go = [&](const HeadState& target) {
-    if (const auto f = head.command(target).fault()) {
-      if (std::getenv("FLEXURA_VERBOSE")) printf("C %s\n", f->what.c_str());
-      return false;
-    }
+    if (!head.command(target)) return false;
     for (const double end = wire.time + 120; wire.time < end; wire.pass(0.03)) {
       const double asked = wire.time;
       const auto read = head.read();
-      if (!read) {
-        if (std::getenv("FLEXURA_VERBOSE")) printf("R %s\n", read.fault()->what.c_str());
-        return false;
-      }
-      ++trial.readings;
+      if (!read) return false;
       if (!witness.confirms(*head.counts(), asked, wire.time)) ++trial.wrong;
       if (read.value().moving) continue;
       const ViscaCounts wanted = visca_counts(config, target), at = device.counts(0, wire.time);
@@ -126,11 +119,7 @@ ViscaTrial visca_trial(ViscaFraming framing, const LinkFaults& faults, std::uint
     const HeadState target{(i * 37 % 120 - 60) * degree, (i * 23 % 80 - 20) * degree,
                            static_cast<double>(i * 4001 % 16000)};
     if (i % 7 == 6) (void)head.halt();
-    if (go(target)) {
-      ++trial.reached;
-    } else {
-      ++trial.reported;
-    }
+    if (go(target)) ++trial.reached;
   }
   wire.faults = {};
   wire.pass(2);
@@ -144,21 +133,14 @@ INSTANTIATE_TEST_SUITE_P(All, ViscaFaults,
                          [](const auto& one) { return name_of(one.param); });
 
 TEST_P(ViscaFaults, NoWrongPositionIsGoodAndTheHeadIsUsedAgain) {
-  const int commands = std::getenv("FLEXURA_VERBOSE") ? 40 : 12;
-  for (unsigned seed = 1; seed <= (std::getenv("FLEXURA_VERBOSE") ? 25U : 1U); ++seed)
-    for (const ViscaFault& fault : visca_faults()) {
-      const ViscaTrial trial = visca_trial(GetParam(), fault.faults, seed, commands);
-      SCOPED_TRACE(fault.name);
-      EXPECT_EQ(trial.wrong, 0);
-      EXPECT_EQ(trial.misplaced, 0);
-      EXPECT_TRUE(trial.recovered);
-      EXPECT_GT(trial.reached, 0);
-      RecordProperty(std::string(fault.name) + "_reported", trial.reported);
-      if (std::getenv("FLEXURA_VERBOSE"))
-        printf("%s %s reached %d reported %d readings %d wrong %d misplaced %d\n",
-               name_of(GetParam()).c_str(), fault.name, trial.reached, trial.reported, trial.readings,
-               trial.wrong, trial.misplaced);
-    }
+  for (const ViscaFault& fault : visca_faults()) {
+    const ViscaTrial trial = visca_trial(GetParam(), fault.faults, 1, 12);
+    SCOPED_TRACE(fault.name);
+    EXPECT_EQ(trial.wrong, 0);
+    EXPECT_EQ(trial.misplaced, 0);
+    EXPECT_TRUE(trial.recovered);
+    EXPECT_GT(trial.reached, 0);
+  }
 }
 
 }  // namespace

@@ -86,7 +86,7 @@ Outcome<ViscaHead::Sample> ViscaHead::sample() const {
 // A position counts if two samples agree, or if it is between those before and after, as in a move.
 Outcome<ViscaHead::Sample> ViscaHead::confirmed_sample(const std::optional<Sample>& last) const {
   const auto newest = sample();
-  if (!newest || (!confirms_ && last)) return newest;
+  if (!newest) return newest;
   std::optional<Sample> before, middle = last, after = newest.value();
   const std::int64_t most = 4 + 2 * config_.bus.tries;
   for (std::int64_t i = 0; i < most; ++i) {
@@ -281,13 +281,15 @@ void ViscaHead::judge(const Sample& now) {
 
 Outcome<HeadReading> ViscaHead::read() {
   const std::scoped_lock working(working_);
-  std::optional<Sample> last;
+  std::optional<Sample> last, standing;
   {
     const std::scoped_lock lock(state_mutex_);
     if (goal_ && !goal_->failure.empty()) return refusal(goal_->failure);
     last = last_;
+    // While the head moves, a late copy of its last answer would agree with the last reading.
+    if (!is_moving_ && !is_newly_ordered_) standing = last_;
   }
-  auto taken = confirmed_sample(last);
+  const auto taken = last && !confirms_ ? sample() : confirmed_sample(standing);
   if (!taken) return *taken.fault();
   const Sample now = taken.value();
   std::optional<Goal> again;

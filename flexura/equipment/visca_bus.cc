@@ -128,6 +128,8 @@ std::optional<PortFault> ViscaBus::exchange(Lock& lock, const RequestPtr& reques
   }
   request->state = State::given_up;
   if (fault) return PortFault{FaultKind::link_lost, name_of(request->address) + ": " + fault->what};
+  // A head that was switched off and on has no address.
+  if (request->what != What::addresses) is_chain_changed_ = true;
   return PortFault{FaultKind::link_lost, silence(*request)};
 }
 

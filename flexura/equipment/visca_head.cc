@@ -56,14 +56,15 @@ Outcome<ViscaVersion> ViscaHead::start() {
                      fmt::format("{}: only {} heads are on the chain", bus_->name_of(address_), heads)};
   constexpr std::size_t version_size = 7;
   const auto answer = bus_->inquire(address_, visca_ask_version(), version_size);
-  if (!answer) return *answer.fault();
-  const auto version = parse_visca_version(answer.value().data);
-  if (!version) return refusal("reports no version");
+  // Some heads report their positions, but no version.
   const auto first = confirmed_sample(std::nullopt);
   if (!first) return *first.fault();
-  const std::scoped_lock lock(state_mutex_);
-  judge(first.value());
-  return *version;
+  {
+    const std::scoped_lock lock(state_mutex_);
+    judge(first.value());
+  }
+  const auto version = answer ? parse_visca_version(answer.value().data) : std::nullopt;
+  return version.value_or(ViscaVersion{});
 }
 
 Outcome<ViscaHead::Sample> ViscaHead::sample() const {
@@ -322,7 +323,12 @@ Outcome<HeadReading> ViscaHead::read() {
         halted_ && last && last->time - *halted_ > config_.stall_time && !(last->counts == now.counts);
   }
   if (again) {
-    if (const auto fault = send(order, *again).fault(); fault && order_ == order) return *fault;
+    if (const auto fault = send(order, *again).fault(); fault && order_ == order) {
+      // Otherwise later readings would not know that the head is in the wrong place.
+      const std::scoped_lock lock(state_mutex_);
+      if (order_ == order) goal_ = again;
+      return *fault;
+    }
   }
   if (is_stop_lost) {
     (void)stop(move);

@@ -27,7 +27,8 @@ class ViscaHead : public HeadPort {
   /// Throws std::invalid_argument for an invalid configuration. Heads of a chain share `bus`.
   ViscaHead(std::shared_ptr<ViscaBus> bus, const ViscaConfig& config);
 
-  /// Checks that the head answers, and that it reports positions as configured. Moves nothing.
+  /// Checks that the head reports positions as configured. Moves nothing. Returns its version, of zeros if it
+  /// does not report one.
   [[nodiscard]] Outcome<ViscaVersion> start();
 
   CommandOutcome command(const HeadState& state) override;

@@ -60,17 +60,23 @@ void ViscaBus::take_packet(std::string_view packet, std::optional<std::uint32_t>
   };
   switch (reply->kind) {
     case Kind::accepted:
-      return take_accepted(*reply, sequence);
+      take_accepted(*reply, sequence);
+      return;
     case Kind::ended:
-      return take_ended(*reply, sequence);
+      take_ended(*reply, sequence);
+      return;
     case Kind::answer:
-      return take_answer(*reply, sequence);
+      take_answer(*reply, sequence);
+      return;
     case Kind::error:
-      return take_error(*reply, sequence);
+      take_error(*reply, sequence);
+      return;
     case Kind::addresses:
-      return answer_all(What::addresses);
+      answer_all(What::addresses);
+      return;
     case Kind::cleared:
-      return answer_all(What::clear);
+      answer_all(What::clear);
+      return;
     case Kind::chain_changed:
       is_chain_changed_ = true;
       return;

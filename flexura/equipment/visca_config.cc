@@ -37,11 +37,11 @@ Table<Turn> visca_turn_table(const char* name, const char* meaning, const char* 
 }
 
 std::string turn_problem(const ViscaTurnConfig& turn, std::string_view name) {
-  if (!(std::isfinite(turn.counts_per_degree) && turn.counts_per_degree != 0))
+  if (!std::isfinite(turn.counts_per_degree) || turn.counts_per_degree == 0)
     return fmt::format("{}.counts_per_degree: expected a number other than 0", name);
   if (turn.digits != 4 && turn.digits != 5) return fmt::format("{}.digits: expected 4 or 5", name);
   const std::int64_t half = std::int64_t{1} << (4 * turn.digits - 1);
-  if (!(-half <= turn.limits[0] && turn.limits[0] <= turn.limits[1] && turn.limits[1] < half))
+  if (turn.limits[0] < -half || turn.limits[0] > turn.limits[1] || turn.limits[1] >= half)
     return fmt::format("{}.limits: expected the smaller count first, and counts of {} digits", name,
                        turn.digits);
   if (turn.zero < -half || turn.zero >= half)
@@ -189,7 +189,7 @@ std::string visca_problem(const ViscaBusConfig& config) {
 
 std::string visca_problem(const ViscaConfig& config) {
   if (config.address < 1 || config.address > 7) return "address: expected 1 to 7";
-  if (!(config.stall_time > 0 && std::isfinite(config.stall_time)))
+  if (!std::isfinite(config.stall_time) || config.stall_time <= 0)
     return "stall_time: expected more than 0 s";
   for (const std::string& problem : {visca_problem(config.bus), turn_problem(config.pan, "pan"),
                                      turn_problem(config.tilt, "tilt"), zoom_problem(config.zoom)})

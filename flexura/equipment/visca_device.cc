@@ -24,9 +24,9 @@ double SteadyViscaMotors::count(Axis axis, double now) {
 
 bool SteadyViscaMotors::is_moving(Axis axis, double now) { return count(axis, now) != motions_[axis].to; }
 
-void SteadyViscaMotors::go(Axis axis, double to, double speed, double now) {
+void SteadyViscaMotors::go(Axis axis, double count, double speed, double now) {
   Motion& motion = motions_[axis];
-  motion.from = count(axis, now), motion.to = to, motion.since = now;
+  motion.from = this->count(axis, now), motion.to = count, motion.since = now;
   motion.rate = rates_[axis] * speed;
 }
 
@@ -76,11 +76,11 @@ std::vector<std::string> ViscaDevice::receive(std::string_view bytes, double now
 std::vector<std::string> ViscaDevice::advance(double now) {
   for (Head& head : heads_) end_finished(head, now);
   std::vector<std::string> ready;
-  const auto late = std::stable_partition(outgoing_.begin(), outgoing_.end(),
-                                          [&](const Outgoing& one) { return one.at <= now; });
-  std::ranges::transform(outgoing_.begin(), late, std::back_inserter(ready),
+  const auto late =
+      std::ranges::stable_partition(outgoing_, [&](const Outgoing& one) { return one.at <= now; });
+  std::ranges::transform(outgoing_.begin(), late.begin(), std::back_inserter(ready),
                          [](Outgoing& one) { return std::move(one.bytes); });
-  outgoing_.erase(outgoing_.begin(), late);
+  outgoing_.erase(outgoing_.begin(), late.begin());
   return ready;
 }
 
@@ -96,14 +96,20 @@ void ViscaDevice::take_sony(std::string_view datagram, double now) {
   if (message->kind == Kind::control) {
     if (message->payload != sony_reset) return;
     last_sequence_.reset();
-    return control(sony_reset);
+    control(sony_reset);
+    return;
   }
-  if (message->kind == Kind::reply || message->kind == Kind::control_reply) return control(sony_bad_kind);
+  if (message->kind == Kind::reply || message->kind == Kind::control_reply) {
+    control(sony_bad_kind);
+    return;
+  }
   // A number that is not newer than the last one is refused.
   constexpr std::uint32_t half = 0x80000000U;
   const std::uint32_t number = message->sequence;
-  if (last_sequence_ && (number == *last_sequence_ || number - *last_sequence_ >= half))
-    return control(sony_bad_sequence);
+  if (last_sequence_ && (number == *last_sequence_ || number - *last_sequence_ >= half)) {
+    control(sony_bad_sequence);
+    return;
+  }
   last_sequence_ = number;
   take_packet(message->payload, number, now);
 }
@@ -112,8 +118,14 @@ void ViscaDevice::take_packet(std::string_view packet, std::uint32_t sequence, d
   for (Head& head : heads_) {
     const auto request = parse_visca_request(packet, head.model.digits);
     if (!request) return;
-    if (request->to == visca_everyone) return take_broadcast(*request, now);
-    if (request->to == head.address) return take_request(head, *request, sequence, now);
+    if (request->to == visca_everyone) {
+      take_broadcast(*request, now);
+      return;
+    }
+    if (request->to == head.address) {
+      take_request(head, *request, sequence, now);
+      return;
+    }
   }
 }
 
@@ -155,26 +167,32 @@ void ViscaDevice::take_request(Head& head, const ViscaRequest& request, std::uin
   ViscaMotors& motors = *head.motors;
   switch (request.kind) {
     case Asked::ask_version:
-      return say({Kind::answer, 0, 0, 0, visca_version_data(head.model.version)});
+      say({Kind::answer, 0, 0, 0, visca_version_data(head.model.version)});
+      return;
     case Asked::ask_move: {
       const ViscaPlace place{std::llround(motors.count(ViscaMotors::pan, now)),
                              std::llround(motors.count(ViscaMotors::tilt, now))};
-      return say({Kind::answer, 0, 0, 0, visca_place_data(place, head.model.digits)});
+      say({Kind::answer, 0, 0, 0, visca_place_data(place, head.model.digits)});
+      return;
     }
     case Asked::ask_zoom:
-      return say(
-          {Kind::answer, 0, 0, 0, visca_zoom_data(std::llround(motors.count(ViscaMotors::zoom, now)))});
+      say({Kind::answer, 0, 0, 0, visca_zoom_data(std::llround(motors.count(ViscaMotors::zoom, now)))});
+      return;
     case Asked::clear:
       head.running.clear();
       stop(head, false, now), stop(head, true, now);
-      return say({Kind::ended, 0, 0, 0, {}});
+      say({Kind::ended, 0, 0, 0, {}});
+      return;
     case Asked::cancel:
-      return cancel(head, request.socket, sequence, now);
+      cancel(head, request.socket, sequence, now);
+      return;
     case Asked::set_addresses:
     case Asked::unknown:
-      return refuse(ViscaError::syntax);
+      refuse(ViscaError::syntax);
+      return;
     default:
-      return execute(head, request, sequence, now);
+      execute(head, request, sequence, now);
+      return;
   }
 }
 
@@ -187,19 +205,28 @@ void ViscaDevice::execute(Head& head, const ViscaRequest& request, std::uint32_t
   const bool is_zoom = request.kind == Asked::zoom_to || request.kind == Asked::zoom_drive;
   const bool is_stop = (request.kind == Asked::drive && request.place == ViscaPlace{}) ||
                        (request.kind == Asked::zoom_drive && request.zoom == 0);
-  if (!head.model.is_on) return refuse(ViscaError::not_executable);
+  if (!head.model.is_on) {
+    refuse(ViscaError::not_executable);
+    return;
+  }
   int socket = 1;
   while (std::ranges::find(head.running, socket, &Running::socket) != head.running.end()) ++socket;
-  if (socket > head.model.version.sockets) return refuse(ViscaError::buffer_full);
+  if (socket > head.model.version.sockets) {
+    refuse(ViscaError::buffer_full);
+    return;
+  }
   const auto same = [&](const Running& one) { return one.is_zoom == is_zoom; };
   const bool overlaps = std::ranges::any_of(head.running, same);
-  if (overlaps && !is_stop && head.model.overlap == ViscaHeadModel::Overlap::is_refused)
-    return refuse(ViscaError::not_executable);
+  if (overlaps && !is_stop && head.model.overlap == ViscaHeadModel::Overlap::is_refused) {
+    refuse(ViscaError::not_executable);
+    return;
+  }
   answer(head, {Kind::accepted, 0, socket, 0, {}}, sequence, now);
   if (is_stop) {
     stop(head, is_zoom, now);
     end_finished(head, now);
-    return answer(head, {Kind::ended, 0, socket, 0, {}}, sequence, now);
+    answer(head, {Kind::ended, 0, socket, 0, {}}, sequence, now);
+    return;
   }
   ++moves_;
   if (head.model.obeys) start(head, request, now);
@@ -232,18 +259,24 @@ void ViscaDevice::start(Head& head, const ViscaRequest& request, double now) {
   };
   switch (request.kind) {
     case Asked::move:
-      return turn(request.place.pan, request.place.tilt, pan_speed, tilt_speed);
+      turn(request.place.pan, request.place.tilt, pan_speed, tilt_speed);
+      return;
     case Asked::move_by:
-      return turn(here.pan + request.place.pan, here.tilt + request.place.tilt, pan_speed, tilt_speed);
+      turn(here.pan + request.place.pan, here.tilt + request.place.tilt, pan_speed, tilt_speed);
+      return;
     case Asked::drive:
-      return turn(end_of(request.place.pan, here.pan, low.pan, high.pan),
-                  end_of(request.place.tilt, here.tilt, low.tilt, high.tilt), pan_speed, tilt_speed);
+      turn(end_of(request.place.pan, here.pan, low.pan, high.pan),
+           end_of(request.place.tilt, here.tilt, low.tilt, high.tilt), pan_speed, tilt_speed);
+      return;
     case Asked::home:
-      return turn(0, 0, 1, 1);
+      turn(0, 0, 1, 1);
+      return;
     case Asked::zoom_to:
-      return go(ViscaMotors::zoom, request.zoom, low.zoom, high.zoom, 1);
+      go(ViscaMotors::zoom, request.zoom, low.zoom, high.zoom, 1);
+      return;
     case Asked::zoom_drive:
-      return go(ViscaMotors::zoom, end_of(request.zoom, 0, low.zoom, high.zoom), low.zoom, high.zoom, 1);
+      go(ViscaMotors::zoom, end_of(request.zoom, 0, low.zoom, high.zoom), low.zoom, high.zoom, 1);
+      return;
     default:
       return;
   }
@@ -264,7 +297,10 @@ void ViscaDevice::cancel(Head& head, int socket, std::uint32_t sequence, double 
 
 void ViscaDevice::stop(Head& head, bool is_zoom, double now) {
   if (!head.model.obeys) return;
-  if (is_zoom) return head.motors->stop(ViscaMotors::zoom, now);
+  if (is_zoom) {
+    head.motors->stop(ViscaMotors::zoom, now);
+    return;
+  }
   head.motors->stop(ViscaMotors::pan, now);
   head.motors->stop(ViscaMotors::tilt, now);
 }

@@ -117,9 +117,9 @@ class ViscaDevice : public ServedDevice {
   void take_broadcast(const ViscaRequest& request, double now);
   void take_request(Head& head, const ViscaRequest& request, std::uint32_t sequence, double now);
   void execute(Head& head, const ViscaRequest& request, std::uint32_t sequence, double now);
-  void start(Head& head, const ViscaRequest& request, double now);
+  static void start(Head& head, const ViscaRequest& request, double now);
   void cancel(Head& head, int socket, std::uint32_t sequence, double now);
-  void stop(Head& head, bool is_zoom, double now);
+  static void stop(Head& head, bool is_zoom, double now);
   void end_finished(Head& head, double now);
   void answer(const Head& head, ViscaReply reply, std::uint32_t sequence, double now);
   void send(std::string packet, std::uint32_t sequence, double at);

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <deque>
 #include <memory>
@@ -42,9 +43,9 @@ const std::vector<ViscaFault>& visca_faults() {
 // What the head truly did lately.
 class ViscaWitness {
  public:
-  explicit ViscaWitness(ViscaDevice& device) : device_(device) {}
+  explicit ViscaWitness(ViscaDevice& device, std::size_t head = 0) : device_(device), head_(head) {}
   void look(double time) {
-    seen_.push_back({time, device_.counts(0, time)});
+    seen_.push_back({time, device_.counts(head_, time)});
     if (seen_.size() > most) seen_.pop_front();
   }
   // Returns whether each axis was at its count some time between `from` and `to`.
@@ -67,6 +68,7 @@ class ViscaWitness {
   static constexpr std::size_t most = 20000;
   static constexpr double step = 0.002;
   ViscaDevice& device_;
+  std::size_t head_;
   std::deque<Seen> seen_;
 };
 
@@ -141,6 +143,45 @@ TEST_P(ViscaFaults, NoWrongPositionIsGoodAndTheHeadIsUsedAgain) {
     EXPECT_TRUE(trial.recovered);
     EXPECT_GT(trial.reached, 0);
   }
+}
+
+// Ten minutes of faults on a chain of two heads.
+TEST(ViscaFault, TwoHeadsOfAChainNeverReportAWrongPosition) {
+  ViscaDevice device(ViscaFraming::stream);
+  device.add({}), device.add({});
+  std::array<ViscaWitness, 2> witnesses{ViscaWitness(device, 0), ViscaWitness(device, 1)};
+  auto made = std::make_unique<ViscaWire>(device, 5);
+  ViscaWire& wire = *made;
+  wire.on_step = [&](double time) {
+    for (ViscaWitness& witness : witnesses) witness.look(time);
+  };
+  ViscaConfig config = visca_fault_config(ViscaFraming::stream);
+  const auto bus = std::make_shared<ViscaBus>(std::move(made), config.bus, [&] { return wire.time; });
+  ViscaHead first(bus, config);
+  config.address = 2;
+  ViscaHead second(bus, config);
+  const std::array<ViscaHead*, 2> heads{&first, &second};
+  ASSERT_TRUE(bus->start());
+  for (ViscaHead* head : heads) ASSERT_TRUE(head->start());
+  wire.faults = {.lose = 0.03, .repeat = 0.03, .damage = 0.03, .delay = 0.05, .most_late = 0.2};
+  int good = 0, wrong = 0, commands = 0;
+  for (const double end = wire.time + 600; wire.time < end; wire.pass(0.2)) {
+    for (std::size_t i = 0; i < heads.size(); ++i) {
+      if (commands++ % 20 == 0) (void)heads[i]->command({0.01 * (commands % 100), 0.1, 10.0 * commands});
+      const double asked = wire.time;
+      if (!heads[i]->read()) continue;
+      ++good;
+      if (!witnesses[i].confirms(*heads[i]->counts(), asked, wire.time)) ++wrong;
+    }
+  }
+  EXPECT_GT(good, commands / 2);
+  EXPECT_EQ(wrong, 0);
+  wire.faults = {};
+  for (ViscaHead* head : heads) {
+    ASSERT_TRUE(head->halt());
+    EXPECT_TRUE(head->read());
+  }
+  EXPECT_FALSE(device.is_moving(0, wire.time) || device.is_moving(1, wire.time));
 }
 
 }  // namespace

@@ -90,7 +90,7 @@ class FuzzedWire : public Link {
     } else {
       heard = script_.substr(0, what - 0xA0);
       script_.remove_prefix(heard.size());
-      if (what & 1) heard += answers_, answers_.clear();
+      if ((what & 1) != 0) heard += answers_, answers_.clear();
     }
     return heard;
   }

@@ -16,6 +16,21 @@ bool is_between(std::int64_t a, std::int64_t b, std::int64_t c) {
   return std::min(a, c) <= b && b <= std::max(a, c);
 }
 
+// Returns what to do about an error.
+std::string visca_hint(int code) {
+  switch (static_cast<ViscaError>(code)) {
+    case ViscaError::length:
+    case ViscaError::syntax:
+      return "set pan.digits, tilt.digits, pan.speed and tilt.speed as in its manual";
+    case ViscaError::buffer_full:
+      return "switch it off and on";
+    case ViscaError::not_executable:
+      return "switch it on, close its menu, and check that nothing blocks it";
+    default:
+      return "see its manual";
+  }
+}
+
 }  // namespace
 
 ViscaHead::ViscaHead(std::shared_ptr<ViscaBus> bus, const ViscaConfig& config)
@@ -33,20 +48,6 @@ std::string ViscaHead::place(const ViscaCounts& counts) const {
   const HeadState state = visca_state(config_, counts);
   return fmt::format("pan {:.2f} deg, tilt {:.2f} deg, zoom {:g} (counts {}, {}, {})", state.pan / degree,
                      state.tilt / degree, state.zoom, counts.pan, counts.tilt, counts.zoom);
-}
-
-std::string ViscaHead::hint(int code) const {
-  switch (static_cast<ViscaError>(code)) {
-    case ViscaError::length:
-    case ViscaError::syntax:
-      return "set pan.digits, tilt.digits, pan.speed and tilt.speed as in its manual";
-    case ViscaError::buffer_full:
-      return "switch it off and on";
-    case ViscaError::not_executable:
-      return "switch it on, close its menu, and check that nothing blocks it";
-    default:
-      return "see its manual";
-  }
 }
 
 Outcome<ViscaVersion> ViscaHead::start() {
@@ -72,7 +73,8 @@ Outcome<ViscaHead::Sample> ViscaHead::sample() const {
   // Fields of an answer that are not digits are damage.
   for (std::int64_t i = 0; i < config_.bus.tries; ++i) {
     const auto turn =
-        bus_->inquire(address_, visca_ask_move(), static_cast<std::size_t>(digits.pan + digits.tilt));
+        bus_->inquire(address_, visca_ask_move(),
+                      static_cast<std::size_t>(digits.pan) + static_cast<std::size_t>(digits.tilt));
     if (!turn) return *turn.fault();
     const auto zoom = bus_->inquire(address_, visca_ask_zoom(), 4);
     if (!zoom) return *zoom.fault();
@@ -185,7 +187,7 @@ Outcome<std::uint64_t> ViscaHead::send_command(std::uint64_t order, const std::s
     }
     make_room(order, code, previous, is_zoom);
   }
-  return refusal(fmt::format("refuses a move ({}): {}", visca_error_text(code), hint(code)));
+  return refusal(fmt::format("refuses a move ({}): {}", visca_error_text(code), visca_hint(code)));
 }
 
 // Ends what may be the reason of a refusal. A head has two sockets: a move and a zoom fill them.

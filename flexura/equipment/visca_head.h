@@ -68,7 +68,6 @@ class ViscaHead : public HeadPort {
   void judge(const Sample& now);
   [[nodiscard]] PortFault refusal(std::string_view what) const;
   [[nodiscard]] std::string place(const ViscaCounts& counts) const;
-  [[nodiscard]] std::string hint(int code) const;
 
   std::shared_ptr<ViscaBus> bus_;
   ViscaConfig config_;

@@ -11,10 +11,10 @@ namespace flexura {
 
 /// A motion controller with Grbl 1.1 or grblHAL.
 struct GrblConfig {
-  std::string link;          ///< Address, see parse_link_address().
+  std::string link = {};     ///< Address, see parse_link_address().
   std::string axes = "XYZ";  ///< Letters of the axes that drive motors, in the order X Y Z A B C U V.
   /// Largest motor position of either sign, microsteps; default: 2^21, up to which Grbl counts exactly.
-  std::optional<std::int64_t> travel;
+  std::optional<std::int64_t> travel = {};
   std::int64_t window = 128;  ///< Bytes that may be on the way to the controller unanswered, 80 to 4096.
   double lead = 0.05;         ///< Delay, s, at which a stream of commands is followed, 0 to 1.
   double most_lag = 0.15;     ///< A longer rest of the previous motion is canceled, s, 0 to 10.

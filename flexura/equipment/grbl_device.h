@@ -20,7 +20,7 @@ namespace flexura {
 struct GrblDeviceConfig {
   std::size_t axes = 3;           ///< 1 to 8; Grbl 1.1 has 3.
   bool is_grblhal = false;        ///< Answers as grblHAL, with larger buffers, instead of as Grbl 1.1h.
-  std::map<int, double> settings; /// Settings that differ from the defaults, by number ($100 and so on).
+  std::map<int, double> settings = {};  ///< Settings that differ from the defaults, by number ($100 and so on).
   /// Place of the limit switches at both ends of each axis, microsteps of the motor; empty: no switches.
   std::vector<double> low = {}, high = {};
   double boot_time = 0;      ///< Time from restart() to the banner, s.

@@ -61,8 +61,7 @@ std::optional<std::vector<double>> grbl_numbers(std::string_view text) {
 
 bool read_state(std::string_view text, GrblStatus& status) {
   const std::string_view name = cut(text, ':');
-  const auto* const found =
-      std::ranges::find(states, name, &std::pair<GrblState, std::string_view>::second);
+  const auto* const found = std::ranges::find(states, name, &std::pair<GrblState, std::string_view>::second);
   if (found == states.end()) return false;
   status.state = found->first;
   if (text.empty()) return true;
@@ -121,7 +120,9 @@ std::string_view text(GrblState state) {
 }
 
 GrblMessage parse_grbl(std::string_view line) {
-  const auto number_after = [&](std::string_view prefix) { return grbl_number<int>(line.substr(prefix.size())); };
+  const auto number_after = [&](std::string_view prefix) {
+    return grbl_number<int>(line.substr(prefix.size()));
+  };
   if (line == "ok") return GrblOk{};
   if (line.size() > 2 && line.front() == '<' && line.back() == '>') return parse_status(line);
   if (line.starts_with("error:")) {

@@ -17,12 +17,12 @@ namespace flexura {
 
 /// Bytes that act at once, wherever they are in the stream.
 namespace grbl {
-constexpr char ask_status = '?';     ///< Answered by a status report.
-constexpr char hold = '!';           ///< Brakes; the motion can go on later.
-constexpr char resume = '~';         ///< Goes on after a hold.
-constexpr char reset = '\x18';       ///< Restarts the firmware; motors stop without braking.
-constexpr char cancel_jog = '\x85';  ///< Brakes a jog and forgets all jogs.
-constexpr std::size_t most_axes = 8;                 ///< Axes of a controller: X Y Z A B C U V.
+constexpr char ask_status = '?';      ///< Answered by a status report.
+constexpr char hold = '!';            ///< Brakes; the motion can go on later.
+constexpr char resume = '~';          ///< Goes on after a hold.
+constexpr char reset = '\x18';        ///< Restarts the firmware; motors stop without braking.
+constexpr char cancel_jog = '\x85';   ///< Brakes a jog and forgets all jogs.
+constexpr std::size_t most_axes = 8;  ///< Axes of a controller: X Y Z A B C U V.
 constexpr std::string_view axis_letters = "XYZABCUV";  ///< In the order of positions.
 constexpr std::size_t longest_line = 80;  ///< Characters of a line that Grbl 1.1 takes, with its end.
 }  // namespace grbl
@@ -35,12 +35,12 @@ enum class GrblState { idle, run, hold, jog, alarm, door, check, home, sleep, to
 /// Status report: `<Idle|MPos:0.000,0.000,0.000|FS:0,0>`.
 struct GrblStatus {
   GrblState state = GrblState::idle;
-  int part = -1;                  ///< Number after the state, as in Hold:1; -1 if there is none.
-  bool is_work = false;           ///< Whether the positions are those of WPos instead of MPos.
+  int part = -1;                       ///< Number after the state, as in Hold:1; -1 if there is none.
+  bool is_work = false;                ///< Whether the positions are those of WPos instead of MPos.
   std::vector<double> positions = {};  ///< Position of each axis, mm; never empty.
-  std::vector<double> offset = {};  ///< WCO, mm, with WPos = MPos - WCO; empty if it is not reported.
+  std::vector<double> offset = {};     ///< WCO, mm, with WPos = MPos - WCO; empty if it is not reported.
   std::optional<std::int64_t> free_blocks = {}, free_bytes = {};  ///< Bf: free places of the two buffers.
-  std::optional<double> feed = {};  ///< F or FS, mm/min.
+  std::optional<double> feed = {};                                ///< F or FS, mm/min.
   std::string pins = {};  ///< Pn: letters of the inputs that are active.
 };
 

@@ -21,9 +21,10 @@ TEST(GrblCodec, ReadsTheManualsExamples) {
   EXPECT_EQ(idle.state, GrblState::idle);
   EXPECT_THAT(idle.positions, ElementsAre(0, -10, 5));
   EXPECT_FALSE(idle.is_work);
-  const auto hold = std::get<GrblStatus>(parse_grbl(
-      "<Hold:1|WPos:-2.500,0.000,11.000|Bf:15,128|Ln:99999|FS:500,8000|WCO:0.000,1.551,5.664|Pn:XYZPDHRS|Ov:100,100,"
-      "100|A:SFM>"));
+  const auto hold =
+      std::get<GrblStatus>(parse_grbl("<Hold:1|WPos:-2.500,0.000,11.000|Bf:15,128|Ln:99999|FS:500,8000|WCO:0."
+                                      "000,1.551,5.664|Pn:XYZPDHRS|Ov:100,100,"
+                                      "100|A:SFM>"));
   EXPECT_EQ(hold.state, GrblState::hold);
   EXPECT_EQ(hold.part, 1);
   EXPECT_TRUE(hold.is_work);
@@ -36,7 +37,8 @@ TEST(GrblCodec, ReadsTheManualsExamples) {
   EXPECT_EQ(std::get<GrblBanner>(parse_grbl("GrblHAL 1.1f ['$' or '$HELP' for help]")).name, "GrblHAL 1.1f");
   EXPECT_EQ(std::get<GrblSetting>(parse_grbl("$100=250.000")).number, 100);
   EXPECT_EQ(std::get<GrblSetting>(parse_grbl("$100=250.000")).value, "250.000");
-  EXPECT_EQ(std::get<GrblFeedback>(parse_grbl("[VER:1.1d.20161014:Some string]")).text, "1.1d.20161014:Some string");
+  EXPECT_EQ(std::get<GrblFeedback>(parse_grbl("[VER:1.1d.20161014:Some string]")).text,
+            "1.1d.20161014:Some string");
   EXPECT_EQ(std::get<GrblFeedback>(parse_grbl("[MSG:'$H'|'$X' to unlock]")).type, "MSG");
   EXPECT_EQ(std::get<GrblAlarm>(parse_grbl("ALARM:1")).code, 1);
   EXPECT_EQ(std::get<GrblError>(parse_grbl("error:20")).code, 20);
@@ -52,14 +54,20 @@ TEST(GrblCodec, TakesNoPartOfAReport) {
     EXPECT_TRUE(std::holds_alternative<GrblUnknown>(parse_grbl(whole.substr(0, i)))) << i;
   for (const char* const bad :
        {"<Idle>", "<Idle|>", "<Idle|MPos:>", "<Idle|MPos:1,>", "<Idle|MPos:1,,2>", "<Idle|MPos:inf>",
-        "<Idle|MPos:1e3>", "<Idle|MPos:0x1>", "<Idle|MPos:1|MPos:2>", "<Idle|MPos:1,2|WCO:1>", "<Lost|MPos:1>",
-        "<Idle:x|MPos:1>", "<Idle|MPos:1,2,3,4,5,6,7,8,9>", "<Idle|MPos:1-2>", "error:", "error:x", "ALARM:", "$=1"})
+        "<Idle|MPos:1e3>", "<Idle|MPos:0x1>", "<Idle|MPos:1|MPos:2>", "<Idle|MPos:1,2|WCO:1>",
+        "<Lost|MPos:1>", "<Idle:x|MPos:1>", "<Idle|MPos:1,2,3,4,5,6,7,8,9>", "<Idle|MPos:1-2>",
+        "error:", "error:x", "ALARM:", "$=1"})
     EXPECT_TRUE(std::holds_alternative<GrblUnknown>(parse_grbl(bad))) << bad;
 }
 
 TEST(GrblCodec, PrintsWhatItReads) {
-  const GrblStatus status{.state = GrblState::jog, .positions = {1.25, -2}, .offset = {0, 1}, .free_blocks = 3,
-                          .free_bytes = 99, .feed = 60, .pins = "X"};
+  const GrblStatus status{.state = GrblState::jog,
+                          .positions = {1.25, -2},
+                          .offset = {0, 1},
+                          .free_blocks = 3,
+                          .free_bytes = 99,
+                          .feed = 60,
+                          .pins = "X"};
   const auto again = std::get<GrblStatus>(parse_grbl(text(status)));
   EXPECT_EQ(again.state, status.state);
   EXPECT_EQ(again.positions, status.positions);

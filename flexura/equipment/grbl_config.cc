@@ -25,7 +25,8 @@ void check_grbl(const GrblConfig& config, Reader& reader) {
     if (at == std::string_view::npos) break;
   }
   if (config.axes.empty() || next > grbl::axis_letters.size())
-    reader.problem_at("axes", "expected letters of axes in the order X Y Z A B C U V, each once, at least one");
+    reader.problem_at("axes",
+                      "expected letters of axes in the order X Y Z A B C U V, each once, at least one");
   if (config.lead > config.most_lag) reader.problem_at("lead", "is above most_lag");
 }
 
@@ -39,7 +40,8 @@ const Table<GrblConfig>& fields_of(const GrblConfig*) {
                              "\"tcp:HOST:PORT\".",
                   .required = true})
           .field("axes", &GrblConfig::axes,
-                 {.meaning = "Letters of the controller's axes that drive motors, in the order X Y Z A B C U V."})
+                 {.meaning =
+                      "Letters of the controller's axes that drive motors, in the order X Y Z A B C U V."})
           .field("travel", &GrblConfig::travel,
                  {.meaning = "Largest motor position of either sign, microsteps.",
                   .range = between(1, 2097152),
@@ -55,10 +57,9 @@ const Table<GrblConfig>& fields_of(const GrblConfig*) {
                  {.meaning = "If the previous motion lasts longer than this, a new command cancels it.",
                   .unit = Unit::second,
                   .range = between(0, 10)})
-          .field("answer_timeout", &GrblConfig::answer_timeout,
-                 {.meaning = "Longest wait for an answer.",
-                  .unit = Unit::second,
-                  .range = above_up_to(0, 10)})
+          .field(
+              "answer_timeout", &GrblConfig::answer_timeout,
+              {.meaning = "Longest wait for an answer.", .unit = Unit::second, .range = above_up_to(0, 10)})
           .field("connect_timeout", &GrblConfig::connect_timeout,
                  {.meaning = "Longest wait for a controller that starts.",
                   .unit = Unit::second,
@@ -69,19 +70,23 @@ const Table<GrblConfig>& fields_of(const GrblConfig*) {
                   .range = above_up_to(0, longest_wait)})
           .field("homing_timeout", &GrblConfig::homing_timeout,
                  {.meaning = "Longest homing.", .unit = Unit::second, .range = above_up_to(0, longest_wait)})
-          .field("brake_time", &GrblConfig::brake_time,
-                 {.meaning = "Time that an emergency stop leaves for braking before it resets the controller.",
-                  .unit = Unit::second,
-                  .range = between(0, 10)})
-          .field("writes_settings", &GrblConfig::writes_settings,
-                 {.meaning = "Whether settings that are wrong for a drive ($1, $10, $13) are corrected in the "
-                             "controller's memory."})
+          .field(
+              "brake_time", &GrblConfig::brake_time,
+              {.meaning = "Time that an emergency stop leaves for braking before it resets the controller.",
+               .unit = Unit::second,
+               .range = between(0, 10)})
+          .field(
+              "writes_settings", &GrblConfig::writes_settings,
+              {.meaning = "Whether settings that are wrong for a drive ($1, $10, $13) are corrected in the "
+                          "controller's memory."})
           .check(check_grbl);
   return table;
 }
 
 StopMessages grbl_stop(const GrblConfig& config) {
-  return {.first = {std::string(1, grbl::hold)}, .delay = config.brake_time, .then = {std::string(1, grbl::reset)}};
+  return {.first = {std::string(1, grbl::hold)},
+          .delay = config.brake_time,
+          .then = {std::string(1, grbl::reset)}};
 }
 
 }  // namespace flexura

@@ -15,14 +15,14 @@ struct GrblConfig {
   std::string axes = "XYZ";  ///< Letters of the axes that drive motors, in the order X Y Z A B C U V.
   /// Largest motor position of either sign, microsteps; default: 2^21, up to which Grbl counts exactly.
   std::optional<std::int64_t> travel = {};
-  std::int64_t window = 128;  ///< Bytes that may be on the way to the controller unanswered, 80 to 4096.
-  double lead = 0.05;         ///< Delay, s, at which a stream of commands is followed, 0 to 1.
-  double most_lag = 0.15;     ///< A longer rest of the previous motion is canceled, s, 0 to 10.
+  std::int64_t window = 128;     ///< Bytes that may be on the way to the controller unanswered, 80 to 4096.
+  double lead = 0.1;             ///< Delay, s, at which a stream of commands is followed, 0 to 1.
+  double most_lag = 0.25;        ///< A longer rest of the previous motion is canceled, s, 0 to 10.
   double answer_timeout = 0.25;  ///< Longest wait for an answer, s, above 0, at most 10.
   double connect_timeout = 5;    ///< Longest wait for a controller that starts, s.
   double stop_timeout = 2;       ///< Longest time of braking, s.
   double homing_timeout = 60;    ///< Longest homing, s.
-  double brake_time = 0.2;       ///< From an emergency stop's hold to its reset, s.
+  double brake_time = 0.3;       ///< From an emergency stop's hold to its reset, s.
   bool writes_settings = false;  ///< Whether connect() may correct settings that are wrong for a drive.
 };
 

@@ -44,7 +44,8 @@ CommandOutcome GrblDrive::connect() {
     const std::size_t second = options.find(',', options.find(',') + 1);
     std::size_t bytes = 0;
     if (second != std::string::npos &&
-        std::from_chars(options.data() + second + 1, options.data() + options.size(), bytes).ec == std::errc() &&
+        std::from_chars(options.data() + second + 1, options.data() + options.size(), bytes).ec ==
+            std::errc() &&
         bytes >= grbl::longest_line)
       session_.limit_window(bytes);
   }
@@ -78,13 +79,15 @@ CommandOutcome GrblDrive::check_settings(const std::vector<GrblMessage>& said) {
   for (const Required& one : {holding, millimetres})
     if (setting(one.number) != one.value) wrong.push_back(one);
   const auto mask = static_cast<int>(setting(10));
-  if ((mask & 1) == 0) wrong.push_back({10, static_cast<double>(mask | 1), "reports must have machine positions"});
+  if ((mask & 1) == 0)
+    wrong.push_back({10, static_cast<double>(mask | 1), "reports must have machine positions"});
   std::vector<std::string> lines;
   for (const Required& one : wrong) {
     if (!config_.writes_settings)
-      return refuse(fmt::format("setting ${} is {:g}; {}: send ${}={:g} to the controller, or allow "
-                                "writes_settings",
-                                one.number, setting(one.number), one.why, one.number, one.value));
+      return refuse(
+          fmt::format("setting ${} is {:g}; {}: send ${}={:g} to the controller, or allow "
+                      "writes_settings",
+                      one.number, setting(one.number), one.why, one.number, one.value));
     lines.push_back(fmt::format("${}={:g}\n", one.number, one.value));
   }
   const auto written = session_.stream(lines);
@@ -101,9 +104,10 @@ CommandOutcome GrblDrive::check_axes() {
     const auto axis = static_cast<int>(indices_[i]);
     const double per_mm = setting(100 + axis), rate = setting(110 + axis), acceleration = setting(120 + axis);
     if (!(per_mm > 0 && per_mm <= most_per_mm))
-      return refuse(fmt::format("setting ${} is {:g} steps/mm; expected above 0, at most {:g}, because positions "
-                                "have 3 decimals: the mm need not be real, 100 is a good choice for all axes",
-                                100 + axis, per_mm, most_per_mm));
+      return refuse(
+          fmt::format("setting ${} is {:g} steps/mm; expected above 0, at most {:g}, because positions "
+                      "have 3 decimals: the mm need not be real, 100 is a good choice for all axes",
+                      100 + axis, per_mm, most_per_mm));
     if (!(rate > 0 && acceleration > 0 && std::isfinite(rate) && std::isfinite(acceleration)))
       return refuse(fmt::format("settings ${} and ${} must be above 0", 110 + axis, 120 + axis));
     can_.per_mm.push_back(per_mm);
@@ -116,7 +120,8 @@ CommandOutcome GrblDrive::check_axes() {
 
 CommandOutcome GrblDrive::home(std::span<const double> positions) {
   const std::scoped_lock lock(mutex_);
-  if (positions.size() != axes() || !std::ranges::all_of(positions, [](double one) { return std::isfinite(one); }))
+  if (positions.size() != axes() ||
+      !std::ranges::all_of(positions, [](double one) { return std::isfinite(one); }))
     return refuse("homing needs one finite position per axis");
   begin();
   if (!is_connected_) return refuse("not connected");
@@ -149,14 +154,16 @@ CommandOutcome GrblDrive::home(std::span<const double> positions) {
 
 CommandOutcome GrblDrive::set_positions(std::span<const double> positions) {
   const std::scoped_lock lock(mutex_);
-  if (positions.size() != axes() || !std::ranges::all_of(positions, [](double one) { return std::isfinite(one); }))
+  if (positions.size() != axes() ||
+      !std::ranges::all_of(positions, [](double one) { return std::isfinite(one); }))
     return refuse("a zero needs one finite position per axis");
   begin();
   const auto usable = check_usable();
   if (!usable) return usable;
   const auto asked = report();
   if (!asked) return *asked.fault();
-  if (asked.value().state == GrblState::jog) return refuse("the position cannot be set while the motors move");
+  if (asked.value().state == GrblState::jog)
+    return refuse("the position cannot be set while the motors move");
   const auto stopped = stop_and_locate();
   if (!stopped) return stopped;
   for (std::size_t i = 0; i < axes(); ++i)
@@ -184,7 +191,7 @@ CommandOutcome GrblDrive::unlock() {
   alarm_.reset();
   const auto asked = report();
   if (!asked) return *asked.fault();
-  path_.rest(asked.value().steps, asked.value().asked);
+  path_.stop(asked.value().steps, asked.value().asked);
   return Accepted{};
 }
 

@@ -15,10 +15,10 @@ constexpr int power_lost = -1;
 
 std::map<int, double> default_settings(std::size_t axes) {
   // gnea/grbl, doc/markdown/settings.md; $1=255 holds the motors, $10=3 reports MPos and Bf.
-  std::map<int, double> settings{{0, 10},     {1, 255},  {2, 0},    {3, 0},   {4, 0},  {5, 0},   {6, 0},
-                                 {10, 3},     {11, 0.01}, {12, 0.002}, {13, 0}, {20, 0}, {21, 0},  {22, 0},
-                                 {23, 0},     {24, 25},  {25, 500}, {26, 250}, {27, 1}, {30, 1000}, {31, 0},
-                                 {32, 0}};
+  std::map<int, double> settings{{0, 10}, {1, 255},   {2, 0},     {3, 0},      {4, 0},    {5, 0},
+                                 {6, 0},  {10, 3},    {11, 0.01}, {12, 0.002}, {13, 0},   {20, 0},
+                                 {21, 0}, {22, 0},    {23, 0},    {24, 25},    {25, 500}, {26, 250},
+                                 {27, 1}, {30, 1000}, {31, 0},    {32, 0}};
   for (int axis = 0; axis < static_cast<int>(axes); ++axis) {
     settings[100 + axis] = 100;
     settings[110 + axis] = 6000;
@@ -67,8 +67,7 @@ std::vector<double> GrblDevice::positions(double now) {
 std::vector<double> GrblDevice::motors() const {
   if (homing_) return homing_->motors;
   std::vector<double> motors(slips_);
-  for (std::size_t i = 0; i < motors.size(); ++i)
-    motors[i] += std::round(motion_.position()[i] * per_mm(i));
+  for (std::size_t i = 0; i < motors.size(); ++i) motors[i] += std::round(motion_.position()[i] * per_mm(i));
   return motors;
 }
 
@@ -125,7 +124,6 @@ void GrblDevice::pass_to(double now) {
 }
 
 void GrblDevice::after_tick() {
-  const bool is_braked = motion_.speed() == 0;
   if (setting(21) != 0 && !homing_ && motion_.speed() > 0) {
     for (std::size_t i = 0; i < config_.axes; ++i) {
       if (!is_at_switch(i)) continue;
@@ -133,7 +131,7 @@ void GrblDevice::after_tick() {
       break;
     }
   }
-  if (is_canceling_ && is_braked) {
+  if (is_canceling_ && motion_.is_resting()) {
     is_canceling_ = false;
     motion_.reset();
     if (state_ == GrblState::jog) state_ = GrblState::idle;
@@ -182,7 +180,7 @@ void GrblDevice::act(char byte) {
     }
     return;
   }
-  if (byte == grbl::resume && state_ == GrblState::hold && motion_.speed() == 0) {
+  if (byte == grbl::resume && state_ == GrblState::hold && motion_.is_resting()) {
     motion_.resume();
     state_ = motion_.is_idle() ? GrblState::idle : GrblState::run;
     read_lines();
@@ -201,7 +199,7 @@ void GrblDevice::reset(bool is_power) {
     alarm = power_lost;
   } else if (homing_) {
     alarm = 6;
-  } else if (motion_.speed() > 0) {
+  } else if (state_ == GrblState::run || state_ == GrblState::jog || motion_.speed() > 0) {
     alarm = 3;
   }
   if (homing_) {
@@ -242,7 +240,7 @@ void GrblDevice::greet() {
 
 void GrblDevice::report() {
   GrblStatus status{.state = state()};
-  const bool is_moving = motion_.speed() > 0;
+  const bool is_moving = !motion_.is_resting();
   if (state_ == GrblState::hold) status.part = is_moving ? 1 : 0;
   const auto mask = static_cast<int>(setting(10));
   const double unit = setting(13) != 0 ? 25.4 : 1;
@@ -281,7 +279,8 @@ GrblLimits GrblDevice::limits() const {
 
 int GrblDevice::start_homing() {
   if (setting(22) == 0) return 5;
-  homing_ = Homing{.phase = 0, .from = motors(), .motors = motors(), .is_done = std::vector<bool>(config_.axes)};
+  homing_ =
+      Homing{.phase = 0, .from = motors(), .motors = motors(), .is_done = std::vector<bool>(config_.axes)};
   return 0;
 }
 

@@ -18,13 +18,14 @@ namespace flexura {
 
 /// A simulated motion controller.
 struct GrblDeviceConfig {
-  std::size_t axes = 3;           ///< 1 to 8; Grbl 1.1 has 3.
-  bool is_grblhal = false;        ///< Answers as grblHAL, with larger buffers, instead of as Grbl 1.1h.
-  std::map<int, double> settings = {};  ///< Settings that differ from the defaults, by number ($100 and so on).
+  std::size_t axes = 3;     ///< 1 to 8; Grbl 1.1 has 3.
+  bool is_grblhal = false;  ///< Answers as grblHAL, with larger buffers, instead of as Grbl 1.1h.
+  std::map<int, double> settings =
+      {};  ///< Settings that differ from the defaults, by number ($100 and so on).
   /// Place of the limit switches at both ends of each axis, microsteps of the motor; empty: no switches.
   std::vector<double> low = {}, high = {};
-  double boot_time = 0;      ///< Time from restart() to the banner, s.
-  double overrun = 0.002;    ///< A motor that loses its pulses at full speed turns on for this time, s.
+  double boot_time = 0;    ///< Time from restart() to the banner, s.
+  double overrun = 0.002;  ///< A motor that loses its pulses at full speed turns on for this time, s.
 };
 
 /// The far side of GrblDrive: a stepper controller with its motors, as Grbl 1.1 and grblHAL behave.
@@ -119,9 +120,9 @@ class GrblDevice : public ServedDevice {
   std::optional<Homing> homing_;
   GrblModes modes_;
   std::array<std::vector<double>, 6> systems_;
-  std::vector<double> shift_;  // G92
+  std::vector<double> shift_;                  // G92
   std::array<std::vector<double>, 2> places_;  // G28, G30
-  int until_offset_ = 0;  // Status reports before the next with WCO.
+  int until_offset_ = 0;                       // Status reports before the next with WCO.
   std::size_t lost_bytes_ = 0, receive_size_;
 };
 

@@ -236,7 +236,8 @@ std::optional<int> GrblDevice::run_motion(const GrblBlock& block) {
     if (modes_.is_inverse_time) {
       if (!block.feed) return 22;
       double length = 0;
-      for (std::size_t i = 0; i < config_.axes; ++i) length = std::hypot(length, target[i] - motion_.last()[i]);
+      for (std::size_t i = 0; i < config_.axes; ++i)
+        length = std::hypot(length, target[i] - motion_.last()[i]);
       feed = length * *block.feed / 60;
     }
     if (!(feed > 0)) return 22;
@@ -291,8 +292,8 @@ bool GrblDevice::is_outside(const std::vector<double>& target) const {
 
 void GrblDevice::print_settings() {
   for (const auto& [number, value] : settings_) {
-    const bool is_decimal = number == 11 || number == 12 || (number >= 24 && number != 26 && number < 30) ||
-                            number >= 100;
+    const bool is_decimal =
+        number == 11 || number == 12 || (number >= 24 && number != 26 && number < 30) || number >= 100;
     say(is_decimal ? fmt::format("${}={:.3f}", number, value) : fmt::format("${}={:.0f}", number, value));
   }
 }

@@ -54,8 +54,10 @@ TEST(GrblDevice, GreetsAndAnswers) {
   EXPECT_THAT(terminal.send("$$\n"), HasSubstr("$100=100.000\r\n"));
   EXPECT_THAT(terminal.send("$I\n"), HasSubstr("[OPT:V,15,128]\r\nok\r\n"));
   EXPECT_THAT(terminal.send("$G\n"), HasSubstr("[GC:G0 G54 G17 G21 G90 G94 M5 M9 T0 F0 S0]\r\nok\r\n"));
-  EXPECT_THAT(terminal.send("?"), HasSubstr("<Idle|MPos:0.000,0.000,0.000|Bf:15,128|FS:0,0|WCO:0.000,0.000,0.000>"));
-  EXPECT_THAT(GrblDevice({.axes = 6, .is_grblhal = true}).advance(1), testing::Contains(HasSubstr("GrblHAL")));
+  EXPECT_THAT(terminal.send("?"),
+              HasSubstr("<Idle|MPos:0.000,0.000,0.000|Bf:15,128|FS:0,0|WCO:0.000,0.000,0.000>"));
+  EXPECT_THAT(GrblDevice({.axes = 6, .is_grblhal = true}).advance(1),
+              testing::Contains(HasSubstr("GrblHAL")));
   EXPECT_THROW(GrblDevice({.axes = 9}), std::invalid_argument);
 }
 
@@ -120,8 +122,8 @@ TEST(GrblDevice, CancelsJogs) {
   const double before = terminal.device.positions(terminal.now)[0];
   (void)terminal.send("\x85", 0.3);
   EXPECT_EQ(terminal.device.state(), GrblState::idle);
-  // Braking from 100 mm/s takes 5 mm.
-  EXPECT_NEAR(terminal.device.positions(terminal.now)[0] - before, 500, 30);
+  // Braking from 100 mm/s begins after 0.06 s and takes 5 mm.
+  EXPECT_NEAR(terminal.device.positions(terminal.now)[0] - before, 1100, 40);
   EXPECT_EQ(terminal.send("G0X0\n"), "ok\r\n");
 }
 

@@ -12,7 +12,7 @@
 namespace flexura {
 namespace {
 
-constexpr int soft_limit_alarm = 2;    // The only alarm that does not lose the position.
+constexpr int soft_limit_alarm = 2;  // The only alarm that does not lose the position.
 constexpr int report_tries = 5;
 constexpr double off_line = 2;         // Steps by which an axis may be off a straight line.
 constexpr double report_period = 0.2;  // s; while moving, a command asks for a report after this time.
@@ -39,8 +39,8 @@ GrblDrive::GrblDrive(std::unique_ptr<Link> link, const ClockPort& clock, GrblCon
       path_(GrblAxes{}) {
   std::size_t next = 0;
   for (const char letter : config_.axes) {
-    const std::size_t at = next <= grbl::axis_letters.size() ? grbl::axis_letters.find(letter, next)
-                                                             : std::string_view::npos;
+    const std::size_t at =
+        next <= grbl::axis_letters.size() ? grbl::axis_letters.find(letter, next) : std::string_view::npos;
     if (at == std::string_view::npos)
       throw std::invalid_argument("the axes of a Grbl controller are letters in the order X Y Z A B C U V");
     indices_.push_back(at);
@@ -93,8 +93,9 @@ CommandOutcome GrblDrive::check_state(GrblState state) {
     alarm_ = session_.take_alarm().value_or(alarm_.value_or(unknown_alarm));
     return check_usable();
   }
-  return refuse(fmt::format("the controller is in the state {}: {}", text(state),
-                            state == GrblState::door ? "close its safety door, then unlock it" : "unlock it"));
+  return refuse(
+      fmt::format("the controller is in the state {}: {}", text(state),
+                  state == GrblState::door ? "close its safety door, then unlock it" : "unlock it"));
 }
 
 std::optional<std::vector<std::int64_t>> GrblDrive::steps_of(const GrblStatus& status) const {
@@ -121,8 +122,9 @@ Outcome<GrblDrive::Report> GrblDrive::report() {
       return Report{status.value().state, *steps, asked, clock_.now()};
     }
   }
-  return refuse("the controller's status reports have no machine positions of whole steps: check settings $10 "
-                "and $13 and the cable");
+  return refuse(
+      "the controller's status reports have no machine positions of whole steps: check settings $10 "
+      "and $13 and the cable");
 }
 
 Outcome<GrblDrive::Report> GrblDrive::checked_report() {
@@ -143,20 +145,24 @@ Outcome<GrblDrive::Report> GrblDrive::checked_report() {
     }
     // Two equal reports of a rest are believed.
     if (now.state == GrblState::idle && resting == now.steps) {
-      const std::vector<std::int64_t> target = path_.end();
+      const std::string places = fmt::format(
+          "the motors were commanded to {} but stand at {} (steps of the "
+          "controller)",
+          positions_text(path_.end()), positions_text(now.steps));
+      // Elsewhere, the controller may count from another zero after a restart that was not heard of.
+      is_known_ = path_.can_be_at(now.steps, off_line, now.received);
       path_.rest(now.steps, now.asked);
-      return refuse(fmt::format("the motors were commanded to {} but stand at {} (steps of the controller): it "
-                                "has not executed the motion",
-                                positions_text(target), positions_text(now.steps)));
+      if (!is_known_) return refuse(places + ": the position is lost, home it or set its position");
+      return refuse(places + ": it has not executed the motion");
     }
     resting = now.state == GrblState::idle ? std::optional(now.steps) : std::nullopt;
   }
-  const auto stopped = stop_and_locate();
+  const auto stopped = stop_and_locate(true);
   if (!stopped) return *stopped.fault();
   return refuse("the motors were not on the way that was commanded; they have been stopped");
 }
 
-CommandOutcome GrblDrive::stop_and_locate() {
+CommandOutcome GrblDrive::stop_and_locate(bool is_anywhere) {
   const double end = clock_.now() + config_.stop_timeout;
   std::optional<std::vector<std::int64_t>> resting;
   while (clock_.now() < end) {
@@ -167,7 +173,8 @@ CommandOutcome GrblDrive::stop_and_locate() {
       const auto usable = check_state(now.state);
       if (!usable) return usable;
       if (resting == now.steps) {
-        path_.rest(now.steps, now.asked);
+        is_known_ = is_known_ && (is_anywhere || path_.can_be_at(now.steps, off_line, now.received));
+        path_.stop(now.steps, now.asked);
         return Accepted{};
       }
       resting = now.steps;
@@ -180,9 +187,10 @@ CommandOutcome GrblDrive::stop_and_locate() {
   is_known_ = false;
   (void)session_.act(grbl::hold);
   (void)session_.act(grbl::reset);
-  return refuse(fmt::format("the motors have not stopped within {:g} s; the controller has been reset: home it "
-                            "or set its position",
-                            config_.stop_timeout));
+  return refuse(
+      fmt::format("the motors have not stopped within {:g} s; the controller has been reset: home it "
+                  "or set its position",
+                  config_.stop_timeout));
 }
 
 std::vector<std::int64_t> GrblDrive::clamped(std::span<const double> targets) const {
@@ -207,7 +215,8 @@ std::vector<std::int64_t> GrblDrive::clamped(std::span<const double> targets) co
 
 CommandOutcome GrblDrive::send_motion(const std::vector<std::int64_t>& target, double feed) {
   std::vector<double> positions;
-  for (std::size_t i = 0; i < axes(); ++i) positions.push_back(static_cast<double>(target[i]) / can_.per_mm[i]);
+  for (std::size_t i = 0; i < axes(); ++i)
+    positions.push_back(static_cast<double>(target[i]) / can_.per_mm[i]);
   const double before = clock_.now();
   const auto answer = session_.ask(grbl_jog(config_.axes, positions, feed));
   if (!answer) {
@@ -225,7 +234,8 @@ CommandOutcome GrblDrive::send_motion(const std::vector<std::int64_t>& target, d
   if (error != 0) {
     const auto usable = check_usable();
     if (!usable) return usable;
-    return refuse(fmt::format("the controller refuses a motion: error {} ({})", error, grbl_error_meaning(error)));
+    return refuse(
+        fmt::format("the controller refuses a motion: error {} ({})", error, grbl_error_meaning(error)));
   }
   path_.add(target, feed, before);
   return Accepted{};
@@ -261,7 +271,7 @@ CommandOutcome GrblDrive::halt() {
   const auto sent = session_.interrupt(is_homing_ ? grbl::reset : grbl::cancel_jog);
   const std::scoped_lock lock(mutex_);
   if (!sent) return sent;
-  begin();
+  session_.begin_stop();
   const auto usable = check_usable();
   if (!usable) return alarm_ ? CommandOutcome(Accepted{}) : usable;
   // A line that was on its way may have begun to move after the first byte.
@@ -292,7 +302,8 @@ Outcome<DriveReading> GrblDrive::read() {
   }
   DriveReading reading;
   reading.time = 0.5 * (now.asked + now.received);
-  for (std::size_t i = 0; i < axes(); ++i) reading.values.push_back(static_cast<double>(now.steps[i] - zero_[i]));
+  for (std::size_t i = 0; i < axes(); ++i)
+    reading.values.push_back(static_cast<double>(now.steps[i] - zero_[i]));
   reading.moving = now.state == GrblState::jog;
   return reading;
 }

@@ -73,8 +73,9 @@ class GrblDrive : public DrivePort {
   [[nodiscard]] Outcome<Report> report();
   // Returns a report that can be true, or stops and says what is wrong.
   [[nodiscard]] Outcome<Report> checked_report();
-  // Brakes, if it moves, and finds out where the motors are.
-  [[nodiscard]] CommandOutcome stop_and_locate();
+  // Brakes, if it moves, and finds out where the motors are. The position is lost if they are not on the way
+  // that was commanded, unless they may be anywhere.
+  [[nodiscard]] CommandOutcome stop_and_locate(bool is_anywhere = false);
   [[nodiscard]] std::optional<std::vector<std::int64_t>> steps_of(const GrblStatus& status) const;
   [[nodiscard]] std::vector<std::int64_t> clamped(std::span<const double> targets) const;
   [[nodiscard]] CommandOutcome send_motion(const std::vector<std::int64_t>& target, double feed);

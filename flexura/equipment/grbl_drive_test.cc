@@ -55,7 +55,8 @@ TEST(GrblDrive, MovesAsSoonAsPossibleIfTheDurationIsTooShort) {
     const double start = bench.clock.now();
     const double target = duration == 0 ? 5000 : 0;
     ASSERT_TRUE(bench.drive->command(Positions{target, 0, 0}, duration));
-    while (bench.drive->read().value().moving) {}
+    while (bench.drive->read().value().moving) {
+    }
     EXPECT_NEAR(bench.clock.now() - start, 0.6, 0.03);
     EXPECT_EQ(bench.motors()[0], target);
     bench.link->pass(1);
@@ -88,15 +89,16 @@ TEST(GrblDrive, FollowsAStreamOfCommandsWithoutStops) {
         slowest = std::min(slowest, speed);
         // The delay is the lead and half of the time for a call.
         const Positions ideal = wanted(bench.clock.now() - start - GrblConfig().lead);
-        for (std::size_t k = 0; k < 3; ++k) largest_error = std::max(largest_error, std::abs(now[k] - ideal[k]));
+        for (std::size_t k = 0; k < 3; ++k)
+          largest_error = std::max(largest_error, std::abs(now[k] - ideal[k]));
       }
       before = now, sampled_at = bench.clock.now();
     }
     ASSERT_EQ(fault_of(bench.drive->read()), "");
   }
   constexpr double speed = 2 * 3.14159265358979 * 1500 / turn;  // steps/s
-  EXPECT_GT(slowest, 0.6 * speed);
-  EXPECT_LT(largest_error, 0.05 * speed);
+  EXPECT_GT(slowest, 0.8 * speed);
+  EXPECT_LT(largest_error, 0.02 * speed);
   bench.link->pass(0.5);
   EXPECT_FALSE(bench.drive->read().value().moving);
   for (std::size_t k = 0; k < 3; ++k) EXPECT_EQ(bench.motors()[k], std::round(wanted(4)[k]));
@@ -187,7 +189,8 @@ TEST(GrblDrive, LosesItsPositionByAnAlarmInMidMotion) {
   bench.device.raise_alarm(1, bench.clock.now());
   bench.link->pass(0.01);
   EXPECT_EQ(fault_of(bench.drive->read()),
-            "refused: board: the controller is in alarm 1 (a limit switch was hit in motion, the position is lost): "
+            "refused: board: the controller is in alarm 1 (a limit switch was hit in motion, the position is "
+            "lost): "
             "clear its cause and unlock it, then home it or set its position");
   EXPECT_FALSE(bench.drive->command(Positions{0, 0, 0}, 1));
   EXPECT_TRUE(bench.drive->halt());
@@ -223,9 +226,10 @@ TEST(GrblDrive, ReportsAMotionThatIsNotExecuted) {
 
 TEST(GrblDrive, ChecksAndCorrectsSettings) {
   GrblBench wrong({.settings = {{1, 25}, {10, 2}, {13, 1}}});
-  EXPECT_EQ(fault_of(wrong.drive->connect()),
-            "refused: board: setting $1 is 25; the motors must hold the tendons when they rest: send $1=255 to the "
-            "controller, or allow writes_settings");
+  EXPECT_EQ(
+      fault_of(wrong.drive->connect()),
+      "refused: board: setting $1 is 25; the motors must hold the tendons when they rest: send $1=255 to the "
+      "controller, or allow writes_settings");
   GrblConfig config;
   config.writes_settings = true;
   GrblBench corrected({.settings = {{1, 25}, {10, 2}, {13, 1}}}, config);

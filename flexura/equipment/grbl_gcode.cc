@@ -16,7 +16,8 @@ std::string plain(std::string_view line) {
   for (const char c : line) {
     if (c == ';') break;
     if (c == '(') is_comment = true;
-    if (!is_comment && c > ' ' && c != '/') words += static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+    if (!is_comment && c > ' ' && c != '/')
+      words += static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
     if (c == ')') is_comment = false;
   }
   return words;

@@ -65,25 +65,24 @@ constexpr std::array<Meaning, 52> errors{
      {53, "this setting is not available"},
      {79, "not allowed before the alarm is cleared by a reset"}}};
 
-constexpr std::array<Meaning, 18> alarms{
-    {{1, "a limit switch was hit in motion, the position is lost"},
-     {2, "a motion's target is outside the travel"},
-     {3, "reset in motion, the position is lost"},
-     {4, "the probe was not in its initial state"},
-     {5, "the probe touched nothing"},
-     {6, "reset during homing"},
-     {7, "the safety door opened during homing"},
-     {8, "homing could not leave the limit switch"},
-     {9, "homing found no limit switch"},
-     {10, "emergency stop"},
-     {11, "homing is required"},
-     {12, "a limit switch is active"},
-     {13, "probe protection"},
-     {14, "the spindle does not answer"},
-     {15, "homing found no second limit switch"},
-     {16, "the self-test failed"},
-     {17, "a motor driver reports a fault"},
-     {18, "homing failed"}}};
+constexpr std::array<Meaning, 18> alarms{{{1, "a limit switch was hit in motion, the position is lost"},
+                                          {2, "a motion's target is outside the travel"},
+                                          {3, "reset in motion, the position is lost"},
+                                          {4, "the probe was not in its initial state"},
+                                          {5, "the probe touched nothing"},
+                                          {6, "reset during homing"},
+                                          {7, "the safety door opened during homing"},
+                                          {8, "homing could not leave the limit switch"},
+                                          {9, "homing found no limit switch"},
+                                          {10, "emergency stop"},
+                                          {11, "homing is required"},
+                                          {12, "a limit switch is active"},
+                                          {13, "probe protection"},
+                                          {14, "the spindle does not answer"},
+                                          {15, "homing found no second limit switch"},
+                                          {16, "the self-test failed"},
+                                          {17, "a motor driver reports a fault"},
+                                          {18, "homing failed"}}};
 
 template <std::size_t N>
 std::string_view meaning(const std::array<Meaning, N>& all, int code) {

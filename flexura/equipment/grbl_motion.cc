@@ -57,9 +57,9 @@ void GrblMotion::add(const std::vector<double>& target, double feed, const GrblL
               .acceleration = along(direction, limits.accelerations),
               .most_entry = 0};
   if (!blocks_.empty())
-    block.most_entry = std::min({block.speed, blocks_.back().speed,
-                                 corner_speed(blocks_.back().direction, direction, limits)});
-  if (blocks_.empty()) done_ = 0, speed_ = 0;
+    block.most_entry = std::min(
+        {block.speed, blocks_.back().speed, corner_speed(blocks_.back().direction, direction, limits)});
+  if (blocks_.empty()) done_ = 0, planned_speed_ = 0;
   last_ = target;
   blocks_.push_back(std::move(block));
   plan();
@@ -74,45 +74,58 @@ void GrblMotion::plan() {
 }
 
 void GrblMotion::step() {
-  if (blocks_.empty()) return;
-  double left = tick;
+  while (prepared_.size() < most_prepared && !blocks_.empty() && !(is_braking_ && planned_speed_ == 0))
+    prepare();
+  if (prepared_.empty()) return;
+  position_ = std::move(prepared_.front().position);
+  direction_ = std::move(prepared_.front().direction);
+  speed_ = prepared_.front().speed;
+  prepared_.pop_front();
+  if (!prepared_.empty()) return;
+  speed_ = 0;
+  std::ranges::fill(direction_, 0);
+}
+
+void GrblMotion::prepare() {
+  const std::vector<double> direction = blocks_.front().direction;
+  double left = tick, way = 0;
   while (!blocks_.empty() && left > 0) {
     const Block& block = blocks_.front();
     const double exit = blocks_.size() > 1 ? blocks_[1].entry : 0;
     const double rest = block.length - done_;
     if (is_braking_) {
-      speed_ = std::max(0.0, speed_ - block.acceleration * left);
+      planned_speed_ = std::max(0.0, planned_speed_ - block.acceleration * left);
+      if (planned_speed_ == 0) break;
     } else {
       const double most = std::min(block.speed, std::sqrt(exit * exit + 2 * block.acceleration * rest));
-      speed_ = std::min(speed_ + block.acceleration * left, most);
+      planned_speed_ = std::min(planned_speed_ + block.acceleration * left, most);
     }
-    direction_ = block.direction;
-    if (speed_ == 0 && is_braking_) break;
     // The last bit of a block that ends at rest would take forever.
     const double least = 0.5 * block.acceleration * tick * tick;
-    if (speed_ * left < rest && rest > least) {
-      done_ += speed_ * left;
-      for (std::size_t i = 0; i < position_.size(); ++i)
-        position_[i] = block.from[i] + block.direction[i] * done_;
-      return;
+    if (planned_speed_ * left < rest && rest > least) {
+      done_ += planned_speed_ * left;
+      way += planned_speed_ * left;
+      for (std::size_t i = 0; i < planned_.size(); ++i)
+        planned_[i] = block.from[i] + block.direction[i] * done_;
+      break;
     }
-    left = speed_ > 0 ? left - std::min(left, rest / speed_) : 0;
-    position_ = block.to;
+    left = planned_speed_ > 0 ? left - std::min(left, rest / planned_speed_) : 0;
+    way += rest;
+    planned_ = block.to;
     done_ = 0;
     blocks_.pop_front();
-    if (exit == 0) speed_ = 0;
+    if (exit == 0) planned_speed_ = 0;
   }
-  if (blocks_.empty()) {
-    speed_ = 0;
-    std::ranges::fill(direction_, 0);
-  }
+  if (blocks_.empty()) planned_speed_ = 0;
+  prepared_.push_back({planned_, direction, way / tick});
 }
 
 void GrblMotion::reset(const std::vector<double>& position) {
   blocks_.clear();
-  position_ = position, last_ = position;
+  prepared_.clear();
+  position_ = position, last_ = position, planned_ = position;
   std::ranges::fill(direction_, 0);
-  done_ = 0, speed_ = 0;
+  done_ = 0, speed_ = 0, planned_speed_ = 0;
   is_braking_ = false;
 }
 

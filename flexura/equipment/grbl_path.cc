@@ -19,6 +19,11 @@ void GrblPath::rest(std::vector<std::int64_t> position, double now) {
   passed_ = 0, reported_at_ = now, ends_at_ = now;
 }
 
+void GrblPath::stop(std::vector<std::int64_t> position, double now) {
+  rest(std::move(position), now);
+  rests_at_ = -std::numeric_limits<double>::infinity();
+}
+
 GrblPath::Leg GrblPath::leg_to(std::span<const std::int64_t> target) const {
   constexpr double unlimited = std::numeric_limits<double>::infinity();
   Leg leg{.from = end_, .to = {target.begin(), target.end()}, .speed = unlimited, .acceleration = unlimited};
@@ -75,11 +80,13 @@ GrblPath::Place GrblPath::place_of(std::span<const std::int64_t> position) const
     double along = 0;
     for (std::size_t i = 0; i < position.size(); ++i) {
       const double scale = axes_.per_mm[i] * axes_.per_mm[i];
-      along += static_cast<double>(position[i] - leg.from[i]) * static_cast<double>(leg.to[i] - leg.from[i]) / scale;
+      along += static_cast<double>(position[i] - leg.from[i]) * static_cast<double>(leg.to[i] - leg.from[i]) /
+               scale;
     }
     Place place{.leg = k, .share = std::clamp(along / (leg.length * leg.length), 0.0, 1.0)};
     for (std::size_t i = 0; i < position.size(); ++i) {
-      const double there = static_cast<double>(leg.from[i]) + place.share * static_cast<double>(leg.to[i] - leg.from[i]);
+      const double there =
+          static_cast<double>(leg.from[i]) + place.share * static_cast<double>(leg.to[i] - leg.from[i]);
       place.error = std::max(place.error, std::abs(static_cast<double>(position[i]) - there));
     }
     if (place.error < best.error) best = place;

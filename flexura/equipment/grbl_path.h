@@ -16,19 +16,22 @@ struct GrblAxes {
   std::vector<double> accelerations;  ///< mm/s^2 ($120)
 };
 
-/// The way that a controller has been commanded and has not yet reported to have passed: straight legs between
-/// positions in steps. Estimates how long it will be under way, and says whether a report can be true.
+/// The way that a controller has been commanded and has not yet reported to have passed: straight legs
+/// between positions in steps. Estimates how long it will be under way, and says whether a report can be
+/// true.
 class GrblPath {
  public:
   explicit GrblPath(GrblAxes axes) : axes_(std::move(axes)), end_(axes_.per_mm.size(), 0) {}
 
   /// The controller rests at a position, steps, at time `now`, s.
   void rest(std::vector<std::int64_t> position, double now);
+  /// The controller was stopped at a position, steps, at time `now`, s: a stream of commands has ended.
+  void stop(std::vector<std::int64_t> position, double now);
   /// Returns the last target, steps.
   [[nodiscard]] const std::vector<std::int64_t>& end() const { return end_; }
   /// Returns the speed, mm/min, of a motion to `target` that lasts until `duration` s after `now`. If the
-  /// controller still moves, or has stopped less than `lead` s ago, it lasts until `lead` s later: a stream of
-  /// commands is followed with this delay. The motion is limited by its axes.
+  /// controller still moves, or has stopped less than `lead` s ago, it lasts until `lead` s later: a stream
+  /// of commands is followed with this delay. The motion is limited by its axes.
   [[nodiscard]] double feed_to(std::span<const std::int64_t> target, double duration, double lead,
                                double now) const;
   /// Adds a motion that the controller has accepted, with a feed in mm/min.
@@ -48,8 +51,8 @@ class GrblPath {
   };
   struct Place {
     std::size_t leg = 0;
-    double share = 0;    // Of the leg's length.
-    double error = 0;    // Largest distance from the leg, steps.
+    double share = 0;  // Of the leg's length.
+    double error = 0;  // Largest distance from the leg, steps.
   };
   [[nodiscard]] Leg leg_to(std::span<const std::int64_t> target) const;
   [[nodiscard]] Place place_of(std::span<const std::int64_t> position) const;
@@ -58,9 +61,9 @@ class GrblPath {
   GrblAxes axes_;
   std::deque<Leg> legs_;
   std::vector<std::int64_t> end_;
-  double passed_ = 0;         // Share of the first leg at the last report.
-  double reported_at_ = 0;    // Time of the last report or rest.
-  double ends_at_ = 0;        // When the end is passed, without braking.
+  double passed_ = 0;                                           // Share of the first leg at the last report.
+  double reported_at_ = 0;                                      // Time of the last report or rest.
+  double ends_at_ = 0;                                          // When the end is passed, without braking.
   double rests_at_ = -std::numeric_limits<double>::infinity();  // When the end is reached, with braking.
 };
 

@@ -17,7 +17,8 @@ constexpr std::size_t most_said = 1024;  // Messages that are kept.
 
 PortFault GrblSession::silent(std::string_view what) const {
   return {FaultKind::link_lost,
-          fmt::format("{}: the controller does not answer {}: check its cable and its power", link_.name(), what)};
+          fmt::format("{}: the controller does not answer {}: check its cable and its power", link_.name(),
+                      what)};
 }
 
 PortFault GrblSession::interrupted() const {
@@ -38,7 +39,7 @@ CommandOutcome GrblSession::interrupt(char byte) {
 
 CommandOutcome GrblSession::send(const std::string& line) {
   const std::scoped_lock lock(sending_);
-  if (interrupts_ != begun_) return interrupted();
+  if (is_interrupted()) return interrupted();
   pending_.push_back(line.size());
   return link_.write(line);
 }
@@ -84,7 +85,7 @@ Outcome<bool> GrblSession::wait(double timeout, const std::function<bool()>& is_
   const double end = clock_.now() + timeout;
   for (;;) {
     if (is_done()) return true;
-    if (interrupts_ != begun_) return interrupted();
+    if (is_interrupted()) return interrupted();
     const double left = end - clock_.now();
     if (!(left > 0)) return false;
     const auto bytes = link_.read(std::min(left, slice));
@@ -208,10 +209,11 @@ CommandOutcome GrblSession::reset(double timeout) {
     has_restarted_ = false;
     return outcome;
   }
-  return PortFault{FaultKind::link_lost,
-                   fmt::format("{}: no controller with Grbl answers within {:g} s: check the cable, the power and "
-                               "the speed of the line",
-                               link_.name(), timeout)};
+  return PortFault{
+      FaultKind::link_lost,
+      fmt::format("{}: no controller with Grbl answers within {:g} s: check the cable, the power and "
+                  "the speed of the line",
+                  link_.name(), timeout)};
 }
 
 }  // namespace flexura

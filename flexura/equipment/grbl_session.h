@@ -21,8 +21,8 @@ namespace flexura {
 
 /// Answer to a line.
 struct GrblAnswer {
-  int error = 0;                   ///< N of error:N, 0 for ok.
-  std::vector<GrblMessage> said;   ///< Settings and feedback that arrived before it.
+  int error = 0;                  ///< N of error:N, 0 for ok.
+  std::vector<GrblMessage> said;  ///< Settings and feedback that arrived before it.
 };
 
 /// Conversation with a controller: lines and their answers, in order, with at most a window of bytes on the
@@ -58,9 +58,11 @@ class GrblSession {
   /// Returns the number of calls of interrupt().
   [[nodiscard]] unsigned interrupts() const { return interrupts_; }
   /// Allows sending after interrupt(), unless the number of its calls is no longer `known`.
-  void begin(unsigned known) { begun_ = known; }
+  void begin(unsigned known) { begun_ = known, is_stopping_ = false; }
+  /// Until begin(), interrupt() sends its byte but does not end waits: they already are those of a stop.
+  void begin_stop() { is_stopping_ = true; }
   /// Returns true if interrupt() was called since begin().
-  [[nodiscard]] bool is_interrupted() const { return interrupts_ != begun_; }
+  [[nodiscard]] bool is_interrupted() const { return !is_stopping_ && interrupts_ != begun_; }
 
   /// Returns and forgets the last ALARM:N.
   std::optional<int> take_alarm() { return std::exchange(alarm_, std::nullopt); }
@@ -96,6 +98,7 @@ class GrblSession {
   std::mutex sending_;
   std::atomic<unsigned> interrupts_ = 0;
   unsigned begun_ = 0;
+  bool is_stopping_ = false;
 };
 
 }  // namespace flexura

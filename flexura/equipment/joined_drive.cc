@@ -11,7 +11,8 @@
 
 namespace flexura {
 
-JoinedDrive::JoinedDrive(std::vector<DrivePort*> parts, Calls calls) : parts_(std::move(parts)), calls_(calls) {
+JoinedDrive::JoinedDrive(std::vector<DrivePort*> parts, Calls calls)
+    : parts_(std::move(parts)), calls_(calls) {
   if (parts_.empty()) throw std::invalid_argument("a joined drive needs at least one part");
   for (const DrivePort* part : parts_) {
     if (part->quantity() != parts_.front()->quantity())

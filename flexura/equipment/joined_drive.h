@@ -9,8 +9,8 @@
 
 namespace flexura {
 
-/// Several motion controllers that together form one drive. Its axes are those of the first, then those of the
-/// second, and so on.
+/// Several motion controllers that together form one drive. Its axes are those of the first, then those of
+/// the second, and so on.
 class JoinedDrive : public DrivePort {
  public:
   /// How the parts are called.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -54,6 +55,7 @@ class SteppedLink : public Link {
       for (const std::string& message : in_.take(now))
         if (!is_silent) say(device_.receive(message, now));
       say(device_.advance(now));
+      if (on_tick) on_tick(now);
       for (const std::string& message : out_.take(now))
         if (!is_silent) heard_ += message;
     }
@@ -61,7 +63,8 @@ class SteppedLink : public Link {
 
   LinkFaults faults;
   bool is_silent = false;
-  std::string written;  ///< All that was sent.
+  std::string written;                  ///< All that was sent.
+  std::function<void(double)> on_tick;  ///< Called with the time, every ms or more often.
 
  private:
   static constexpr double call_time = 2e-4;  // s

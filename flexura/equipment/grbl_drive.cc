@@ -15,6 +15,7 @@ namespace {
 constexpr int soft_limit_alarm = 2;  // The only alarm that does not lose the position.
 constexpr int report_tries = 5;
 constexpr double off_line = 2;         // Steps by which an axis may be off a straight line.
+constexpr double start_time = 0.05;    // s; a motion has begun by then.
 constexpr double report_period = 0.2;  // s; while moving, a command asks for a report after this time.
 // Grbl counts in 32-bit floating-point mm, so positions beyond this would be rounded.
 constexpr double most_steps = 2097152;
@@ -143,6 +144,12 @@ Outcome<GrblDrive::Report> GrblDrive::checked_report() {
       path_.report(now.steps, now.asked);
       return asked;
     }
+    if (now.state == GrblState::idle && now.asked < accepted_at_ + start_time) {
+      // It may not have begun yet.
+      const auto heard = session_.listen(start_time);
+      if (!heard) return *heard.fault();
+      continue;
+    }
     // Two equal reports of a rest are believed.
     if (now.state == GrblState::idle && resting == now.steps) {
       const std::string places = fmt::format(
@@ -160,6 +167,22 @@ Outcome<GrblDrive::Report> GrblDrive::checked_report() {
   const auto stopped = stop_and_locate(true);
   if (!stopped) return *stopped.fault();
   return refuse("the motors were not on the way that was commanded; they have been stopped");
+}
+
+CommandOutcome GrblDrive::brake() {
+  for (const double end = clock_.now() + config_.stop_timeout; clock_.now() < end;) {
+    const auto canceled = session_.act(grbl::cancel_jog);
+    if (!canceled) return canceled;
+    const auto status = session_.status(true);
+    if (!status) return *status.fault();
+    if (status.value().state != GrblState::jog) break;
+  }
+  // A line that was on its way may begin to move after the cancel.
+  if (session_.is_out_of_step()) {
+    const auto answered = session_.resynchronize();
+    if (!answered) return answered;
+  }
+  return stop_and_locate();
 }
 
 CommandOutcome GrblDrive::stop_and_locate(bool is_anywhere) {
@@ -226,7 +249,7 @@ CommandOutcome GrblDrive::send_motion(const std::vector<std::int64_t>& target, d
     path_.add(target, feed, before);
     if (session_.is_interrupted()) return fault;
     begin();
-    const auto stopped = stop_and_locate();
+    const auto stopped = brake();
     if (!stopped) return stopped;
     return PortFault{fault.kind, fault.what + "; the motors have been stopped"};
   }
@@ -238,6 +261,7 @@ CommandOutcome GrblDrive::send_motion(const std::vector<std::int64_t>& target, d
         fmt::format("the controller refuses a motion: error {} ({})", error, grbl_error_meaning(error)));
   }
   path_.add(target, feed, before);
+  accepted_at_ = clock_.now();
   return Accepted{};
 }
 
@@ -258,9 +282,7 @@ CommandOutcome GrblDrive::command(std::span<const double> targets, double durati
     if (!checked) return *checked.fault();
   }
   if (path_.lag(clock_.now()) > config_.most_lag) {
-    const auto canceled = session_.act(grbl::cancel_jog);
-    if (!canceled) return canceled;
-    const auto stopped = stop_and_locate();
+    const auto stopped = brake();
     if (!stopped) return stopped;
   }
   if (target == path_.end()) return Accepted{};
@@ -274,17 +296,20 @@ CommandOutcome GrblDrive::halt() {
   session_.begin_stop();
   const auto usable = check_usable();
   if (!usable) return alarm_ ? CommandOutcome(Accepted{}) : usable;
-  // A line that was on its way may have begun to move after the first byte.
-  const auto answered = session_.resynchronize();
-  if (!answered) {
+  const auto stopped = brake();
+  if (stopped) return stopped;
+  if (const auto alarm = session_.take_alarm()) alarm_ = alarm;
+  if (alarm_) {
+    // In alarm, nothing moves.
+    (void)check_usable();
+    return Accepted{};
+  }
+  if (stopped.fault()->kind == FaultKind::link_lost) {
     (void)session_.act(grbl::hold);
     (void)session_.act(grbl::reset);
     is_known_ = false;
-    return answered;
   }
-  const auto stopped = stop_and_locate();
-  // In alarm, nothing moves.
-  return alarm_ ? CommandOutcome(Accepted{}) : stopped;
+  return stopped;
 }
 
 Outcome<DriveReading> GrblDrive::read() {

@@ -78,6 +78,8 @@ class GrblDrive : public DrivePort {
   [[nodiscard]] CommandOutcome stop_and_locate(bool is_anywhere = false);
   [[nodiscard]] std::optional<std::vector<std::int64_t>> steps_of(const GrblStatus& status) const;
   [[nodiscard]] std::vector<std::int64_t> clamped(std::span<const double> targets) const;
+  // Cancels all motion, and finds out where the motors are.
+  [[nodiscard]] CommandOutcome brake();
   [[nodiscard]] CommandOutcome send_motion(const std::vector<std::int64_t>& target, double feed);
 
   std::unique_ptr<Link> link_;
@@ -92,7 +94,8 @@ class GrblDrive : public DrivePort {
   std::vector<std::int64_t> zero_;  // The controller's steps where the motor positions are 0.
   std::size_t reported_axes_ = 0;
   bool is_connected_ = false, is_known_ = false, is_zero_forced_ = false;
-  double checked_at_ = 0;  // Time of the last report.
+  double checked_at_ = 0;   // Time of the last report.
+  double accepted_at_ = 0;  // Time of the last accepted motion.
   std::optional<int> alarm_;
   std::atomic<bool> is_homing_ = false;
 };

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "flexura/base/table.h"
 #include "tests/support/grbl_bench.h"
 
 namespace flexura {
@@ -296,6 +297,20 @@ TEST(GrblDrive, IsStoppedByStopMessagesInAnyState) {
     EXPECT_EQ(bench.device.state(), GrblState::idle);
     EXPECT_FALSE(bench.drive->read());
   }
+}
+
+TEST(GrblDrive, HaltsAMotionThatBrakesLongerThanAnAnswerTakes) {
+  GrblBench bench({.settings = {{120, 50}}});
+  ASSERT_TRUE(bench.start());
+  ASSERT_TRUE(bench.drive->command(Positions{20000, 0, 0}, 0));
+  bench.link->pass(1.5);
+  ASSERT_EQ(fault_of(bench.drive->halt()), "");
+  EXPECT_EQ(bench.drive->read().value().values, bench.motors());
+}
+
+TEST(GrblConfig, HasATableOfFields) {
+  const TableInfo& info = fields_of(static_cast<const GrblConfig*>(nullptr)).info();
+  EXPECT_EQ(info.fields.size(), 12U);
 }
 
 TEST(GrblSession, KeepsTheWindow) {

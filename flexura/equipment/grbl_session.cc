@@ -22,7 +22,7 @@ PortFault GrblSession::silent(std::string_view what) const {
 }
 
 PortFault GrblSession::interrupted() const {
-  return {FaultKind::refused, link_.name() + ": halted while a command was being sent"};
+  return {FaultKind::refused, link_.name() + ": halted during a request"};
 }
 
 std::size_t GrblSession::unanswered() const {
@@ -174,9 +174,15 @@ CommandOutcome GrblSession::resynchronize() {
   return silent("$G");
 }
 
-Outcome<GrblStatus> GrblSession::status() {
+CommandOutcome GrblSession::listen(double duration) {
+  const auto done = wait(duration, [] { return false; });
+  if (!done) return *done.fault();
+  return Accepted{};
+}
+
+Outcome<GrblStatus> GrblSession::status(bool is_urgent) {
   for (int i = 0; i < tries; ++i) {
-    if (i > 0 || is_out_of_step_) {
+    if (!is_urgent && (i > 0 || is_out_of_step_)) {
       // A late report must not be taken for the next one.
       const auto outcome = resynchronize();
       if (!outcome && i > 0) return *outcome.fault();

@@ -40,8 +40,13 @@ class GrblSession {
   /// Sends lines, each as soon as it fits into the window, and waits for all answers, each for at most the
   /// answer timeout. Returns the error of the first refused line, or 0.
   Outcome<int> stream(std::span<const std::string> lines);
-  /// Asks for a status report that the controller makes after this call.
-  Outcome<GrblStatus> status();
+  /// Asks for a status report that the controller makes after this call. If it is urgent, lines and answers
+  /// are not brought together first, so after a loss the report may be an earlier one.
+  Outcome<GrblStatus> status(bool is_urgent = false);
+  /// Listens for `duration` s.
+  CommandOutcome listen(double duration);
+  /// Returns true if answers may not belong to their lines until resynchronize().
+  [[nodiscard]] bool is_out_of_step() const { return is_out_of_step_; }
   /// Sends bytes that act at once. Any thread.
   CommandOutcome act(char byte);
   /// Resets the controller and waits for its banner for at most `timeout` s.

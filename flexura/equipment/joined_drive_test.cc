@@ -159,5 +159,35 @@ TEST(JoinedDrive, IsHaltedByAnotherThread) {
   EXPECT_FALSE(reading.value().moving);
 }
 
+TEST(GrblDrive, StopsHomingFromAnotherThread) {
+  GrblDeviceConfig board{.settings = {{22, 1}, {25, 60}}};
+  board.low = {-1e5, -1e5, -1e5};
+  board.high = {1e5, 1e5, 1e5};
+  GrblDevice device(board);
+  SerialPair pair = open_serial_pair();
+  auto link = open_link(parse_link_address(pair.path));
+  DeviceServer server(std::move(pair.device), device);
+  const WallClock clock;
+  GrblConfig config;
+  config.answer_timeout = 5;
+  config.connect_timeout = config.stop_timeout = config.homing_timeout = joined_patience;
+  GrblDrive drive(std::move(link).value(), clock, config);
+  ASSERT_TRUE(drive.connect());
+  Outcome<Accepted> homed = Accepted{};
+  std::thread homing([&] { homed = drive.home(std::vector<double>{0, 0, 0}); });
+  const auto state = [&] {
+    const auto lock = server.lock();
+    return device.state();
+  };
+  for (const double start = steady_seconds();
+       state() != GrblState::home && steady_seconds() < start + joined_patience;)
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  EXPECT_TRUE(drive.halt());
+  homing.join();
+  EXPECT_FALSE(homed);
+  EXPECT_EQ(state(), GrblState::alarm);
+  EXPECT_FALSE(drive.knows_position());
+}
+
 }  // namespace
 }  // namespace flexura

@@ -28,7 +28,7 @@ CommandOutcome GrblDrive::connect() {
   const std::scoped_lock lock(mutex_);
   begin();
   is_connected_ = false, is_known_ = false;
-  const auto reset = session_.reset(config_.connect_timeout);
+  auto reset = session_.reset(config_.connect_timeout);
   if (!reset) return reset;
   (void)session_.take_alarm();
   alarm_.reset();
@@ -51,7 +51,7 @@ CommandOutcome GrblDrive::connect() {
   }
   const auto listed = session_.ask("$$\n", 4 * config_.answer_timeout);
   if (!listed) return *listed.fault();
-  const auto good = check_settings(listed.value().said);
+  auto good = check_settings(listed.value().said);
   if (!good) return good;
   const auto status = session_.status();
   if (!status) return *status.fault();
@@ -103,7 +103,8 @@ CommandOutcome GrblDrive::check_axes() {
   for (std::size_t i = 0; i < axes(); ++i) {
     const auto axis = static_cast<int>(indices_[i]);
     const double per_mm = setting(100 + axis), rate = setting(110 + axis), acceleration = setting(120 + axis);
-    if (!(per_mm > 0 && per_mm <= most_per_mm))
+    const bool is_countable = per_mm > 0 && per_mm <= most_per_mm;
+    if (!is_countable)
       return refuse(
           fmt::format("setting ${} is {:g} steps/mm; expected above 0, at most {:g}, because positions "
                       "have 3 decimals: the mm need not be real, 100 is a good choice for all axes",
@@ -144,7 +145,7 @@ CommandOutcome GrblDrive::home(std::span<const double> positions) {
                               grbl_error_meaning(answer.value().error)));
   alarm_.reset();
   (void)session_.take_restart();
-  const auto stopped = stop_and_locate();
+  auto stopped = stop_and_locate();
   if (!stopped) return stopped;
   for (std::size_t i = 0; i < axes(); ++i)
     zero_[i] = path_.end()[i] - static_cast<std::int64_t>(std::llround(std::clamp(positions[i], -4e6, 4e6)));
@@ -158,13 +159,13 @@ CommandOutcome GrblDrive::set_positions(std::span<const double> positions) {
       !std::ranges::all_of(positions, [](double one) { return std::isfinite(one); }))
     return refuse("a zero needs one finite position per axis");
   begin();
-  const auto usable = check_usable();
+  auto usable = check_usable();
   if (!usable) return usable;
   const auto asked = report();
   if (!asked) return *asked.fault();
   if (asked.value().state == GrblState::jog)
     return refuse("the position cannot be set while the motors move");
-  const auto stopped = stop_and_locate();
+  auto stopped = stop_and_locate();
   if (!stopped) return stopped;
   for (std::size_t i = 0; i < axes(); ++i)
     zero_[i] = path_.end()[i] - static_cast<std::int64_t>(std::llround(std::clamp(positions[i], -4e6, 4e6)));
@@ -179,7 +180,7 @@ CommandOutcome GrblDrive::unlock() {
   (void)check_usable();
   const bool was_known = is_known_;
   (void)session_.act(grbl::hold);
-  const auto reset = session_.reset(config_.connect_timeout);
+  auto reset = session_.reset(config_.connect_timeout);
   if (!reset) return reset;
   const auto alarm = session_.take_alarm();
   is_known_ = was_known && !alarm;

@@ -164,7 +164,10 @@ void GrblDevice::hear(char byte) {
 }
 
 void GrblDevice::act(char byte) {
-  if (byte == grbl::reset) return reset(false);
+  if (byte == grbl::reset) {
+    reset(false);
+    return;
+  }
   if (byte == grbl::ask_status) {
     const bool is_deaf = needs_reset_ || (homing_ && !config_.is_grblhal);
     if (!is_deaf) report();

@@ -25,18 +25,16 @@ std::string triple(const std::vector<double>& numbers) {
 int check_words(const GrblBlock& block) {
   constexpr std::array<double, 29> known{0,  1,  4,  10, 17, 18, 19, 20, 21, 28, 30, 40,   49, 53, 54,
                                          55, 56, 57, 58, 59, 80, 90, 91, 92, 93, 94, 91.1, 61, 64};
-  std::array<int, 5> of_group{};
-  int taking_axes = 0;
-  for (const double word : block.g) {
-    if (std::ranges::find(known, word) == known.end()) return 20;
-    of_group[0] += word == 0 || word == 1 || word == 80;
-    of_group[1] += word == 90 || word == 91;
-    of_group[2] += word == 20 || word == 21;
-    of_group[3] += word >= 54 && word <= 59;
-    of_group[4] += word == 93 || word == 94;
-    taking_axes += word == 10 || word == 28 || word == 30 || word == 92;
-  }
-  if (std::ranges::any_of(of_group, [](int count) { return count > 1; })) return 21;
+  const auto count = [&](auto is_in) { return std::ranges::count_if(block.g, is_in); };
+  if (!std::ranges::all_of(block.g, [&](double g) { return std::ranges::find(known, g) != known.end(); }))
+    return 20;
+  if (count([](double g) { return g == 0 || g == 1 || g == 80; }) > 1 ||
+      count([](double g) { return g == 90 || g == 91; }) > 1 ||
+      count([](double g) { return g == 20 || g == 21; }) > 1 ||
+      count([](double g) { return g >= 54 && g <= 59; }) > 1 ||
+      count([](double g) { return g == 93 || g == 94; }) > 1)
+    return 21;
+  const auto taking_axes = count([](double g) { return g == 10 || g == 28 || g == 30 || g == 92; });
   if (taking_axes > 1) return 24;
   return 0;
 }
@@ -151,8 +149,8 @@ int GrblDevice::set(std::string_view assignment) {
 
 std::optional<int> GrblDevice::run_jog(std::string_view words) {
   const auto parsed = parse_gcode(words, config_.axes);
-  if (const int* const code = std::get_if<int>(&parsed)) return *code;
-  const GrblBlock& block = std::get<GrblBlock>(parsed);
+  if (const auto* const code = std::get_if<int>(&parsed)) return *code;
+  const auto& block = std::get<GrblBlock>(parsed);
   const auto is_allowed = [](double g) { return g == 20 || g == 21 || g == 53 || g == 90 || g == 91; };
   if (!std::ranges::all_of(block.g, is_allowed) || !block.m.empty() || block.p || block.l) return 16;
   if (const int code = check_words(block); code != 0) return code;
@@ -173,8 +171,8 @@ std::optional<int> GrblDevice::run_jog(std::string_view words) {
 
 std::optional<int> GrblDevice::run_gcode(const std::string& line) {
   const auto parsed = parse_gcode(line, config_.axes);
-  if (const int* const code = std::get_if<int>(&parsed)) return *code;
-  const GrblBlock& block = std::get<GrblBlock>(parsed);
+  if (const auto* const code = std::get_if<int>(&parsed)) return *code;
+  const auto& block = std::get<GrblBlock>(parsed);
   if (const int code = check_words(block); code != 0) return code;
   for (const double word : block.m)
     if (word != std::floor(word)) return 23;

@@ -73,7 +73,7 @@ bool GrblDrive::knows_position() const {
 // Looks at what the controller has said unasked.
 CommandOutcome GrblDrive::check_usable() {
   if (!is_connected_) return refuse("not connected");
-  const auto drained = session_.drain();
+  auto drained = session_.drain();
   if (!drained) return drained;
   if (session_.take_restart()) is_known_ = false;
   if (const auto alarm = session_.take_alarm()) alarm_ = alarm;
@@ -171,7 +171,7 @@ Outcome<GrblDrive::Report> GrblDrive::checked_report() {
 
 CommandOutcome GrblDrive::brake() {
   for (const double end = clock_.now() + config_.stop_timeout; clock_.now() < end;) {
-    const auto canceled = session_.act(grbl::cancel_jog);
+    auto canceled = session_.act(grbl::cancel_jog);
     if (!canceled) return canceled;
     const auto status = session_.status(true);
     if (!status) return *status.fault();
@@ -193,7 +193,7 @@ CommandOutcome GrblDrive::stop_and_locate(bool is_anywhere) {
     if (!asked) return *asked.fault();
     const Report& now = asked.value();
     if (now.state != GrblState::jog) {
-      const auto usable = check_state(now.state);
+      auto usable = check_state(now.state);
       if (!usable) return usable;
       if (resting == now.steps) {
         is_known_ = is_known_ && (is_anywhere || path_.can_be_at(now.steps, off_line, now.received));
@@ -238,6 +238,7 @@ std::vector<std::int64_t> GrblDrive::clamped(std::span<const double> targets) co
 
 CommandOutcome GrblDrive::send_motion(const std::vector<std::int64_t>& target, double feed) {
   std::vector<double> positions;
+  positions.reserve(axes());
   for (std::size_t i = 0; i < axes(); ++i)
     positions.push_back(static_cast<double>(target[i]) / can_.per_mm[i]);
   const double before = clock_.now();
@@ -249,13 +250,13 @@ CommandOutcome GrblDrive::send_motion(const std::vector<std::int64_t>& target, d
     path_.add(target, feed, before);
     if (session_.is_interrupted()) return fault;
     begin();
-    const auto stopped = brake();
+    auto stopped = brake();
     if (!stopped) return stopped;
     return PortFault{fault.kind, fault.what + "; the motors have been stopped"};
   }
   const int error = answer.value().error;
   if (error != 0) {
-    const auto usable = check_usable();
+    auto usable = check_usable();
     if (!usable) return usable;
     return refuse(
         fmt::format("the controller refuses a motion: error {} ({})", error, grbl_error_meaning(error)));
@@ -273,7 +274,7 @@ CommandOutcome GrblDrive::command(std::span<const double> targets, double durati
       !std::isfinite(duration) || duration < 0)
     return refuse("targets and the duration must be finite, and the duration not negative");
   begin();
-  const auto usable = check_usable();
+  auto usable = check_usable();
   if (!usable) return usable;
   if (!is_known_) return refuse("the position is unknown: home the controller or set its position");
   const std::vector<std::int64_t> target = clamped(targets);
@@ -282,7 +283,7 @@ CommandOutcome GrblDrive::command(std::span<const double> targets, double durati
     if (!checked) return *checked.fault();
   }
   if (path_.lag(clock_.now()) > config_.most_lag) {
-    const auto stopped = brake();
+    auto stopped = brake();
     if (!stopped) return stopped;
   }
   if (target == path_.end()) return Accepted{};
@@ -290,13 +291,13 @@ CommandOutcome GrblDrive::command(std::span<const double> targets, double durati
 }
 
 CommandOutcome GrblDrive::halt() {
-  const auto sent = session_.interrupt(is_homing_ ? grbl::reset : grbl::cancel_jog);
+  auto sent = session_.interrupt(is_homing_ ? grbl::reset : grbl::cancel_jog);
   const std::scoped_lock lock(mutex_);
   if (!sent) return sent;
   session_.begin_stop();
   const auto usable = check_usable();
   if (!usable) return alarm_ ? CommandOutcome(Accepted{}) : usable;
-  const auto stopped = brake();
+  auto stopped = brake();
   if (stopped) return stopped;
   if (const auto alarm = session_.take_alarm()) alarm_ = alarm;
   if (alarm_) {

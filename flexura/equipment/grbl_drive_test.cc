@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -70,7 +71,7 @@ TEST(GrblDrive, FollowsAStreamOfCommandsWithoutStops) {
   ASSERT_TRUE(bench.start());
   constexpr double period = 1.0 / 30, turn = 4;  // s
   const auto wanted = [&](double time) {
-    const double angle = 2 * 3.14159265358979 * time / turn;
+    const double angle = 2 * std::numbers::pi * time / turn;
     return Positions{1500 - 1500 * std::cos(angle), 1500 * std::sin(angle), 500 * std::sin(angle)};
   };
   const double start = bench.clock.now();
@@ -97,7 +98,7 @@ TEST(GrblDrive, FollowsAStreamOfCommandsWithoutStops) {
     }
     ASSERT_EQ(fault_of(bench.drive->read()), "");
   }
-  constexpr double speed = 2 * 3.14159265358979 * 1500 / turn;  // steps/s
+  constexpr double speed = 2 * std::numbers::pi * 1500 / turn;  // steps/s
   EXPECT_GT(slowest, 0.8 * speed);
   EXPECT_LT(largest_error, 0.02 * speed);
   bench.link->pass(0.5);
@@ -320,6 +321,7 @@ TEST(GrblSession, KeepsTheWindow) {
   GrblSession session(link, clock, 128, 2);
   ASSERT_TRUE(session.reset(5));
   std::vector<std::string> lines;
+  lines.reserve(100);
   for (int i = 0; i < 100; ++i) lines.push_back("G1X" + std::to_string(i % 3) + "F6000\n");
   EXPECT_EQ(session.stream(lines).value(), 0);
   EXPECT_EQ(device.lost_bytes(), 0U);

@@ -74,8 +74,8 @@ void GrblMotion::plan() {
 }
 
 void GrblMotion::step() {
-  while (prepared_.size() < most_prepared && !blocks_.empty() && !(is_braking_ && planned_speed_ == 0))
-    prepare();
+  const auto is_at_rest = [&] { return blocks_.empty() || (is_braking_ && planned_speed_ == 0); };
+  while (prepared_.size() < most_prepared && !is_at_rest()) prepare();
   if (prepared_.empty()) return;
   position_ = std::move(prepared_.front().position);
   direction_ = std::move(prepared_.front().direction);

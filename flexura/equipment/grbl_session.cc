@@ -205,7 +205,7 @@ CommandOutcome GrblSession::reset(double timeout) {
   has_restarted_ = false;
   for (double left = timeout; left > 0; left = end - clock_.now()) {
     // A board that is starting does not hear the first resets.
-    const auto sent = act(grbl::reset);
+    auto sent = act(grbl::reset);
     if (!sent) return sent;
     const auto done = wait(std::min(left, 4 * answer_timeout_), [&] { return has_restarted_; });
     if (!done) return *done.fault();

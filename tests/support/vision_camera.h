@@ -1,0 +1,49 @@
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "flexura/equipment/aravis_camera.h"
+#include "tests/support/numbered_frames.h"
+#include "tests/support/spawned.h"
+
+namespace flexura {
+
+/// Aravis' GigE Vision camera in another process, on the loopback interface. It uses the ports of the standard, so
+/// there is one at a time on a machine.
+struct VisionCamera {
+  explicit VisionCamera(const std::vector<std::string>& options = {}, const std::string& name = "GV55")
+      : serial(name), program(arguments(options, name)) {}
+
+  std::string serial;
+  Spawned program;
+
+  [[nodiscard]] AravisConfig config() const { return {.device = "Aravis-Fake-" + serial}; }
+
+ private:
+  static std::vector<std::string> arguments(const std::vector<std::string>& options, const std::string& name) {
+    std::vector<std::string> all = {"arv-fake-gv-camera-0.8", "-i", "127.0.0.1", "-s", name};
+    all.insert(all.end(), options.begin(), options.end());
+    return all;
+  }
+};
+
+/// Returns a camera of 512 x 512 pixels at 25 Hz.
+[[nodiscard]] inline CameraConfig vision_camera_config() {
+  CameraConfig camera;
+  camera.name = "side";
+  camera.sensor.width = camera.sensor.height = 512;
+  camera.sensor.frame_rate = 25;
+  return camera;
+}
+
+/// Expects that the frames' numbers fit the camera's counts.
+inline void expect_numbers_as_counted(const std::vector<Frame>& frames, const CountedCamera& camera) {
+  const CameraCounts counts = camera.counts();
+  EXPECT_LT(frames.back().number, counts.frames + counts.lost);
+}
+
+}  // namespace flexura

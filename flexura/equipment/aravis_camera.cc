@@ -112,6 +112,7 @@ ConnectionEnd AravisConnection::run() {
 
 std::string AravisConnection::set(ArvCamera* camera) {
   const SensorConfig& sensor = camera_.sensor;
+  arv_camera_set_range_check_policy(camera, ARV_RANGE_CHECK_POLICY_ENABLE);
   Caught format;
   const ArvPixelFormat wanted =
       sensor.pixels == PixelKind::color ? ARV_PIXEL_FORMAT_RGB_8_PACKED : ARV_PIXEL_FORMAT_MONO_8;
@@ -129,8 +130,8 @@ std::string AravisConnection::set(ArvCamera* camera) {
   Caught mode;
   arv_camera_set_acquisition_mode(camera, ARV_ACQUISITION_MODE_CONTINUOUS, mode);
   if (arv_camera_is_gv_device(camera) != 0) {
-    // A packet socket needs rights that a user does not have.
-    arv_camera_gv_set_stream_options(camera, ARV_GV_STREAM_OPTION_PACKET_SOCKET_DISABLED);
+    if (!config_.packet_socket)
+      arv_camera_gv_set_stream_options(camera, ARV_GV_STREAM_OPTION_PACKET_SOCKET_DISABLED);
     Caught size;
     if (config_.packet_size > 0)
       arv_camera_gv_set_packet_size(camera, static_cast<gint>(config_.packet_size), size);
@@ -149,6 +150,10 @@ std::string AravisConnection::set_region(ArvCamera* camera) {
   gint full_width = 0, full_height = 0;
   arv_camera_get_sensor_size(camera, &full_width, &full_height, error);
   if (error.has_any()) return error.text();
+  if (width > full_width || height > full_height) {
+    return fmt::format("its sensor has {} x {} pixels, fewer than {} x {}: set sensor.width and sensor.height",
+                       full_width, full_height, width, height);
+  }
   // Offsets have increments, mostly 1, 2, 4 or 8.
   constexpr int grid = 16;
   const gint x = std::max(0, (full_width - width) / 2 / grid * grid);
@@ -197,8 +202,8 @@ ConnectionEnd AravisConnection::watch(ArvStream* stream) {
     if (const std::int64_t now = feed_.put_count(); now != count) count = now, last = steady_seconds();
     if (steady_seconds() - last > config_.silence) {
       return loss(fmt::format(
-          "no whole frame for {:.3g} s: check the network's packet size, or whether the camera waits for a trigger; "
-          "trying again",
+          "no whole frame for {:.3g} s: check packet_size, the system's net.core.rmem_max, and whether the camera waits "
+          "for a trigger; trying again",
           config_.silence));
     }
   }

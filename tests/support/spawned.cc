@@ -12,7 +12,14 @@ extern char** environ;  // NOLINT(readability-identifier-naming): the system's n
 
 namespace flexura {
 
-Spawned::Spawned(const std::vector<std::string>& arguments) {
+Spawned::Spawned(const std::vector<std::string>& arguments) : arguments_(arguments) { start(); }
+
+void Spawned::restart() {
+  ::close(input_), ::close(output_);
+  start();
+}
+
+void Spawned::start() {
   int to_it[2] = {-1, -1}, from_it[2] = {-1, -1};
   if (::pipe2(to_it, O_CLOEXEC) != 0 || ::pipe2(from_it, O_CLOEXEC) != 0)
     throw std::runtime_error("no pipe for a program");
@@ -21,13 +28,13 @@ Spawned::Spawned(const std::vector<std::string>& arguments) {
   posix_spawn_file_actions_adddup2(&actions, to_it[0], STDIN_FILENO);
   posix_spawn_file_actions_adddup2(&actions, from_it[1], STDOUT_FILENO);
   std::vector<char*> words;
-  for (const std::string& argument : arguments) words.push_back(const_cast<char*>(argument.c_str()));
+  for (const std::string& argument : arguments_) words.push_back(const_cast<char*>(argument.c_str()));
   words.push_back(nullptr);
   const int problem = ::posix_spawnp(&process_, words[0], &actions, nullptr, words.data(), environ);
   posix_spawn_file_actions_destroy(&actions);
   ::close(to_it[0]), ::close(from_it[1]);
   input_ = to_it[1], output_ = from_it[0];
-  if (problem != 0) throw std::runtime_error("cannot start " + arguments.front());
+  if (problem != 0) throw std::runtime_error("cannot start " + arguments_.front());
 }
 
 Spawned::~Spawned() {

@@ -19,8 +19,13 @@ class Spawned {
   [[nodiscard]] std::string line();
   /// Kills it by SIGKILL and waits for its end.
   void kill();
+  /// Starts it again, after kill().
+  void restart();
 
  private:
+  void start();
+
+  std::vector<std::string> arguments_;
   int process_ = -1, input_ = -1, output_ = -1;
 };
 

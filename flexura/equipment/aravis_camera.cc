@@ -62,7 +62,8 @@ class AravisConnection {
     return config_.device.empty() ? "the first camera found" : one_line(config_.device);
   }
   [[nodiscard]] ConnectionEnd loss(const std::string& what) const {
-    return {{FaultKind::link_lost, fmt::format("{}{}: {}", camera_prefix(camera_.name), shown(), what)}, false};
+    return {{FaultKind::link_lost, fmt::format("{}{}: {}", camera_prefix(camera_.name), shown(), what)},
+            false};
   }
   [[nodiscard]] ConnectionEnd refusal(const std::string& what) const {
     return {{FaultKind::refused, fmt::format("{}{}: {}", camera_prefix(camera_.name), shown(), what)}, false};
@@ -97,16 +98,19 @@ ConnectionEnd AravisConnection::run() {
   if (!stream) return loss(error.text() + "; trying again");
   const guint payload = arv_camera_get_payload(camera.get(), error);
   if (error.has_any()) return loss(error.text() + "; trying again");
-  for (int i = 0; i < buffer_count; ++i) arv_stream_push_buffer(stream.get(), arv_buffer_new(payload, nullptr));
+  for (int i = 0; i < buffer_count; ++i)
+    arv_stream_push_buffer(stream.get(), arv_buffer_new(payload, nullptr));
   ArvDevice* device = arv_camera_get_device(camera.get());
-  const gulong handler = g_signal_connect(
-      device, "control-lost",
-      G_CALLBACK(+[](ArvDevice*, gpointer lost) { static_cast<std::atomic<bool>*>(lost)->store(true); }), &is_lost_);
+  const gulong handler = g_signal_connect(device, "control-lost", G_CALLBACK(+[](ArvDevice*, gpointer lost) {
+                                            static_cast<std::atomic<bool>*>(lost)->store(true);
+                                          }),
+                                          &is_lost_);
   arv_camera_start_acquisition(camera.get(), error);
   ConnectionEnd end = error.has_any() ? loss(error.text() + "; trying again") : watch(stream.get());
   g_signal_handler_disconnect(device, handler);
+  // A camera that does not answer would be waited for, and stops by itself without its controller.
   Caught ignored;
-  if (!is_lost_) arv_camera_stop_acquisition(camera.get(), ignored);
+  if (feed_.is_over() && !is_lost_) arv_camera_stop_acquisition(camera.get(), ignored);
   return end;
 }
 
@@ -125,7 +129,8 @@ std::string AravisConnection::set(ArvCamera* camera) {
   Caught error;
   if (arv_camera_is_frame_rate_available(camera, error) != 0) {
     arv_camera_set_frame_rate(camera, sensor.frame_rate, error);
-    if (error.has_any()) return fmt::format("it refuses {:.6g} frames/s: {}", sensor.frame_rate, error.text());
+    if (error.has_any())
+      return fmt::format("it refuses {:.6g} frames/s: {}", sensor.frame_rate, error.text());
   }
   Caught mode;
   arv_camera_set_acquisition_mode(camera, ARV_ACQUISITION_MODE_CONTINUOUS, mode);
@@ -145,14 +150,16 @@ std::string AravisConnection::set(ArvCamera* camera) {
 }
 
 std::string AravisConnection::set_region(ArvCamera* camera) {
-  const auto width = static_cast<gint>(camera_.sensor.width), height = static_cast<gint>(camera_.sensor.height);
+  const auto width = static_cast<gint>(camera_.sensor.width),
+             height = static_cast<gint>(camera_.sensor.height);
   Caught error;
   gint full_width = 0, full_height = 0;
   arv_camera_get_sensor_size(camera, &full_width, &full_height, error);
   if (error.has_any()) return error.text();
   if (width > full_width || height > full_height) {
-    return fmt::format("its sensor has {} x {} pixels, fewer than {} x {}: set sensor.width and sensor.height",
-                       full_width, full_height, width, height);
+    return fmt::format(
+        "its sensor has {} x {} pixels, fewer than {} x {}: set sensor.width and sensor.height", full_width,
+        full_height, width, height);
   }
   // Offsets have increments, mostly 1, 2, 4 or 8.
   constexpr int grid = 16;
@@ -164,10 +171,11 @@ std::string AravisConnection::set_region(ArvCamera* camera) {
   Caught reading;
   arv_camera_get_region(camera, &real_x, &real_y, &real_width, &real_height, reading);
   if (!error.has_any() && !reading.has_any() && real_width == width && real_height == height) return "";
-  return fmt::format("it gives {} x {} pixels (its sensor has {} x {}), not {} x {}: set sensor.width and "
-                     "sensor.height{}",
-                     real_width, real_height, full_width, full_height, width, height,
-                     error.has_any() ? " (" + error.text() + ")" : "");
+  return fmt::format(
+      "it gives {} x {} pixels (its sensor has {} x {}), not {} x {}: set sensor.width and "
+      "sensor.height{}",
+      real_width, real_height, full_width, full_height, width, height,
+      error.has_any() ? " (" + error.text() + ")" : "");
 }
 
 std::string AravisConnection::set_light(ArvCamera* camera) {
@@ -176,10 +184,12 @@ std::string AravisConnection::set_light(ArvCamera* camera) {
     if (arv_camera_is_exposure_auto_available(camera, error) != 0)
       arv_camera_set_exposure_time_auto(camera, ARV_AUTO_OFF, error);
     if (!error.has_any()) arv_camera_set_exposure_time(camera, *config_.exposure * 1e6, error);
-    if (error.has_any()) return fmt::format("it refuses an exposure of {:.6g} s: {}", *config_.exposure, error.text());
+    if (error.has_any())
+      return fmt::format("it refuses an exposure of {:.6g} s: {}", *config_.exposure, error.text());
   }
   if (config_.gain) {
-    if (arv_camera_is_gain_auto_available(camera, error) != 0) arv_camera_set_gain_auto(camera, ARV_AUTO_OFF, error);
+    if (arv_camera_is_gain_auto_available(camera, error) != 0)
+      arv_camera_set_gain_auto(camera, ARV_AUTO_OFF, error);
     if (!error.has_any()) arv_camera_set_gain(camera, *config_.gain, error);
     if (error.has_any()) return fmt::format("it refuses a gain of {:.6g}: {}", *config_.gain, error.text());
   }
@@ -201,10 +211,11 @@ ConnectionEnd AravisConnection::watch(ArvStream* stream) {
     if (is_lost_) return loss("the connection is lost: check its power and its cable; trying again");
     if (const std::int64_t now = feed_.put_count(); now != count) count = now, last = steady_seconds();
     if (steady_seconds() - last > config_.silence) {
-      return loss(fmt::format(
-          "no whole frame for {:.3g} s: check packet_size, the system's net.core.rmem_max, and whether the camera waits "
-          "for a trigger; trying again",
-          config_.silence));
+      return loss(
+          fmt::format("no whole frame for {:.3g} s: check packet_size, the system's net.core.rmem_max, and "
+                      "whether the camera waits "
+                      "for a trigger; trying again",
+                      config_.silence));
     }
   }
   return loss("closed");
@@ -237,7 +248,8 @@ void AravisConnection::take(ArvBuffer* buffer) {
 
 bool has_aravis() { return true; }
 
-Outcome<std::unique_ptr<CountedCamera>> open_aravis_camera(const AravisConfig& config, const CameraConfig& camera,
+Outcome<std::unique_ptr<CountedCamera>> open_aravis_camera(const AravisConfig& config,
+                                                           const CameraConfig& camera,
                                                            const ClockPort& clock) {
   if (camera.sensor.bits != 8) {
     return PortFault{FaultKind::refused,

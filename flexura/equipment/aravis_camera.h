@@ -18,13 +18,14 @@ struct AravisConfig {
   /// is found.
   std::string device;
   std::optional<double> exposure = {};  ///< Exposure time, s, > 0; default: as set in the camera.
-  std::optional<double> gain = {};      ///< Gain in the camera's unit, mostly dB; default: as set in the camera.
-  std::int64_t packet_size = 0;    ///< Size of GigE Vision packets, bytes; 0: the largest that the network takes.
-  /// Whether GigE Vision packets are taken from the network interface directly if this program has the right to
-  /// (CAP_NET_RAW), which needs less time. Not for a camera on the same machine.
+  std::optional<double> gain = {};  ///< Gain in the camera's unit, mostly dB; default: as set in the camera.
+  std::int64_t packet_size =
+      0;  ///< Size of GigE Vision packets, bytes; 0: the largest that the network takes.
+  /// Whether GigE Vision packets are taken from the network interface directly if this program has the right
+  /// to (CAP_NET_RAW), which needs less time. Not for a camera on the same machine.
   bool packet_socket = true;
-  double silence = 5;              ///< Time without a frame after which the connection is made again, s.
-  double longest_pause = 5;        ///< Longest pause before a new connection, s.
+  double silence = 5;        ///< Time without a frame after which the connection is made again, s.
+  double longest_pause = 5;  ///< Longest pause before a new connection, s.
 };
 
 const Table<AravisConfig>& fields_of(const AravisConfig*);

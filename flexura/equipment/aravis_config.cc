@@ -20,9 +20,10 @@ const Table<AravisConfig>& fields_of(const AravisConfig*) {
           .field("packet_size", &AravisConfig::packet_size,
                  {.meaning = "Size of GigE Vision packets, bytes; 0: the largest that the network takes.",
                   .range = between(0, 16384)})
-          .field("packet_socket", &AravisConfig::packet_socket,
-                 {.meaning = "Whether GigE Vision packets are taken from the network interface directly if the "
-                             "program has the right to. Not for a camera on the same machine."})
+          .field(
+              "packet_socket", &AravisConfig::packet_socket,
+              {.meaning = "Whether GigE Vision packets are taken from the network interface directly if the "
+                          "program has the right to. Not for a camera on the same machine."})
           .field("silence", &AravisConfig::silence,
                  {.meaning = "Time without a frame after which the connection is made again.",
                   .unit = Unit::second,

@@ -13,7 +13,8 @@ TEST(AravisCamera, DeliversEveryFrame) {
   for (const PixelKind pixels : {PixelKind::gray, PixelKind::color}) {
     CameraConfig camera = vision_camera_config();
     camera.sensor.pixels = pixels;
-    const auto opened = open_aravis_camera({.device = "Fake_1", .exposure = 0.01, .gain = 2.0}, camera, clock);
+    const auto opened =
+        open_aravis_camera({.device = "Fake_1", .exposure = 0.01, .gain = 2.0}, camera, clock);
     const auto frames = next_frames(*opened.value(), 20);
     ASSERT_EQ(frames.size(), 20U);
     expect_in_order(frames);
@@ -43,24 +44,6 @@ TEST(AravisCamera, CountsFramesWithLostPackets) {
   expect_in_order(frames);
   expect_numbers_as_counted(frames, *opened.value());
   EXPECT_GT(opened.value()->counts().lost, 0);
-}
-
-TEST(AravisCamera, ComesBackAfterTheCamerasDeath) {
-  VisionCamera peer;
-  const WallClock clock;
-  AravisConfig config = peer.config();
-  config.silence = 1;
-  const auto opened = open_aravis_camera(config, vision_camera_config(), clock);
-  auto frames = next_frames(*opened.value(), 3);
-  ASSERT_EQ(frames.size(), 3U) << next_fault(*opened.value());
-  peer.program.kill();
-  const std::string fault = next_fault(*opened.value());
-  EXPECT_NE(fault.find("camera \"side\": Aravis-Fake-"), std::string::npos) << fault;
-  peer.program.restart();
-  const auto later = next_frames(*opened.value(), 3);
-  ASSERT_EQ(later.size(), 3U) << next_fault(*opened.value());
-  EXPECT_GT(later.front().number, frames.back().number);
-  EXPECT_EQ(opened.value()->counts().connections, 2);
 }
 
 TEST(AravisCamera, NamesWhatIsWrong) {

@@ -119,7 +119,8 @@ Outcome<std::optional<Frame>> CameraFeed::newest() {
 
 Outcome<std::optional<Frame>> CameraFeed::wait(double timeout) {
   if (!std::isfinite(timeout)) {
-    return PortFault{FaultKind::refused, camera_prefix(name_) + "the time to wait for a frame must be finite"};
+    return PortFault{FaultKind::refused,
+                     camera_prefix(name_) + "the time to wait for a frame must be finite"};
   }
   std::unique_lock lock(mutex_);
   // A lost camera may come back in time, so a fault that is not final does not end the wait.

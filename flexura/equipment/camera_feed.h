@@ -55,8 +55,8 @@ class CameraFeed : public CountedCamera {
   /// Connects to the camera and puts pictures into the feed until the connection fails or is_over().
   using Connection = std::function<ConnectionEnd(CameraFeed&)>;
 
-  /// Starts the thread. `name` is for messages. `frame_rate`, Hz, > 0. `clock` gives the times at which frames
-  /// are received, in any thread, and must outlive this object.
+  /// Starts the thread. `name` is for messages. `frame_rate`, Hz, > 0. `clock` gives the times at which
+  /// frames are received, in any thread, and must outlive this object.
   CameraFeed(std::string name, double frame_rate, const ClockPort& clock, Connection connection,
              const CameraPatience& patience = {});
   /// Ends the connection and the thread.

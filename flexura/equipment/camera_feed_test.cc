@@ -43,14 +43,13 @@ TEST(CameraFeed, GivesTheNewestFrameOnceAndCountsTheOthers) {
 TEST(CameraFeed, ConnectsAgainUntilTheEndIsFinal) {
   const WallClock clock;
   int connections = 0;
-  CameraFeed feed(
-      "a", 30, clock,
-      [&](CameraFeed& self) {
-        ++connections;
-        if (connections != 2) self.put(small_picture(connections));
-        return end_of_feed(connections == 4);
-      },
-      {.first_pause = 0.001, .longest_pause = 0.002});
+  CameraFeed feed("a", 30, clock,
+                  [&](CameraFeed& self) {
+                    ++connections;
+                    if (connections != 2) self.put(small_picture(connections));
+                    return end_of_feed(connections == 4);
+                  },
+                  {.first_pause = 0.001, .longest_pause = 0.002});
   std::vector<Frame> frames;
   const double end = steady_seconds() + camera_patience;
   while (feed.counts().connections < 3 && steady_seconds() < end) (void)feed.wait(0.01);

@@ -35,7 +35,8 @@ std::int64_t NumberGaps::lost_before(std::uint64_t number) {
   if (!last_) return last_ = number, 0;
   const std::uint64_t last = *last_, half = (end_ - first_) / 2;
   last_ = number;
-  if (number > last) return std::int64_t(std::min<std::uint64_t>(number - last - 1, std::uint64_t(most_lost)));
+  if (number > last)
+    return std::int64_t(std::min<std::uint64_t>(number - last - 1, std::uint64_t(most_lost)));
   if (number == last || last - number <= half) return 0;
   return std::int64_t((end_ - last) + (number - std::min(number, first_)));
 }

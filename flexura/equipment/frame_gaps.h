@@ -33,8 +33,8 @@ class NumberGaps {
   NumberGaps(std::uint64_t first, std::uint64_t last) : first_(first), end_(last) {}
 
   /// Takes the number of the next frame. Returns the number of frames lost since the previous one; 0 for the
-  /// first frame. A number that is smaller by more than half the range, or equal, is a restart of the camera's
-  /// count, and counts as no loss.
+  /// first frame. A number that is smaller by more than half the range, or equal, is a restart of the
+  /// camera's count, and counts as no loss.
   std::int64_t lost_before(std::uint64_t number);
   /// Makes the range that of 64 bits, when a number turns out to be larger.
   void widen() { end_ = UINT64_MAX; }

@@ -65,7 +65,8 @@ class GStreamerConnection {
     return {{FaultKind::refused, camera_prefix(camera_.name) + what}, is_final};
   }
   ConnectionEnd loss(const std::string& what) const {
-    return {{FaultKind::link_lost, fmt::format("{}{}: {}", camera_prefix(camera_.name), shown(config_.source), what)},
+    return {{FaultKind::link_lost,
+             fmt::format("{}{}: {}", camera_prefix(camera_.name), shown(config_.source), what)},
             false};
   }
   [[nodiscard]] ConnectionEnd watch(GstElement* pipeline, bool is_live);
@@ -90,14 +91,15 @@ class GStreamerConnection {
 
 ConnectionEnd GStreamerConnection::run() {
   GError* error = nullptr;
-  Held<GstElement> pipeline(gst_parse_launch_full(gstreamer_pipeline(config_, camera_.sensor).c_str(), nullptr,
-                                                  GST_PARSE_FLAG_FATAL_ERRORS, &error));
+  Held<GstElement> pipeline(gst_parse_launch_full(gstreamer_pipeline(config_, camera_.sensor).c_str(),
+                                                  nullptr, GST_PARSE_FLAG_FATAL_ERRORS, &error));
   const Held<GError> held_error(error);
   if (!pipeline || error != nullptr) {
-    return refusal(fmt::format("GStreamer does not accept \"{}\": {} (a missing element is in one of the packages "
-                               "gstreamer1.0-plugins-good, -bad, -ugly or gstreamer1.0-libav)",
-                               shown(config_.source), error != nullptr ? one_line(error->message) : "unknown error"),
-                   true);
+    return refusal(
+        fmt::format("GStreamer does not accept \"{}\": {} (a missing element is in one of the packages "
+                    "gstreamer1.0-plugins-good, -bad, -ugly or gstreamer1.0-libav)",
+                    shown(config_.source), error != nullptr ? one_line(error->message) : "unknown error"),
+        true);
   }
   pipeline_ = pipeline.get();
   {
@@ -134,9 +136,10 @@ ConnectionEnd GStreamerConnection::watch(GstElement* pipeline, bool is_live) {
     }
     if (const std::int64_t now = feed_.put_count(); now != count) count = now, last = steady_seconds();
     if (steady_seconds() - last > config_.silence) {
-      return loss(fmt::format("no frame for {:.3g} s: check that the camera is on and its cable is plugged in; "
-                              "trying again",
-                              config_.silence));
+      return loss(
+          fmt::format("no frame for {:.3g} s: check that the camera is on and its cable is plugged in; "
+                      "trying again",
+                      config_.silence));
     }
   }
   return loss("closed");
@@ -184,8 +187,8 @@ void GStreamerConnection::take(GstSample* sample) {
   GstBuffer* buffer = gst_sample_get_buffer(sample);
   GstCaps* caps = gst_sample_get_caps(sample);
   if (buffer == nullptr || caps == nullptr) return;
-  // Unpacked pictures are marked as discontinuous if one of their packets is missing. Other elements mark the first
-  // picture so.
+  // Unpacked pictures are marked as discontinuous if one of their packets is missing. Other elements mark the
+  // first picture so.
   const bool is_first = std::exchange(is_first_, false);
   const bool is_broken = !is_first && GST_BUFFER_FLAG_IS_SET(buffer, GST_BUFFER_FLAG_DISCONT);
   const bool is_after_gap = std::exchange(is_after_gap_, false);
@@ -195,7 +198,8 @@ void GStreamerConnection::take(GstSample* sample) {
   if (!picture) return;
   const double time = time_of(buffer, gst_sample_get_segment(sample));
   const std::int64_t lost = gaps_.lost_before(time);
-  feed_.put({.picture = std::move(*picture), .time = time, .exposure = camera_.sensor.exposure, .lost = lost});
+  feed_.put(
+      {.picture = std::move(*picture), .time = time, .exposure = camera_.sensor.exposure, .lost = lost});
 }
 
 std::optional<Picture> GStreamerConnection::copied(GstBuffer* buffer, GstCaps* caps) {
@@ -205,9 +209,10 @@ std::optional<Picture> GStreamerConnection::copied(GstBuffer* buffer, GstCaps* c
   const int width = GST_VIDEO_INFO_WIDTH(&info), height = GST_VIDEO_INFO_HEIGHT(&info);
   if (width != sensor.width || height != sensor.height) {
     const std::scoped_lock lock(problem_mutex_);
-    problem_ = fmt::format("the stream has {} x {} pixels, the file's sensor has {} x {}: set sensor.width and "
-                           "sensor.height, or the camera's stream",
-                           width, height, sensor.width, sensor.height);
+    problem_ = fmt::format(
+        "the stream has {} x {} pixels, the file's sensor has {} x {}: set sensor.width and "
+        "sensor.height, or the camera's stream",
+        width, height, sensor.width, sensor.height);
     return std::nullopt;
   }
   GstVideoFrame mapped;

@@ -11,8 +11,8 @@
 
 namespace flexura {
 
-/// Transport of an RTSP stream's pictures. tcp: within the RTSP connection; nothing is lost, but a slow network
-/// delays. udp: in packets of their own, which may be lost.
+/// Transport of an RTSP stream's pictures. tcp: within the RTSP connection; nothing is lost, but a slow
+/// network delays. udp: in packets of their own, which may be lost.
 enum class StreamTransport { tcp, udp };
 
 /// Source of a camera's pictures: a pipeline of GStreamer.
@@ -38,9 +38,10 @@ const Table<GStreamerConfig>& fields_of(const GStreamerConfig*);
 /// Starts a camera on a pipeline. The frames have the size and the channels of `camera.sensor`, with 8 bits
 /// per value; a stream of another size is a fault. The connection is made, and made again, in the background.
 ///
-/// Frame::time is the stream's time stamp. With an RTSP server that sends its own time (RTCP sender reports),
-/// stamps follow the server's clock from the first report on; otherwise they follow this machine's monotonic
-/// clock. Use ClockedCamera for times on the rig's clock. Frame::exposure is that of `camera.sensor`.
+/// Frame::time is the stream's time stamp. That of an RTSP stream is on the camera's clock: over TCP it is as
+/// sent, over UDP from the camera's first report of its time (RTCP sender report) on, and before on this
+/// machine's monotonic clock. Use ClockedCamera for times on the rig's clock. Frame::exposure is that of
+/// `camera.sensor`.
 ///
 /// `clock` must outlive the camera. Refuses a sensor with more than 8 bits, and every camera if the program
 /// was built without GStreamer.

@@ -18,11 +18,15 @@ std::string quoted(const std::string& text) {
 
 std::string source_text(const GStreamerConfig& config) {
   if (!config.source.starts_with("rtsp://") && !config.source.starts_with("rtsps://")) return config.source;
+  // Over TCP nothing overtakes, so the stream's own time stamps are best (buffer-mode none): a slow receiver
+  // does not distort them. Over UDP the buffer must follow the clocks' drift, and the server's reports undo
+  // that.
+  const bool is_tcp = config.transport == StreamTransport::tcp;
   // The filter keeps a sound track out. decodebin picks the decoder.
   return fmt::format(
-      "rtspsrc location={} protocols={} latency={:.0f} add-reference-timestamp-meta=true ! "
-      "application/x-rtp,media=video ! decodebin",
-      quoted(config.source), name_of(config.transport), config.buffer * 1e3);
+      "rtspsrc location={} protocols={} latency={:.0f} {} ! application/x-rtp,media=video ! decodebin",
+      quoted(config.source), name_of(config.transport), config.buffer * 1e3,
+      is_tcp ? "buffer-mode=none" : "add-reference-timestamp-meta=true");
 }
 
 }  // namespace

@@ -77,15 +77,16 @@ TEST(GStreamerCamera, SaysWhenARecordingHasEnded) {
   EXPECT_EQ(opened.value()->counts().frames, 5);
 }
 
-std::string fault_of(const std::string& source, const CameraConfig& camera) {
+std::string fault_of(const std::string& source, const CameraConfig& camera, double silence = 30) {
   const WallClock clock;
-  const auto opened = open_gstreamer_camera({.source = source, .silence = 0.5}, camera, clock);
+  const auto opened = open_gstreamer_camera({.source = source, .silence = silence}, camera, clock);
   return opened ? next_fault(*opened.value()) : text(*opened.fault());
 }
 
 TEST(GStreamerCamera, NamesWhatIsWrong) {
   const CameraConfig camera = rtsp_camera_config();
-  EXPECT_NE(fault_of("nosuchsource ! videoconvert", camera).find("no element \"nosuchsource\""), std::string::npos);
+  EXPECT_NE(fault_of("nosuchsource ! videoconvert", camera).find("no element \"nosuchsource\""),
+            std::string::npos);
   EXPECT_NE(fault_of("videotestsrc is-live=true ! video/x-raw,width=64,height=48", camera)
                 .find("the stream has 64 x 48 pixels, the file's sensor has 320 x 240"),
             std::string::npos);
@@ -93,7 +94,7 @@ TEST(GStreamerCamera, NamesWhatIsWrong) {
   const std::string unreachable = fault_of("rtsp://user:secret@127.0.0.1:9/", camera);
   EXPECT_NE(unreachable.find("rtsp://127.0.0.1:9/"), std::string::npos) << unreachable;
   EXPECT_EQ(unreachable.find("secret"), std::string::npos) << unreachable;
-  EXPECT_NE(fault_of("appsrc is-live=true caps=video/x-raw,format=GRAY8,width=320,height=240", camera)
+  EXPECT_NE(fault_of("appsrc is-live=true caps=video/x-raw,format=GRAY8,width=320,height=240", camera, 0.5)
                 .find("no frame for 0.5 s"),
             std::string::npos);
   CameraConfig deep = camera;

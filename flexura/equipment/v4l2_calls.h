@@ -6,8 +6,8 @@
 
 namespace flexura {
 
-/// The system calls on a video device, so that a fake can take the system's place. Each returns what the system
-/// call does, with a negative error number in place of -1.
+/// The system calls on a video device, so that a fake can take the system's place. Each returns what the
+/// system call does, with a negative error number in place of -1.
 class V4l2Calls {
  public:
   virtual ~V4l2Calls() = default;

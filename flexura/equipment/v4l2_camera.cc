@@ -110,8 +110,8 @@ class V4l2Connection {
 
  private:
   [[nodiscard]] ConnectionEnd loss(const std::string& what) const {
-    return {{FaultKind::link_lost,
-             fmt::format("{}{}: {}; trying again", camera_prefix(camera_.name), one_line(config_.device), what)},
+    return {{FaultKind::link_lost, fmt::format("{}{}: {}; trying again", camera_prefix(camera_.name),
+                                               one_line(config_.device), what)},
             false};
   }
   // Each returns what the device refused, or "".
@@ -187,9 +187,10 @@ std::string V4l2Connection::set_format() {
                .is_full_range = got.quantization == V4L2_QUANTIZATION_FULL_RANGE};
     return "";
   }
-  return fmt::format("it gives no {} x {} pixels in a format for pixels = \"{}\"{}: set sensor.width and "
-                     "sensor.height, or format",
-                     sensor.width, sensor.height, name_of(sensor.pixels), sizes);
+  return fmt::format(
+      "it gives no {} x {} pixels in a format for pixels = \"{}\"{}: set sensor.width and "
+      "sensor.height, or format",
+      sensor.width, sensor.height, name_of(sensor.pixels), sizes);
 }
 
 // A device without this setting has a rate of its own, which the frames' times show.
@@ -197,7 +198,8 @@ void V4l2Connection::set_rate() {
   v4l2_streamparm rate{};
   rate.type = capture;
   rate.parm.capture.timeperframe.numerator = 1000;
-  rate.parm.capture.timeperframe.denominator = static_cast<std::uint32_t>(std::lround(1e3 * camera_.sensor.frame_rate));
+  rate.parm.capture.timeperframe.denominator =
+      static_cast<std::uint32_t>(std::lround(1e3 * camera_.sensor.frame_rate));
   device_.ioctl(VIDIOC_S_PARM, &rate);
 }
 
@@ -222,17 +224,21 @@ std::string V4l2Connection::set_light() {
   if (config_.exposure) {
     if (!has(V4L2_CID_EXPOSURE_ABSOLUTE)) return "its exposure cannot be set: remove exposure";
     if (has(V4L2_CID_EXPOSURE_AUTO)) {
-      if (auto problem = set_control(V4L2_CID_EXPOSURE_AUTO, V4L2_EXPOSURE_MANUAL, "exposure_auto"); !problem.empty())
+      if (auto problem = set_control(V4L2_CID_EXPOSURE_AUTO, V4L2_EXPOSURE_MANUAL, "exposure_auto");
+          !problem.empty())
         return problem;
     }
-    const auto units = static_cast<std::int32_t>(std::max(std::lround(*config_.exposure / exposure_unit), 1L));
-    if (auto problem = set_control(V4L2_CID_EXPOSURE_ABSOLUTE, units, "exposure"); !problem.empty()) return problem;
+    const auto units =
+        static_cast<std::int32_t>(std::max(std::lround(*config_.exposure / exposure_unit), 1L));
+    if (auto problem = set_control(V4L2_CID_EXPOSURE_ABSOLUTE, units, "exposure"); !problem.empty())
+      return problem;
     exposure_ = units * exposure_unit;
   }
   if (config_.gain) {
     if (!has(V4L2_CID_GAIN)) return "its gain cannot be set: remove gain";
     if (has(V4L2_CID_AUTOGAIN)) {
-      if (auto problem = set_control(V4L2_CID_AUTOGAIN, 0, "gain_automatic"); !problem.empty()) return problem;
+      if (auto problem = set_control(V4L2_CID_AUTOGAIN, 0, "gain_automatic"); !problem.empty())
+        return problem;
     }
     return set_control(V4L2_CID_GAIN, static_cast<std::int32_t>(*config_.gain), "gain");
   }
@@ -271,7 +277,8 @@ void V4l2Connection::take(const v4l2_buffer& buffer, std::span<const std::uint8_
 }
 
 double V4l2Connection::time_of(const v4l2_buffer& buffer) const {
-  const double stamp = static_cast<double>(buffer.timestamp.tv_sec) + 1e-6 * static_cast<double>(buffer.timestamp.tv_usec);
+  const double stamp =
+      static_cast<double>(buffer.timestamp.tv_sec) + 1e-6 * static_cast<double>(buffer.timestamp.tv_usec);
   const bool is_start = (buffer.flags & V4L2_BUF_FLAG_TSTAMP_SRC_MASK) == V4L2_BUF_FLAG_TSTAMP_SRC_SOE;
   return is_start ? stamp + exposure_ / 2 : stamp - exposure_ / 2;
 }
@@ -282,12 +289,14 @@ Outcome<std::unique_ptr<CountedCamera>> open_v4l2_camera(const V4l2Config& confi
                                                          const ClockPort& clock,
                                                          const std::shared_ptr<V4l2Calls>& calls) {
   if (camera.sensor.bits != 8) {
-    return PortFault{FaultKind::refused,
-                     camera_prefix(camera.name) + "pictures of a video device have 8 bits: set sensor.bits = 8"};
+    return PortFault{FaultKind::refused, camera_prefix(camera.name) +
+                                             "pictures of a video device have 8 bits: set sensor.bits = 8"};
   }
   return std::unique_ptr<CountedCamera>(std::make_unique<CameraFeed>(
       camera.name, camera.sensor.frame_rate, clock,
-      [config, camera, calls](CameraFeed& feed) { return V4l2Connection(feed, config, camera, *calls).run(); },
+      [config, camera, calls](CameraFeed& feed) {
+        return V4l2Connection(feed, config, camera, *calls).run();
+      },
       CameraPatience{.longest_pause = config.longest_pause}));
 }
 

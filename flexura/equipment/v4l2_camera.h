@@ -20,17 +20,18 @@ enum class V4l2Format { automatic, grey, yuyv, rgb, mjpeg };
 struct V4l2Config {
   std::string device = "/dev/video0";  ///< Path; those under /dev/v4l/by-id stay the same.
   V4l2Format format = V4l2Format::automatic;
-  std::optional<double> exposure = {};  ///< Exposure time, s, in steps of 0.1 ms; default: as set in the camera.
+  std::optional<double> exposure =
+      {};  ///< Exposure time, s, in steps of 0.1 ms; default: as set in the camera.
   std::optional<std::int64_t> gain = {};  ///< Gain in the camera's unit; default: as set in the camera.
-  double silence = 5;        ///< Time without a frame after which the device is opened again, s.
-  double longest_pause = 5;  ///< Longest pause before the device is opened again, s.
+  double silence = 5;                     ///< Time without a frame after which the device is opened again, s.
+  double longest_pause = 5;               ///< Longest pause before the device is opened again, s.
 };
 
 const std::vector<std::string>& names_of(const V4l2Format*);
 const Table<V4l2Config>& fields_of(const V4l2Config*);
 
-/// Starts a camera with the size, channels and frame rate of `camera.sensor`. The device is opened, and opened
-/// again after a loss, in the background. The driver's sequence numbers count lost frames.
+/// Starts a camera with the size, channels and frame rate of `camera.sensor`. The device is opened, and
+/// opened again after a loss, in the background. The driver's sequence numbers count lost frames.
 ///
 /// Frame::time is the driver's time stamp, moved to the middle of the exposure if that is known. Most drivers
 /// use this machine's monotonic clock (steady_seconds()). Use ClockedCamera for times on the rig's clock.

@@ -11,7 +11,8 @@ const std::vector<std::string>& names_of(const V4l2Format*) {
 
 const Table<V4l2Config>& fields_of(const V4l2Config*) {
   static const auto table =
-      Table<V4l2Config>("v4l2", "Pictures from a camera of the kernel's video interface, such as a USB camera.")
+      Table<V4l2Config>("v4l2",
+                        "Pictures from a camera of the kernel's video interface, such as a USB camera.")
           .field("device", &V4l2Config::device,
                  {.meaning = "Path of the device. Paths under `/dev/v4l/by-id` stay the same."})
           .field("format", &V4l2Config::format,

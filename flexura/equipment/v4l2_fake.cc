@@ -19,7 +19,9 @@ constexpr int fake_descriptor = 1000;
 }  // namespace
 
 V4l2Fake::V4l2Fake(std::uint32_t format, int width, int height)
-    : format_(format), width_(width), height_(height),
+    : format_(format),
+      width_(width),
+      height_(height),
       picture_(std::size_t(width) * std::size_t(height) * 3) {}
 
 int V4l2Fake::open(const std::string& path) {
@@ -97,7 +99,8 @@ int V4l2Fake::get_control(void* argument) {
   if (found == controls_.end()) return -EINVAL;
   FakeControl& control = found->second;
   const std::int32_t left = control.target - control.value;
-  if (!control.is_stuck) control.value += control.rate == 0 ? left : std::clamp(left, -control.rate, control.rate);
+  if (!control.is_stuck)
+    control.value += control.rate == 0 ? left : std::clamp(left, -control.rate, control.rate);
   asked.value = control.value;
   return 0;
 }
@@ -116,7 +119,8 @@ int V4l2Fake::buffers(unsigned long request, void* argument) {
   switch (request) {
     case VIDIOC_REQBUFS:
       empty_.clear();
-      memory_.assign(static_cast<v4l2_requestbuffers*>(argument)->count, std::vector<std::uint8_t>(picture_.size()));
+      memory_.assign(static_cast<v4l2_requestbuffers*>(argument)->count,
+                     std::vector<std::uint8_t>(picture_.size()));
       return 0;
     case VIDIOC_QUERYBUF:
       buffer.length = static_cast<std::uint32_t>(picture_.size());

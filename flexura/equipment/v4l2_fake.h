@@ -20,9 +20,9 @@ struct FakeControl {
   bool is_stuck = false;    ///< Whether it accepts values and does nothing.
 };
 
-/// A simulated video device in the system's place. It takes one picture with every wait for a frame, and needs no
-/// clock: a picture's time stamp is its sequence number times the period. All functions may be called from several
-/// threads.
+/// A simulated video device in the system's place. It takes one picture with every wait for a frame, and
+/// needs no clock: a picture's time stamp is its sequence number times the period. All functions may be
+/// called from several threads.
 class V4l2Fake : public V4l2Calls {
  public:
   /// Makes a device "/dev/video0" with one pixel format (V4L2_PIX_FMT_...) and size, px.

@@ -120,9 +120,10 @@ std::optional<PortFault> V4l2Head::check(Axis& axis, std::int32_t value, bool* i
   if (distance < axis.nearest) axis.nearest = distance, axis.progress = now;
   if (distance < axis.step) return std::nullopt;
   if (now - axis.progress <= config_.patience) return *is_moving = true, std::nullopt;
-  return refused(fmt::format("its {} stands at {} although it took a command to {}: check that nothing blocks it "
-                             "and that the camera's firmware moves it",
-                             axis.name, value, *axis.target));
+  return refused(
+      fmt::format("its {} stands at {} although it took a command to {}: check that nothing blocks it "
+                  "and that the camera's firmware moves it",
+                  axis.name, value, *axis.target));
 }
 
 Outcome<HeadReading> V4l2Head::read() {

@@ -23,8 +23,8 @@ struct V4l2HeadConfig {
 
 const Table<V4l2HeadConfig>& fields_of(const V4l2HeadConfig*);
 
-/// A head whose axes are controls of a video device. Angles have a resolution of one second of arc or more. Axes
-/// without a control are fixed at 0 (zoom: 1); a command that moves them is refused.
+/// A head whose axes are controls of a video device. Angles have a resolution of one second of arc or more.
+/// Axes without a control are fixed at 0 (zoom: 1); a command that moves them is refused.
 ///
 /// The controls report positions but no motion: an axis counts as moving until it reports its target. An axis
 /// that does not come closer to its target for longer than the patience is a fault of read(), because cameras
@@ -32,7 +32,8 @@ const Table<V4l2HeadConfig>& fields_of(const V4l2HeadConfig*);
 /// position. All functions may be called from several threads.
 class V4l2Head : public HeadPort {
  public:
-  /// Opens the device. Fails if it cannot be opened or has none of the controls. `clock` must outlive the head.
+  /// Opens the device. Fails if it cannot be opened or has none of the controls. `clock` must outlive the
+  /// head.
   [[nodiscard]] static Outcome<std::unique_ptr<V4l2Head>> open(
       const V4l2HeadConfig& config, const std::string& name, const ClockPort& clock,
       const std::shared_ptr<V4l2Calls>& calls = v4l2_system_calls());

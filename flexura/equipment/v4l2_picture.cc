@@ -13,7 +13,9 @@
 namespace flexura {
 namespace {
 
-std::uint8_t byte_of(double value) { return static_cast<std::uint8_t>(std::lround(std::clamp(value, 0.0, 255.0))); }
+std::uint8_t byte_of(double value) {
+  return static_cast<std::uint8_t>(std::lround(std::clamp(value, 0.0, 255.0)));
+}
 
 Image<std::uint8_t> with_channels(Image<std::uint8_t> image, int channels) {
   if (image.channels() == channels) return image;
@@ -34,7 +36,9 @@ Image<std::uint8_t> with_channels(Image<std::uint8_t> image, int channels) {
 struct FromYuyv {
   double offset, scale, color_scale;
   explicit FromYuyv(bool is_full_range)
-      : offset(is_full_range ? 0 : 16), scale(is_full_range ? 1 : 255.0 / 219), color_scale(is_full_range ? 1 : 255.0 / 224) {}
+      : offset(is_full_range ? 0 : 16),
+        scale(is_full_range ? 1 : 255.0 / 219),
+        color_scale(is_full_range ? 1 : 255.0 / 224) {}
 
   void row(const std::uint8_t* from, std::span<std::uint8_t> to, int width, int channels) const {
     for (int u = 0; u < width; ++u) {
@@ -63,7 +67,8 @@ std::optional<Image<std::uint8_t>> unpacked(std::span<const std::uint8_t> bytes,
     return std::nullopt;
   }
   auto* image = std::get_if<Image<std::uint8_t>>(&picture);
-  if (image == nullptr || image->width() != layout.width || image->height() != layout.height) return std::nullopt;
+  if (image == nullptr || image->width() != layout.width || image->height() != layout.height)
+    return std::nullopt;
   return with_channels(std::move(*image), channels);
 }
 

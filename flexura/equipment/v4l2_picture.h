@@ -18,8 +18,8 @@ struct V4l2Layout {
   bool is_full_range = false;
 };
 
-/// Returns a device's picture with one channel (gray) or three (color). Returns std::nullopt for a picture that is
-/// too short, damaged, or of another size. YUYV is converted by ITU-R BT.601.
+/// Returns a device's picture with one channel (gray) or three (color). Returns std::nullopt for a picture
+/// that is too short, damaged, or of another size. YUYV is converted by ITU-R BT.601.
 [[nodiscard]] std::optional<Image<std::uint8_t>> v4l2_picture(std::span<const std::uint8_t> bytes,
                                                               const V4l2Layout& layout, int channels);
 

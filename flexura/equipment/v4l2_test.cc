@@ -24,7 +24,9 @@ CameraConfig video_camera_config(PixelKind pixels = PixelKind::gray) {
   return camera;
 }
 
-const Image<std::uint8_t>& bytes_of(const Frame& frame) { return std::get<Image<std::uint8_t>>(*frame.picture); }
+const Image<std::uint8_t>& bytes_of(const Frame& frame) {
+  return std::get<Image<std::uint8_t>>(*frame.picture);
+}
 
 TEST(V4l2Camera, DeliversFramesWithTheDriversTimes) {
   const auto fake = std::make_shared<V4l2Fake>(V4L2_PIX_FMT_GREY, 32, 16);
@@ -53,7 +55,8 @@ TEST(V4l2Camera, CountsLostAndDamagedFrames) {
   const double end = steady_seconds() + camera_patience;
   while (opened.value()->counts().lost < 5 && steady_seconds() < end) (void)next_frames(*opened.value(), 1);
   EXPECT_EQ(opened.value()->counts().lost, 5);
-  for (const Frame& frame : next_frames(*opened.value(), 3)) EXPECT_NEAR(frame.time, double(frame.number) / 30, 1e-5);
+  for (const Frame& frame : next_frames(*opened.value(), 3))
+    EXPECT_NEAR(frame.time, double(frame.number) / 30, 1e-5);
 }
 
 TEST(V4l2Camera, ComesBackWhenPluggedInAgain) {
@@ -116,7 +119,8 @@ TEST(V4l2Camera, NamesWhatIsWrong) {
 }
 
 TEST(V4l2Picture, ConvertsYuyv) {
-  // Black and white of the limited range, then the red of 100 % colour bars in ITU-R BT.601: Y 81, Cb 90, Cr 240.
+  // Black and white of the limited range, then the red of 100 % colour bars in ITU-R BT.601: Y 81, Cb 90, Cr
+  // 240.
   const std::vector<std::uint8_t> gray = {16, 128, 235, 128}, red = {81, 90, 81, 240};
   const V4l2Layout layout{.format = V4L2_PIX_FMT_YUYV, .width = 2, .height = 1};
   const auto light = v4l2_picture(gray, layout, 1);
@@ -156,7 +160,8 @@ class SetClock : public ClockPort {
 TEST(V4l2Head, MovesReadsAndHalts) {
   const auto fake = std::make_shared<V4l2Fake>(V4L2_PIX_FMT_GREY, 32, 16);
   constexpr std::int32_t degree = 3600;
-  fake->set_control(V4L2_CID_PAN_ABSOLUTE, {.min = -90 * degree, .max = 90 * degree, .step = degree, .rate = 10 * degree});
+  fake->set_control(V4L2_CID_PAN_ABSOLUTE,
+                    {.min = -90 * degree, .max = 90 * degree, .step = degree, .rate = 10 * degree});
   fake->set_control(V4L2_CID_ZOOM_ABSOLUTE, {.min = 100, .max = 500, .value = 100, .target = 100});
   const SetClock clock;
   const auto opened = V4l2Head::open({.zoom_step = 0.01}, "front", clock, fake);
@@ -191,7 +196,8 @@ TEST(V4l2Head, ReportsAnAxisThatOnlyAcceptsCommands) {
   clock.time = 1.5;
   const auto reading = opened.value()->read();
   ASSERT_FALSE(reading);
-  EXPECT_NE(text(*reading.fault()).find("head \"front\": /dev/video0: its tilt stands at 0"), std::string::npos);
+  EXPECT_NE(text(*reading.fault()).find("head \"front\": /dev/video0: its tilt stands at 0"),
+            std::string::npos);
   fake->set_plugged(false);
   EXPECT_EQ(opened.value()->read().fault()->kind, FaultKind::link_lost);
   EXPECT_FALSE(V4l2Head::open({}, "front", clock, fake));

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -30,6 +31,27 @@ inline constexpr double camera_patience = 60;  ///< Longest time that a test wai
   while (frames.size() < count && steady_seconds() < end) {
     const auto taken = camera.wait(0.1);
     if (taken && taken.value()) frames.push_back(*taken.value());
+  }
+  return frames;
+}
+
+/// Watches cameras until each has delivered `count` frames, for at most four minutes. Returns the frames that
+/// were seen of each. Faults after the first frame, and missing frames are failures.
+[[nodiscard]] inline std::vector<std::vector<Frame>> watched(const std::vector<CountedCamera*>& cameras,
+                                                             std::int64_t count) {
+  std::vector<std::vector<Frame>> frames(cameras.size());
+  const double end = steady_seconds() + 4 * camera_patience;
+  const auto is_waiting = [&](const CountedCamera* camera) { return camera->counts().frames < count; };
+  while (std::ranges::any_of(cameras, is_waiting) && steady_seconds() < end) {
+    for (std::size_t i = 0; i < cameras.size(); ++i) {
+      const auto taken = cameras[i]->wait(0.005);
+      if (taken && taken.value()) frames[i].push_back(*taken.value());
+      if (!taken && cameras[i]->counts().connections > 0) ADD_FAILURE() << text(*taken.fault());
+    }
+  }
+  for (std::size_t i = 0; i < cameras.size(); ++i) {
+    EXPECT_GE(cameras[i]->counts().frames, count);
+    EXPECT_GT(frames[i].size(), 0U);
   }
   return frames;
 }

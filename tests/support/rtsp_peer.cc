@@ -4,8 +4,8 @@
 //
 // PORT 0: any that is free. ENCODING: raw, jpeg, h264, or lossy (raw, and
 // one packet in 701 is not sent). Prints "port N", then serves rtsp://127.0.0.1:N/ until its
-// standard input ends. Every connection's pictures are numbered from 0: bit b of the number is the brightness of the
-// square of 16 x 16 px at column 16 b in the top left corner.
+// standard input ends. Every connection's pictures are numbered from 0: bit b of the number is the brightness
+// of the square of 16 x 16 px at column 16 b in the top left corner.
 
 #include <gst/app/gstappsrc.h>
 #include <gst/gst.h>
@@ -75,13 +75,15 @@ void on_media(GstRTSPMediaFactory* /*factory*/, GstRTSPMedia* media, gpointer da
   GstElement* element = gst_rtsp_media_get_element(media);
   GstElement* app = gst_bin_get_by_name_recurse_up(GST_BIN(element), "numbered");
   auto* source = new Source{*static_cast<Format*>(data)};
-  g_object_set_data_full(G_OBJECT(media), "source", source, [](gpointer old) { delete static_cast<Source*>(old); });
+  g_object_set_data_full(G_OBJECT(media), "source", source,
+                         [](gpointer old) { delete static_cast<Source*>(old); });
   g_signal_connect(app, "need-data", G_CALLBACK(on_need_data), source);
   gst_object_unref(app);
   if (source->format.encoding == "lossy") {
     GstElement* payloader = gst_bin_get_by_name_recurse_up(GST_BIN(element), "pay0");
     GstPad* pad = gst_element_get_static_pad(payloader, "src");
-    const auto packets = static_cast<GstPadProbeType>(GST_PAD_PROBE_TYPE_BUFFER | GST_PAD_PROBE_TYPE_BUFFER_LIST);
+    const auto packets =
+        static_cast<GstPadProbeType>(GST_PAD_PROBE_TYPE_BUFFER | GST_PAD_PROBE_TYPE_BUFFER_LIST);
     gst_pad_add_probe(pad, packets, on_packets, source, nullptr);
     gst_object_unref(pad);
     gst_object_unref(payloader);
@@ -90,7 +92,8 @@ void on_media(GstRTSPMediaFactory* /*factory*/, GstRTSPMedia* media, gpointer da
 }
 
 std::string launch(const Format& format) {
-  const std::string size = ",width=" + std::to_string(format.width) + ",height=" + std::to_string(format.height) +
+  const std::string size = ",width=" + std::to_string(format.width) +
+                           ",height=" + std::to_string(format.height) +
                            ",framerate=" + std::to_string(format.rate) + "/1";
   std::string pay = "rtpvrawpay";
   if (format.encoding == "jpeg") pay = "jpegenc quality=90 ! rtpjpegpay";

@@ -8,8 +8,9 @@ namespace flexura {
 /// Another program that runs during a test. It is killed in the end.
 class Spawned {
  public:
-  /// Starts a program with these arguments; the first is its name or path. Throws std::runtime_error if it cannot be
-  /// started. Its standard output can be read by line(); its standard input stays open until its end.
+  /// Starts a program with these arguments; the first is its name or path. Throws std::runtime_error if it
+  /// cannot be started. Its standard output can be read by line(); its standard input stays open until its
+  /// end.
   explicit Spawned(const std::vector<std::string>& arguments);
   ~Spawned();
   Spawned(const Spawned&) = delete;

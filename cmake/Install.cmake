@@ -30,6 +30,10 @@ foreach(header ${headers})
 endforeach()
 set(config_dir ${CMAKE_INSTALL_LIBDIR}/cmake/flexura)
 install(EXPORT flexuraTargets NAMESPACE flexura:: DESTINATION ${config_dir})
+get_property(find_cameras GLOBAL PROPERTY FLEXURA_FIND_CAMERAS)
+if(find_cameras)
+  string(PREPEND find_cameras "find_dependency(PkgConfig)\n")
+endif()
 configure_package_config_file(cmake/flexuraConfig.cmake.in
   ${PROJECT_BINARY_DIR}/flexuraConfig.cmake INSTALL_DESTINATION ${config_dir})
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/flexuraConfigVersion.cmake

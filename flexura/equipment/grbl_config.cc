@@ -10,7 +10,7 @@
 namespace flexura {
 namespace {
 
-constexpr double longest_wait = 600;  // s
+constexpr double longest_timeout = 600;  // s
 
 void check_grbl(const GrblConfig& config, Reader& reader) {
   try {
@@ -63,13 +63,13 @@ const Table<GrblConfig>& fields_of(const GrblConfig*) {
           .field("connect_timeout", &GrblConfig::connect_timeout,
                  {.meaning = "Longest wait for a controller that starts.",
                   .unit = Unit::second,
-                  .range = above_up_to(0, longest_wait)})
+                  .range = above_up_to(0, longest_timeout)})
           .field("stop_timeout", &GrblConfig::stop_timeout,
                  {.meaning = "Longest time of braking.",
                   .unit = Unit::second,
-                  .range = above_up_to(0, longest_wait)})
+                  .range = above_up_to(0, longest_timeout)})
           .field("homing_timeout", &GrblConfig::homing_timeout,
-                 {.meaning = "Longest homing.", .unit = Unit::second, .range = above_up_to(0, longest_wait)})
+                 {.meaning = "Longest homing.", .unit = Unit::second, .range = above_up_to(0, longest_timeout)})
           .field(
               "brake_time", &GrblConfig::brake_time,
               {.meaning = "Time that an emergency stop leaves for braking before it resets the controller.",

@@ -1,0 +1,47 @@
+#include "flexura/equipment/guarded_drive.h"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+namespace flexura {
+
+GuardedDrive::GuardedDrive(DrivePort& drive, Guard& guard, std::function<void()> keep_alive)
+    : drive_(drive), guard_(guard), keep_alive_(std::move(keep_alive)) {}
+
+void GuardedDrive::beat() {
+  if (!guard_.beat(is_moving_)) was_stopped_ = true;
+  if (keep_alive_) keep_alive_();
+}
+
+CommandOutcome GuardedDrive::command(std::span<const double> targets, double duration) {
+  is_moving_ = true;
+  beat();
+  if (was_stopped_.exchange(false)) {
+    is_moving_ = false;
+    return PortFault{FaultKind::refused,
+                     fmt::format("the watchdog stopped all devices, because the program was silent for more than "
+                                 "{:g} s while the arm moved",
+                                 guard_.period())};
+  }
+  CommandOutcome outcome = drive_.command(targets, duration);
+  // A controller may move although its answer was lost.
+  beat();
+  return outcome;
+}
+
+CommandOutcome GuardedDrive::halt() {
+  CommandOutcome outcome = drive_.halt();
+  beat();
+  return outcome;
+}
+
+Outcome<DriveReading> GuardedDrive::read() {
+  beat();
+  auto reading = drive_.read();
+  if (reading) is_moving_ = reading.value().moving;
+  beat();
+  return reading;
+}
+
+}  // namespace flexura

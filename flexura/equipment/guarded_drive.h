@@ -1,0 +1,37 @@
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <functional>
+#include <span>
+
+#include "flexura/equipment/guard.h"
+#include "flexura/port/drive_port.h"
+
+namespace flexura {
+
+/// A drive whose guard stops all devices if this program is silent for a period while the drive moves. Whatever
+/// waits must call beat(). All functions may be called from several threads if those of the drive may.
+class GuardedDrive : public DrivePort {
+ public:
+  /// Drive and guard must outlive this object. `keep_alive`, if any, is called with every beat.
+  GuardedDrive(DrivePort& drive, Guard& guard, std::function<void()> keep_alive = {});
+
+  [[nodiscard]] DriveQuantity quantity() const override { return drive_.quantity(); }
+  [[nodiscard]] std::size_t axes() const override { return drive_.axes(); }
+  /// Refuses the command if the guard has stopped the devices. Then the next command is passed on again.
+  CommandOutcome command(std::span<const double> targets, double duration) override;
+  CommandOutcome halt() override;
+  Outcome<DriveReading> read() override;
+
+  /// Reports to the guard that this program works.
+  void beat();
+
+ private:
+  DrivePort& drive_;
+  Guard& guard_;
+  std::function<void()> keep_alive_;
+  std::atomic<bool> is_moving_ = false, was_stopped_ = false;
+};
+
+}  // namespace flexura

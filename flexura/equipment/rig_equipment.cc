@@ -1,0 +1,128 @@
+#include "flexura/equipment/rig_equipment.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstddef>
+
+#include "flexura/base/reader.h"
+#include "flexura/base/table.h"
+
+namespace flexura {
+
+const std::vector<std::string>& names_of(const StartPositions*) {
+  static const std::vector<std::string> names = {"declared", "homed"};
+  return names;
+}
+
+const Table<CameraEquipment>& fields_of(const CameraEquipment*) {
+  static const auto table =
+      Table<CameraEquipment>("camera", "Devices of one camera: one source of pictures and at most one head.")
+          .field("name", &CameraEquipment::name, {.meaning = "Name of the camera.", .required = true})
+          .field("gstreamer", &CameraEquipment::gstreamer,
+                 {.meaning = "Pictures through GStreamer, for example of a network camera.", .default_text = "none"})
+          .field("aravis", &CameraEquipment::aravis,
+                 {.meaning = "Pictures of a GigE Vision or USB3 Vision camera.", .default_text = "none"})
+          .field("v4l2", &CameraEquipment::v4l2, {.meaning = "Pictures of a USB camera.", .default_text = "none"})
+          .field("visca", &CameraEquipment::visca, {.meaning = "Head with VISCA commands.", .default_text = "none"})
+          .field("v4l2_head", &CameraEquipment::v4l2_head,
+                 {.meaning = "Pan, tilt and zoom of a USB camera.", .default_text = "none"})
+          .check([](const CameraEquipment& config, Reader& reader) {
+            const int sources = (config.gstreamer ? 1 : 0) + (config.aravis ? 1 : 0) + (config.v4l2 ? 1 : 0);
+            if (sources != 1)
+              reader.problem_at("", fmt::format("{} sources of pictures: expected one of gstreamer, aravis, v4l2",
+                                                sources));
+            if (config.visca && config.v4l2_head)
+              reader.problem_at("", "two heads: expected one of visca, v4l2_head, or none");
+          });
+  return table;
+}
+
+const Table<RigEquipment>& fields_of(const RigEquipment*) {
+  constexpr std::size_t most_controllers = 16, most_cameras = 16, most_axes = 64;
+  static const auto table =
+      Table<RigEquipment>("rig", "Equipment that runs the experiment, instead of the simulation.")
+          .field("watchdog", &RigEquipment::watchdog,
+                 {.meaning = "Longest time for which the program may be silent while the arm moves. Then a "
+                             "second process stops all devices.",
+                  .unit = Unit::second,
+                  .range = between(0.05, 10)})
+          .field("start", &RigEquipment::start,
+                 {.meaning = "How motor positions become known. `declared`: the arm has its initial shape. "
+                             "`homed`: the axes move to their limit switches."})
+          .field("home", &RigEquipment::home,
+                 {.meaning = "Motor positions at the limit switches, microsteps, one per axis.",
+                  .count = {0, most_axes},
+                  .default_text = "none"})
+          .field("grbl", &RigEquipment::grbl,
+                 {.meaning = "Controllers with Grbl, in the order of the axes.",
+                  .count = {0, most_controllers},
+                  .default_text = "none"})
+          .field("cia402", &RigEquipment::cia402,
+                 {.meaning = "CANopen drives, one per axis.", .default_text = "none"})
+          .field("camera", &RigEquipment::camera,
+                 {.meaning = "Devices of the cameras.", .count = {0, most_cameras}, .default_text = "none"});
+  return table;
+}
+
+namespace {
+
+void check_controllers(const RigEquipment& equipment, std::size_t axes, Reader& reader) {
+  if (equipment.cia402 && !equipment.grbl.empty()) {
+    reader.problem_at("rig.cia402", "drives of two kinds: expected cia402 or grbl");
+    return;
+  }
+  if (axes == 0) {
+    reader.problem_at("rig", "the arm has no drive to run: expected a table [drive]");
+    return;
+  }
+  std::size_t there = equipment.cia402 ? equipment.cia402->axes.size() : 0;
+  for (const GrblConfig& one : equipment.grbl) there += one.axes.size();
+  if (there != axes)
+    reader.problem_at(equipment.cia402 ? "rig.cia402" : "rig",
+                      fmt::format("{} axes of controllers: expected {}, one per tendon of the drive", there, axes));
+  const bool is_homed = equipment.start == StartPositions::homed;
+  if (is_homed && !equipment.cia402 && equipment.home.size() != axes)
+    reader.problem_at("rig.home", fmt::format("{} positions: expected {}, one per axis", equipment.home.size(), axes));
+  if (!is_homed && !equipment.home.empty())
+    reader.problem_at("rig.home", "not used: expected start = \"homed\"");
+}
+
+void check_names(const RigEquipment& equipment, const std::vector<std::string>& cameras, Reader& reader) {
+  for (std::size_t i = 0; i < equipment.camera.size(); ++i) {
+    const std::string& name = equipment.camera[i].name;
+    const std::string path = fmt::format("rig.camera[{}].name", i);
+    if (std::ranges::find(cameras, name) == cameras.end())
+      reader.problem_at(path, fmt::format("\"{}\" is no camera of the experiment: expected {}", name,
+                                          fmt::join(cameras, ", ")));
+    for (std::size_t k = 0; k < i; ++k)
+      if (equipment.camera[k].name == name)
+        reader.problem_at(path, fmt::format("\"{}\" has devices already", name));
+  }
+  for (const std::string& name : cameras)
+    if (std::ranges::find(equipment.camera, name, &CameraEquipment::name) == equipment.camera.end())
+      reader.problem_at("rig.camera", fmt::format("no devices for the camera \"{}\"", name));
+}
+
+// A bus is described once per head; the descriptions must agree.
+void check_buses(const RigEquipment& equipment, Reader& reader) {
+  for (std::size_t i = 0; i < equipment.camera.size(); ++i)
+    for (std::size_t k = 0; k < i; ++k) {
+      const auto &one = equipment.camera[i].visca, &other = equipment.camera[k].visca;
+      if (one && other && one->bus.link == other->bus.link && one->address == other->address)
+        reader.problem_at(fmt::format("rig.camera[{}].visca.address", i),
+                          fmt::format("{} is the address of the head of \"{}\" on the same link", one->address,
+                                      equipment.camera[k].name));
+    }
+}
+
+}  // namespace
+
+void check_equipment(const RigEquipment& equipment, const std::vector<std::string>& cameras, std::size_t axes,
+                     Reader& reader) {
+  check_controllers(equipment, axes, reader);
+  check_names(equipment, cameras, reader);
+  check_buses(equipment, reader);
+}
+
+}  // namespace flexura

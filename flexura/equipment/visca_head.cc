@@ -88,7 +88,7 @@ Outcome<ViscaHead::Sample> ViscaHead::sample() const {
 
 // A position counts if two samples agree, or if it is between those before and after, as in a move.
 Outcome<ViscaHead::Sample> ViscaHead::confirmed_sample(const std::optional<Sample>& last) const {
-  const auto newest = sample();
+  auto newest = sample();
   if (!newest) return newest;
   std::optional<Sample> before, middle = last, after = newest.value();
   const std::int64_t most = 4 + 2 * config_.bus.tries;

@@ -95,7 +95,7 @@ Node input_names(std::size_t tendons, bool by_displacement) {
 }
 
 // Returns the names of the columns of `by_parameters` (dynamics_parameters for each section).
-Node parameter_names(std::size_t sections) {
+Node section_parameter_names(std::size_t sections) {
   constexpr std::array kinds = {"shear", "stretch", "bends", "twist", "mass", "damping"};
   static_assert(kinds.size() == static_cast<std::size_t>(dynamics_parameters));
   std::vector<std::string> names;
@@ -159,7 +159,7 @@ std::string LineariseAnswers::answer(std::string_view line) {
                      {"A", {}, matrix_node(linear.A_rest)},
                      {"B", {}, matrix_node(linear.B_rest)},
                      {"C", {}, matrix_node(C)},
-                     {"parameters", {}, parameter_names(rod_.sections.size())},
+                     {"parameters", {}, section_parameter_names(rod_.sections.size())},
                      {"by_parameters", {}, matrix_node(linear.by_parameters_rest)}},
          {}});
   } catch (const InputError& error) {

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "tests/support/cia402_loop.h"
+#include "tests/support/fault_of.h"
 
 namespace flexura {
 namespace {
@@ -14,13 +15,6 @@ namespace {
 using ::testing::Each;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
-
-// Returns the fault's text, or "".
-template <class T>
-std::string fault_of(const Outcome<T>& outcome) {
-  const auto fault = outcome.fault();
-  return fault ? text(*fault) : "";
-}
 
 TEST(Cia402Drive, SetsDrivesUpAndKnowsTheirNames) {
   Cia402Bench bench(2);

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "flexura/base/table.h"
+#include "tests/support/fault_of.h"
 #include "tests/support/grbl_bench.h"
 
 namespace flexura {
@@ -19,12 +20,6 @@ namespace {
 
 using testing::ElementsAre;
 using testing::HasSubstr;
-
-// Returns the fault's text, or "".
-template <class T>
-std::string fault_of(const Outcome<T>& outcome) {
-  return outcome ? std::string() : text(*outcome.fault());
-}
 
 using Positions = std::vector<double>;
 

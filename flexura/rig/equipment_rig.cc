@@ -1,5 +1,3 @@
-#include "flexura/rig/equipment_rig.h"
-
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -17,6 +15,8 @@
 #include "flexura/equipment/wall_clock.h"
 #include "flexura/log/recorder.h"
 #include "flexura/port/clocked_ports.h"
+#include "flexura/port/driven_arm.h"
+#include "flexura/rig/rig.h"
 #include "flexura/sim/arm_setup.h"
 
 namespace flexura {
@@ -47,7 +47,8 @@ class ArmEquipment {
     }
     std::size_t first = 0;
     for (const GrblConfig& config : equipment.grbl) {
-      auto drive = std::make_unique<GrblDrive>(must(open_link(parse_link_address(config.link))), clock, config);
+      auto drive =
+          std::make_unique<GrblDrive>(must(open_link(parse_link_address(config.link))), clock, config);
       guard.protect(drive->link(), grbl_stop(config));
       must(drive->connect());
       const bool is_homed = equipment.start == StartPositions::homed;
@@ -127,7 +128,8 @@ class EquipmentRig : public Rig {
         arm_(std::make_unique<ArmEquipment>(equipment_, ArmSetup(setup.model_rig()), clock_, guard_)) {
     for (const CameraConfig& camera : setup.cameras()) {
       const auto found = std::ranges::find(equipment_.camera, camera.name, &CameraEquipment::name);
-      if (found == equipment_.camera.end()) throw std::runtime_error("no devices for the camera " + camera.name);
+      if (found == equipment_.camera.end())
+        throw std::runtime_error("no devices for the camera " + camera.name);
       auto devices = std::make_unique<CameraDevices>();
       devices->name = camera.name;
       devices->head = head_of(*found, clock_, guard_, buses_);

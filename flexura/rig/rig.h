@@ -86,6 +86,16 @@ using RigFactory = std::function<std::unique_ptr<Rig>(const Setup&)>;
 /// Returns a simulated rig (rig/filming.h).
 [[nodiscard]] std::unique_ptr<Rig> simulated_rig(const Setup& setup);
 
+/// Returns the rig of the equipment in the experiment's table [rig]. It connects to all devices, finds out
+/// where the motors are (RigEquipment::start) and starts the process that stops devices when this program
+/// dies or hangs. In the end it stops all devices. Its clock shows real time.
+///
+/// Throws std::runtime_error with one clear line if a device cannot be used, or, later, if a device fails.
+[[nodiscard]] std::unique_ptr<Rig> equipment_rig(const Setup& setup);
+
+/// Returns the rig of an experiment: its equipment if it has a table [rig], otherwise a simulated rig.
+[[nodiscard]] std::unique_ptr<Rig> rig_of(const Setup& setup);
+
 /// Returns the axis positions that the heads and stages of a rig's cameras report now. `optics`: models of
 /// these cameras; their initial positions are used for missing heads or stages. Throws std::runtime_error
 /// with the reason if a head or stage does not report.

@@ -55,6 +55,11 @@ void check_setup(const Setup& setup, Reader& reader) {
     reader.problem_at("truth.stand.camera_distances",
                       "moves no camera: expected a mount.position in [[truth.camera]]");
   }
+  if (setup.rig) {
+    std::vector<std::string> names;
+    for (const CameraConfig& camera : setup.cameras()) names.push_back(camera.name);
+    check_equipment(*setup.rig, names, setup.drive ? setup.drive->tendon.size() : 0, reader);
+  }
   // Without [truth], the world is the model.
   const std::string problem = truth_problem(setup.model_rig(), setup.true_rig());
   if (!problem.empty()) reader.problem_at(setup.truth ? "truth" : "arm", problem);

@@ -8,6 +8,7 @@
 
 #include "flexura/base/fields.h"
 #include "flexura/camera/camera_config.h"
+#include "flexura/equipment/rig_equipment.h"
 #include "flexura/kinematics/curves.h"
 #include "flexura/model/arm_config.h"
 #include "flexura/model/drive_config.h"
@@ -58,6 +59,7 @@ struct Setup {
   StandConfig stand;
   std::vector<CameraConfig> camera;  ///< Cameras; empty: the paper's two cameras (see cameras()).
   std::optional<TruthConfig> truth;  ///< Differences of the simulated world from the model; missing: none.
+  std::optional<RigEquipment> rig;   ///< Equipment that runs the experiment; missing: it is simulated.
   std::filesystem::path folder;      ///< Folder of the experiment file; not a field of the file.
 
   /// Returns the arm model. Throws InputError for an elastic arm without an equilibrium.

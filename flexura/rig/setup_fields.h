@@ -45,7 +45,9 @@ template <std::derived_from<Setup> S>
                       "two, \"front\" on +Z and \"side\" on -X, with all of the arm's reach in view"})
           .field("truth", &Setup::truth,
                  {.meaning = "Simulated truth, where it differs from the models that tasks use.",
-                  .default_text = "as modelled"}));
+                  .default_text = "as modelled"})
+          .field("rig", &Setup::rig,
+                 {.meaning = "Equipment that runs the experiment.", .default_text = "simulated"}));
 }
 
 }  // namespace flexura

@@ -29,23 +29,26 @@ std::string lab_file(const std::string& link, double duration, const std::string
   return fmt::format(R"(
 [arm]
 kind = "spatial"
-bend_rate = 10
 [[arm.section]]
 length = 0.3
 [drive]
 radius = 0.01
 [[drive.tendon]]
+section = 1
 angle_deg = 0
 [[drive.tendon]]
+section = 1
 angle_deg = 120
 [[drive.tendon]]
+section = 1
 angle_deg = 240
 [[camera]]
 name = "front"
 lens.fx = 400
-sensor.size = [160, 120]
-mount.position = [0, -1, 0.15]
-mount.look_at = [0, 0, 0.15]
+sensor.width = 160
+sensor.height = 120
+mount.position = [0, 0.1, 1]
+mount.look_at = [0, 0, 0.1]
 [record]
 report = false
 [[task]]

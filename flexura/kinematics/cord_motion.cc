@@ -29,8 +29,7 @@ class CordPointToPointMotion : public Motion {
         cord_changes_.size() != from_.bends.size() || !one_duration) {
       throw std::invalid_argument(
           "a motion of chord angles needs, per section, one change and one profile; all profiles must have "
-          "the "
-          "same duration");
+          "the same duration");
     }
   }
   [[nodiscard]] double duration() const override { return profiles_.front().duration(); }

@@ -67,7 +67,7 @@ struct Identification {
   Eigen::VectorXd sigma;
   Eigen::MatrixXd covariance;  ///< Covariance of the observable parameters; other rows and columns are 0.
   std::vector<char> is_observable;
-  /// With known noise: sum of squared residuals, each in standard deviations, divided by the degrees of
+  /// If the noise is known: sum of squared residuals, each in standard deviations, divided by the degrees of
   /// freedom. It is about 1 if the model fits. With unknown noise: 1.
   double misfit = 0;
   int equations = 0;  ///< Number of scalar equations.

@@ -12,8 +12,8 @@ struct RodModes {
   /// Eigenvalues of A in x' = A x with x = (q, v), 1/s, sorted by absolute value. In a conjugate pair, the
   /// one with negative imaginary part is first.
   Eigen::VectorXcd eigenvalues;
-  /// Of the conjugate pairs, in the same order: frequency |eigenvalue| / (2 pi), Hz, and damping ratio -(real
-  /// part) / |eigenvalue|. Overdamped modes are omitted.
+  /// Frequency |eigenvalue| / (2 pi), Hz, and damping ratio -(real part) / |eigenvalue| of each conjugate
+  /// pair, in the order of the eigenvalues. Overdamped modes have no pair and are omitted.
   std::vector<double> frequencies, damping_ratios;
 };
 

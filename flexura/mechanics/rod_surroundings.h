@@ -94,10 +94,11 @@ class RodSurroundings {
   /// Computes wrenches at the chosen points. Must set all of `pulls`.
   virtual void pull_points(std::span<const std::size_t> /*chosen*/, std::span<const NodeMotion> /*points*/,
                            std::span<NodePull> /*pulls*/) const {}
-  /// For coupled wrenches: appends all their derivatives, also those by the motion of the same point.
+  /// If wrenches are coupled, appends all their derivatives, also those with respect to the motion of the
+  /// same point.
   virtual void couple(std::span<const std::size_t> /*chosen*/, std::span<const NodeMotion> /*points*/,
                       std::vector<PointCoupling>& /*couplings*/) const {}
-  /// For coupled wrenches: appends the ties for a step's matrix.
+  /// If wrenches are coupled, appends the ties for a step's matrix.
   virtual void tie(std::span<const std::size_t> /*chosen*/, std::span<const NodeMotion> /*points*/,
                    std::vector<PointTie>& /*ties*/) const {}
 };

@@ -209,9 +209,9 @@ class RodDynamics {
   /// Returns the derivatives of tendon lengths by the modes, tendons x modes. The generalized forces of
   /// tensions are -lengths_by_q^T tensions. Throws std::invalid_argument as start().
   [[nodiscard]] Eigen::MatrixXd lengths_by_q(const Eigen::VectorXd& q);
-  /// Return the stiffness matrix K (strain energy q^T K q / 2) and the damping matrix D (viscous forces -D
-  /// v), modes x modes.
+  /// Returns the stiffness matrix K, modes x modes: the strain energy is q^T K q / 2.
   [[nodiscard]] Eigen::MatrixXd stiffness_matrix() const;
+  /// Returns the damping matrix D, modes x modes: the viscous forces are -D v.
   [[nodiscard]] Eigen::MatrixXd damping_matrix() const;
 
   /// Returns the derivatives at a state. Their cost grows with the square of the number of sections. `slide`

@@ -47,8 +47,8 @@ class Recording {
   /// Returns the arm's shape in state number `place`. Throws InputError if the logged shape does not fit the
   /// arm.
   [[nodiscard]] ArmState state(std::size_t place) const;
-  /// Returns the run's condition at a time, s. It is `unsafe` while a limit is violated, at the end that of
-  /// the results, and otherwise `running`.
+  /// Returns the run's condition at a time, s: `unsafe` while a limit is violated, at the end the condition
+  /// in the results, and otherwise `running`.
   [[nodiscard]] Conditioned condition(double time) const;
 
   /// Returns the number of a camera's images in the log.

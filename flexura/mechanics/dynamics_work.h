@@ -15,7 +15,7 @@
 
 namespace flexura {
 
-/// Factored derivative of a step's equations by the rates.
+/// Factored derivative of a step's equations with respect to the rates.
 struct RodStepFactor {
   double stretch = 0;  ///< Step length times Scheme::stage, s.
   Eigen::PartialPivLU<Eigen::MatrixXd> lu;
@@ -82,7 +82,8 @@ struct RodDynamics::Work {
   /// Bodies of nodes that carry payloads, without the payloads.
   std::vector<std::pair<std::size_t, RodLayout::Body>> bare = {};
 
-  /// Returns the derivatives at the present shape, also those by the input. Tensions are those of `tendons`.
+  /// Returns the derivatives at the present shape, also those with respect to the input. Tensions are those
+  /// of `tendons`.
   [[nodiscard]] RodDynamicsSlopes slopes_at(const Eigen::VectorXd& q, const Eigen::VectorXd& v,
                                             const TendonInput& tendons, const RodLoads& loads);
   /// Solves the stage of a step that starts at `state`; q and v become those of the stage.

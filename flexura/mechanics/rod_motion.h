@@ -93,10 +93,10 @@ class RodMotion {
 
   /// Computes the generalized forces of one wrench at each node; after place().
   void collect(const std::vector<Screw<S>>& wrenches, S* force);
-  /// Computes the derivatives of a tendon's length by all modes; after place().
+  /// Computes the derivatives of a tendon's length with respect to all modes; after place().
   void find_length_slopes(std::size_t tendon, S* slopes);
-  /// Computes minus the derivatives of the generalized forces by a tendon's tension at the base. Without
-  /// friction these are the derivatives of its length. `tension`: that tension, N. Call after pull().
+  /// Computes minus the derivatives of the generalized forces with respect to a tendon's tension at the base.
+  /// Without friction these are the derivatives of its length. `tension`: that tension, N. Call after pull().
   void find_pull_slopes(std::size_t tendon, double tension, double* slopes);
   /// Returns for each piece the friction force at its junction with the previous piece, N. The force is the
   /// tension of the previous piece minus that of this piece. Call after pull().
@@ -106,7 +106,7 @@ class RodMotion {
   [[nodiscard]] const std::vector<S>& slides() const { return slide_; }
 
   /// Returns the geometric stiffness at a node of tendons in channels, per metre of rod. It is the second
-  /// derivative, by the node's strains, of the sum of tensions times tendon lengths.
+  /// derivative with respect to the node's strains, of the sum of tensions times tendon lengths.
   [[nodiscard]] Matrix6d tendon_stiffness(const RodLayout::Section& section, std::size_t node,
                                           const double* tensions) const;
 

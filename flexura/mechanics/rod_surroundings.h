@@ -27,8 +27,8 @@ struct NodeMotion {
   Vector6d twist = Vector6d::Zero();
 };
 
-/// Wrench [f; m] on a node about the base's origin. `by_pose`: derivative by a small displacement twist of
-/// the node. `by_twist`: derivative by its velocity twist.
+/// Wrench [f; m] on a node about the base's origin. `by_pose`: derivative with respect to a small
+/// displacement twist of the node. `by_twist`: derivative with respect to its velocity twist.
 struct NodePull {
   Vector6d wrench = Vector6d::Zero();
   Matrix6d by_pose = Matrix6d::Zero();
@@ -55,7 +55,7 @@ struct NodePull {
   NodePull& operator+=(const NodePull& other);
 };
 
-/// Derivative of the wrench at one point by the motion of another.
+/// Derivative of the wrench at one point with respect to the motion of another.
 struct PointCoupling {
   std::size_t of = 0,
               /// Indices among the chosen points: the motion of point `of` affects the wrench at point `at`.

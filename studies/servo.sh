@@ -25,7 +25,7 @@ A simulated arm of three sections and 1 m (at most 120 degrees and 90 degrees a 
 | targets | from straight to bends drawn evenly from +-1.2 rad in each direction, the same for each law; `moments` begins within 0.15 rad of each bend; four targets a rig |
 | done | observed error below 0.2 % of the length for 1 s; given up after 8 s |
 | left | true error at the end, % of the length; all figures are of converged targets |
-| floor | where the arm ends when exact images by the true cameras serve as target for the nominal cameras, without and with the servo's camera prior |
+| floor | true error at the end if the target images are exact ones of the true cameras and the servo uses the nominal cameras; without and with the servo's camera prior |
 | rigs before `bundle` | off by up to 3 degrees in pan and tilt, 0.3 in roll, 6 cm along each axis; zoom 1 to 1.45 |
 
 Required: all targets, within 2 % after 2 s, 0.1 % left (rms). Other systems (other arms and cameras) report 1 mm at rest, 1.6 % of the picture's size, 2 to 2.6 % of the length at the tip.

@@ -31,8 +31,9 @@ inline constexpr PenColor axis_color = {255, 40, 40}, border_color = {40, 200, 6
 /// Returns whether points are roughly on an ellipse: their rms distance is within 3 % of the shorter
 /// semi-axis.
 [[nodiscard]] bool is_on_ellipse(const std::optional<EllipseFit>& fit);
-/// Return the fields of the fit that docs/vision.md describes; null without a fit.
+/// Returns the fields of a circle fit that docs/vision.md describes; null without a fit.
 [[nodiscard]] Node circle_node(const std::optional<CircleFit>& fit);
+/// Returns the fields of an ellipse fit that docs/vision.md describes; null without a fit.
 [[nodiscard]] Node ellipse_node(const std::optional<EllipseFit>& fit);
 
 /// Builds a table whose members keep the order in which they are added.

@@ -199,8 +199,8 @@ class EtalonAsPrinted : public EtalonLoop {
     }
     loop_.result().zoom_ratio.reset();  // White pixels do not measure magnification.
     loop_.result().notes.emplace_back(
-        "as printed: the positions of the cameras around the cylinder were not measured, because the number "
-        "of white pixels beside the red axis does not depend on the axis's position");
+        "the paper's method does not measure the positions of the cameras around the cylinder: the number of "
+        "white pixels beside the red axis does not depend on the axis's position");
     return std::nullopt;
   }
 

@@ -108,7 +108,7 @@ LookLoop::Error EtalonLoop::zoom() {
     const LoopState state = steps.take(ratio - 1);
     if (is_printed_ && state == LoopState::stuck)
       return "zoom " + steps.reason() +
-             "; as printed the camera that shows the larger cylinder is the one that zooms in";
+             "; the paper's method zooms in with the camera that shows the larger cylinder";
     loop_.result().zoom_ratio = ratio;
     // As printed: zooms the camera that shows the cylinder larger already. Corrected: enlarges the smaller
     // one, or reduces the other one if the lens is at its limit.

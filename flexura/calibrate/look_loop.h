@@ -61,10 +61,11 @@ class LookLoop {
   static constexpr double least_longer = 1.2;
   /// Moves a camera to the position with the longer focal length.
   Error go_longer(std::size_t i, const RigStance& stance);
-  /// Return the nearest stance that can be commanded, and whether it equals the last command.
+  /// Returns the nearest stance that can be commanded to camera `i`.
   [[nodiscard]] RigStance commandable_stance(std::size_t i, const RigStance& stance) const {
     return commanded(cameras_[i], stance);
   }
+  /// Returns whether the nearest commandable stance equals the last command to camera `i`.
   [[nodiscard]] bool stands_there(std::size_t i, const RigStance& stance) const;
   /// Returns the camera's stance with the focal length multiplied by `ratio`.
   [[nodiscard]] RigStance zoomed(std::size_t i, double ratio) const;

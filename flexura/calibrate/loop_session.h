@@ -18,7 +18,8 @@
 
 namespace flexura {
 
-/// The paper's two calibration methods (section 3.4), each as printed and in a corrected version.
+/// The paper's two calibration methods (section 3.4), each exactly as the paper prints it ("as printed") and
+/// in a corrected version.
 enum class LoopMethod {
   etalon,        ///< With the calibration cylinder: subpixel borders, shrinking steps.
   etalon_paper,  ///< With the cylinder as printed: counted pixels, steps of equal size.
@@ -34,9 +35,9 @@ struct LoopConfig {
   double accepted = 0.05;                       ///< Tolerance of every offset in the picture, px.
   /// Tolerance of the relative difference of the target's sizes in the two pictures.
   double zoom_accepted = 0.001;
-  double turn = 0.2 * degree;  ///< As printed: size of each turn of a head, rad.
-  double slide = 0.005;        ///< As printed: size of each stage step, m.
-  double zoom_step = 0.02;     ///< As printed: relative change of the zoom per step.
+  double turn = 0.2 * degree;  ///< Size of each turn of a head, rad; only for `etalon_paper`.
+  double slide = 0.005;        ///< Size of each stage step, m; only for `etalon_paper`.
+  double zoom_step = 0.02;     ///< Relative change of the zoom per step; only for `etalon_paper`.
   EtalonConfig etalon;         ///< Position and size of the cylinder.
   /// Angle by which the arm is bent into an arc, rad. If it exceeds a quarter circle, the arm covers itself
   /// when seen from within its plane.
@@ -66,7 +67,7 @@ struct LoopResult {
       zoom_ratio;  ///< Observed size of the target in the first camera relative to the second.
   std::vector<std::string> notes;  ///< Further messages.
   std::array<std::optional<CameraObservation>, 2> before,
-      after;  ///< The first and the last picture of each camera.
+      after;  ///< Observations in the first and the last picture of each camera.
 };
 
 /// Calibrates two cameras by a loop of looking, measuring, deciding and moving (docs/calibration-paper.md),

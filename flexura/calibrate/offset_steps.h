@@ -16,13 +16,14 @@ enum class LoopState {
 /// ends").
 class OffsetSteps {
  public:
-  /// As printed (section 3.4): steps of equal size against the offset's sign. They always end if the
-  /// tolerance is at least half of the change per step. With a smaller tolerance they may alternate forever,
-  /// which is detected.
+  /// The paper's method (section 3.4): steps of equal size against the offset's sign. The steps always end if
+  /// the tolerance is at least half of the change per step. With a smaller tolerance they may alternate
+  /// forever, which is detected.
   explicit OffsetSteps(double accepted) : accepted_(accepted) {}
-  /// Corrected: steps in proportion to the offset, at most `largest`. The offset is given as the motion that
-  /// would null it according to the model. Steps are halved whenever the offset grows, or changes its sign
-  /// without decreasing to half. They end if the true and the modelled effect of a motion have equal signs.
+  /// The corrected method: steps in proportion to the offset, at most `largest`. The offset is given as the
+  /// motion that would null the offset according to the model. Steps are halved whenever the offset grows, or
+  /// changes its sign without decreasing to half. They end if the true and the modelled effect of a motion
+  /// have equal signs.
   OffsetSteps(double accepted, double largest) : accepted_(accepted), largest_(largest) {}
 
   /// Processes the next measured offset. A positive motion must reduce a positive offset.

@@ -31,15 +31,17 @@ class RigCommander {
   /// `nominal` gives the ranges and resolutions of heads and stages; it must have the cameras of the ports.
   RigCommander(const RigPorts& ports, const RigModel& nominal, const RigPatience& patience);
 
-  /// Return the present positions, or an error.
+  /// Returns the present position of the arm, or an error.
   [[nodiscard]] std::variant<ArmState, std::string> arm() const;
+  /// Returns the present position of a camera, or an error.
   [[nodiscard]] std::variant<RigStance, std::string> stance(std::size_t camera) const;
 
   /// Returns an error if the port of a camera lacks a head or stage that the model has.
   [[nodiscard]] Error must_move(std::size_t camera) const;
 
-  /// Send commands without waiting for their execution.
+  /// Commands the arm to a state within `duration` s, without waiting for the execution.
   [[nodiscard]] Error bend(const ArmState& state, double duration);
+  /// Commands a camera to a stance, without waiting for the execution.
   [[nodiscard]] Error go(const RigStance& stance);
   /// Waits until nothing moves, and RigPatience::pause longer if the arm moved. Returns an error if anything
   /// is not at its commanded position or does not come to rest.

@@ -38,9 +38,11 @@ class RigExcursion {
   [[nodiscard]] std::variant<ArmState, std::string> arm() const { return commander_.arm(); }
   [[nodiscard]] double now() const { return commander_.now(); }
 
-  /// Return the initial positions of arm and cameras, and the last commanded positions of the cameras.
+  /// Returns the initial shape of the arm.
   [[nodiscard]] const ArmState& home() const { return home_; }
+  /// Returns the initial positions of the cameras.
   [[nodiscard]] const std::array<RigStance, 2>& start() const { return start_; }
+  /// Returns the last commanded positions of the cameras.
   [[nodiscard]] const std::array<RigStance, 2>& stances() const { return stands_; }
 
  private:

@@ -62,8 +62,9 @@ class RigObserver {
 
  protected:
   explicit RigObserver(const RigModel& nominal) : nominal_(nominal) {}
-  /// Return the commanded poses and the stances as read of the stored observations.
+  /// Returns the commanded arm poses of the stored observations.
   [[nodiscard]] virtual std::vector<ArmState>& poses() = 0;
+  /// Returns the camera stances of the stored observations as read.
   [[nodiscard]] virtual std::vector<RigStance>& stances() = 0;
   /// Measures a picture of the session's camera `i`; returns whether it contains information.
   [[nodiscard]] virtual bool look(std::size_t i, const Picture& picture) = 0;

@@ -43,9 +43,9 @@ class RigProblem {
 
   /// Returns the size of the residual of each observation that is not an outlier, in standard deviations.
   [[nodiscard]] std::vector<double> sizes() const;
-  /// Return the root mean square of all residual entries except those of outliers, and the number of these
-  /// entries.
+  /// Returns the root mean square of all residual entries except those of outliers.
   [[nodiscard]] double rms() const;
+  /// Returns the number of residual entries except those of outliers.
   [[nodiscard]] std::size_t entries() const;
 
   /// Marks the observations whose residual is larger than `bound` as outliers, and all others as inliers.

@@ -22,8 +22,9 @@ class RigResponse {
   /// `commands`: the poses as commanded. Throws std::invalid_argument if a command does not fit the arm.
   RigResponse(const RigModel& model, const std::vector<ArmState>& commands);
 
-  /// Return the numbers of inputs of each arc, and of driven sections.
+  /// Returns the number of inputs of each arc.
   [[nodiscard]] std::size_t inputs() const { return sections_ > 0 ? sections_ + 1 : 0; }
+  /// Returns the number of driven sections.
   [[nodiscard]] std::size_t sections() const { return sections_; }
   /// Returns the driven section of an arc.
   [[nodiscard]] std::size_t section_of(std::size_t arc) const { return section_of_[arc]; }

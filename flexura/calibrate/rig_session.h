@@ -69,7 +69,7 @@ struct CameraObservation {
   Frame frame;           ///< The picture and its time.
   SeenArm seen;
   std::vector<SeenValue> values;    ///< Measurements of the paper's methods (loop_session.h).
-  std::optional<CircleFit> circle;  ///< Circle through the points (arcs as printed).
+  std::optional<CircleFit> circle;  ///< Circle through the points; only for LoopMethod::arcs_paper.
 };
 
 /// State of the estimate after a look.

@@ -56,8 +56,9 @@ class RigVariables {
     Eigen::Index column = -1;  ///< Index in x; -1: fixed.
   };
 
-  /// Return the number of variables in x, and the number of the rig's own variables, which come first.
+  /// Returns the number of variables in x.
   [[nodiscard]] Eigen::Index count() const { return count_; }
+  /// Returns the number of the rig's own variables, which are the first ones in x.
   [[nodiscard]] Eigen::Index globals() const { return globals_; }
   /// Returns the variable with this index in x.
   [[nodiscard]] const Variable& variable(Eigen::Index column) const {
@@ -72,8 +73,9 @@ class RigVariables {
   [[nodiscard]] std::size_t arm_slots() const { return arm_; }
   /// Returns the first slot of a pose of the arm.
   [[nodiscard]] std::size_t pose_slots(std::size_t pose) const { return poses_.at(pose); }
-  /// Return the numbers of slots of the arm and of a pose.
+  /// Returns the number of slots of the arm.
   [[nodiscard]] Eigen::Index slots_of_arm() const;
+  /// Returns the number of slots of each pose.
   [[nodiscard]] Eigen::Index slots_a_pose() const;
   /// Returns the errors of the arm's response; empty if the prior has none.
   [[nodiscard]] const RigResponse& response() const { return response_; }
@@ -87,10 +89,11 @@ class RigVariables {
   [[nodiscard]] double value(const Eigen::VectorXd& x, std::size_t slot) const {
     return slots_[slot].column < 0 ? 0.0 : x[slots_[slot].column];
   }
-  /// Return the values of two and of three successive slots.
+  /// Returns the values of `slot` and the next slot.
   [[nodiscard]] Eigen::Vector2d value2(const Eigen::VectorXd& x, std::size_t slot) const {
     return {value(x, slot), value(x, slot + 1)};
   }
+  /// Returns the values of `slot` and the next two slots.
   [[nodiscard]] Eigen::Vector3d value3(const Eigen::VectorXd& x, std::size_t slot) const {
     return {value(x, slot), value(x, slot + 1), value(x, slot + 2)};
   }
@@ -100,8 +103,9 @@ class RigVariables {
   [[nodiscard]] bool is_rig(const Eigen::VectorXd& x) const;
   /// Returns the rig described by x.
   [[nodiscard]] RigModel model(const Eigen::VectorXd& x) const;
-  /// Return the poses of the observations as commanded, and their stances as read.
+  /// Returns the commanded arm poses of the observations.
   [[nodiscard]] const std::vector<ArmState>& commanded() const { return commanded_; }
+  /// Returns the camera stances of the observations as read.
   [[nodiscard]] const std::vector<RigStance>& read() const { return read_; }
   /// Returns the estimated arm pose.
   [[nodiscard]] ArmState pose(const Eigen::VectorXd& x, std::size_t pose) const;

@@ -51,8 +51,9 @@ class ContourImages {
   /// state. The matrix is count() x columns(), in px/rad and px. Rows without a contour point are zero.
   void derive(const View& view, const ContourImage& image, Eigen::Ref<Eigen::MatrixXd> by_state);
   // NOLINTBEGIN(performance-unnecessary-value-param): as above.
-  /// Computes the derivatives along `directions` (unit, a column per point) instead of the normals, for the
-  /// surface at the contour. Rows are zero where a direction is not a number.
+  /// Computes the derivatives for the motion along `directions` (unit vectors, a column per point) instead of
+  /// the normals. Here a point moves with the surface point that is at the contour now. Rows are zero where a
+  /// direction is not a number.
   void derive(const View& view, const ContourImage& image,
               const Eigen::Ref<const Eigen::Matrix2Xd>& directions, Eigen::Ref<Eigen::MatrixXd> by_state);
   // NOLINTEND(performance-unnecessary-value-param)

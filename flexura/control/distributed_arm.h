@@ -46,8 +46,9 @@ class DistributedArm {
   /// Returns the shape functions of both angles; "the points" in this class are the quadrature points, by arc
   /// length s.
   [[nodiscard]] const AngleShapes& shapes() const { return shapes_; }
-  /// Return the number of all coordinates, and the number of coordinates per angle.
+  /// Returns the number of all coordinates.
   [[nodiscard]] Eigen::Index size() const { return size_; }
+  /// Returns the number of coordinates of each angle.
   [[nodiscard]] Eigen::Index nodes() const { return shapes_.nodes.size(); }
   /// Returns the coordinates for the angles (theta, q), rad, as functions of s (m at rest), with lengths at
   /// rest.
@@ -63,8 +64,9 @@ class DistributedArm {
   [[nodiscard]] double elastic_energy() const;  ///< V_e, J.
   /// Returns the dissipated power, W; >= 0.
   [[nodiscard]] double damping_power() const { return rates_.dot(damping_force_); }
-  /// Return dV_g/dx and dV_e/dx, generalized forces (N m for angles, N for lengths).
+  /// Returns dV_g/dx, a generalized force (N m for angles, N for lengths).
   [[nodiscard]] const Eigen::VectorXd& gravity_gradient() const { return gravity_gradient_; }
+  /// Returns dV_e/dx, a generalized force (N m for angles, N for lengths).
   [[nodiscard]] const Eigen::VectorXd& elastic_gradient() const { return elastic_gradient_; }
   /// Returns the Hessian of V_g + V_e.
   [[nodiscard]] Eigen::MatrixXd stiffness() const;
@@ -74,15 +76,17 @@ class DistributedArm {
   /// coordinates are singular (|q| = pi/2) or a number is not finite.
   bool accelerate(const Eigen::VectorXd& force, Eigen::VectorXd& acceleration);
 
-  /// Return the angles theta and q at the points shapes().s, rad, and the arm's direction e at them, a column
-  /// per point.
+  /// Returns the azimuth theta at the points shapes().s, rad.
   [[nodiscard]] const Eigen::VectorXd& theta() const { return theta_; }
+  /// Returns the elevation q at the points shapes().s, rad.
   [[nodiscard]] const Eigen::VectorXd& q() const { return q_; }
+  /// Returns the arm's direction e at the points shapes().s, a column per point.
   [[nodiscard]] const Eigen::Matrix3Xd& direction() const { return e_; }
   /// Returns the ratio of each section's length to its length at rest.
   [[nodiscard]] const Eigen::VectorXd& stretch() const { return stretch_; }
-  /// Return the positions of the points, and of the tip, relative to the base, m in W.
+  /// Returns the positions of the points shapes().s relative to the base, m in W.
   [[nodiscard]] Eigen::Matrix3Xd positions() const;
+  /// Returns the position of the tip relative to the base, m in W.
   [[nodiscard]] Eigen::Vector3d tip() const;
 
  private:
@@ -121,15 +125,17 @@ class DistributedMotion {
   /// (DormandPrince), or the arm reached a singularity.
   [[nodiscard]] bool advance(double until, const std::function<bool()>& go_on = {});
 
-  /// Return the time since the start, s, and the coordinates x and rates v at that time.
+  /// Returns the time since the start, s.
   [[nodiscard]] double time() const { return time_; }
+  /// Returns the present coordinates.
   [[nodiscard]] const Eigen::VectorXd& x() const { return x_; }
+  /// Returns the present rates of the coordinates.
   [[nodiscard]] const Eigen::VectorXd& v() const { return v_; }
   /// Returns the arm in its current state.
   [[nodiscard]] const DistributedArm& arm() const { return arm_; }
-  /// Return two energies since the start, J: the energy dissipated by the arm's own damping, and the integral
-  /// of the powers that the force returned.
+  /// Returns the energy that the arm's own damping has dissipated since the start, J.
   [[nodiscard]] double damped() const { return y_[2 * arm_.size()]; }
+  /// Returns the integral since the start of the powers that the force returned, J.
   [[nodiscard]] double summed() const { return y_[2 * arm_.size() + 1]; }
 
  private:

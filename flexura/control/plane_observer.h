@@ -15,8 +15,8 @@ namespace flexura {
 /// directly, with the same noise.
 class PlaneObserver {
  public:
-  /// For arms with the model of `arm`. `target`: coordinates of the target. `noise`: standard deviations of
-  /// alpha_1 and alpha_2 at each of the points arm.shapes().s, rad.
+  /// Makes the observer for all arms with the same model as `arm`. `target`: coordinates of the target.
+  /// `noise`: standard deviations of alpha_1 and alpha_2 at each of the points arm.shapes().s, rad.
   PlaneObserver(const DistributedArm& arm, const Eigen::VectorXd& target, const std::array<double, 2>& noise);
 
   /// Measures an arm, which is set to the state x. `deviate(i)` returns noise with variance 1: first for
@@ -24,8 +24,9 @@ class PlaneObserver {
   void look(const DistributedArm& arm, const Eigen::VectorXd& x,
             const std::function<double(std::uint64_t i)>& deviate);
 
-  /// Return the errors of theta and q at the points in the last measurement, measured minus desired, rad.
+  /// Returns the errors of theta at the points in the last measurement, measured minus desired, rad.
   [[nodiscard]] const Eigen::VectorXd& e_theta() const { return e_theta_; }
+  /// Returns the errors of q at the points in the last measurement, measured minus desired, rad.
   [[nodiscard]] const Eigen::VectorXd& e_q() const { return e_q_; }
   /// Returns the coordinates of the last measurement: those whose angles fit the measured ones by least
   /// squares along the arm. The lengths are the true ones.

@@ -37,8 +37,8 @@ struct PotentialGains {
 /// damping.
 class PotentialLaw {
  public:
-  /// For arms with the model of `arm`. `target`: coordinates of the target. Throws std::invalid_argument for
-  /// numbers that are not finite, or a target of another size.
+  /// Makes the law for all arms with the same model as `arm`. `target`: coordinates of the target. Throws
+  /// std::invalid_argument for numbers that are not finite, or a target of another size.
   PotentialLaw(const DistributedArm& arm, Eigen::VectorXd target, const PotentialGains& gains);
 
   /// Returns the violated conditions of the theory, in words; empty if W is sure to decrease.

@@ -6,8 +6,8 @@
 
 namespace flexura {
 
-GuardedDrive::GuardedDrive(DrivePort& drive, Guard& guard, std::function<void()> keep_alive)
-    : drive_(drive), guard_(guard), keep_alive_(std::move(keep_alive)) {}
+GuardedDrive::GuardedDrive(DrivePort& drive, Guard& guard, std::function<void()> keep_alive, double time_shift)
+    : drive_(drive), guard_(guard), keep_alive_(std::move(keep_alive)), time_shift_(time_shift) {}
 
 void GuardedDrive::beat() {
   if (!guard_.beat(is_moving_)) was_stopped_ = true;
@@ -38,9 +38,12 @@ CommandOutcome GuardedDrive::halt() {
 
 Outcome<DriveReading> GuardedDrive::read() {
   beat();
-  auto reading = drive_.read();
-  if (reading) is_moving_ = reading.value().moving;
+  auto taken = drive_.read();
   beat();
+  if (!taken) return taken;
+  DriveReading reading = std::move(taken).value();
+  is_moving_ = reading.moving;
+  reading.time += time_shift_;
   return reading;
 }
 

@@ -13,6 +13,8 @@ class WallClock : public ClockPort {
   explicit WallClock(std::function<void()> while_waiting = {}, double interval = 0.02);
 
   [[nodiscard]] double now() const override;
+  /// Returns the steady_seconds() at which this clock shows 0.
+  [[nodiscard]] double start() const { return start_; }
   void wait_until(double time) override;
 
  private:

@@ -17,11 +17,12 @@ class RunProgress {
 
   [[nodiscard]] Progress& checks() { return work_.piece(0); }
   [[nodiscard]] Progress& report() { return work_.piece(1); }
-  /// Return the progress of task `i`: while it is simulated beforehand, while it is played or performed, and
-  /// while it computes its results.
+  /// Returns the progress of the simulation of task `i` before the run.
   [[nodiscard]] Progress& simulation(std::size_t i) { return work_.piece(2 + 3 * i); }
-  [[nodiscard]] Progress& task(std::size_t i) { return work_.piece(3 + 3 * i); }     ///< See simulation().
-  [[nodiscard]] Progress& results(std::size_t i) { return work_.piece(4 + 3 * i); }  ///< See simulation().
+  /// Returns the progress of task `i` while it is played or performed.
+  [[nodiscard]] Progress& task(std::size_t i) { return work_.piece(3 + 3 * i); }
+  /// Returns the progress with which task `i` computes its results.
+  [[nodiscard]] Progress& results(std::size_t i) { return work_.piece(4 + 3 * i); }
 
  private:
   WorkProgress work_;

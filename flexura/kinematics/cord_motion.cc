@@ -28,7 +28,8 @@ class CordPointToPointMotion : public Motion {
     if (profiles_.empty() || profiles_.size() != from_.bends.size() ||
         cord_changes_.size() != from_.bends.size() || !one_duration) {
       throw std::invalid_argument(
-          "a motion of cords needs one change and one profile per section, all of the same duration");
+          "a motion of chord angles needs, per section, one change and one profile; all profiles must have "
+          "the same duration");
     }
   }
   [[nodiscard]] double duration() const override { return profiles_.front().duration(); }
@@ -90,7 +91,8 @@ MotionPtr cord_point_to_point_motion(ArmState from, ArmState to, std::vector<dou
 MotionPtr cord_sine_motion(ArmState from, const std::vector<double>& amplitudes,
                            const std::vector<double>& phases, double period, double duration) {
   if (amplitudes.size() != from.bends.size() || phases.size() != from.bends.size()) {
-    throw std::invalid_argument("a sine of cords needs one amplitude and one phase per section");
+    throw std::invalid_argument(
+        "a sinusoidal motion of chord angles needs one amplitude and one phase per section");
   }
   std::vector<double> real, imaginary;
   for (std::size_t i = 0; i < amplitudes.size(); ++i) {

@@ -112,9 +112,9 @@ RodLoads loads_of(const ArmConfig& arm) {
 
 namespace {
 
-// Least length of a tendon's path through a piece of a section along the rod, per metre of that path. Nearer
-// to the middle of a bend, and beyond it, where no rod can be, the path length continues linearly. So it does
-// not grow again.
+// Least component of a tendon's path along the rod, per metre of rod. A tendon with a smaller component is
+// near the centre of the bend or beyond the centre, where no rod can be. There the path length continues
+// linearly, so that it does not grow again.
 constexpr double least_along = 0.02;
 
 // Length of a piece with the path `way`, of which `along` is the part along the rod and `piece` the rod's

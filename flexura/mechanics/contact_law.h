@@ -53,7 +53,7 @@ struct TouchForce {
 /// Returns normal force and friction. Friction is -friction normal_force slip / sqrt(|slip|^2 +
 /// slip_speed^2).
 [[nodiscard]] TouchForce touch_force(const ContactLaw& law, const Touch& touch);
-/// Derivatives of a contact by several variables, one column per variable.
+/// Derivatives of a contact with respect to several variables, one column per variable.
 struct TouchChange {
   static constexpr int most = 30;
   using Row = Eigen::Matrix<double, 1, Eigen::Dynamic, Eigen::RowMajor, 1, most>;
@@ -63,19 +63,19 @@ struct TouchChange {
   Rows normal;    ///< Derivative of the normal.
   Rows velocity;  ///< Derivative of the ball's velocity relative to the body at the touching point.
 };
-/// Returns the derivative of the force by the variables of `change`.
+/// Returns the derivative of the contact force with respect to the variables of `change`.
 [[nodiscard]] TouchChange::Rows force_change(const ContactLaw& law, const Touch& touch, const TouchForce& at,
                                              const TouchChange& change);
-/// Positive semidefinite part of a contact's derivative by the motion of the touching point: spring and
-/// damper along the normal, friction across; symmetric.
+/// Positive semidefinite part of a contact's derivative with respect to the motion of the touching point:
+/// spring and damper along the normal, friction across; symmetric.
 struct TouchHold {
   Eigen::Matrix3d stiffness = Eigen::Matrix3d::Zero(), damping = Eigen::Matrix3d::Zero();
 };
 /// Returns the TouchHold of a contact with the force `at`.
 [[nodiscard]] TouchHold hold_of(const ContactLaw& law, const Touch& touch, const TouchForce& at);
 
-/// Returns the force on the ball, for a body at rest. Sets `pull` to its wrench and the derivatives by the
-/// point's motion.
+/// Returns the force on the ball, for a body at rest. Sets `pull` to the wrench of this force and its
+/// derivatives with respect to the point's motion.
 TouchForce touch_force(const ContactLaw& law, const Touch& touch, NodePull& pull);
 
 }  // namespace flexura

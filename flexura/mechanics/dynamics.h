@@ -55,8 +55,8 @@ struct RodState {
   Eigen::VectorXd q;             ///< Strain modes, as in RodChain.
   Eigen::VectorXd momentum;      ///< p = M(q) v.
   std::vector<double> tensions;  ///< Tensions of the last step at the base, N.
-  /// Friction forces on the tendons with friction, N: those along the first tendon from the base on, then
-  /// those of the next. They are part of the state.
+  /// Friction forces on the tendons with friction, N. The forces along the first tendon come first, from the
+  /// base on, then those along the next tendon. They are part of the state.
   std::vector<double> friction;
 
   Eigen::VectorXd rate;   ///< The integrator's dq/dt.
@@ -72,8 +72,8 @@ struct RodState {
 
 /// Earlier state of tendon friction, from which the present one is computed.
 struct RodSlide {
-  std::vector<double> friction = {};  ///< Friction forces then, as in RodState.
-  /// Time since then, during which tendons slid at their present rate, s.
+  std::vector<double> friction = {};  ///< Friction forces in the earlier state, as in RodState.
+  /// Time since the earlier state, during which tendons slid at their present rate, s.
   double time = 0;
 };
 
@@ -121,17 +121,19 @@ struct RodDynamicsSlopes {
 struct RodLinear {
   Eigen::MatrixXd A, B;            ///< For x = (q, p).
   Eigen::MatrixXd A_rest, B_rest;  ///< For x = (q, v), valid around a rod at rest.
-  /// Derivatives of x' by the parameters at constant x = (q, p), and at constant x = (q, v) around a rod at
-  /// rest; states x (dynamics_parameters x sections).
+  /// Derivatives of x' with respect to the parameters: at constant x = (q, p), and around a rod at rest at
+  /// constant x = (q, v). Columns as in RodDynamicsSlopes.
   Eigen::MatrixXd by_parameters, by_parameters_rest;
-  /// Derivatives of the tip's velocity and angular velocity by v, 6 x modes, in the base's frame.
+  /// Derivatives of the tip's velocity and angular velocity with respect to v, 6 x modes, in the base's
+  /// frame.
   Eigen::MatrixXd tip_by_q;
-  Eigen::MatrixXd lengths_by_q;  ///< Derivatives of tendon lengths by the modes, tendons x modes.
+  Eigen::MatrixXd
+      lengths_by_q;  ///< Derivatives of tendon lengths with respect to the modes, tendons x modes.
 };
 
 /// Derivatives of (q, p, rate, force) after a step. The integrator uses no other memory.
 struct RodStepSlopes {
-  Eigen::MatrixXd by_state;  ///< By (q, p, rate, force) before the step.
+  Eigen::MatrixXd by_state;  ///< With respect to (q, p, rate, force) before the step.
   Eigen::MatrixXd by_input;
   /// By the parameters at a constant state before the step; columns as in RodDynamicsSlopes.
   Eigen::MatrixXd by_parameters;
@@ -154,16 +156,16 @@ class RodDynamics {
   void set_surroundings(const RodSurroundings* surroundings);
 
   /// From now on multiplies each section's undeformed length by a factor > 0 that changes at a rate, 1/s
-  /// (RodChain::stretch_rest). Both lists have one number per section. For a step they must hold at the same
-  /// time as its tendons (see step()). The state does not change. Kinetic energy and momentum include the
-  /// driven motion. Throws std::invalid_argument for lists of wrong length, factors that are not positive, or
-  /// rates that are not finite.
+  /// (RodChain::stretch_rest). Both lists have one number per section. For a step the factors must be those
+  /// at the time for which the tendons are given (see step()). The state does not change. Kinetic energy and
+  /// momentum include the driven motion. Throws std::invalid_argument for lists of wrong length, factors that
+  /// are not positive, or rates that are not finite.
   void stretch_rest(std::span<const double> factors, std::span<const double> rates);
 
   /// Returns the unloaded rod at rest.
   [[nodiscard]] RodState rest() const;
-  /// Returns the rod at rest in an equilibrium of RodStatics. Tendon friction is that after pulling the
-  /// tendons in.
+  /// Returns the rod at rest in an equilibrium of RodStatics. Tendon friction has the value after the tendons
+  /// were pulled in.
   [[nodiscard]] RodState rest(const Equilibrium& at) const;
   /// Returns the state with modes q and rates v. Tendons and loads are those from now on. `slide`: earlier
   /// state of tendons with friction. Null: they have slid at their present rate for 0.1 s, so friction does
@@ -219,12 +221,12 @@ class RodDynamics {
   /// number of sections. Throws std::invalid_argument as start().
   [[nodiscard]] Eigen::VectorXd needed_forces(const Eigen::VectorXd& q, const Eigen::VectorXd& v,
                                               const Eigen::VectorXd& a, const RodLoads& loads);
-  /// Returns the derivatives of tendon lengths by the modes, tendons x modes. The generalized forces of
-  /// tensions are -lengths_by_q^T tensions. Throws std::invalid_argument as start().
+  /// Returns the derivatives of tendon lengths with respect to the modes, tendons x modes. The generalized
+  /// forces of tensions are -lengths_by_q^T tensions. Throws std::invalid_argument as start().
   [[nodiscard]] Eigen::MatrixXd lengths_by_q(const Eigen::VectorXd& q);
-  /// Return the stiffness matrix K (strain energy q^T K q / 2) and the damping matrix D (viscous forces -D
-  /// v), modes x modes.
+  /// Returns the stiffness matrix K, modes x modes: the strain energy is q^T K q / 2.
   [[nodiscard]] Eigen::MatrixXd stiffness_matrix() const;
+  /// Returns the damping matrix D, modes x modes: the viscous forces are -D v.
   [[nodiscard]] Eigen::MatrixXd damping_matrix() const;
 
   /// Returns the derivatives at a state. Their cost grows with the square of the number of sections. `slide`

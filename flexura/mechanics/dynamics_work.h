@@ -15,7 +15,7 @@
 
 namespace flexura {
 
-/// Factored derivative of a step's equations by the rates.
+/// Factored derivative of a step's equations with respect to the rates.
 struct RodStepFactor {
   double stretch = 0;  ///< Step length times Scheme::stage, s.
   Eigen::PartialPivLU<Eigen::MatrixXd> lu;
@@ -86,11 +86,12 @@ struct RodDynamics::Work {
 
   /// Returns the parts of K q + D v that are proportional to each parameter; columns as in RodDynamicsSlopes.
   [[nodiscard]] Eigen::MatrixXd inner_forces(const Eigen::VectorXd& q, const Eigen::VectorXd& v) const;
-  /// Sets the derivatives by the parameters, with the present tensions. Call after motion.pull() at q and v
-  /// if tendons have friction.
+  /// Sets the derivatives with respect to the parameters, with the present tensions. Call after motion.pull()
+  /// at q and v if tendons have friction.
   void find_parameter_slopes(const Eigen::VectorXd& q, const Eigen::VectorXd& v, const RodLoads& loads,
                              RodDynamicsSlopes& slopes);
-  /// Returns the derivatives at the present shape, also those by the input. Tensions are those of `tendons`.
+  /// Returns the derivatives at the present shape, also those with respect to the input. Tensions are those
+  /// of `tendons`.
   [[nodiscard]] RodDynamicsSlopes slopes_at(const Eigen::VectorXd& q, const Eigen::VectorXd& v,
                                             const TendonInput& tendons, const RodLoads& loads);
   /// Solves the stage of a step that starts at `state`; q and v become those of the stage.

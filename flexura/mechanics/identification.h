@@ -67,7 +67,7 @@ struct Identification {
   Eigen::VectorXd sigma;
   Eigen::MatrixXd covariance;  ///< Covariance of the observable parameters; other rows and columns are 0.
   std::vector<char> is_observable;
-  /// With known noise: sum of squared residuals, each in standard deviations, divided by the degrees of
+  /// If the noise is known: sum of squared residuals, each in standard deviations, divided by the degrees of
   /// freedom. It is about 1 if the model fits. With unknown noise: 1.
   double misfit = 0;
   int equations = 0;  ///< Number of scalar equations.
@@ -79,10 +79,11 @@ struct Identification {
 /// Estimates the parameters that fit a record best, by linear least squares of the equations of motion. Each
 /// equation of a mode is multiplied by a smooth bump in time and integrated by parts over a window (weak
 /// form: M. Shinbrot 1957). So no acceleration is needed. With known noise the equations are weighted by
-/// their covariance, propagated from the record to first order. The bias that noise of q and v causes by the
-/// coefficients is removed. With friction, the equations are linearised at the last estimate until it
-/// converges (Gauss-Newton method). The first start is the rod's friction; if necessary, other friction
-/// coefficients follow. If the friction is observable from no start, it keeps the rod's value. Throws
+/// their covariance, propagated from the record to first order. The bias is removed that noise of q and v
+/// causes through the equations' coefficients. With friction, the equations are linearised repeatedly at the
+/// last estimate until the estimate converges (Gauss-Newton method). The iteration starts from the rod's
+/// friction coefficients and, if necessary, from others. If the friction is observable from none of these
+/// starts, the result has the rod's value. Throws
 /// std::invalid_argument for an invalid rod, no parameters, overlapping parameters, or samples that do not
 /// fit the rod. `progress`, if any, follows the iterations.
 [[nodiscard]] Identification identify(const Rod& rod, const std::vector<RodParameter>& parameters,

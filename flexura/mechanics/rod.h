@@ -23,8 +23,8 @@ struct StrainModes {
   int stretch = 1;
   int bend = 5;  ///< For each of the two bending directions.
   int twist = 4;
-  /// In a section with guide disks each piece between two disks has modes of its own (rod_parts.h); else the
-  /// numbers are those of the whole section, too few where strongly bent pieces lie beside their chords.
+  /// Whether, in a section with guide disks, each piece between two disks has separate modes (rod_parts.h).
+  /// If false, the modes are those of the whole section, which is inaccurate for strongly bent pieces.
   bool by_piece = true;
 
   /// The rod moves only in its xz plane: it bends about y, without twist or shear along y.
@@ -85,7 +85,7 @@ struct RodSection {
   [[nodiscard]] Eigen::Vector3d slice_inertia_at(double t) const;
   /// Returns the undeformed strain at t.
   [[nodiscard]] Vector6d rest_strain_at(double t) const;
-  /// Returns the derivative of the undeformed strain by arc length at t, 1/m and 1/m^2.
+  /// Returns the derivative of the undeformed strain with respect to arc length at t, 1/m and 1/m^2.
   [[nodiscard]] Vector6d rest_strain_slope_at(double t) const;
 };
 
@@ -93,7 +93,7 @@ struct RodSection {
 /// undeformed arc length s m from the base it passes the cross-section at (x(s), y(s)) + r(s) (cos a(s), sin
 /// a(s)). Here r = radius + radius_slope s and a = angle + angle_slope s.
 struct TendonRoute {
-  std::size_t section = 0;             ///< Section at whose end it is fastened, 0 at the base.
+  std::size_t section = 0;             ///< Section at whose end the tendon is fastened, 0 at the base.
   double radius = 0;                   ///< m
   double radius_slope = 0;             ///< Change of the radius per arc length, m/m; < 0: converging.
   double angle = 0;                    ///< Angle at the base, from x towards y, rad.
@@ -104,7 +104,7 @@ struct TendonRoute {
   /// since the base is exp(-friction angle) times that at the base (L. Euler, J. Eytelwein).
   double friction = 0;
 
-  /// Offset in the cross-section and its first two derivatives by s; z is 0.
+  /// Offset in the cross-section and its first two derivatives with respect to s; z is 0.
   struct Offset {
     Eigen::Vector3d value, slope, second;
   };

@@ -45,8 +45,8 @@ class RodChain {
   /// twists, which become radians, and 1 for stretch and shear.
   [[nodiscard]] const Eigen::VectorXd& scales() const { return scales_; }
   [[nodiscard]] const std::vector<RodElement>& elements() const { return elements_; }
-  /// Returns the node at a place, which must be one, else the nearest of its element. Throws
-  /// std::invalid_argument for a place outside the rod.
+  /// Returns the node at a place. If there is no node at the place, returns the nearest node of the same
+  /// element. Throws std::invalid_argument for a place outside the rod.
   [[nodiscard]] RodNode node_of(const RodPlace& place) const;
   /// Returns the section, if any, whose modes are too few for the bend between its guide disks at the last
   /// balance.
@@ -62,18 +62,21 @@ class RodChain {
   /// Computes the residual r at q under the tensions at the base, N, and `share` times the loads.
   void balance(const Eigen::VectorXd& q, std::span<const double> tensions, const RodLoads& loads,
                double share);
-  /// The following functions return results of the last balance(). `residual`: r, size(). `tendon_lengths`:
-  /// m. `length_slopes`: their derivatives by q, size() x tendons(). `pull_slopes`: the derivative of r by
-  /// the tensions at the base, equal to `length_slopes` without friction.
+  /// Returns r at the last balance(), size().
   [[nodiscard]] const Eigen::VectorXd& residual() const { return residual_; }
+  /// Returns the tendon lengths at the last balance(), m.
   [[nodiscard]] const Eigen::VectorXd& tendon_lengths() const { return lengths_; }
+  /// Returns the derivatives of the tendon lengths with respect to q at the last balance(), size() x
+  /// tendons().
   [[nodiscard]] const Eigen::MatrixXd& length_slopes() const { return slopes_; }
+  /// Returns the derivative of r with respect to the tensions at the base at the last balance(), size() x
+  /// tendons(). Without friction it equals length_slopes().
   [[nodiscard]] const Eigen::MatrixXd& pull_slopes() const { return pull_slopes_; }
-  /// Returns the derivative of r by the share of the loads, size().
+  /// Returns the derivative of r with respect to the share of the loads at the last balance(), size().
   [[nodiscard]] const Eigen::VectorXd& load_slope() const { return load_slope_; }
   [[nodiscard]] double strain_energy() const;
   /// Returns whether a tendon pulled the holes of two guide disks together at the last balance. Real disks
-  /// touch before; no shape beyond is an equilibrium.
+  /// would touch earlier. A shape beyond this one cannot be an equilibrium.
   [[nodiscard]] bool disks_meet() const;
   /// Returns minus the work of all loads at the last balance, J; it is 0 for loads at the base's origin. It
   /// is a potential energy if has_energy().
@@ -93,17 +96,17 @@ class RodChain {
   /// tensions and loads. With moments or follower loads it is 1 if the determinant is negative, otherwise 0.
   /// This detects static divergence but not flutter, which depends on the mass.
   [[nodiscard]] int negative_count() const { return negative_; }
-  /// Returns the same number for tendons held at their displacements. `of_give`: number of negative
-  /// eigenvalues of the tendons' compliance matrix.
+  /// Returns the number of negative eigenvalues for tendons held at their displacements. `of_give`: number of
+  /// negative eigenvalues of the tendons' compliance matrix.
   [[nodiscard]] int negative_count(int of_give) const {
     return is_symmetric_ ? negative_ - of_give : (negative_ + of_give) % 2;
   }
   /// Replaces the right-hand sides rhs by their solutions; size() x columns.
   void solve(Eigen::Ref<Eigen::MatrixXd> rhs);
 
-  /// Returns the derivatives of r at the last balance by each section's five parameters, size() x 5 sections.
-  /// Parameters are relative changes of its stiffness against shear, stretch, bends and twist, and of its
-  /// mass per length under this gravity. Requires place_with_columns().
+  /// Returns the derivatives of r at the last balance with respect to each section's five parameters, size()
+  /// x 5 sections. Parameters are relative changes of its stiffness against shear, stretch, bends and twist,
+  /// and of its mass per length under this gravity. Requires place_with_columns().
   [[nodiscard]] Eigen::MatrixXd parameter_slopes(const Eigen::Vector3d& gravity) const;
 
   /// Switches tendon friction on or off; initially on.
@@ -111,23 +114,25 @@ class RodChain {
   /// Returns whether a tendon has friction. If so, the factored derivative neglects the change of friction
   /// with q.
   [[nodiscard]] bool has_friction() const;
-  /// Returns the neglected change of the residual along dq, at the last balance under these tensions.
+  /// Returns the change of the residual along dq that the factored derivative neglects because of friction,
+  /// at the last balance under these tensions.
   [[nodiscard]] Eigen::VectorXd friction_change(const Eigen::VectorXd& dq,
                                                 std::span<const double> tensions) const;
 
-  /// Returns the neglected derivative by all modes, size() x size().
+  /// Returns the part of the derivative of r with respect to all modes that the factored derivative neglects,
+  /// size() x size().
   [[nodiscard]] Eigen::MatrixXd friction_form(std::span<const double> tensions) const;
 
   /// Computes the poses of all nodes at q. balance() computes poses and columns only if loads or chords need
   /// them.
   void place(const Eigen::VectorXd& q);
-  /// Computes poses and columns, the derivatives of node twists by q.
+  /// Computes poses and columns, the derivatives of node twists with respect to q.
   void place_with_columns(const Eigen::VectorXd& q);
   /// Returns the pose of a node, after place() or place_with_columns().
   [[nodiscard]] const Pose& pose(const RodNode& at) const { return elements_[at.element].poses()[at.node]; }
   [[nodiscard]] const Pose& tip() const { return elements_.back().poses().back(); }
-  /// Writes the derivative of a node's twist about the base's origin by q into J, 6 x size(). Requires
-  /// place_with_columns().
+  /// Writes the derivative of a node's twist about the base's origin with respect to q into J, 6 x size().
+  /// Requires place_with_columns().
   void columns_at(std::size_t element, std::size_t node, Eigen::Ref<RodElement::Columns> J) const;
 
  private:

@@ -101,8 +101,8 @@ class RodContact final : public RodSurroundings {
   struct Meeting {
     std::size_t segment = 0;
     std::array<std::size_t, 5> points{};
-    // Shares of the places in the nearest point, and their derivatives by u. u itself moves with the places
-    // where it is inside the segment.
+    // Shares of the places in the nearest point, and their derivatives with respect to u. u itself moves with
+    // the places where it is inside the segment.
     Eigen::Vector4d shares, slopes;
     double share = 0;
     bool slides = false;
@@ -110,7 +110,7 @@ class RodContact final : public RodSurroundings {
     Eigen::Vector3d off, arm;     // From the nearest point to the point, and to the touching point.
     Touch touch;
   };
-  // Derivatives by a point and the four places.
+  // Derivatives with respect to a point and the four places.
   struct MeetingSlopes {
     Eigen::Matrix<double, 3, 30> force_by_pose, force_by_twist, moves;
     Eigen::Matrix<double, 3, 30> point;  // Of the touching point, for the point itself.

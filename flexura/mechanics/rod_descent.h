@@ -11,10 +11,10 @@ namespace flexura {
 
 /// Viscous descent of a rod's potential energy from any shape to an equilibrium. The rod moves as if it had
 /// no mass and a viscosity proportional to its stiffness. Each step is an implicit Euler step: a Newton step
-/// with a share of the stiffness added to the derivative. The share is small where the energy is convex. If
-/// there is an energy (no friction, moments or follower loads), each step reduces it. Saddle points are left
-/// in a direction in which the energy decreases. Otherwise steps are limited to lengths for which the
-/// equations are nearly linear.
+/// with a share of the stiffness added to the derivative. The share is small where the energy is convex.
+/// If the forces have an energy (no friction, moments or follower loads), each step reduces the energy, and
+/// saddle points are left in a direction in which it decreases. If the forces have no energy, steps are
+/// limited to lengths for which the equations are nearly linear.
 class RodDescent {
  public:
   /// Input of a tendon: a given tension, or a base that is held in place.

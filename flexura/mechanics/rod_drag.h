@@ -43,7 +43,7 @@ class RodDrag final : public RodSurroundings {
   struct Node {
     double across, along;  // N s^2/m^2 per metre.
   };
-  // Force per metre, and its derivatives by velocity and tangent.
+  // Force per metre, and its derivatives with respect to velocity and tangent.
   struct Force {
     Eigen::Vector3d force;
     Eigen::Matrix3d by_velocity, by_tangent;

@@ -42,7 +42,7 @@ class RodElement {
   [[nodiscard]] const Eigen::VectorXd& modes() const { return q_; }
   /// Computes node poses for this pose of the section's base.
   void place(const Pose& X_BS);
-  /// Computes node poses and their derivatives by the modes (columns()).
+  /// Computes node poses and their derivatives with respect to the modes (columns()).
   void place_with_columns(const Pose& X_BS);
   /// Strains at the nodes.
   [[nodiscard]] const std::vector<Vector6d>& strains() const { return strain_; }
@@ -51,9 +51,9 @@ class RodElement {
   /// Twist of each node by each mode, 6 x size().
   [[nodiscard]] const std::vector<Columns>& columns() const { return A_; }
 
-  /// Returns whether its modes are too few for its bend between guide disks. An element that is one piece:
-  /// the highest polynomial of a bend is not small. Another one: the rod's distance from the chord is not
-  /// small relative to the tendons' distance from the backbone.
+  /// Returns whether the element's modes are too few for its bend between guide disks. The criterion for an
+  /// element between two disks is a highest polynomial of a bend that is not small. For a whole section it is
+  /// a distance between rod and chord that is not small relative to the tendons' distance from the backbone.
   [[nodiscard]] bool is_coarse() const;
 
   /// Turning of a tendon between its base and the end of an element. `turned`: turning angle, rad.
@@ -62,7 +62,7 @@ class RodElement {
     double turned = 0;
     Eigen::Vector3d direction = Eigen::Vector3d::Zero();
   };
-  /// Derivative of a run by a change of the modes of all sections.
+  /// Derivative of a run with respect to a change of the modes of all sections.
   struct RunChange {
     double turned = 0;
     Eigen::Vector3d direction = Eigen::Vector3d::Zero();
@@ -85,40 +85,40 @@ class RodElement {
   /// Adds the geometric stiffness of chords and loads to the tangent. To be called last.
   void add_bending();
 
-  /// Returns the second derivative of the section's strain energy by its modes, size() x size(). It does not
-  /// depend on the shape.
+  /// Returns the second derivative of the section's strain energy with respect to its modes, size() x size().
+  /// It does not depend on the shape.
   [[nodiscard]] Eigen::MatrixXd stiffness() const;
   /// Returns minus the work of the loads without moments, J; it is 0 for loads at the base's origin. Requires
   /// the poses. Follower loads have no potential and count as dead loads.
   [[nodiscard]] double load_energy(const RodLoads& loads) const;
 
   // NOLINTBEGIN(performance-unnecessary-value-param): an Eigen::Ref is written through.
-  /// Adds the residual's derivative by relative changes of the section's stiffness against shear, stretch,
-  /// bends and twist.
+  /// Adds the residual's derivative with respect to relative changes of the section's stiffness against
+  /// shear, stretch, bends and twist.
   void add_stiffness_slopes(Eigen::Ref<Eigen::MatrixXd> slopes) const;
-  /// Adds to `slope` the residual's derivative by a relative change of the section's mass per length, and to
-  /// `all` the wrench of its weight. Requires the columns.
+  /// Adds to `slope` the residual's derivative with respect to a relative change of the section's mass per
+  /// length, and to `all` the wrench of its weight. Requires the columns.
   void add_weight_slope(const Eigen::Vector3d& gravity, Vector6d& all,
                         Eigen::Ref<Eigen::VectorXd> slope) const;
   // NOLINTEND(performance-unnecessary-value-param)
 
-  /// Gradient of the section's energy by its modes, minus the generalized forces of the loads.
+  /// Gradient of the section's energy with respect to its modes, minus the generalized forces of the loads.
   Eigen::VectorXd residual;
-  /// Derivative of the residual by the section's modes.
+  /// Derivative of the residual with respect to the section's modes.
   Eigen::MatrixXd tangent;
-  /// Minus the derivative of the residual by a twist of the section's base, size() x 6.
+  /// Minus the derivative of the residual with respect to a twist of the section's base, size() x 6.
   Eigen::Matrix<double, Eigen::Dynamic, 6> by_base;
-  /// Derivative of the residual by the share of the loads.
+  /// Derivative of the residual with respect to the share of the loads.
   Eigen::VectorXd by_share;
-  /// Derivatives of the wrench of the section's loads, times their share: by the section's modes, and by a
-  /// twist of its base.
+  /// Derivative of `wrench`, times the share of the loads, with respect to the section's modes.
   Columns wrench_by_modes;
+  /// Derivative of `wrench`, times the share of the loads, with respect to a twist of the section's base.
   Matrix6d wrench_by_base = Matrix6d::Zero();
   /// Wrench of the section's full loads.
   Vector6d wrench = Vector6d::Zero();
   /// `tendon_lengths`: length of each tendon of the rod within the section, m. `length_slopes`: derivative of
-  /// these lengths by the modes, size() x tendons. `pull_slopes`: derivative of the residual by the tensions
-  /// at the base, equal to `length_slopes` without friction.
+  /// these lengths with respect to the modes, size() x tendons. `pull_slopes`: derivative of the residual
+  /// with respect to the tensions at the base, equal to `length_slopes` without friction.
   Eigen::VectorXd tendon_lengths;
   Eigen::MatrixXd length_slopes, pull_slopes;
   /// Strain energy, J.
@@ -162,7 +162,7 @@ class RodElement {
   std::vector<MagnusStep::Slopes> by_moments_;
   std::vector<TwistExponential> exp_;
   std::vector<Vector6d> across_;  // Wrench of chords and loads on everything beyond the interval.
-  // For each node: the wrench on it, and its derivative by the node's twist.
+  // For each node: the wrench on it, and its derivative with respect to the node's twist.
   std::vector<Vector6d> F_;
   std::vector<Matrix6d> D_;
   Columns step_, moved_, turned_;  // Space for columns.

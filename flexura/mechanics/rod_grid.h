@@ -24,21 +24,21 @@ struct RodGrid {
   std::vector<double> t;          ///< Nodes, from 0 to 1.
   std::vector<double> weight;     ///< Weights of the nodes in an integral over t; their sum is 1.
   Eigen::MatrixXd at_node;        ///< Modes x nodes: value of each mode.
-  Eigen::MatrixXd slope_at_node;  ///< Modes x nodes: derivative of each mode by arc length, 1/m.
+  Eigen::MatrixXd slope_at_node;  ///< Modes x nodes: derivative of each mode with respect to arc length, 1/m.
   /// Nodes x nodes: integrates nodal values over t up to each node.
   Eigen::MatrixXd cumulative;
   /// Modes x intervals between nodes: the three moments (magnus_moments) of each mode in each interval.
   std::array<Eigen::MatrixXd, 3> moments;
-  /// At the nodes: stiffness, undeformed strain, and its derivative by arc length.
+  /// At the nodes: stiffness, undeformed strain, and its derivative with respect to arc length.
   std::vector<Vector6d> stiffness, rest, rest_slope;
   std::vector<std::array<Vector6d, 3>> rest_moments;  ///< Moments of the undeformed strain in the intervals.
   std::vector<double> mass_per_length;                ///< At the nodes, kg/m.
   std::vector<std::size_t> disks;       ///< Nodes that are disks, base and end included; empty without disks.
   std::vector<std::size_t> mass_nodes;  ///< Nodes of the section's point masses.
 
-  /// Sets the section's undeformed length to this factor times the original one, by its undeformed stretch.
+  /// Multiplies the section's original undeformed length by this factor, through its undeformed stretch.
   void stretch_rest(double factor);
-  /// Returns the index of the node at `place`, where a node must be.
+  /// Returns the index of the node at the position `place`, 0 to 1. There must be a node.
   [[nodiscard]] std::size_t node_at(double place) const;
   /// Calls f(c, j) for each mode j of each strain c.
   template <typename Function>

@@ -26,11 +26,12 @@ struct RodLayout {
     /// Inertia about the centre of mass, by rows, kg m^2.
     std::array<Triple<double>, 3> inertia{};
   };
-  /// Passage of a tendon at a node: its offset in the cross-section and the derivatives by arc length.
+  /// Passage of a tendon at a node: its offset in the cross-section and the derivatives with respect to arc
+  /// length.
   struct Passage {
     Triple<double> offset{}, slope{}, second{};
   };
-  /// An element of the rod (RodChain).
+  /// Constant data of an element of the rod (RodChain).
   struct Section {
     RodPart part;
     RodGrid grid;
@@ -73,7 +74,7 @@ struct RodLayout {
   void stretch_rest(std::span<const double> factors, std::span<const double> factor_rates);
 
   std::vector<Section> sections;
-  std::vector<std::size_t> ends;  ///< For each section of the rod: its last element.
+  std::vector<std::size_t> ends;  ///< Index of the last element of each section of the rod.
   std::size_t modes = 0, intervals = 0, nodes = 0, tendons = 0;
   std::size_t padded = 0;  ///< Number of intervals, rounded up to a multiple of an instruction's lanes.
   std::vector<Body> bodies;
@@ -81,13 +82,12 @@ struct RodLayout {
   std::vector<double> run;   ///< Length of rod that each node represents in an integral along the rod, m.
   /// 18 x padded: the three moments of the six undeformed strains.
   std::vector<double> rest;
-  /// For each of the three moments: its value for each mode of all sections, in each interval of the mode's
-  /// section.
+  /// The three moments of each mode of all sections, in each interval of the mode's section.
   std::array<std::vector<double>, 3> moments;
-  std::vector<Rubbing> rubbing;   ///< Tendons without friction are omitted.
-  std::size_t pieces = 0;         ///< Number of pieces of all these tendons.
+  std::vector<Rubbing> rubbing;   ///< Tendons with friction.
+  std::size_t pieces = 0;         ///< Number of pieces of all tendons in `rubbing`.
   std::vector<double> stretches;  ///< Relative rate of change of each element's undeformed length, 1/s.
-  bool is_driven = false;         ///< Any of these rates is not 0.
+  bool is_driven = false;         ///< Whether any entry of `stretches` is not 0.
 
  private:
   void find_rubbing(const Rod& rod);

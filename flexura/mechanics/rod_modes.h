@@ -12,15 +12,15 @@ struct RodModes {
   /// Eigenvalues of A in x' = A x with x = (q, v), 1/s, sorted by absolute value. In a conjugate pair, the
   /// one with negative imaginary part is first.
   Eigen::VectorXcd eigenvalues;
-  /// Of the conjugate pairs, in the same order: frequency |eigenvalue| / (2 pi), Hz, and damping ratio -(real
-  /// part) / |eigenvalue|. Overdamped modes are omitted.
+  /// Frequency |eigenvalue| / (2 pi), Hz, and damping ratio -(real part) / |eigenvalue| of each conjugate
+  /// pair, in the order of the eigenvalues. Overdamped modes have no pair and are omitted.
   std::vector<double> frequencies, damping_ratios;
 };
 
-/// Returns the modes from derivatives at rest (RodDynamics::slopes). They are computed from the shifted
-/// inverse of A. So slow modes are accurate to rounding although held tendons are very stiff. A fast mode has
-/// a relative error of about 1e-16 times the square of its frequency relative to the slow modes. Values are
-/// not finite if that inverse does not exist.
+/// Returns the modes from derivatives at rest (RodDynamics::slopes). The modes are computed from a shifted
+/// inverse of A, so that slow modes are accurate to rounding although held tendons are very stiff. A fast
+/// mode has a relative error of about 1e-16 times the square of its frequency relative to the slow modes.
+/// Values are not finite if the shifted inverse does not exist.
 [[nodiscard]] RodModes rod_modes(const RodDynamicsSlopes& at_rest);
 
 }  // namespace flexura

@@ -65,13 +65,15 @@ class RodMotion {
   [[nodiscard]] const std::vector<Screw<S>>& momenta() const { return P_; }
   /// Wrenches of the last surroundings with derivatives; empty without surroundings.
   [[nodiscard]] const std::vector<NodePull>& pulls() const { return pulls_; }
-  /// Return all points, the indices of those chosen by the last surroundings, and the motions and wrenches of
-  /// the chosen ones.
+  /// Returns all points.
   [[nodiscard]] const RodPoints* points() const { return points_; }
+  /// Returns the indices of the points that the last surroundings chose.
   [[nodiscard]] std::span<const std::size_t> chosen() const { return chosen_; }
+  /// Returns the motions of the chosen points.
   [[nodiscard]] std::span<const NodeMotion> point_motions() const {
     return {point_motions_.data(), chosen_.size()};
   }
+  /// Returns the wrenches on the chosen points.
   [[nodiscard]] std::span<const NodePull> point_pulls() const {
     return {point_pulls_.data(), chosen_.size()};
   }
@@ -91,22 +93,23 @@ class RodMotion {
 
   /// Computes the generalized forces of one wrench at each node; after place().
   void collect(const std::vector<Screw<S>>& wrenches, S* force);
-  /// Computes the derivatives of a tendon's length by all modes; after place().
+  /// Computes the derivatives of a tendon's length with respect to all modes; after place().
   void find_length_slopes(std::size_t tendon, S* slopes);
-  /// Computes minus the derivatives of the generalized forces by a tendon's tension at the base. Without
-  /// friction these are the derivatives of its length. `tension`: that tension, N. Call after pull().
+  /// Computes minus the derivatives of the generalized forces with respect to a tendon's tension at the base.
+  /// Without friction these are the derivatives of its length. `tension`: that tension, N. Call after pull().
   void find_pull_slopes(std::size_t tendon, double tension, double* slopes);
-  /// Computes minus the derivatives of the generalized forces by the relative change of the bristle stiffness
-  /// of a tendon; 0 without friction. `tension` as above. Call after pull().
+  /// Computes minus the derivatives of the generalized forces with respect to the relative change of the
+  /// bristle stiffness of a tendon; 0 without friction. `tension` as above. Call after pull().
   void find_grip_slopes(std::size_t tendon, double tension, double* slopes);
-  /// Return for each piece the friction force at its junction with the previous piece, N, and the sliding
-  /// speed there towards the base, m/s. The force is the tension of the previous piece minus that of this
-  /// one. Call after pull().
+  /// Returns for each piece the friction force at its junction with the previous piece, N. The force is the
+  /// tension of the previous piece minus that of this piece. Call after pull().
   [[nodiscard]] const std::vector<S>& frictions() const { return friction_; }
+  /// Returns for each piece the sliding speed towards the base at its junction with the previous piece, m/s.
+  /// Call after pull().
   [[nodiscard]] const std::vector<S>& slides() const { return slide_; }
 
   /// Returns the geometric stiffness at a node of tendons in channels, per metre of rod. It is the second
-  /// derivative, by the node's strains, of the sum of tensions times tendon lengths.
+  /// derivative with respect to the node's strains, of the sum of tensions times tendon lengths.
   [[nodiscard]] Matrix6d tendon_stiffness(const RodLayout::Section& section, std::size_t node,
                                           const double* tensions) const;
 

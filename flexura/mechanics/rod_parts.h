@@ -8,26 +8,27 @@
 
 namespace flexura {
 
-/// A part of a rod with strain modes of its own: a section or, where its tendons run straight between guide
-/// disks, a piece of it between two disks.
+/// A part of a rod with separate strain modes: a whole section, or the piece of a section between two guide
+/// disks.
 struct RodPart {
-  std::size_t section = 0;    ///< Its section in the rod.
-  double begin = 0, end = 1;  ///< As parts of that section's length.
-  bool is_last = true;        ///< Of its section.
-  double s_base = 0;          ///< Arc length from the rod's base to its own, m.
+  std::size_t section = 0;    ///< Index of the section that the part belongs to.
+  double begin = 0, end = 1;  ///< Begin and end of the part, as fractions of the section's length.
+  bool is_last = true;        ///< Whether the part is the last of its section.
+  double s_base = 0;          ///< Arc length from the rod's base to the part's base, m.
   RodSection rod = {};        ///< Material, bodies and modes of this part alone.
 
-  /// Returns whether the place is in it. A place between two parts of a section is in the first.
+  /// Returns whether the place is in the part. A place at the boundary of two parts is in the first.
   [[nodiscard]] bool holds(const RodPlace& place) const;
-  /// Returns a place of its section as a part of its own length, from 0 to 1.
+  /// Converts a position from a fraction of the section's length to a fraction of the part's length, 0 to 1.
   [[nodiscard]] double within(double at) const;
-  /// Returns a place in it as a part of its section's length.
+  /// Converts a position from a fraction of the part's length to a fraction of the section's length.
   [[nodiscard]] double of_section(double at) const { return begin + at * (end - begin); }
 };
 
 /// Returns the parts of a valid rod, from the base on. A section with 1 to 11 pieces between disks is divided
-/// into them if StrainModes::by_piece is set and each bend has at least 3 modes, so that its curvature can
-/// follow the chords (docs/mechanics.md). With more pieces the modes of the whole section suffice.
+/// into these pieces, if StrainModes::by_piece is set and each bend has at least 3 modes. Its curvature can
+/// then follow the straight tendons (docs/mechanics.md). With more than 11 pieces the modes of the whole
+/// section suffice.
 [[nodiscard]] std::vector<RodPart> parts_of(const Rod& rod);
 
 }  // namespace flexura

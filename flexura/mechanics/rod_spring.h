@@ -21,8 +21,8 @@ namespace flexura {
 /// frame.
 [[nodiscard]] Eigen::Vector3d spring_force(const PointSpring& spring, const Eigen::Vector3d& point);
 
-/// Force of a spring as a wrench about the base's origin, and its derivative by a small displacement twist of
-/// the node.
+/// Force of a spring as a wrench about the base's origin, and its derivative with respect to a small
+/// displacement twist of the node.
 struct SpringPull {
   Vector6d wrench = Vector6d::Zero();
   Matrix6d by_pose = Matrix6d::Zero();

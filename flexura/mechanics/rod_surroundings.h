@@ -27,8 +27,8 @@ struct NodeMotion {
   Vector6d twist = Vector6d::Zero();
 };
 
-/// Wrench [f; m] on a node about the base's origin. `by_pose`: derivative by a small displacement twist of
-/// the node. `by_twist`: derivative by its velocity twist.
+/// Wrench [f; m] on a node about the base's origin. `by_pose`: derivative with respect to a small
+/// displacement twist of the node. `by_twist`: derivative with respect to its velocity twist.
 struct NodePull {
   Vector6d wrench = Vector6d::Zero();
   Matrix6d by_pose = Matrix6d::Zero();
@@ -55,7 +55,7 @@ struct NodePull {
   NodePull& operator+=(const NodePull& other);
 };
 
-/// Derivative of the wrench at one point by the motion of another.
+/// Derivative of the wrench at one point with respect to the motion of another.
 struct PointCoupling {
   std::size_t of = 0,
               /// Indices among the chosen points: the motion of point `of` affects the wrench at point `at`.
@@ -94,10 +94,11 @@ class RodSurroundings {
   /// Computes wrenches at the chosen points. Must set all of `pulls`.
   virtual void pull_points(std::span<const std::size_t> /*chosen*/, std::span<const NodeMotion> /*points*/,
                            std::span<NodePull> /*pulls*/) const {}
-  /// For coupled wrenches: appends all their derivatives, also those by the motion of the same point.
+  /// If wrenches are coupled, appends all their derivatives, also those with respect to the motion of the
+  /// same point.
   virtual void couple(std::span<const std::size_t> /*chosen*/, std::span<const NodeMotion> /*points*/,
                       std::vector<PointCoupling>& /*couplings*/) const {}
-  /// For coupled wrenches: appends the ties for a step's matrix.
+  /// If wrenches are coupled, appends the ties for a step's matrix.
   virtual void tie(std::span<const std::size_t> /*chosen*/, std::span<const NodeMotion> /*points*/,
                    std::vector<PointTie>& /*ties*/) const {}
 };

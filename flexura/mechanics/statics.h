@@ -63,8 +63,8 @@ struct Equilibrium {
   [[nodiscard]] bool converged() const { return end == StaticsEnd::converged; }
 };
 
-/// Derivatives of an equilibrium by its input, loads and parameters. The input is the given tensions or
-/// displacements.
+/// Derivatives of an equilibrium with respect to its input, loads and parameters. The input is the given
+/// tensions or displacements.
 struct EquilibriumSlopes {
   Eigen::MatrixXd q_by_input;         ///< size() x tendons. Columns of slack tendons are 0.
   Eigen::MatrixXd tensions_by_input;  ///< Tendons x tendons, N/m; the identity if tensions are given.

@@ -11,8 +11,8 @@ namespace flexura {
 /// Combines several surroundings of one rod: adds their wrenches.
 class Surroundings final : public RodSurroundings {
  public:
-  /// Keeps references. Throws std::invalid_argument for a null pointer, or if two of them act at points
-  /// between nodes.
+  /// Stores the pointers; the surroundings must outlive this object. Throws std::invalid_argument for a null
+  /// pointer, or if two of the surroundings act at points between nodes.
   explicit Surroundings(std::vector<const RodSurroundings*> parts);
   /// Not thread-safe.
   void pull(std::span<const NodeMotion> nodes, std::span<const double> run,
@@ -40,9 +40,9 @@ struct TendonBreak {
   double time = 0;  ///< s
 };
 
-/// Returns the input at a time when tendons break. A broken tendon has tension 0, or a displacement at which
-/// it is always slack. An empty input stays empty. Throws std::invalid_argument for a tendon that is not in
-/// the list.
+/// Returns `input` as it is at `time` (s) after all `breaks` up to then. A broken tendon has tension 0, or a
+/// displacement at which it is always slack. An empty input stays empty. Throws std::invalid_argument if a
+/// break names a tendon that `input` does not have.
 [[nodiscard]] TendonInput after_breaks(TendonInput input, std::span<const TendonBreak> breaks, double time);
 
 }  // namespace flexura

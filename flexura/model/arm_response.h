@@ -33,9 +33,9 @@ class ArmResponse {
   ArmResponse& operator=(const ArmResponse&) = delete;
   virtual ~ArmResponse() = default;
 
-  /// Returns the shape for a command, one bend and one stretch per arc. Bends are NaN if the arm has no
-  /// equilibrium. Throws std::invalid_argument if the command does not have one bend and one stretch per
-  /// section.
+  /// Returns the shape for a command. The shape has one bend and one stretch per arc; bends are NaN if the
+  /// arm has no equilibrium. Throws std::invalid_argument if the command does not have one bend and one
+  /// stretch per section.
   [[nodiscard]] virtual ArmState shape(const ArmState& command) const = 0;
   /// Computes the Jacobian of the shape with respect to the command, at a command. It has rows (bend_x,
   /// bend_y, stretch) for each arc and columns (bend_x, bend_y, stretch) for each section. Resizes

@@ -23,9 +23,10 @@ namespace flexura {
 /// before allocating memory, because a small file can claim a huge size.
 void check_picture_size(std::int64_t width, std::int64_t height, std::size_t most_pixels);
 
-/// Return the exception to throw for a truncated or a damaged file. `kind` is the kind of file, such as
-/// "PNG". `text` is a library's message, of which only printable ASCII is kept.
+/// Returns the exception to throw for a truncated file. `kind` is the kind of file, such as "PNG".
 [[nodiscard]] std::runtime_error cut_short(std::string_view kind);
+/// Returns the exception to throw for a damaged file. `kind` is the kind of file, such as "PNG". `text` is a
+/// library's message, of which only printable ASCII is kept.
 [[nodiscard]] std::runtime_error damaged(std::string_view kind, std::string_view text);
 
 /// The colour of each index of a file with a palette. Indices that the file's palette does not contain are

@@ -21,9 +21,9 @@ class LensMap {
   /// Sets entry `index` of `places` to the undistorted position of a pixel, with derivatives.
   void place(int u, int v, std::size_t index, SpanPlaces& places) const;
 
-  /// Return the rows, and the columns of row v, in which the region may be visible. No visible row or column
-  /// is missing.
+  /// Returns the rows in which the region may be visible. No visible row is missing.
   [[nodiscard]] PixelRange rows(const ImageRegion& region) const;
+  /// Returns the columns of row v in which the region may be visible. No visible column is missing.
   [[nodiscard]] PixelRange columns(const ImageRegion& region, int v) const;
 
  private:

@@ -39,9 +39,11 @@ struct TubePiece {
   std::size_t tube_arc = 0;  ///< Arc of the tube from which the piece was cut.
   double start_in_arc = 0;   ///< Distance of the piece's start from this arc's start, m.
 
-  /// Return the radius at the end, the largest radius, and the smallest radius, m.
+  /// Returns the radius at the end of the piece, m.
   [[nodiscard]] double end_radius() const { return radius + widening * length; }
+  /// Returns the largest radius, m.
   [[nodiscard]] double widest() const { return std::max(radius, end_radius()); }
+  /// Returns the smallest radius, m.
   [[nodiscard]] double narrowest() const { return std::min(radius, end_radius()); }
 };
 
@@ -52,8 +54,9 @@ struct LocalRay {
   /// Rate of rotation around the centre of curvature (docs/renderer.md), which is constant along the ray.
   double cross = 0;
 };
-/// Return a ray from the camera, or from any point in C in any direction, in the piece's frame.
+/// Returns a ray from the camera in the piece's frame.
 [[nodiscard]] LocalRay local_ray(const TubePiece& piece, const Ray& ray);
+/// Returns the ray from a point of C in a direction of C, in the piece's frame.
 [[nodiscard]] LocalRay local_ray(const TubePiece& piece, const Eigen::Vector3d& p_CQ,
                                  const Eigen::Vector3d& direction_C);
 

@@ -28,6 +28,27 @@ T must(Outcome<T> outcome) {
   return std::move(outcome).value();
 }
 
+// The head of a camera, with times on the rig's clock.
+class RigHead : public HeadPort {
+ public:
+  // `time_shift`, s, is added to the times of readings.
+  RigHead(std::unique_ptr<HeadPort> head, double time_shift) : head_(std::move(head)), time_shift_(time_shift) {}
+  ~RigHead() override { (void)head_->halt(); }
+  CommandOutcome command(const HeadState& state) override { return head_->command(state); }
+  CommandOutcome halt() override { return head_->halt(); }
+  Outcome<HeadReading> read() override {
+    auto taken = head_->read();
+    if (!taken) return taken;
+    HeadReading reading = taken.value();
+    reading.time += time_shift_;
+    return reading;
+  }
+
+ private:
+  std::unique_ptr<HeadPort> head_;
+  double time_shift_;
+};
+
 // The controllers of an arm.
 class ArmEquipment {
  public:
@@ -59,9 +80,15 @@ class ArmEquipment {
       grbl_.push_back(std::move(drive));
     }
     joined_.emplace(std::move(parts));
-    guarded_.emplace(*joined_, guard, [this] {
-      if (can_) can_->keep_alive();
-    });
+  }
+  // From now on the drives may move. `time_shift`, s, is added to the times of readings.
+  void start(const ArmSetup& setup, Guard& guard, double time_shift) {
+    guarded_.emplace(
+        *joined_, guard,
+        [this] {
+          if (can_) can_->keep_alive();
+        },
+        time_shift);
     arm_.emplace(*guarded_, setup.arm, *setup.drive, setup.initial);
   }
   ~ArmEquipment() {
@@ -90,11 +117,7 @@ struct CameraDevices {
   std::unique_ptr<CountedCamera> source;
   DeviceClock time;
   std::optional<ClockedCamera> camera;
-  std::unique_ptr<HeadPort> head;
-
-  ~CameraDevices() {
-    if (head) (void)head->halt();
-  }
+  std::unique_ptr<RigHead> head;  // Null if the camera has none.
 };
 
 using Buses = std::map<std::string, std::shared_ptr<ViscaBus>>;
@@ -121,26 +144,28 @@ std::unique_ptr<CountedCamera> source_of(const CameraEquipment& equipment, const
 
 class EquipmentRig : public Rig {
  public:
-  explicit EquipmentRig(const Setup& setup)
-      : equipment_(setup.rig.value()),
-        guard_(equipment_.watchdog),
-        clock_([this] { beat(); }, equipment_.watchdog / 10),
-        arm_(std::make_unique<ArmEquipment>(equipment_, ArmSetup(setup.model_rig()), clock_, guard_)) {
-    for (const CameraConfig& camera : setup.cameras()) {
-      const auto found = std::ranges::find(equipment_.camera, camera.name, &CameraEquipment::name);
-      if (found == equipment_.camera.end())
-        throw std::runtime_error("no devices for the camera " + camera.name);
+  explicit EquipmentRig(const Setup& setup) : equipment_(setup.rig.value()), guard_(equipment_.watchdog) {
+    const ArmSetup arm(setup.model_rig());
+    arm_ = std::make_unique<ArmEquipment>(equipment_, arm, device_clock_, guard_);
+    const std::vector<CameraConfig> cameras = setup.cameras();
+    std::vector<std::unique_ptr<HeadPort>> heads;
+    for (const CameraConfig& camera : cameras) heads.push_back(head_of(devices_of(camera), device_clock_, guard_, buses_));
+    // The run begins when the devices are ready.
+    clock_->emplace([this] { arm_->beat(); }, equipment_.watchdog / 10);
+    const double time_shift = device_clock_.start() - clock_->start();
+    arm_->start(arm, guard_, time_shift);
+    for (std::size_t i = 0; i < cameras.size(); ++i) {
       auto devices = std::make_unique<CameraDevices>();
-      devices->name = camera.name;
-      devices->head = head_of(*found, clock_, guard_, buses_);
-      devices->source = source_of(*found, camera, clock_);
+      devices->name = cameras[i].name;
+      if (heads[i]) devices->head = std::make_unique<RigHead>(std::move(heads[i]), time_shift);
+      devices->source = source_of(devices_of(cameras[i]), cameras[i], *clock_);
       devices->camera.emplace(*devices->source, devices->time, 0.0);
       cameras_.push_back(std::move(devices));
     }
   }
 
   RigPorts ports() override {
-    RigPorts ports{&clock_, &arm_->port(), {}};
+    RigPorts ports{&*clock_, &arm_->port(), {}};
     for (const auto& devices : cameras_)
       ports.cameras.push_back({devices->name, &*devices->camera, devices->head.get(), nullptr});
     return ports;
@@ -150,25 +175,28 @@ class EquipmentRig : public Rig {
     go_to(time, state);
     constexpr double between_looks = 0.005;
     do {
-      clock_.wait_until(std::min(time, clock_.now() + between_looks));
+      clock_->wait_until(std::min(time, clock_->now() + between_looks));
       for (const FilmedFrame& filmed : new_frames()) take(filmed);
-    } while (clock_.now() < time);
+    } while (clock_->now() < time);
   }
   void pass_to(double time, const ArmState& state) override {
     go_to(time, state);
-    clock_.wait_until(time);
+    clock_->wait_until(time);
   }
   void skip_to_now() override {
     for (const auto& devices : cameras_) (void)devices->camera->newest();
   }
 
  private:
-  void beat() {
-    if (arm_) arm_->beat();
+  [[nodiscard]] const CameraEquipment& devices_of(const CameraConfig& camera) const {
+    const auto found = std::ranges::find(equipment_.camera, camera.name, &CameraEquipment::name);
+    if (found == equipment_.camera.end())
+      throw std::runtime_error("no devices for the camera " + camera.name);
+    return *found;
   }
   // Real time does not wait for the program: what is late is done as soon as possible.
   void go_to(double time, const ArmState& state) {
-    must(arm_->port().command(state, std::max(0.0, time - clock_.now())));
+    must(arm_->port().command(state, std::max(0.0, time - clock_->now())));
   }
   std::vector<FilmedFrame> new_frames() {
     std::vector<FilmedFrame> frames;
@@ -182,7 +210,8 @@ class EquipmentRig : public Rig {
 
   RigEquipment equipment_;
   Guard guard_;
-  WallClock clock_;
+  WallClock device_clock_;          // Of the drives and heads.
+  std::optional<WallClock> clock_;  // Of the run.
   std::unique_ptr<ArmEquipment> arm_;
   Buses buses_;
   std::vector<std::unique_ptr<CameraDevices>> cameras_;

@@ -64,8 +64,9 @@ struct Setup {
 
   /// Returns the arm model. Throws InputError for an elastic arm without an equilibrium.
   [[nodiscard]] ArmModel arm_model() const;
-  /// Return the model of the rig and the true rig.
+  /// Returns the model of the rig.
   [[nodiscard]] RigConfig model_rig() const;
+  /// Returns the true rig.
   [[nodiscard]] RigConfig true_rig() const;
   /// Returns the true surroundings. Their default screens are at the positions that follow from the arm
   /// model.

@@ -37,8 +37,9 @@ class ShapeObserver {
   [[nodiscard]] ShapeEstimate with_nominal_views(const ServoObservation& observed,
                                                  const std::array<View, 2>& views) const;
 
-  /// Return the first and the newest observation with a shape; null before the first.
+  /// Returns the first observation with a shape; null before it.
   [[nodiscard]] const std::shared_ptr<const ServoObservation>& first() const { return first_; }
+  /// Returns the newest observation with a shape; null before the first.
   [[nodiscard]] const std::shared_ptr<const ServoObservation>& last() const { return last_; }
   /// Returns the time since an observation last gave a shape, s.
   [[nodiscard]] double blind_for(double now) const { return now - seen_since_; }

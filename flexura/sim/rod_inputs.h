@@ -28,9 +28,10 @@ class RodInputs {
   /// std::invalid_argument otherwise, or if there is no equilibrium under the pretension.
   explicit RodInputs(const PlantSetup& setup);
 
-  /// As Plant::command().
+  /// Has the effect of Plant::command().
   void command(double time, const Eigen::VectorXd& u, double duration);
-  /// As Plant::halt(). The following functions, up to pulled(), are also as those of Plant.
+  /// Has the effect of Plant::halt(). Each function from here to pulled() has the effect of the function of
+  /// Plant with the same name.
   void halt(double time);
   /// Pulls the tendons individually.
   std::optional<ArmState> pull(double time, const std::vector<double>& displacements, double duration);
@@ -50,7 +51,7 @@ class RodInputs {
   [[nodiscard]] std::optional<ArmState> commanded(double time) const;
   /// Returns how far each tendon is pulled in, m.
   [[nodiscard]] std::vector<double> pulled(double time) const;
-  /// Discards records before `time`. Times before it must not be queried any more.
+  /// Discards records before `time`, s. Afterwards no time before `time` may be queried.
   void forget_before(double time);
 
   [[nodiscard]] const Rod& rod() const { return rod_; }

@@ -27,7 +27,7 @@ class SimulatedBends : public ArmPort {
   CommandOutcome command(const ArmState& state, double duration) override;
   CommandOutcome halt() override;
   Outcome<ArmReading> read() override;
-  /// As SimulatedArm::pull().
+  /// Has the effect of SimulatedArm::pull().
   CommandOutcome pull(const std::vector<double>& displacements, double duration);
   /// Returns the link to the arm, which can be interrupted for a time.
   [[nodiscard]] SimulatedLink& link() { return link_; }

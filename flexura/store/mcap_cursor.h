@@ -10,8 +10,9 @@
 
 namespace flexura {
 
-/// Reads a part of a log from its start. Every read is checked against the part's end. Throws
-/// std::runtime_error with the log's name and the position in the log, in bytes, if a read exceeds the part.
+/// Reads a part of a log byte by byte, beginning with the first byte of the part. Every read is checked
+/// against the part's end. Throws std::runtime_error with the log's name and the position in the log, in
+/// bytes, if a read exceeds the part.
 class McapCursor {
  public:
   McapCursor(std::span<const std::byte> log, const std::string& name)

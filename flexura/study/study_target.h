@@ -36,8 +36,9 @@ class StudyTarget {
   [[nodiscard]] Eigen::Vector3d level_axis() const { return X_WF_.rotation.col(0); }
   [[nodiscard]] const Pose& frame() const { return X_WF_; }
   [[nodiscard]] double radius() const { return radius_; }
-  /// Return point number i of the circle, in W, m, and in the target's x and y, m.
+  /// Returns point number i of the circle in W, m.
   [[nodiscard]] Eigen::Vector3d point(std::size_t i) const;
+  /// Returns point number i of the circle in the target's x and y, m.
   [[nodiscard]] Eigen::Vector2d plane_point(std::size_t i) const;
 
   /// Returns the target's image, computed by the projection formulas.

@@ -14,16 +14,18 @@ namespace flexura {
 
 /// State of a rig or a recording at one time.
 struct RigInstant {
-  ArmState arm;                        ///< State to which the arm is commanded.
-  std::vector<CameraReading> cameras;  ///< Readings of the axes of all cameras, or their commands.
+  ArmState arm;  ///< State to which the arm is commanded.
+  /// Axis positions of each camera's head and stage: the readings, or the last commands in a live session
+  /// without a shown run.
+  std::vector<CameraReading> cameras;
 };
 
-/// Returns the rig's experiment with another start: the arm is commanded to that of `instant`, and the axes
-/// of the cameras read as in it. The differences between truth and model at the start stay.
+/// Returns the rig's experiment with another start: the arm's initial command and the readings of the camera
+/// axes are those of `instant`. Differences between truth and model at the start stay unchanged.
 [[nodiscard]] Experiment started_at(const ViewedRig& rig, const RigInstant& instant);
 
-/// Returns the problems of a text as an experiment file, with their lines and columns; empty if it is a valid
-/// one. It may name no other file: neither `include` nor files of keyframes.
+/// Returns the problems of a text as an experiment file, with their lines and columns; empty if the text is
+/// valid. The text must not name other files: neither `include` nor files of keyframes.
 [[nodiscard]] std::vector<Problem> experiment_problems(const std::string& text);
 
 /// Returns the text of an experiment for editing: `file_text` if it alone gives the experiment, otherwise a

@@ -41,8 +41,8 @@ class LiveRig {
   void go_to(double now) { simulated_->clock().wait_until(rig_time(now)); }
   /// Moves the rig to the time `now` (s) without simulation, while no client is connected.
   void rest_until(double now) { start_ += std::max(0.0, now - this->now()); }
-  /// Must be called before the rig advances to the time `next` (s). For a rod, all but the last 0.1 s before
-  /// `next` pass without simulation. Its steps take too long to catch up.
+  /// Must be called before the rig advances to the time `next` (s). A rod is simulated only for the last 0.1
+  /// s before `next`; earlier time is skipped, because the rod's steps are too slow to catch up.
   void skip_to(double next);
   /// Returns the recent speed of the rig's time relative to real time, if the simulation is slower than real
   /// time. Otherwise returns std::nullopt.
@@ -50,9 +50,10 @@ class LiveRig {
 
   /// Returns the shape of the arm according to the model.
   [[nodiscard]] ArmState nominal();
-  /// Return the state that the drives truly impose, and the true backbone, at `time` (s). Future times are
-  /// possible for motions that are already commanded.
+  /// Returns the state that the drives truly impose at `time` (s). Future times are possible for motions that
+  /// are already commanded.
   [[nodiscard]] ArmState truth(double time) { return simulated_->arm().truth(rig_time(time)); }
+  /// Returns the true backbone at `time` (s). Future times are possible as for truth().
   [[nodiscard]] Backbone backbone(double time) { return simulated_->arm().backbone(rig_time(time)); }
   /// Returns the backbone at rest for these bends; the current backbone if the arm has these bends now.
   /// Throws std::runtime_error if a rod has no equilibrium for these bends.
@@ -81,8 +82,9 @@ class LiveRig {
   /// flags except `is_moving`.
   [[nodiscard]] StateMessage state();
 
-  /// Return the number of a camera's newest frame whose exposure has ended, and the shot of a frame.
+  /// Returns the number of a camera's newest frame whose exposure has ended.
   [[nodiscard]] std::int64_t newest_frame(std::size_t camera);
+  /// Returns the shot from which frame number `frame` of a camera is rendered.
   [[nodiscard]] ValueShot shot(std::size_t camera, std::int64_t frame);
 
  private:

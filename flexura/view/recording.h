@@ -38,21 +38,22 @@ class Recording {
   /// Returns the median time between consecutive states, s; 0 if there is only one state.
   [[nodiscard]] double interval() const { return interval_of(states_); }
 
-  /// Return the number of states, which is never 0, and the index of the last state at or before `time` (s).
-  /// Before the first state the index is 0.
+  /// Returns the number of states, which is never 0.
   [[nodiscard]] std::size_t states() const { return states_.size(); }
+  /// Returns the index of the last state at or before `time` (s); 0 before the first state.
   [[nodiscard]] std::size_t state_at(double time) const;
-  /// Return the time of a state, s, and the arm's shape in that state. Throws InputError if the logged shape
-  /// does not fit the arm.
+  /// Returns the time of state number `place`, s.
   [[nodiscard]] double time_of_state(std::size_t place) const { return seconds(states_.at(place).time); }
+  /// Returns the arm's shape in state number `place`. Throws InputError if the logged shape does not fit the
+  /// arm.
   [[nodiscard]] ArmState state(std::size_t place) const;
-  /// Returns the run's condition at a time, s. It is `unsafe` while a limit is violated, at the end that of
-  /// the results, and otherwise `running`.
+  /// Returns the run's condition at a time, s: `unsafe` while a limit is violated, at the end the condition
+  /// in the results, and otherwise `running`.
   [[nodiscard]] Conditioned condition(double time) const;
 
-  /// Return the number of a camera's images in the log, and the index of its last image at or before `time`
-  /// (s). Before the first image there is no index.
+  /// Returns the number of a camera's images in the log.
   [[nodiscard]] std::size_t images(std::size_t camera) const { return images_.at(camera).size(); }
+  /// Returns the index of a camera's last image at or before `time` (s); std::nullopt before the first image.
   [[nodiscard]] std::optional<std::size_t> image_at(std::size_t camera, double time) const;
   struct LoggedImage {
     double time = 0;  ///< Middle of the exposure, s.
@@ -60,23 +61,27 @@ class Recording {
   };
   /// Returns an image. Throws InputError if the log has no such image.
   [[nodiscard]] LoggedImage image(std::size_t camera, std::size_t place) const;
-  /// Return whether the log has commands of a servo, and the last command at a time, s, while a servo
-  /// controls the arm. Throws InputError if the logged command is invalid.
+  /// Returns whether the log has commands of a servo.
   [[nodiscard]] bool has_servo() const { return !servo_steps_.empty(); }
+  /// Returns the servo's last command at a time, s; std::nullopt if no servo controls the arm at that time.
+  /// Throws InputError if the logged command is invalid.
   [[nodiscard]] std::optional<ServoStep> servo_step(double time) const;
   /// Returns the servo's last command at a time, s, with its observations in the pictures shown at that time.
   [[nodiscard]] std::optional<ShownServo> servo(double time) const;
   /// Returns the index of the state in which a servo or calibration took the picture whose measurements are
-  /// drawn at a time, s. For a camera without logged images; std::nullopt while neither is active.
+  /// drawn at a time, s. Returns std::nullopt for a camera with logged images, and at times without an active
+  /// servo or calibration.
   [[nodiscard]] std::optional<std::size_t> measured_state(std::size_t camera, double time) const;
-  /// Return whether the log has a calibration, and its last decision at a time, s. The decision includes its
-  /// observations in the pictures shown then. std::nullopt while no calibration is active. Throws InputError
-  /// if the logged decision is invalid.
+  /// Returns whether the log has a calibration.
   [[nodiscard]] bool has_calibration() const { return !decisions_.empty(); }
+  /// Returns the last decision of the calibration at a time, s, with its observations in the pictures shown
+  /// at that time. Returns std::nullopt if no calibration is active at that time. Throws InputError if the
+  /// logged decision is invalid.
   [[nodiscard]] std::optional<ShownCalibration> calibration(double time) const;
-  /// Return whether the log has the true arm, and its samples from base to tip at a time, s. std::nullopt if
-  /// the log has no true arm near that time. Throws InputError if the logged arm is invalid.
+  /// Returns whether the log has the true arm.
   [[nodiscard]] bool has_truth() const { return !truths_.empty(); }
+  /// Returns the samples of the true arm from base to tip at a time, s; std::nullopt if the log has no true
+  /// arm near that time. Throws InputError if the logged arm is invalid.
   [[nodiscard]] std::optional<std::vector<ArmSample>> truth(double time) const;
   /// Forces of an elastic-rod arm, as logged at or just before a time.
   struct LoggedForces {

@@ -33,8 +33,9 @@ struct ShownServo {
 /// do not fit the rig's arm.
 [[nodiscard]] Extras servo_extras(const ViewedRig& rig, const ShownServo& servo);
 
-/// Return the names of a servo's errors, in percent of the arm's length, and their values at one command.
+/// Returns the names of a servo's errors. They are in percent of the arm's length.
 [[nodiscard]] std::vector<Quantity> servo_quantities();
+/// Returns the values of the errors of servo_quantities() at one command.
 [[nodiscard]] std::vector<std::optional<double>> servo_values(const ServoStep& step);
 
 }  // namespace flexura

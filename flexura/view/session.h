@@ -70,7 +70,7 @@ class Session {
   /// Calls `answer` once with the document on any thread, at once or later. Throws ViewRefusal instead to
   /// refuse the request.
   virtual void take(const Document& document, std::function<void(HttpAnswer)> answer) = 0;
-  /// Returns the state that a client sees, with commands where there are any.
+  /// Returns the state that a client sees. Positions with a command are the commanded ones.
   [[nodiscard]] virtual RigInstant instant(ClientId client) = 0;
   /// Advances to the time `now` (s), which never decreases, and sends due messages to the clients.
   virtual void advance(double now) = 0;

@@ -66,12 +66,14 @@ class ViewedRig {
   /// Returns the index of the camera with this name; std::nullopt if there is none.
   [[nodiscard]] std::optional<std::size_t> camera(std::string_view name) const;
 
-  /// Return the readings of a camera's head and stage at the start, and their true positions at the start.
+  /// Returns the readings of a camera's head and stage at the start.
   [[nodiscard]] CameraReading first_reading(std::size_t camera) const;
+  /// Returns the true positions of a camera's head and stage at the start.
   [[nodiscard]] CameraStance first_stance(std::size_t camera) const;
-  /// Convert between readings and true positions of a camera's head and stage, without backlash and
-  /// quantisation. Readings count from the initial positions of the model.
+  /// Returns the true positions of a camera's head and stage for their readings, without backlash and
+  /// quantisation. Readings are relative to the initial positions of the model.
   [[nodiscard]] CameraStance stance(std::size_t camera, const CameraReading& reading) const;
+  /// Returns the readings of a camera's head and stage for their true positions: the inverse of stance().
   [[nodiscard]] CameraReading reading(std::size_t camera, const CameraStance& stance) const;
   /// Returns the camera's view according to its model and a reading.
   [[nodiscard]] View nominal_view(std::size_t camera, const CameraReading& reading) const;

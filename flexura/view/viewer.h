@@ -37,7 +37,7 @@ struct ViewStart {
   std::vector<ViewExample> examples = {};  ///< Other experiments to open; empty if a file was given.
   std::string text = {};                   ///< Text of the rig's experiment file; "": unknown.
   std::filesystem::path folder = {};       ///< Folder for saved experiments.
-  std::string stem = "experiment";         ///< Begin of the names of saved experiments.
+  std::string stem = "experiment";         ///< Beginning of the names of saved experiments.
 };
 
 /// Parses the requests of clients, answers them, and switches between rig and recording. Not thread-safe.
@@ -60,7 +60,7 @@ class Viewer {
   /// Cancels a run of tasks.
   void cancel();
 
-  /// Returns whether advance() is needed: a client is connected, or a run goes at a speed.
+  /// Returns whether advance() is needed: a client is connected, or a run has a set speed.
   [[nodiscard]] bool is_watched() const {
     return !clients_.empty() || (live_ != nullptr && live_->is_pacing());
   }

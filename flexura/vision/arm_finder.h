@@ -70,8 +70,8 @@ struct ArmObservation {
   double contrast = 0;     ///< Contrast across the arm's borders, on a scale from 0 to 255.
   bool is_closed = false;  ///< Whether the centerline is a closed curve without ends.
   double covered = 0;      ///< Fraction of the silhouette that the centerline with its widths covers.
-  /// If `covered` is small: points of the silhouette's outer border that do not belong to the centerline.
-  /// Without a centerline: all points of the outer border.
+  /// Points of the silhouette's outer border that do not belong to the centerline; only if `covered` is
+  /// small. Without a centerline: all points of the outer border.
   std::vector<BorderPoint> unexplained;
   /// Sample points over the whole silhouette, px (strew() in runs.h); empty if no arm was found.
   std::vector<Eigen::Vector2d> places;

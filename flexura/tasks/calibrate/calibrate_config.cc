@@ -188,7 +188,8 @@ const Table<CalibrateTask>& fields_of(const CalibrateTask*) {
                    "Calibration method. `bundle`: least squares over all parameters, from pictures of the "
                    "arm. `bundle-etalon`: least squares from pictures of the calibration cylinder. `etalon`: "
                    "the paper's loop with the cylinder, corrected. `arcs`: the paper's loop with arcs of the "
-                   "arm in two planes, corrected. `etalon-paper`, `arcs-paper`: these loops as printed."})
+                   "arm in two planes, corrected. `etalon-paper`, `arcs-paper`: the loops as the paper "
+                   "prints them."})
           .field("cameras", &CalibrateTask::cameras,
                  {.meaning = "Names of two cameras.", .count = {2, 2}, .default_text = "the first two"})
           .field("pose", &CalibrateTask::pose,

@@ -26,9 +26,9 @@ enum class CalibrateMethod {
            ///< (calibrate/rig_session.h).
   bundle_etalon,  ///< Least squares over pictures of the calibration cylinder.
   etalon,         ///< The paper's loop with the cylinder, corrected (calibrate/loop_session.h).
-  etalon_paper,   ///< The paper's loop with the cylinder, as printed.
+  etalon_paper,   ///< The loop with the cylinder, as the paper prints it.
   arcs,           ///< The paper's loop with arcs of the arm and the simulator, corrected.
-  arcs_paper,     ///< The paper's loop with arcs and the simulator, as printed.
+  arcs_paper,     ///< The loop with arcs and the simulator, as the paper prints it.
 };
 
 /// Standard deviations of the calibrated rig at which no more pictures are taken.
@@ -106,7 +106,7 @@ const Table<CalibrateTask>& fields_of(const CalibrateTask*);
 
 /// Returns whether a task's method is one of the paper's loops.
 [[nodiscard]] bool is_loop(const CalibrateTask& task);
-/// Returns whether the method is one of the paper's loops as printed.
+/// Returns whether the method is a loop as the paper prints it, not a corrected one.
 [[nodiscard]] bool is_as_printed(const CalibrateTask& task);
 /// Returns whether the method uses the calibration cylinder.
 [[nodiscard]] bool is_before_etalon(const CalibrateTask& task);

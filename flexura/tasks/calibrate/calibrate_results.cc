@@ -249,10 +249,12 @@ std::string loop_rig_toml(const Setup& setup, const CalibrationRun& run) {
   FoundRigFile file{setup.arm, run.found().cameras};
   start_at(result.stances, file);
   return fmt::format(
-             "# The rig as the file has it; a calibration with {} pictures sent its cameras to where they "
-             "start here{}.\n",
+             "# The rig of the experiment's file. The cameras start at the positions that a calibration with "
+             "{} pictures found{}.\n",
              result.pictures[0] + result.pictures[1],
-             result.principal_point[0] || result.principal_point[1] ? ", and saw principal points" : "") +
+             result.principal_point[0] || result.principal_point[1]
+                 ? ", and the principal points are the measured ones"
+                 : "") +
          file_text(file);
 }
 

@@ -47,9 +47,10 @@ class DynamicsPlant {
   [[nodiscard]] const Eigen::VectorXd& target() const { return target_; }
   /// Returns true if |q| is below a quarter turn everywhere on the arm at the start.
   [[nodiscard]] bool is_regular() const { return is_regular_; }
-  /// Return the errors of the basis's angles for the start shape and for the target shape, root mean square
-  /// along the arm, rad.
+  /// Returns the error with which the basis represents the start shape: root mean square of the angles'
+  /// errors along the arm, rad.
   [[nodiscard]] double start_off() const { return start_off_; }
+  /// Returns the error with which the basis represents the target shape, as start_off().
   [[nodiscard]] double target_off() const { return target_off_; }
   /// Returns the largest |q| of the target in the basis, rad. A polynomial may exceed its values at the
   /// nodes.

@@ -6,7 +6,8 @@
 
 namespace flexura {
 
-GuardedDrive::GuardedDrive(DrivePort& drive, Guard& guard, std::function<void()> keep_alive, double time_shift)
+GuardedDrive::GuardedDrive(DrivePort& drive, Guard& guard, std::function<void()> keep_alive,
+                           double time_shift)
     : drive_(drive), guard_(guard), keep_alive_(std::move(keep_alive)), time_shift_(time_shift) {}
 
 void GuardedDrive::beat() {
@@ -19,10 +20,11 @@ CommandOutcome GuardedDrive::command(std::span<const double> targets, double dur
   beat();
   if (was_stopped_.exchange(false)) {
     is_moving_ = false;
-    return PortFault{FaultKind::refused,
-                     fmt::format("the watchdog stopped all devices, because the program was silent for more than "
-                                 "{:g} s while the arm moved",
-                                 guard_.period())};
+    return PortFault{
+        FaultKind::refused,
+        fmt::format("the watchdog stopped all devices, because the program was silent for more than "
+                    "{:g} s while the arm moved",
+                    guard_.period())};
   }
   CommandOutcome outcome = drive_.command(targets, duration);
   // A controller may move although its answer was lost.

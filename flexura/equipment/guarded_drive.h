@@ -10,12 +10,13 @@
 
 namespace flexura {
 
-/// A drive whose guard stops all devices if this program is silent for a period while the drive moves. Whatever
-/// waits must call beat(). The drive's clock may have another origin than the rig's. All functions may be called from several threads if those of the drive may.
+/// A drive whose guard stops all devices if this program is silent for a period while the drive moves.
+/// Whatever waits must call beat(). The drive's clock may have another origin than the rig's. All functions
+/// may be called from several threads if those of the drive may.
 class GuardedDrive : public DrivePort {
  public:
-  /// Drive and guard must outlive this object. `keep_alive`, if any, is called with every beat. `time_shift`, s,
-  /// is added to the times of readings.
+  /// Drive and guard must outlive this object. `keep_alive`, if any, is called with every beat. `time_shift`,
+  /// s, is added to the times of readings.
   GuardedDrive(DrivePort& drive, Guard& guard, std::function<void()> keep_alive = {}, double time_shift = 0);
 
   [[nodiscard]] DriveQuantity quantity() const override { return drive_.quantity(); }

@@ -144,7 +144,7 @@ TEST(Equipment, StopsWhenTheProgramIsKilled) {
   }
   const auto nap = [] { std::this_thread::sleep_for(std::chrono::milliseconds(20)); };
   const double start = DeviceServer::now();
-  while (controller.positions() == std::vector<double>{0, 0, 0} && DeviceServer::now() < start + 60) nap();
+  while (controller.positions() == std::vector<double>{0, 0, 0} && DeviceServer::now() < start + 30) nap();
   EXPECT_NE(controller.positions(), (std::vector<double>{0, 0, 0})) << "the arm has not started to move";
   ::kill(program, SIGKILL);
   ::waitpid(program, nullptr, 0);

@@ -1,10 +1,13 @@
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <cstddef>
+#include <exception>
 #include <map>
 #include <optional>
 #include <span>
 #include <stdexcept>
+#include <thread>
 #include <utility>
 
 #include "flexura/equipment/cia402_drive.h"
@@ -32,7 +35,8 @@ T must(Outcome<T> outcome) {
 class RigHead : public HeadPort {
  public:
   // `time_shift`, s, is added to the times of readings.
-  RigHead(std::unique_ptr<HeadPort> head, double time_shift) : head_(std::move(head)), time_shift_(time_shift) {}
+  RigHead(std::unique_ptr<HeadPort> head, double time_shift)
+      : head_(std::move(head)), time_shift_(time_shift) {}
   ~RigHead() override { (void)head_->halt(); }
   CommandOutcome command(const HeadState& state) override { return head_->command(state); }
   CommandOutcome halt() override { return head_->halt(); }
@@ -92,7 +96,16 @@ class ArmEquipment {
     arm_.emplace(*guarded_, setup.arm, *setup.drive, setup.initial);
   }
   ~ArmEquipment() {
-    if (guarded_) (void)guarded_->halt();
+    if (!guarded_) return;
+    // Controllers follow commands with a delay. The end of a run lets them arrive; a failure does not.
+    constexpr double longest_delay = 1;
+    const double end = steady_seconds() + longest_delay;
+    while (std::uncaught_exceptions() == 0 && steady_seconds() < end) {
+      const auto reading = guarded_->read();
+      if (!reading || !reading.value().moving) break;
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    }
+    (void)guarded_->halt();
   }
   ArmEquipment(const ArmEquipment&) = delete;
   ArmEquipment& operator=(const ArmEquipment&) = delete;
@@ -149,9 +162,10 @@ class EquipmentRig : public Rig {
     arm_ = std::make_unique<ArmEquipment>(equipment_, arm, device_clock_, guard_);
     const std::vector<CameraConfig> cameras = setup.cameras();
     std::vector<std::unique_ptr<HeadPort>> heads;
-    for (const CameraConfig& camera : cameras) heads.push_back(head_of(devices_of(camera), device_clock_, guard_, buses_));
+    for (const CameraConfig& camera : cameras)
+      heads.push_back(head_of(devices_of(camera), device_clock_, guard_, buses_));
     // The run begins when the devices are ready.
-    clock_->emplace([this] { arm_->beat(); }, equipment_.watchdog / 10);
+    clock_.emplace([this] { arm_->beat(); }, equipment_.watchdog / 10);
     const double time_shift = device_clock_.start() - clock_->start();
     arm_->start(arm, guard_, time_shift);
     for (std::size_t i = 0; i < cameras.size(); ++i) {

@@ -35,9 +35,10 @@ TEST(AravisCamera, DeliversForAMinuteWhatItCounts) {
   for (const auto& taken : frames) expect_in_order(taken);
   expect_numbers_as_counted(frames[0], *near_one.value());
   expect_numbers_as_counted(frames[1], *far_one.value());
-  EXPECT_EQ(near_one.value()->counts().lost, 0);
   EXPECT_EQ(far_one.value()->counts().connections, 1);
-  RecordProperty("lost", std::to_string(far_one.value()->counts().lost));
+  // A busy machine may lose frames, which are then counted.
+  RecordProperty("lost_near", std::to_string(near_one.value()->counts().lost));
+  RecordProperty("lost_far", std::to_string(far_one.value()->counts().lost));
 }
 
 }  // namespace

@@ -106,7 +106,7 @@ class StudyRig {
     aim(bench);
     ServoConfig config;
     config.law = method.law, config.jacobian = method.jacobian;
-    config.step = 1.0 / 30, config.tolerance = 0.005, config.settle = 1, config.timeout = 5;
+    config.step = 1.0 / 30, config.tolerance = 0.002, config.settle = 1, config.timeout = 5;
     for (std::size_t k = 0; k < wanted.commands.size(); ++k)
       config.goals.push_back(
           {static_cast<double>(k) * wanted.interval, truth_->actuation().shape(wanted.commands[k])});

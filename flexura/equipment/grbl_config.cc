@@ -68,8 +68,9 @@ const Table<GrblConfig>& fields_of(const GrblConfig*) {
                  {.meaning = "Longest time of braking.",
                   .unit = Unit::second,
                   .range = above_up_to(0, longest_timeout)})
-          .field("homing_timeout", &GrblConfig::homing_timeout,
-                 {.meaning = "Longest homing.", .unit = Unit::second, .range = above_up_to(0, longest_timeout)})
+          .field(
+              "homing_timeout", &GrblConfig::homing_timeout,
+              {.meaning = "Longest homing.", .unit = Unit::second, .range = above_up_to(0, longest_timeout)})
           .field(
               "brake_time", &GrblConfig::brake_time,
               {.meaning = "Time that an emergency stop leaves for braking before it resets the controller.",

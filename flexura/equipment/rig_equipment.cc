@@ -20,18 +20,22 @@ const Table<CameraEquipment>& fields_of(const CameraEquipment*) {
       Table<CameraEquipment>("camera", "Devices of one camera: one source of pictures and at most one head.")
           .field("name", &CameraEquipment::name, {.meaning = "Name of the camera.", .required = true})
           .field("gstreamer", &CameraEquipment::gstreamer,
-                 {.meaning = "Pictures through GStreamer, for example of a network camera.", .default_text = "none"})
+                 {.meaning = "Pictures through GStreamer, for example of a network camera.",
+                  .default_text = "none"})
           .field("aravis", &CameraEquipment::aravis,
                  {.meaning = "Pictures of a GigE Vision or USB3 Vision camera.", .default_text = "none"})
-          .field("v4l2", &CameraEquipment::v4l2, {.meaning = "Pictures of a USB camera.", .default_text = "none"})
-          .field("visca", &CameraEquipment::visca, {.meaning = "Head with VISCA commands.", .default_text = "none"})
+          .field("v4l2", &CameraEquipment::v4l2,
+                 {.meaning = "Pictures of a USB camera.", .default_text = "none"})
+          .field("visca", &CameraEquipment::visca,
+                 {.meaning = "Head with VISCA commands.", .default_text = "none"})
           .field("v4l2_head", &CameraEquipment::v4l2_head,
                  {.meaning = "Pan, tilt and zoom of a USB camera.", .default_text = "none"})
           .check([](const CameraEquipment& config, Reader& reader) {
             const int sources = (config.gstreamer ? 1 : 0) + (config.aravis ? 1 : 0) + (config.v4l2 ? 1 : 0);
             if (sources != 1)
-              reader.problem_at("", fmt::format("{} sources of pictures: expected one of gstreamer, aravis, v4l2",
-                                                sources));
+              reader.problem_at(
+                  "",
+                  fmt::format("{} sources of pictures: expected one of gstreamer, aravis, v4l2", sources));
             if (config.visca && config.v4l2_head)
               reader.problem_at("", "two heads: expected one of visca, v4l2_head, or none");
           });
@@ -79,11 +83,13 @@ void check_controllers(const RigEquipment& equipment, std::size_t axes, Reader& 
   std::size_t there = equipment.cia402 ? equipment.cia402->axes.size() : 0;
   for (const GrblConfig& one : equipment.grbl) there += one.axes.size();
   if (there != axes)
-    reader.problem_at(equipment.cia402 ? "rig.cia402" : "rig",
-                      fmt::format("{} axes of controllers: expected {}, one per tendon of the drive", there, axes));
+    reader.problem_at(
+        equipment.cia402 ? "rig.cia402" : "rig",
+        fmt::format("{} axes of controllers: expected {}, one per tendon of the drive", there, axes));
   const bool is_homed = equipment.start == StartPositions::homed;
   if (is_homed && !equipment.cia402 && equipment.home.size() != axes)
-    reader.problem_at("rig.home", fmt::format("{} positions: expected {}, one per axis", equipment.home.size(), axes));
+    reader.problem_at("rig.home",
+                      fmt::format("{} positions: expected {}, one per axis", equipment.home.size(), axes));
   if (!is_homed && !equipment.home.empty())
     reader.problem_at("rig.home", "not used: expected start = \"homed\"");
 }
@@ -111,8 +117,8 @@ void check_buses(const RigEquipment& equipment, Reader& reader) {
       const auto &one = equipment.camera[i].visca, &other = equipment.camera[k].visca;
       if (one && other && one->bus.link == other->bus.link && one->address == other->address)
         reader.problem_at(fmt::format("rig.camera[{}].visca.address", i),
-                          fmt::format("{} is the address of the head of \"{}\" on the same link", one->address,
-                                      equipment.camera[k].name));
+                          fmt::format("{} is the address of the head of \"{}\" on the same link",
+                                      one->address, equipment.camera[k].name));
     }
 }
 

@@ -34,23 +34,23 @@ enum class StartPositions {
 
 /// The table [rig]: the equipment that runs the experiment.
 struct RigEquipment {
-  /// Longest time, s, for which the program may be silent while the arm moves. Then a second process stops all
-  /// devices.
+  /// Longest time, s, for which the program may be silent while the arm moves. Then a second process stops
+  /// all devices.
   double watchdog = 0.5;
   StartPositions start = StartPositions::declared;
   /// Motor positions at the limit switches, microsteps, one per axis; only for `homed`.
   std::vector<double> home = {};
-  std::vector<GrblConfig> grbl = {};             ///< Controllers, in the order of the axes.
-  std::optional<Cia402Config> cia402 = {};       ///< Drives on a CAN bus; not together with `grbl`.
-  std::vector<CameraEquipment> camera = {};      ///< Devices of the experiment's cameras, matched by name.
+  std::vector<GrblConfig> grbl = {};         ///< Controllers, in the order of the axes.
+  std::optional<Cia402Config> cia402 = {};   ///< Drives on a CAN bus; not together with `grbl`.
+  std::vector<CameraEquipment> camera = {};  ///< Devices of the experiment's cameras, matched by name.
 };
 
 const std::vector<std::string>& names_of(const StartPositions*);
 const Table<CameraEquipment>& fields_of(const CameraEquipment*);
 const Table<RigEquipment>& fields_of(const RigEquipment*);
 
-/// Reports to `reader` why the equipment does not fit an experiment with these cameras and this number of axes (0:
-/// no drive).
+/// Reports to `reader` why the equipment does not fit an experiment with these cameras and this number of
+/// axes (0: no drive).
 void check_equipment(const RigEquipment& equipment, const std::vector<std::string>& cameras, std::size_t axes,
                      Reader& reader);
 

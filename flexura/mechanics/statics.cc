@@ -287,6 +287,11 @@ Equilibrium RodStatics::solve_from(const Unknowns& start, bool is_cold) {
       if (!chain_.has_friction()) result.snapped = result.ambiguous = true;
     }
   }
+  // Disks cannot pass through each other either.
+  if (found && chain_.disks_meet()) {
+    found = false;
+    result.end = StaticsEnd::disks_meet;
+  }
   descent.settled = found;
   finish(result, at, descent);
   return result;

@@ -280,6 +280,25 @@ TEST(StaticsChords, DisksThatAreDrawnTogetherAreReported) {
   }
 }
 
+// Tendons that are pulled in by about the length of the rod leave no place for it.
+TEST(StaticsChords, ARodIsNotPulledIntoNothing) {
+  Rod rod;
+  for (int i = 0; i < 2; ++i) {
+    RodSection section{.length = 0.2, .disks = 8};
+    section.stiffness = (Vector6d() << 3e4, 3e4, 8e4, 0.01, 0.01, 0.008).finished();
+    rod.sections.push_back(section);
+    for (int k = 0; k < 3; ++k)
+      rod.tendons.push_back(
+          {.section = static_cast<std::size_t>(i), .radius = 0.01, .angle = 2 * std::numbers::pi * k / 3});
+  }
+  RodStatics statics(rod);
+  for (const double pulled : {0.1985, 0.199, 0.1999, 0.2, 0.2001}) {
+    const Equilibrium at = statics.solve({.displacements = std::vector<double>(6, pulled)}, {});
+    EXPECT_TRUE(is_finite(at)) << pulled;
+    EXPECT_FALSE(at.converged()) << pulled;
+  }
+}
+
 TEST(StaticsChords, AMovingRodWhoseDisksMeetStopsWithFiniteNumbers) {
   DiskRobot robot = strongly_bent();
   robot.rod.sections[0].mass_per_length = 0.05;

@@ -70,7 +70,7 @@ class AravisConnection {
   }
   // Sets the camera; returns what it refused, or "".
   [[nodiscard]] std::string set(ArvCamera* camera);
-  [[nodiscard]] std::string set_region(ArvCamera* camera);
+  [[nodiscard]] std::string set_region(ArvCamera* camera) const;
   [[nodiscard]] std::string set_light(ArvCamera* camera);
   [[nodiscard]] ConnectionEnd watch(ArvStream* stream);
   void take(ArvBuffer* buffer);
@@ -149,7 +149,7 @@ std::string AravisConnection::set(ArvCamera* camera) {
   return set_light(camera);
 }
 
-std::string AravisConnection::set_region(ArvCamera* camera) {
+std::string AravisConnection::set_region(ArvCamera* camera) const {
   const auto width = static_cast<gint>(camera_.sensor.width),
              height = static_cast<gint>(camera_.sensor.height);
   Caught error;

@@ -3,7 +3,6 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <poll.h>
-#include <signal.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -11,6 +10,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <cmath>
+#include <csignal>
 #include <cstring>
 #include <stdexcept>
 
@@ -54,7 +54,7 @@ bool send_message(int socket, const GuardMessage& message, int link = -1) noexce
 }  // namespace
 
 Guard::Guard(double period) : period_(period) {
-  if (!(period > 0 && std::isfinite(period)))
+  if (!std::isfinite(period) || period <= 0)
     throw std::invalid_argument("the period of a guard must be finite and above 0");
   std::array<int, 2> ends{-1, -1};
   if (::socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends.data()) != 0)
@@ -85,7 +85,7 @@ void Guard::protect(const Link& link, const StopMessages& stop) {
   if (count > most_messages || links_ == most_links)
     throw std::invalid_argument(fmt::format("{}: a guard has places for {} links with {} messages each",
                                             link.name(), most_links, most_messages));
-  if (!(stop.delay >= 0 && std::isfinite(stop.delay)))
+  if (!std::isfinite(stop.delay) || stop.delay < 0)
     throw std::invalid_argument("the delay of stop messages must be finite and not negative");
   message.first = static_cast<std::uint8_t>(stop.first.size());
   message.count = static_cast<std::uint8_t>(count);

@@ -3,13 +3,13 @@
 #include <poll.h>
 #include <sys/socket.h>
 #include <termios.h>
-#include <time.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
 #include <cmath>
 #include <cstring>
+#include <ctime>
 
 namespace flexura {
 namespace {
@@ -36,8 +36,7 @@ class Watch {
       if (is_moving_ && now > beat_ + period_) {
         is_moving_ = false;
         stop(now);
-        const char answer = static_cast<char>(GuardAnswer::stopped);
-        (void)!::send(socket_, &answer, 1, MSG_NOSIGNAL | MSG_DONTWAIT);
+        answer(GuardAnswer::stopped);
       }
       send_rest(now);
       pollfd one{socket_, POLLIN, 0};
@@ -59,6 +58,12 @@ class Watch {
         if (is_rest_due_[i]) due = std::min(due, stopped_ + device_[i].stop.delay);
     if (due == HUGE_VAL) return -1;
     return static_cast<int>(std::clamp(std::ceil(1000 * (due - now)), 0.0, 60000.0));
+  }
+
+  // The other side may be gone.
+  void answer(GuardAnswer what) const noexcept {
+    const char byte = static_cast<char>(what);
+    [[maybe_unused]] const ssize_t sent = ::send(socket_, &byte, 1, MSG_NOSIGNAL | MSG_DONTWAIT);
   }
 
   void take_message() noexcept {
@@ -87,8 +92,7 @@ class Watch {
     switch (message.kind) {
       case Kind::protect:
         if (devices_ < device_.size() && link >= 0) device_[devices_++] = {link, message};
-        if (const char answer = static_cast<char>(GuardAnswer::ready); true)
-          (void)!::send(socket_, &answer, 1, MSG_NOSIGNAL | MSG_DONTWAIT);
+        answer(GuardAnswer::ready);
         break;
       case Kind::moving:
         is_moving_ = true, beat_ = seconds_now();

@@ -55,7 +55,7 @@ class DescriptorLink : public Link {
  public:
   DescriptorLink(Descriptor descriptor, std::string name, double write_timeout)
       : descriptor_(std::move(descriptor)), name_(std::move(name)), write_timeout_(write_timeout) {
-    if (!(write_timeout > 0 && std::isfinite(write_timeout)))
+    if (!std::isfinite(write_timeout) || write_timeout <= 0)
       throw std::invalid_argument("a link's write timeout must be finite and above 0");
     const int flags = ::fcntl(descriptor_.get(), F_GETFL);
     if (flags < 0 || ::fcntl(descriptor_.get(), F_SETFL, flags | O_NONBLOCK) < 0)
@@ -96,7 +96,7 @@ class DescriptorLink : public Link {
   }
 
   Outcome<std::string> read(double timeout) override {
-    if (!(timeout >= 0 && std::isfinite(timeout)))
+    if (!std::isfinite(timeout) || timeout < 0)
       throw std::invalid_argument("the timeout of a read must be finite and not negative");
     if (wait_for(descriptor_.get(), POLLIN, timeout) == 0) return std::string();
     std::string bytes(std::size_t{1} << 16, '\0');

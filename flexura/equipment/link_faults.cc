@@ -18,11 +18,11 @@ void FaultyCarrier::put(std::string message, const LinkFaults& faults, double no
 
 std::vector<std::string> FaultyCarrier::take(double now) {
   std::vector<std::string> arrived;
-  const auto late = std::stable_partition(messages_.begin(), messages_.end(),
-                                          [&](const Message& one) { return one.at <= now; });
-  std::ranges::transform(messages_.begin(), late, std::back_inserter(arrived),
+  const auto late =
+      std::ranges::stable_partition(messages_, [&](const Message& one) { return one.at <= now; });
+  std::ranges::transform(messages_.begin(), late.begin(), std::back_inserter(arrived),
                          [](Message& one) { return std::move(one.bytes); });
-  messages_.erase(messages_.begin(), late);
+  messages_.erase(messages_.begin(), late.begin());
   return arrived;
 }
 

@@ -11,6 +11,7 @@
 #include <span>
 #include <utility>
 
+#include "flexura/base/names.h"
 #include "flexura/base/one_line.h"
 #include "flexura/equipment/frame_gaps.h"
 #include "flexura/equipment/v4l2_picture.h"

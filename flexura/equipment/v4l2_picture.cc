@@ -42,14 +42,14 @@ struct FromYuyv {
 
   void row(const std::uint8_t* from, std::span<std::uint8_t> to, int width, int channels) const {
     for (int u = 0; u < width; ++u) {
-      const std::uint8_t* pair = from + std::ptrdiff_t{4} * (u / 2);
+      const std::uint8_t* pair = from + std::ptrdiff_t{4} * std::ptrdiff_t{u / 2};
       const double light = scale * (pair[2 * (u % 2)] - offset);
       if (channels == 1) {
         to[static_cast<std::size_t>(u)] = byte_of(light);
         continue;
       }
       const double blue = color_scale * (pair[1] - 128), red = color_scale * (pair[3] - 128);
-      const auto at = static_cast<std::size_t>(3 * u);
+      const auto at = 3 * static_cast<std::size_t>(u);
       to[at] = byte_of(light + 1.402 * red);
       to[at + 1] = byte_of(light - 0.344136 * blue - 0.714136 * red);
       to[at + 2] = byte_of(light + 1.772 * blue);
@@ -86,7 +86,8 @@ std::optional<Image<std::uint8_t>> v4l2_picture(std::span<const std::uint8_t> by
     return unpacked(bytes, layout, channels);
   // A pair of pixels of YUYV is whole at the end of a row of odd width, too.
   const bool is_yuyv = layout.format == V4L2_PIX_FMT_YUYV;
-  const auto width = static_cast<std::size_t>(layout.width + (is_yuyv ? layout.width % 2 : 0));
+  const auto width =
+      static_cast<std::size_t>(layout.width) + (is_yuyv ? static_cast<std::size_t>(layout.width % 2) : 0);
   const std::size_t used = width * bytes_per_pixel(layout.format);
   const std::size_t stride = layout.stride == 0 ? used : layout.stride;
   const auto rows = static_cast<std::size_t>(layout.height);

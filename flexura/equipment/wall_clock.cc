@@ -15,7 +15,7 @@ double steady_seconds() {
 
 WallClock::WallClock(std::function<void()> while_waiting, double interval)
     : start_(steady_seconds()), while_waiting_(std::move(while_waiting)), interval_(interval) {
-  if (!(interval > 0 && std::isfinite(interval)))
+  if (!std::isfinite(interval) || interval <= 0)
     throw std::invalid_argument("the interval of a clock must be finite and above 0");
 }
 

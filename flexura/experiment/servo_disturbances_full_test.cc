@@ -98,15 +98,18 @@ TEST(ServoDisturbances, AreNotSeenWhereNothingDisturbs) {
   EXPECT_LT(servo.reported("disturbed"), 0);
 }
 
-// The first tendon carries much and lets the arm jump. The seventh is missed only by later commands. The
-// fifth carries so little that the arm reaches its target without it.
+// The first tendon carries much and lets the arm jump. The seventh is missed only by later commands: either
+// its release is seen, or a section is at its limit first, and the servo stops. The fifth carries so little
+// that the arm reaches its target without it.
 TEST(ServoDisturbances, ABrokenTendonIsNamed) {
   for (const int tendon : {0, 6, 4}) {
     DisturbedServo servo(with_tendon_line(tendon, fmt::format("breaks_at = {}\n", faulty_at)));
     const ServoResult& result = servo.run();
     EXPECT_EQ(result.is_done, tendon == 4);
     if (!result.is_done) {
-      EXPECT_NE(result.reason.find(fmt::format("as if tendon {} gave way", tendon + 1)), std::string::npos)
+      const std::string named = fmt::format("as if tendon {} gave way", tendon + 1);
+      EXPECT_TRUE(result.reason.find(named) != std::string::npos ||
+                  (tendon == 6 && result.reason.starts_with("saturated")))
           << result.reason;
     }
     if (tendon == 0) {

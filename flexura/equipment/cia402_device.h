@@ -11,6 +11,7 @@ namespace flexura {
 /// A CAN bus with simulated drives of CiA 402. Each message is a frame as SocketCAN has it (cia402_codec.h).
 class Cia402Device : public ServedDevice {
  public:
+  /// Drives at rest and switched off, one per node.
   explicit Cia402Device(const std::vector<Cia402NodeConfig>& nodes);
 
   std::vector<std::string> receive(std::string_view bytes, double now) override;

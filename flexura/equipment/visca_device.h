@@ -27,9 +27,11 @@ class ViscaMotors {
 
   /// Starts a motion at time `now`, s, >= that of all earlier calls. `speed`: share of the highest speed.
   virtual void go(Axis axis, double count, double speed, double now) = 0;
+  /// Ends a motion at time `now`.
   virtual void stop(Axis axis, double now) = 0;
   /// Returns the position at time `now`, counts.
   [[nodiscard]] virtual double count(Axis axis, double now) = 0;
+  /// Returns whether a motion is in progress at time `now`.
   [[nodiscard]] virtual bool is_moving(Axis axis, double now) = 0;
 };
 
@@ -83,10 +85,13 @@ class ViscaDevice : public ServedDevice {
   std::vector<std::string> receive(std::string_view bytes, double now) override;
   std::vector<std::string> advance(double now) override;
 
-  /// Return parts of a head. `head` is an index.
+  /// Returns the properties of the head with this index; they may be changed.
   [[nodiscard]] ViscaHeadModel& model(std::size_t head) { return heads_[head].model; }
+  /// Returns the motors of the head with this index.
   [[nodiscard]] ViscaMotors& motors(std::size_t head) { return *heads_[head].motors; }
+  /// Returns the positions of a head's axes at time `now`, counts.
   [[nodiscard]] ViscaCounts counts(std::size_t head, double now);
+  /// Returns whether an axis of a head moves at time `now`.
   [[nodiscard]] bool is_moving(std::size_t head, double now);
   /// Ends all commands of a head with an error, as an alarm of its motors does.
   void fail(std::size_t head, ViscaError code, double now);

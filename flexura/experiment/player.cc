@@ -47,7 +47,7 @@ Player::Player(const Experiment& experiment, RunRecorder& run_recorder, Progress
   // Only the rig gives the motion of an arm that differs from the model.
   const bool is_other = experiment.true_rig().arm.mechanics != ArmMechanics::kinematic ||
                         (experiment.truth && experiment.truth->arm);
-  if (experiment.rig || experiment.record.cameras || is_other || std::ranges::any_of(tasks_, is_by_rig))
+  if (experiment.equipment || experiment.record.cameras || is_other || std::ranges::any_of(tasks_, is_by_rig))
     rig_ = make_rig(experiment);
   if (rig_ && watcher_ != nullptr)
     for (const CameraConfig& camera : experiment.cameras()) optics_.emplace_back(camera);

@@ -157,11 +157,13 @@ std::unique_ptr<CountedCamera> source_of(const CameraEquipment& equipment, const
 
 class EquipmentRig : public Rig {
  public:
-  explicit EquipmentRig(const Setup& setup) : equipment_(setup.rig.value()), guard_(equipment_.watchdog) {
+  explicit EquipmentRig(const Setup& setup)
+      : equipment_(setup.equipment.value()), guard_(equipment_.watchdog) {
     const ArmSetup arm(setup.model_rig());
     arm_ = std::make_unique<ArmEquipment>(equipment_, arm, device_clock_, guard_);
     const std::vector<CameraConfig> cameras = setup.cameras();
     std::vector<std::unique_ptr<HeadPort>> heads;
+    heads.reserve(cameras.size());
     for (const CameraConfig& camera : cameras)
       heads.push_back(head_of(devices_of(camera), device_clock_, guard_, buses_));
     // The run begins when the devices are ready.
@@ -236,7 +238,7 @@ class EquipmentRig : public Rig {
 std::unique_ptr<Rig> equipment_rig(const Setup& setup) { return std::make_unique<EquipmentRig>(setup); }
 
 std::unique_ptr<Rig> rig_of(const Setup& setup) {
-  return setup.rig ? equipment_rig(setup) : simulated_rig(setup);
+  return setup.equipment ? equipment_rig(setup) : simulated_rig(setup);
 }
 
 }  // namespace flexura

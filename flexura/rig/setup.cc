@@ -55,10 +55,10 @@ void check_setup(const Setup& setup, Reader& reader) {
     reader.problem_at("truth.stand.camera_distances",
                       "moves no camera: expected a mount.position in [[truth.camera]]");
   }
-  if (setup.rig) {
+  if (setup.equipment) {
     std::vector<std::string> names;
     for (const CameraConfig& camera : setup.cameras()) names.push_back(camera.name);
-    check_equipment(*setup.rig, names, setup.drive ? setup.drive->tendon.size() : 0, reader);
+    check_equipment(*setup.equipment, names, setup.drive ? setup.drive->tendon.size() : 0, reader);
   }
   // Without [truth], the world is the model.
   const std::string problem = truth_problem(setup.model_rig(), setup.true_rig());

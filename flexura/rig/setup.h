@@ -59,8 +59,8 @@ struct Setup {
   StandConfig stand;
   std::vector<CameraConfig> camera;  ///< Cameras; empty: the paper's two cameras (see cameras()).
   std::optional<TruthConfig> truth;  ///< Differences of the simulated world from the model; missing: none.
-  std::optional<RigEquipment> rig;   ///< Equipment that runs the experiment; missing: it is simulated.
-  std::filesystem::path folder;      ///< Folder of the experiment file; not a field of the file.
+  std::optional<RigEquipment> equipment;  ///< Equipment that runs the experiment; missing: it is simulated.
+  std::filesystem::path folder;           ///< Folder of the experiment file; not a field of the file.
 
   /// Returns the arm model. Throws InputError for an elastic arm without an equilibrium.
   [[nodiscard]] ArmModel arm_model() const;

@@ -46,7 +46,7 @@ template <std::derived_from<Setup> S>
           .field("truth", &Setup::truth,
                  {.meaning = "Simulated truth, where it differs from the models that tasks use.",
                   .default_text = "as modelled"})
-          .field("rig", &Setup::rig,
+          .field("rig", &Setup::equipment,
                  {.meaning = "Equipment that runs the experiment.", .default_text = "simulated"}));
 }
 

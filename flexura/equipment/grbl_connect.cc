@@ -11,7 +11,7 @@
 namespace flexura {
 namespace {
 
-// Finer steps could not be told apart in positions with 3 decimals.
+// Finer steps cannot be distinguished in positions with 3 decimals.
 constexpr double most_per_mm = 500;
 
 struct Required {

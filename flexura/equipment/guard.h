@@ -21,7 +21,7 @@ struct StopMessages {
   std::vector<std::string> then;   ///< Sent `delay` s after the first.
 };
 
-/// Stops devices when this program dies, hangs or is told to stop.
+/// Stops devices when this program dies or hangs, or on request.
 ///
 /// A second process holds copies of the devices' links. While the arm moves, this program must call beat()
 /// once a period. If it does not, or if it ends without notice (even by SIGKILL), the second process sends

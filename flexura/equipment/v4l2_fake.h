@@ -15,7 +15,7 @@ namespace flexura {
 struct FakeControl {
   std::int32_t min = 0, max = 0, step = 1;
   std::int32_t value = 0;   ///< What the device reports.
-  std::int32_t target = 0;  ///< What it was told.
+  std::int32_t target = 0;  ///< Commanded value.
   std::int32_t rate = 0;    ///< Change per reading towards the target; 0: at once.
   bool is_stuck = false;    ///< Whether it accepts values and does nothing.
 };

@@ -12,9 +12,10 @@
 namespace flexura {
 namespace {
 
-// Wrong cameras are calibrated, then the arm is servoed through three shapes and along a path.
-TEST(NewcomersExample, CalibratesItsCamerasAndReachesItsShapes) {
-  const std::filesystem::path file = checkout_file("examples/06_shape_servo/experiment.toml");
+// Calibrates wrong cameras, then servos the arm to two or three shapes and along a path. `largest`: limit of
+// the true error left, root mean square, share of the length.
+void calibrate_and_servo(const std::string& example, double largest) {
+  const std::filesystem::path file = checkout_file("examples/" + example + "/experiment.toml");
   const TemporaryFolder folder;
   Quiet quiet;
   const RunResult result = run_experiment(load_experiment(file), folder.path(), quiet);
@@ -23,10 +24,16 @@ TEST(NewcomersExample, CalibratesItsCamerasAndReachesItsShapes) {
   ASSERT_EQ(servos.size(), 3U);
   for (const Node& servo : servos) {
     EXPECT_TRUE(*servo.find("done")->as<bool>());
-    // Share of the length, by the simulated truth.
-    EXPECT_LT(*servo.find("remaining_in_truth")->find("rms")->as<double>(), 0.002);
+    EXPECT_LT(*servo.find("remaining_in_truth")->find("rms")->as<double>(), largest);
   }
 }
+
+TEST(NewcomersExample, CalibratesItsCamerasAndReachesItsShapes) {
+  calibrate_and_servo("06_shape_servo", 0.002);
+}
+
+// The arm is softer than its model, carries a load that the model lacks, and its tendons rub.
+TEST(NewcomersExample, SteersAnArmThatSwings) { calibrate_and_servo("16_swinging_servo", 0.01); }
 
 }  // namespace
 }  // namespace flexura

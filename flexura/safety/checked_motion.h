@@ -23,6 +23,8 @@ struct CheckedMotion {
   SafetyReport& report;
   /// Called with the completed fraction of this motion's check; returns false to stop the check.
   std::function<bool(double done)> go_on;
+  /// Whether the motion is an elastic arm's shape. Jumps are then those of its command, checked separately.
+  bool is_shape = false;
 
   [[nodiscard]] const Motion& motion() const { return *timed.motion; }
   [[nodiscard]] Span whole() const { return {0, motion().duration()}; }

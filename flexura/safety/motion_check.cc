@@ -38,6 +38,12 @@ void note_singular(const Arm& arm, const ArmState& state, double time, SafetyRep
       fmt::format("{:.6g} s: singular: the tip Jacobian has rank {} of {}", time, now, usual));
 }
 
+std::vector<ContactWatch> contact_watches(const Arm& arm, const std::vector<Obstacle>& obstacles) {
+  std::vector<ContactWatch> watches{ContactWatch(arm)};
+  for (const Obstacle& obstacle : obstacles) watches.emplace_back(arm, obstacle);
+  return watches;
+}
+
 // `before` is the state of the arm before the motion.
 void check_one(const CheckedMotion& checked, const ArmState& before) {
   const Motion& motion = checked.motion();
@@ -61,7 +67,8 @@ void check_one(const CheckedMotion& checked, const ArmState& before) {
 bool is_nowhere(const Violation& violation) { return violation.hazard == Hazard::not_finite; }
 
 SafetyReport check_with(const Arm& arm, const std::vector<ContactWatch>& contacts, const ArmState& initial,
-                        const std::vector<TimedMotion>& motions, double step, Progress* progress) {
+                        const std::vector<TimedMotion>& motions, double step, Progress* progress,
+                        bool is_shape = false) {
   SafetyReport report;
   note_singular(arm, initial, 0, report);
   ArmState before = initial;
@@ -73,7 +80,7 @@ SafetyReport check_with(const Arm& arm, const std::vector<ContactWatch>& contact
       if (progress->is_cancelled()) report.is_complete = false;
       return report.is_complete;
     };
-    const CheckedMotion checked{arm, contacts, motions[i], step, report, go_on};
+    const CheckedMotion checked{arm, contacts, motions[i], step, report, go_on, is_shape};
     check_one(checked, before);
     const Motion& motion = checked.motion();
     before = motion.at(motion.duration());
@@ -105,9 +112,7 @@ std::optional<std::size_t> impossible_section(const ArmState& state) {
 
 SafetyReport check_motions(const Arm& arm, const std::vector<Obstacle>& obstacles, const ArmState& initial,
                            const std::vector<TimedMotion>& motions, double step, Progress* progress) {
-  std::vector<ContactWatch> contacts{ContactWatch(arm)};
-  for (const Obstacle& obstacle : obstacles) contacts.emplace_back(arm, obstacle);
-  return check_with(arm, contacts, initial, motions, step, progress);
+  return check_with(arm, contact_watches(arm, obstacles), initial, motions, step, progress);
 }
 
 SafetyReport check_motions(const ArmModel& model, const std::vector<Obstacle>& obstacles,
@@ -125,8 +130,8 @@ SafetyReport check_motions(const ArmModel& model, const std::vector<Obstacle>& o
   shaped.reserve(motions.size());
   for (const TimedMotion& motion : motions)
     shaped.push_back({shaped_motion(actuation, motion.motion), motion.start, motion.name});
-  const SafetyReport of_shape =
-      check_motions(model.shaped(), obstacles, actuation.shape(initial), shaped, step, progress);
+  const SafetyReport of_shape = check_with(model.shaped(), contact_watches(model.shaped(), obstacles),
+                                           actuation.shape(initial), shaped, step, progress, true);
   for (Violation violation : of_shape.violations) {
     if (!is_of_shape(violation.hazard)) continue;
     // If the command has no value, the shape has none either.

@@ -65,14 +65,15 @@ class SampledCheck {
         checked_.add_impossible(time);
         break;
       }
-      if (!checked_.go_on(samples_share * time / (checked_.motion().duration() + checked_.step))) break;
+      const double share = checked_.is_shape ? 1 : samples_share;
+      if (!checked_.go_on(share * time / (checked_.motion().duration() + checked_.step))) break;
       look_at(k, state);
       if (before) look_at_rates(k, *before, state);
       last_possible = time;
       before = std::move(state);
     }
     add_found();
-    if (!last_possible || !checked_.report.is_complete) return;
+    if (!last_possible || !checked_.report.is_complete || checked_.is_shape) return;
     const auto go_on = [&](double done) {
       return checked_.go_on(samples_share + (1 - samples_share) * done);
     };

@@ -27,11 +27,13 @@ struct ServoWorld {
 
 /// A true arm of elastic rods with inertia, friction and a load, and the model of it. Both have a drive.
 struct SwingingWorld {
-  double stiffness = 1;           ///< True over nominal stiffness.
-  double friction = 0.02;         ///< True friction coefficient of the tendons.
-  double payload = 0.02;          ///< Mass at the tip that the model lacks, kg.
-  double backlash_deg = 0.2;      ///< True backlash of the spools.
-  std::string model = "dynamic";  ///< `arm.model` of the model: "kinematic", "static" or "dynamic".
+  double stiffness = 1;              ///< True over nominal stiffness.
+  double friction = 0.02;            ///< True friction coefficient of the tendons.
+  double payload = 0.02;             ///< Mass at the tip that the model lacks, kg.
+  double backlash_deg = 0.2;         ///< True backlash of the spools.
+  double model_compliance = 2.5e-5;  ///< Of the tendons in the model, m/N; the true one is 3e-5.
+  double model_backlash_deg = 0.15;  ///< Of the spools in the model.
+  std::string model = "dynamic";     ///< `arm.model` of the model: "kinematic", "static" or "dynamic".
 };
 
 /// Turns the sections of the table `arm` or `truth.arm` of a file into a steel wire of 2 mm radius with 0.2
@@ -91,6 +93,9 @@ inline std::string swinging_world_file(const LoopRig& rig, bool is_colored, cons
   if (world.payload > 0)
     text += fmt::format("[[truth.arm.payload]]\nsection = 3\nmass = {}\n", world.payload);
   std::string axes;
+  for (int i = 0; i < 9 && has_rods; ++i)
+    text += fmt::format("[[arm.tendon]]\nsection = {}\nangle_deg = {}\nradius_mm = 15\ncompliance = {}\n",
+                        i / 3 + 1, 120 * (i % 3) + 40 * (i / 3), world.model_compliance);
   for (int i = 0; i < 9; ++i) {
     const int section = i / 3 + 1, angle = 120 * (i % 3) + 40 * (i / 3);
     axes += fmt::format("  {{ section = {}, angle_deg = {} }},\n", section, angle);
@@ -101,8 +106,9 @@ inline std::string swinging_world_file(const LoopRig& rig, bool is_colored, cons
   }
   text += fmt::format(
       "[drive]\nradius_mm = 15\npretension = 10\nmotor = {{ steps = 200, phases = 2, microsteps = 16 }}\n"
-      "spool = {{ radius_mm = 10 }}\ntendon = [\n{}]\n[truth.drive.spool]\nbacklash_deg = {}\n",
-      axes, world.backlash_deg);
+      "spool = {{ radius_mm = 10, backlash_deg = {} }}\ntendon = [\n{}]\n[truth.drive.spool]\nbacklash_deg = "
+      "{}\n",
+      has_rods ? world.model_backlash_deg : 0.0, axes, world.backlash_deg);
   return text;
 }
 

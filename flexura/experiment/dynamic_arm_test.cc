@@ -146,7 +146,7 @@ TEST_F(DynamicArm, GivesTheSameBytesForAnyNumberOfThreads) {
     Quiet quiet;
     const RunResult result = run_experiment(
         parse_experiment(filmed_touch, "x.toml"), make_new_folder(folder_.path() / "results"), quiet, nullptr,
-        [&](const Setup& setup) { return std::make_unique<Filming>(setup, threads); });
+        [&](const auto& setup) { return std::make_unique<Filming>(setup, threads); });
     EXPECT_EQ(result.outcome, RunOutcome::done);
     if (threads == 1) {
       EXPECT_FALSE(logged<ContactsMessage>(result, arm_contacts_topic).back().contacts.empty());

@@ -138,7 +138,7 @@ std::string LineariseAnswers::answer(std::string_view line) {
     if (!found.converged() || !found.q.allFinite()) return write_json({not_linearised("out_of_steps"), {}});
     const RodState state = dynamics_.rest(found);
     const RodLinear linear = dynamics_.linearize(state, tendons, loads);
-    const RodModes modes = rod_modes(dynamics_.slopes(state, tendons, loads));
+    const RodModes modes = rod_modes(linear.slopes);
     // Values that overflow double count as not converged.
     if (!linear.A_rest.allFinite() || !linear.B_rest.allFinite() || !linear.by_parameters_rest.allFinite() ||
         !modes.eigenvalues.allFinite())
@@ -160,7 +160,12 @@ std::string LineariseAnswers::answer(std::string_view line) {
                      {"B", {}, matrix_node(linear.B_rest)},
                      {"C", {}, matrix_node(C)},
                      {"parameters", {}, section_parameter_names(rod_.sections.size())},
-                     {"by_parameters", {}, matrix_node(linear.by_parameters_rest)}},
+                     {"by_parameters", {}, matrix_node(linear.by_parameters_rest)},
+                     {"mass", {}, matrix_node(linear.slopes.mass)},
+                     {"stiffness", {}, matrix_node(-linear.slopes.force_by_q)},
+                     {"damping", {}, matrix_node(-linear.slopes.force_by_v)},
+                     {"force_by_inputs", {}, matrix_node(linear.slopes.force_by_input)},
+                     {"force_by_parameters", {}, matrix_node(linear.slopes.force_by_parameters)}},
          {}});
   } catch (const InputError& error) {
     return write_json(linearise_refusal(joined(error.problems())));

@@ -197,6 +197,23 @@ TEST(Linearise, ItsParametersMoveTheRest) {
               1e-6 * known.cwiseAbs().maxCoeff());
     EXPECT_TRUE(found.col(5).isZero(0));
   }
+  // Tendons held at their displacements are so stiff that only the matrices of second order keep all digits.
+  const Node held = parse_json(answers.answer(R"({"displacements":[0.004,0.002]})"), "answer");
+  const Eigen::MatrixXd K = read_matrix(held, "stiffness"),
+                        shift = K.partialPivLu().solve(read_matrix(held, "force_by_parameters"));
+  ASSERT_TRUE(statics.solve({.displacements = {0.004, 0.002}}, loads_of(experiment.arm)).converged());
+  const Eigen::MatrixXd of_held = statics.slopes().q_by_parameters;
+  for (const Eigen::Index section : {0, 1})
+    EXPECT_LE((shift.middleCols(6 * section, 5) - of_held.middleCols(5 * section, 5)).cwiseAbs().maxCoeff(),
+              1e-6 * of_held.cwiseAbs().maxCoeff());
+  // A and B are made from them.
+  const Eigen::MatrixXd M = read_matrix(answer, "mass"), A = read_matrix(answer, "A");
+  const auto expect_near = [](const Eigen::MatrixXd& found, const Eigen::MatrixXd& wanted) {
+    EXPECT_LE((found - wanted).cwiseAbs().maxCoeff(), 1e-7 * wanted.cwiseAbs().maxCoeff());
+  };
+  expect_near(-M * A.bottomLeftCorner(n, n), read_matrix(answer, "stiffness"));
+  expect_near(-M * A.bottomRightCorner(n, n), read_matrix(answer, "damping"));
+  expect_near(M * read_matrix(answer, "B").bottomRows(n), read_matrix(answer, "force_by_inputs"));
 }
 
 // Its weight lowers the frequency of a standing arm and raises that of a hanging one.

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,7 @@
 #include "flexura/log/export_csv.h"
 #include "flexura/log/logged_message.h"
 #include "flexura/log/messages.h"
+#include "flexura/rig/filming.h"
 #include "flexura/store/text_file.h"
 #include "flexura/tasks/task_kinds.h"
 #include "tests/support/checkout.h"
@@ -81,6 +83,86 @@ TEST_F(DynamicArm, GivesTheSameBytesAgain) {
   const RunResult one = example("13_grasp"), other = example("13_grasp");
   EXPECT_EQ(read_text_file(one.folder / "log.mcap", 1 << 28),
             read_text_file(other.folder / "log.mcap", 1 << 28));
+}
+
+// An arm with tendon friction bends onto a ball, rubs on it and itself, and is filmed.
+constexpr const char* filmed_touch = R"(seed = 11
+[record]
+cameras = true
+[arm]
+kind = "spatial"
+model = "dynamic"
+gravity = [0, -9.81, 0]
+[[arm.section]]
+length = 0.3
+radius = 0.012
+max_bend_deg = 360
+max_bend_rate_deg = 720
+material = { youngs_modulus = 1e6, density = 1100, damping_time = 0.02, modes = { bend = 3 } }
+[[arm.tendon]]
+section = 1
+radius_mm = 8
+friction = 0.2
+[[arm.tendon]]
+section = 1
+radius_mm = 8
+angle_deg = 120
+friction = 0.2
+[[arm.tendon]]
+section = 1
+radius_mm = 8
+angle_deg = 240
+friction = 0.2
+[arm.contact]
+friction = 0.4
+itself = true
+[arm.drag]
+density = 1000
+[[obstacle]]
+kind = "sphere"
+name = "ball"
+center = [0.08, 0.22, 0]
+radius = 0.05
+may_touch = true
+[[camera]]
+name = "front"
+mount = { position = [0, 0.15, 1], look_at = [0, 0.15, 0] }
+lens = { fx = 80, fy = 80, cx = 31.5, cy = 23.5 }
+sensor = { width = 64, height = 48, frame_rate = 10, read_noise = 1, delay_ms = 20, drop = 0.2 }
+[[camera]]
+name = "side"
+mount = { position = [-1, 0.15, 0], look_at = [0, 0.15, 0] }
+lens = { fx = 80, fy = 80, cx = 31.5, cy = 23.5 }
+sensor = { width = 64, height = 48, frame_rate = 25 }
+[[task]]
+kind = "move"
+duration = 0.4
+to = { bends_deg = [[120, 20]] }
+)";
+
+// All files: log with pictures and contacts, summary, report and figures.
+TEST_F(DynamicArm, GivesTheSameBytesForAnyNumberOfThreads) {
+  const auto files_by = [&](std::size_t threads) {
+    Quiet quiet;
+    const RunResult result = run_experiment(
+        parse_experiment(filmed_touch, "x.toml"), make_new_folder(folder_.path() / "results"), quiet, nullptr,
+        [&](const auto& setup) { return std::make_unique<Filming>(setup, threads); });
+    EXPECT_EQ(result.outcome, RunOutcome::done);
+    if (threads == 1) {
+      const auto contacts = logged<ContactsMessage>(result, arm_contacts_topic);
+      EXPECT_TRUE(std::ranges::any_of(contacts, [](const auto& at) { return !at.contacts.empty(); }));
+    }
+    return files_in(result.folder);
+  };
+  const auto one = files_by(1);
+  for (const char* name : {"log.mcap", "summary.json", "report.html"})
+    ASSERT_TRUE(one.contains(name)) << name;
+  for (const std::size_t threads : {2U, 5U}) {
+    const auto other = files_by(threads);
+    ASSERT_EQ(other.size(), one.size());
+    for (const auto& [name, bytes] : one)
+      if (name != "timing.json") EXPECT_TRUE(other.at(name) == bytes) << name << ", " << threads;
+  }
 }
 
 constexpr const char* moving_rod = R"([arm]

@@ -119,6 +119,9 @@ struct RodDynamicsSlopes {
 
 /// Linearised motion around a state: x' = A x + B u.
 struct RodLinear {
+  /// The derivatives from which the matrices are made. They keep digits that A loses if tendons are held and
+  /// hardly stretch: the inverse of an ill-conditioned mass matrix multiplies the stiffness of these tendons.
+  RodDynamicsSlopes slopes;
   Eigen::MatrixXd A, B;            ///< For x = (q, p).
   Eigen::MatrixXd A_rest, B_rest;  ///< For x = (q, v), valid around a rod at rest.
   /// Derivatives of x' with respect to the parameters: at constant x = (q, p), and around a rod at rest at
@@ -230,7 +233,9 @@ class RodDynamics {
   [[nodiscard]] Eigen::MatrixXd damping_matrix() const;
 
   /// Returns the derivatives at a state. Their cost grows with the square of the number of sections. `slide`
-  /// as in start().
+  /// as in start(). Tensions of tendons of given displacement follow from the lengths. Only of a rod at rest
+  /// they are RodState::tensions, if these fit the lengths: lengths of stiff tendons determine tensions with
+  /// few digits.
   [[nodiscard]] RodDynamicsSlopes slopes(const RodState& state, const TendonInput& tendons,
                                          const RodLoads& loads, const RodSlide* slide = nullptr);
   /// Returns the linearised motion around a state. Cost and errors as slopes(). Also throws

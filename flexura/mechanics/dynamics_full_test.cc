@@ -73,7 +73,8 @@ TEST(DynamicsProperty, ManyRobotsMoveInTheStepsOfCameras) {
               static_cast<double>(iterations) / static_cast<double>(steps), anew, steps, given_up, all);
 }
 
-// Damped robots come to rest at the static equilibrium.
+// Damped robots come to rest at the static equilibrium. Each step leaves an error of the rates up to the
+// tolerance, so long steps only lead near to it: the last ones are short.
 TEST(DynamicsProperty, ManyRobotsComeToRestInEquilibrium) {
   double worst = 0;
   int others = 0, all = 0;
@@ -83,8 +84,8 @@ TEST(DynamicsProperty, ManyRobotsComeToRestInEquilibrium) {
     for (EndLoad& end : robot.loads.ends) end.moment.setZero();
     RodDynamics dynamics(robot.rod, {.spectral_radius = 0, .tolerance = 1e-7});
     RodState state = dynamics.rest();
-    while (state.time < 60) {
-      const double h = state.time < 2 ? 0.02 : 0.2, now = state.time + h;
+    while (state.time < 64) {
+      const double h = state.time < 2 || state.time > 60 ? 0.02 : 0.2, now = state.time + h;
       const RodStep step = dynamics.step(state, robot.tendons_at(now), robot.loads_at(now), h);
       ASSERT_TRUE(step.converged()) << words(step.end) << " at " << state.time;
     }
@@ -99,7 +100,7 @@ TEST(DynamicsProperty, ManyRobotsComeToRestInEquilibrium) {
     ASSERT_TRUE(here.converged());
     if ((here.tip.position - at.tip.position).norm() > 1e-6) ++others;
     worst = std::max(worst, (dynamics.tip(state).position - here.tip.position).norm() / robot.rod.length());
-    EXPECT_LE(worst, 1e-6);
+    EXPECT_LE(worst, 1e-9);
   });
   std::printf("the farthest from equilibrium: %.1e of the length; %d of %d in another one\n", worst, others,
               all);

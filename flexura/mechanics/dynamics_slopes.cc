@@ -169,10 +169,25 @@ bool RodDynamics::Work::find_stage(const RodState& state, const TendonInput& ten
   return true;
 }
 
+void RodDynamics::Work::keep_tensions_of_rest(const RodState& state, const TendonInput& tendons) {
+  if (tendons.displacements.empty() || state.tensions.size() != tensions.size() || !state.momentum.isZero(0))
+    return;
+  // More than the rounding of an equilibrium, and far less than a motion.
+  const double rounding = 1e-9 * chain.rod().length();
+  for (std::size_t i = 0; i < tensions.size(); ++i) {
+    const double stretch = lengths_[static_cast<Eigen::Index>(i)] - rest_lengths[i] +
+                           tendons.displacements[i] - compliance[i] * state.tensions[i];
+    if (!(state.tensions[i] >= 0) || !(stretch <= rounding)) return;
+    if (state.tensions[i] > 0 && !(stretch >= -rounding)) return;
+  }
+  std::ranges::copy(state.tensions, tensions.begin());
+}
+
 RodDynamicsSlopes RodDynamics::slopes(const RodState& state, const TendonInput& tendons,
                                       const RodLoads& loads, const RodSlide* slide) {
   const RodState started =
       start(state.q, velocity(state), tendons, loads, slide);  // Checks input and sets the tensions.
+  work_->keep_tensions_of_rest(state, tendons);
   return work_->slopes_at(started.q, started.rate, tendons, loads);
 }
 
@@ -180,14 +195,15 @@ RodLinear RodDynamics::linearize(const RodState& state, const TendonInput& tendo
   if (work_->rubs())
     throw std::invalid_argument(
         fmt::format("tendon {}: friction has no linear model", work_->layout.rubbing.front().tendon + 1));
-  const RodDynamicsSlopes by = slopes(state, tendons, loads);
+  RodLinear linear;
+  linear.slopes = slopes(state, tendons, loads);
+  const RodDynamicsSlopes& by = linear.slopes;
   const Eigen::Index n = state.q.size(), inputs = by.force_by_input.cols();
   const Eigen::LDLT<Eigen::MatrixXd> mass(by.mass);
   const Eigen::MatrixXd by_p = mass.solve(Eigen::MatrixXd::Identity(n, n)),
-                        by_q = -mass.solve(by.momentum_by_q);
-  RodLinear linear;
+                        rate_by_q = -mass.solve(by.momentum_by_q);
   linear.A.resize(2 * n, 2 * n);
-  linear.A << by_q, by_p, by.force_by_q + by.force_by_v * by_q, by.force_by_v * by_p;
+  linear.A << rate_by_q, by_p, by.force_by_q + by.force_by_v * rate_by_q, by.force_by_v * by_p;
   linear.B.setZero(2 * n, inputs);
   linear.B.bottomRows(n) = by.force_by_input;
   linear.A_rest.setZero(2 * n, 2 * n);

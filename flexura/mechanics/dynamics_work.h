@@ -59,6 +59,8 @@ struct RodDynamics::Work {
   RodStep step(RodState& state, const TendonInput& tendons, const RodLoads& loads, double h);
   /// Sets the tensions: those of `tendons`, or those caused by its displacements at the present shape.
   void set_tensions(const TendonInput& tendons);
+  /// After set_tensions(): sets the tensions of a state at rest instead if they fit the displacements.
+  void keep_tensions_of_rest(const RodState& state, const TendonInput& tendons);
   /// Places the rod at a state, factors the mass matrix and sets velocity_.
   bool find_velocity(const RodState& state);
   /// Differentiates momenta and forces at q and v under `tensions`. There is a column for each mode, which

@@ -21,6 +21,21 @@ struct StopMessages {
   std::vector<std::string> then;   ///< Sent `delay` s after the first.
 };
 
+/// Stops devices if it is not told in time that the program works.
+class Watchdog {
+ public:
+  virtual ~Watchdog() = default;
+  Watchdog() = default;
+  Watchdog(const Watchdog&) = delete;
+  Watchdog& operator=(const Watchdog&) = delete;
+
+  /// Returns the longest time between beats while the arm moves, s.
+  [[nodiscard]] virtual double period() const = 0;
+  /// Reports that this program works. `is_moving`: whether the next beat is due within a period. Returns
+  /// false if the devices have been stopped since the previous beat. Any thread.
+  virtual bool beat(bool is_moving) = 0;
+};
+
 /// Stops devices when this program dies or hangs, or on request.
 ///
 /// A second process holds copies of the devices' links. While the arm moves, this program must call beat()
@@ -29,7 +44,7 @@ struct StopMessages {
 /// not a kill of all processes of the machine or of a container.
 ///
 /// All functions may be called from several threads.
-class Guard {
+class Guard : public Watchdog {
  public:
   static constexpr std::size_t most_links = 16;     ///< Links that a guard can protect.
   static constexpr std::size_t most_messages = 16;  ///< Stop messages of a link.
@@ -39,21 +54,18 @@ class Guard {
   /// std::runtime_error if the system cannot start a process.
   explicit Guard(double period);
   /// Ends the second process, without a stop.
-  ~Guard();
+  ~Guard() override;
   Guard(const Guard&) = delete;
   Guard& operator=(const Guard&) = delete;
 
-  /// Returns the longest time between beats, s.
-  [[nodiscard]] double period() const { return period_; }
+  [[nodiscard]] double period() const override { return period_; }
 
   /// Protects the device at a link, from now on, by these messages. Throws std::invalid_argument if the link
   /// has no descriptor, there are too many messages or links, or a message is too long. Throws
   /// std::runtime_error if the second process does not answer.
   void protect(const Link& link, const StopMessages& stop);
 
-  /// Reports that this program works. `is_moving`: whether the next beat is due within a period. Returns
-  /// false if the second process has stopped the devices since the previous beat.
-  bool beat(bool is_moving);
+  bool beat(bool is_moving) override;
 
   /// Sends the first stop messages over all links at once. Async-signal-safe: a handler of signals may call
   /// it. The second process then sends the rest. Later commands of this program may move devices again.

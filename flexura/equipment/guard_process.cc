@@ -20,31 +20,21 @@ double seconds_now() noexcept {
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
-struct Device {
-  int link = -1;
-  GuardMessage stop;
-};
-
-// The devices and what is due.
-class Watch {
+// Gives the watch its time and its messages.
+class Process : public GuardWatch {
  public:
-  Watch(int socket, double period) noexcept : socket_(socket), period_(period) {}
+  Process(int socket, double period) noexcept : GuardWatch(period), socket_(socket) {}
 
   void run() noexcept {
-    while (!is_done_) {
+    while (!is_over()) {
       const double now = seconds_now();
-      if (is_moving_ && now > beat_ + period_) {
-        is_moving_ = false;
-        stop(now);
-        answer(GuardAnswer::stopped);
-      }
-      send_rest(now);
+      if (advance(now)) answer(GuardAnswer::stopped);
       pollfd one{socket_, POLLIN, 0};
       if (::poll(&one, 1, wait_ms(now)) > 0) take_message();
     }
     // Devices that must brake before the rest of the messages get their time.
-    while (has_rest_) {
-      send_rest(seconds_now());
+    while (due() != HUGE_VAL) {
+      (void)advance(seconds_now());
       (void)::poll(nullptr, 0, 1);
     }
   }
@@ -52,12 +42,8 @@ class Watch {
  private:
   // Waits at most until something is due; -1: for ever.
   [[nodiscard]] int wait_ms(double now) const noexcept {
-    double due = is_moving_ ? beat_ + period_ : HUGE_VAL;
-    if (has_rest_)
-      for (std::size_t i = 0; i < devices_; ++i)
-        if (is_rest_due_[i]) due = std::min(due, stopped_ + device_[i].stop.delay);
-    if (due == HUGE_VAL) return -1;
-    return static_cast<int>(std::clamp(std::ceil(1000 * (due - now)), 0.0, 60000.0));
+    if (due() == HUGE_VAL) return -1;
+    return static_cast<int>(std::clamp(std::ceil(1000 * (due() - now)), 0.0, 60000.0));
   }
 
   // The other side may be gone.
@@ -76,77 +62,94 @@ class Watch {
     const ssize_t got = ::recvmsg(socket_, &head, MSG_CMSG_CLOEXEC | MSG_DONTWAIT);
     if (got < 0 && (errno == EAGAIN || errno == EINTR)) return;
     if (got != static_cast<ssize_t>(sizeof message)) {
-      // The other side is gone without a word.
-      is_done_ = true;
-      stop(seconds_now());
+      lose_program(seconds_now());
       return;
     }
     int link = -1;
     if (const cmsghdr* with = CMSG_FIRSTHDR(&head); with != nullptr && with->cmsg_type == SCM_RIGHTS)
       std::memcpy(&link, CMSG_DATA(with), sizeof link);
-    heed(message, link);
+    heed(message, link, seconds_now());
+    if (message.kind == GuardMessage::Kind::protect) answer(GuardAnswer::ready);
   }
 
-  void heed(const GuardMessage& message, int link) noexcept {
-    using Kind = GuardMessage::Kind;
-    switch (message.kind) {
-      case Kind::protect:
-        if (devices_ < device_.size() && link >= 0) device_[devices_++] = {link, message};
-        answer(GuardAnswer::ready);
-        break;
-      case Kind::moving:
-        is_moving_ = true, beat_ = seconds_now();
-        break;
-      case Kind::resting:
-        is_moving_ = false;
-        break;
-      case Kind::stop:
-        stop(seconds_now());
-        break;
-      case Kind::end:
-        is_done_ = true;
-        break;
-    }
-  }
-
-  void stop(double now) noexcept {
-    for (std::size_t i = 0; i < devices_; ++i) {
-      send(i, 0, device_[i].stop.first);
-      is_rest_due_[i] = device_[i].stop.count > device_[i].stop.first;
-      has_rest_ = has_rest_ || is_rest_due_[i];
-    }
-    stopped_ = now;
-  }
-
-  void send_rest(double now) noexcept {
-    if (!has_rest_) return;
-    has_rest_ = false;
-    for (std::size_t i = 0; i < devices_; ++i) {
-      if (!is_rest_due_[i]) continue;
-      if (now < stopped_ + device_[i].stop.delay) {
-        has_rest_ = true;
-        continue;
-      }
-      is_rest_due_[i] = false;
-      send(i, device_[i].stop.first, device_[i].stop.count);
-    }
-  }
-
-  void send(std::size_t i, std::size_t from, std::size_t to) noexcept {
-    for (std::size_t k = from; k < to; ++k)
-      send_stop(device_[i].link, device_[i].stop.texts[k].data(), device_[i].stop.sizes[k]);
-  }
+  void send(int link, const char* bytes, std::size_t size) noexcept override { send_stop(link, bytes, size); }
 
   int socket_;
-  double period_;
-  std::array<Device, Guard::most_links> device_{};
-  std::array<bool, Guard::most_links> is_rest_due_{};
-  std::size_t devices_ = 0;
-  bool is_moving_ = false, is_done_ = false, has_rest_ = false;
-  double beat_ = 0, stopped_ = 0;
 };
 
 }  // namespace
+
+bool GuardWatch::advance(double now) noexcept {
+  const bool is_silent = is_moving_ && now > beat_ + period_;
+  if (is_silent) {
+    is_moving_ = false;
+    stop(now);
+  }
+  send_rest(now);
+  return is_silent;
+}
+
+double GuardWatch::due() const noexcept {
+  double due = is_moving_ ? beat_ + period_ : HUGE_VAL;
+  if (has_rest_)
+    for (std::size_t i = 0; i < devices_; ++i)
+      if (is_rest_due_[i]) due = std::min(due, stopped_ + device_[i].stop.delay);
+  return due;
+}
+
+void GuardWatch::heed(const GuardMessage& message, int link, double now) noexcept {
+  using Kind = GuardMessage::Kind;
+  switch (message.kind) {
+    case Kind::protect:
+      if (devices_ < device_.size() && link >= 0) device_[devices_++] = {link, message};
+      break;
+    case Kind::moving:
+      is_moving_ = true, beat_ = now;
+      break;
+    case Kind::resting:
+      is_moving_ = false;
+      break;
+    case Kind::stop:
+      stop(now);
+      break;
+    case Kind::end:
+      is_over_ = true, is_moving_ = false;
+      break;
+  }
+}
+
+void GuardWatch::lose_program(double now) noexcept {
+  is_over_ = true, is_moving_ = false;
+  stop(now);
+}
+
+void GuardWatch::stop(double now) noexcept {
+  for (std::size_t i = 0; i < devices_; ++i) {
+    send_part(i, 0, device_[i].stop.first);
+    is_rest_due_[i] = device_[i].stop.count > device_[i].stop.first;
+    has_rest_ = has_rest_ || is_rest_due_[i];
+  }
+  stopped_ = now;
+}
+
+void GuardWatch::send_rest(double now) noexcept {
+  if (!has_rest_) return;
+  has_rest_ = false;
+  for (std::size_t i = 0; i < devices_; ++i) {
+    if (!is_rest_due_[i]) continue;
+    if (now < stopped_ + device_[i].stop.delay) {
+      has_rest_ = true;
+      continue;
+    }
+    is_rest_due_[i] = false;
+    send_part(i, device_[i].stop.first, device_[i].stop.count);
+  }
+}
+
+void GuardWatch::send_part(std::size_t i, std::size_t from, std::size_t to) noexcept {
+  for (std::size_t k = from; k < to; ++k)
+    send(device_[i].link, device_[i].stop.texts[k].data(), device_[i].stop.sizes[k]);
+}
 
 void send_stop(int descriptor, const char* bytes, std::size_t size) noexcept {
   const int errno_before = errno;
@@ -168,6 +171,6 @@ void send_stop(int descriptor, const char* bytes, std::size_t size) noexcept {
   errno = errno_before;
 }
 
-void guard_devices(int socket, double period) noexcept { Watch(socket, period).run(); }
+void guard_devices(int socket, double period) noexcept { Process(socket, period).run(); }
 
 }  // namespace flexura

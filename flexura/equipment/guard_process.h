@@ -30,6 +30,49 @@ struct GuardMessage {
 /// Answers of the guarding process.
 enum class GuardAnswer : char { ready = 'r', stopped = 's' };
 
+/// Decides when which stop messages are sent. Has neither clock nor sockets, so that it also runs in
+/// simulated time. Allocates no memory.
+class GuardWatch {
+ public:
+  /// `period`: see Guard, s.
+  explicit GuardWatch(double period) noexcept : period_(period) {}
+  virtual ~GuardWatch() = default;
+  GuardWatch(const GuardWatch&) = delete;
+  GuardWatch& operator=(const GuardWatch&) = delete;
+
+  /// Takes a message of the program at time `now`, s. `link`: the link that it carries, or -1.
+  void heed(const GuardMessage& message, int link, double now) noexcept;
+  /// Stops all devices, because the program has ended without a message.
+  void lose_program(double now) noexcept;
+  /// Sends what is due at time `now`, s. Returns whether it has stopped the devices because the program is
+  /// silent.
+  bool advance(double now) noexcept;
+  /// Returns the time at which something is due unless the program says more, s; HUGE_VAL: never.
+  [[nodiscard]] double due() const noexcept;
+  /// Returns whether the program has ended.
+  [[nodiscard]] bool is_over() const noexcept { return is_over_; }
+
+ protected:
+  /// Sends bytes over a link at once.
+  virtual void send(int link, const char* bytes, std::size_t size) noexcept = 0;
+
+ private:
+  struct Device {
+    int link = -1;
+    GuardMessage stop;
+  };
+  void stop(double now) noexcept;
+  void send_rest(double now) noexcept;
+  void send_part(std::size_t i, std::size_t from, std::size_t to) noexcept;
+
+  double period_;
+  std::array<Device, Guard::most_links> device_{};
+  std::array<bool, Guard::most_links> is_rest_due_{};
+  std::size_t devices_ = 0;
+  bool is_moving_ = false, is_over_ = false, has_rest_ = false;
+  double beat_ = 0, stopped_ = 0;
+};
+
 /// Sends `size` bytes over a link at once. Discards what a serial line has not sent yet, because a stop must
 /// not wait behind commands. Tries for a short time only. Async-signal-safe.
 void send_stop(int descriptor, const char* bytes, std::size_t size) noexcept;

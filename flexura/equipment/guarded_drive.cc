@@ -6,7 +6,7 @@
 
 namespace flexura {
 
-GuardedDrive::GuardedDrive(DrivePort& drive, Guard& guard, std::function<void()> keep_alive,
+GuardedDrive::GuardedDrive(DrivePort& drive, Watchdog& guard, std::function<void()> keep_alive,
                            double time_shift)
     : drive_(drive), guard_(guard), keep_alive_(std::move(keep_alive)), time_shift_(time_shift) {}
 

@@ -10,14 +10,15 @@
 
 namespace flexura {
 
-/// A drive whose guard stops all devices if this program is silent for a period while the drive moves.
+/// A drive whose watchdog stops all devices if this program is silent for a period while the drive moves.
 /// Whatever waits must call beat(). The drive's clock may have another origin than the rig's. All functions
 /// may be called from several threads if those of the drive may.
 class GuardedDrive : public DrivePort {
  public:
-  /// Drive and guard must outlive this object. `keep_alive`, if any, is called with every beat. `time_shift`,
-  /// s, is added to the times of readings.
-  GuardedDrive(DrivePort& drive, Guard& guard, std::function<void()> keep_alive = {}, double time_shift = 0);
+  /// Drive and watchdog must outlive this object. `keep_alive`, if any, is called with every beat.
+  /// `time_shift`, s, is added to the times of readings.
+  GuardedDrive(DrivePort& drive, Watchdog& guard, std::function<void()> keep_alive = {},
+               double time_shift = 0);
 
   [[nodiscard]] DriveQuantity quantity() const override { return drive_.quantity(); }
   [[nodiscard]] std::size_t axes() const override { return drive_.axes(); }
@@ -31,7 +32,7 @@ class GuardedDrive : public DrivePort {
 
  private:
   DrivePort& drive_;
-  Guard& guard_;
+  Watchdog& guard_;
   std::function<void()> keep_alive_;
   double time_shift_;
   std::atomic<bool> is_moving_ = false, was_stopped_ = false;

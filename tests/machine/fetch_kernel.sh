@@ -25,7 +25,7 @@ cd "$work/root"
 library=lib/modules/$version
 # A line of modules.dep: a module and those that it needs.
 for module in "${modules[@]}"; do
-  grep "/$module[.]ko:" "$library/modules.dep" || { echo "fetch_kernel: $package has no module $module" >&2; exit 1; }
+  grep "/${module}[.]ko:" "$library/modules.dep" || { echo "fetch_kernel: $package has no module $module" >&2; exit 1; }
 done | tr -d : | tr ' ' '\n' | sort -u >"$work/needed"
 {
   printf '%s\n' lib lib/modules "$library" "$library/modules.dep" "$library/modules.builtin"

@@ -1,4 +1,5 @@
 #!/bin/busybox sh
+# shellcheck shell=dash
 # First process of the virtual machine (run.sh): shows the host's files, read-only, and runs /command among them.
 export PATH=/bin
 /bin/busybox --install -s /bin

@@ -1,5 +1,5 @@
-// CiA 402 on vcan, the kernel's virtual CAN bus: the driver and the simulated drives on sockets of the kernel, with
-// can-utils and python-can as peers. Runs in the virtual machine of run.sh.
+// CiA 402 on vcan, the kernel's virtual CAN bus: the driver and the simulated drives on sockets of the
+// kernel, with can-utils and python-can as peers. Runs in the virtual machine of run.sh.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <net/if.h>
@@ -172,11 +172,12 @@ TEST_F(Vcan, MovesAsCandumpSees) {
 }
 
 TEST_F(Vcan, IgnoresForeignFrames) {
-  // Extended identifiers, whose low 11 bits may be ours; remote requests; frames of another node and of wrong sizes.
-  const CanProgram extended("cangen vcan0 -e -g 8 -I r -L r -D r"), own("cangen vcan0 -e -g 11 -I 181 -L 6 -D r"),
-      remote("cangen vcan0 -R -g 11 -I 181 -L 6"), foreign("cangen vcan0 -g 11 -I 189 -L 6 -D r"),
-      request("cangen vcan0 -R -g 13 -I 601 -L 8"), short_one("cangen vcan0 -g 13 -I 181 -L 3 -D r"),
-      short_reply("cangen vcan0 -g 13 -I 581 -L 5 -D r");
+  // Extended identifiers, whose low 11 bits may be ours; remote requests; frames of another node and of wrong
+  // sizes.
+  const CanProgram extended("cangen vcan0 -e -g 8 -I r -L r -D r"),
+      own("cangen vcan0 -e -g 11 -I 181 -L 6 -D r"), remote("cangen vcan0 -R -g 11 -I 181 -L 6"),
+      foreign("cangen vcan0 -g 11 -I 189 -L 6 -D r"), request("cangen vcan0 -R -g 13 -I 601 -L 8"),
+      short_one("cangen vcan0 -g 13 -I 181 -L 3 -D r"), short_reply("cangen vcan0 -g 13 -I 581 -L 5 -D r");
   CanLog log;
   ASSERT_EQ(fault_of(drive_.start()), "");
   EXPECT_EQ(drive_.identities()[1].name, "Flexura simulated stepper");
@@ -222,7 +223,8 @@ TEST_F(Vcan, GuardStopsTheDrives) {
   guard.stop();
   EXPECT_TRUE(holds([&] {
     const auto lock = server_.lock();
-    return device_.node(0).nmt_state() == NmtState::stopped && device_.node(1).nmt_state() == NmtState::stopped;
+    return device_.node(0).nmt_state() == NmtState::stopped &&
+           device_.node(1).nmt_state() == NmtState::stopped;
   }));
   EXPECT_EQ(positions(), positions());
   EXPECT_LT(positions()[0], 50'000);

@@ -1,4 +1,5 @@
-// Cameras and heads of V4L2 at vivid, the kernel's virtual video driver. Runs in the virtual machine of run.sh.
+// Cameras and heads of V4L2 at vivid, the kernel's virtual video driver. Runs in the virtual machine of
+// run.sh.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -173,7 +174,8 @@ TEST_F(MovingVivid, NumbersAndTimesFrames) {
   expect_in_order(frames);
   expect_moved(frames);
   expect_counted(*made);
-  // The driver's clock is this machine's monotonic clock: no frame comes from the future by more than a period.
+  // The driver's clock is this machine's monotonic clock: no frame comes from the future by more than a
+  // period.
   for (const Frame& frame : frames) {
     EXPECT_LT(frame.time, clock_.start() + frame.received + 1.0 / 30);
     EXPECT_GT(frame.time, clock_.start());
@@ -187,8 +189,8 @@ TEST_F(MovingVivid, TakesTheRateOfTheFile) {
   const auto frames = next_frames(*made, 8);
   ASSERT_EQ(frames.size(), 8U);
   expect_moved(frames);
-  EXPECT_NEAR((frames.back().time - frames.front().time) * 10, double(frames.back().number - frames.front().number),
-              1.5);
+  EXPECT_NEAR((frames.back().time - frames.front().time) * 10,
+              double(frames.back().number - frames.front().number), 1.5);
 }
 
 TEST_F(MovingVivid, CountsFramesThatAreDropped) {
@@ -253,8 +255,8 @@ TEST_F(Vivid, ConnectsAgainAfterADisconnection) {
   const auto first = next_frames(*made, 2);
   ASSERT_EQ(first.size(), 2U);
   device_.set("Disconnect");
-  EXPECT_THAT(next_fault(*made), ::testing::AllOf(HasSubstr("camera front: " + device_.path()), HasSubstr("No such device"),
-                                       HasSubstr("trying again")));
+  EXPECT_THAT(next_fault(*made), ::testing::AllOf(HasSubstr("camera front: " + device_.path()),
+                                                  HasSubstr("No such device"), HasSubstr("trying again")));
   frames_until_connection(*made, 2);
   const auto again = next_frames(*made, 2);
   ASSERT_EQ(again.size(), 2U);
@@ -313,7 +315,8 @@ TEST_F(Vivid, SaysWhatTheCameraLacks) {
   CameraConfig small = camera();
   small.sensor.width = 100, small.sensor.height = 100;
   EXPECT_THAT(fault_with(config(), small), HasSubstr("it offers 320 x 180"));
-  EXPECT_THAT(fault_with(config(V4l2Format::mjpeg), camera()), HasSubstr("it gives no 320 x 180 pixels in a format"));
+  EXPECT_THAT(fault_with(config(V4l2Format::mjpeg), camera()),
+              HasSubstr("it gives no 320 x 180 pixels in a format"));
   const auto head = V4l2Head::open({.device = device_.path()}, "front", clock_);
   ASSERT_FALSE(head);
   EXPECT_THAT(head.fault()->what, HasSubstr("it has no absolute pan, tilt or zoom"));

@@ -255,7 +255,7 @@ TEST_F(Vivid, ConnectsAgainAfterADisconnection) {
   const auto first = next_frames(*made, 2);
   ASSERT_EQ(first.size(), 2U);
   device_.set("Disconnect");
-  EXPECT_THAT(next_fault(*made), ::testing::AllOf(HasSubstr("camera front: " + device_.path()),
+  EXPECT_THAT(next_fault(*made), ::testing::AllOf(HasSubstr("camera \"front\": " + device_.path()),
                                                   HasSubstr("No such device"), HasSubstr("trying again")));
   frames_until_connection(*made, 2);
   const auto again = next_frames(*made, 2);

@@ -35,9 +35,11 @@ CommandOutcome Cia402Drive::start() {
     axes_[i].last_position.reset();
     axes_[i].word = 0;
   }
-  for (std::size_t i = 0; i < axes_.size(); ++i)
+  for (std::size_t i = 0; i < axes_.size(); ++i) {
     if (const auto sent = bus_.send(nmt_frame(NmtCommand::start, bus_.node(i).number)); !sent)
       return unusable(*sent.fault());
+    bus_.node(i).state = NmtState::operational;  // Until its next heartbeat.
+  }
   has_pdos_ = true;
   if (const auto enabled = enable(true); !enabled) return unusable(*enabled.fault());
   is_started_ = true;

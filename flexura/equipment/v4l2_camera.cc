@@ -42,6 +42,21 @@ std::vector<std::uint32_t> formats_for(V4l2Format format, PixelKind pixels) {
   return {V4L2_PIX_FMT_GREY, V4L2_PIX_FMT_YUYV, V4L2_PIX_FMT_RGB24, V4L2_PIX_FMT_MJPEG};
 }
 
+// Sets how a device encodes the colors of YUYV. What it leaves open follows from its color space.
+void set_encoding(const v4l2_pix_format& format, V4l2Layout& layout) {
+  std::uint32_t encoding = format.ycbcr_enc, range = format.quantization;
+  if (encoding == V4L2_YCBCR_ENC_DEFAULT) encoding = V4L2_MAP_YCBCR_ENC_DEFAULT(format.colorspace);
+  if (range == V4L2_QUANTIZATION_DEFAULT)
+    range = V4L2_MAP_QUANTIZATION_DEFAULT(false, format.colorspace, encoding);
+  layout.is_full_range = range == V4L2_QUANTIZATION_FULL_RANGE;
+  if (encoding == V4L2_YCBCR_ENC_709 || encoding == V4L2_YCBCR_ENC_XV709)
+    layout.red_share = 0.2126, layout.blue_share = 0.0722;
+  else if (encoding == V4L2_YCBCR_ENC_BT2020)
+    layout.red_share = 0.2627, layout.blue_share = 0.0593;
+  else if (encoding == V4L2_YCBCR_ENC_SMPTE240M)
+    layout.red_share = 0.212, layout.blue_share = 0.087;
+}
+
 // The device's buffers in this program's memory.
 class Buffers {
  public:
@@ -184,8 +199,8 @@ std::string V4l2Connection::set_format() {
     layout_ = {.format = wanted,
                .width = static_cast<int>(got.width),
                .height = static_cast<int>(got.height),
-               .stride = wanted == V4L2_PIX_FMT_MJPEG ? 0 : got.bytesperline,
-               .is_full_range = got.quantization == V4L2_QUANTIZATION_FULL_RANGE};
+               .stride = wanted == V4L2_PIX_FMT_MJPEG ? 0 : got.bytesperline};
+    set_encoding(got, layout_);
     return "";
   }
   return fmt::format(

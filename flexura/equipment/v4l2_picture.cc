@@ -34,11 +34,16 @@ Image<std::uint8_t> with_channels(Image<std::uint8_t> image, int channels) {
 
 // Converts a pair of pixels, Y0 Cb Y1 Cr.
 struct FromYuyv {
-  double offset, scale, color_scale;
-  explicit FromYuyv(bool is_full_range)
-      : offset(is_full_range ? 0 : 16),
-        scale(is_full_range ? 1 : 255.0 / 219),
-        color_scale(is_full_range ? 1 : 255.0 / 224) {}
+  double offset, scale, blue_scale, red_scale, blue_in_green, red_in_green;
+  explicit FromYuyv(const V4l2Layout& layout)
+      : offset(layout.is_full_range ? 0 : 16), scale(layout.is_full_range ? 1 : 255.0 / 219) {
+    const double color_scale = layout.is_full_range ? 1 : 255.0 / 224;
+    const double green_share = 1 - layout.red_share - layout.blue_share;
+    blue_scale = 2 * color_scale * (1 - layout.blue_share);
+    red_scale = 2 * color_scale * (1 - layout.red_share);
+    blue_in_green = blue_scale * layout.blue_share / green_share;
+    red_in_green = red_scale * layout.red_share / green_share;
+  }
 
   void row(const std::uint8_t* from, std::span<std::uint8_t> to, int width, int channels) const {
     for (int u = 0; u < width; ++u) {
@@ -48,11 +53,11 @@ struct FromYuyv {
         to[static_cast<std::size_t>(u)] = byte_of(light);
         continue;
       }
-      const double blue = color_scale * (pair[1] - 128), red = color_scale * (pair[3] - 128);
+      const double blue = pair[1] - 128, red = pair[3] - 128;
       const auto at = 3 * static_cast<std::size_t>(u);
-      to[at] = byte_of(light + 1.402 * red);
-      to[at + 1] = byte_of(light - 0.344136 * blue - 0.714136 * red);
-      to[at + 2] = byte_of(light + 1.772 * blue);
+      to[at] = byte_of(light + red_scale * red);
+      to[at + 1] = byte_of(light - blue_in_green * blue - red_in_green * red);
+      to[at + 2] = byte_of(light + blue_scale * blue);
     }
   }
 };
@@ -94,7 +99,7 @@ std::optional<Image<std::uint8_t>> v4l2_picture(std::span<const std::uint8_t> by
   if (stride < used || bytes.size() < stride * (rows - 1) + used) return std::nullopt;
   const int stored = layout.format == V4L2_PIX_FMT_RGB24 ? 3 : 1;
   Image<std::uint8_t> image(layout.width, layout.height, is_yuyv ? channels : stored);
-  const FromYuyv convert(layout.is_full_range);
+  const FromYuyv convert(layout);
   for (int v = 0; v < layout.height; ++v) {
     const std::uint8_t* from = bytes.data() + static_cast<std::size_t>(v) * stride;
     if (is_yuyv)

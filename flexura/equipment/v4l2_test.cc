@@ -130,6 +130,13 @@ TEST(V4l2Picture, ConvertsYuyv) {
   EXPECT_NEAR(color->at(1, 0, 0), 255, 1);
   EXPECT_NEAR(color->at(1, 0, 1), 0, 1);
   EXPECT_NEAR(color->at(1, 0, 2), 0, 1);
+  // The same red in ITU-R BT.709: Y 63, Cb 102, Cr 240.
+  V4l2Layout high = layout;
+  high.red_share = 0.2126, high.blue_share = 0.0722;
+  const auto other = v4l2_picture(std::vector<std::uint8_t>{63, 102, 63, 240}, high, 3);
+  EXPECT_NEAR(other->at(1, 0, 0), 255, 1);
+  EXPECT_NEAR(other->at(1, 0, 1), 0, 1);
+  EXPECT_NEAR(other->at(1, 0, 2), 0, 1);
   V4l2Layout full = layout;
   full.is_full_range = true;
   EXPECT_EQ(v4l2_picture(gray, full, 1)->at(0, 0), 16);

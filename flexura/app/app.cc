@@ -18,7 +18,10 @@
 #include "flexura/app/command_line.h"
 #include "flexura/app/commands.h"
 #include "flexura/app/compare.h"
+#include "flexura/app/devices.h"
+#include "flexura/app/dry_run.h"
 #include "flexura/app/identify.h"
+#include "flexura/app/jog.h"
 #include "flexura/app/new_experiment.h"
 #include "flexura/app/view.h"
 #include "flexura/base/node.h"
@@ -87,7 +90,8 @@ void add_run(CLI::App& app, Command& chosen) {
   CLI::App* run = add_command(
       app, "run", command_group::experiments, "Run an experiment and write its results into a new folder",
       "flexura run experiment.toml\n"
-      "flexura run experiment.toml --set arm.section.0.length=0.25 --seed 7 --out trial");
+      "flexura run experiment.toml --set arm.section.0.length=0.25 --seed 7 --out trial\n"
+      "flexura run laboratory.toml --dry-run");
   add_experiment_argument(*run, arguments->experiment);
   run->add_option("--out", arguments->out, "New folder for the results (default: results/NAME)")
       ->type_name("DIR");
@@ -97,6 +101,10 @@ void add_run(CLI::App& app, Command& chosen) {
       ->type_name("N")
       ->check(CLI::Range(std::int64_t{0}, std::int64_t{1000000000000000}).description(""));
   run->add_flag("--json", arguments->json, "Print the summary as one JSON document");
+  CLI::Option* dry = run->add_flag("--dry-run", arguments->dry_run,
+                                   "Print what would be sent to the equipment of [rig], and send nothing");
+  run->add_flag("--queries", arguments->queries, "With --dry-run: print questions to the devices too")
+      ->needs(dry);
   auto viewer = std::make_shared<ViewerArguments>();
   auto is_viewed = std::make_shared<bool>(false);
   CLI::Option* view = run->add_flag("--view", *is_viewed, "Watch the run in the browser");
@@ -107,9 +115,69 @@ void add_run(CLI::App& app, Command& chosen) {
       ->check(CLI::Range(0.0, 1000.0).description(""));
   for (const char* option : {"--port", "--no-browser", "--address", "--name", "--speed"})
     run->get_option(option)->needs(view);
+  dry->excludes(view);
+  dry->excludes(run->get_option("--out"));
   run->callback([&chosen, arguments, viewer, is_viewed] {
     if (*is_viewed) arguments->viewer = *viewer;
-    chosen = [arguments] { return run_command(*arguments, std::cout, std::cerr); };
+    chosen = [arguments] {
+      return arguments->dry_run ? dry_run_command(*arguments, std::cout, std::cerr)
+                                : run_command(*arguments, std::cout, std::cerr);
+    };
+  });
+}
+
+void add_devices(CLI::App& app, Command& chosen) {
+  auto arguments = std::make_shared<DevicesArguments>();
+  CLI::App* devices = add_command(
+      app, "devices", command_group::equipment, "List what is connected, or check the devices of a file",
+      "flexura devices\nflexura devices laboratory.toml\nflexura devices --probe /dev/ttyUSB0");
+  CLI::Option* file = devices
+                          ->add_option("EXPERIMENT", arguments->experiment,
+                                       "A file with [rig]: connect to each of its devices (default: list "
+                                       "what this machine has)")
+                          ->type_name("");
+  CLI::Option* probe =
+      devices
+          ->add_option("--probe", arguments->probes,
+                       "Ask what is at a serial line or an address (repeatable); all: every serial\n"
+                       "line found. Opening a line resets many boards and stops their motors")
+          ->type_name("LINK")
+          ->allow_extra_args(false);
+  add_set_option(*devices, arguments->sets);
+  devices->get_option("--set")->needs(file);
+  probe->excludes(file);
+  devices->add_flag("--json", arguments->json, "Print one JSON document");
+  devices->callback([&chosen, arguments] {
+    chosen = [arguments] { return devices_command(*arguments, std::cout, std::cerr); };
+  });
+}
+
+void add_jog(CLI::App& app, Command& chosen) {
+  auto arguments = std::make_shared<JogArguments>();
+  CLI::App* jog = add_command(app, "jog", command_group::equipment,
+                              "Move one axis of the equipment by hand, within limits",
+                              "flexura jog laboratory.toml motor.2 100\n"
+                              "flexura jog laboratory.toml tendon.2 0.5mm\n"
+                              "flexura jog laboratory.toml section.1.x -5deg\n"
+                              "flexura jog laboratory.toml front.pan 2deg");
+  add_experiment_argument(*jog, arguments->experiment);
+  jog->add_option("AXIS", arguments->axis,
+                  "motor.N (microsteps), tendon.N (mm, positive: pulled in), section.N.x or section.N.y\n"
+                  "(degrees of bend), CAMERA.pan or CAMERA.tilt (degrees), CAMERA.zoom (zoom positions);\n"
+                  "N counts from 1")
+      ->type_name("")
+      ->required();
+  jog->add_option("DISTANCE", arguments->distance,
+                  "How far, relative to the present position, with or without the unit of the axis;\n"
+                  "not 0, within the limits of the file")
+      ->type_name("")
+      ->required();
+  jog->add_flag("--here", arguments->here,
+                "Home nothing: the arm has its initial shape now (default: as rig.start says)");
+  add_set_option(*jog, arguments->sets);
+  jog->add_flag("--json", arguments->json, "Print one JSON document");
+  jog->callback([&chosen, arguments] {
+    chosen = [arguments] { return jog_command(*arguments, std::cout, std::cerr); };
   });
 }
 
@@ -299,6 +367,8 @@ int parse_and_run(int argc, const char* const* argv) {
   add_run(app, chosen);
   add_compare(app, chosen);
   add_export(app, chosen);
+  add_devices(app, chosen);
+  add_jog(app, chosen);
   add_answers(app, chosen, "fk", "Forward kinematics: from bends to the tip and the backbone",
               R"(echo '{"bends":[[0.5,0],[0,0.5]]}' | flexura fk arm.toml)", forward_command);
   add_answers(app, chosen, "ik", "Inverse kinematics: from a target of the tip to bends",

@@ -16,6 +16,7 @@ using Command = std::function<int()>;
 /// The headings of `flexura --help`, in order of appearance.
 namespace command_group {
 inline constexpr const char* experiments = "Set up and run an experiment";
+inline constexpr const char* equipment = "Set up equipment";
 inline constexpr const char* answers = "Ask about an arm (JSON lines in, JSON lines out)";
 inline constexpr const char* pictures = "Make and measure pictures";
 inline constexpr const char* program = "Help for files and shells";

@@ -22,6 +22,8 @@ struct RunArguments {
   std::vector<std::string> sets;
   std::optional<std::int64_t> seed;
   bool json = false;
+  bool dry_run = false;                   ///< Print what would be sent to the equipment (dry_run.h).
+  bool queries = false;                   ///< With `dry_run`: print questions to the devices too.
   std::optional<ViewerArguments> viewer;  ///< If set, a viewer shows the run and stays open afterwards.
   double speed = 1;  ///< Speed of a run with a viewer, relative to real time; 0: as fast as possible.
 };

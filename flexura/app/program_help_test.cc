@@ -78,8 +78,9 @@ TEST_F(Program, PrintsTheManualPageAndZshsCompletionOfEveryCommand) {
   const std::string zsh = run("completion zsh").out;
   EXPECT_THAT(manual, StartsWith(".TH flexura 1"));
   EXPECT_THAT(zsh, StartsWith("#compdef flexura\n"));
-  for (const char* command : {"new", "view", "check", "run", "export", "fk", "ik", "statics", "render",
-                              "measure", "estimate", "intrinsics", "schema", "completion", "man"}) {
+  for (const char* command :
+       {"new", "view", "check", "run", "export", "fk", "ik", "statics", "render", "devices", "jog", "measure",
+        "estimate", "intrinsics", "schema", "completion", "man"}) {
     EXPECT_THAT(manual, HasSubstr(std::string(".SS \"flexura ") + command + "\"\n"));
     EXPECT_THAT(zsh, HasSubstr(std::string("    ") + command + ")\n"));
     EXPECT_THAT(run(std::string(command) + " --help").out, HasSubstr("\nExample:\n  "))

@@ -248,6 +248,20 @@ void AravisConnection::take(ArvBuffer* buffer) {
 
 bool has_aravis() { return true; }
 
+std::vector<std::string> aravis_cameras() {
+  const std::scoped_lock lock(finding());
+  arv_update_device_list();
+  std::vector<std::string> found;
+  for (guint i = 0; i < arv_get_n_devices(); ++i) {
+    const char* const name = arv_get_device_id(i);
+    const char* const address = arv_get_device_address(i);
+    if (name == nullptr) continue;
+    const std::string at = address == nullptr ? "" : fmt::format(" ({})", one_line(address));
+    found.push_back(one_line(name) + at);
+  }
+  return found;
+}
+
 Outcome<std::unique_ptr<CountedCamera>> open_aravis_camera(const AravisConfig& config,
                                                            const CameraConfig& camera,
                                                            const ClockPort& clock) {

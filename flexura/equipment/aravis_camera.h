@@ -33,6 +33,10 @@ const Table<AravisConfig>& fields_of(const AravisConfig*);
 /// Returns whether this program was built with Aravis.
 [[nodiscard]] bool has_aravis();
 
+/// Returns the names of the cameras that Aravis finds, with their addresses; waits for answers of the
+/// network. Empty without Aravis.
+[[nodiscard]] std::vector<std::string> aravis_cameras();
+
 /// Starts a camera with the size, channels and frame rate of `camera.sensor`: Mono8 or RGB8. The image is in
 /// the middle of the camera's sensor if it is smaller. The connection is made, and made again, in the
 /// background. The camera's own numbers count lost frames.

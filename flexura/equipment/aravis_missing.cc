@@ -5,6 +5,8 @@ namespace flexura {
 
 bool has_aravis() { return false; }
 
+std::vector<std::string> aravis_cameras() { return {}; }
+
 Outcome<std::unique_ptr<CountedCamera>> open_aravis_camera(const AravisConfig& /*config*/,
                                                            const CameraConfig& camera,
                                                            const ClockPort& /*clock*/) {

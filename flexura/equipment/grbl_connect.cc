@@ -22,6 +22,16 @@ struct Required {
 constexpr Required holding{1, 255, "the motors must hold the tendons when they rest"};
 constexpr Required millimetres{13, 0, "reports must be in mm"};
 
+// Makes a version fit for messages: printable, without the empty name after its last colon.
+std::string firmware_text(std::string_view text) {
+  constexpr std::size_t longest = 60;
+  std::string clean;
+  for (const char c : text.substr(0, longest))
+    if (c >= ' ' && c <= '~') clean += c;
+  while (clean.ends_with(':')) clean.pop_back();
+  return clean;
+}
+
 }  // namespace
 
 CommandOutcome GrblDrive::connect() {
@@ -35,8 +45,10 @@ CommandOutcome GrblDrive::connect() {
   const auto build = session_.ask("$I\n");
   if (!build) return *build.fault();
   is_zero_forced_ = false;
+  firmware_.clear();
   for (const GrblMessage& one : build.value().said) {
     const auto* const feedback = std::get_if<GrblFeedback>(&one);
+    if (feedback != nullptr && feedback->type == "VER") firmware_ = firmware_text(feedback->text);
     if (feedback == nullptr || feedback->type != "OPT") continue;
     // [OPT:codes,blocks,bytes]; Z: homing sets the position to 0.
     const std::string& options = feedback->text;
@@ -117,6 +129,26 @@ CommandOutcome GrblDrive::check_axes() {
   }
   path_ = GrblPath(can_);
   return Accepted{};
+}
+
+GrblIdentity GrblDrive::identity() const {
+  const std::scoped_lock lock(mutex_);
+  GrblIdentity identity{.firmware = firmware_,
+                        .has_soft_limits = setting(20) != 0,
+                        .has_homing = (static_cast<int>(setting(22)) & 1) != 0};
+  for (std::size_t i = 0; i < can_.per_mm.size(); ++i) {
+    identity.rates.push_back(can_.rates[i] * can_.per_mm[i]);
+    identity.accelerations.push_back(can_.accelerations[i] * can_.per_mm[i]);
+    identity.travel.push_back(setting(130 + static_cast<int>(indices_[i])) * can_.per_mm[i]);
+  }
+  return identity;
+}
+
+Outcome<GrblStatus> GrblDrive::status() {
+  const std::scoped_lock lock(mutex_);
+  begin();
+  if (!is_connected_) return refuse("not connected");
+  return session_.status();
 }
 
 CommandOutcome GrblDrive::home(std::span<const double> positions) {

@@ -19,6 +19,16 @@
 
 namespace flexura {
 
+/// What a controller says about itself.
+struct GrblIdentity {
+  std::string firmware = {};               ///< Version that `$I` reports, for example "1.1h.20190825"; or "".
+  std::vector<double> rates = {};          ///< Highest speed of each of the drive's axes, microsteps/s.
+  std::vector<double> accelerations = {};  ///< microsteps/s^2
+  std::vector<double> travel = {};         ///< Length of travel of each axis, microsteps ($130 and so on).
+  bool has_soft_limits = false;            ///< Whether targets outside the travel are clamped ($20).
+  bool has_homing = false;                 ///< Whether the controller can home ($22).
+};
+
 /// Stepper motors behind a controller with Grbl 1.1 or grblHAL (docs/equipment/grbl.md).
 ///
 /// Targets and readings are motor positions, microsteps. The controller counts them from an unknown zero, so
@@ -45,6 +55,10 @@ class GrblDrive : public DrivePort {
   [[nodiscard]] CommandOutcome unlock();
   /// Returns true if the position is known.
   [[nodiscard]] bool knows_position() const;
+  /// Returns what connect() has learned of the controller.
+  [[nodiscard]] GrblIdentity identity() const;
+  /// Asks the connected controller for its status, whether the position is known or not.
+  [[nodiscard]] Outcome<GrblStatus> status();
   /// Returns the link, for Guard::protect() with grbl_stop().
   [[nodiscard]] const Link& link() const { return *link_; }
 
@@ -93,6 +107,7 @@ class GrblDrive : public DrivePort {
   GrblAxes can_;
   std::vector<std::int64_t> zero_;  // The controller's steps where the motor positions are 0.
   std::size_t reported_axes_ = 0;
+  std::string firmware_;
   bool is_connected_ = false, is_known_ = false, is_zero_forced_ = false;
   double checked_at_ = 0;   // Time of the last report.
   double accepted_at_ = 0;  // Time of the last accepted motion.

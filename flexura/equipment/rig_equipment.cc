@@ -4,14 +4,16 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <stdexcept>
 
 #include "flexura/base/reader.h"
 #include "flexura/base/table.h"
+#include "flexura/equipment/link.h"
 
 namespace flexura {
 
 const std::vector<std::string>& names_of(const StartPositions*) {
-  static const std::vector<std::string> names = {"declared", "homed"};
+  static const std::vector<std::string> names = {"declared", "homed", "pretensioned"};
   return names;
 }
 
@@ -53,11 +55,18 @@ const Table<RigEquipment>& fields_of(const RigEquipment*) {
                   .range = between(0.05, 10)})
           .field("start", &RigEquipment::start,
                  {.meaning = "How motor positions become known. `declared`: the arm has its initial shape. "
-                             "`homed`: the axes move to their limit switches."})
+                             "`homed`: the axes move to their limit switches, then slowly to the initial "
+                             "shape. `pretensioned`: as homed, but tendons that are tight are let out first, "
+                             "so that all are pulled in together."})
           .field("home", &RigEquipment::home,
                  {.meaning = "Motor positions at the limit switches, microsteps, one per axis.",
                   .count = {0, most_axes},
                   .default_text = "none"})
+          .field(
+              "pretension_speed", &RigEquipment::pretension_speed,
+              {.meaning = "Largest speed of a tendon on its way from the limit switch to the initial shape.",
+               .unit = Unit::metre_per_second,
+               .range = above_up_to(0, 0.1)})
           .field("grbl", &RigEquipment::grbl,
                  {.meaning = "Controllers with Grbl, in the order of the axes.",
                   .count = {0, most_controllers},
@@ -86,12 +95,12 @@ void check_controllers(const RigEquipment& equipment, std::size_t axes, Reader& 
     reader.problem_at(
         equipment.cia402 ? "rig.cia402" : "rig",
         fmt::format("{} axes of controllers: expected {}, one per tendon of the drive", there, axes));
-  const bool is_homed = equipment.start == StartPositions::homed;
+  const bool is_homed = equipment.start != StartPositions::declared;
   if (is_homed && !equipment.cia402 && equipment.home.size() != axes)
     reader.problem_at("rig.home",
                       fmt::format("{} positions: expected {}, one per axis", equipment.home.size(), axes));
   if (!is_homed && !equipment.home.empty())
-    reader.problem_at("rig.home", "not used: expected start = \"homed\"");
+    reader.problem_at("rig.home", "not used: expected start = \"homed\" or \"pretensioned\"");
 }
 
 void check_names(const RigEquipment& equipment, const std::vector<std::string>& cameras, Reader& reader) {
@@ -110,16 +119,47 @@ void check_names(const RigEquipment& equipment, const std::vector<std::string>& 
       reader.problem_at("rig.camera", fmt::format("no devices for the camera \"{}\"", name));
 }
 
-// A bus is described once per head; the descriptions must agree.
-void check_buses(const RigEquipment& equipment, Reader& reader) {
-  for (std::size_t i = 0; i < equipment.camera.size(); ++i)
-    for (std::size_t k = 0; k < i; ++k) {
-      const auto &one = equipment.camera[i].visca, &other = equipment.camera[k].visca;
-      if (one && other && one->bus.link == other->bus.link && one->address == other->address)
-        reader.problem_at(fmt::format("rig.camera[{}].visca.address", i),
-                          fmt::format("{} is the address of the head of \"{}\" on the same link",
-                                      one->address, equipment.camera[k].name));
+// Returns what tells links apart: a serial line is the same at any speed.
+std::string place_of_link(const std::string& link) {
+  try {
+    const LinkAddress address = parse_link_address(link);
+    return address.kind == LinkAddress::Kind::serial ? address.place : text(address);
+  } catch (const std::invalid_argument&) {
+    return link;  // Reported elsewhere.
+  }
+}
+
+// A device belongs to one driver. Only heads of a chain share a link.
+void check_links(const RigEquipment& equipment, Reader& reader) {
+  struct Used {
+    std::string path, link;
+    std::int64_t address = 0;  // Place in a chain; 0: none.
+  };
+  std::vector<Used> used;
+  const auto use = [&](const Used& one) {
+    for (const Used& other : used) {
+      if (place_of_link(other.link) != place_of_link(one.link)) continue;
+      if (one.address == 0 || other.address == 0) {
+        reader.problem_at(one.path,
+                          fmt::format("\"{}\" is used by {}: expected another device", one.link, other.path));
+        break;
+      }
+      if (one.address == other.address) {
+        reader.problem_at(one.path.substr(0, one.path.rfind(".bus")) + ".address",
+                          fmt::format("{} is the address of another head on the same link", one.address));
+        break;
+      }
     }
+    used.push_back(one);
+  };
+  for (std::size_t i = 0; i < equipment.grbl.size(); ++i)
+    use({fmt::format("rig.grbl[{}].link", i), equipment.grbl[i].link});
+  for (std::size_t i = 0; i < equipment.camera.size(); ++i)
+    if (const auto& head = equipment.camera[i].visca)
+      use({fmt::format("rig.camera[{}].visca.bus.link", i), head->bus.link, head->address});
+  for (std::size_t i = 0; i < equipment.camera.size(); ++i)
+    if (const auto& video = equipment.camera[i].v4l2)
+      use({fmt::format("rig.camera[{}].v4l2.device", i), video->device});
 }
 
 }  // namespace
@@ -128,7 +168,7 @@ void check_equipment(const RigEquipment& equipment, const std::vector<std::strin
                      Reader& reader) {
   check_controllers(equipment, axes, reader);
   check_names(equipment, cameras, reader);
-  check_buses(equipment, reader);
+  check_links(equipment, reader);
 }
 
 }  // namespace flexura

@@ -29,7 +29,11 @@ struct CameraEquipment {
 /// How the motor positions become known at the start of a run.
 enum class StartPositions {
   declared,  ///< The arm has its initial shape, and the motors are where the model expects them.
-  homed,     ///< The axes move to their limit switches, whose positions are known.
+  /// The axes move to their limit switches, whose positions are known, and then slowly to the initial shape.
+  homed,
+  /// As homed, but tendons that are tighter than at rest are let out first. So all tendons are pulled in
+  /// together in the end, with their backlash taken up.
+  pretensioned,
 };
 
 /// The table [rig]: the equipment that runs the experiment.
@@ -38,8 +42,9 @@ struct RigEquipment {
   /// all devices.
   double watchdog = 0.5;
   StartPositions start = StartPositions::declared;
-  /// Motor positions at the limit switches, microsteps, one per axis; only for `homed`.
+  /// Motor positions at the limit switches, microsteps, one per axis; not for `declared`.
   std::vector<double> home = {};
+  double pretension_speed = 0.002;           ///< Largest speed of the tendons while they are pulled in, m/s.
   std::vector<GrblConfig> grbl = {};         ///< Controllers, in the order of the axes.
   std::optional<Cia402Config> cia402 = {};   ///< Drives on a CAN bus; not together with `grbl`.
   std::vector<CameraEquipment> camera = {};  ///< Devices of the experiment's cameras, matched by name.

@@ -26,7 +26,7 @@ V4l2Fake::V4l2Fake(std::uint32_t format, int width, int height)
 
 int V4l2Fake::open(const std::string& path) {
   const std::scoped_lock lock(mutex_);
-  if (path != "/dev/video0" || !is_plugged_) return -ENOENT;
+  if (!path.ends_with("/video0") || !is_plugged_) return -ENOENT;
   ++open_;
   return fake_descriptor;
 }
@@ -62,6 +62,19 @@ int V4l2Fake::ioctl(int /*device*/, unsigned long request, void* argument) {
     case VIDIOC_QUERYCAP:
       static_cast<v4l2_capability*>(argument)->capabilities = V4L2_CAP_VIDEO_CAPTURE | V4L2_CAP_STREAMING;
       return 0;
+    case VIDIOC_ENUM_FMT: {
+      auto& format = *static_cast<v4l2_fmtdesc*>(argument);
+      if (format.index > 0) return -EINVAL;
+      format.pixelformat = format_;
+      return 0;
+    }
+    case VIDIOC_ENUM_FRAMESIZES: {
+      auto& size = *static_cast<v4l2_frmsizeenum*>(argument);
+      if (size.index > 0) return -EINVAL;
+      size.type = V4L2_FRMSIZE_TYPE_DISCRETE;
+      size.discrete = {static_cast<std::uint32_t>(width_), static_cast<std::uint32_t>(height_)};
+      return 0;
+    }
     case VIDIOC_S_FMT:
       return set_format(argument);
     case VIDIOC_S_PARM:

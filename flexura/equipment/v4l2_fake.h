@@ -25,7 +25,7 @@ struct FakeControl {
 /// called from several threads.
 class V4l2Fake : public V4l2Calls {
  public:
-  /// Makes a device "/dev/video0" with one pixel format (V4L2_PIX_FMT_...) and size, px.
+  /// Makes a device "video0" in any folder, with one pixel format (V4L2_PIX_FMT_...) and size, px.
   V4l2Fake(std::uint32_t format, int width, int height);
 
   int open(const std::string& path) override;

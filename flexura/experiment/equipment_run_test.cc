@@ -36,8 +36,13 @@ TEST(Equipment, OfAFileMustFitItsRig) {
   EXPECT_THAT(problems_of(good + "v4l2.device = \"/dev/video0\"\n"), HasSubstr("2 sources of pictures"));
   EXPECT_THAT(problems_of(good + "[[rig.camera]]\nname = \"front\"\nv4l2.device = \"/dev/video0\"\n"),
               HasSubstr("\"front\" has devices already"));
+  // A serial line is the same at any speed, and belongs to one device.
+  EXPECT_THAT(problems_of(good + "visca.bus.link = \"/dev/ttyUSB0@9600\"\n"),
+              HasSubstr("\"/dev/ttyUSB0@9600\" is used by rig.grbl[0].link: expected another device"));
   std::string homed = good;
   homed.replace(homed.find("watchdog = 0.2"), 14, "start = \"homed\"");
+  EXPECT_THAT(problems_of(homed), HasSubstr("0 positions: expected 3, one per axis"));
+  homed.replace(homed.find("homed"), 5, "pretensioned");
   EXPECT_THAT(problems_of(homed), HasSubstr("0 positions: expected 3, one per axis"));
   std::string kinematic = good;
   kinematic.erase(kinematic.find("[drive]"), kinematic.find("[[camera]]") - kinematic.find("[drive]"));

@@ -1,25 +1,16 @@
 #include <algorithm>
-#include <chrono>
-#include <cmath>
 #include <cstddef>
-#include <exception>
-#include <map>
 #include <optional>
-#include <span>
 #include <stdexcept>
-#include <thread>
 #include <utility>
 
-#include "flexura/equipment/cia402_drive.h"
-#include "flexura/equipment/grbl_drive.h"
-#include "flexura/equipment/guarded_drive.h"
-#include "flexura/equipment/joined_drive.h"
-#include "flexura/equipment/visca_head.h"
+#include "flexura/equipment/device_access.h"
 #include "flexura/equipment/wall_clock.h"
 #include "flexura/log/recorder.h"
 #include "flexura/port/clocked_ports.h"
-#include "flexura/port/driven_arm.h"
+#include "flexura/rig/camera_sources.h"
 #include "flexura/rig/rig.h"
+#include "flexura/rig/rig_devices.h"
 #include "flexura/sim/arm_setup.h"
 
 namespace flexura {
@@ -53,77 +44,6 @@ class RigHead : public HeadPort {
   double time_shift_;
 };
 
-// The controllers of an arm.
-class ArmEquipment {
- public:
-  ArmEquipment(const RigEquipment& equipment, const ArmSetup& setup, const ClockPort& clock, Guard& guard) {
-    if (!setup.drive) throw std::runtime_error("the arm has no drive to run");
-    std::vector<double> start;
-    for (const std::int64_t position : nominal_positions(setup.arm, *setup.drive, setup.initial))
-      start.push_back(static_cast<double>(position));
-    std::vector<DrivePort*> parts;
-    if (equipment.cia402) {
-      link_ = must(open_link(parse_link_address(equipment.cia402->link)));
-      can_.emplace(*link_, clock, *equipment.cia402);
-      guard.protect(*link_, cia402_stop(*equipment.cia402));
-      must(can_->start());
-      if (equipment.start == StartPositions::homed) must(can_->home());
-      parts.push_back(&*can_);
-    }
-    std::size_t first = 0;
-    for (const GrblConfig& config : equipment.grbl) {
-      auto drive =
-          std::make_unique<GrblDrive>(must(open_link(parse_link_address(config.link))), clock, config);
-      guard.protect(drive->link(), grbl_stop(config));
-      must(drive->connect());
-      const bool is_homed = equipment.start == StartPositions::homed;
-      const auto own = std::span(is_homed ? equipment.home : start).subspan(first, drive->axes());
-      must(is_homed ? drive->home(own) : drive->set_positions(own));
-      first += drive->axes();
-      parts.push_back(drive.get());
-      grbl_.push_back(std::move(drive));
-    }
-    joined_.emplace(std::move(parts));
-  }
-  // From now on the drives may move. `time_shift`, s, is added to the times of readings.
-  void start(const ArmSetup& setup, Guard& guard, double time_shift) {
-    guarded_.emplace(
-        *joined_, guard,
-        [this] {
-          if (can_) can_->keep_alive();
-        },
-        time_shift);
-    arm_.emplace(*guarded_, setup.arm, *setup.drive, setup.initial);
-  }
-  ~ArmEquipment() {
-    if (!guarded_) return;
-    // Controllers follow commands with a delay. The end of a run lets them arrive; a failure does not.
-    constexpr double longest_delay = 1;
-    const double end = steady_seconds() + longest_delay;
-    while (std::uncaught_exceptions() == 0 && steady_seconds() < end) {
-      const auto reading = guarded_->read();
-      if (!reading || !reading.value().moving) break;
-      std::this_thread::sleep_for(std::chrono::milliseconds(5));
-    }
-    (void)guarded_->halt();
-  }
-  ArmEquipment(const ArmEquipment&) = delete;
-  ArmEquipment& operator=(const ArmEquipment&) = delete;
-
-  [[nodiscard]] ArmPort& port() { return *arm_; }
-  void beat() {
-    if (guarded_) guarded_->beat();
-  }
-
- private:
-  std::unique_ptr<Link> link_;
-  std::optional<Cia402Drive> can_;
-  std::vector<std::unique_ptr<GrblDrive>> grbl_;
-  std::optional<JoinedDrive> joined_;
-  std::optional<GuardedDrive> guarded_;
-  std::optional<DrivenArm> arm_;
-};
-
 // The devices of a camera.
 struct CameraDevices {
   std::string name;
@@ -133,55 +53,33 @@ struct CameraDevices {
   std::unique_ptr<RigHead> head;  // Null if the camera has none.
 };
 
-using Buses = std::map<std::string, std::shared_ptr<ViscaBus>>;
-
-std::unique_ptr<HeadPort> head_of(const CameraEquipment& equipment, const ClockPort& clock, Guard& guard,
-                                  Buses& buses) {
-  if (equipment.v4l2_head) return must(V4l2Head::open(*equipment.v4l2_head, equipment.name, clock));
-  if (!equipment.visca) return nullptr;
-  const ViscaConfig& config = *equipment.visca;
-  std::shared_ptr<ViscaBus>& bus = buses[config.bus.link];
-  if (!bus) bus = must(open_visca_bus(config.bus, [&clock] { return clock.now(); }));
-  guard.protect(bus->link(), visca_stop(config));
-  auto head = std::make_unique<ViscaHead>(bus, config);
-  must(head->start());
-  return head;
-}
-
-std::unique_ptr<CountedCamera> source_of(const CameraEquipment& equipment, const CameraConfig& camera,
-                                         const ClockPort& clock) {
-  if (equipment.gstreamer) return must(open_gstreamer_camera(*equipment.gstreamer, camera, clock));
-  if (equipment.aravis) return must(open_aravis_camera(*equipment.aravis, camera, clock));
-  return must(open_v4l2_camera(equipment.v4l2.value(), camera, clock));
-}
-
 class EquipmentRig : public Rig {
  public:
   explicit EquipmentRig(const Setup& setup)
-      : equipment_(setup.equipment.value()), guard_(equipment_.watchdog) {
+      : equipment_(setup.equipment.value()), devices_(equipment_.watchdog) {
     const ArmSetup arm(setup.model_rig());
-    arm_ = std::make_unique<ArmEquipment>(equipment_, arm, device_clock_, guard_);
+    arm_ = std::make_unique<ArmEquipment>(equipment_, arm, devices_);
     const std::vector<CameraConfig> cameras = setup.cameras();
     std::vector<std::unique_ptr<HeadPort>> heads;
     heads.reserve(cameras.size());
     for (const CameraConfig& camera : cameras)
-      heads.push_back(head_of(devices_of(camera), device_clock_, guard_, buses_));
+      heads.push_back(open_head(devices_of(camera), devices_, buses_));
     // The run begins when the devices are ready.
     clock_.emplace([this] { arm_->beat(); }, equipment_.watchdog / 10);
-    const double time_shift = device_clock_.start() - clock_->start();
-    arm_->start(arm, guard_, time_shift);
+    const double time_shift = devices_.clock().start() - clock_->start();
+    arm_->start(time_shift);
     for (std::size_t i = 0; i < cameras.size(); ++i) {
       auto devices = std::make_unique<CameraDevices>();
       devices->name = cameras[i].name;
       if (heads[i]) devices->head = std::make_unique<RigHead>(std::move(heads[i]), time_shift);
-      devices->source = source_of(devices_of(cameras[i]), cameras[i], *clock_);
+      devices->source = open_camera_source(devices_of(cameras[i]), cameras[i], *clock_);
       devices->camera.emplace(*devices->source, devices->time, 0.0);
       cameras_.push_back(std::move(devices));
     }
   }
 
   RigPorts ports() override {
-    RigPorts ports{&*clock_, &arm_->port(), {}};
+    RigPorts ports{&*clock_, &arm_->arm(), {}};
     for (const auto& devices : cameras_)
       ports.cameras.push_back({devices->name, &*devices->camera, devices->head.get(), nullptr});
     return ports;
@@ -212,7 +110,7 @@ class EquipmentRig : public Rig {
   }
   // Real time does not wait for the program: what is late is done as soon as possible.
   void go_to(double time, const ArmState& state) {
-    must(arm_->port().command(state, std::max(0.0, time - clock_->now())));
+    must(arm_->arm().command(state, std::max(0.0, time - clock_->now())));
   }
   std::vector<FilmedFrame> new_frames() {
     std::vector<FilmedFrame> frames;
@@ -225,11 +123,10 @@ class EquipmentRig : public Rig {
   }
 
   RigEquipment equipment_;
-  Guard guard_;
-  WallClock device_clock_;          // Of the drives and heads.
+  RealDevices devices_;
   std::optional<WallClock> clock_;  // Of the run.
   std::unique_ptr<ArmEquipment> arm_;
-  Buses buses_;
+  ViscaBuses buses_;
   std::vector<std::unique_ptr<CameraDevices>> cameras_;
 };
 

@@ -1,0 +1,68 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include "flexura/equipment/cia402_config.h"
+#include "flexura/equipment/grbl_config.h"
+#include "flexura/equipment/guard.h"
+#include "flexura/equipment/link.h"
+#include "flexura/equipment/v4l2_calls.h"
+#include "flexura/equipment/v4l2_head.h"
+#include "flexura/equipment/visca_config.h"
+#include "flexura/equipment/wall_clock.h"
+#include "flexura/port/clock_port.h"
+
+namespace flexura {
+
+/// How drivers reach their devices: real ones over the links of the configurations, or simulated ones.
+class DeviceAccess {
+ public:
+  virtual ~DeviceAccess() = default;
+  DeviceAccess() = default;
+  DeviceAccess(const DeviceAccess&) = delete;
+  DeviceAccess& operator=(const DeviceAccess&) = delete;
+
+  /// Returns the clock of drives and heads.
+  [[nodiscard]] virtual ClockPort& clock() = 0;
+  /// @{ Open the link of a controller, of a bus of drives, or of a chain of heads.
+  [[nodiscard]] virtual Outcome<std::unique_ptr<Link>> open(const GrblConfig& config) = 0;
+  [[nodiscard]] virtual Outcome<std::unique_ptr<Link>> open(const Cia402Config& config) = 0;
+  [[nodiscard]] virtual Outcome<std::unique_ptr<Link>> open(const ViscaBusConfig& config) = 0;
+  /// @}
+  /// Returns the system calls for a head of the kernel's video interface.
+  [[nodiscard]] virtual std::shared_ptr<V4l2Calls> calls(const V4l2HeadConfig& config) = 0;
+  /// Returns the guard that stops the devices when this program dies or hangs; null if nothing can move.
+  [[nodiscard]] virtual Guard* guard() = 0;
+};
+
+/// The devices at the links of the configurations.
+class RealDevices : public DeviceAccess {
+ public:
+  /// Devices that nothing will move, without a guard.
+  RealDevices() = default;
+  /// Guarded devices. `watchdog`: period of the guard, s, > 0. Throws like Guard.
+  explicit RealDevices(double watchdog) : guard_(std::in_place, watchdog) {}
+
+  [[nodiscard]] WallClock& clock() override { return clock_; }
+  [[nodiscard]] Outcome<std::unique_ptr<Link>> open(const GrblConfig& config) override {
+    return open_link(parse_link_address(config.link));
+  }
+  [[nodiscard]] Outcome<std::unique_ptr<Link>> open(const Cia402Config& config) override {
+    return open_link(parse_link_address(config.link));
+  }
+  [[nodiscard]] Outcome<std::unique_ptr<Link>> open(const ViscaBusConfig& config) override {
+    return open_link(parse_link_address(config.link));
+  }
+  [[nodiscard]] std::shared_ptr<V4l2Calls> calls(const V4l2HeadConfig& /*config*/) override {
+    return v4l2_system_calls();
+  }
+  [[nodiscard]] Guard* guard() override { return guard_ ? &*guard_ : nullptr; }
+
+ private:
+  std::optional<Guard> guard_;
+  WallClock clock_;
+};
+
+}  // namespace flexura

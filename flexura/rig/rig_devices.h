@@ -1,0 +1,77 @@
+#pragma once
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "flexura/equipment/cia402_drive.h"
+#include "flexura/equipment/device_access.h"
+#include "flexura/equipment/grbl_drive.h"
+#include "flexura/equipment/guarded_drive.h"
+#include "flexura/equipment/joined_drive.h"
+#include "flexura/equipment/rig_equipment.h"
+#include "flexura/equipment/visca_bus.h"
+#include "flexura/port/driven_arm.h"
+#include "flexura/port/motion_ports.h"
+#include "flexura/sim/arm_setup.h"
+
+namespace flexura {
+
+/// The controllers of an arm, connected and with known motor positions.
+class ArmEquipment {
+ public:
+  /// Connects to all controllers and finds out where the motors are (RigEquipment::start). Homing and
+  /// pretensioning move them, and are waited for. `access` must outlive this object. Throws
+  /// std::runtime_error with one clear line if a device cannot be used.
+  ArmEquipment(const RigEquipment& equipment, const ArmSetup& setup, DeviceAccess& access);
+  /// Lets a motion in progress arrive, unless an exception is on its way, and stops the motors.
+  ~ArmEquipment();
+  ArmEquipment(const ArmEquipment&) = delete;
+  ArmEquipment& operator=(const ArmEquipment&) = delete;
+
+  /// Makes the ports. From now on the drives may move. `time_shift`, s, is added to the times of readings.
+  void start(double time_shift = 0);
+
+  /// Returns the arm, after start().
+  [[nodiscard]] DrivenArm& arm() { return *arm_; }
+  /// Returns all motors, after start().
+  [[nodiscard]] DrivePort& drive() { return *drive_; }
+  /// Returns the single controllers, in the order of the axes; empty for drives on a CAN bus.
+  [[nodiscard]] const std::vector<std::unique_ptr<GrblDrive>>& controllers() const { return grbl_; }
+  /// Returns the drives on a CAN bus; null if there are none.
+  [[nodiscard]] const Cia402Drive* bus() const { return can_ ? &*can_ : nullptr; }
+  /// Returns the motor positions at which the arm has its initial shape, microsteps.
+  [[nodiscard]] const std::vector<double>& rest() const { return rest_; }
+  /// Reports to the guard that this program works.
+  void beat();
+
+ private:
+  void guard_drive(double time_shift);
+  void pull_in();
+  void move_slowly(const std::vector<double>& targets);
+
+  const RigEquipment equipment_;
+  const ArmSetup setup_;
+  DeviceAccess& access_;
+  std::vector<double> rest_;
+  std::unique_ptr<Link> link_;
+  std::optional<Cia402Drive> can_;
+  std::vector<std::unique_ptr<GrblDrive>> grbl_;
+  std::optional<JoinedDrive> joined_;
+  std::optional<GuardedDrive> guarded_;
+  DrivePort* drive_ = nullptr;
+  std::optional<DrivenArm> arm_;
+};
+
+/// The buses of heads by their addresses. Heads of a chain share one.
+using ViscaBuses = std::map<std::string, std::shared_ptr<ViscaBus>>;
+
+/// Connects to the head of a camera, without moving it. Returns null if the camera has none. `about`, if not
+/// null, receives what the head says about itself, or "". `access` must outlive the head. Throws
+/// std::runtime_error with one clear line if it cannot be used.
+[[nodiscard]] std::unique_ptr<HeadPort> open_head(const CameraEquipment& equipment, DeviceAccess& access,
+                                                  ViscaBuses& buses, std::string* about = nullptr);
+
+}  // namespace flexura

@@ -23,7 +23,11 @@ double seconds_now() noexcept {
 struct Device {
   int link = -1;
   GuardMessage stop;
+  int connection = -1;  // To its address, while a stop is sent.
+  double until = 0;     // When the connection is given up.
+  bool is_sent = false;
 };
+constexpr double most_connection = 2;  // s
 
 // The devices and what is due.
 class Watch {
@@ -39,20 +43,58 @@ class Watch {
         answer(GuardAnswer::stopped);
       }
       send_rest(now);
-      pollfd one{socket_, POLLIN, 0};
-      if (::poll(&one, 1, wait_ms(now)) > 0) take_message();
+      if (wait(wait_ms(now))) take_message();
     }
-    // Devices that must brake before the rest of the messages get their time.
-    while (has_rest_) {
+    // Devices that must brake before the rest of the messages get their time, and connections too.
+    while (has_rest_ || has_connections()) {
       send_rest(seconds_now());
-      (void)::poll(nullptr, 0, 1);
+      (void)wait(1);
     }
   }
 
  private:
+  // Waits for messages and connections. Returns whether there is a message.
+  bool wait(int ms) noexcept {
+    std::array<pollfd, Guard::most_links + 1> all{};
+    all[0] = {is_done_ ? -1 : socket_, POLLIN, 0};
+    for (std::size_t i = 0; i < devices_; ++i) {
+      const Device& one = device_[i];
+      all[i + 1] = {one.connection, static_cast<short>(one.is_sent ? POLLIN : POLLOUT), 0};
+    }
+    const bool is_ready = ::poll(all.data(), devices_ + 1, ms) > 0;
+    const double now = seconds_now();
+    for (std::size_t i = 0; i < devices_; ++i) {
+      Device& one = device_[i];
+      if (one.connection < 0) continue;
+      const bool has_event = is_ready && all[i + 1].revents != 0;
+      if (has_event && !one.is_sent && (all[i + 1].revents & POLLOUT) != 0) {
+        send(i, one.connection, 0, one.stop.first);
+        one.is_sent = true;
+      } else if (has_event || now > one.until) {
+        ::close(one.connection);
+        one.connection = -1;
+      }
+    }
+    return is_ready && all[0].revents != 0;
+  }
+  [[nodiscard]] bool has_connections() const noexcept {
+    return std::any_of(device_.begin(), device_.begin() + devices_,
+                       [](const Device& one) { return one.connection >= 0; });
+  }
+  void connect(Device& device, double now) noexcept {
+    if (device.connection >= 0) ::close(device.connection);
+    device.connection =
+        ::socket(device.stop.address.ss_family, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
+    device.until = now + most_connection, device.is_sent = false;
+    (void)::connect(device.connection, reinterpret_cast<const sockaddr*>(&device.stop.address),
+                    device.stop.address_size);
+  }
+
   // Waits at most until something is due; -1: for ever.
   [[nodiscard]] int wait_ms(double now) const noexcept {
     double due = is_moving_ ? beat_ + period_ : HUGE_VAL;
+    for (std::size_t i = 0; i < devices_; ++i)
+      if (device_[i].connection >= 0) due = std::min(due, device_[i].until);
     if (has_rest_)
       for (std::size_t i = 0; i < devices_; ++i)
         if (is_rest_due_[i]) due = std::min(due, stopped_ + device_[i].stop.delay);
@@ -91,8 +133,18 @@ class Watch {
     using Kind = GuardMessage::Kind;
     switch (message.kind) {
       case Kind::protect:
-        if (devices_ < device_.size() && link >= 0) device_[devices_++] = {link, message};
+        if (devices_ < device_.size() && (link >= 0 || message.address_size > 0)) {
+          device_[devices_].link = link;
+          device_[devices_++].stop = message;
+        }
         answer(GuardAnswer::ready);
+        break;
+      case Kind::renew:
+        if (message.device < devices_) {
+          GuardMessage& own = device_[message.device].stop;
+          own.first = message.first, own.count = message.count;
+          own.sizes = message.sizes, own.text = message.text;
+        }
         break;
       case Kind::moving:
         is_moving_ = true, beat_ = seconds_now();
@@ -111,7 +163,11 @@ class Watch {
 
   void stop(double now) noexcept {
     for (std::size_t i = 0; i < devices_; ++i) {
-      send(i, 0, device_[i].stop.first);
+      if (device_[i].stop.address_size > 0) {
+        connect(device_[i], now);
+        continue;
+      }
+      send(i, device_[i].link, 0, device_[i].stop.first);
       is_rest_due_[i] = device_[i].stop.count > device_[i].stop.first;
       has_rest_ = has_rest_ || is_rest_due_[i];
     }
@@ -128,13 +184,15 @@ class Watch {
         continue;
       }
       is_rest_due_[i] = false;
-      send(i, device_[i].stop.first, device_[i].stop.count);
+      send(i, device_[i].link, device_[i].stop.first, device_[i].stop.count);
     }
   }
 
-  void send(std::size_t i, std::size_t from, std::size_t to) noexcept {
-    for (std::size_t k = from; k < to; ++k)
-      send_stop(device_[i].link, device_[i].stop.texts[k].data(), device_[i].stop.sizes[k]);
+  void send(std::size_t i, int link, std::size_t from, std::size_t to) noexcept {
+    const GuardMessage& stop = device_[i].stop;
+    const char* text = stop.text.data();
+    for (std::size_t k = 0; k < to; text += stop.sizes[k++])
+      if (k >= from) send_stop(link, text, stop.sizes[k]);
   }
 
   int socket_;

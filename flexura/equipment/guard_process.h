@@ -1,5 +1,7 @@
 #pragma once
 
+#include <sys/socket.h>
+
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -13,7 +15,8 @@ namespace flexura {
 struct GuardMessage {
   /// Kinds of messages.
   enum class Kind : std::uint8_t {
-    protect,  ///< Protect a device; carries its link.
+    protect,  ///< Protect a device; carries its link, or has its address.
+    renew,    ///< Replace the messages of device number `device`.
     moving,   ///< The next beat is due within a period.
     resting,  ///< No beat is due.
     stop,     ///< Stop all devices now.
@@ -23,8 +26,11 @@ struct GuardMessage {
   std::uint8_t first = 0;  ///< Number of messages that are sent at once.
   std::uint8_t count = 0;  ///< Number of all messages.
   double delay = 0;        ///< From the first messages to the others, s.
-  std::array<std::uint8_t, Guard::most_messages> sizes{};
-  std::array<std::array<char, Guard::message_size>, Guard::most_messages> texts{};
+  std::array<std::uint16_t, Guard::most_messages> sizes{};
+  std::array<char, Guard::messages_size> text{};  ///< One message after the other.
+  std::uint8_t device = 0;
+  socklen_t address_size = 0;  ///< 0: the device has a link.
+  sockaddr_storage address{};
 };
 
 /// Answers of the guarding process.

@@ -155,7 +155,8 @@ TEST(Guard, RefusesWhatItCannotDo) {
   EXPECT_THROW(Guard(std::numeric_limits<double>::quiet_NaN()), std::invalid_argument);
   Guard guard(1);
   Line line;
-  EXPECT_THROW(guard.protect(*line.host, {.first = {std::string(65, 'x')}, .delay = 0, .then = {}}),
+  EXPECT_THROW(guard.protect(*line.host,
+                             {.first = {std::string(Guard::messages_size + 1, 'x')}, .delay = 0, .then = {}}),
                std::invalid_argument);
   EXPECT_THROW(
       guard.protect(*line.host, {.first = std::vector<std::string>(17, "x"), .delay = 0, .then = {}}),

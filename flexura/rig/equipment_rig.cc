@@ -14,6 +14,7 @@
 #include "flexura/equipment/grbl_drive.h"
 #include "flexura/equipment/guarded_drive.h"
 #include "flexura/equipment/joined_drive.h"
+#include "flexura/equipment/onvif_head.h"
 #include "flexura/equipment/visca_head.h"
 #include "flexura/equipment/wall_clock.h"
 #include "flexura/log/recorder.h"
@@ -135,9 +136,30 @@ struct CameraDevices {
 
 using Buses = std::map<std::string, std::shared_ptr<ViscaBus>>;
 
+// The guard stops a head by the newest request, whose signature is that of the last move.
+std::unique_ptr<HeadPort> onvif_head_of(const OnvifConfig& config, const ClockPort& clock, Guard& guard) {
+  const auto share =
+      [&guard, address = parse_link_address(config.link),
+       number = std::optional<std::size_t>()](const std::string& request) mutable -> CommandOutcome {
+    const StopMessages stop{{request}, 0, {}};
+    try {
+      if (number) {
+        guard.renew(*number, stop);
+      } else {
+        number = guard.protect(address, stop);
+      }
+    } catch (const std::exception& error) {
+      return PortFault{FaultKind::refused, error.what()};
+    }
+    return Accepted{};
+  };
+  return must(open_onvif_head(config, clock, share));
+}
+
 std::unique_ptr<HeadPort> head_of(const CameraEquipment& equipment, const ClockPort& clock, Guard& guard,
                                   Buses& buses) {
   if (equipment.v4l2_head) return must(V4l2Head::open(*equipment.v4l2_head, equipment.name, clock));
+  if (equipment.onvif) return onvif_head_of(*equipment.onvif, clock, guard);
   if (!equipment.visca) return nullptr;
   const ViscaConfig& config = *equipment.visca;
   std::shared_ptr<ViscaBus>& bus = buses[config.bus.link];

@@ -19,7 +19,7 @@
 namespace flexura {
 namespace {
 
-// The example of the ONVIF Application Programmer's Guide, section 6.1.1.3.
+// The example of the ONVIF Application Programmer's Guide 1.0.
 TEST(OnvifSoap, DigestEqualsThatOfTheGuide) {
   const std::string nonce = from_base64("LKqI6G/AikKCQrN0zqZFlg==").value();
   EXPECT_EQ(onvif_digest(nonce, "2010-09-16T07:50:45Z", "userpassword"), "tuOSpGlFlIXsozq4HFNeeGeFLEI=");

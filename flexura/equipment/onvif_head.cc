@@ -51,6 +51,7 @@ CommandOutcome OnvifHead::start() {
   }
   const auto first = read();
   if (!first) return *first.fault();
+  if (share_stop_) return share_stop_(stop_request());
   return Accepted{};
 }
 

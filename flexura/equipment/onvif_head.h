@@ -31,8 +31,9 @@ class OnvifHead : public HeadPort {
 
   /// Asks the camera for its time, services, profiles, ranges and the head's position. Moves nothing.
   [[nodiscard]] CommandOutcome start();
-  /// Before every move, `take` gets a request that stops the head, with a new signature (Guard). The camera
-  /// refuses it when the signature is too old. If `take` returns a fault, the head is not moved.
+  /// At the start and before every move, `take` gets a request that stops the head, with a new signature
+  /// (Guard). The camera refuses it when the signature is too old. If `take` returns a fault, the head is not
+  /// moved.
   void share_stop(std::function<CommandOutcome(const std::string& request)> take) {
     share_stop_ = std::move(take);
   }

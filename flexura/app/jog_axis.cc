@@ -56,7 +56,7 @@ std::size_t motors_of(const Experiment& experiment) {
   return experiment.drive ? experiment.drive->tendon.size() : 0;
 }
 
-bool has_head(const CameraEquipment& camera) { return camera.visca || camera.v4l2_head; }
+bool has_head(const CameraEquipment& camera) { return camera.visca || camera.onvif || camera.v4l2_head; }
 
 std::optional<JogAxis> camera_axis(const Experiment& experiment, const std::string& name) {
   const std::size_t dot = name.rfind('.');

@@ -33,6 +33,8 @@ class DeviceAccess {
   /// @}
   /// Returns the system calls for a head of the kernel's video interface.
   [[nodiscard]] virtual std::shared_ptr<V4l2Calls> calls(const V4l2HeadConfig& config) = 0;
+  /// Returns whether drivers may open connections of their own, as ONVIF heads do.
+  [[nodiscard]] virtual bool allows_connections() const { return true; }
   /// Returns the guard that stops the devices when this program dies or hangs; null if nothing can move.
   [[nodiscard]] virtual Guard* guard() = 0;
 };

@@ -52,6 +52,7 @@ class DryDevices : public DeviceAccess {
   [[nodiscard]] Outcome<std::unique_ptr<Link>> open(const Cia402Config& config) override;
   [[nodiscard]] Outcome<std::unique_ptr<Link>> open(const ViscaBusConfig& config) override;
   [[nodiscard]] std::shared_ptr<V4l2Calls> calls(const V4l2HeadConfig& config) override;
+  [[nodiscard]] bool allows_connections() const override { return false; }
   [[nodiscard]] Guard* guard() override { return nullptr; }
 
   /// Returns what the simulated devices assume about the real ones, one sentence each.

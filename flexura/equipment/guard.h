@@ -21,6 +21,8 @@ struct StopMessages {
   std::vector<std::string> then;   ///< Sent `delay` s after the first.
 };
 
+struct GuardMessage;
+
 /// Stops devices if it is not told in time that the program works.
 class Watchdog {
  public:
@@ -40,15 +42,15 @@ class Watchdog {
 ///
 /// A second process holds copies of the devices' links. While the arm moves, this program must call beat()
 /// once a period. If it does not, or if it ends without notice (even by SIGKILL), the second process sends
-/// the stop messages over every link. It survives what ends this program alone, but not a loss of power, and
-/// not a kill of all processes of the machine or of a container.
+/// the stop messages over every link, or over new connections. It survives what ends this program alone, but
+/// not a loss of power, and not a kill of all processes of the machine or of a container.
 ///
 /// All functions may be called from several threads.
 class Guard : public Watchdog {
  public:
-  static constexpr std::size_t most_links = 16;     ///< Links that a guard can protect.
-  static constexpr std::size_t most_messages = 16;  ///< Stop messages of a link.
-  static constexpr std::size_t message_size = 64;   ///< Bytes of a stop message.
+  static constexpr std::size_t most_links = 16;       ///< Devices that a guard can protect.
+  static constexpr std::size_t most_messages = 16;    ///< Stop messages of a device.
+  static constexpr std::size_t messages_size = 4096;  ///< Bytes of all stop messages of a device.
 
   /// Starts the second process. `period`, s, > 0: the longest time between beats while the arm moves. Throws
   /// std::runtime_error if the system cannot start a process.
@@ -64,6 +66,13 @@ class Guard : public Watchdog {
   /// has no descriptor, there are too many messages or links, or a message is too long. Throws
   /// std::runtime_error if the second process does not answer.
   void protect(const Link& link, const StopMessages& stop);
+  /// Protects the device at a TCP address, from now on. The second process sends the first stop messages over
+  /// a new connection; there may be no later ones. Returns a number for renew(). Throws std::invalid_argument
+  /// like the other protect(), or if the address is not of TCP; std::runtime_error if the name of the host is
+  /// unknown or the second process does not answer.
+  std::size_t protect(const LinkAddress& address, const StopMessages& stop);
+  /// Replaces the stop messages of a device at a TCP address. Throws like protect().
+  void renew(std::size_t number, const StopMessages& stop);
 
   bool beat(bool is_moving) override;
 
@@ -74,10 +83,11 @@ class Guard : public Watchdog {
  private:
   struct Protected {
     int descriptor = -1;
-    std::array<std::array<char, message_size>, most_messages> messages{};
+    std::array<char, messages_size> text{};  // One message after the other.
     std::array<std::size_t, most_messages> sizes{};
     std::size_t count = 0;
   };
+  void send_new(const GuardMessage& message, int link);
 
   double period_;
   Descriptor socket_;

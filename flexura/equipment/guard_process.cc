@@ -20,7 +20,7 @@ double seconds_now() noexcept {
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
-// Gives the watch its time and its messages.
+// Gives the watch its time, its messages and its connections.
 class Process : public GuardWatch {
  public:
   Process(int socket, double period) noexcept : GuardWatch(period), socket_(socket) {}
@@ -29,21 +29,71 @@ class Process : public GuardWatch {
     while (!is_over()) {
       const double now = seconds_now();
       if (advance(now)) answer(GuardAnswer::stopped);
-      pollfd one{socket_, POLLIN, 0};
-      if (::poll(&one, 1, wait_ms(now)) > 0) take_message();
+      if (wait(wait_ms(now))) take_message();
     }
-    // Devices that must brake before the rest of the messages get their time.
-    while (due() != HUGE_VAL) {
+    // Devices that must brake before the rest of the messages get their time, and connections too.
+    while (due() != HUGE_VAL || next_timeout() != HUGE_VAL) {
       (void)advance(seconds_now());
-      (void)::poll(nullptr, 0, 1);
+      (void)wait(1);
     }
   }
 
  private:
+  // To the address of a device, while a stop is sent.
+  struct Connection {
+    int socket = -1;
+    double until = 0;  // When it is given up, s.
+    bool is_sent = false;
+    const GuardMessage* stop = nullptr;
+  };
+  static constexpr double most_connection = 2;  // s
+
+  // Waits at most `ms` for messages and connections; -1: for ever. Returns whether there is a message.
+  bool wait(int ms) noexcept {
+    std::array<pollfd, Guard::most_links + 1> all{};
+    all[0] = {is_over() ? -1 : socket_, POLLIN, 0};
+    for (std::size_t i = 0; i < connection_.size(); ++i)
+      all[i + 1] = {connection_[i].socket, static_cast<short>(connection_[i].is_sent ? POLLIN : POLLOUT), 0};
+    const bool is_ready = ::poll(all.data(), all.size(), ms) > 0;
+    const double now = seconds_now();
+    for (std::size_t i = 0; i < connection_.size(); ++i) {
+      Connection& one = connection_[i];
+      if (one.socket < 0) continue;
+      const int events = is_ready ? all[i + 1].revents : 0;
+      if (!one.is_sent && (events & POLLOUT) != 0) {
+        const char* text = one.stop->text.data();
+        for (std::size_t k = 0; k < one.stop->first; text += one.stop->sizes[k++])
+          send_stop(one.socket, text, one.stop->sizes[k]);
+        one.is_sent = true;
+      } else if (events != 0 || now > one.until) {
+        ::close(one.socket);
+        one.socket = -1;
+      }
+    }
+    return is_ready && all[0].revents != 0;
+  }
+
+  void send_to_address(std::size_t device, const GuardMessage& stop) noexcept override {
+    Connection& one = connection_[device];
+    if (one.socket >= 0) ::close(one.socket);
+    one = {::socket(stop.address.ss_family, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0),
+           seconds_now() + most_connection, false, &stop};
+    (void)::connect(one.socket, reinterpret_cast<const sockaddr*>(&stop.address), stop.address_size);
+  }
+
+  // Returns the time at which a connection is given up, s; HUGE_VAL: there is none.
+  [[nodiscard]] double next_timeout() const noexcept {
+    double next = HUGE_VAL;
+    for (const Connection& one : connection_)
+      if (one.socket >= 0) next = std::min(next, one.until);
+    return next;
+  }
+
   // Waits at most until something is due; -1: for ever.
   [[nodiscard]] int wait_ms(double now) const noexcept {
-    if (due() == HUGE_VAL) return -1;
-    return static_cast<int>(std::clamp(std::ceil(1000 * (due() - now)), 0.0, 60000.0));
+    const double next = std::min(due(), next_timeout());
+    if (next == HUGE_VAL) return -1;
+    return static_cast<int>(std::clamp(std::ceil(1000 * (next - now)), 0.0, 60000.0));
   }
 
   // The other side may be gone.
@@ -75,6 +125,7 @@ class Process : public GuardWatch {
   void send(int link, const char* bytes, std::size_t size) noexcept override { send_stop(link, bytes, size); }
 
   int socket_;
+  std::array<Connection, Guard::most_links> connection_{};  // By the device's number.
 };
 
 }  // namespace
@@ -101,7 +152,15 @@ void GuardWatch::heed(const GuardMessage& message, int link, double now) noexcep
   using Kind = GuardMessage::Kind;
   switch (message.kind) {
     case Kind::protect:
-      if (devices_ < device_.size() && link >= 0) device_[devices_++] = {link, message};
+      if (devices_ < device_.size() && (link >= 0 || message.address_size > 0))
+        device_[devices_++] = {link, message};
+      break;
+    case Kind::renew:
+      if (message.device < devices_) {
+        GuardMessage& own = device_[message.device].stop;
+        own.first = message.first, own.count = message.count;
+        own.sizes = message.sizes, own.text = message.text;
+      }
       break;
     case Kind::moving:
       is_moving_ = true, beat_ = now;
@@ -125,6 +184,10 @@ void GuardWatch::lose_program(double now) noexcept {
 
 void GuardWatch::stop(double now) noexcept {
   for (std::size_t i = 0; i < devices_; ++i) {
+    if (device_[i].stop.address_size > 0) {
+      send_to_address(i, device_[i].stop);
+      continue;
+    }
     send_part(i, 0, device_[i].stop.first);
     is_rest_due_[i] = device_[i].stop.count > device_[i].stop.first;
     has_rest_ = has_rest_ || is_rest_due_[i];
@@ -147,8 +210,10 @@ void GuardWatch::send_rest(double now) noexcept {
 }
 
 void GuardWatch::send_part(std::size_t i, std::size_t from, std::size_t to) noexcept {
-  for (std::size_t k = from; k < to; ++k)
-    send(device_[i].link, device_[i].stop.texts[k].data(), device_[i].stop.sizes[k]);
+  const GuardMessage& stop = device_[i].stop;
+  const char* text = stop.text.data();
+  for (std::size_t k = 0; k < to; text += stop.sizes[k++])
+    if (k >= from) send(device_[i].link, text, stop.sizes[k]);
 }
 
 void send_stop(int descriptor, const char* bytes, std::size_t size) noexcept {

@@ -1,8 +1,11 @@
 #pragma once
 
+#include <sys/socket.h>
+
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <string>
 
 #include "flexura/equipment/guard.h"
 
@@ -13,7 +16,8 @@ namespace flexura {
 struct GuardMessage {
   /// Kinds of messages.
   enum class Kind : std::uint8_t {
-    protect,  ///< Protect a device; carries its link.
+    protect,  ///< Protect a device; carries its link, or has its address.
+    renew,    ///< Replace the messages of device number `device`.
     moving,   ///< The next beat is due within a period.
     resting,  ///< No beat is due.
     stop,     ///< Stop all devices now.
@@ -23,9 +27,16 @@ struct GuardMessage {
   std::uint8_t first = 0;  ///< Number of messages that are sent at once.
   std::uint8_t count = 0;  ///< Number of all messages.
   double delay = 0;        ///< From the first messages to the others, s.
-  std::array<std::uint8_t, Guard::most_messages> sizes{};
-  std::array<std::array<char, Guard::message_size>, Guard::most_messages> texts{};
+  std::array<std::uint16_t, Guard::most_messages> sizes{};
+  std::array<char, Guard::messages_size> text{};  ///< One message after the other.
+  std::uint8_t device = 0;
+  socklen_t address_size = 0;  ///< 0: the device has a link.
+  sockaddr_storage address{};
 };
+
+/// Returns the message that protects a device with these stop messages. Throws std::invalid_argument, naming
+/// the device, if there are too many messages, they are too long, or their delay is invalid.
+[[nodiscard]] GuardMessage guard_message(const StopMessages& stop, const std::string& name);
 
 /// Answers of the guarding process.
 enum class GuardAnswer : char { ready = 'r', stopped = 's' };
@@ -55,6 +66,9 @@ class GuardWatch {
  protected:
   /// Sends bytes over a link at once.
   virtual void send(int link, const char* bytes, std::size_t size) noexcept = 0;
+  /// Begins to send the first messages of a device at an address, over a new connection. `device`: its
+  /// number.
+  virtual void send_to_address(std::size_t device, const GuardMessage& stop) noexcept = 0;
 
  private:
   struct Device {

@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <netinet/in.h>
 #include <signal.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
@@ -10,6 +11,7 @@
 #include <array>
 #include <limits>
 #include <stdexcept>
+#include <string>
 
 #include "flexura/equipment/wall_clock.h"
 
@@ -40,6 +42,8 @@ struct Line {
 };
 
 StopMessages brake_then_reset() { return {.first = {"brake;", "hold;"}, .delay = 0.02, .then = {"reset;"}}; }
+
+StopMessages brake() { return {.first = {"brake;"}, .delay = 0, .then = {}}; }
 
 // Runs `program` in a process of its own and returns its number.
 template <class Program>
@@ -150,16 +154,78 @@ TEST(Guard, DiscardsWhatASerialLineHasNotSent) {
   EXPECT_NE(heard.find('!'), std::string::npos);
 }
 
+// A device that takes its stop over a new connection.
+struct Listener {
+  Listener() : socket(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0)) {
+    sockaddr_in place{};
+    place.sin_family = AF_INET, place.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    socklen_t size = sizeof place;
+    if (::bind(socket.get(), reinterpret_cast<const sockaddr*>(&place), size) != 0 ||
+        ::listen(socket.get(), 4) != 0 ||
+        ::getsockname(socket.get(), reinterpret_cast<sockaddr*>(&place), &size) != 0)
+      throw std::runtime_error("no socket");
+    address = parse_link_address("tcp:127.0.0.1:" + std::to_string(ntohs(place.sin_port)));
+  }
+  // Returns what the next connection says until it is closed.
+  std::string heard() const {
+    const auto link = adopt_link(Descriptor(::accept(socket.get(), nullptr, nullptr)), "device");
+    std::string all;
+    for (;;) {
+      const auto part = link->read(guard_patience);
+      if (!part || part.value().empty()) return all;
+      all += part.value();
+    }
+  }
+  Descriptor socket;
+  LinkAddress address;
+};
+
+TEST(Guard, StopsADeviceAtAnAddressByItsNewestMessages) {
+  const Listener device;
+  Line line;  // Links are stopped too, however long a connection takes.
+  const pid_t program = started([&] {
+    Guard guard(1000);
+    const std::size_t number = guard.protect(device.address, {.first = {"old"}, .delay = 0, .then = {}});
+    guard.protect(*line.host, brake_then_reset());
+    guard.renew(number, {.first = {"new;", std::string(3000, 'x')}, .delay = 0, .then = {}});
+    (void)line.host->write("go;");
+    ::pause();
+  });
+  EXPECT_EQ(line.device->read(guard_patience).value(), "go;");
+  ::kill(program, SIGKILL);
+  ::waitpid(program, nullptr, 0);
+  EXPECT_EQ(device.heard(), "new;" + std::string(3000, 'x'));
+  EXPECT_EQ(line.all_heard(), "brake;hold;reset;");
+}
+
+TEST(Guard, EndsAlsoWhenADeviceAtAnAddressIsGone) {
+  Line line;
+  Guard guard(1000);
+  {
+    const Listener gone;
+    guard.protect(gone.address, brake());
+  }
+  guard.protect(*line.host, brake_then_reset());
+  guard.stop();
+  std::string heard;
+  while (heard.find("reset;") == std::string::npos) heard += line.device->read(guard_patience).value();
+}
+
 TEST(Guard, RefusesWhatItCannotDo) {
   EXPECT_THROW(Guard(0.0), std::invalid_argument);
   EXPECT_THROW(Guard(std::numeric_limits<double>::quiet_NaN()), std::invalid_argument);
   Guard guard(1);
   Line line;
-  EXPECT_THROW(guard.protect(*line.host, {.first = {std::string(65, 'x')}, .delay = 0, .then = {}}),
+  EXPECT_THROW(guard.protect(*line.host,
+                             {.first = {std::string(Guard::messages_size + 1, 'x')}, .delay = 0, .then = {}}),
                std::invalid_argument);
   EXPECT_THROW(
       guard.protect(*line.host, {.first = std::vector<std::string>(17, "x"), .delay = 0, .then = {}}),
       std::invalid_argument);
+  EXPECT_THROW(guard.protect(parse_link_address("udp:127.0.0.1:9"), brake()), std::invalid_argument);
+  EXPECT_THROW(guard.protect(parse_link_address("tcp:127.0.0.1:9"), brake_then_reset()),
+               std::invalid_argument);
+  EXPECT_THROW(guard.renew(0, brake()), std::invalid_argument);
   for (std::size_t i = 0; i < Guard::most_links; ++i) guard.protect(*line.host, brake_then_reset());
   EXPECT_THROW(guard.protect(*line.host, brake_then_reset()), std::invalid_argument);
 }

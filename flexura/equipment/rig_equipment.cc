@@ -30,6 +30,8 @@ const Table<CameraEquipment>& fields_of(const CameraEquipment*) {
                  {.meaning = "Pictures of a USB camera.", .default_text = "none"})
           .field("visca", &CameraEquipment::visca,
                  {.meaning = "Head with VISCA commands.", .default_text = "none"})
+          .field("onvif", &CameraEquipment::onvif,
+                 {.meaning = "Head of an ONVIF network camera.", .default_text = "none"})
           .field("v4l2_head", &CameraEquipment::v4l2_head,
                  {.meaning = "Pan, tilt and zoom of a USB camera.", .default_text = "none"})
           .check([](const CameraEquipment& config, Reader& reader) {
@@ -38,8 +40,10 @@ const Table<CameraEquipment>& fields_of(const CameraEquipment*) {
               reader.problem_at(
                   "",
                   fmt::format("{} sources of pictures: expected one of gstreamer, aravis, v4l2", sources));
-            if (config.visca && config.v4l2_head)
-              reader.problem_at("", "two heads: expected one of visca, v4l2_head, or none");
+            const int heads = (config.visca ? 1 : 0) + (config.onvif ? 1 : 0) + (config.v4l2_head ? 1 : 0);
+            if (heads > 1)
+              reader.problem_at(
+                  "", fmt::format("{} heads: expected one of visca, onvif, v4l2_head, or none", heads));
           });
   return table;
 }

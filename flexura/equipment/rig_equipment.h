@@ -10,6 +10,7 @@
 #include "flexura/equipment/cia402_config.h"
 #include "flexura/equipment/grbl_config.h"
 #include "flexura/equipment/gstreamer_camera.h"
+#include "flexura/equipment/onvif_config.h"
 #include "flexura/equipment/v4l2_camera.h"
 #include "flexura/equipment/v4l2_head.h"
 #include "flexura/equipment/visca_config.h"
@@ -23,6 +24,7 @@ struct CameraEquipment {
   std::optional<AravisConfig> aravis;        ///< Pictures of a GigE Vision or USB3 Vision camera.
   std::optional<V4l2Config> v4l2;            ///< Pictures of a camera of the kernel's video interface.
   std::optional<ViscaConfig> visca;          ///< Head with VISCA commands.
+  std::optional<OnvifConfig> onvif;          ///< Head of an ONVIF camera.
   std::optional<V4l2HeadConfig> v4l2_head;   ///< Head with the controls of a USB camera.
 };
 

@@ -1,11 +1,14 @@
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <fstream>
 #include <string>
 #include <vector>
 
 #include "flexura/base/problems.h"
 #include "flexura/equipment/gstreamer_camera.h"
+#include "flexura/equipment/onvif_server.h"
 #include "flexura/experiment/experiment.h"
 #include "flexura/experiment/run.h"
 #include "flexura/port/driven_arm.h"
@@ -47,6 +50,40 @@ TEST(Equipment, OfAFileMustFitItsRig) {
   std::string kinematic = good;
   kinematic.erase(kinematic.find("[drive]"), kinematic.find("[[camera]]") - kinematic.find("[drive]"));
   EXPECT_THAT(problems_of(kinematic), HasSubstr("the arm has no drive to run"));
+}
+
+TEST(Equipment, AnOnvifHeadOfAFileIsChecked) {
+  const std::string good = lab_file("/dev/ttyUSB0", 1, "onvif.link = \"tcp:camera:80\"\n");
+  EXPECT_EQ(problems_of(good), "");
+  EXPECT_THAT(problems_of(lab_file("/dev/ttyUSB0", 1, "onvif.link = \"udp:camera:80\"\n")),
+              HasSubstr("expected tcp:HOST:PORT"));
+  EXPECT_THAT(problems_of(good + "onvif.user = \"operator\"\n"),
+              HasSubstr("expected user and password_file"));
+  EXPECT_THAT(problems_of(good + "onvif.pan.limits = [1, -1]\n"), HasSubstr("the smaller position first"));
+  EXPECT_THAT(problems_of(good + "visca.bus.link = \"udp:camera:1259\"\n"),
+              HasSubstr("2 heads: expected one"));
+}
+
+TEST(Equipment, RunsWithAnOnvifHead) {
+  if (!has_gstreamer()) GTEST_SKIP() << "built without GStreamer";
+  Controller controller;
+  OnvifDevice camera;
+  camera.model().most_age = 300;
+  OnvifServer server(camera);
+  const TemporaryFolder folder;
+  const std::string password = folder.path() / "password";
+  std::ofstream(password) << "secret\n";
+  const std::string head = fmt::format(
+      "onvif.link = \"tcp:127.0.0.1:{}\"\nonvif.user = \"operator\"\nonvif.password_file = \"{}\"\n"
+      "onvif.reply_timeout = 30\n",
+      server.port(), password);
+  const Experiment experiment = parse_experiment(lab_file(controller.path, 0.5, head), "lab.toml");
+  NoProgress nobody;
+  const RunResult result = run_experiment(experiment, make_new_folder(folder.path() / "results"), nobody);
+  EXPECT_EQ(result.outcome, RunOutcome::done) << ::testing::PrintToString(result.reasons);
+  const auto lock = server.lock();
+  EXPECT_GE(camera.executed("GetStatus"), 1U);
+  EXPECT_GE(camera.executed("Stop"), 1U) << "at the end";
 }
 
 TEST(Equipment, MovesAsTheTaskSays) {

@@ -125,6 +125,14 @@ void ask_camera(DeviceReport& report, const CameraEquipment& equipment, const Ca
       "rate", fmt::format("{:.1f} Hz (file: {:g} Hz), {} lost", rate, camera.sensor.frame_rate, after.lost));
 }
 
+// Driver and address of a head; "" without one.
+std::pair<std::string, std::string> head_text(const CameraEquipment& equipment) {
+  if (equipment.visca) return {"VISCA", equipment.visca->bus.link};
+  if (equipment.onvif) return {"ONVIF", equipment.onvif->link};
+  if (equipment.v4l2_head) return {"USB head", equipment.v4l2_head->device};
+  return {};
+}
+
 }  // namespace
 
 std::vector<DeviceReport> report_devices(const Setup& setup, double camera_time, double patience) {
@@ -151,11 +159,10 @@ std::vector<DeviceReport> report_devices(const Setup& setup, double camera_time,
     DeviceReport& report = reports.emplace_back(
         DeviceReport{.name = camera.name + ": pictures", .driver = driver, .place = place});
     ask_device(report, [&] { ask_camera(report, *found, camera, devices.clock(), camera_time, patience); });
-    if (!found->visca && !found->v4l2_head) continue;
+    const auto [head_driver, head_place] = head_text(*found);
+    if (head_driver.empty()) continue;
     DeviceReport& head = reports.emplace_back(
-        DeviceReport{.name = camera.name + ": head",
-                     .driver = found->visca ? "VISCA" : "USB head",
-                     .place = found->visca ? found->visca->bus.link : found->v4l2_head->device});
+        DeviceReport{.name = camera.name + ": head", .driver = head_driver, .place = head_place});
     ask_device(head, [&] { ask_head(head, *found, devices, buses); });
   }
   return reports;

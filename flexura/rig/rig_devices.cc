@@ -6,10 +6,12 @@
 #include <cmath>
 #include <cstdint>
 #include <exception>
+#include <optional>
 #include <span>
 #include <stdexcept>
 #include <utility>
 
+#include "flexura/equipment/onvif_head.h"
 #include "flexura/equipment/visca_head.h"
 
 namespace flexura {
@@ -24,6 +26,27 @@ T value_or_throw(Outcome<T> outcome) {
 constexpr double between_reads = 0.005;  // s
 
 double sense_of_axis(const Axis& axis) { return axis.reversed ? -1 : 1; }
+
+// The guard stops a head by the newest request, whose signature is that of the last move.
+std::unique_ptr<HeadPort> open_onvif(const OnvifConfig& config, const ClockPort& clock, Guard* guard) {
+  if (guard == nullptr) return value_or_throw(open_onvif_head(config, clock));
+  const auto share =
+      [guard, address = parse_link_address(config.link),
+       number = std::optional<std::size_t>()](const std::string& request) mutable -> CommandOutcome {
+    const StopMessages stop{{request}, 0, {}};
+    try {
+      if (number) {
+        guard->renew(*number, stop);
+      } else {
+        number = guard->protect(address, stop);
+      }
+    } catch (const std::exception& error) {
+      return PortFault{FaultKind::refused, error.what()};
+    }
+    return Accepted{};
+  };
+  return value_or_throw(open_onvif_head(config, clock, share));
+}
 
 }  // namespace
 
@@ -154,6 +177,12 @@ std::unique_ptr<HeadPort> open_head(const CameraEquipment& equipment, DeviceAcce
   if (equipment.v4l2_head)
     return value_or_throw(V4l2Head::open(*equipment.v4l2_head, equipment.name, access.clock(),
                                          access.calls(*equipment.v4l2_head)));
+  if (equipment.onvif) {
+    if (!access.allows_connections())
+      throw std::runtime_error(fmt::format(
+          "the head of camera {}: a dry run cannot show the requests of an ONVIF head", equipment.name));
+    return open_onvif(*equipment.onvif, access.clock(), access.guard());
+  }
   if (!equipment.visca) return nullptr;
   const ViscaConfig& config = *equipment.visca;
   std::shared_ptr<ViscaBus>& bus = buses[config.bus.link];

@@ -99,18 +99,8 @@ class SimulatedWatchdog : public Watchdog {
   }
   /// Protects the device at a line.
   void protect(SimulatedLine& line, const StopMessages& stop) {
-    GuardMessage message;
-    message.kind = GuardMessage::Kind::protect;
-    message.delay = stop.delay, message.first = static_cast<std::uint8_t>(stop.first.size());
-    std::vector<std::string> all = stop.first;
-    all.insert(all.end(), stop.then.begin(), stop.then.end());
-    message.count = static_cast<std::uint8_t>(all.size());
-    for (std::size_t i = 0; i < all.size(); ++i) {
-      std::ranges::copy(all[i], message.texts[i].begin());
-      message.sizes[i] = static_cast<std::uint8_t>(all[i].size());
-    }
     lines_.push_back(&line);
-    watch_.heed(message, static_cast<int>(lines_.size()) - 1, time_.now());
+    watch_.heed(guard_message(stop, "line"), static_cast<int>(lines_.size()) - 1, time_.now());
   }
   /// Sends what is due. Needs the lock of the time.
   void step(double now) {

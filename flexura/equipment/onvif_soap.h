@@ -1,0 +1,123 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+// The SOAP messages of ONVIF that a pan/tilt/zoom head needs: requests, and what their answers say.
+// Elements are found by their names without prefixes. Times are in s since the start of 1970, UTC.
+namespace flexura {
+
+/// What a signed request carries instead of the password (WS-Security UsernameToken with a digest).
+struct OnvifToken {
+  std::string user;
+  std::string digest;   ///< onvif_digest(), base64.
+  std::string nonce;    ///< Used once, base64.
+  std::string created;  ///< onvif_time_text().
+};
+
+/// Returns the digest of a password: base64(SHA-1(nonce + created + password)). `nonce`: its bytes.
+[[nodiscard]] std::string onvif_digest(std::string_view nonce, std::string_view created,
+                                       std::string_view password);
+/// Returns a time in the format "2026-01-31T23:59:59.123Z". Times outside the years 1970 to 9999 are clamped.
+[[nodiscard]] std::string onvif_time_text(double time);
+/// Returns the time of such a text, also without a fraction; std::nullopt for another text.
+[[nodiscard]] std::optional<double> parse_onvif_time(std::string_view text);
+
+/// Positions of a head in one of its position spaces. The zoom is missing if there is none to move or none is
+/// reported.
+struct OnvifPlace {
+  double pan = 0, tilt = 0;
+  std::optional<double> zoom = {};
+};
+
+/// Position space of generic numbers, usually -1 to 1.
+inline constexpr std::string_view onvif_generic_space =
+    "http://www.onvif.org/ver10/tptz/PanTiltSpaces/PositionGenericSpace";
+/// Position space of degrees.
+inline constexpr std::string_view onvif_degree_space =
+    "http://www.onvif.org/ver10/tptz/PanTiltSpaces/SphericalPositionSpaceDegrees";
+/// Position space of the zoom, usually 0 to 1.
+inline constexpr std::string_view onvif_zoom_space =
+    "http://www.onvif.org/ver10/tptz/ZoomSpaces/PositionGenericSpace";
+
+/// Returns a SOAP message with this body, signed if there is a token.
+[[nodiscard]] std::string soap_message(std::string_view body, const std::optional<OnvifToken>& token = {});
+
+/// Return bodies of requests.
+[[nodiscard]] std::string onvif_ask_time();
+[[nodiscard]] std::string onvif_ask_services();
+[[nodiscard]] std::string onvif_ask_capabilities();
+[[nodiscard]] std::string onvif_ask_profiles();
+[[nodiscard]] std::string onvif_ask_nodes();
+[[nodiscard]] std::string onvif_ask_status(std::string_view profile);
+/// `space`: URI of the position space of pan and tilt. `speed`: share of the highest speed.
+[[nodiscard]] std::string onvif_move(std::string_view profile, const OnvifPlace& place,
+                                     std::string_view space, const std::optional<double>& speed);
+[[nodiscard]] std::string onvif_stop(std::string_view profile);
+
+/// Why a device refuses a request.
+struct SoapFault {
+  std::string code;    ///< Innermost code without its prefix, such as "NotAuthorized".
+  std::string reason;  ///< Text; may be empty.
+};
+/// Paths of a device's services, without the host; empty if it has none.
+struct OnvifServices {
+  std::string media, ptz;
+};
+/// A media profile, the owner of a head's motion.
+struct OnvifProfile {
+  std::string token;
+  bool has_head = false;
+  std::string node;  ///< Token of the head's node.
+};
+/// A range of positions.
+struct OnvifRange {
+  double min = 0, max = 0;
+};
+/// A position space. The zoom's has no `y`.
+struct OnvifSpace {
+  std::string uri;
+  OnvifRange x, y;
+};
+/// A head's abilities.
+struct OnvifNode {
+  std::string token;
+  std::vector<OnvifSpace> turn, zoom;  ///< Spaces of absolute moves.
+};
+/// A head's state.
+struct OnvifStatus {
+  std::optional<OnvifPlace> place;  ///< Missing if pan and tilt are not reported.
+  std::string turn_space;           ///< URI; empty if not reported.
+  std::optional<bool> is_moving;    ///< Missing if not reported.
+  std::string error;                ///< The head's own text; usually empty.
+};
+
+/// The following functions read SOAP messages. They return std::nullopt if the message is not the answer to
+/// the request. Numbers that are not finite do not count.
+[[nodiscard]] std::optional<SoapFault> parse_soap_fault(std::string_view soap);
+[[nodiscard]] std::optional<double> parse_onvif_clock(std::string_view soap);
+/// Reads the answer to onvif_ask_services() or onvif_ask_capabilities().
+[[nodiscard]] std::optional<OnvifServices> parse_onvif_services(std::string_view soap);
+[[nodiscard]] std::optional<std::vector<OnvifProfile>> parse_onvif_profiles(std::string_view soap);
+[[nodiscard]] std::optional<std::vector<OnvifNode>> parse_onvif_nodes(std::string_view soap);
+[[nodiscard]] std::optional<OnvifStatus> parse_onvif_status(std::string_view soap);
+/// Returns whether a message is an answer with this name, such as "StopResponse".
+[[nodiscard]] bool is_onvif_answer(std::string_view soap, std::string_view name);
+
+/// A request, as a device reads it.
+struct OnvifRequest {
+  std::string name;  ///< Such as "AbsoluteMove".
+  std::optional<OnvifToken> token;
+  std::string profile;
+  /// Of AbsoluteMove (positions) or ContinuousMove (shares of the highest speed).
+  std::optional<double> pan, tilt, zoom;
+  std::string turn_space, zoom_space;
+  std::optional<double> speed, timeout;  ///< Share of the highest speed; s.
+  bool stops_turn = true, stops_zoom = true;
+};
+/// Reads a request; std::nullopt if the message is none.
+[[nodiscard]] std::optional<OnvifRequest> parse_onvif_request(std::string_view soap);
+
+}  // namespace flexura

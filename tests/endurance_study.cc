@@ -159,7 +159,9 @@ bool judge(const std::vector<Hour>& hours) {
 
 void print_hours(const std::vector<Hour>& hours, double seconds) {
   fmt::print(
-      "| start, h | steps | steps with pictures | RMS error at rest, % (largest) | RMS error moving, % (largest) | limited | messages | heap, kB | resident memory, kB |\n| ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: "
+      "| start, h | steps | steps with pictures | RMS error at rest, % (largest) | RMS error moving, % "
+      "(largest) | limited | messages | heap, kB | resident memory, kB |\n| ---: | ---: | ---: | ---: | ---: "
+      "| ---: | ---: | ---: | ---: "
       "|\n");
   for (std::size_t i = 0; i < hours.size(); ++i) {
     const Hour& hour = hours[i];
@@ -215,7 +217,7 @@ int main(int count, char** arguments) {
   std::fflush(stdout);
   fmt::print("## {:.4g} h, 30 steps per second\n\n", hours / slices);
   is_fine &= endure(3600 * hours / slices, 1.0 / 30, seed);
-  fmt::print("{}\n",
-             is_fine ? "Errors and memory are steady, and there was no failure." : "**Errors or memory are not steady, or there was a failure.**");
+  fmt::print("{}\n", is_fine ? "Errors and memory are steady, and there was no failure."
+                             : "**Errors or memory are not steady, or there was a failure.**");
   return is_fine ? 0 : 1;
 }

@@ -134,7 +134,9 @@ int main(int count, char** arguments) {
   const auto seed = static_cast<std::uint64_t>(std::atoll(arguments[3]));
   constexpr double turn = 6.283185307179586;
   std::puts(
-      "| reachable target | targets | solved | solved, % | solved from the first starting state | wrong | outside limits | wrongly refused | largest position error / length | largest angle error, rad | iterations |");
+      "| reachable target | targets | solved | solved, % | solved from the first starting state | wrong | "
+      "outside limits | wrongly refused | largest position error / length | largest angle error, rad | "
+      "iterations |");
   std::puts("| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |");
   bool is_good = true;
   // With bends of more than half a turn per section, three sections have many local minima, and one
@@ -149,7 +151,8 @@ int main(int count, char** arguments) {
   is_good &= flexura::print_reachable("full pose, bends up to 360 degrees", TargetKind::pose, turn, most,
                                       targets / 20, seed);
   std::puts(
-      "\n| unreachable target | targets | refused with proof | error at least the constructed bound | beaten | beaten by at most |");
+      "\n| unreachable target | targets | refused with proof | error at least the constructed bound | beaten "
+      "| beaten by at most |");
   std::puts("| --- | ---: | ---: | ---: | ---: | ---: |");
   is_good &= flexura::print_unreachable("beyond the arm's length", 0, unreachable, seed);
   is_good &=

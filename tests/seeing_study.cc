@@ -136,7 +136,9 @@ Tally study_row(const std::string& name, const SeenArmConfig& options, double un
 
 int study(int cases, std::uint64_t seed) {
   std::printf(
-      "| pictures | arms found | crossing arms found | median, px | 90 %%, px | RMS, px | 99 %%, px | RMS with interpolated samples, px | RMS not corrected, px | interpolated, %% | ends, px | 68 %% / sigma | aim: RMS at most %.2f px |\n",
+      "| pictures | arms found | crossing arms found | median, px | 90 %%, px | RMS, px | 99 %%, px | RMS "
+      "with interpolated samples, px | RMS not corrected, px | interpolated, %% | ends, px | 68 %% / sigma | "
+      "aim: RMS at most %.2f px |\n",
       aimed_rms);
   std::printf("| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |\n");
   Tally banded;
@@ -157,7 +159,9 @@ int study(int cases, std::uint64_t seed) {
   study_row("noise 2, PSF 0.7, gamma 2.2, corrected", gamma, 2.2, false, cases, seed);
   study_row("noise 2, PSF 0.7, gamma 2.2, not corrected", gamma, 1, false, cases, seed);
   std::printf(
-      "\nWith noise 2 and PSF 0.7, %zu bands are visible. %zu bands were found, %zu of them false, and also %zu false spots. The distance of a band from the backbone's image at the band's middle has a median of %.3f px; 90 %% are within %.2f px, and %.2f %% are beyond 4 sigma.\n",
+      "\nWith noise 2 and PSF 0.7, %zu bands are visible. %zu bands were found, %zu of them false, and also "
+      "%zu false spots. The distance of a band from the backbone's image at the band's middle has a median "
+      "of %.3f px; 90 %% are within %.2f px, and %.2f %% are beyond 4 sigma.\n",
       banded.markers_shown, banded.markers, banded.false_markers, banded.spots, banded.marker.size(0.5),
       banded.marker.size(0.9), 100 * banded.marker_by_sigma.share_beyond(4));
   return 0;

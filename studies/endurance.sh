@@ -14,7 +14,7 @@ status=0
 {
   echo "# Endurance of the servo"
   echo
-  echo "In this study, one servo controls a simulated arm for a simulated day. The arm has three sections and a length of 1 m. Two cameras at a distance of 2.5 m have 320 x 240 px, f = 400 px, gray pictures, 60 ms delay, 2 ms exposure, photon noise and a noise of 1 of 255. The target alternates between two shapes, with 3 s at each and 2 s between. The servo has \`law = \"shape\"\`, \`ServoConfig::keeps_steps\` false (because a list of steps would grow), and otherwise defaults."
+  echo "In this study, one servo controls a simulated arm for a simulated day. The arm has three sections and a length of 1 m. Two cameras are at a distance of 2.5 m. They have 320 x 240 px, f = 400 px, gray pictures, 60 ms delay and 2 ms exposure. The noise is photon noise and 1 of 255. The target alternates between two shapes, with 3 s at each and 2 s between. The servo has \`law = \"shape\"\`, \`ServoConfig::keeps_steps\` false (because a list of steps would grow), and otherwise defaults."
   echo
   echo "The first part has one step per second for a day. It tests dependence on time: clocks, the tracker's model, camera errors, histories. The second part has 30 steps per second for 1/24 of a day, and tests dependence on the number of steps."
   echo

@@ -18,8 +18,8 @@ mkdir -p docs/studies build/studies
   echo
   echo "- Bends, mean bend rates, stretches and folding are computed at every sample."
   echo "- Clearances of the arm from itself and from obstacles are computed by points and descents at every hundredth sample. They are also computed at every sample between, if a contact that the check does not report is possible there."
-  echo "- For every section and obstacle, and every pair of sections, the samples are compared with the time spans that the check reports. Each reported worst value is compared with the samples, and with the state at its time (for pairs of sections to 1 % of the length, because points closer than this may be neighbours)."
-  echo "- The tolerances are 1e-4 s for the times of contacts, 2e-6 m for the depth of contacts, and 1e-4 for worst values (relative; m for depths) if the check states no uncertainty."
+  echo "- For every section and obstacle, and every pair of sections, the samples are compared with the time spans that the check reports. Each reported worst value is compared with the samples, and with the state at its time. For pairs of sections this comparison is accurate to 1 % of the length, because points closer than this may be neighbours."
+  echo "- The tolerances are 1e-4 s for the times of contacts and 2e-6 m for their depth. For worst values without a stated uncertainty the tolerance is 1e-4 (relative; m for depths)."
   echo
   echo '```console'
   echo "\$ ./dev study safety $motions $samples $seed"

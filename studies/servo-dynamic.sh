@@ -29,7 +29,8 @@ Each servo uses a new rig and starts at rest in the straight shape. It uses neit
 
 - **Target shapes** are equilibrium shapes of the true arm for random bends, uniformly distributed within +-1.2 rad in each direction. During the motion, a force of 0.5 N pushes the tip for 0.1 s. A servo has converged if the observed error is below 0.2 % of the length for 1 s. It fails after 5 s. The final error is the true RMS error over the arm and the last second, in % of the length, for all targets.
 - **Moving targets** last 6 s. The bends of each section are sums of two sine waves in each direction, of up to 0.5 rad and 2 rad/s each. The lag is the time shift for which the arm fits the target best. The error is the true RMS distance from the moving target, in % of the length. If a servo ends early, its last shape is used for the remaining time.
-- **Energy** is the work of the motors while they pull. **Violations** are steps with a section beyond its bend limit, commands above the largest bend rate, steps with a part of the arm outside a picture, and steps with contact.
+- **Energy** is the work of the motors while they pull.
+- **Violations** are commands above the largest bend rate, and steps with a section beyond its bend limit, a part of the arm outside a picture, or contact.
 - **Without swing in the model** means `model = "static"` instead of `model = "dynamic"` under `[arm]`.
 
 END

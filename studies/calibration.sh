@@ -17,20 +17,20 @@ trials_kept=build/studies/calibration/$(git rev-parse --short HEAD)
 picture=docs/images/calibration-study.svg
 mkdir -p docs/studies "$trials_kept"
 {
-  echo "# Calibrating random rigs"
+  echo "# Accuracy of camera calibration"
   echo
-  echo "Two cameras with heads in steps of 0.075 degrees view an arm of three sections and 1 m from 2.5 m, in front and beside. True values differ from the model, uniformly within:"
+  echo "The study calibrates simulated rigs with random errors of the model. Two cameras view an arm of three sections and 1 m from the front and from the side, at a distance of 2.5 m. Their heads have steps of 0.075 degrees. True values differ from the model by errors that are uniformly distributed within these bounds:"
   echo
-  echo "| number | bound |"
+  echo "| parameter | bound of the error |"
   echo "| --- | --- |"
-  echo "| mount: rotation; position | 10 degrees pan and tilt, 1 roll; 0.2 m per axis |"
+  echo "| rotation of the mount; position | 10 degrees in pan and tilt, 1 degree in roll; 0.2 m per axis |"
   echo "| focal length; ratio fy/fx; principal point; k1 | 10 %; 0.1 %; 10 px; 0.02 |"
-  echo "| zeros of head axes; tilt axis point and pupil; pupil shift | 1 degree; 3 mm per axis; 1 mm per unit of zoom ratio |"
-  echo "| section bends; lengths | 1 %; 0.5 % |"
+  echo "| zero offsets of the head; positions of tilt axis and pupil; pupil shift | 1 degree; 3 mm per axis; 1 mm per unit of zoom ratio |"
+  echo "| bends of sections; lengths | 1 %; 0.5 % |"
   echo
-  echo "All are estimated, with each pose's bends and each position's true angles ([the model](../calibration.md))."
+  echo "The calibration estimates all these errors, the bends in each pose, and the true angles of each head position ([model](../calibration.md#the-model))."
   echo
-  echo "Each camera takes twelve pictures: three from the start, eight chosen, one after the move. A picture has the visible ones of nine markers and forty centerline points, with normal noise; nothing is drawn."
+  echo "Each camera takes twelve pictures: three from its start, eight chosen by the planner, and one after the last motion. No pictures are rendered: a picture consists of the visible ones of nine markers and forty centerline points, with normally distributed noise."
   echo
   echo '```console'
   echo "\$ ./dev study calibration $trials $seed $drawn $printed $bundles"
@@ -38,12 +38,12 @@ mkdir -p docs/studies "$trials_kept"
   echo
   "$build/bin/calibration_study" "$trials" "$seed"
   echo
-  echo "## The five methods, with drawn pictures"
+  echo "## Comparison of methods with rendered pictures"
   echo
-  echo "Simulated rigs at their ports: 640 x 480 px, f = 800 px at ratio 1, noise 2 to 3 of 255, head steps 0.075 degrees. Starting errors are uniform within 10 degrees in pan and tilt, 1 in roll, 0.2 m per axis. Zooms are 1 to 2.5, principal points 1 px off, bends 1 %, lengths 0.5 %. Both bundles have principal points 10 px, head zeros 1 degree, tilt axes 3 mm per axis and k1 0.02 off. The cylinder (radius 0.1 m) is 1.5 m away, the arm 2.5 m. Results are simulated true values."
+  echo "Each method calibrates complete simulated rigs with rendered pictures: 640 x 480 px, f = 800 px at ratio 1, noise 2 to 3 of 255, head steps of 0.075 degrees. Starting errors are uniformly distributed within 10 degrees in pan and tilt, 1 degree in roll, and 0.2 m per axis. Zoom ratios are 1 to 2.5. Errors of the model are up to 1 px in principal points, 1 % in bends and 0.5 % in lengths. For both bundle methods the errors are larger: 10 px in principal points, 1 degree in zero offsets, 3 mm per axis in positions of tilt axes, and 0.02 in k1. The distance of the cylinder (radius 0.1 m) is 1.5 m, that of the arm 2.5 m. The results are the true values of the simulation."
   echo
   "$build/bin/paper_study" "$drawn" "$seed" "$printed" "$bundles" "$trials_kept" "$trials_kept/picture.svg"
-  echo "![Where the printed methods start and what comes of them; which share of the starts each method brings how near](../images/calibration-study.svg)"
+  echo "![Starting errors and results of the methods as printed in the paper, and the distribution of the final angle errors of all methods](../images/calibration-study.svg)"
 } >"$trials_kept/page.md"
 mv "$trials_kept/page.md" "$page"
 mv "$trials_kept/picture.svg" "$picture"

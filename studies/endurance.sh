@@ -12,14 +12,16 @@ cmake --build "$build" --target endurance_study
 mkdir -p docs/studies build/studies
 status=0
 {
-  echo "# A day of servoing"
+  echo "# Endurance of the servo"
   echo
-  echo "Two cameras, 2.5 m away, observe a simulated arm of three sections and 1 m. They have 320 x 240 px, f = 400 px, gray, 60 ms delay, 2 ms exposure, photon noise and 1 of 255. Two target shapes alternate: 3 s each, 2 s between; \`law = \"shape\"\`, otherwise defaults. One servo runs at the ports with \`ServoConfig::keeps_steps\` false, because a list of steps would grow. The first part has one step per second for a day and tests what depends on time: clocks, the tracker's model, camera errors, histories. The second tests what depends on steps: 30 per second for 1/24 of that time."
+  echo "In this study, one servo controls a simulated arm for a simulated day. The arm has three sections and a length of 1 m. Two cameras are at a distance of 2.5 m. They have 320 x 240 px, f = 400 px, gray pictures, 60 ms delay and 2 ms exposure. The noise is photon noise and 1 of 255. The target alternates between two shapes, with 3 s at each and 2 s between. The servo has \`law = \"shape\"\`, \`ServoConfig::keeps_steps\` false (because a list of steps would grow), and otherwise defaults."
   echo
-  echo "- Errors are true rms errors along the arm at picture time, % of its length: *at rest* in each rest's last second, and *on the way*. The large first error is one picture, when the straight arm still moves to the first shape."
-  echo "- *Held back*: steps changed by the limiter. *Messages*: of the servo, errors included."
-  echo "- *Level*: three conditions hold. Last-quarter errors are at most 10 % above the first quarter (without its first row). The heap grows by under 4 bytes a step (a stored number takes 8). Resident memory grows by at most 256 kB more than that."
-  echo "- Early growth: border filters, created on demand (\`BlurredSteps\`, 4 MB a camera in all; runs under ten hours are not level), and the servo's histories in the first minute."
+  echo "The first part has one step per second for a day. It tests dependence on time: clocks, the tracker's model, camera errors, histories. The second part has 30 steps per second for 1/24 of a day, and tests dependence on the number of steps."
+  echo
+  echo "- Errors are true RMS errors along the arm at the time of the pictures, in % of its length. *At rest* is the last second at each shape; *moving* is the time between. The first error is large because of one picture, in which the straight arm still moves to the first shape."
+  echo "- *Limited* is the number of steps that the limiter changed. *Messages* is the number of messages of the servo, including errors."
+  echo "- *Steady* means that a quantity does not grow. Errors in the last quarter may exceed those in the first quarter (without its first row) by at most 10 %. The heap may grow by under 4 bytes per step (a stored number has 8 bytes). Resident memory may grow by at most 256 kB more than that."
+  echo "- Memory grows at the beginning for two reasons. Border filters are computed on demand (\`BlurredSteps\`, 4 MB per camera in all), so runs under ten hours are not steady. The servo's histories fill in the first minute."
   echo
   echo '```console'
   echo "\$ ./dev study endurance $hours $seed"

@@ -82,7 +82,7 @@ words_of() {
       / scenes drawn, in / { drawn += $1; arm += $5; more += $12; refused += $(NF - 1) }
       END {
         if (drawn > 0)
-          printf "`%s`: %d scenes drawn, in %d the arm is seen and in %d something else; %d refused.\n",
+          printf "`%s`: %d scenes drawn, with the arm in %d and something else in %d; %d scenes refused.\n",
             target, drawn, arm, more, refused
       }
     ' "build/studies/fuzz/$1"/*/log
@@ -99,13 +99,13 @@ mkdir -p docs/studies build/studies
 {
   echo "# Fuzzing"
   echo
-  echo "Every reader of external text, pictures and protocols runs its corpus (\`tests/corpus/TARGET\`), seeded mutations and, where any bytes are valid, random bytes. AddressSanitizer and LeakSanitizer are on; UndefinedBehaviorSanitizer too, except for targets that draw or measure pictures (GCC $(g++ -dumpfullversion)). A crash, an escaped exception, or over half a minute is a failure."
+  echo "Each fuzz target tests one reader of external text, pictures or protocols. It runs its corpus (\`tests/corpus/TARGET\`) and mutations of it with a given seed. Targets for which any bytes are valid input also run random bytes. AddressSanitizer and LeakSanitizer are on. UndefinedBehaviorSanitizer is on too, except for targets that draw or measure pictures (GCC $(g++ -dumpfullversion)). A crash, an exception that is not caught, or a duration of over half a minute is a failure."
   echo
   echo '```console'
   echo "\$ ./dev study fuzz 1000000 1"
   echo '```'
   echo
-  echo "| target | corpus files | cases | random throughout | seed | failures | cases a second | commit |"
+  echo "| target | corpus files | cases | cases with only random bytes | seed | failures | cases per second | commit |"
   echo "| --- | ---: | ---: | ---: | ---: | ---: | ---: | --- |"
   for target in "${all[@]}"; do row_of "$target"; done
   echo
@@ -113,7 +113,7 @@ mkdir -p docs/studies build/studies
     words=$(words_of "$target")
     [ -z "$words" ] || printf '%s\n\n' "$words"
   done
-  echo "Speeds are of the sanitized build on a shared machine. Targets named after the command run alone; other rows stay."
+  echo "Speeds were measured with the sanitized build on a shared machine. If targets are named after the command, only these run, and the other rows of the table are kept."
 } >build/studies/fuzz.md
 mv build/studies/fuzz.md "$page"
 echo "wrote $page"

@@ -14,12 +14,12 @@ mkdir -p docs/studies build/studies
 {
   echo "# Inverse kinematics"
   echo
-  echo "Random arms of three spatial sections of 0.15 to 0.4 m with one bend limit per arm, 60 to 180 degrees. Targets are tips of random states, uniform over the disks of bends. Solved from nothing with default tolerances (1e-9 of the length; 1e-9 rad) and starts."
+  echo "The study solves inverse kinematics for random arms of three spatial sections of 0.15 to 0.4 m. Each arm has one bend limit between 60 and 180 degrees. Targets are tip poses of random states, whose bends are uniformly distributed over their disks. The solver has no initial shape, the default tolerances (1e-9 of the length; 1e-9 rad), and the default starting states."
   echo
-  echo "- *Wrong*: forward kinematics does not confirm the answer within twice the tolerance."
-  echo "- Out-of-reach targets are so by construction, without the tested code ([how](../../tests/support/inverse_targets.h))."
-  echo "- *Beaten*: a derivative-free search comes closer than the nearest pose by over 1e-6 of its distance. With direction: position over length and angle combined, over 1e-4, as the solver stops early in long valleys. That search uses 1,000 random poses and 400-step random descents from the answer and the five best."
-  echo "- The study fails if an answer is beaten or wrong, or under 99.9 % of reachable targets are found (bends up to 360 degrees: 99 %)."
+  echo "- *Wrong*: by forward kinematics, the error of the answer is over twice the tolerance."
+  echo "- Unreachable targets are constructed without the tested code ([method](../../tests/support/inverse_targets.h))."
+  echo "- *Beaten*: a derivative-free search finds a state whose distance from the target is smaller than that of the answer by over 1e-6 of the distance. For targets with a direction, position error over length and angle error are combined, and the limit is 1e-4, because the solver stops early in long valleys. The search uses 1,000 random poses, and random descents of 400 steps from the answer and the five best poses."
+  echo "- The study fails if an answer is beaten or wrong, or if under 99.9 % of the reachable targets are solved (for bends up to 360 degrees: 99 %)."
   echo
   echo '```console'
   echo "\$ ./dev study ik $targets $unreachable $seed"

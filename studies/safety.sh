@@ -12,14 +12,14 @@ if [ -z "${FLEXURA_STUDY_BUILD:-}" ]; then cmake --preset release; fi
 cmake --build "$build" --target safety_study
 mkdir -p docs/studies build/studies
 {
-  echo "# Checks of motions against dense samples"
+  echo "# Safety checks compared with dense samples"
   echo
-  echo "Random arms of one to six sections (every fourth planar), with random limits and radii, each with a random plane, ball, rod and box. Eight motions per arm: hold, minimum-jerk linear, trapezoid, sine, linear and smooth keyframes, a trapezoid with rates and accelerations per section, a move of the tip. Planar arms add two motions in cord angles: a move with a profile per section, and a sine. Each is checked ([safety](../safety.md)) and sampled at $samples even steps by independent code ([limits](../../tests/support/sampled_check.h), [clearances](../../tests/support/sampled_clearance.h)). Motions, section frames and point-obstacle distances are the simulator's own."
+  echo "The arms are random and have one to six sections (every fourth arm is planar), with random limits and radii. Around each arm are a random plane, ball, rod and box. Each arm performs eight motions: a hold, a move with the law \`linear\` (\`minimum_jerk\` in the last section), a trapezoid, a sine, linear keyframes, smooth keyframes, a trapezoid with rates and accelerations per section, and a move of the tip. Planar arms also perform two motions in cord angles: a move with a law per section, and a sine. Each motion is checked ([safety](../safety.md)) and sampled at $samples evenly spaced times by independent code ([limits](../../tests/support/sampled_check.h), [clearances](../../tests/support/sampled_clearance.h)). Only the motions, section frames and distances of points from obstacles are computed by the code of the simulator."
   echo
-  echo "- Bends, mean bend rates, stretches and folding: every step."
-  echo "- Clearances to itself and obstacles, by points and descents: every hundredth step, and every step between where a contact outside the reported ones is possible."
-  echo "- Every section and obstacle, and every pair of sections, is compared with its reported spans. Each worst value is compared with the samples and with the state at its time (pairs to 1 % of the length, where neighbours begin)."
-  echo "- Tolerances: 1e-4 s for contact times; contacts from 2e-6 m of depth; worst values may be 1e-4 short (relative; depths in m) where the check states no uncertainty."
+  echo "- Bends, mean bend rates, stretches and folding are computed at every sample."
+  echo "- Clearances of the arm from itself and from obstacles are computed by points and descents at every hundredth sample. They are also computed at every sample between, if a contact that the check does not report is possible there."
+  echo "- For every section and obstacle, and every pair of sections, the samples are compared with the time spans that the check reports. Each reported worst value is compared with the samples, and with the state at its time. For pairs of sections this comparison is accurate to 1 % of the length, because points closer than this may be neighbours."
+  echo "- The tolerances are 1e-4 s for the times of contacts and 2e-6 m for their depth. For worst values without a stated uncertainty the tolerance is 1e-4 (relative; m for depths)."
   echo
   echo '```console'
   echo "\$ ./dev study safety $motions $samples $seed"

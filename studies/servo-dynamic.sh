@@ -12,25 +12,26 @@ if [ -z "${FLEXURA_STUDY_BUILD:-}" ]; then cmake --preset release; fi
 cmake --build "$build" --target servo_dynamic_study
 mkdir -p docs/studies build/studies
 {
-  echo "# Steering an arm that swings"
+  echo "# Accuracy of servos for an arm that swings"
   echo
   cat <<'END'
-The true arm is three [elastic rods](../mechanics.md) of 1 m in all, upright before two cameras. Nine tendons with stepper motors pull it. The model of the arm is wrong.
+The true arm consists of three [elastic rods](../mechanics.md) with a total length of 1 m. It is upright in view of two cameras. Nine tendons with stepper motors pull it. The model of the arm differs from the true arm:
 
-| condition | truth | model |
+| part of the rig | true value | model |
 | --- | --- | --- |
 | rods | nickel-titanium wires of 1.7 mm radius with 0.15 kg/m, damping time 10 ms; 20 % stiffer or softer | 54 GPa |
 | payload at the tip | up to 40 g | none |
-| tendons | 15 mm from the backbone, 0.03 mm/N, friction coefficient 0.02 | 0.025 mm/N, no friction |
-| drives | 3200 microsteps a turn, spools of 10 mm, backlash 0.2 degrees, pretension 10 N | backlash 0.15 degrees |
-| cameras | 640 x 480 px, f = 800 px, 2.5 m away, gray, 30 Hz, 60 ms late, noise 2 of 255 | see the tables |
+| tendons | 15 mm from the backbone, compliance 0.03 mm/N, friction coefficient 0.02 | compliance 0.025 mm/N, no friction |
+| drives | 3200 microsteps per turn, spools of 10 mm radius, backlash 0.2 degrees, pretension 10 N | backlash 0.15 degrees |
+| cameras | 640 x 480 px, f = 800 px, distance 2.5 m, gray, 30 Hz, delay 60 ms, noise 2 of 255 | see the tables |
 
-Each servo has a rig of its own, starts from rest in the straight shape, and knows neither the truth nor the other servos. Targets and trajectories are dealt out to ten true arms.
+Each servo uses a new rig and starts at rest in the straight shape. It uses neither true values nor results of other servos. Targets and trajectories are distributed over ten true arms.
 
-- **Shapes** are those at rest of the true arm under bends drawn evenly from +-1.2 rad in each direction. On the way, 0.5 N push the tip for 0.1 s. A servo has converged when the observed error is below 0.2 % of the length for 1 s; it gives up after 5 s. "Left" is the true error, root mean square over arm and last second, % of the length, of all targets.
-- **Moving shapes** last 6 s: two sine waves in each direction of each section, up to 0.5 rad and 2 rad/s each. "Lag" is the shift of time with which the arm follows best. "Off" is the true distance from the moving target. Where a servo ends early, the arm counts as it was then.
-- **Energy** is the work of the pulling motors. **Violations** are steps with a section beyond its bend limit, commands faster than the bend rate, steps with a part of the arm outside a picture, and steps with a contact.
-- "Without swing in the model": `model = "static"` instead of `"dynamic"` under `[arm]`.
+- **Target shapes** are equilibrium shapes of the true arm for random bends, uniformly distributed within +-1.2 rad in each direction. During the motion, a force of 0.5 N pushes the tip for 0.1 s. A servo has converged if the observed error is below 0.2 % of the length for 1 s. It fails after 5 s. The final error is the true RMS error over the arm and the last second, in % of the length, for all targets.
+- **Moving targets** last 6 s. The bends of each section are sums of two sine waves in each direction, of up to 0.5 rad and 2 rad/s each. The lag is the time shift for which the arm fits the target best. The error is the true RMS distance from the moving target, in % of the length. If a servo ends early, its last shape is used for the remaining time.
+- **Energy** is the work of the motors while they pull.
+- **Violations** are commands above the largest bend rate, and steps with a section beyond its bend limit, a part of the arm outside a picture, or contact.
+- **Without swing in the model** means `model = "static"` instead of `model = "dynamic"` under `[arm]`.
 
 END
   echo '```console'

@@ -13,22 +13,20 @@ if [ -z "${FLEXURA_STUDY_BUILD:-}" ]; then cmake --preset release; fi
 cmake --build "$build" --target servo_study
 mkdir -p docs/studies build/studies
 {
-  echo "# Steering to random shapes"
+  echo "# Accuracy of servos for random shapes"
   echo
   cat <<'END'
-A simulated arm of three sections and 1 m (at most 120 degrees and 90 degrees a second a section) before two cameras.
+In this study, servos move a simulated arm in view of two cameras to random shapes. The arm has three sections and a length of 1 m. Each section bends by at most 120 degrees, at a rate of at most 90 degrees per second.
 
-| condition | value |
-| --- | --- |
-| cameras | 640 x 480 px, f = 800 px, 2.5 m away, gray, 30 Hz, 60 ms late, 2 ms exposure, noise 2 to 3 of 255 |
-| "with bands" | colour pictures, twelve bands, which also calibrate the rig |
-| targets | from straight to bends drawn evenly from +-1.2 rad in each direction, the same for each law; `moments` begins within 0.15 rad of each bend; four targets a rig |
-| done | observed error below 0.2 % of the length for 1 s; given up after 8 s |
-| left | true error at the end, % of the length; all figures are of converged targets |
-| floor | true error at the end if the target images are exact ones of the true cameras and the servo uses the nominal cameras; without and with the servo's camera prior |
-| rigs before `bundle` | off by up to 3 degrees in pan and tilt, 0.3 in roll, 6 cm along each axis; zoom 1 to 1.45 |
+- **Cameras:** 640 x 480 px, f = 800 px, distance 2.5 m, gray, 30 Hz, delay 60 ms, exposure 2 ms, noise 2 to 3 of 255. For "with bands" the pictures are in colour, and the arm has twelve bands, which are also used by the calibration.
+- **Targets:** random shapes with bends uniformly distributed within +-1.2 rad in each direction, with four targets per rig. All laws have equal targets. The arm starts straight; for `moments` it starts within 0.15 rad of each target bend.
+- **Converged:** the observed error is below 0.2 % of the length for 1 s. A servo fails after 8 s.
+- **Final errors** are true errors at the end, in % of the length. They and all other values are for converged targets only.
+- **Distance to a limit** is the smallest distance of a bend from its limit during the motion, as a fraction of the limit.
+- **Error with exact target pictures** is the final true error if the target pictures are exact pictures of the true cameras and the servo uses the nominal cameras. One column is without, the other with the servo's camera prior.
+- **Starting errors of the calibration `bundle`:** up to 3 degrees in pan and tilt, 0.3 degrees in roll, and 6 cm along each axis, at zoom ratios of 1 to 1.45.
 
-Required: all targets, within 2 % after 2 s, 0.1 % left (rms). Other systems (other arms and cameras) report 1 mm at rest, 1.6 % of the picture's size, 2 to 2.6 % of the length at the tip.
+All targets must be reached, with an error below 2 % of the length after 2 s and a final RMS error of 0.1 %. For comparison, publications on other arms and cameras report errors of 1 mm at rest, 1.6 % of the picture's size, or 2 to 2.6 % of the length at the tip.
 
 END
   echo '```console'
@@ -37,15 +35,16 @@ END
   echo
   for part in calibrated wrong recorded; do "$build/bin/servo_study" "$targets" "$seed" "$(nproc)" "$part"; done
   "$build/bin/servo_study" "$turned" "$seed" "$(nproc)" turned
-  echo "In the next tables the true arm is three [elastic rods](../mechanics.md): steel wires of 2 mm radius that"
-  echo "carry 0.2 kg a metre, pulled by nine tendons."
+  echo "In the next tables the true arm consists of three [elastic rods](../mechanics.md): steel wires of 2 mm radius with a load"
+  echo "of 0.2 kg per metre, pulled by nine tendons."
   echo
   "$build/bin/servo_study" "$sagging" "$seed" "$(nproc)" sagging
-  echo "## The same targets without pictures"
+  echo "## Control laws without pictures"
   echo
-  echo "Here laws get the exact shape of an ideal arm, two frames late. Derivatives are those of the whole way"
-  echo "([eq. 20a](../control.md#laws-of-images)) or at the current shape. \"With noise\": axes 0.1 px aside (standard"
-  echo "deviation, at each of 120 places, constant along the way)."
+  echo "In this table the laws receive the exact shape of an ideal arm, with a delay of two frames. The targets are those"
+  echo "of the first table. Derivatives are half-way to the target ([eq. 20a](../control.md#laws-of-images)) or at the"
+  echo "current shape. \"With noise\" adds errors to the centerline at 120 points, with a standard deviation of 0.1 px and"
+  echo "constant during the motion."
   echo
   "$build/bin/servo_study" 200 "$seed" 1 exact
 } >build/studies/servo.md

@@ -166,8 +166,10 @@ void print(const std::string& title, const std::vector<Outcome>& all) {
     if (one.is_found) found.push_back(one);
   int first = 0;
   for (const Outcome& one : found) first += one.starts == 1 ? 1 : 0;
-  fmt::print("## {}\n\n{} of {} converged with {} pictures a camera, {} of them from the first start.\n\n",
-             title, found.size(), all.size(), pictures, first);
+  fmt::print(
+      "## {}\n\n{} of {} calibrations converged with {} pictures per camera, {} of them from the first "
+      "initial values.\n\n",
+      title, found.size(), all.size(), pictures, first);
   if (found.empty()) return;
   const auto of_found = [&](const std::function<double(const Outcome&)>& what) {
     std::vector<double> values;
@@ -181,26 +183,27 @@ void print(const std::string& title, const std::vector<Outcome>& all) {
   };
   row("angle between the axes: error, deg", degree, 4,
       [](const Outcome& o) { return o.figures.angle.error; });
-  row("angle between the axes: claimed sigma, deg", degree, 4,
+  row("angle between the axes: estimated standard deviation, deg", degree, 4,
       [](const Outcome& o) { return o.figures.angle.sigma; });
-  row("angle between the axes: error over sigma", 1, 2,
+  row("angle between the axes: error / standard deviation", 1, 2,
       [](const Outcome& o) { return o.figures.angle.error / o.figures.angle.sigma; });
   for (const std::size_t i : {std::size_t{0}, std::size_t{1}}) {
-    const std::string name = i == 0 ? "front" : "side";
-    row(name + ": focal length error, %", 0.01, 3,
-        [i](const Outcome& o) { return o.figures.focal[i].error; });
-    row(name + ": focal length claimed sigma, %", 0.01, 3,
+    const std::string name = i == 0 ? "focal length of the front camera" : "focal length of the side camera";
+    row(name + ": error, %", 0.01, 3, [i](const Outcome& o) { return o.figures.focal[i].error; });
+    row(name + ": estimated standard deviation, %", 0.01, 3,
         [i](const Outcome& o) { return o.figures.focal[i].sigma; });
-    row(name + ": focal length error over sigma", 1, 2,
+    row(name + ": error / standard deviation", 1, 2,
         [i](const Outcome& o) { return o.figures.focal[i].error / o.figures.focal[i].sigma; });
   }
-  row("zoom ratio: error, %", 0.01, 3, [](const Outcome& o) { return o.figures.zoom_ratio.error; });
-  row("zoom ratio: error over sigma", 1, 2,
+  row("ratio of both zooms: error, %", 0.01, 3, [](const Outcome& o) { return o.figures.zoom_ratio.error; });
+  row("ratio of both zooms: error / standard deviation", 1, 2,
       [](const Outcome& o) { return o.figures.zoom_ratio.error / o.figures.zoom_ratio.sigma; });
-  row("aim at the arm: error, mm", 1e-3, 3, [](const Outcome& o) { return o.figures.aim; });
-  row("residuals over noise", 1, 4, [](const Outcome& o) { return o.rms; });
-  row("true axes, from 90 deg, deg", degree, 4, [](const Outcome& o) { return o.off_square; });
-  row("true zoom ratio: deviation from 1, %", 0.01, 3, [](const Outcome& o) { return o.zoom_off; });
+  row("distance of the axes from the arm's middle: error, mm", 1e-3, 3,
+      [](const Outcome& o) { return o.figures.aim; });
+  row("RMS residual / noise", 1, 4, [](const Outcome& o) { return o.rms; });
+  row("deviation of the true axes from 90 deg, deg", degree, 4,
+      [](const Outcome& o) { return o.off_square; });
+  row("deviation of the true zoom ratio from 1, %", 0.01, 3, [](const Outcome& o) { return o.zoom_off; });
   fmt::print("\n");
 }
 
@@ -215,17 +218,17 @@ void print_aims(const std::string& kind, bool are_heads_exact, const std::vector
   const auto focal = [](const Outcome& one) {
     return std::max(std::abs(one.figures.focal[0].error), std::abs(one.figures.focal[1].error));
   };
-  row("the axes' angle known within 0.01 deg", 0.01 * degree, degree, all,
+  row("error of the angle between the axes within 0.01 deg", 0.01 * degree, degree, all,
       [](const Outcome& one) { return one.figures.angle.error; });
-  row("focal lengths known within 0.3 %", 0.003, 0.01, all, focal);
+  row("errors of focal lengths within 0.3 %", 0.003, 0.01, all, focal);
   if (are_heads_exact) {
     std::vector<Outcome> turned = all;
     std::erase_if(turned, [](const Outcome& one) { return one.turned < 10 * degree; });
-    row("focal lengths known within 0.05 %, where both heads turned 10 deg or more", 0.0005, 0.01, turned,
-        focal);
+    row("errors of focal lengths within 0.05 %, if both heads rotated by 10 deg or more", 0.0005, 0.01,
+        turned, focal);
   }
-  row("residuals at most 1.05 of the noise", 1.05, 1, all, [](const Outcome& one) { return one.rms; });
-  row("true axes within 0.0375 deg of 90", 0.0375 * degree, degree, all,
+  row("RMS residual at most 1.05 of the noise", 1.05, 1, all, [](const Outcome& one) { return one.rms; });
+  row("true axes within 0.0375 deg of 90 deg", 0.0375 * degree, degree, all,
       [](const Outcome& one) { return one.off_square; });
 }
 
@@ -233,10 +236,12 @@ void print_aims(const std::string& kind, bool are_heads_exact, const std::vector
 // arm is inside it.
 void print_range(std::size_t trials, std::uint64_t seed) {
   fmt::print(
-      "## How rough guesses may be\n\nA fixed plan of {} pictures a camera, aimed by the guess alone. The "
-      "guess is wrong by this many times the rough guesses (10 deg, 20 % of the distance, 10 % of the focal "
-      "length, 10 px). Wrong answers: found, but an angle between the axes more than five sigmas off.\n\n"
-      "| times | found | from the first start | refused | wrong |\n| ---: | ---: | ---: | ---: | ---: |\n",
+      "## Required accuracy of the initial guess\n\nHere each camera takes {} pictures by a fixed plan that "
+      "depends on the initial guess alone. The errors of the guess are the given factor times 10 deg, 20 % "
+      "of the distance, 10 % of the focal length and 10 px. A result is wrong if the error of the angle "
+      "between the axes exceeds five standard deviations.\n\n"
+      "| factor | converged | from the first initial values | failure reported | wrong |\n| ---: | ---: | "
+      "---: | ---: | ---: |\n",
       pictures);
   for (const double times : {1.0, 1.5, 2.0, 3.0}) {
     RigTrialConfig config;
@@ -270,11 +275,11 @@ void print_heads(std::uint64_t seed) {
   for (int i = 0; i < draws; ++i) off.push_back(random.uniform(-half, half) - random.uniform(-half, half));
   const auto within = std::ranges::count_if(off, [](double one) { return std::abs(one) <= half; });
   fmt::print(
-      "## The bound of head resolution\n\nTwo pan angles are unknown within half a step, everything else is "
-      "known. The axes then end within half a step of 90 degrees in {:.1f} % of {} cases. This bounds a "
-      "single move decided beforehand.\n\n{}{}\n",
+      "## Limit due to the resolution of the heads\n\nSuppose that two pan angles are unknown within half a "
+      "step, and everything else is known. After one motion, the angle between the axes is within half a "
+      "step of 90 degrees in {:.1f} % of {} cases. No method with one final motion can be better.\n\n{}{}\n",
       100.0 * static_cast<double>(within) / draws, draws, spread_head,
-      spread_row("true axes, from 90 deg, deg", off, degree, 4));
+      spread_row("deviation of the true axes from 90 deg, deg", off, degree, 4));
 }
 
 }  // namespace
@@ -292,7 +297,7 @@ int main(int argc, char** argv) {
     double noise;
     bool is_alike;
   };
-  const std::string alike = ", bend errors known to be common";
+  const std::string alike = ", bend errors equal in all poses";
   const std::array kinds = {Kind{"Heads within half a step, noise 0.2 px", false, 0.2, false},
                             Kind{"Heads within half a step, noise 0.2 px" + alike, false, 0.2, true},
                             Kind{"Exact heads, noise 0.2 px", true, 0.2, false},

@@ -127,8 +127,8 @@ bool is_error_level(const char* what, const std::vector<Hour>& hours, Of of) {
   constexpr double tenth = 1.1;
   const double first = quarter(hours, false, of), last = quarter(hours, true, of);
   const bool is_level = last <= tenth * first;
-  fmt::print("- {}: {:.4f} % in the first quarter, {:.4f} % in the last, {:+.1e} a row: {}\n", what, first,
-             last, slope(hours, of), is_level ? "level" : "**not level**");
+  fmt::print("- {}: {:.4f} % in the first quarter, {:.4f} % in the last, {:+.1e} per row: {}\n", what, first,
+             last, slope(hours, of), is_level ? "steady" : "**not steady**");
   return is_level;
 }
 
@@ -143,15 +143,15 @@ bool is_memory_level(const char* what, const std::vector<Hour>& hours, double sl
   for (std::size_t i = from + 1; i < slices; ++i) steps += static_cast<double>(hours[i].steps);
   const double grown = of(hours.back()) - of(hours[from]);
   const bool is_level = grown <= most * steps + slack;
-  fmt::print("- {}: {:+.1f} kB in the last quarter, {:.2f} bytes a step: {}\n", what, grown / 1024,
-             grown / std::max(1.0, steps), is_level ? "level" : "**not level**");
+  fmt::print("- {}: {:+.1f} kB in the last quarter, {:.2f} bytes per step: {}\n", what, grown / 1024,
+             grown / std::max(1.0, steps), is_level ? "steady" : "**not steady**");
   return is_level;
 }
 
 bool judge(const std::vector<Hour>& hours) {
   constexpr double pages = 256.0 * 1024;
   bool is_fine = is_error_level("error at rest", hours, [](const Hour& h) { return 100 * h.rest_rms(); });
-  is_fine &= is_error_level("error on the way", hours, [](const Hour& h) { return 100 * h.way_rms(); });
+  is_fine &= is_error_level("error moving", hours, [](const Hour& h) { return 100 * h.way_rms(); });
   is_fine &= is_memory_level("heap in use", hours, 0, [](const Hour& h) { return h.heap; });
   is_fine &= is_memory_level("resident memory", hours, pages, [](const Hour& h) { return h.resident; });
   return is_fine;
@@ -159,8 +159,9 @@ bool judge(const std::vector<Hour>& hours) {
 
 void print_hours(const std::vector<Hour>& hours, double seconds) {
   fmt::print(
-      "| from, h | steps | with pictures | at rest, rms, % (most) | on the way, rms, % (most) | held back | "
-      "messages | heap, kB | resident, kB |\n| ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: "
+      "| start, h | steps | steps with pictures | RMS error at rest, % (largest) | RMS error moving, % "
+      "(largest) | limited | messages | heap, kB | resident memory, kB |\n| ---: | ---: | ---: | ---: | ---: "
+      "| ---: | ---: | ---: | ---: "
       "|\n");
   for (std::size_t i = 0; i < hours.size(); ++i) {
     const Hour& hour = hours[i];
@@ -191,7 +192,7 @@ bool endure(double seconds, double step, std::uint64_t seed) {
   const RigModel model = bench.nominal();
   const ServoResult result = servo_in_session(bench.ports(), model, config, book);
   print_hours(book.hours, seconds);
-  fmt::print("- ended: {}; steps missed: {}; fault: {}; steps kept: {}\n",
+  fmt::print("- end: {}; skipped steps: {}; fault: {}; stored steps: {}\n",
              result.is_done ? "done" : result.reason, result.missed_steps,
              result.fault ? result.fault->reason : "none", result.steps.size());
   const bool is_level_all = judge(book.hours);
@@ -210,13 +211,13 @@ int main(int count, char** arguments) {
     std::fprintf(stderr, "endurance_study: hours: expected a number above 0\n");
     return 2;
   }
-  fmt::print("## {:.4g} h, a step and two pictures each second\n\n", hours);
+  fmt::print("## {:.4g} h, one step per second\n\n", hours);
   std::fflush(stdout);
   bool is_fine = endure(3600 * hours, 1, seed);
   std::fflush(stdout);
-  fmt::print("## {:.4g} h, 30 a second\n\n", hours / slices);
+  fmt::print("## {:.4g} h, 30 steps per second\n\n", hours / slices);
   is_fine &= endure(3600 * hours / slices, 1.0 / 30, seed);
-  fmt::print("{}\n",
-             is_fine ? "Nothing drifted, grew or went wrong." : "**Something drifted, grew or went wrong.**");
+  fmt::print("{}\n", is_fine ? "Errors and memory are steady, and there was no failure."
+                             : "**Errors or memory are not steady, or there was a failure.**");
   return is_fine ? 0 : 1;
 }

@@ -134,8 +134,9 @@ int main(int count, char** arguments) {
   const auto seed = static_cast<std::uint64_t>(std::atoll(arguments[3]));
   constexpr double turn = 6.283185307179586;
   std::puts(
-      "| target | asked | found | rate | first start | wrong | outside limits | wrongly refused | worst "
-      "position / length | worst angle, rad | iterations |");
+      "| reachable target | targets | solved | solved, % | solved from the first starting state | wrong | "
+      "outside limits | wrongly refused | largest position error / length | largest angle error, rad | "
+      "iterations |");
   std::puts("| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |");
   bool is_good = true;
   // With bends of more than half a turn per section, three sections have many local minima, and one
@@ -150,13 +151,13 @@ int main(int count, char** arguments) {
   is_good &= flexura::print_reachable("full pose, bends up to 360 degrees", TargetKind::pose, turn, most,
                                       targets / 20, seed);
   std::puts(
-      "\n| out of reach | asked | refused with proof | error at least the constructed bound | nearest pose "
-      "beaten | by at most |");
+      "\n| unreachable target | targets | refused with proof | error at least the constructed bound | beaten "
+      "| beaten by at most |");
   std::puts("| --- | ---: | ---: | ---: | ---: | ---: |");
   is_good &= flexura::print_unreachable("beyond the arm's length", 0, unreachable, seed);
   is_good &=
-      flexura::print_unreachable("behind an arm that turns less than 90 degrees", 1, unreachable, seed);
-  is_good &= flexura::print_unreachable("too near to the base", 2, unreachable, seed);
-  is_good &= flexura::print_unreachable("pointing too far round", 3, unreachable, seed);
+      flexura::print_unreachable("behind an arm that bends less than 90 degrees", 1, unreachable, seed);
+  is_good &= flexura::print_unreachable("too close to the base", 2, unreachable, seed);
+  is_good &= flexura::print_unreachable("direction beyond the largest total bend", 3, unreachable, seed);
   return is_good ? 0 : 1;
 }

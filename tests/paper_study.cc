@@ -87,7 +87,7 @@ void print_failures(const std::string& method, const std::vector<CalibrationTria
   for (const CalibrationTrial& one : trials)
     if (!one.is_done) ++kinds[one.reason];
   if (kinds.empty()) return;
-  fmt::print("`{}` stopped:", method);
+  fmt::print("Reasons of failures of `{}`:", method);
   const char* before = " ";
   for (const auto& [kind, count] : kinds) fmt::print("{}{} x \"{}\"", before, count, kind), before = ", ";
   fmt::print(".\n\n");
@@ -95,8 +95,9 @@ void print_failures(const std::string& method, const std::vector<CalibrationTria
 
 void print_head() {
   fmt::print(
-      "| method | done | within 0.1 deg | pictures a camera, median | axes from 90 deg, median | 95 % | "
-      "largest | aim, mm, median | 95 % | zoom ratio from 1, %, 95 % |\n"
+      "| method | done | axes within 0.1 deg of 90 deg | pictures per camera, median | deviation of axes "
+      "from 90 deg, median, deg | 95 %, deg | largest, deg | distance of axes from the target, median, mm | "
+      "95 %, mm | deviation of zoom ratio from 1, 95 %, % |\n"
       "| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |\n");
 }
 
@@ -115,7 +116,7 @@ double larger(const std::array<double, 2>& values) {
 }
 
 void print_bundle(const std::string& method, const std::vector<CalibrationTrial>& trials) {
-  fmt::print("Results of `{}` against true values:\n\n", method);
+  fmt::print("Errors of `{}` relative to true values:\n\n", method);
   fmt::print("{}", spread_head);
   const auto row = [&](const std::string& name, double unit, int digits, const Number& number) {
     fmt::print("{}", spread_row(name, of_done(trials, number), unit, digits));
@@ -123,16 +124,16 @@ void print_bundle(const std::string& method, const std::vector<CalibrationTrial>
   const auto rows = [&](const std::string& name, const std::string& in, double unit, int digits,
                         const std::function<RigFigure(const BundleFigures&)>& figure) {
     row(name + ": error, " + in, unit, digits, [&](const auto& one) { return figure(one.bundle).error; });
-    row(name + ": claimed sigma, " + in, unit, digits,
+    row(name + ": estimated standard deviation, " + in, unit, digits,
         [&](const auto& one) { return figure(one.bundle).sigma; });
-    row(name + ": error over sigma", 1, 2,
+    row(name + ": error / standard deviation", 1, 2,
         [&](const auto& one) { return figure(one.bundle).error / figure(one.bundle).sigma; });
   };
   rows("angle between the axes", "deg", degree, 4, [](const auto& is) { return is.angle; });
-  rows("front: focal length", "%", 0.01, 3, [](const auto& is) { return is.focal[0]; });
-  rows("side: focal length", "%", 0.01, 3, [](const auto& is) { return is.focal[1]; });
-  row("residuals over claimed sigma", 1, 4, [](const auto& one) { return one.bundle.rms; });
-  row("true axes, from 90 deg, deg", degree, 4, [](const auto& one) { return one.angle; });
+  rows("focal length of the front camera", "%", 0.01, 3, [](const auto& is) { return is.focal[0]; });
+  rows("focal length of the side camera", "%", 0.01, 3, [](const auto& is) { return is.focal[1]; });
+  row("RMS residual / assumed standard deviation", 1, 4, [](const auto& one) { return one.bundle.rms; });
+  row("deviation of the true axes from 90 deg, deg", degree, 4, [](const auto& one) { return one.angle; });
   fmt::print("\n");
 }
 
@@ -145,19 +146,19 @@ void print_aims(const std::string& method, const std::vector<CalibrationTrial>& 
   const auto angle = [](const CalibrationTrial& one) { return one.angle; };
   if (method.ends_with("-paper")) return;
   if (!method.starts_with("bundle")) {
-    row({"99.9 % end with axes within 0.1 deg of 90", 0.1 * degree, degree, {}, 0.999}, angle);
+    row({"99.9 % have axes within 0.1 deg of 90 deg", 0.1 * degree, degree, {}, 0.999}, angle);
     return;
   }
-  Aim done{"all end done, with 12 pictures a camera", 12, 1, {}};
+  Aim done{"all succeed, with 12 pictures per camera", 12, 1, {}};
   done.has_rms = false;
   row(done, [](const auto& one) { return larger(one.bundle.pictures); });
-  row({"the axes' angle known within 0.01 deg", 0.01 * degree, degree, {}},
+  row({"error of the angle between the axes within 0.01 deg", 0.01 * degree, degree, {}},
       [](const auto& one) { return one.bundle.angle.error; });
-  row({"focal lengths known within 0.3 %", 0.003, 0.01, {}},
+  row({"errors of focal lengths within 0.3 %", 0.003, 0.01, {}},
       [](const auto& one) { return larger({one.bundle.focal[0].error, one.bundle.focal[1].error}); });
-  row({"residuals at most 1.05 of claimed sigma", 1.05, 1, {}},
+  row({"RMS residual at most 1.05 of the assumed standard deviation", 1.05, 1, {}},
       [](const auto& one) { return one.bundle.rms; });
-  row({"true axes within 0.0375 deg of 90", 0.0375 * degree, degree, {}}, angle);
+  row({"true axes within 0.0375 deg of 90 deg", 0.0375 * degree, degree, {}}, angle);
 }
 
 void print_known(const MethodTrials& all) {

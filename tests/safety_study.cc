@@ -16,21 +16,26 @@ int compare(std::size_t motions, std::size_t samples, std::uint64_t seed) {
   while (found.motions < motions) compare_with_samples(random, samples, found);
   std::printf("| | |\n| --- | ---: |\n");
   print_row("motions", found.motions);
-  print_row("states sampled for bends, bend rates, stretches and folding", found.samples);
-  print_row("spans of these that the check reported", found.spans);
-  print_row("values above their limit in the samples", found.above);
-  print_row("of these outside every reported span (missed)", found.missed);
-  print_row("states of which clearances were computed", found.contact_samples);
-  print_row("spans of contact that the check reported", found.contact_spans);
-  print_row("contacts in these states", found.contacts);
-  print_row("of these outside every reported span (missed)", found.contacts_missed);
-  print_row("reported spans longer than two samples that no sample confirms (refuted)", found.refuted);
-  print_row("reported spans with a sample worse than their worst value, by more than 1e-4 (m, or relative)",
-            found.understated);
-  print_row("the same, with a caveat of the check", found.flagged);
-  std::printf("| largest shortfall of worst values without a caveat (m, or relative) | %.1e |\n",
-              found.most_understated);
-  print_row("reported spans with a worst value not found at its time", found.overstated);
+  print_row("samples of bends, bend rates, stretches and folding", found.samples);
+  print_row("time spans of violations of bends, bend rates, stretches and folding that the check reports",
+            found.spans);
+  print_row("sampled values above their limit", found.above);
+  print_row("sampled violations outside every reported time span (missed)", found.missed);
+  print_row("samples of clearances", found.contact_samples);
+  print_row("time spans of contacts that the check reports", found.contact_spans);
+  print_row("sampled contacts", found.contacts);
+  print_row("sampled contacts outside every reported time span (missed)", found.contacts_missed);
+  print_row("reported time spans longer than two samples that no sample confirms (refuted)", found.refuted);
+  print_row(
+      "reported time spans without a caveat whose worst value is exceeded by a sample by more than 1e-4 (m, "
+      "or relative)",
+      found.understated);
+  print_row("reported time spans with a caveat whose worst value is exceeded in this way", found.flagged);
+  std::printf(
+      "| largest difference by which a sample exceeds a worst value without a caveat (m, or relative) | %.1e "
+      "|\n",
+      found.most_understated);
+  print_row("reported time spans whose worst value does not occur at its reported time", found.overstated);
   const bool is_right =
       found.missed + found.contacts_missed + found.refuted + found.understated + found.overstated == 0;
   return is_right ? 0 : 1;

@@ -136,8 +136,9 @@ Tally study_row(const std::string& name, const SeenArmConfig& options, double un
 
 int study(int cases, std::uint64_t seed) {
   std::printf(
-      "| | found | of those that cross themselves | median | 90 %% | rms, px | 99 %% | rms, bridged ones too "
-      "| rms of the middle | not observed, %% | ends, px | 68 %% over sigma | aim: rms at most %.2f px |\n",
+      "| pictures | arms found | crossing arms found | median, px | 90 %%, px | RMS, px | 99 %%, px | RMS "
+      "with interpolated samples, px | RMS not corrected, px | interpolated, %% | ends, px | 68 %% / sigma | "
+      "aim: RMS at most %.2f px |\n",
       aimed_rms);
   std::printf("| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |\n");
   Tally banded;
@@ -155,12 +156,12 @@ int study(int cases, std::uint64_t seed) {
     }
   }
   const SeenArmConfig gamma{.gamma = 2.2};
-  study_row("noise 2, PSF 0.7, a gamma of 2.2 undone", gamma, 2.2, false, cases, seed);
-  study_row("the same, not undone", gamma, 1, false, cases, seed);
+  study_row("noise 2, PSF 0.7, gamma 2.2, corrected", gamma, 2.2, false, cases, seed);
+  study_row("noise 2, PSF 0.7, gamma 2.2, not corrected", gamma, 1, false, cases, seed);
   std::printf(
-      "\nBands, noise 2, PSF 0.7: %zu in view, %zu found, %zu of these false, %zu false spots. Distance from "
-      "the backbone's image at the band's middle: median %.3f px, 90 %% within %.2f px, %.2f %% beyond 4 "
-      "sigma.\n",
+      "\nWith noise 2 and PSF 0.7, %zu bands are visible. %zu bands were found, %zu of them false, and also "
+      "%zu false spots. The distance of a band from the backbone's image at the band's middle has a median "
+      "of %.3f px; 90 %% are within %.2f px, and %.2f %% are beyond 4 sigma.\n",
       banded.markers_shown, banded.markers, banded.false_markers, banded.spots, banded.marker.size(0.5),
       banded.marker.size(0.9), 100 * banded.marker_by_sigma.share_beyond(4));
   return 0;

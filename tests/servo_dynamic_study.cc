@@ -286,9 +286,9 @@ void study(bool is_calibrated, const Extent& extent, const std::string& law, Swi
   });
   std::vector<std::string> laws;
   for (const Method& method : ways) laws.push_back(method.name);
-  fmt::print("### Shapes\n\n");
+  fmt::print("### Target shapes\n\n");
   print_targets(runs, part, laws);
-  fmt::print("### Moving shapes\n\n");
+  fmt::print("### Moving targets\n\n");
   print_trajectories(runs, part, laws);
 }
 
@@ -306,11 +306,11 @@ int main(int count, char** arguments) {
   SwingingRuns runs(text(7));
   const auto is_asked = [&](const char* name) { return part.empty() || part == name; };
   if (is_asked("calibrated")) {
-    fmt::print("## Cameras as the calibration `bundle` leaves them\n\n");
+    fmt::print("## Cameras calibrated by `bundle`\n\n");
     study(true, extent, law, runs);
   }
   if (is_asked("wrong")) {
-    fmt::print("## Cameras half a degree (about each axis) and 1 % (of focal length) wrong\n\n");
+    fmt::print("## Camera errors of half a degree about each axis and 1 % of the focal length\n\n");
     study(false, extent, law, runs);
   }
   return 0;

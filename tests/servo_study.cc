@@ -279,9 +279,10 @@ void study(Cameras cameras, const ServoWorld& world, std::vector<Method> methods
     std::fprintf(stderr, "rig %zu of %zu\n", i + 1, rigs);
   });
   fmt::print(
-      "| law | converged | to 2 %, s (median / 95 %) | overshoot, % (95 %) | left, rms, % (median / 95 %) | "
-      "left, most, % (largest) | tip, % (95 %) | nearest to a limit | floor, nominal cameras | floor, "
-      "camera prior |\n"
+      "| law | converged | time to 2 % error, s (median / 95 %) | overshoot, % (95 %) | final RMS error, % "
+      "(median / 95 %) | largest final error along the arm, % | final tip error, % (95 %) | distance to a "
+      "limit | error with exact target pictures, without prior, % (median / 95 %) | with camera prior, % "
+      "(median / 95 %) |\n"
       "| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |\n");
   for (std::size_t j = 0; j < methods.size(); ++j)
     print_row(methods[j].name, arrivals[j], cameras == Cameras::wrong);
@@ -298,8 +299,8 @@ void study_exact(const std::string& way, std::size_t targets, std::uint64_t seed
                  .views = {bench.rig().camera(0).view(0), bench.rig().camera(1).view(0)}};
   constexpr double noise = 0.1;  // px
   fmt::print(
-      "| law | derivatives | converged | to 2 %, s (median / 95 % / all) | with noise: converged | to 2 %, s "
-      "|\n| --- | --- | ---: | ---: | ---: | ---: |\n");
+      "| law | derivatives | converged | time to 2 % error, s (median / 95 % / all) | with noise: converged "
+      "| with noise: time to 2 % error, s |\n| --- | --- | ---: | ---: | ---: | ---: |\n");
   for (const Method& method : laws()) {
     if (!way.empty() && method.name != way) continue;
     std::vector<std::pair<ArmState, ArmState>> ways;
@@ -312,7 +313,7 @@ void study_exact(const std::string& way, std::size_t targets, std::uint64_t seed
     for (const bool has_secants : {true, false}) {
       if (!has_secants && !has_both) continue;
       loop.has_secants = has_secants;
-      const char* which = has_secants && has_both ? "of the whole way" : "at the current shape";
+      const char* which = has_secants && has_both ? "half-way to the target" : "at the current shape";
       fmt::print("{}\n", exact_row(loop, method.law, method.name + " | " + which, ways, noise));
     }
   }
@@ -331,27 +332,27 @@ int main(int count, char** arguments) {
   const std::string way = count > 5 ? arguments[5] : "";
   const auto is_asked = [&](const char* name) { return part.empty() || part == name; };
   if (is_asked("calibrated")) {
-    fmt::print("## Cameras as the calibration `bundle` leaves them\n\n");
+    fmt::print("## Cameras calibrated by `bundle`\n\n");
     study(Cameras::calibrated, {}, all_methods(), way, targets, seed, threads);
   }
   if (is_asked("wrong")) {
-    fmt::print("## Cameras half a degree (about each axis) and 1 % (of focal length) wrong\n\n");
+    fmt::print("## Camera errors of half a degree about each axis and 1 % of the focal length\n\n");
     study(Cameras::wrong, {}, all_methods(), way, targets, seed, threads);
   }
   if (is_asked("recorded")) {
-    fmt::print("## The same cameras, targets that they recorded\n\n");
+    fmt::print("## Target pictures recorded by cameras with these errors\n\n");
     study(Cameras::recorded, {}, laws(), way, targets, seed, threads);
   }
   if (is_asked("turned")) {
-    fmt::print("## Calibrated cameras, an arm mounted a quarter turn round that bends 1.3 times as far\n\n");
+    fmt::print("## Calibrated cameras, arm rotated by a quarter turn with 1.3 times the commanded bends\n\n");
     study(Cameras::calibrated, {}, methods_of_turned_arm(), way, targets, seed, threads);
   }
   if (is_asked("sagging")) {
-    fmt::print("## A sagging arm, modelled as one arc a section; cameras half a degree and 1 % wrong\n\n");
+    fmt::print("## Sagging arm, model of one arc per section, camera errors of half a degree and 1 %\n\n");
     study(Cameras::wrong, {.sags = true}, laws_of_sagging_arm(), way, targets, seed, threads);
-    fmt::print("## The same arm, modelled as three arcs per section; cameras and profile as calibrated\n\n");
+    fmt::print("## Sagging arm, model of three arcs per section, calibrated cameras and bend profile\n\n");
     study(Cameras::calibrated, {.arcs = 3, .sags = true}, laws_of_sagging_arm(), way, targets, seed, threads);
-    fmt::print("## The same arm, modelled as such rods, 20 % stiffer; cameras as calibrated\n\n");
+    fmt::print("## Sagging arm, model of rods that are 20 % stiffer, calibrated cameras\n\n");
     study(Cameras::calibrated, {.arcs = 3, .sags = true, .knows = true}, laws_of_sagging_arm(), way, targets,
           seed, threads);
   }

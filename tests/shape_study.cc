@@ -113,8 +113,8 @@ void print_verdicts(const Tally& tally) {
 // dominate where there is little noise.
 void print_by_noise(const Tally& tally) {
   fmt::print(
-      "\n| noise, of 255 | trusted | squares over expected | within 50 %, % | within 95 %, % | chi^2 of the "
-      "regions |\n| --- | --- | --- | --- | --- | --- |\n");
+      "\n| noise, of 255 | trusted | mean squared error / expectation | in 50 % region, % | in 95 % region, "
+      "% | chi^2 of the confidence regions |\n| --- | --- | --- | --- | --- | --- |\n");
   for (std::size_t k = 0; k < noise_steps; ++k) {
     const Consistency& one = tally.by_noise[k];
     fmt::print("| {} to {} | {} | {} | {} | {} | {} |\n", k, k + 1, one.shares.size(),
@@ -125,8 +125,7 @@ void print_by_noise(const Tally& tally) {
 
 int study(int cases, std::uint64_t seed) {
   std::array<Tally, 5> tallies;
-  constexpr std::array names = {"the arm is known", "base and length are known", "the base is known",
-                                "the length is known", "nothing is known"};
+  constexpr std::array names = {"sections and base", "base and length", "base", "length", "nothing"};
   for (std::size_t k = 0; k < tallies.size(); ++k) tallies[k].name = names[k];
   const bool is_verbose = std::getenv("SHAPE_STUDY_TELLS") != nullptr;
   for (int i = 0; i < cases; ++i) {
@@ -163,14 +162,14 @@ int study(int cases, std::uint64_t seed) {
     }
   }
   fmt::print(
-      "| | trusted | marked | median, % | rms, % | 99.9 %, % | marked: median, % | rms, % | 99.9 %, % | over "
-      "sigma: median | 95 % | within 50 %, % | within 95 %, % |\n");
+      "| given | trusted | noted | trusted: median error, % | RMS, % | 99.9 %, % | noted: median error, % | "
+      "RMS, % | 99.9 %, % | error / sigma: median | 95 % | in 50 % region, % | in 95 % region, % |\n");
   fmt::print("| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |\n");
   for (const Tally& tally : tallies) print(tally, cases);
   fmt::print(
-      "\n| aim | rms of the trusted at most {} % | rms of all that were found at most {} % | 99.9 % of the "
-      "trusted within {} % | covariance: squares over expected within chance of 1 | chi^2 of its regions at "
-      "most {} |\n| --- | --- | --- | --- | --- | --- |\n",
+      "\n| given | RMS of trusted estimates at most {} % | RMS of all estimates at most {} % | 99.9 % of "
+      "trusted estimates within {} % | mean squared error / expectation consistent with 1 | chi^2 of the "
+      "confidence regions at most {} |\n| --- | --- | --- | --- | --- | --- |\n",
       100 * aimed_rms, 100 * aimed_rms, 100 * aimed_most, rare_unevenness);
   for (const Tally& tally : tallies) print_verdicts(tally);
   print_by_noise(tallies.front());

@@ -36,46 +36,52 @@ def rate(per_second: float) -> float:
 
 ROWS = [
     Row(
-        "tip of three sections, one arm a call", "kinematics_bench",
+        "tip pose of an arm of three sections", "kinematics_bench",
         "tip_of_3_sections", None, "Orocos KDL", "tip_of_3_sections_kdl",
     ),
     Row(
-        "the same with its Jacobian", "kinematics_bench",
+        "tip pose and its Jacobian", "kinematics_bench",
         "jacobian_of_3_sections", 150e-9, "Orocos KDL", "jacobian_of_3_sections_kdl",
     ),
     Row(
-        "state for a pose, from nothing", "inverse_bench",
+        "inverse kinematics of a pose, without a start", "inverse_bench",
         "inverse_cold/kind:2", 20e-6, "Orocos KDL", "inverse_kdl_cold",
     ),
-    Row("motion of 10 s checked, four obstacles", "safety_bench", "laboratory_10_s_four_obstacles"),
-    Row("picture, 640 x 480, gray", "render_bench", "render/gray_640x480", rate(6000)),
-    Row("the same, colour", "render_bench", "render/color_640x480", rate(4000)),
+    Row("safety check of a motion of 10 s, four obstacles", "safety_bench", "laboratory_10_s_four_obstacles"),
+    Row("rendered picture, 640 x 480, gray", "render_bench", "render/gray_640x480", rate(6000)),
+    Row("rendered picture, 640 x 480, colour", "render_bench", "render/color_640x480", rate(4000)),
     Row(
-        "the same, gray, with PSF and noise",
+        "rendered picture, 640 x 480, gray, with PSF and noise",
         "render_bench", "render_and_read/psf_and_noise_640x480", rate(3000),
     ),
-    Row("picture, 1920 x 1080, gray", "render_bench", "render/gray_1920x1080", rate(1200)),
-    Row("the same with PSF and noise", "render_bench", "render_and_read/psf_and_noise_1920x1080", rate(500)),
-    Row("picture of a laboratory", "render_bench", "render/laboratory_gray_640x480"),
-    Row("the same, a tapered arm", "render_bench", "render/tapered_laboratory_gray_640x480"),
+    Row("rendered picture, 1920 x 1080, gray", "render_bench", "render/gray_1920x1080", rate(1200)),
     Row(
-        "an arm found, 640 x 480", "vision_bench",
-        "find_arm/640", rate(8000), "OpenCV, without an axis", "opencv/640",
+        "rendered picture, 1920 x 1080, gray, with PSF and noise",
+        "render_bench", "render_and_read/psf_and_noise_1920x1080", rate(500),
+    ),
+    Row("rendered picture of a laboratory", "render_bench", "render/laboratory_gray_640x480"),
+    Row(
+        "rendered picture of a laboratory with a tapered arm",
+        "render_bench", "render/tapered_laboratory_gray_640x480",
     ),
     Row(
-        "the same, 1920 x 1080", "vision_bench",
-        "find_arm/1920", rate(1800), "OpenCV, without an axis", "opencv/1920",
+        "centerline in a picture, 640 x 480", "vision_bench",
+        "find_arm/640", rate(8000), "OpenCV, without a centerline", "opencv/640",
     ),
-    Row("a known arm's shape fitted, following", "shape_bench", "fit_following/0", 80e-6),
-    Row("two pictures to a shape, following", "shape_bench", "pictures_following/0", rate(3000)),
     Row(
-        "a pair of cameras from 13 boards", "intrinsics_bench",
+        "centerline in a picture, 1920 x 1080", "vision_bench",
+        "find_arm/1920", rate(1800), "OpenCV, without a centerline", "opencv/1920",
+    ),
+    Row("shape fit to measured centerlines, tracking", "shape_bench", "fit_following/0", 80e-6),
+    Row("shape from two pictures, tracking", "shape_bench", "pictures_following/0", rate(3000)),
+    Row(
+        "calibration of two cameras with 13 boards", "intrinsics_bench",
         "calibrate/real_each_and_both", 20e-3, "OpenCV", "opencv_calibrates/real_each_and_both",
     ),
-    Row("a step of a law on 50 points", "servo_bench", "points_step/25", 3e-6, "ViSP", "visp_step/25"),
-    Row("a turn of the whole loop, one thread", "loop_bench", "whole_loop/no_rings/1", rate(750)),
+    Row("step of a control law with 50 points", "servo_bench", "points_step/25", 3e-6, "ViSP", "visp_step/25"),
+    Row("step of the whole servo loop, one thread", "loop_bench", "whole_loop/no_rings/1", rate(750)),
     Row(
-        "the same of an arm with rings", "loop_bench",
+        "step of the whole servo loop, arm with marker bands", "loop_bench",
         "whole_loop/rings/1", rate(750), "llvmpipe, OpenCV, ViSP", "packaged/with_llvmpipe_gray",
     ),
 ]
@@ -133,7 +139,7 @@ def main() -> None:
     parser.add_argument("folder", nargs="?", type=Path, default=Path("build/bench/bin"))
     parser.add_argument("--repetitions", type=int, default=5)
     arguments = parser.parse_args()
-    print("| what | CPU time | aim | distance | a peer in the same run | bench |")
+    print("| computation | CPU time | aim | time / aim | other program in the same run | benchmark |")
     print("| --- | ---: | ---: | ---: | --- | --- |")
     for program in dict.fromkeys(row.program for row in ROWS):
         rows = [row for row in ROWS if row.program == program]

@@ -51,9 +51,14 @@ class PerformanceTable(unittest.TestCase):
         lines = run.stdout.splitlines()
         self.assertEqual(len(lines), 2 + len(performance_table.ROWS))
         self.assertIn(
-            "| a step of a law on 50 points | 6 us | 3 us | 2.0 times | ViSP: 30 us, 5.0 times | `points_step/25` |", lines
+            "| step of a control law with 50 points | 6 us | 3 us | 2.0 times | ViSP: 30 us, 5.0 times | "
+            "`points_step/25` |",
+            lines,
         )
-        self.assertIn("| motion of 10 s checked, four obstacles | 3 us |  |  |  | `laboratory_10_s_four_obstacles` |", lines)
+        self.assertIn(
+            "| safety check of a motion of 10 s, four obstacles | 3 us |  |  |  | `laboratory_10_s_four_obstacles` |",
+            lines,
+        )
 
     def test_says_what_is_met(self):
         row = performance_table.ROWS[-1]

@@ -1,4 +1,4 @@
-// Where the paper's loops end and where they do not (docs/calibration-paper.md, "When a loop ends"), with the
+// Where the paper's loops end and where they do not (docs/calibration-paper.md, "Convergence"), with the
 // loops themselves and simulated rigs.
 #include <fmt/format.h>
 #include <gmock/gmock.h>

@@ -11,7 +11,7 @@
 #include "tests/support/random_cases.h"
 
 // The paper's distributed arm and the rods of mechanics/ are the same continuum in other numbers
-// (docs/control.md, "Why the arm is no rod of mechanics").
+// (docs/control.md, "Why the distributed arm is a separate model").
 namespace flexura {
 namespace {
 

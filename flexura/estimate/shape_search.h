@@ -20,8 +20,8 @@ namespace flexura {
 [[nodiscard]] std::optional<std::size_t> bent_too_far(const Shape& shape);
 
 /// Searches the shape without a start: tries one shape after another until one explains the observations
-/// (docs/estimation.md, "The start"). If no shape does so with camera errors within their priors, the result
-/// may have larger camera errors.
+/// (docs/estimation.md, "Initial shapes"). If no shape does so with camera errors within their priors, the
+/// result may have larger camera errors.
 class ShapeSearch {
  public:
   /// `most_iterations`: largest number in each descent. `most_rms`: largest rms of a good fit

@@ -124,7 +124,7 @@ TEST(Circle, TestSeesTheTiltThatItSaysItSeesAndLittleLess) {
   EXPECT_GT(fit_circle(orbit_picture(0, 0, pi / 6, 200), 0.1)->detectable_tilt, 0.3);
 }
 
-// The test with the points' own residuals (docs/calibration-paper.md, "When a loop ends"), for a second
+// The test with the points' own residuals (docs/calibration-paper.md, "Convergence"), for a second
 // harmonic of rms h among others of rms m. It accepts up to h^2 = 9.21/(n - 12.21) m^2. With 12 points or
 // fewer everything is accepted.
 TEST(Circle, IsVerifiedUpToTheShareOfASecondHarmonic) {

@@ -15,7 +15,8 @@
 // Table rows of studies: the distribution of many values and the comparison with goals.
 namespace flexura {
 
-inline constexpr const char* spread_head = "| | rms | 95 % | worst |\n| --- | ---: | ---: | ---: |\n";
+inline constexpr const char* spread_head =
+    "| quantity | RMS | 95 % | largest |\n| --- | ---: | ---: | ---: |\n";
 
 /// Returns a row with the distribution of the absolute values.
 inline std::string spread_row(const std::string& name, std::vector<double> values, double unit, int digits) {
@@ -34,7 +35,7 @@ struct Aim {
 };
 
 inline constexpr const char* aim_head =
-    "| | aim | within | verdict | rms verdict | worst |\n"
+    "| case | aim | trials that reach it | all trials | RMS | largest |\n"
     "| --- | --- | ---: | --- | --- | ---: |\n";
 
 inline std::string aim_row(const std::string& of, const Aim& aim, std::size_t trials) {

@@ -40,9 +40,9 @@ inline std::vector<double> sizes_of(std::vector<double> values) {
   return values;
 }
 
-/// Returns whether a value is within the goal `most`; "nothing to judge" if it is NaN.
+/// Returns whether a value is within the goal `most`; "not tested" if it is NaN.
 inline std::string verdict(double value, double most) {
-  if (std::isnan(value)) return "nothing to judge";
+  if (std::isnan(value)) return "not tested";
   return value <= most ? "met" : "missed";
 }
 

@@ -28,8 +28,8 @@ TEST(StudyNumbers, AQuantileIsTheNearestRank) {
 TEST(StudyNumbers, AnAimIsMetUpToItselfAndOfNothingThereIsNoVerdict) {
   EXPECT_EQ(verdict(0.02, 0.02), "met");
   EXPECT_EQ(verdict(0.0201, 0.02), "missed");
-  EXPECT_EQ(verdict(quantile({}, 0.999), 0.05), "nothing to judge");
-  EXPECT_EQ(verdict(root_mean_square({}), 0.02), "nothing to judge");
+  EXPECT_EQ(verdict(quantile({}, 0.999), 0.05), "not tested");
+  EXPECT_EQ(verdict(root_mean_square({}), 0.02), "not tested");
 }
 
 TEST(StudyNumbers, AnAimIsOfAllTrialsAndNotOfThoseThatEnded) {
@@ -40,8 +40,8 @@ TEST(StudyNumbers, AnAimIsOfAllTrialsAndNotOfThoseThatEnded) {
   EXPECT_EQ(aim_row("", share, 4), "|  |  | 2 of 4 | missed | met (1.581) | 2 |\n");
   const Aim one{"", 0.02, 0.01, {0.03}, 1, false}, nothing{"", 0.02, 0.01, {}};
   EXPECT_EQ(aim_row("", one, 1), "|  |  | 0 of 1 | missed |  | 3 |\n");
-  EXPECT_EQ(aim_row("", nothing, 1), "|  |  | 0 of 1 | missed | nothing to judge () |  |\n");
-  EXPECT_EQ(aim_row("", nothing, 0), "|  |  | 0 of 0 | nothing to judge | nothing to judge () |  |\n");
+  EXPECT_EQ(aim_row("", nothing, 1), "|  |  | 0 of 1 | missed | not tested () |  |\n");
+  EXPECT_EQ(aim_row("", nothing, 0), "|  |  | 0 of 0 | not tested | not tested () |  |\n");
 }
 
 TEST(StudyNumbers, ASpreadIsOfSizes) {

@@ -132,11 +132,10 @@ std::vector<double> numbers_of_runs(const std::vector<SwingingRun>& runs, Of of)
 inline void print_targets(const SwingingRuns& all, const std::string& part,
                           const std::vector<std::string>& laws) {
   fmt::print(
-      "| law | converged | within 2 % at the end | to 2 %, s (median / 95 %) | overshoot, % (95 %) | left, "
-      "rms, % "
-      "(median / 95 % / largest) | energy, J (median) | tension, N (largest) | violations: bend / rate / "
-      "view / "
-      "contact |\n| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |\n");
+      "| law | converged | within 2 % at the end | time to 2 % error, s (median / 95 %) | overshoot, % (95 "
+      "%) | final RMS error, % (median / 95 % / largest) | energy, J (median) | tension, N (largest) | "
+      "violations: bend / rate / view / contact |\n| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | "
+      "---: |\n");
   for (const std::string& law : laws) {
     const std::vector<SwingingRun> runs = all.of(part, "target", law);
     if (runs.empty()) continue;
@@ -170,9 +169,9 @@ inline void print_targets(const SwingingRuns& all, const std::string& part,
 inline void print_trajectories(const SwingingRuns& all, const std::string& part,
                                const std::vector<std::string>& laws) {
   fmt::print(
-      "| law | followed to the end | lag, s (median / largest) | off, rms, % (median / 95 %) | off without "
-      "the lag, "
-      "rms, % (median / 95 %) | tension, N (largest) | violations: bend / rate / view / contact |\n"
+      "| law | followed to the end | lag, s (median / largest) | RMS error, % (median / 95 %) | RMS error "
+      "without the lag, % (median / 95 %) | tension, N (largest) | violations: bend / rate / view / contact "
+      "|\n"
       "| --- | ---: | ---: | ---: | ---: | ---: | ---: |\n");
   for (const std::string& law : laws) {
     const std::vector<SwingingRun> runs = all.of(part, "trajectory", law);

@@ -190,7 +190,7 @@ TEST_F(IntrinsicsCommand, MeasuresAZoom) {
     ASSERT_NE(uncertain.find("notes"), nullptr);
     const auto& notes = *uncertain.find("notes")->as<Node::Array>();
     ASSERT_EQ(notes.size(), 1U);
-    EXPECT_NE(notes[0].as<std::string>()->find("zoom3: its stated zoom ratio is 5 times"), std::string::npos);
+    EXPECT_NE(notes[0].as<std::string>()->find("zoom3: the given zoom ratio is 5 times"), std::string::npos);
     arguments_.zooms = zooms, arguments_.rig = rig;
   }
   // The lens replaces that of an existing camera.
@@ -275,7 +275,7 @@ TEST_F(IntrinsicsCommand, RefusesTheNumberOfAPartOfTheBoard) {
         write(fmt::format("{}.png", i), board_picture(circles, lens, X_CB, 320, 240)));
   }
   arguments_.pattern = "circles", arguments_.board = "6x5";
-  EXPECT_THAT(refusal(), HasSubstr("--board: 6x5: the board's pattern continues"));
+  EXPECT_THAT(refusal(), HasSubstr("--board: 6x5: the board has more points than this"));
   arguments_.board = "7x5";
   EXPECT_EQ(*entry(answer(exit_done), "cameras", 0).find("views_used")->as<std::int64_t>(), 3);
 }

@@ -144,7 +144,7 @@ TEST_F(StoppedProgram, StopsACheck) {
     EXPECT_EQ(ended.status, 128 + signal);
     EXPECT_EQ(ended.out, "");
     // A signal that comes before the check begins ends the program without a word.
-    EXPECT_THAT(ended.err, testing::AnyOf("", "cancelled: it was stopped before the check was complete\n"));
+    EXPECT_THAT(ended.err, testing::AnyOf("", "cancelled: the check was stopped before it was complete\n"));
   }
 }
 

@@ -352,7 +352,7 @@ TEST(Filming, TellsWhatIsWrongWithCamerasAndTheTruth) {
        "truth.camera[1].name: \"side\" is the name of another entry"},
       {"too many frames",
        replaced(small_pictures, "frame_rate = 10", "frame_rate = 1e6") + "[record]\ncameras = true\n",
-       "x.toml:23:11: record.cameras: makes 1e+06 images in 1 s by the cameras' frame rates: expected at "
+       "x.toml:23:11: record.cameras: makes 1e+06 images in 1 s at the cameras' frame rates: expected at "
        "most"},
       {"a zoom that falls",
        replaced(small_pictures, "lens = { fx = 80,",

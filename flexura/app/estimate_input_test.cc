@@ -56,7 +56,8 @@ TEST_F(EstimateInput, SaysWhereAFileOfCamerasIsWrong) {
   EXPECT_EQ(refusal("cx = 319.5", "cx = 1e308"),
             "cameras.toml:4:6: camera[0].cx = 1e+308: expected a number from -10000000 to 10000000");
   arguments_.images.emplace_back("third.png");
-  EXPECT_EQ(refusal("", ""), "cameras.toml:1:1: camera: 2 for 3 pictures: expected one for each");
+  EXPECT_EQ(refusal("", ""),
+            "cameras.toml:1:1: camera: 2 cameras for 3 pictures: expected one camera per picture");
 }
 
 TEST_F(EstimateInput, RefusesWhatItCannotUse) {

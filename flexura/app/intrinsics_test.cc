@@ -307,7 +307,7 @@ TEST_F(IntrinsicsCommand, RefusesPicturesThatItCannotUse) {
   arguments_.images = {};
   EXPECT_THAT(refusal(), HasSubstr("--left"));
   arguments_.left = {good, good}, arguments_.right = {good};
-  EXPECT_THAT(refusal(), HasSubstr("--right: 1 picture for 2 of --left: expected one for each"));
+  EXPECT_THAT(refusal(), HasSubstr("--right: 1 picture for 2 of --left: expected one per picture of --left"));
   arguments_.right = {good, good}, arguments_.board = "6x4";
   EXPECT_THAT(refusal(), HasSubstr("upside down"));
 }

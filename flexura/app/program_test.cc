@@ -34,8 +34,8 @@ TEST_F(Program, RunsTheExperimentAndSaysWhereTheResultsAre) {
   const Ended ended = run("run " + paper_file);
   EXPECT_EQ(ended.status, 0);
   EXPECT_EQ(ended.out,
-            "end effector: (-10.738, 5.201)\nresults: results/01_paper_arm\noutcome: bend: at its shape "
-            "after 5 s\n");
+            "end effector: (-10.738, 5.201)\nresults: results/01_paper_arm\noutcome: bend: at the target "
+            "shape after 5 s\n");
   EXPECT_THAT(ended.err, IsEmpty()) << "no progress line in a pipe";
   for (const char* file :
        {"experiment.toml", "log.mcap", "summary.json", "timing.json", "report.html", "figures/arm-end.svg"}) {
@@ -47,8 +47,9 @@ TEST_F(Program, RunsTheExperimentAndSaysWhereTheResultsAre) {
 TEST_F(Program, PrintsALineOfEachThingWhateverItIsCalled) {
   const Ended ended = run("run " + paper_file + " --out 'two\nlines'");
   EXPECT_EQ(ended.status, 0) << ended.err;
-  EXPECT_EQ(ended.out,
-            "end effector: (-10.738, 5.201)\nresults: two\\nlines\noutcome: bend: at its shape after 5 s\n");
+  EXPECT_EQ(
+      ended.out,
+      "end effector: (-10.738, 5.201)\nresults: two\\nlines\noutcome: bend: at the target shape after 5 s\n");
   EXPECT_TRUE(std::filesystem::exists(path("two\nlines/summary.json"))) << "the folder has the name itself";
   const std::string name = R"( --set 'task.0.name="bend\u009b2J\u2028"')";
   const Ended unsafe = run("check " + paper_file + name + " --set 'task.0.to={position=[30,0,0]}'");

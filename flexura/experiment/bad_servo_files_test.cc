@@ -36,7 +36,7 @@ TEST(BadServo, EachIsOneClearLine) {
   for (const auto& [task, words] : {
            std::pair<std::string, std::string>{"", "task[0].target: missing"},
            {"target = []\n", "empty array: expected an array of 1 to"},
-           {"target = [{}]\n", "target[0]: has no shape: expected a shape in one way"},
+           {"target = [{}]\n", "target[0]: has no shape: expected exactly one of bends"},
            {"target = [{" + bends + ", position = [0, 0, 1]}]\n", "in more than one way"},
            {"target = [{azimuths = [0, 1]}]\n", "different numbers of azimuths and elevations"},
            {"target = [{azimuths = [0, 1], elevations = [0]}]\n", "expected an array of 2 to"},
@@ -60,7 +60,7 @@ TEST(BadServo, EachIsOneClearLine) {
            {"law = \"potential\"\ncameras = [\"side\", \"front\"]\ntarget = [{" + bends + "}]\n",
             "task[0].law: \"potential\" reads camera side as the plane XOY"},
            {"measure = \"flow\"\ntarget = [{" + bends + "}]\n",
-            "task[0].measure: \"flow\" carries the angles of chords"},
+            "task[0].measure: \"flow\" measures the angles of chords"},
            {"law = \"chords\"\nmeasure = \"flow\"\nanchor = 0\ntarget = [{" + bends + "}]\n",
             "task[0].anchor = 0: expected a number above 0"},
            {"settle = 5\ntimeout = 4\ntarget = [{" + bends + "}]\n",
@@ -106,7 +106,7 @@ TEST(BadServo, CamerasThatNoStepCanFollow) {
     std::string rate, task, words;
   };
   for (const Case& bad :
-       {Case{"1e-300", "", "task[0].step: not given, and a frame of the slower camera takes 1e+300 s"},
+       {Case{"1e-300", "", "task[0].step: missing, and the frame of the slower camera, 1e+300 s"},
         Case{"0.01", "", "takes 100 s: expected a step from 0.0001 s to 10 s"},
         Case{"100000", "", "takes 1e-05 s"}, Case{"0.01", "step = 0.05\n", ""}}) {
     std::string file = servo_file(bad.task + servo_target, {.sensor = "exposure = 1e-6"});

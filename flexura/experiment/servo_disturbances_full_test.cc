@@ -127,7 +127,7 @@ TEST(ServoDisturbances, AnOverloadedStepperIsNoticed) {
   });
   const ServoResult& result = servo.run();
   EXPECT_FALSE(result.is_done);
-  EXPECT_NE(result.reason.find("gave way"), std::string::npos) << result.reason;
+  EXPECT_NE(result.reason.find("were released"), std::string::npos) << result.reason;
   servo.expect_rest();
 }
 

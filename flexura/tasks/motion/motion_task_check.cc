@@ -15,7 +15,7 @@ namespace {
 
 void check_one_or_each(std::size_t given, std::size_t sections, const std::string& path, Reader& reader) {
   if (given == 1 || given == sections) return;
-  reader.problem_at(path, fmt::format("{} values: expected 1 value for all sections, or {}, one per section",
+  reader.problem_at(path, fmt::format("{} given: expected 1 value for all sections, or {}, one per section",
                                       given, sections));
 }
 

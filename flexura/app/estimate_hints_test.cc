@@ -101,7 +101,8 @@ TEST_F(EstimateHints, RefusesPicturesOfAnotherSizeThanTheCamerasAreSaidToBeOf) {
   } catch (const InputError& error) {
     EXPECT_THAT(
         error.what(),
-        HasSubstr("640 x 480 px: expected 1280 x 960, for which camera \"front\" is described (size)"));
+        HasSubstr(
+            "640 x 480 px: expected 1280 x 960 px, the size of camera \"front\" in the file of cameras"));
   }
   EXPECT_THROW(estimate_command(with_size("[0, 480]"), out), InputError);
   EXPECT_THROW(estimate_command(with_size("[640]"), out), InputError);

@@ -257,7 +257,7 @@ TEST_F(Identify, RefusesATableThatIsNone) {
   refuses("t" + tensions.substr(4) + ",x@0.1,y@0.1,z@0.1\n", "10 columns: expected time");
   refuses("time,a" + tensions.substr(14) + ",x@0.1,y@0.1,z@0.1\n",
           "column 2 is \"a\": expected \"tension_1\"");
-  refuses(tensions + ",x@0.1,y@0.1,z@0.2\n", "columns 8 to 10 are no place");
+  refuses(tensions + ",x@0.1,y@0.1,z@0.2\n", "columns 8 to 10 are not a position");
   refuses(tensions + ",x@0.9,y@0.9,z@0.9\n", "\"x@0.9\" is not on the arm");
   refuses(tensions + ",x@0.1,y@0.1,z@0.1\n0,1,1,1,1,1,1,nan,0,0\n", "places.csv:2:15:");
   refuses(tensions + ",x@0.1,y@0.1,z@0.1\n0,1,1,-1,1,1,1,0,0,0\n", "places.csv:2:1: tension_3 = -1");

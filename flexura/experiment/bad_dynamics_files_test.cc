@@ -38,7 +38,7 @@ TEST(BadDynamics, EachIsOneClearLineAtItsPlace) {
                "task[0].target.azimuths[1]: 200 deg follows 0 deg: expected successive azimuths that differ "
                "by at most 180 deg; azimuths may exceed 180 deg"},
            Bad{"target.azimuths_deg = [0, 60, -190]\ntarget.elevations_deg = [0, 0, 0]\n",
-               "task[0].target.azimuths[2]: -190 deg after 60 deg"},
+               "task[0].target.azimuths[2]: -190 deg follows 60 deg"},
            Bad{"target.bends = [[0, 0]]\n", "task[0].target.bends: 1 given: expected 3"},
            Bad{"target.bends = [[0, 0], [0, -2], [0, 0]]\n", "passes through an elevation of 90 deg"},
            Bad{"target.bends = [[0, 2000], [0, 0], [0, 0]]\n",

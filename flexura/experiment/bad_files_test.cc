@@ -191,7 +191,7 @@ TEST(BadFiles, ThousandsOfBandsAreTooMany) {
   std::string text = "[arm]\nlook.bands.per_section = 1000\n";
   for (int i = 0; i < 6; ++i) text += "[[arm.section]]\nlength = 1\n";
   EXPECT_THAT(error_of_file(text + "[[task]]\nkind = 'hold'\nduration = 1\n"),
-              HasSubstr("makes 6000 bands: expected at most 4096"));
+              HasSubstr("results in 6000 bands: expected at most 4096"));
 }
 
 TEST(BadFiles, ATrapezoidFromWhereAFormulaIsNowhereTakesTooLong) {

@@ -107,8 +107,8 @@ TEST(BadServo, CamerasThatNoStepCanFollow) {
   };
   for (const Case& bad :
        {Case{"1e-300", "", "task[0].step: missing, and the frame of the slower camera, 1e+300 s"},
-        Case{"0.01", "", "takes 100 s: expected a step from 0.0001 s to 10 s"},
-        Case{"100000", "", "takes 1e-05 s"}, Case{"0.01", "step = 0.05\n", ""}}) {
+        Case{"0.01", "", "100 s, cannot be used instead: expected a step from 0.0001 s to 10 s"},
+        Case{"100000", "", "1e-05 s, cannot be used"}, Case{"0.01", "step = 0.05\n", ""}}) {
     std::string file = servo_file(bad.task + servo_target, {.sensor = "exposure = 1e-6"});
     for (std::size_t at = 0; (at = file.find("frame_rate = 30", at)) != std::string::npos; ++at)
       file.replace(at, 15, "frame_rate = " + bad.rate);
@@ -152,7 +152,8 @@ std::string complaint_of_pictures(const std::string& picture) {
 
 TEST(BadServo, PicturesOfAnotherSizeOrDepth) {
   const std::string small = complaint_of_pictures("P2 2 2 255 1 2 3 4\n");
-  EXPECT_NE(small.find("2 x 2 px: expected 320 x 240, as camera front takes them"), std::string::npos)
+  EXPECT_NE(small.find("2 x 2 px: expected 320 x 240 px, the picture size of camera front"),
+            std::string::npos)
       << small;
   std::string words = "P2 320 240 65535\n";
   for (int i = 0; i < 320 * 240; ++i) words += std::to_string(7 * i % 65536) + '\n';

@@ -167,9 +167,9 @@ TEST(Tasks, BadOnesGetAClearLine) {
       {"kind='keyframes'\ncolumns=['time','arching_1','arching_2']\nrows=[]\n",
        "0 rows: expected at least 2"},
       {"kind='keyframes'\ncolumns=['time','arching_1','arching_2']\nrows=[[0,0,0],[2,0,0],[1,0,0]]\n",
-       "task[0].rows[2][0]: time 1: expected more than the 2 before it"},
+       "task[0].rows[2][0]: time 1: expected more than the previous time, 2"},
       {"kind='keyframes'\ncolumns=['time','arching_1','arching_2']\nrows=[[0,0,0],[1e-320,1,0]]\n",
-       "time 1e-320: expected at least 1e-09 s after the 0 before it"},
+       "time 1e-320: expected at least 1e-09 s after the previous time, 0"},
       {"kind='keyframes'\ncolumns=['time','arching_1','arching_2']\nrows=[[0,0,0],[2e6,0,0]]\n",
        "task[0].rows[1][0]: time 2000000 s: expected at most 1000000 s"},
       {"kind='keyframes'\ncolumns=['time','arching_1','arching_2']\nrows=[[1,0,0],[2,0,0]]\n",
@@ -264,7 +264,7 @@ TEST(Keyframes, BadFilesAreReportedAtTheirLine) {
   EXPECT_THAT(error_with("wave.csv", header + "0,0,0\n1, 0, 501\n"),
               HasSubstr("wave.csv:3:6: column arching_2: angle 501 rad: expected from -500 rad to 500 rad"));
   EXPECT_THAT(error_with("wave.csv", "\n arching_1 ,\"arching_2\",time\n0,0,0\n1,0,0\n\n1,0,-2\n"),
-              HasSubstr("wave.csv:4:5: column time: time 0: expected more than the 0 before it\n"));
+              HasSubstr("wave.csv:4:5: column time: time 0: expected more than the previous time, 0\n"));
   EXPECT_THAT(error_with("wave.csv", "\n\ntime,arching_1,arching_3\n0,0,0\n1,0,0\n"),
               HasSubstr("wave.csv:3:16: column arching_3: the arm has 2 sections"));
   EXPECT_THAT(error_with("wave.csv", header + "0,0,0\n"), HasSubstr("wave.csv:1:1: 1 row: expected"));

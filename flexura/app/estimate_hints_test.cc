@@ -136,7 +136,7 @@ TEST_F(EstimateHints, TellWhereTheBaseIsLookedFor) {
   const Node turned = answer(exit_missed);
   const auto& notes = *turned.find("notes")->as<Node::Array>();
   EXPECT_TRUE(std::ranges::any_of(notes, [](const Node& note) {
-    return note.as<std::string>()->starts_with("the base would be seen at (");
+    return note.as<std::string>()->starts_with("the base would be visible at (");
   }));
 }
 

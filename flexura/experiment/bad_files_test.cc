@@ -72,7 +72,7 @@ TEST(BadFiles, EachGetsALineWithPlaceValueAndExpectation) {
       {"two units", file_with("length = 2.0", "length = 2.0\nlength_mm = 2000"),
        "x.toml:5:1: arm.section[0].length_mm: written twice: length is already in line 4"},
       {"duplicate key", file_with("length = 2.0", "length = 2.0\nlength = 3.0"),
-       "x.toml:5:10: 'length' is written twice: expected each key once"},
+       "x.toml:5:10: 'length' occurs twice: expected each key once"},
       {"unclosed text", file_with("\"planar\"", "\"planar"), "x.toml:2:"},
       {"unknown kind of task", file_with("\"move\"", "\"jump\""),
        "x.toml:8:8: task[0].kind = \"jump\": expected one of \"move\", \"hold\""},
@@ -125,7 +125,7 @@ TEST(BadFiles, EachGetsALineWithPlaceValueAndExpectation) {
       {"a text in a formula",
        file_with("kind = \"move\"\nduration = 2.0\nto.archings_pi = [0.1, 0.2]",
                  "kind = 'expression'\nduration = 2.0\narchings = 't + \"1\"'"),
-       "x.toml:10:17: task[0].archings[0]: contains a text: expected numbers, names and operators"},
+       "x.toml:10:17: task[0].archings[0]: contains a text in quotes: expected numbers, names and operators"},
       {"negative duration", file_with("duration = 2.0", "duration = -2.0"),
        "x.toml:9:12: task[0].duration = -2: expected a number from 1e-09 s"},
       {"no target", file_with("to.archings_pi = [0.1, 0.2]\n", ""),
@@ -205,14 +205,14 @@ TEST(BadFiles, ATrapezoidFromWhereAFormulaIsNowhereTakesTooLong) {
 TEST(BadFiles, KeysWrittenTwiceAreToldWithTheRest) {
   EXPECT_EQ(
       error_of_file("[arm]\nkind = 'planar'\nkind = 'spatial'\n[[arm.section]]\nlength = -1\nlength = 2\n"),
-      "x.toml:3:8: 'kind' is written twice: expected each key once\n"
-      "x.toml:6:10: 'length' is written twice: expected each key once\n"
+      "x.toml:3:8: 'kind' occurs twice: expected each key once\n"
+      "x.toml:6:10: 'length' occurs twice: expected each key once\n"
       "x.toml:5:10: arm.section[0].length = -1: expected a number from 1e-06 m to 1000000 m");
   EXPECT_EQ(error_of_file("[arm]\nkind = 'planar'\nkind = [\n 1]\n[[arm.section]]\nlength = -1\n"),
-            "x.toml:3:8: 'kind' is written twice: expected each key once")
+            "x.toml:3:8: 'kind' occurs twice: expected each key once")
       << "what follows a value of several lines is not judged";
   EXPECT_EQ(error_of_file("[arm]\nsection = [{length = 1, length = 2}]\n"),
-            "x.toml:2:34: 'length' is written twice: expected each key once")
+            "x.toml:2:34: 'length' occurs twice: expected each key once")
       << "nor what stands beside it";
 }
 

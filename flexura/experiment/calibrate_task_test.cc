@@ -309,7 +309,7 @@ TEST(CalibrateTask, RefusesWhatItCannotDo) {
   EXPECT_THAT(error_of_file(small_calibration("cameras = [\"front\", \"front\"]\n", "")),
               HasSubstr("expected two"));
   EXPECT_THAT(error_of_file(small_calibration("save = \"../rig.toml\"\n", "")),
-              HasSubstr("expected a file's name"));
+              HasSubstr("expected a file name"));
   EXPECT_THAT(error_of_file("[arm]\n[[arm.section]]\nlength = 1\n[[task]]\nkind = \"calibrate\"\n"),
               HasSubstr("needs at least 4 markers"));
 }

@@ -108,7 +108,8 @@ TEST_F(IntrinsicsCommand, MeasuresACameraAndKeepsEarlierFiles) {
   EXPECT_LT(number(found, "rms_px"), 0.15);
   EXPECT_EQ(*camera.find("views_used")->as<std::int64_t>(), 5);
   EXPECT_EQ(camera.find("covariance")->as<Node::Array>()->size(), 4U);
-  EXPECT_THAT(*entry(camera, "views", 5).find("reason")->as<std::string>(), HasSubstr("no complete board"));
+  EXPECT_THAT(*entry(camera, "views", 5).find("reason")->as<std::string>(),
+              HasSubstr("does not contain a complete board"));
   EXPECT_EQ(*found.find("file")->as<std::string>(), path("cameras.toml"));
   const std::string first = read_text_file(path("cameras.toml"), 1 << 20);
   const auto written = read_as<MeasuredCameras>(read_toml_file(path("cameras.toml"))).camera;
@@ -354,7 +355,7 @@ TEST_F(IntrinsicsCommand, PrintsAShortTableUnlessAskedForJson) {
   EXPECT_THAT(out.str(), HasSubstr("fx (px)         26"));
   EXPECT_THAT(out.str(), HasSubstr(" +- "));
   EXPECT_THAT(out.str(), HasSubstr("pictures used   5 of 6\n"));
-  EXPECT_THAT(out.str(), HasSubstr("blank.png: no complete board"));
+  EXPECT_THAT(out.str(), HasSubstr("blank.png: the picture does not contain a complete board"));
   EXPECT_THAT(out.str(), HasSubstr("file: " + path("cameras.toml")));
   EXPECT_LT(std::ranges::count(out.str(), '\n'), 15);
   EXPECT_EQ(err.str(), "") << "no terminal";

@@ -78,13 +78,13 @@ class Calibration {
   void check() const {
     for (const BoardView& view : views_) {
       if (view.pixels.size() != sizes_.size())
-        throw std::invalid_argument("a view has another number of cameras");
+        throw std::invalid_argument("a view has a wrong number of cameras");
       for (const auto& pixels : view.pixels)
         if (!pixels.empty() && pixels.size() != points_.size())
-          throw std::invalid_argument("a view has another number of points than the board");
+          throw std::invalid_argument("the number of points in a view differs from that of the board");
     }
     if (config_.distortion < 0 || config_.distortion > 5)
-      throw std::invalid_argument("of five distortion coefficients, 0 to 5 can be estimated");
+      throw std::invalid_argument("the number of estimated distortion coefficients must be 0 to 5");
   }
 
   [[nodiscard]] BundleConfig bundle_config(double least_gain) const {

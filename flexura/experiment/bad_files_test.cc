@@ -70,7 +70,7 @@ TEST(BadFiles, EachGetsALineWithPlaceValueAndExpectation) {
       {"wrong unit", file_with("length = 2.0", "length_deg = 2.0"),
        "x.toml:4:1: arm.section[0].length_deg: wrong unit: expected length (m), length_mm (mm)"},
       {"two units", file_with("length = 2.0", "length = 2.0\nlength_mm = 2000"),
-       "x.toml:5:1: arm.section[0].length_mm: written twice: length is already in line 4"},
+       "x.toml:5:1: arm.section[0].length_mm: occurs twice: length is already in line 4"},
       {"duplicate key", file_with("length = 2.0", "length = 2.0\nlength = 3.0"),
        "x.toml:5:10: 'length' occurs twice: expected each key once"},
       {"unclosed text", file_with("\"planar\"", "\"planar"), "x.toml:2:"},

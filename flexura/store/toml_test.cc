@@ -209,7 +209,7 @@ TEST_F(TomlFile, RefusesBadIncludesWithALine) {
   for (int i = 0; i < 10; ++i)
     write("deep" + std::to_string(i) + ".toml", "include = ['deep" + std::to_string(i + 1) + ".toml']");
   write("deep10.toml", "x = 1");
-  EXPECT_THAT(error("deep0.toml"), HasSubstr("include: more than 8 files deep"));
+  EXPECT_THAT(error("deep0.toml"), HasSubstr("include: nested more than 8 files deep"));
   write("nameless.toml", "include = ['']");
   EXPECT_THAT(error("nameless.toml"), HasSubstr("nameless.toml:1:12: include: expected a file name"));
   EXPECT_THAT(error("missing.toml"), HasSubstr("no file \"nothing.toml\""));

@@ -381,7 +381,7 @@ TEST_F(RecordingSessionTest, OpensNoLogWithAStateThatIsNoShape) {
     open();
     ADD_FAILURE() << "opened";
   } catch (const InputError& refusal) {
-    EXPECT_THAT(refusal.what(), HasSubstr("state at 0 s does not fit its arm"));
+    EXPECT_THAT(refusal.what(), HasSubstr("state at 0 s does not fit the log's arm"));
   }
 }
 

@@ -76,7 +76,7 @@ TEST(Request, ReadsEverythingThatAPageCanAsk) {
 
 TEST(Request, SaysThatNoMoreIsExpectedWhereNothingIs) {
   EXPECT_THAT(read_request(R"({"id":7,"do":"ping","x":1})").error,
-              HasSubstr("x: unknown key; no more is expected here"));
+              HasSubstr("x: unknown key; no keys are expected here"));
 }
 
 TEST(Request, NeedsNoIdForAnAcknowledgement) {

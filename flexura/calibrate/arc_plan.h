@@ -16,8 +16,8 @@ namespace flexura {
 
 /// Returns the bends for which the whole arm is one circular arc of the angle `bend`, rad, towards a
 /// direction in W. Each section bends in proportion to its length (steps 1 and 7 of the paper's section 3.4).
-/// Returns std::nullopt if the arm cannot form this arc: if the arc leaves a planar arm's plane, if the
-/// direction is not perpendicular to the base axis, or if a section's limit is exceeded.
+/// Returns std::nullopt if the arm cannot form this arc. Possible reasons are: the arc leaves a planar arm's
+/// plane, the direction is not perpendicular to the base axis, or a section's limit is exceeded.
 [[nodiscard]] std::optional<ArmState> arc_state(const Arm& arm, double bend, const Eigen::Vector3d& towards);
 
 /// Camera poses for the calibration with arcs, computed with the simulator. Each camera looks along the

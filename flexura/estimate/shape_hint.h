@@ -11,8 +11,8 @@ namespace flexura {
 
 /// Returns a hint about a possible error in the descriptions of arm and cameras. For a known arm that was
 /// found, the hint states the observed radius if the arm looks much thicker or thinner than described. For a
-/// known arm that was not found, the hint names a camera that has the base behind it, or a picture in which
-/// the base is far from all observed points. Returns std::nullopt if no error is visible.
+/// known arm that was not found, the hint names a camera or a picture. The camera has the base behind it, or
+/// the base is far from all observed points in the picture. Returns std::nullopt if no error is visible.
 [[nodiscard]] std::optional<std::string> hint_of(const ShapePrior& prior,
                                                  std::span<const Observation> observations,
                                                  const ShapeEstimate& estimate);

@@ -42,9 +42,9 @@ struct ShapePrediction {
   Eigen::MatrixXd covariance;  ///< Covariance of the unknowns (ShapeVariables), including views with a prior.
 };
 
-/// The unknowns of a prior, in order. They are: the bends (x and y of each section; only x for planar arms),
-/// the base's position (m, in W), the base's rotation about its own x and y (rad), the logarithm of the
-/// stretch, and the error of each view with a prior (turn in rad, focal).
+/// The unknowns of a prior, in order. They begin with the bends (x and y of each section; only x for planar
+/// arms). The base's position (m, in W), the base's rotation about its own x and y (rad) and the logarithm of
+/// the stretch follow. The last ones are the error of each view with a prior (turn in rad, focal).
 class ShapeVariables {
  public:
   /// `observations`: their view priors determine which views have an error.

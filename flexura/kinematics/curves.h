@@ -37,8 +37,8 @@ struct CubicBezier {
 [[nodiscard]] std::vector<CubicBezier> catmull_rom(const Backbone& backbone, int spans, double tension = 0.5);
 
 /// Returns one cubic per section. The cubic has the ends, end tangents and middle of the section's arc. A
-/// section of more than half a turn is split into the smallest number of equal pieces of at most half a turn,
-/// because the control points of a cubic diverge as its arc approaches a full turn.
+/// section of more than half a turn is split into the smallest number of equal pieces of at most half a turn.
+/// The reason is that the control points of a cubic diverge as its arc approaches a full turn.
 [[nodiscard]] std::vector<CubicBezier> tangent_bezier(const Backbone& backbone);
 
 /// Curve that is drawn for an arm: the exact arcs, the paper's spline through the sections' base points

@@ -54,8 +54,8 @@ const Table<TendonRouteConfig>& fields_of(const TendonRouteConfig*);
 const Table<LoadConfig>& fields_of(const LoadConfig*);
 
 /// Reports errors of the tendons, loads and materials of `arm`. `reader` must be at the arm's table. Errors
-/// are: a wrong section number, a tendon that leaves the tube, a section of a static or dynamic arm without a
-/// material, and a section of a dynamic arm without a mass.
+/// are a wrong section number and a tendon that leaves the tube. Further errors are a section of a static or
+/// dynamic arm without a material, and a section of a dynamic arm without a mass.
 void check_mechanics(const ArmConfig& arm, Reader& reader);
 
 }  // namespace flexura

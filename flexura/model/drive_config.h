@@ -44,9 +44,9 @@ const Table<Spool>& fields_of(const Spool*);
 const Table<TendonConfig>& fields_of(const TendonConfig*);
 const Table<DriveConfig>& fields_of(const DriveConfig*);
 
-/// Reports to `reader` why the drive at `path` cannot move the arm. Errors are: a wrong section number of a
-/// tendon, motor positions too large for exact integers, and a section whose tendons do not determine its
-/// bend and its stretch (if variable).
+/// Reports to `reader` why the drive at `path` cannot move the arm. Errors are a wrong section number of a
+/// tendon, and motor positions too large for exact integers. A further error is a section whose tendons do
+/// not determine its bend and its stretch (if variable).
 void check_drive(const DriveConfig& config, const ArmConfig& arm, const std::string& path, Reader& reader);
 
 }  // namespace flexura

@@ -101,10 +101,10 @@ struct Scene {
   Color background = {0.02, 0.02, 0.02};  ///< Light from directions without a surface.
 };
 
-/// Throws std::invalid_argument for an invalid scene. The message names the part and the value. Errors are:
-/// values that are not finite, sizes that are not positive, sizes and positions above 1e9 m, directions of
-/// length zero, matrices that are not rotations, and tube arcs that do not start at the end of the previous
-/// arc.
+/// Throws std::invalid_argument for an invalid scene. The message names the part and the value. Errors are
+/// values that are not finite, sizes that are not positive, sizes and positions above 1e9 m, and directions
+/// of length zero. Further errors are matrices that are not rotations, and tube arcs that do not start at the
+/// end of the previous arc.
 void check(const Scene& scene);
 /// Throws std::invalid_argument for a camera pose that is not finite or not a rigid transform.
 void check_camera(const Pose& X_WC);

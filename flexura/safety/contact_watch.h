@@ -32,9 +32,9 @@ struct Contact {
 /// Computes clearances and contacts of the arm with one object: the arm itself or an obstacle.
 ///
 /// For self-contact, a pair of backbone points is considered if the backbone between them turns by pi or
-/// more. If a section of the pair, or between the pair, is thinner than the pair's mean radius, further pairs
-/// are considered: those with a backbone piece longer than half a circle of the mean radius. All other pairs
-/// cannot touch, or are neighbours (docs/safety.md).
+/// more. Further pairs are considered if a section of the pair, or between the pair, is thinner than the
+/// pair's mean radius. In these pairs, the backbone between the points is longer than half a circle of the
+/// mean radius. All other pairs cannot touch, or are neighbours (docs/safety.md).
 class ContactWatch {
  public:
   explicit ContactWatch(Arm arm);

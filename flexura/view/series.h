@@ -11,10 +11,10 @@
 
 namespace flexura {
 
-/// Selects at most `points` values to draw and returns their indices in ascending order: the first and the
-/// last value, and the minima and maxima of all curves in intervals of equal length. Values at the borders of
-/// gaps (NaN) are selected in addition. If there are few values, returns all indices. All curves must have
-/// the same length.
+/// Selects at most `points` values to draw, and returns their indices in ascending order. They are the first
+/// and the last value, and the minima and maxima of all curves in intervals of equal length. Values at the
+/// borders of gaps (NaN) are selected in addition. If there are few values, returns all indices. All curves
+/// must have the same length.
 [[nodiscard]] std::vector<std::size_t> thinned(std::span<const std::vector<double>> curves,
                                                std::size_t points);
 

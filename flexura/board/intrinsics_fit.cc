@@ -106,7 +106,7 @@ class Calibration {
       const CameraAlone& own = alone.back();
       if (own.views.size() < 2) {
         result_.reason = camera_text(camera) +
-                         fmt::format("{} to fit: expected at least two, from different directions",
+                         fmt::format("{} to fit: expected at least two views, from different directions",
                                      own.views.empty() ? "no view of the board" : "one view of the board");
       } else if (!own.fit.is_converged) {
         result_.reason = camera_text(camera) + why_not_converged(own.fit);

@@ -63,8 +63,8 @@ class ArcsLoop {
 [[nodiscard]] std::unique_ptr<ArcsLoop> arcs_corrected(LookLoop& loop);
 
 /// Returns the prior of a rig for the calibration with arcs, derived from the prior of the default
-/// calibration. Lenses are exact except for the principal point, with 1 px. Heads are exact except for their
-/// resolution. The bend error of a section is one factor, equal in all arcs.
+/// calibration. Lenses are exact except for the principal point, whose standard deviation is 1 px. Heads are
+/// exact except for their resolution. The bend error of a section is one factor, equal in all arcs.
 [[nodiscard]] RigPrior arcs_prior(RigPrior prior);
 
 }  // namespace flexura

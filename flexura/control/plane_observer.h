@@ -19,7 +19,7 @@ class PlaneObserver {
   /// standard deviations of alpha_1 and alpha_2 at each of the points arm.shapes().s, rad.
   PlaneObserver(const DistributedArm& arm, const Eigen::VectorXd& target, const std::array<double, 2>& noise);
 
-  /// Measures an arm, which is set to the state x. `deviate(i)` returns noise with variance 1: first for
+  /// Measures an arm that is set to the state x. `deviate(i)` returns noise with variance 1: first for
   /// alpha_1 at all points, then for alpha_2.
   void look(const DistributedArm& arm, const Eigen::VectorXd& x,
             const std::function<double(std::uint64_t i)>& deviate);

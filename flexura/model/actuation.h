@@ -28,7 +28,7 @@ class Actuation {
   /// std::invalid_argument if a profile is invalid.
   Actuation(const Arm& driven, std::shared_ptr<const ArmResponse> response);
 
-  /// Numbers of sections and of arcs.
+  /// The number of sections, and the number of arcs.
   [[nodiscard]] std::size_t sections() const { return sections_; }
   [[nodiscard]] std::size_t arcs() const { return shares_.size(); }
   /// Returns whether the shape equals the command: every section is one arc that bends as commanded.
